@@ -3,7 +3,10 @@
 //! Figures to reach: a drag of alpha <= 4 ms, a drag of alpha, n or R_max under lead <= 6 ms, a rejected model <= 10 ms, a moved band
 //! edge <= 40 ms for all 11 conditions.
 
-#![expect(missing_docs, reason = "criterion's macros make undocumented functions")]
+#![expect(
+    missing_docs,
+    reason = "criterion's macros make undocumented functions"
+)]
 
 use std::hint::black_box;
 use std::path::Path;
@@ -21,7 +24,8 @@ use gdcm_model::dataset::{
 };
 use gdcm_model::response::{FrequencyGrid, PolarResponse};
 use gdcm_study::study::{
-    BundleMetrics, ConditionResponses, Edit, Engine, Execution, KnownPoles, PhaseCorrection, Study, Unobserved, setting,
+    BundleMetrics, ConditionResponses, Edit, Engine, Execution, KnownPoles, PhaseCorrection, Study,
+    Unobserved, setting,
 };
 
 #[path = "random_model/mod.rs"]
@@ -35,8 +39,13 @@ use stopwatch::shortest;
 
 /// The dataset that the figures to reach are for: 19 physics and 3 identified models in each of 11 conditions.
 fn example() -> Arc<Dataset> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/reference/example-dataset.json.gz");
-    load_dataset(Path::new(path)).expect("the reference dataset is there").dataset
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/data/reference/example-dataset.json.gz"
+    );
+    load_dataset(Path::new(path))
+        .expect("the reference dataset is there")
+        .dataset
 }
 
 /// One condition: 19 physics and 12 identified models, 200 frequencies.
@@ -46,26 +55,41 @@ fn stages(criterion: &mut Criterion) {
     let grid = FrequencyGrid::logarithmic(dataset.band(), 200);
     let measuring = dataset.measuring_pairs();
     let alone = Execution::sequential();
-    let responses = ConditionResponses::of(condition, (dataset.band(), 200), &alone).expect("nobody stops it");
-    let figures = BundleMetrics::of(condition, &responses, &measuring, (&grid, None), &alone).expect("nobody stops it");
+    let responses =
+        ConditionResponses::of(condition, (dataset.band(), 200), &alone).expect("nobody stops it");
+    let figures = BundleMetrics::of(condition, &responses, &measuring, (&grid, None), &alone)
+        .expect("nobody stops it");
     let polar = PolarResponse::of;
-    let mismatch = mismatch_table(&polar(&responses.physics[10]), &polar(&responses.identified[2]), None);
+    let mismatch = mismatch_table(
+        &polar(&responses.physics[10]),
+        &polar(&responses.identified[2]),
+        None,
+    );
     let models = condition.bundle(BundleKind::Physics);
-    let perturbations: Vec<_> = models.iter().map(|model| (model.name.as_str(), model.perturbation())).collect();
+    let perturbations: Vec<_> = models
+        .iter()
+        .map(|model| (model.name.as_str(), model.perturbation()))
+        .collect();
     let mut group = criterion.benchmark_group("one condition");
     group.bench_function("responses of models not prepared", |bencher| {
         bencher.iter(|| ConditionResponses::of(condition, (dataset.band(), 200), &alone));
     });
     group.bench_function("distances and ratios", |bencher| {
-        bencher.iter(|| BundleMetrics::of(condition, &responses, &measuring, (&grid, None), &alone));
+        bencher
+            .iter(|| BundleMetrics::of(condition, &responses, &measuring, (&grid, None), &alone));
     });
     group.bench_function("ratios", |bencher| {
         bencher.iter(|| Discontinuity::of(&figures.physics, &perturbations, &|| false))
     });
-    group.bench_function("G and D", |bencher| bencher.iter(|| Delta::of(&mismatch, grid.omega())));
+    group.bench_function("G and D", |bencher| {
+        bencher.iter(|| Delta::of(&mismatch, grid.omega()))
+    });
     group.bench_function("bounds", |bencher| {
         bencher.iter(|| {
-            (gain_bounds(&mismatch, &measuring, 0.05), delay_upper_s(&mismatch, &measuring, grid.omega(), 0.05))
+            (
+                gain_bounds(&mismatch, &measuring, 0.05),
+                delay_upper_s(&mismatch, &measuring, grid.omega(), 0.05),
+            )
         });
     });
     group.finish();
@@ -73,7 +97,9 @@ fn stages(criterion: &mut Criterion) {
 
 /// All 11 conditions, as the window asks for them: on all cores, and on one.
 fn live_loop(criterion: &mut Criterion) {
-    all_conditions(criterion, "all conditions, all cores", || Engine::with_executor(Box::new(Pool)));
+    all_conditions(criterion, "all conditions, all cores", || {
+        Engine::with_executor(Box::new(Pool))
+    });
     all_conditions(criterion, "all conditions, one core", Engine::default);
 }
 
@@ -96,24 +122,36 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
         });
     };
     let set = |study: &mut Study, edit: Edit| study.apply(&edit).expect("within its range");
-    drag("alpha dragged", &|study, turn| set(study, setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn)));
+    drag("alpha dragged", &|study, turn| {
+        set(study, setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
+    });
     let under_lead = |study: &mut Study, edit: Edit| {
         set(study, setting::PHASE.to(PhaseCorrection::Lead));
         set(study, edit);
     };
-    drag("alpha dragged under lead", &|study, turn| under_lead(study, setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn)));
+    drag("alpha dragged under lead", &|study, turn| {
+        under_lead(study, setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
+    });
     drag("alpha of the delays dragged under lead", &|study, turn| {
         under_lead(study, setting::ALPHA_DELAY.to(1.0 + 1e-6 * turn));
     });
-    drag("n dragged under lead", &|study, turn| under_lead(study, setting::LEAD_POLE.to(3.0 + 1e-6 * turn)));
-    drag("R_max dragged under lead", &|study, turn| under_lead(study, setting::LEAD_LIMIT.to(10.0 + 1e-6 * turn)));
+    drag("n dragged under lead", &|study, turn| {
+        under_lead(study, setting::LEAD_POLE.to(3.0 + 1e-6 * turn))
+    });
+    drag("R_max dragged under lead", &|study, turn| {
+        under_lead(study, setting::LEAD_LIMIT.to(10.0 + 1e-6 * turn))
+    });
     drag("band edge dragged", &|study, turn| {
         let band = Band::new(0.5, 12.0 + 1e-6 * turn).expect("rising");
         set(study, setting::BAND.to(band));
     });
     drag("model rejected", &|study, turn| {
         let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
-        let edit = if turn % 2.0 == 0.0 { Edit::Reject(id) } else { Edit::Restore(id) };
+        let edit = if turn % 2.0 == 0.0 {
+            Edit::Reject(id)
+        } else {
+            Edit::Restore(id)
+        };
         study.apply(&edit).expect("others are kept");
     });
     group.finish();
@@ -122,10 +160,17 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
 /// What the stages are worth beside plain ways, in the same run: the shortest of a few runs each.
 fn ratios(_: &mut Criterion) {
     let dataset = example();
-    let (condition, grid) = (&dataset.conditions()[9], FrequencyGrid::logarithmic(dataset.band(), 200));
+    let (condition, grid) = (
+        &dataset.conditions()[9],
+        FrequencyGrid::logarithmic(dataset.band(), 200),
+    );
     let alone = Execution::sequential();
-    let ours = shortest(20, || ConditionResponses::of(condition, (dataset.band(), 200), &alone));
-    let models = [BundleKind::Physics, BundleKind::Identified].map(|kind| condition.bundle(kind)).concat();
+    let ours = shortest(20, || {
+        ConditionResponses::of(condition, (dataset.band(), 200), &alone)
+    });
+    let models = [BundleKind::Physics, BundleKind::Identified]
+        .map(|kind| condition.bundle(kind))
+        .concat();
     let plain = shortest(3, || {
         for model in &models {
             if let Dynamics::StateSpace(model) = &model.dynamics {
@@ -139,15 +184,25 @@ fn ratios(_: &mut Criterion) {
     );
     let study = Study::new(Arc::clone(&dataset));
     let anew = shortest(5, || Engine::default().analyze(&study, &Unobserved));
-    let together = shortest(5, || Engine::with_executor(Box::new(Pool)).analyze(&study, &Unobserved));
-    println!("everything anew: one core takes {:.2} times as long as all", anew.div_duration_f64(together));
+    let together = shortest(5, || {
+        Engine::with_executor(Box::new(Pool)).analyze(&study, &Unobserved)
+    });
+    println!(
+        "everything anew: one core takes {:.2} times as long as all",
+        anew.div_duration_f64(together)
+    );
     let (mut engine, mut dragged, mut alpha) = (Engine::default(), study.clone(), 1.0);
     let drag = shortest(50, || {
         alpha += 1e-6;
-        dragged.apply(&setting::ALPHA_GAIN.to(alpha)).expect("within its range");
+        dragged
+            .apply(&setting::ALPHA_GAIN.to(alpha))
+            .expect("within its range");
         engine.analyze(&dragged, &Unobserved)
     });
-    println!("alpha dragged: everything anew would take {:.0} times as long", anew.div_duration_f64(drag));
+    println!(
+        "alpha dragged: everything anew would take {:.0} times as long",
+        anew.div_duration_f64(drag)
+    );
 }
 
 /// One model of two hundred replaced by another of its name: what is computed is its response, and what rests on it.
@@ -155,14 +210,30 @@ fn replaced_model(_: &mut Criterion) {
     const MODELS: usize = 200;
     let example = example();
     let first = &example.conditions()[0];
-    let Dynamics::StateSpace(base) = &first.bundle(BundleKind::Physics)[0].dynamics else { return };
+    let Dynamics::StateSpace(base) = &first.bundle(BundleKind::Physics)[0].dynamics else {
+        return;
+    };
     let study = |scale: f64| {
         let physics = (0..MODELS).map(|index| {
-            let factor = if index == 7 { scale } else { 1.0 + 1e-4 * index as f64 };
-            let (a, b, c, d) = (base.a().clone(), factor * base.b(), base.c().clone(), base.d().clone());
-            let dynamics = Dynamics::StateSpace(StateSpace::new(a, b, c, d).expect("the shapes agree"));
+            let factor = if index == 7 {
+                scale
+            } else {
+                1.0 + 1e-4 * index as f64
+            };
+            let (a, b, c, d) = (
+                base.a().clone(),
+                factor * base.b(),
+                base.c().clone(),
+                base.d().clone(),
+            );
+            let dynamics =
+                Dynamics::StateSpace(StateSpace::new(a, b, c, d).expect("the shapes agree"));
             let perturbation = None;
-            let origin = if index == 0 { Origin::Nominal { perturbation } } else { Origin::Perturbed { perturbation } };
+            let origin = if index == 0 {
+                Origin::Nominal { perturbation }
+            } else {
+                Origin::Perturbed { perturbation }
+            };
             Model::new(format!("model {index}"), origin, dynamics)
         });
         let identified = first.bundle(BundleKind::Identified).to_vec();
@@ -174,10 +245,18 @@ fn replaced_model(_: &mut Criterion) {
     let anew = shortest(5, || Engine::default().analyze(&before, &Unobserved));
     let mut engine = Engine::default();
     let curves = |engine: &mut Engine, study: &Study| {
-        engine.curves(&study.dataset, first.id(), (study.settings.band, 500), &Unobserved)
+        engine.curves(
+            &study.dataset,
+            first.id(),
+            (study.settings.band, 500),
+            &Unobserved,
+        )
     };
     let drawn_anew = shortest(5, || curves(&mut Engine::default(), &before));
-    let _ = (engine.analyze(&before, &Unobserved), curves(&mut engine, &before));
+    let _ = (
+        engine.analyze(&before, &Unobserved),
+        curves(&mut engine, &before),
+    );
     let mut scale = 1.0;
     let (mut replaced, mut drawn) = (Duration::MAX, Duration::MAX);
     for _ in 0..20 {
@@ -198,7 +277,9 @@ fn replaced_model(_: &mut Criterion) {
 /// swaps a condition; the embedded example has some 29, for its identified bundles have 11 or 12 models.
 fn bars(criterion: &mut Criterion) {
     bars_of(criterion, "error bars of all conditions", example());
-    let embedded = embedded_example().expect("the embedded example is a dataset").dataset;
+    let embedded = embedded_example()
+        .expect("the embedded example is a dataset")
+        .dataset;
     bars_of(criterion, "error bars of the embedded example", embedded);
 }
 
@@ -207,13 +288,17 @@ fn bars_of(criterion: &mut Criterion, name: &str, dataset: Arc<Dataset>) {
     group.sample_size(10);
     let mut study = Study::new(dataset);
     let mut engine = Engine::with_executor(Box::new(Pool));
-    let reps = |study: &Study, engine: &mut Engine| engine.analyze(study, &Unobserved).expect("nobody stops it");
+    let reps = |study: &Study, engine: &mut Engine| {
+        engine.analyze(study, &Unobserved).expect("nobody stops it")
+    };
     group.bench_function("all swaps anew, responses kept", |bencher| {
         let mut turn = 0.0;
         bencher.iter(|| {
             turn += 1.0;
             // What every swap depends on, and no response.
-            study.apply(&setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn)).expect("within its range");
+            study
+                .apply(&setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
+                .expect("within its range");
             let analysis = reps(&study, &mut engine);
             engine.uncertainty(&analysis, &Unobserved)
         });
@@ -223,7 +308,13 @@ fn bars_of(criterion: &mut Criterion, name: &str, dataset: Arc<Dataset>) {
         bencher.iter(|| {
             turn += 1;
             let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
-            study.apply(&if turn % 2 == 0 { Edit::Reject(id) } else { Edit::Restore(id) }).expect("others are kept");
+            study
+                .apply(&if turn % 2 == 0 {
+                    Edit::Reject(id)
+                } else {
+                    Edit::Restore(id)
+                })
+                .expect("others are kept");
             let analysis = reps(&study, &mut engine);
             engine.uncertainty(&analysis, &Unobserved)
         });
@@ -234,16 +325,28 @@ fn bars_of(criterion: &mut Criterion, name: &str, dataset: Arc<Dataset>) {
 /// What a qualification asks of all conditions without records, with its intervals; 11 conditions, 19 + 11 or 12 models each. Figure to
 /// reach: 50 ms on two cores, beside the live answer.
 fn requirements(criterion: &mut Criterion) {
-    let mut study = Study::new(embedded_example().expect("the embedded example is a dataset").dataset);
-    study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).expect("a choice");
+    let mut study = Study::new(
+        embedded_example()
+            .expect("the embedded example is a dataset")
+            .dataset,
+    );
+    study
+        .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+        .expect("a choice");
     let mut engine = Engine::with_executor(Box::new(Pool));
-    let mut analysis = engine.analyze(&study, &Unobserved).expect("nobody stops it");
+    let mut analysis = engine
+        .analyze(&study, &Unobserved)
+        .expect("nobody stops it");
     let mut group = criterion.benchmark_group("requirements of the embedded example");
     group.sample_size(10);
     group.bench_function("without intervals", |bencher| {
         bencher.iter(|| engine.requirements(&analysis, &KnownPoles::default(), &Unobserved))
     });
-    analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &Unobserved).expect("nobody stops it")));
+    analysis.uncertainty = Some(Arc::new(
+        engine
+            .uncertainty(&analysis, &Unobserved)
+            .expect("nobody stops it"),
+    ));
     group.bench_function("with intervals", |bencher| {
         bencher.iter(|| engine.requirements(&analysis, &KnownPoles::default(), &Unobserved))
     });
@@ -253,5 +356,13 @@ fn requirements(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, stages, live_loop, ratios, replaced_model, bars, requirements);
+criterion_group!(
+    benches,
+    stages,
+    live_loop,
+    ratios,
+    replaced_model,
+    bars,
+    requirements
+);
 criterion_main!(benches);

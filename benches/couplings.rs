@@ -3,7 +3,10 @@
 //! Figures to reach, two cores, 6 x 4 responses at 200 frequencies in 11 conditions: a fit of five solves <= 60 ms, what depends on it
 //! <= 5 ms more, a drag of alpha as without couplings.
 
-#![expect(missing_docs, reason = "criterion's macros make undocumented functions")]
+#![expect(
+    missing_docs,
+    reason = "criterion's macros make undocumented functions"
+)]
 
 use std::hint::black_box;
 use std::path::Path;
@@ -18,7 +21,9 @@ use gdcm_method::couplings::{CouplingCondition, CouplingProblem, Unknown, fit_co
 use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, ModelId, Pair};
 use gdcm_model::executor::Sequential;
 use gdcm_model::response::FrequencyResponse;
-use gdcm_study::study::{CouplingCorrection, Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
+use gdcm_study::study::{
+    CouplingCorrection, Edit, Engine, PhaseCorrection, Study, Unobserved, setting,
+};
 
 #[path = "stopwatch/mod.rs"]
 mod stopwatch;
@@ -26,20 +31,35 @@ mod stopwatch;
 use stopwatch::shortest;
 
 fn example() -> Arc<Dataset> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/reference/example-dataset.json.gz");
-    load_dataset(Path::new(path)).expect("the reference dataset is there").dataset
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/data/reference/example-dataset.json.gz"
+    );
+    load_dataset(Path::new(path))
+        .expect("the reference dataset is there")
+        .dataset
 }
 
 fn study() -> Study {
     let mut study = Study::new(example());
-    study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).expect("a choice");
-    study.apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback)).expect("a choice");
+    study
+        .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+        .expect("a choice");
+    study
+        .apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
+        .expect("a choice");
     study
 }
 
 fn problem() -> CouplingProblem {
-    let analysis = Engine::default().analyze(&study(), &Unobserved).expect("nobody stops it");
-    analysis.fitted_couplings().expect("the example can be fitted").problem.clone()
+    let analysis = Engine::default()
+        .analyze(&study(), &Unobserved)
+        .expect("nobody stops it");
+    analysis
+        .fitted_couplings()
+        .expect("the example can be fitted")
+        .problem
+        .clone()
 }
 
 fn live_loop(criterion: &mut Criterion) {
@@ -64,39 +84,59 @@ fn live_loop(criterion: &mut Criterion) {
         });
     };
     again("alpha dragged", &|study, turn| {
-        study.apply(&setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn)).expect("within its range");
+        study
+            .apply(&setting::ALPHA_GAIN.to(1.0 + 1e-6 * turn))
+            .expect("within its range");
     });
     // The representative: with another one the fit is another.
-    let analysis = Engine::default().analyze(&study(), &Unobserved).expect("nobody stops it");
-    let representative =
-        analysis.condition(ConditionId(10)).expect("it has a result").representative_name(BundleKind::Physics);
+    let analysis = Engine::default()
+        .analyze(&study(), &Unobserved)
+        .expect("nobody stops it");
+    let representative = analysis
+        .condition(ConditionId(10))
+        .expect("it has a result")
+        .representative_name(BundleKind::Physics);
     let rejected = |study: &mut Study, turn: f64| {
         let id = ModelId::new(ConditionId(10), BundleKind::Physics, representative);
-        let edit = if turn % 2.0 == 0.0 { Edit::Reject(id) } else { Edit::Restore(id) };
+        let edit = if turn % 2.0 == 0.0 {
+            Edit::Reject(id)
+        } else {
+            Edit::Restore(id)
+        };
         study.apply(&edit).expect("others are kept");
     };
     again("model rejected, fitted again", &rejected);
     again("the same without couplings", &|study, turn| {
-        study.apply(&setting::COUPLINGS.to(CouplingCorrection::None)).expect("a choice");
+        study
+            .apply(&setting::COUPLINGS.to(CouplingCorrection::None))
+            .expect("a choice");
         rejected(study, turn);
     });
     group.sample_size(10);
-    group.bench_function("what they are worth, everything anew, all cores", |bencher| {
-        let study = study();
-        let engine = || Engine::with_executor(Box::new(Pool));
-        bencher.iter(|| engine().assess_couplings(&study, study.settings.couplings, &Unobserved));
-    });
+    group.bench_function(
+        "what they are worth, everything anew, all cores",
+        |bencher| {
+            let study = study();
+            let engine = || Engine::with_executor(Box::new(Pool));
+            bencher
+                .iter(|| engine().assess_couplings(&study, study.settings.couplings, &Unobserved));
+        },
+    );
     group.finish();
 }
 
 /// The joint fit beside one that writes every row of its least-squares problem out.
 fn ratios(_: &mut Criterion) {
     let problem = problem();
-    let unknowns = fit_couplings(&problem, &Sequential, &Unobserved).expect("the example can be fitted").unknowns;
+    let unknowns = fit_couplings(&problem, &Sequential, &Unobserved)
+        .expect("the example can be fitted")
+        .unknowns;
     let ours = shortest(10, || fit_couplings(&problem, &Sequential, &Unobserved));
-    let plain =
-        shortest(2, || (0..problem.options.solves).for_each(|_| drop(black_box(plain_solve(&problem, &unknowns)))));
-    let rows = problem.conditions.len() * problem.omega.len() * problem.outputs() * problem.inputs() * 2;
+    let plain = shortest(2, || {
+        (0..problem.options.solves).for_each(|_| drop(black_box(plain_solve(&problem, &unknowns))))
+    });
+    let rows =
+        problem.conditions.len() * problem.omega.len() * problem.outputs() * problem.inputs() * 2;
     let products = (problem.options.solves * rows * unknowns.len() * unknowns.len()) as f64;
     println!(
         "joint fit of {} unknowns, one core: {ours:.2?}; a plain assembly of its {rows} rows takes {:.1} times as long ({:.1} G \
@@ -129,15 +169,18 @@ fn plain_rows(
 ) -> (DMatrix<f64>, DMatrix<f64>) {
     let (outputs, inputs) = (problem.outputs(), problem.inputs());
     let at = |of: &FrequencyResponse, k: usize| -> DMatrix<Complex<f64>> {
-        DMatrix::from_fn(outputs, inputs, |output, input| of.curve(Pair::new(output, input))[k])
+        DMatrix::from_fn(outputs, inputs, |output, input| {
+            of.curve(Pair::new(output, input))[k]
+        })
     };
     let points = problem.omega.len();
     let mut rows = DMatrix::zeros(points * outputs * inputs * 2, unknowns.len());
     let mut wanted = DMatrix::zeros(rows.nrows(), 1);
     for k in 0..points {
         let (f, flight) = (at(&condition.physics, k), at(&condition.flight, k));
-        for (place, (output, input)) in
-            (0..outputs).flat_map(|output| (0..inputs).map(move |input| (output, input))).enumerate()
+        for (place, (output, input)) in (0..outputs)
+            .flat_map(|output| (0..inputs).map(move |input| (output, input)))
+            .enumerate()
         {
             let row = 2 * (k * outputs * inputs + place);
             let weight = 1.0 / flight[(output, input)].norm();
@@ -145,7 +188,10 @@ fn plain_rows(
                 let entry = match *unknown {
                     Unknown::Mixing { to, from, .. } if from == input => f[(output, to)],
                     Unknown::Mixing { .. } => continue,
-                    Unknown::Feedback { input: to, output: of } => f[(output, to)] * flight[(of, input)],
+                    Unknown::Feedback {
+                        input: to,
+                        output: of,
+                    } => f[(output, to)] * flight[(of, input)],
                 };
                 rows[(row, column)] = weight * entry.re;
                 rows[(row + 1, column)] = weight * entry.im;

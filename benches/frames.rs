@@ -44,7 +44,12 @@ struct Screen<'a> {
 
 impl<'a> Screen<'a> {
     fn new(ctx: Context, doing: Doing, draw: impl FnMut(&mut Ui) + 'a) -> Self {
-        let mut screen = Self { ctx, draw: Box::new(draw), doing, frames: 0 };
+        let mut screen = Self {
+            ctx,
+            draw: Box::new(draw),
+            doing,
+            frames: 0,
+        };
         // Sizes settle, and the texts of the first frames are laid out.
         for _ in 0..10 {
             screen.tessellated_frame();
@@ -56,14 +61,22 @@ impl<'a> Screen<'a> {
     fn shapes(&mut self) -> FullOutput {
         self.frames += 1;
         let step = (self.frames % 100) as f32;
-        let size = if self.doing == Doing::Resizing { SIZE - vec2(0.0, step) } else { SIZE };
+        let size = if self.doing == Doing::Resizing {
+            SIZE - vec2(0.0, step)
+        } else {
+            SIZE
+        };
         // On a slant through the magnitude plot.
         let pointer = Event::PointerMoved(pos2(400.0 + 7.0 * step, 100.0 + 2.0 * step));
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(pos2(0.0, 0.0), size)),
             // Long after everything that was animated.
             time: Some(1e4 + f64::from(self.frames) / 60.0),
-            events: if self.doing == Doing::Pointing { vec![pointer] } else { Vec::new() },
+            events: if self.doing == Doing::Pointing {
+                vec![pointer]
+            } else {
+                Vec::new()
+            },
             ..RawInput::default()
         };
         self.ctx.run_ui(input, &mut self.draw)
@@ -74,28 +87,46 @@ impl<'a> Screen<'a> {
         let start = Instant::now();
         let mut output = self.shapes();
         let shapes = start.elapsed();
-        let primitives = self.ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
+        let primitives = self
+            .ctx
+            .tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
         let tessellation = start.elapsed() - shapes;
         output.drop_without_applying_deltas();
         let vertices = |primitive: &egui::ClippedPrimitive| match &primitive.primitive {
             egui::epaint::Primitive::Mesh(mesh) => mesh.vertices.len(),
             egui::epaint::Primitive::Callback(_) => 0,
         };
-        (shapes, tessellation, black_box(&primitives).iter().map(vertices).sum())
+        (
+            shapes,
+            tessellation,
+            black_box(&primitives).iter().map(vertices).sum(),
+        )
     }
 }
 
 /// A second-order lag with a notch: as many bends as a coupled response has.
 fn curve(number: usize, points: usize) -> BodeCurve {
-    let omega: Vec<f64> = (0..points).map(|k| 0.3 * (20.0f64 / 0.3).powf(k as f64 / (points - 1) as f64)).collect();
+    let omega: Vec<f64> = (0..points)
+        .map(|k| 0.3 * (20.0f64 / 0.3).powf(k as f64 / (points - 1) as f64))
+        .collect();
     let corner = 2.0 + 0.05 * number as f64;
     let magnitude = |w: &f64| {
         let (lag, notch) = ((w / corner).powi(2), (w / (2.0 * corner)).powi(2));
-        -10.0 * ((1.0 - lag).powi(2) + 0.3 * lag).log10() + 5.0 * ((1.0 - notch).powi(2) + 0.1 * notch).log10()
+        -10.0 * ((1.0 - lag).powi(2) + 0.3 * lag).log10()
+            + 5.0 * ((1.0 - notch).powi(2) + 0.1 * notch).log10()
     };
-    let phase = |w: &f64| -(0.5 * w / corner).atan2(1.0 - (w / corner).powi(2)).to_degrees() - 4.0 * w;
+    let phase = |w: &f64| {
+        -(0.5 * w / corner)
+            .atan2(1.0 - (w / corner).powi(2))
+            .to_degrees()
+            - 4.0 * w
+    };
     BodeCurve {
-        id: CurveId::Model(ModelId::new(ConditionId(1), BundleKind::Physics, number.to_string())),
+        id: CurveId::Model(ModelId::new(
+            ConditionId(1),
+            BundleKind::Physics,
+            number.to_string(),
+        )),
         label: format!("model {number}"),
         detail: String::new(),
         role: match number {
@@ -132,9 +163,17 @@ fn plain(curves: &[BodeCurve]) -> Screen<'_> {
         for (name, values) in [("magnitude", 0), ("phase", 1)] {
             Plot::new(name).height(height).show(ui, |plot| {
                 for curve in curves {
-                    let values = if values == 0 { &curve.magnitude_db } else { &curve.phase_deg };
-                    let points: Vec<[f64; 2]> =
-                        curve.omega.iter().zip(values.iter()).map(|(omega, value)| [omega.log10(), *value]).collect();
+                    let values = if values == 0 {
+                        &curve.magnitude_db
+                    } else {
+                        &curve.phase_deg
+                    };
+                    let points: Vec<[f64; 2]> = curve
+                        .omega
+                        .iter()
+                        .zip(values.iter())
+                        .map(|(omega, value)| [omega.log10(), *value])
+                        .collect();
                     plot.line(Line::new(&curve.label, points));
                 }
             });
@@ -160,7 +199,10 @@ impl Figures {
     fn of(screen: &mut Screen<'_>) -> Self {
         let frames: Vec<_> = (0..FRAMES).map(|_| screen.tessellated_frame()).collect();
         let sorted = |of: fn(&(Duration, Duration, usize)) -> Duration| {
-            let mut times: Vec<f64> = frames.iter().map(|frame| of(frame).as_secs_f64() * 1e3).collect();
+            let mut times: Vec<f64> = frames
+                .iter()
+                .map(|frame| of(frame).as_secs_f64() * 1e3)
+                .collect();
             times.sort_by(f64::total_cmp);
             times
         };
@@ -195,11 +237,25 @@ fn frames(criterion: &mut Criterion) {
     };
     for (count, points) in SIZES {
         let curves: Vec<BodeCurve> = (0..count).map(|number| curve(number, points)).collect();
-        let (name, figures) = measure(format!("plain lines, {count} of {points} points"), &mut plain(&curves));
+        let (name, figures) = measure(
+            format!("plain lines, {count} of {points} points"),
+            &mut plain(&curves),
+        );
         let plain = figures.both;
-        rows.push(Row { name, figures, plain });
-        let (name, figures) = measure(format!("Bode plot, {count} curves of {points} points"), &mut bode(&curves));
-        rows.push(Row { name, figures, plain });
+        rows.push(Row {
+            name,
+            figures,
+            plain,
+        });
+        let (name, figures) = measure(
+            format!("Bode plot, {count} curves of {points} points"),
+            &mut bode(&curves),
+        );
+        rows.push(Row {
+            name,
+            figures,
+            plain,
+        });
     }
     let plain = rows[0].plain;
     for (tab, doing, what) in [
@@ -216,8 +272,15 @@ fn frames(criterion: &mut Criterion) {
     ] {
         window.show(tab);
         let (ctx, draw) = window.drawn();
-        let (name, figures) = measure(format!("window, {tab}{what}"), &mut Screen::new(ctx, doing, draw));
-        rows.push(Row { name, figures, plain });
+        let (name, figures) = measure(
+            format!("window, {tab}{what}"),
+            &mut Screen::new(ctx, doing, draw),
+        );
+        rows.push(Row {
+            name,
+            figures,
+            plain,
+        });
     }
     group.finish();
     print_table(&rows);
@@ -228,10 +291,23 @@ fn print_table(rows: &[Row]) {
         "{:40} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
         "ms a frame, median", "ui", "tessel.", "both", "shortest", "vertices", "of plain"
     );
-    for Row { name, figures, plain } in rows {
-        let Figures { shapes, tessellation, both, shortest, vertices } = figures;
+    for Row {
+        name,
+        figures,
+        plain,
+    } in rows
+    {
+        let Figures {
+            shapes,
+            tessellation,
+            both,
+            shortest,
+            vertices,
+        } = figures;
         let ratio = both / plain;
-        println!("{name:40} {shapes:8.2} {tessellation:8.2} {both:8.2} {shortest:8.2} {vertices:8} {ratio:8.2}");
+        println!(
+            "{name:40} {shapes:8.2} {tessellation:8.2} {both:8.2} {shortest:8.2} {vertices:8} {ratio:8.2}"
+        );
     }
 }
 

@@ -33,7 +33,11 @@ struct Stages {
 
 impl Stages {
     fn new() -> Self {
-        Self { start: Instant::now(), steps: Mutex::default(), first_model: Mutex::default() }
+        Self {
+            start: Instant::now(),
+            steps: Mutex::default(),
+            first_model: Mutex::default(),
+        }
     }
 
     fn now_ms(&self) -> f64 {
@@ -49,7 +53,10 @@ impl Progress for Stages {
     fn advanced(&self, _done: usize, _total: usize) {}
 
     fn step(&self, what: &str) {
-        self.steps.lock().expect("nothing panics").push((self.now_ms(), what.to_owned()));
+        self.steps
+            .lock()
+            .expect("nothing panics")
+            .push((self.now_ms(), what.to_owned()));
     }
 
     fn first_model(&self, _model: &StateSpace) {
@@ -58,22 +65,32 @@ impl Progress for Stages {
 }
 
 fn main() {
-    let dataset = embedded_example().expect("the embedded example is a dataset").dataset;
+    let dataset = embedded_example()
+        .expect("the embedded example is a dataset")
+        .dataset;
     let channels = RecordChannels::of_dataset(&dataset).of_named_records();
     let archive = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/example-records.zip");
-    let tables = read_records(&[archive], &Silent).expect("the archive is there").tables;
-    let records: Vec<LaidOutRecord> =
-        tables.into_iter().map(|table| LaidOutRecord::proposed(table, &channels, &TimeWish::default()).0).collect();
+    let tables = read_records(&[archive], &Silent)
+        .expect("the archive is there")
+        .tables;
+    let records: Vec<LaidOutRecord> = tables
+        .into_iter()
+        .map(|table| LaidOutRecord::proposed(table, &channels, &TimeWish::default()).0)
+        .collect();
     let (inputs, outputs) = dataset.names_of_channels();
     let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));
     let band = dataset.band();
     let (mut all_ms, mut worst) = (0.0, 0.0f64);
     for condition in dataset.conditions() {
-        let own = records.iter().filter(|record| record.guess.condition_of(&dataset) == Some(condition.id()));
+        let own = records
+            .iter()
+            .filter(|record| record.guess.condition_of(&dataset) == Some(condition.id()));
         let request = IdentificationRequest::of(own, preparation.clone(), [band.min(), band.max()]);
         let request = request.expect("every condition has records");
         let stages = Stages::new();
-        let found = request.identify(&Pool, &stages).expect("the example's flights are good");
+        let found = request
+            .identify(&Pool, &stages)
+            .expect("the example's flights are good");
         let ms = stages.now_ms();
         all_ms += ms;
         let ratio = found.held_out_cost.unwrap_or(f64::NAN) / found.cost;
@@ -83,16 +100,27 @@ fn main() {
             condition.id(),
             found.refined.order().unwrap_or_default(),
             found.cost,
-            stages.first_model.lock().expect("nothing panics").unwrap_or(f64::NAN),
+            stages
+                .first_model
+                .lock()
+                .expect("nothing panics")
+                .unwrap_or(f64::NAN),
         );
         if condition.id() == ConditionId(10) {
             let steps = stages.steps.lock().expect("nothing panics");
-            for (at, next) in steps.iter().zip(steps.iter().skip(1).map(|next| next.0).chain([ms])) {
+            for (at, next) in steps
+                .iter()
+                .zip(steps.iter().skip(1).map(|next| next.0).chain([ms]))
+            {
                 println!("    {:6.1} ms  {}", next - at.0, at.1);
             }
         }
     }
-    println!("all {} conditions {:.1} s; worst held-out ratio {worst:.2}", dataset.conditions().len(), 1e-3 * all_ms);
+    println!(
+        "all {} conditions {:.1} s; worst held-out ratio {worst:.2}",
+        dataset.conditions().len(),
+        1e-3 * all_ms
+    );
     plain_normal_matrix();
 }
 
@@ -103,12 +131,16 @@ fn borrowed(names: &[String]) -> Vec<&str> {
 /// The normal matrix of one Gauss-Newton step as the product of a stored Jacobian: 8 records of 150 lines, 6 outputs, real and
 /// imaginary parts, 200 parameters. A refinement takes some 30 of them.
 fn plain_normal_matrix() {
-    let jacobian =
-        DMatrix::from_fn(8 * 150 * 6 * 2, 200, |row, column| ((row * 31 + column * 17) % 101) as f64 / 101.0);
+    let jacobian = DMatrix::from_fn(8 * 150 * 6 * 2, 200, |row, column| {
+        ((row * 31 + column * 17) % 101) as f64 / 101.0
+    });
     let shortest = (0..5).map(|_| {
         let start = Instant::now();
         std::hint::black_box(jacobian.tr_mul(&jacobian));
         1e3 * start.elapsed().as_secs_f64()
     });
-    println!("plain normal matrix of one step: {:.1} ms", shortest.fold(f64::INFINITY, f64::min));
+    println!(
+        "plain normal matrix of one step: {:.1} ms",
+        shortest.fold(f64::INFINITY, f64::min)
+    );
 }

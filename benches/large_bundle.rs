@@ -30,24 +30,37 @@ const FREQUENCIES: usize = 500;
 /// One model and its neighbours, whose system matrices differ in proportion to two coordinates of the trim.
 fn condition() -> Condition {
     let base = model(STATES);
-    let change = |seed: f64| DMatrix::from_fn(STATES, STATES, |i, j| 0.05 * (seed + 7.3 * i as f64 + j as f64).sin());
+    let change = |seed: f64| {
+        DMatrix::from_fn(STATES, STATES, |i, j| {
+            0.05 * (seed + 7.3 * i as f64 + j as f64).sin()
+        })
+    };
     let (by_roll, by_airspeed) = (change(0.1), change(0.7));
     let physics = (0..MODELS).map(|index| {
         let (roll, airspeed) = ((index as f64).sin(), (index as f64 * 1.7).cos());
         let offset = if index == 0 { 0.0 } else { 1.0 };
         let a = base.a() + offset * (&by_roll * roll + &by_airspeed * airspeed);
         let (b, c, d) = (base.b().clone(), base.c().clone(), base.d().clone());
-        let perturbation =
-            BTreeMap::from([("roll_deg".to_owned(), offset * roll), ("airspeed_kt".to_owned(), offset * airspeed)]);
+        let perturbation = BTreeMap::from([
+            ("roll_deg".to_owned(), offset * roll),
+            ("airspeed_kt".to_owned(), offset * airspeed),
+        ]);
         let origin = if index == 0 {
-            Origin::Nominal { perturbation: Some(perturbation) }
+            Origin::Nominal {
+                perturbation: Some(perturbation),
+            }
         } else {
-            Origin::Perturbed { perturbation: Some(perturbation) }
+            Origin::Perturbed {
+                perturbation: Some(perturbation),
+            }
         };
         let dynamics = Dynamics::StateSpace(StateSpace::new(a, b, c, d).expect("the shapes agree"));
         Model::new(format!("model {index}"), origin, dynamics)
     });
-    let origin = Origin::Identified { method: None, order: None };
+    let origin = Origin::Identified {
+        method: None,
+        order: None,
+    };
     let identified = Model::new("flight", origin, Dynamics::StateSpace(base.clone()));
     let flight_state = FlightState {
         id: ConditionId(1),
@@ -58,7 +71,8 @@ fn condition() -> Condition {
         weight: None,
         mass_kg: None,
     };
-    Condition::new(flight_state, physics.collect(), vec![identified]).expect("one nominal model, all names different")
+    Condition::new(flight_state, physics.collect(), vec![identified])
+        .expect("one nominal model, all names different")
 }
 
 /// Most memory that the process has had, resident \[MB\], where the system tells.
@@ -76,12 +90,19 @@ fn main() {
     (0..INPUTS).for_each(|channel| measuring[Pair::new(channel, channel)] = true);
     let responses = |executor: &dyn Executor| {
         let execution = Execution::new(executor, &Unobserved, MODELS);
-        ConditionResponses::of(&condition, (band, FREQUENCIES), &execution).expect("nobody stops it")
+        ConditionResponses::of(&condition, (band, FREQUENCIES), &execution)
+            .expect("nobody stops it")
     };
     let mut criterion = Criterion::default().sample_size(10).configure_from_args();
-    let mut group = criterion.benchmark_group(format!("{MODELS} models, {STATES} states, {FREQUENCIES} frequencies"));
-    group.bench_function("responses, all cores", |bencher| bencher.iter(|| responses(&Pool)));
-    group.bench_function("responses, one core", |bencher| bencher.iter(|| responses(&Sequential)));
+    let mut group = criterion.benchmark_group(format!(
+        "{MODELS} models, {STATES} states, {FREQUENCIES} frequencies"
+    ));
+    group.bench_function("responses, all cores", |bencher| {
+        bencher.iter(|| responses(&Pool))
+    });
+    group.bench_function("responses, one core", |bencher| {
+        bencher.iter(|| responses(&Sequential))
+    });
     let all = responses(&Pool);
     group.bench_function("distances and ratios, all cores", |bencher| {
         let execution = Execution::new(&Pool, &Unobserved, 2 * MODELS);
@@ -89,7 +110,10 @@ fn main() {
     });
     group.finish();
     criterion.final_summary();
-    let (together, alone) = (shortest(3, || responses(&Pool)), shortest(3, || responses(&Sequential)));
+    let (together, alone) = (
+        shortest(3, || responses(&Pool)),
+        shortest(3, || responses(&Sequential)),
+    );
     let dense = shortest(3, || dense_responses(&model(STATES), grid.omega())) * MODELS as u32;
     println!(
         "responses: {together:.2?} on all cores, {alone:.2?} on one; a dense LU for each would take {dense:.1?} on one"

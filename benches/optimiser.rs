@@ -24,7 +24,10 @@ fn solved(problem: &Problem) -> Option<Solution> {
 fn gains(criterion: &mut Criterion) {
     for kind in ["base", "wide"] {
         let mut group = criterion.benchmark_group(format!("gains/{kind}"));
-        for instance in instances::gain_instances().iter().filter(|instance| instance.kind == kind) {
+        for instance in instances::gain_instances()
+            .iter()
+            .filter(|instance| instance.kind == kind)
+        {
             group.bench_with_input(
                 BenchmarkId::new("with proof", instance.id),
                 &instance.problem,
@@ -33,7 +36,10 @@ fn gains(criterion: &mut Criterion) {
                 },
             );
         }
-        for instance in instances::gain_instances().iter().filter(|instance| instance.kind == kind) {
+        for instance in instances::gain_instances()
+            .iter()
+            .filter(|instance| instance.kind == kind)
+        {
             group.bench_with_input(
                 BenchmarkId::new("plain, no proof", instance.id),
                 &instance.problem,
@@ -50,34 +56,51 @@ fn delays(criterion: &mut Criterion) {
     let instances = instances::delay_instances();
     let mut group = criterion.benchmark_group("delays");
     for (name, matched) in [("one stage", true), ("two stages", false)] {
-        let problems: Vec<_> = instances.iter().filter(|instance| instance.matched == matched).collect();
+        let problems: Vec<_> = instances
+            .iter()
+            .filter(|instance| instance.matched == matched)
+            .collect();
         group.bench_function(format!("{name}, {} problems", problems.len()), |bencher| {
             bencher.iter(|| {
-                problems.iter().map(|instance| solved(black_box(&instance.problem))).filter(Option::is_some).count()
+                problems
+                    .iter()
+                    .map(|instance| solved(black_box(&instance.problem)))
+                    .filter(Option::is_some)
+                    .count()
             });
         });
     }
-    group.bench_function(format!("plain projected gradient, {} problems", instances.len()), |bencher| {
-        bencher
-            .iter(|| instances.iter().map(|instance| plain::delay_gradient(black_box(&instance.problem))).sum::<f64>());
-    });
+    group.bench_function(
+        format!("plain projected gradient, {} problems", instances.len()),
+        |bencher| {
+            bencher.iter(|| {
+                instances
+                    .iter()
+                    .map(|instance| plain::delay_gradient(black_box(&instance.problem)))
+                    .sum::<f64>()
+            });
+        },
+    );
     group.finish();
 }
 
 fn example(criterion: &mut Criterion) {
     let conditions = instances::example_conditions();
-    criterion.bench_function("example/all conditions, gains with proof and delays", |bencher| {
-        bencher.iter(|| {
-            conditions
-                .iter()
-                .map(|condition| {
-                    let gains = solved(black_box(&condition.gains));
-                    let delays = solved(black_box(&condition.delays));
-                    usize::from(gains.is_some() && delays.is_some())
-                })
-                .sum::<usize>()
-        });
-    });
+    criterion.bench_function(
+        "example/all conditions, gains with proof and delays",
+        |bencher| {
+            bencher.iter(|| {
+                conditions
+                    .iter()
+                    .map(|condition| {
+                        let gains = solved(black_box(&condition.gains));
+                        let delays = solved(black_box(&condition.delays));
+                        usize::from(gains.is_some() && delays.is_some())
+                    })
+                    .sum::<usize>()
+            });
+        },
+    );
 }
 
 criterion_group! {

@@ -59,7 +59,10 @@ impl WithSimd for MultiplyAdds {
         // Two units with a latency of four or five cycles need ten; sixteen registers hold twelve.
         const CHAINS: usize = 12;
         const ROUNDS: usize = 10_000;
-        let (factor, addend) = (simd.splat_f64s(black_box(0.999)), simd.splat_f64s(black_box(0.001)));
+        let (factor, addend) = (
+            simd.splat_f64s(black_box(0.999)),
+            simd.splat_f64s(black_box(0.001)),
+        );
         let mut sums = [addend; CHAINS];
         for _ in 0..ROUNDS {
             for sum in &mut sums {
@@ -80,11 +83,17 @@ fn compare(order: usize, omega: &[f64]) {
     let model = model(order);
     let dense = shortest(5, || dense_responses(&model, omega)).as_secs_f64() / FREQUENCIES as f64;
     for (name, arch) in instruction_sets() {
-        let seconds = shortest(400, || evaluate_on(arch, &model, omega)).as_secs_f64() / FREQUENCIES as f64;
-        let peak = arch.dispatch(MultiplyAdds) / shortest(400, || arch.dispatch(MultiplyAdds)).as_secs_f64();
+        let seconds =
+            shortest(400, || evaluate_on(arch, &model, omega)).as_secs_f64() / FREQUENCIES as f64;
+        let peak = arch.dispatch(MultiplyAdds)
+            / shortest(400, || arch.dispatch(MultiplyAdds)).as_secs_f64();
         let part = multiply_adds(order) as f64 / seconds / peak;
         let (time, ratio, peak) = (seconds * 1e6, dense / seconds, peak * 1e-9);
-        println!("{order:6}  {name:<8} {time:8.3} {:10.2} {ratio:8.1} {peak:12.1} {:7.0} %", dense * 1e6, part * 100.0);
+        println!(
+            "{order:6}  {name:<8} {time:8.3} {:10.2} {ratio:8.1} {peak:12.1} {:7.0} %",
+            dense * 1e6,
+            part * 100.0
+        );
     }
 }
 
@@ -92,7 +101,10 @@ fn compare(order: usize, omega: &[f64]) {
 fn scaling(omega: &[f64]) {
     let models: Vec<StateSpace> = vec![model(30); 64];
     let run = |models: &[StateSpace]| {
-        models.iter().map(|model| evaluate(model, omega)).for_each(|table| drop(black_box(table)))
+        models
+            .iter()
+            .map(|model| evaluate(model, omega))
+            .for_each(|table| drop(black_box(table)))
     };
     let one = shortest(20, || run(&models));
     let two = shortest(20, || {
@@ -102,14 +114,18 @@ fn scaling(omega: &[f64]) {
             run(second);
         });
     });
-    println!("64 models of 30 states: two threads are {:.2} times as fast as one", one.div_duration_f64(two));
+    println!(
+        "64 models of 30 states: two threads are {:.2} times as fast as one",
+        one.div_duration_f64(two)
+    );
 }
 
 /// Writes a model and its response to `<order>-states.json`, indices `[frequency][output][input]`.
 fn export(folder: &Path, order: usize, omega: &[f64]) {
     let model = model(order);
     let (name, arch) = instruction_sets()[0];
-    let seconds = shortest(400, || evaluate_on(arch, &model, omega)).as_secs_f64() / FREQUENCIES as f64;
+    let seconds =
+        shortest(400, || evaluate_on(arch, &model, omega)).as_secs_f64() / FREQUENCIES as f64;
     let response = evaluate_on(arch, &model, omega);
     let text = json!({
         "a": rows(model.a()), "b": rows(model.b()), "c": rows(model.c()), "d": rows(model.d()),
@@ -117,17 +133,30 @@ fn export(folder: &Path, order: usize, omega: &[f64]) {
         "re": by_frequency(&response, |value| value.re), "im": by_frequency(&response, |value| value.im),
     });
     let file = folder.join(format!("{order}-states.json"));
-    std::fs::write(&file, text.to_string()).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    std::fs::write(&file, text.to_string())
+        .unwrap_or_else(|error| panic!("{}: {error}", file.display()));
 }
 
 fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
-    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+    matrix
+        .row_iter()
+        .map(|row| row.iter().copied().collect())
+        .collect()
 }
 
-fn by_frequency(response: &FrequencyResponse, part: impl Fn(Complex<f64>) -> f64) -> Vec<Vec<Vec<f64>>> {
+fn by_frequency(
+    response: &FrequencyResponse,
+    part: impl Fn(Complex<f64>) -> f64,
+) -> Vec<Vec<Vec<f64>>> {
     let curves = response.curves();
-    let at = |k, output| (0..INPUTS).map(|input| part(curves[Pair::new(output, input)][k])).collect();
-    (0..FREQUENCIES).map(|k| (0..OUTPUTS).map(|output| at(k, output)).collect()).collect()
+    let at = |k, output| {
+        (0..INPUTS)
+            .map(|input| part(curves[Pair::new(output, input)][k]))
+            .collect()
+    };
+    (0..FREQUENCIES)
+        .map(|k| (0..OUTPUTS).map(|output| at(k, output)).collect())
+        .collect()
 }
 
 fn main() {
@@ -135,7 +164,9 @@ fn main() {
     drop(black_box(vec![1_u8; 8 << 20]));
     let grid = FrequencyGrid::logarithmic(Band::new(0.1, 100.0).expect("a band"), FREQUENCIES);
     let omega = grid.omega();
-    let mut criterion = Criterion::default().warm_up_time(Duration::from_millis(500)).configure_from_args();
+    let mut criterion = Criterion::default()
+        .warm_up_time(Duration::from_millis(500))
+        .configure_from_args();
     for order in ORDERS {
         let model = model(order);
         let mut group = criterion.benchmark_group(format!("{order} states, {OUTPUTS} x {INPUTS}"));
@@ -148,6 +179,8 @@ fn main() {
     ORDERS.into_iter().for_each(|order| compare(order, omega));
     scaling(omega);
     if let Some(folder) = std::env::var_os("GDCM_EXPORT_RESPONSES") {
-        ORDERS.into_iter().for_each(|order| export(Path::new(&folder), order, omega));
+        ORDERS
+            .into_iter()
+            .for_each(|order| export(Path::new(&folder), order, omega));
     }
 }

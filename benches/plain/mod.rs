@@ -16,8 +16,8 @@ pub fn projected_gradient(problem: &Problem) -> f64 {
         let mut value = 0.0;
         for (pair, delta) in problem.delta.iter() {
             let Some(delta) = delta else { continue };
-            let weight =
-                f64::from(u8::from(problem.fitted[pair])) + PENALTY * f64::from(u8::from(problem.constrained[pair]));
+            let weight = f64::from(u8::from(problem.fitted[pair]))
+                + PENALTY * f64::from(u8::from(problem.constrained[pair]));
             let (input, output) = (point[pair.input], point[inputs + pair.output]);
             let error = input * output - delta;
             value += weight * error * error;
@@ -30,7 +30,11 @@ pub fn projected_gradient(problem: &Problem) -> f64 {
         }
         value
     };
-    let point = descend(vec![1.0; inputs + outputs], (problem.bounds.lower, problem.bounds.upper), slope);
+    let point = descend(
+        vec![1.0; inputs + outputs],
+        (problem.bounds.lower, problem.bounds.upper),
+        slope,
+    );
     problem.objective_at(&point[..inputs], &point[inputs..])
 }
 
@@ -42,8 +46,8 @@ pub fn delay_gradient(problem: &Problem) -> f64 {
         let mut value = 0.0;
         for (pair, delta) in problem.delta.iter() {
             let Some(delta) = delta else { continue };
-            let weight =
-                f64::from(u8::from(problem.fitted[pair])) + PENALTY * f64::from(u8::from(problem.constrained[pair]));
+            let weight = f64::from(u8::from(problem.fitted[pair]))
+                + PENALTY * f64::from(u8::from(problem.constrained[pair]));
             let error = point[pair.input] + point[inputs + pair.output] - 10.0 * delta;
             value += weight * error * error;
             gradient[pair.input] += 2.0 * weight * error;
@@ -55,18 +59,29 @@ pub fn delay_gradient(problem: &Problem) -> f64 {
         }
         value
     };
-    let point = descend(vec![0.0; inputs + outputs], (0.0, 10.0 * problem.bounds.upper), slope);
+    let point = descend(
+        vec![0.0; inputs + outputs],
+        (0.0, 10.0 * problem.bounds.upper),
+        slope,
+    );
     problem.objective_at(&point[..inputs], &point[inputs..])
 }
 
-fn descend(mut point: Vec<f64>, (lower, upper): (f64, f64), slope: impl Fn(&[f64], &mut [f64]) -> f64) -> Vec<f64> {
+fn descend(
+    mut point: Vec<f64>,
+    (lower, upper): (f64, f64),
+    slope: impl Fn(&[f64], &mut [f64]) -> f64,
+) -> Vec<f64> {
     let mut gradient = vec![0.0; point.len()];
     let mut next_gradient = gradient.clone();
     let mut value = slope(&point, &mut gradient);
     let mut stride = 1e-2;
     for _ in 0..STEPS {
-        let next: Vec<f64> =
-            point.iter().zip(&gradient).map(|(at, slope)| (at - stride * slope).clamp(lower, upper)).collect();
+        let next: Vec<f64> = point
+            .iter()
+            .zip(&gradient)
+            .map(|(at, slope)| (at - stride * slope).clamp(lower, upper))
+            .collect();
         let reached = slope(&next, &mut next_gradient);
         if reached < value {
             let done = value - reached <= 1e-10 * value;

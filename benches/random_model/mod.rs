@@ -18,15 +18,22 @@ pub fn model(order: usize) -> StateSpace {
         (state >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
     };
     // The sum of three such numbers has variance 1.
-    let mut matrix = |rows, columns| DMatrix::from_fn(rows, columns, |_, _| uniform() + uniform() + uniform());
-    let a = matrix(order, order) * (8.0 / (order as f64).sqrt()) - DMatrix::identity(order, order) * 9.0;
-    let (b, c, d) = (matrix(order, INPUTS), matrix(OUTPUTS, order), matrix(OUTPUTS, INPUTS));
+    let mut matrix =
+        |rows, columns| DMatrix::from_fn(rows, columns, |_, _| uniform() + uniform() + uniform());
+    let a = matrix(order, order) * (8.0 / (order as f64).sqrt())
+        - DMatrix::identity(order, order) * 9.0;
+    let (b, c, d) = (
+        matrix(order, INPUTS),
+        matrix(OUTPUTS, order),
+        matrix(OUTPUTS, INPUTS),
+    );
     StateSpace::new(a, b, c, d).expect("the shapes agree")
 }
 
 /// The plain way: a dense complex LU decomposition at each frequency.
 pub fn dense_responses(model: &StateSpace, omega: &[f64]) -> Vec<DMatrix<Complex<f64>>> {
-    let [a, b, c, d] = [model.a(), model.b(), model.c(), model.d()].map(|matrix| matrix.map(Complex::from));
+    let [a, b, c, d] =
+        [model.a(), model.b(), model.c(), model.d()].map(|matrix| matrix.map(Complex::from));
     let identity = DMatrix::<Complex<f64>>::identity(a.nrows(), a.nrows());
     let at = |omega: &f64| {
         let states = (&identity * Complex::new(0.0, *omega) - &a).lu().solve(&b);

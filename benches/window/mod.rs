@@ -20,9 +20,12 @@ impl Window {
     pub fn settled() -> Self {
         let build = |creation: &mut eframe::CreationContext<'static>| {
             let example = embedded_example().expect("the embedded example is a dataset");
-            GdcmApp::new(&creation.egui_ctx, Opened::Dataset(example)).expect("a thread can be started")
+            GdcmApp::new(&creation.egui_ctx, Opened::Dataset(example))
+                .expect("a thread can be started")
         };
-        let mut harness = Harness::builder().with_size(vec2(1600.0, 900.0)).build_eframe(build);
+        let mut harness = Harness::builder()
+            .with_size(vec2(1600.0, 900.0))
+            .build_eframe(build);
         while harness.state().state().results.toggles.is_none() {
             harness.run_steps(1);
             std::thread::sleep(Duration::from_millis(5));

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use gdcm_io::{
-    FolderProgress, FoundModels, add_dataset, add_rules, load_rules, read_models, relative_folder, rules_path,
-    sources_folder,
+    FolderProgress, FoundModels, add_dataset, add_rules, load_rules, read_models, relative_folder,
+    rules_path, sources_folder,
 };
 use gdcm_model::assembly::Rules;
 use gdcm_model::message_text::sanitized_path;
@@ -46,7 +46,12 @@ impl Teller {
     fn tell(&self, change: impl FnOnce(&mut Option<Reading>) + Send + 'static) {
         let number = self.number;
         self.replies.send(move |app| {
-            if let Some(bench) = app.state.assembling.as_mut().filter(|_| app.models.is_newest(number)) {
+            if let Some(bench) = app
+                .state
+                .assembling
+                .as_mut()
+                .filter(|_| app.models.is_newest(number))
+            {
                 change(&mut bench.reading);
             }
         });
@@ -56,7 +61,12 @@ impl Teller {
 impl FolderProgress for Teller {
     fn reading(&self, number: usize, of: usize, name: &str) {
         self.told.set(0);
-        let reading = Reading { number, of, name: name.to_owned(), taken: 0 };
+        let reading = Reading {
+            number,
+            of,
+            name: name.to_owned(),
+            taken: 0,
+        };
         self.tell(|shown| *shown = Some(reading));
     }
 
@@ -75,7 +85,10 @@ impl FolderProgress for Teller {
 impl GdcmApp {
     /// Carries out a command of the assembling view.
     pub(super) fn assemble(&mut self, command: AssemblingCommand) {
-        let bench = self.state.assembling.get_or_insert_with(AssemblyState::default);
+        let bench = self
+            .state
+            .assembling
+            .get_or_insert_with(AssemblyState::default);
         let headings = bench.assembly().rules().headings.clone();
         match command {
             AssemblingCommand::Open => {}
@@ -83,7 +96,9 @@ impl GdcmApp {
                 self.models.give_up();
                 self.state.assembling = None;
             }
-            AssemblingCommand::AskFolder => self.ask_path(DialogPurpose::ModelFolder, String::new()),
+            AssemblingCommand::AskFolder => {
+                self.ask_path(DialogPurpose::ModelFolder, String::new())
+            }
             AssemblingCommand::Add(paths) => {
                 let paths = paths.into_iter().map(|path| self.at_home(path)).collect();
                 self.read_models(Sources::More(paths));
@@ -110,7 +125,12 @@ impl GdcmApp {
     fn read_models(&mut self, sources: Sources) {
         let headings = self.said().map(|rules| rules.headings).unwrap_or_default();
         let (number, stop) = self.models.begin();
-        let teller = Teller { number, replies: self.replies.clone(), stop, told: Cell::new(0) };
+        let teller = Teller {
+            number,
+            replies: self.replies.clone(),
+            stop,
+            told: Cell::new(0),
+        };
         let read = move || {
             let found = read_models(sources.paths(), &headings, &teller);
             (sources, found)
@@ -119,7 +139,14 @@ impl GdcmApp {
             bench.reading = Some(Reading::default());
         }
         self.in_thread("the reading of models", read, move |app, read| {
-            let Some(bench) = app.state.assembling.as_mut().filter(|_| app.models.is_newest(number)) else { return };
+            let Some(bench) = app
+                .state
+                .assembling
+                .as_mut()
+                .filter(|_| app.models.is_newest(number))
+            else {
+                return;
+            };
             bench.reading = None;
             let Some((sources, found)) = read else { return };
             if let Some(found) = app.unless_error(found) {
@@ -129,7 +156,9 @@ impl GdcmApp {
     }
 
     fn take_models(&mut self, sources: Sources, found: FoundModels) {
-        let Some(bench) = &mut self.state.assembling else { return };
+        let Some(bench) = &mut self.state.assembling else {
+            return;
+        };
         let paths = match sources {
             Sources::More(paths) => paths,
             Sources::Again(_) if self.models.is_stopped() => {
@@ -140,7 +169,10 @@ impl GdcmApp {
                 paths
             }
         };
-        let name = paths.first().and_then(|path| path.file_name()).map(|name| name.to_string_lossy().into_owned());
+        let name = paths
+            .first()
+            .and_then(|path| path.file_name())
+            .map(|name| name.to_string_lossy().into_owned());
         let (models, files) = (found.models.len(), found.files);
         bench.unused.extend(found.unused_words());
         bench.add(&name.unwrap_or_default(), found.models);
@@ -152,25 +184,41 @@ impl GdcmApp {
             && let Some(first) = paths.first()
         {
             bench.dataset_path = format!("{}.json.gz", first.with_extension("").display());
-            bench.rules_path = rules_path(Path::new(&bench.dataset_path)).display().to_string();
+            bench.rules_path = rules_path(Path::new(&bench.dataset_path))
+                .display()
+                .to_string();
         }
-        let new = paths.into_iter().filter(|path| !bench.sources.contains(path)).collect::<Vec<_>>();
+        let new = paths
+            .into_iter()
+            .filter(|path| !bench.sources.contains(path))
+            .collect::<Vec<_>>();
         bench.sources.extend(new);
         self.done(format!("{models} models in {files} files"));
     }
 
     fn take_rules(&mut self, path: PathBuf) {
         let path = self.at_home(path);
-        let Some((rules, cautions)) = self.unless_error(load_rules(&path)) else { return };
+        let Some((rules, cautions)) = self.unless_error(load_rules(&path)) else {
+            return;
+        };
         if let Some(bench) = &mut self.state.assembling {
             bench.change(rules);
         }
-        let cautions: String = cautions.iter().map(|caution| format!("; {caution}")).collect();
-        self.done(format!("took the rules of {}{cautions}", sanitized_path(&path)));
+        let cautions: String = cautions
+            .iter()
+            .map(|caution| format!("; {caution}"))
+            .collect();
+        self.done(format!(
+            "took the rules of {}{cautions}",
+            sanitized_path(&path)
+        ));
     }
 
     fn said(&self) -> Option<Rules> {
-        self.state.assembling.as_ref().map(|bench| bench.assembly().rules().clone())
+        self.state
+            .assembling
+            .as_ref()
+            .map(|bench| bench.assembly().rules().clone())
     }
 
     /// Writes the rules; asks before it overwrites a file.
@@ -178,16 +226,25 @@ impl GdcmApp {
         let Some(rules) = self.said() else { return };
         let path = self.at_home(path);
         let saved = self.write_all(&[], |outputs| add_rules(&rules, &path, outputs));
-        self.saved_to(saved, &path, FormKind::Models, AssemblingCommand::SaveRules(path.clone()).into());
+        self.saved_to(
+            saved,
+            &path,
+            FormKind::Models,
+            AssemblingCommand::SaveRules(path.clone()).into(),
+        );
     }
 
     /// Writes the dataset and its rules, and opens it; asks before it overwrites a file.
     fn make_dataset(&mut self, path: PathBuf) {
-        let Some(bench) = &self.state.assembling else { return };
+        let Some(bench) = &self.state.assembling else {
+            return;
+        };
         let path = self.at_home(path);
         let folder = relative_folder(sources_folder(&bench.sources), &path);
         let Some(dataset) = bench.assembly().dataset(&folder) else {
-            return self.notify_error("items are to be completed before the dataset can be made".to_owned());
+            return self.notify_error(
+                "items are to be completed before the dataset can be made".to_owned(),
+            );
         };
         let rules = bench.assembly().rules().clone();
         let beside = rules_path(&path);
@@ -201,7 +258,11 @@ impl GdcmApp {
                 self.state.assembling = None;
                 self.open(path, None);
             }
-            Err(error) => self.written(Err(error), FormKind::Models, AssemblingCommand::MakeDataset(path).into()),
+            Err(error) => self.written(
+                Err(error),
+                FormKind::Models,
+                AssemblingCommand::MakeDataset(path).into(),
+            ),
         }
     }
 }

@@ -10,8 +10,8 @@ use gdcm_method::correction::{Outcome, Problem, Solution};
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::executor::Executor;
 use gdcm_study::study::{
-    Analysis, CURVE_POINTS, Cancelled, ConditionAnalysis, ConditionFailure, CurvesJob, Engine, Job, KnownModels,
-    Progress, ProofJob, Study, TogglesJob, UncertaintyJob, WantedFirst, curves_band,
+    Analysis, CURVE_POINTS, Cancelled, ConditionAnalysis, ConditionFailure, CurvesJob, Engine, Job,
+    KnownModels, Progress, ProofJob, Study, TogglesJob, UncertaintyJob, WantedFirst, curves_band,
 };
 
 use super::threads::{Fault, ReplySender};
@@ -38,8 +38,15 @@ struct JobKind<J: Job> {
 impl<J: Job> JobKind<J> {
     /// A kind that "Compute" begins again after a stop, and of which the number of jobs is told, as of all that views wait for.
     fn new(wanted: fn(&mut GdcmApp) -> Vec<J>, take: fn(&mut GdcmApp, J, J::Output)) -> Self {
-        let tell = |queue: &JobQueue<J>, background: &mut Background| background.views += queue.unfinished().len();
-        Self { wanted, take, tell, withdraw: None }
+        let tell = |queue: &JobQueue<J>, background: &mut Background| {
+            background.views += queue.unfinished().len()
+        };
+        Self {
+            wanted,
+            take,
+            tell,
+            withdraw: None,
+        }
     }
 }
 
@@ -104,12 +111,18 @@ impl BackgroundJobs {
             tell: |queue, background| background.toggles = queue.progress().is_some(),
             ..JobKind::new(
                 |app| toggles_job(&app.state).into_iter().collect(),
-                |app, job, toggles| app.state.results.toggles = toggles.map(|toggles| (job, Arc::new(toggles))),
+                |app, job, toggles| {
+                    app.state.results.toggles = toggles.map(|toggles| (job, Arc::new(toggles)))
+                },
             )
         };
         let proofs = JobKind {
             tell: |queue: &JobQueue<ProofJob>, background| {
-                background.proofs = queue.unfinished().into_iter().map(|job| job.problem).collect();
+                background.proofs = queue
+                    .unfinished()
+                    .into_iter()
+                    .map(|job| job.problem)
+                    .collect();
             },
             ..JobKind::new(|app| proof_jobs(&app.state), GdcmApp::take_proof)
         };
@@ -121,53 +134,131 @@ impl BackgroundJobs {
             )
         };
         let modes = JobKind::new(
-            |app| needed(app, |need| if let Need::Modes(job) = need { Some(job) } else { None }),
+            |app| {
+                needed(app, |need| {
+                    if let Need::Modes(job) = need {
+                        Some(job)
+                    } else {
+                        None
+                    }
+                })
+            },
             |app, job, modes| app.state.results.modes = Some((job, modes)),
         );
         let assessments = JobKind::new(
-            |app| needed(app, |need| if let Need::Assessment(job) = need { Some(job) } else { None }),
+            |app| {
+                needed(app, |need| {
+                    if let Need::Assessment(job) = need {
+                        Some(job)
+                    } else {
+                        None
+                    }
+                })
+            },
             |app, job, table| app.state.results.assessment = Some((job, table)),
         );
         let across = JobKind::new(
-            |app| needed(app, |need| if let Need::Across(job) = need { Some(job) } else { None }),
+            |app| {
+                needed(app, |need| {
+                    if let Need::Across(job) = need {
+                        Some(job)
+                    } else {
+                        None
+                    }
+                })
+            },
             |app, job, curves| app.state.results.across = Some((job, curves)),
         );
         let couplings = JobKind {
             tell: |queue, background| background.couplings = queue.progress(),
             ..JobKind::new(
-                |app| needed(app, |need| if let Need::Couplings(job) = need { Some(job) } else { None }),
-                |app, job, assessed| app.state.results.couplings = assessed.map(|assessed| (job, assessed)),
+                |app| {
+                    needed(app, |need| {
+                        if let Need::Couplings(job) = need {
+                            Some(job)
+                        } else {
+                            None
+                        }
+                    })
+                },
+                |app, job, assessed| {
+                    app.state.results.couplings = assessed.map(|assessed| (job, assessed))
+                },
             )
         };
         let requirements = JobKind::new(
-            |app| needed(app, |need| if let Need::Requirements(job) = need { Some(job) } else { None }),
+            |app| {
+                needed(app, |need| {
+                    if let Need::Requirements(job) = need {
+                        Some(job)
+                    } else {
+                        None
+                    }
+                })
+            },
             |app, job, found| app.state.results.requirements = Some((job, found)),
         );
         let test_answers = JobKind::new(
-            |app| needed(app, |need| if let Need::TestAnswers(job) = need { Some(job) } else { None }),
+            |app| {
+                needed(app, |need| {
+                    if let Need::TestAnswers(job) = need {
+                        Some(job)
+                    } else {
+                        None
+                    }
+                })
+            },
             |app, job, found| app.state.results.test_answers = Some((job, found)),
         );
         let record_history = JobKind::new(
-            |app| needed(app, |need| if let Need::RecordHistory(job) = need { Some(job) } else { None }),
+            |app| {
+                needed(app, |need| {
+                    if let Need::RecordHistory(job) = need {
+                        Some(job)
+                    } else {
+                        None
+                    }
+                })
+            },
             |app, job, found| app.state.results.record_history = Some((job, found)),
         );
         let time_histories = JobKind {
             tell: |queue, background| background.time_histories = queue.progress(),
             ..JobKind::new(
-                |app| needed(app, |need| if let Need::TimeHistories(job) = need { Some(job) } else { None }),
+                |app| {
+                    needed(app, |need| {
+                        if let Need::TimeHistories(job) = need {
+                            Some(job)
+                        } else {
+                            None
+                        }
+                    })
+                },
                 |app, job, found| app.state.results.time_histories = Some((job, found)),
             )
         };
         let variants = JobKind::new(
             |app| {
-                let jobs = needed(app, |need| if let Need::Variant(job) = need { Some(job) } else { None });
+                let jobs = needed(app, |need| {
+                    if let Need::Variant(job) = need {
+                        Some(job)
+                    } else {
+                        None
+                    }
+                });
                 keep(&mut app.state.results.variants, jobs)
             },
             |app, job, analysis| app.state.results.variants.push((job, analysis)),
         );
         let simulations = JobKind::new(
             |app| {
-                let jobs = needed(app, |need| if let Need::Simulation(job) = need { Some(job) } else { None });
+                let jobs = needed(app, |need| {
+                    if let Need::Simulation(job) = need {
+                        Some(job)
+                    } else {
+                        None
+                    }
+                });
                 keep(&mut app.state.results.simulations, jobs)
             },
             |app, job, outcome| app.state.results.simulations.push((job, outcome)),
@@ -175,12 +266,18 @@ impl BackgroundJobs {
         let reports = JobKind {
             tell: |queue, background| background.report = queue.progress(),
             withdraw: Some(GdcmApp::give_up_report),
-            ..JobKind::new(|app| app.reporting.iter().cloned().collect(), GdcmApp::report_written)
+            ..JobKind::new(
+                |app| app.reporting.iter().cloned().collect(),
+                GdcmApp::report_written,
+            )
         };
         let identifications = JobKind {
             tell: |queue, background| background.identification = queue.progress(),
             withdraw: Some(|app| app.stop_identifying()),
-            ..JobKind::new(|app| app.state.records.by_urgency(app.state.condition().id()), GdcmApp::identified)
+            ..JobKind::new(
+                |app| app.state.records.by_urgency(app.state.condition().id()),
+                GdcmApp::identified,
+            )
         };
         let make = Arc::clone(make_engine);
         let engine_of_variants = move || make();
@@ -203,7 +300,9 @@ impl BackgroundJobs {
             started("report", engine(), reports, replies)?,
             started("identification", pool, identifications, replies)?,
         ];
-        Ok(Self { kinds: Rc::new(kinds) })
+        Ok(Self {
+            kinds: Rc::new(kinds),
+        })
     }
 
     /// Lets the jobs that were stopped be begun again.
@@ -214,7 +313,9 @@ impl BackgroundJobs {
     /// What is under way.
     pub(super) fn told(&self) -> Background {
         let mut background = Background::default();
-        self.kinds.iter().for_each(|kind| kind.tell(&mut background));
+        self.kinds
+            .iter()
+            .for_each(|kind| kind.tell(&mut background));
         background
     }
 }
@@ -223,10 +324,15 @@ impl GdcmApp {
     /// Asks for the jobs that what is shown needs, and for no others.
     pub(super) fn want_jobs(&mut self) {
         let state = &self.state;
-        let shown = View::ALL.into_iter().filter(|view| state.display.arrangement.is_shown(*view));
+        let shown = View::ALL
+            .into_iter()
+            .filter(|view| state.display.arrangement.is_shown(*view));
         let of_views = shown.flat_map(|view| (view.kind().needs)(state));
         let judged = are_couplings_judged(state).then(|| Need::Couplings(couplings_job(state)));
-        self.needs = of_views.chain(overlay_job(state).map(Need::Variant)).chain(judged).collect();
+        self.needs = of_views
+            .chain(overlay_job(state).map(Need::Variant))
+            .chain(judged)
+            .collect();
         let kinds = Rc::clone(&self.jobs.kinds);
         kinds.iter().for_each(|kind| kind.want(self));
     }
@@ -278,7 +384,11 @@ fn keep<J: Job>(kept: &mut Vec<(J, J::Output)>, jobs: Vec<J>) -> Vec<J> {
 fn curves_job(state: &State) -> CurvesJob {
     let dataset = Arc::clone(&state.study.dataset);
     let grid = (curves_band(&state.study.settings), CURVE_POINTS);
-    CurvesJob { dataset: dataset.into(), condition: state.condition().id(), grid }
+    CurvesJob {
+        dataset: dataset.into(),
+        condition: state.condition().id(),
+        grid,
+    }
 }
 
 /// The costs of holding and freeing, of the condition shown.
@@ -289,13 +399,19 @@ fn toggles_job(state: &State) -> Option<TogglesJob> {
 
 /// What is not proven, the condition shown first.
 fn proof_jobs(state: &State) -> Vec<ProofJob> {
-    let Some(analysis) = state.analysis() else { return Vec::new() };
+    let Some(analysis) = state.analysis() else {
+        return Vec::new();
+    };
     let shown = analysis.condition(state.condition().id());
     let others = analysis.conditions.values().flatten();
     let mut jobs: Vec<ProofJob> = Vec::new();
     for condition in shown.into_iter().chain(others) {
-        let job = ProofJob { problem: Arc::clone(&condition.gain_problem) };
-        if matches!(condition.gains.proof.outcome, Outcome::NotProven { .. }) && !jobs.contains(&job) {
+        let job = ProofJob {
+            problem: Arc::clone(&condition.gain_problem),
+        };
+        if matches!(condition.gains.proof.outcome, Outcome::NotProven { .. })
+            && !jobs.contains(&job)
+        {
             jobs.push(job);
         }
     }
@@ -305,8 +421,12 @@ fn proof_jobs(state: &State) -> Vec<ProofJob> {
 /// The error bars of what is shown; while that is computed anew, the answer has all cores, and so has the first picture of it.
 fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
     let results = &state.results;
-    state.analysis().filter(|_| !results.is_behind() && (results.is_painted || results.uncertainty.is_some()))?;
-    results.analysis.clone().map(|analysis| UncertaintyJob { analysis: analysis.into() })
+    state.analysis().filter(|_| {
+        !results.is_behind() && (results.is_painted || results.uncertainty.is_some())
+    })?;
+    results.analysis.clone().map(|analysis| UncertaintyJob {
+        analysis: analysis.into(),
+    })
 }
 
 /// A problem and the gains that another job has proven to be its best.
@@ -342,13 +462,24 @@ impl Job for AnalysisJob {
 
     fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
         let started = Instant::now();
-        self.proofs.iter().for_each(|(problem, solution)| engine.take_gains(problem, solution));
+        self.proofs
+            .iter()
+            .for_each(|(problem, solution)| engine.take_gains(problem, solution));
         let tell = |outcome: &Result<ConditionAnalysis, ConditionFailure>| {
             let (dataset, condition) = (Arc::clone(&self.study.dataset), self.condition);
-            let first = FirstResult { generation: self.generation, dataset, condition, outcome: outcome.clone() };
-            self.replies.send(move |app| app.state.results.first = Some(first));
+            let first = FirstResult {
+                generation: self.generation,
+                dataset,
+                condition,
+                outcome: outcome.clone(),
+            };
+            self.replies
+                .send(move |app| app.state.results.first = Some(first));
         };
-        let first = WantedFirst { condition: self.condition, tell: &tell };
+        let first = WantedFirst {
+            condition: self.condition,
+            tell: &tell,
+        };
         let analysis = engine.analyze_first(&self.study, Some(first), progress)?;
         Ok((Arc::new(analysis), 1e3 * started.elapsed().as_secs_f64()))
     }
@@ -358,8 +489,15 @@ impl Job for AnalysisJob {
     fn serves(&self, newer: &Self, done: usize, total: usize) -> bool {
         // The last step of each condition is its optimum, which depends on more.
         let is_compared = total > 0 && done + self.study.dataset.conditions().len() >= total;
-        let compared = |job: &Self| (job.condition, job.study.settings.band, job.study.settings.points);
+        let compared = |job: &Self| {
+            (
+                job.condition,
+                job.study.settings.band,
+                job.study.settings.points,
+            )
+        };
         let same_models = Arc::ptr_eq(&self.study.dataset, &newer.study.dataset);
-        self.generation == newer.generation || !is_compared && same_models && compared(self) == compared(newer)
+        self.generation == newer.generation
+            || !is_compared && same_models && compared(self) == compared(newer)
     }
 }

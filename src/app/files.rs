@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use gdcm_io::variables::ReadingBudget;
 use gdcm_io::{
-    Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, add_recent_file, at_home, embedded_example,
-    file_exists, holds_models, load_any, open_study_of, recent_files, save_study,
+    Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, add_recent_file,
+    at_home, embedded_example, file_exists, holds_models, load_any, open_study_of, recent_files,
+    save_study,
 };
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_study::study::{Difference, Study};
@@ -73,13 +74,22 @@ impl GdcmApp {
             Opened::Study(opened) => Some(opened.path.clone()),
         };
         let (study, loaded, differences) = opened.into_study();
-        let mut state = State::new(study.clone(), study_name(path.as_deref()), loaded.cautions.clone());
+        let mut state = State::new(
+            study.clone(),
+            study_name(path.as_deref()),
+            loaded.cautions.clone(),
+        );
         // Saved now, the file would lose what does not apply.
-        state.unsaved = differences.iter().any(|difference| matches!(difference, Difference::NotApplied { .. }));
+        state.unsaved = differences
+            .iter()
+            .any(|difference| matches!(difference, Difference::NotApplied { .. }));
         state.forms.shown = (!differences.is_empty()).then_some(FormKind::Differences);
         state.differences = differences;
         state.is_example = loaded.path().is_none();
-        let saved = SavedStudy { path, study: (!state.unsaved).then_some(study) };
+        let saved = SavedStudy {
+            path,
+            study: (!state.unsaved).then_some(study),
+        };
         (state, loaded, saved)
     }
 
@@ -114,10 +124,15 @@ impl GdcmApp {
     /// Reads the list of recent files and looks which of them are there, in a thread of its own, for a network drive may keep it
     /// waiting; puts `newest` in front first.
     pub(super) fn read_recent(&self, newest: Option<PathBuf>) {
-        let Some(directory) = self.directory.clone() else { return };
+        let Some(directory) = self.directory.clone() else {
+            return;
+        };
         let read = move || -> Result<Vec<RecentFile>, FileError> {
             newest.map_or(Ok(()), |newest| add_recent_file(&directory, &newest))?;
-            Ok(recent_files(&directory).into_iter().map(recent_file).collect())
+            Ok(recent_files(&directory)
+                .into_iter()
+                .map(recent_file)
+                .collect())
         };
         self.in_thread("the reading of recent files", read, |app, read| {
             if let Some(files) = read.and_then(|read| app.unless_error(read)) {
@@ -128,14 +143,20 @@ impl GdcmApp {
 
     /// Opens a dataset or a study; what is open stays until it is read. The dataset of a study may have moved.
     pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
-        let (path, moved) = (self.at_home(path), moved.map(|dataset| self.at_home(dataset)));
+        let (path, moved) = (
+            self.at_home(path),
+            moved.map(|dataset| self.at_home(dataset)),
+        );
         if path.extension().is_some() && holds_models(&path) {
             let path = sanitized_path(&path);
             return self.notify_error(format!(
                 "{path}: this is neither a dataset nor a study; Import models, in the menu File, makes a dataset of model files"
             ));
         }
-        let lost = self.offers.iter().position(|lost| lost.as_ref().is_some_and(|lost| lost.path() == path));
+        let lost = self
+            .offers
+            .iter()
+            .position(|lost| lost.as_ref().is_some_and(|lost| lost.path() == path));
         let purpose = lost.map_or(ReadFor::Opening, ReadFor::Restoring);
         self.state.forms.shown = None;
         let name = sanitized_path(&path);
@@ -161,7 +182,9 @@ impl GdcmApp {
                 return;
             }
             app.state.opening = None;
-            opened.into_iter().for_each(|opened| app.answer_opened(purpose, opened));
+            opened
+                .into_iter()
+                .for_each(|opened| app.answer_opened(purpose, opened));
         });
     }
 
@@ -171,7 +194,9 @@ impl GdcmApp {
 
     /// Puts the example in the place of what is open, behind the start page.
     pub(super) fn close_study(&mut self) {
-        let Some(example) = self.unless_error(embedded_example()) else { return };
+        let Some(example) = self.unless_error(embedded_example()) else {
+            return;
+        };
         self.show(Opened::Dataset(example));
         self.state.on_start_page = true;
         self.state.notice = None;
@@ -259,9 +284,18 @@ impl GdcmApp {
             DialogPurpose::SaveStudy => {
                 // The dialog has asked about the name as it was chosen.
                 let is_asked = with_study_extension(path.clone()) == path;
-                self.save_as(path, if is_asked { Existing::Replace } else { Existing::Keep });
+                self.save_as(
+                    path,
+                    if is_asked {
+                        Existing::Replace
+                    } else {
+                        Existing::Keep
+                    },
+                );
             }
-            DialogPurpose::ExportFolder => *self.state.forms.typed_in(FormKind::Export) = path.display().to_string(),
+            DialogPurpose::ExportFolder => {
+                *self.state.forms.typed_in(FormKind::Export) = path.display().to_string()
+            }
             DialogPurpose::ModelFolder => self.assemble(AssemblingCommand::Add(vec![path])),
             DialogPurpose::RecordFolder => self.records(RecordsCommand::Add(vec![path])),
             DialogPurpose::RequirementTable(table) => self.read_requirement_table(table, path),
@@ -279,7 +313,9 @@ impl GdcmApp {
             DialogPurpose::RequirementTable(table) => {
                 self.state.forms.shown = Some(FormKind::ReadRequirementTable(table));
             }
-            DialogPurpose::ExportFolder | DialogPurpose::ModelFolder | DialogPurpose::RecordFolder => {}
+            DialogPurpose::ExportFolder
+            | DialogPurpose::ModelFolder
+            | DialogPurpose::RecordFolder => {}
         }
     }
 
@@ -295,14 +331,23 @@ impl GdcmApp {
     pub(super) fn save_as(&mut self, path: PathBuf, existing: Existing) {
         let path = with_study_extension(self.at_home(path));
         let is_own = self.saved.path.as_ref() == Some(&path);
-        let place = OutputSet::new(if is_own { Existing::Replace } else { existing }, Vec::new());
-        match place.check(&[&path]).and_then(|()| save_study(&self.state.study, &self.loaded, &path)) {
+        let place = OutputSet::new(
+            if is_own { Existing::Replace } else { existing },
+            Vec::new(),
+        );
+        match place
+            .check(&[&path])
+            .and_then(|()| save_study(&self.state.study, &self.loaded, &path))
+        {
             Ok(()) => {
                 self.state.forms.shown = None;
                 self.state.study_name = study_name(Some(&path));
                 self.state.unsaved = false;
                 self.done(format!("saved {}", sanitized_path(&path)));
-                self.saved = SavedStudy { path: Some(path), study: Some(self.state.study.clone()) };
+                self.saved = SavedStudy {
+                    path: Some(path),
+                    study: Some(self.state.study.clone()),
+                };
                 self.keep_unsaved();
                 self.look_for_recent();
                 if self.goes_on_once_saved {
@@ -336,25 +381,48 @@ impl GdcmApp {
 
     /// What files about the dataset are called, without their ends.
     pub(super) fn stem(&self) -> String {
-        let stem = self.loaded.path().and_then(Path::file_stem).map(|stem| stem.to_string_lossy().into_owned());
-        stem.unwrap_or_else(|| "example".to_owned()).trim_end_matches(".json").to_owned()
+        let stem = self
+            .loaded
+            .path()
+            .and_then(Path::file_stem)
+            .map(|stem| stem.to_string_lossy().into_owned());
+        stem.unwrap_or_else(|| "example".to_owned())
+            .trim_end_matches(".json")
+            .to_owned()
     }
 }
 
 pub(super) fn study_name(path: Option<&Path>) -> String {
-    let name = path.and_then(|path| path.file_name()).map(|name| sanitized(&name.to_string_lossy()));
+    let name = path
+        .and_then(|path| path.file_name())
+        .map(|name| sanitized(&name.to_string_lossy()));
     name.unwrap_or_else(|| "untitled study".to_owned())
 }
 
 fn with_study_extension(path: PathBuf) -> PathBuf {
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    if name.ends_with(".json") { path } else { path.with_file_name(format!("{name}.{STUDY_EXTENSION}")) }
+    let name = path
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    if name.ends_with(".json") {
+        path
+    } else {
+        path.with_file_name(format!("{name}.{STUDY_EXTENSION}"))
+    }
 }
 
 fn recent_file(path: PathBuf) -> RecentFile {
-    let name = path.file_name().map(|name| sanitized(&name.to_string_lossy())).unwrap_or_default();
+    let name = path
+        .file_name()
+        .map(|name| sanitized(&name.to_string_lossy()))
+        .unwrap_or_default();
     let folder = path.parent().map(sanitized_path).unwrap_or_default();
-    RecentFile { missing: !file_exists(&path), path, name, folder }
+    RecentFile {
+        missing: !file_exists(&path),
+        path,
+        name,
+        folder,
+    }
 }
 
 fn dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
@@ -365,9 +433,11 @@ fn dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
             .add_filter("datasets and studies", &["json", "gz"])
             .add_filter("all files", &["*"])
             .pick_file(),
-        DialogPurpose::SaveStudy => {
-            dialog.set_title("Save the study").add_filter("studies", &["json"]).set_file_name(file_name).save_file()
-        }
+        DialogPurpose::SaveStudy => dialog
+            .set_title("Save the study")
+            .add_filter("studies", &["json"])
+            .set_file_name(file_name)
+            .save_file(),
         DialogPurpose::ModelFolder => dialog.set_title("A folder of model files").pick_folder(),
         DialogPurpose::RecordFolder => dialog.set_title("A folder of flight records").pick_folder(),
         DialogPurpose::RequirementTable(table) => {
@@ -375,8 +445,13 @@ fn dialog(purpose: DialogPurpose, file_name: &str) -> Option<PathBuf> {
                 RequirementTable::Levels => "Levels of bandwidth and phase delay",
                 RequirementTable::Tolerances => "Tolerances of time histories",
             };
-            dialog.set_title(title).add_filter("tables", &["json"]).pick_file()
+            dialog
+                .set_title(title)
+                .add_filter("tables", &["json"])
+                .pick_file()
         }
-        DialogPurpose::ExportFolder => dialog.set_title("Export corrections to a folder").pick_folder(),
+        DialogPurpose::ExportFolder => dialog
+            .set_title("Export corrections to a folder")
+            .pick_folder(),
     }
 }

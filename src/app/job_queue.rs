@@ -27,18 +27,28 @@ struct Run {
 impl Run {
     fn start() -> Arc<Self> {
         let (outdated, stopped, done, total) = Default::default();
-        Arc::new(Self { started: Instant::now(), outdated, stopped, done, total })
+        Arc::new(Self {
+            started: Instant::now(),
+            outdated,
+            stopped,
+            done,
+            total,
+        })
     }
 
     /// Steps done, of how many.
     fn steps(&self) -> (usize, usize) {
-        (self.done.load(Ordering::Relaxed), self.total.load(Ordering::Relaxed))
+        (
+            self.done.load(Ordering::Relaxed),
+            self.total.load(Ordering::Relaxed),
+        )
     }
 }
 
 impl Progress for Run {
     fn cancelled(&self) -> bool {
-        let outdated = self.outdated.load(Ordering::Acquire) && self.started.elapsed() > CANCEL_GRACE;
+        let outdated =
+            self.outdated.load(Ordering::Acquire) && self.started.elapsed() > CANCEL_GRACE;
         outdated || self.stopped.load(Ordering::Acquire)
     }
 
@@ -61,7 +71,9 @@ struct Orders<J> {
 
 impl<J: Job> Orders<J> {
     fn unfinished(&self) -> impl Iterator<Item = &J> {
-        self.wanted.iter().filter(|job| !self.done.contains(job) && !self.stopped.contains(job))
+        self.wanted
+            .iter()
+            .filter(|job| !self.done.contains(job) && !self.stopped.contains(job))
     }
 
     fn stop_running(&self) {
@@ -97,10 +109,18 @@ impl<J: Job> JobQueue<J> {
         tools: impl Fn() -> J::Tools + Send + 'static,
         deliver: impl Fn(J, Ending<J>) + Send + 'static,
     ) -> std::io::Result<Self> {
-        let none = Orders { wanted: Vec::new(), running: None, done: Vec::new(), stopped: Vec::new(), closed: false };
+        let none = Orders {
+            wanted: Vec::new(),
+            running: None,
+            done: Vec::new(),
+            stopped: Vec::new(),
+            closed: false,
+        };
         let orders = Arc::new(Mailbox::new(none));
         let of_thread = Arc::clone(&orders);
-        std::thread::Builder::new().name(name.to_owned()).spawn(move || work(&of_thread, &tools, &deliver))?;
+        std::thread::Builder::new()
+            .name(name.to_owned())
+            .spawn(move || work(&of_thread, &tools, &deliver))?;
         Ok(Self { orders })
     }
 
@@ -112,7 +132,9 @@ impl<J: Job> JobQueue<J> {
             orders.stopped.retain(|job| jobs.contains(job));
             if let Some((job, run)) = &orders.running {
                 let (done, total) = run.steps();
-                let is_wanted = jobs.iter().any(|wanted| wanted == job || job.serves(wanted, done, total));
+                let is_wanted = jobs
+                    .iter()
+                    .any(|wanted| wanted == job || job.serves(wanted, done, total));
                 run.outdated.store(!is_wanted, Ordering::Release);
             }
             orders.wanted = jobs;
@@ -147,7 +169,12 @@ impl<J: Job> JobQueue<J> {
     pub(super) fn progress(&self) -> Option<(usize, usize)> {
         let orders = self.orders.lock();
         orders.unfinished().next()?;
-        Some(orders.running.as_ref().map_or((0, 0), |(_, run)| run.steps()))
+        Some(
+            orders
+                .running
+                .as_ref()
+                .map_or((0, 0), |(_, run)| run.steps()),
+        )
     }
 }
 
@@ -160,7 +187,11 @@ impl<J: Job> Drop for JobQueue<J> {
     }
 }
 
-fn work<J: Job>(orders: &Mailbox<Orders<J>>, make_tools: &dyn Fn() -> J::Tools, deliver: &dyn Fn(J, Ending<J>)) {
+fn work<J: Job>(
+    orders: &Mailbox<Orders<J>>,
+    make_tools: &dyn Fn() -> J::Tools,
+    deliver: &dyn Fn(J, Ending<J>),
+) {
     let mut tools = None;
     while let Some((job, run)) = take(orders) {
         let outcome = caught(|| job.run(tools.get_or_insert_with(make_tools), run.as_ref()));
@@ -176,7 +207,11 @@ fn work<J: Job>(orders: &Mailbox<Orders<J>>, make_tools: &dyn Fn() -> J::Tools, 
         orders.running = None;
         let Some(ending) = ending else { continue };
         if orders.wanted.contains(&job) {
-            let over = if ending.is_ok() { &mut orders.done } else { &mut orders.stopped };
+            let over = if ending.is_ok() {
+                &mut orders.done
+            } else {
+                &mut orders.stopped
+            };
             over.push(job.clone());
         }
         drop(orders);
@@ -221,7 +256,11 @@ mod tests {
         }
     }
 
-    fn queue() -> (JobQueue<Spoken>, impl Fn(&'static str) -> Spoken, Receiver<String>) {
+    fn queue() -> (
+        JobQueue<Spoken>,
+        impl Fn(&'static str) -> Spoken,
+        Receiver<String>,
+    ) {
         let (sender, said) = channel();
         let ended = sender.clone();
         let deliver = move |job: Spoken, ending: Ending<Spoken>| {
@@ -231,7 +270,11 @@ mod tests {
             };
             ended.send(words).unwrap();
         };
-        (JobQueue::start("test", || 0, deliver).unwrap(), move |name| Spoken(name, sender.clone()), said)
+        (
+            JobQueue::start("test", || 0, deliver).unwrap(),
+            move |name| Spoken(name, sender.clone()),
+            said,
+        )
     }
 
     fn next(said: &Receiver<String>) -> String {
@@ -244,18 +287,30 @@ mod tests {
         queue.want(vec![job("long")]);
         assert_eq!(next(&said), "begun long");
         queue.want(vec![job("short"), job("long")]);
-        assert!(said.recv_timeout(Duration::from_millis(30)).is_err(), "the long one goes on, the short one waits");
+        assert!(
+            said.recv_timeout(Duration::from_millis(30)).is_err(),
+            "the long one goes on, the short one waits"
+        );
         queue.want(vec![job("short")]);
-        assert_eq!([next(&said), next(&said), next(&said)], ["cancelled long", "begun short", "ended short (2)"]);
+        assert_eq!(
+            [next(&said), next(&said), next(&said)],
+            ["cancelled long", "begun short", "ended short (2)"]
+        );
     }
 
     #[test]
     fn a_job_is_done_once_as_long_as_it_is_asked_for() {
         let (queue, job, said) = queue();
         queue.want(vec![job("short")]);
-        assert_eq!([next(&said), next(&said)], ["begun short", "ended short (1)"]);
+        assert_eq!(
+            [next(&said), next(&said)],
+            ["begun short", "ended short (1)"]
+        );
         queue.want(vec![job("short"), job("other")]);
-        assert_eq!([next(&said), next(&said)], ["begun other", "ended other (2)"]);
+        assert_eq!(
+            [next(&said), next(&said)],
+            ["begun other", "ended other (2)"]
+        );
         assert!(queue.unfinished().is_empty());
         queue.want(Vec::new());
         queue.want(vec![job("short")]);
@@ -277,13 +332,20 @@ mod tests {
     }
 
     #[test]
-    fn what_was_stopped_and_asked_for_no_more_is_begun_again_once_it_is_asked_for_and_nothing_else_is() {
+    fn what_was_stopped_and_asked_for_no_more_is_begun_again_once_it_is_asked_for_and_nothing_else_is()
+     {
         let ((queue, job, said), (other, other_job, other_said)) = (queue(), queue());
         queue.want(vec![job("long")]);
         other.want(vec![other_job("long")]);
-        assert_eq!([next(&said), next(&other_said)], ["begun long", "begun long"]);
+        assert_eq!(
+            [next(&said), next(&other_said)],
+            ["begun long", "begun long"]
+        );
         [&queue, &other].into_iter().for_each(JobQueue::stop);
-        assert_eq!([next(&said), next(&other_said)], ["cancelled long", "cancelled long"]);
+        assert_eq!(
+            [next(&said), next(&other_said)],
+            ["cancelled long", "cancelled long"]
+        );
         queue.want(Vec::new());
         queue.want(vec![job("long")]);
         other.want(vec![other_job("long")]);
@@ -298,7 +360,14 @@ mod tests {
         let all: Vec<String> = (0..6).map(|_| next(&said)).collect();
         assert_eq!(
             all,
-            ["begun short", "ended short (1)", "begun broken", "fault broken job", "begun other", "ended other (1)"]
+            [
+                "begun short",
+                "ended short (1)",
+                "begun broken",
+                "fault broken job",
+                "begun other",
+                "ended other (1)"
+            ]
         );
     }
 

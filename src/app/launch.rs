@@ -16,7 +16,9 @@ use crate::view::assembling::AssemblingCommand;
 use crate::view::start_page::OpensWith;
 use crate::view::{Command, Preferences};
 use gdcm_io::variables::ReadingBudget;
-use gdcm_io::{FileError, Opened, embedded_example, file_exists, holds_models, load_any, recent_files};
+use gdcm_io::{
+    FileError, Opened, embedded_example, file_exists, holds_models, load_any, recent_files,
+};
 use gdcm_model::message_text::{sanitized, sanitized_path, shortened_message};
 use gdcm_study::study::{Engine, LIVE_PROOF};
 
@@ -56,7 +58,9 @@ pub struct Setup {
 impl Default for Setup {
     fn default() -> Self {
         Self {
-            engine: Arc::new(|| Engine::with_executor(Box::new(Pool)).with_proofs_within(LIVE_PROOF)),
+            engine: Arc::new(|| {
+                Engine::with_executor(Box::new(Pool)).with_proofs_within(LIVE_PROOF)
+            }),
             directory: None,
             home: None,
             offers_tour: false,
@@ -97,20 +101,34 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
         return ExitCode::from(NO_WINDOW);
     }
     // The file is read while the window is made.
-    let reading = std::thread::Builder::new().name("file".to_owned()).spawn(|| told(load(dataset)));
-    let reading =
-        match start_threads().map_err(|error| error.to_string()).and(reading.map_err(|error| error.to_string())) {
-            Ok(reading) => reading,
-            Err(reason) => {
-                eprintln!("error: {}", no_window(&format!("no thread is to be had ({reason})"), &command));
-                return ExitCode::from(NO_WINDOW);
-            }
-        };
-    let mended = eframe::storage_dir(APP_ID).and_then(|directory| mend_zoom(&directory.join("app.ron")));
-    mended.iter().for_each(|words| eprintln!("caution: {words}"));
+    let reading = std::thread::Builder::new()
+        .name("file".to_owned())
+        .spawn(|| told(load(dataset)));
+    let reading = match start_threads()
+        .map_err(|error| error.to_string())
+        .and(reading.map_err(|error| error.to_string()))
+    {
+        Ok(reading) => reading,
+        Err(reason) => {
+            eprintln!(
+                "error: {}",
+                no_window(&format!("no thread is to be had ({reason})"), &command)
+            );
+            return ExitCode::from(NO_WINDOW);
+        }
+    };
+    let mended =
+        eframe::storage_dir(APP_ID).and_then(|directory| mend_zoom(&directory.join("app.ron")));
+    mended
+        .iter()
+        .for_each(|words| eprintln!("caution: {words}"));
     std::panic::set_hook(Box::new(threads::note));
     let opening = Arc::new(OnceLock::new());
-    match ending(caught(|| run(reading, models, &opening)), opening.get(), &command) {
+    match ending(
+        caught(|| run(reading, models, &opening)),
+        opening.get(),
+        &command,
+    ) {
         Ok(()) => ExitCode::SUCCESS,
         Err(words) => {
             eprintln!("error: {words}");
@@ -121,13 +139,19 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
 
 /// Why the window ended, in words, unless it was closed. `kept` is what keeps its decisions, once it has drawn a frame; `command` does
 /// without a window.
-fn ending(run: Result<eframe::Result, Fault>, kept: Option<&Autosave>, command: &str) -> Result<(), String> {
+fn ending(
+    run: Result<eframe::Result, Fault>,
+    kept: Option<&Autosave>,
+    command: &str,
+) -> Result<(), String> {
     match (run, kept) {
         (Ok(Ok(())), _) => Ok(()),
         // A missing system library is a panic inside the window library's start-up, not an error.
         (Ok(Err(error)), None) => Err(no_window(&error.to_string(), command)),
         (Err(fault), None) => Err(no_window(&fault.message, command)),
-        (Ok(Err(error)), Some(autosave)) => Err(end_words(&error.to_string(), &autosave.flush(LAST_WAIT))),
+        (Ok(Err(error)), Some(autosave)) => {
+            Err(end_words(&error.to_string(), &autosave.flush(LAST_WAIT)))
+        }
         (Err(fault), Some(autosave)) => Err(end_words(&fault.words(), &autosave.flush(LAST_WAIT))),
     }
 }
@@ -147,18 +171,29 @@ fn load(path: Option<PathBuf>) -> Loaded {
 
 /// Tells what is wrong with the file on the terminal too: where no window comes, that is all there is.
 fn told(loaded: Loaded) -> Loaded {
-    loaded.1.iter().for_each(|words| eprintln!("error: {words}"));
+    loaded
+        .1
+        .iter()
+        .for_each(|words| eprintln!("error: {words}"));
     loaded
 }
 
-fn run(reading: JoinHandle<Loaded>, models: Option<PathBuf>, opening: &Arc<OnceLock<Autosave>>) -> eframe::Result {
+fn run(
+    reading: JoinHandle<Loaded>,
+    models: Option<PathBuf>,
+    opening: &Arc<OnceLock<Autosave>>,
+) -> eframe::Result {
     let viewport = ViewportBuilder::default()
         .with_title("gdcm")
         .with_app_id(APP_ID)
         .with_inner_size([1440.0, 900.0])
         .with_min_inner_size([900.0, 560.0]);
     // There are no gradients to smooth, and without a graphics processor every pixel's noise is computed.
-    let options = NativeOptions { viewport, dithering: false, ..NativeOptions::default() };
+    let options = NativeOptions {
+        viewport,
+        dithering: false,
+        ..NativeOptions::default()
+    };
     let opening = Arc::clone(opening);
     let build = move |creation: &eframe::CreationContext<'_>| -> Result<Box<dyn App>, Box<dyn Error + Send + Sync>> {
         let (opened, trouble) = reading.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
@@ -184,8 +219,13 @@ fn run(reading: JoinHandle<Loaded>, models: Option<PathBuf>, opening: &Arc<OnceL
 
 /// What was open last, where the engineer wants to begin with that and it is there.
 fn last_opened(setup: &Setup) -> Option<PathBuf> {
-    let directory = setup.directory.as_deref().filter(|_| setup.preferences.opens_with == OpensWith::LastStudy)?;
-    recent_files(directory).into_iter().find(|path| file_exists(path))
+    let directory = setup
+        .directory
+        .as_deref()
+        .filter(|_| setup.preferences.opens_with == OpensWith::LastStudy)?;
+    recent_files(directory)
+        .into_iter()
+        .find(|path| file_exists(path))
 }
 
 /// Zoom factors with which a window can be used.
@@ -198,16 +238,28 @@ fn mend_zoom(preferences: &Path) -> Option<String> {
     let start = text.find(KEY)? + KEY.len();
     let end = start + text[start..].find([',', ')'])?;
     let stored = &text[start..end];
-    if stored.trim().parse::<f64>().is_ok_and(|zoom| ZOOM.contains(&zoom)) {
+    if stored
+        .trim()
+        .parse::<f64>()
+        .is_ok_and(|zoom| ZOOM.contains(&zoom))
+    {
         return None;
     }
     let path = sanitized_path(preferences);
     let (least, most) = (ZOOM.start(), ZOOM.end());
-    let why = format!("{path}: expected a zoom factor from {least} to {most}, found {}", sanitized(stored));
-    Some(match std::fs::write(preferences, format!("{}1.0{}", &text[..start], &text[end..])) {
-        Ok(()) => format!("{why}; it is 1 now"),
-        Err(error) => format!("{why}; it cannot be mended: {error}"),
-    })
+    let why = format!(
+        "{path}: expected a zoom factor from {least} to {most}, found {}",
+        sanitized(stored)
+    );
+    Some(
+        match std::fs::write(
+            preferences,
+            format!("{}1.0{}", &text[..start], &text[end..]),
+        ) {
+            Ok(()) => format!("{why}; it is 1 now"),
+            Err(error) => format!("{why}; it cannot be mended: {error}"),
+        },
+    )
 }
 
 /// Why no window can be had, where that can be told beforehand: on Linux, neither Wayland nor X11.
@@ -221,9 +273,15 @@ fn missing_display() -> Option<String> {
 }
 
 fn no_window(reason: &str, command: &str) -> String {
-    let reason = reason.lines().next().unwrap_or(reason).trim_end_matches('.');
+    let reason = reason
+        .lines()
+        .next()
+        .unwrap_or(reason)
+        .trim_end_matches('.');
     // winit says first where in its source the system refused: "os error at src/linux.rs:788: no connection".
-    let at = reason.split_once("os error at ").and_then(|(_, at)| at.split_once(": "));
+    let at = reason
+        .split_once("os error at ")
+        .and_then(|(_, at)| at.split_once(": "));
     let reason = at.map_or(reason, |(_, what)| what);
     format!("the window could not be opened: {reason}. Without a window: {command}")
 }
@@ -242,13 +300,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panic_before_the_first_frame_is_a_window_that_could_not_be_opened_and_one_after_it_is_not() {
-        let fault = || Err(Fault { message: "no libxkbcommon".to_owned(), place: None });
+    fn a_panic_before_the_first_frame_is_a_window_that_could_not_be_opened_and_one_after_it_is_not()
+    {
+        let fault = || {
+            Err(Fault {
+                message: "no libxkbcommon".to_owned(),
+                place: None,
+            })
+        };
         let words = ending(fault(), None, &headless(Some(Path::new("a.json")), false)).unwrap_err();
-        assert!(words.starts_with("the window could not be opened: no libxkbcommon"), "{words}");
-        assert!(words.ends_with("Without a window: gdcm analyze \"a.json\" --out results"), "{words}");
-        let words = no_window("winit EventLoopError: os error at /a/linux/mod.rs:788: no connection", "gdcm analyze");
-        assert_eq!(words, "the window could not be opened: no connection. Without a window: gdcm analyze");
+        assert!(
+            words.starts_with("the window could not be opened: no libxkbcommon"),
+            "{words}"
+        );
+        assert!(
+            words.ends_with("Without a window: gdcm analyze \"a.json\" --out results"),
+            "{words}"
+        );
+        let words = no_window(
+            "winit EventLoopError: os error at /a/linux/mod.rs:788: no connection",
+            "gdcm analyze",
+        );
+        assert_eq!(
+            words,
+            "the window could not be opened: no connection. Without a window: gdcm analyze"
+        );
         let folder = tempfile::tempdir().unwrap();
         let autosave = Autosave::start(
             Some(folder.path()),
@@ -257,7 +333,10 @@ mod tests {
         )
         .unwrap();
         let words = ending(fault(), Some(&autosave), "").unwrap_err();
-        assert!(words.starts_with("stopped by a fault in its window: no libxkbcommon"), "{words}");
+        assert!(
+            words.starts_with("stopped by a fault in its window: no libxkbcommon"),
+            "{words}"
+        );
         assert!(words.ends_with("every decision was saved"), "{words}");
     }
 
@@ -267,7 +346,10 @@ mod tests {
         let path = folder.path().join("broken.json");
         std::fs::write(&path, "{\"format\": ").unwrap();
         let (opened, trouble) = load(Some(path));
-        assert!(matches!(opened, Ok(Opened::Dataset(loaded)) if loaded.path().is_none()), "the example");
+        assert!(
+            matches!(opened, Ok(Opened::Dataset(loaded)) if loaded.path().is_none()),
+            "the example"
+        );
         assert!(trouble.is_some_and(|words| words.contains("broken.json")));
         assert!(matches!(load(None), (Ok(_), None)));
     }
@@ -277,13 +359,24 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("app.ron");
         let text = |zoom: &str| {
-            format!("{{\"egui\": \"(options:(sync:true,zoom_factor:{zoom},reduce_texture_memory:false))\"}}")
+            format!(
+                "{{\"egui\": \"(options:(sync:true,zoom_factor:{zoom},reduce_texture_memory:false))\"}}"
+            )
         };
-        for (stored, kept) in [("0.0", "1.0"), ("NaN", "1.0"), ("5.5", "1.0"), ("0.2", "0.2"), ("1.25", "1.25")] {
+        for (stored, kept) in [
+            ("0.0", "1.0"),
+            ("NaN", "1.0"),
+            ("5.5", "1.0"),
+            ("0.2", "0.2"),
+            ("1.25", "1.25"),
+        ] {
             std::fs::write(&path, text(stored)).unwrap();
             let said = mend_zoom(&path);
             assert_eq!(said.is_some(), stored != kept, "{stored}: {said:?}");
-            assert!(said.is_none_or(|words| words.contains(stored) && words.contains("from 0.2 to 5")), "{stored}");
+            assert!(
+                said.is_none_or(|words| words.contains(stored) && words.contains("from 0.2 to 5")),
+                "{stored}"
+            );
             assert_eq!(std::fs::read_to_string(&path).unwrap(), text(kept));
         }
         assert_eq!(mend_zoom(&folder.path().join("none.ron")), None);

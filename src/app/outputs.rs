@@ -5,31 +5,48 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gdcm_io::{
-    Existing, ExportFormat, ExportRequest, ExportSource, FileError, OutputSet, ReportSource, ReportSubject,
-    add_tolerances, csv_text, export_contents, figure_format, load_tolerances, read_levels, report, save_report,
-    save_tables, write_export, write_figure, write_results,
+    Existing, ExportFormat, ExportRequest, ExportSource, FileError, OutputSet, ReportSource,
+    ReportSubject, add_tolerances, csv_text, export_contents, figure_format, load_tolerances,
+    read_levels, report, save_report, save_tables, write_export, write_figure, write_results,
 };
 use gdcm_model::message_text::sanitized_path;
 use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat, FigureKind};
 use gdcm_study::study::{
-    Analysis, Cancelled, Edit, Engine, HistoryRecords, Job, KnownPoles, Progress, RequirementSettings, Table,
+    Analysis, Cancelled, Edit, Engine, HistoryRecords, Job, KnownPoles, Progress,
+    RequirementSettings, Table,
 };
 
 use super::GdcmApp;
 use super::files::study_name;
 use crate::view::views::{all_records, known_poles};
-use crate::view::{Command, FormKind, RequirementTable, View, figure_name, figure_of, tables_in_place};
+use crate::view::{
+    Command, FormKind, RequirementTable, View, figure_name, figure_of, tables_in_place,
+};
 
 impl GdcmApp {
     /// Writes the corrections of the conditions chosen in the form.
     pub(super) fn export(&mut self) {
-        let Some(analysis) = self.complete_results() else { return };
+        let Some(analysis) = self.complete_results() else {
+            return;
+        };
         let chosen = self.state.forms.exported.clone();
         let folder = PathBuf::from(self.state.forms.typed_in(FormKind::Export).trim());
         let folder = self.at_home(folder);
-        let written = write_results(&analysis, &self.loaded.sha256, &chosen, &folder, self.outputs());
+        let written = write_results(
+            &analysis,
+            &self.loaded.sha256,
+            &chosen,
+            &folder,
+            self.outputs(),
+        );
         let absent = self.absent_bars(analysis.uncertainty.is_some());
-        let words = |()| format!("exported {} conditions to {}{absent}", chosen.len(), sanitized_path(&folder));
+        let words = |()| {
+            format!(
+                "exported {} conditions to {}{absent}",
+                chosen.len(),
+                sanitized_path(&folder)
+            )
+        };
         self.written(written.map(words), FormKind::Export, Command::Export);
     }
 
@@ -45,10 +62,18 @@ impl GdcmApp {
 
     /// Writes all corrections in a format for other tools; asks before it overwrites a file.
     pub(super) fn export_as(&mut self, format: ExportFormat, path: PathBuf) {
-        let Some(analysis) = self.complete_results() else { return };
+        let Some(analysis) = self.complete_results() else {
+            return;
+        };
         let path = self.at_home(path);
-        let source = ExportSource { name: self.state.study_name.clone(), sha256: self.loaded.sha256.clone() };
-        let request = ExportRequest { format, ..ExportRequest::default() };
+        let source = ExportSource {
+            name: self.state.study_name.clone(),
+            sha256: self.loaded.sha256.clone(),
+        };
+        let request = ExportRequest {
+            format,
+            ..ExportRequest::default()
+        };
         let contents = export_contents(&analysis, &request);
         let left_out = contents.left_out_words(&analysis.study.dataset);
         let written = write_export(&analysis, &source, &request, &path, self.outputs());
@@ -63,9 +88,17 @@ impl GdcmApp {
                 [remark] => format!(" ({remark})"),
                 several => format!(" ({} remarks, in the file)", several.len()),
             };
-            format!("exported {}: {}{left_out}{remark}{absent}", sanitized_path(&path), contents.words())
+            format!(
+                "exported {}: {}{left_out}{remark}{absent}",
+                sanitized_path(&path),
+                contents.words()
+            )
         };
-        self.written(written.map(words), FormKind::ExportAs, Command::ExportAs(format, path.clone()));
+        self.written(
+            written.map(words),
+            FormKind::ExportAs,
+            Command::ExportAs(format, path.clone()),
+        );
     }
 
     /// The analysis of what is shown, proven; where it is not there yet, that is said.
@@ -73,7 +106,12 @@ impl GdcmApp {
         let analysis = self.unless_error(self.analysis_to_write("export"))?;
         // With how sure its figures are, as far as that is computed.
         let of_this = |bars: &Analysis| bars.study == analysis.study;
-        Some(self.state.analysis_with_bars().filter(of_this).map_or(analysis.clone(), Arc::new))
+        Some(
+            self.state
+                .analysis_with_bars()
+                .filter(of_this)
+                .map_or(analysis.clone(), Arc::new),
+        )
     }
 
     /// What is said of a file that lacks the error bars it could have; nothing of one that has them.
@@ -90,7 +128,8 @@ impl GdcmApp {
 
     /// The same of what a view shows: some have error bars as soon as they are computed.
     fn absent_bars_of(&self, view: View) -> &'static str {
-        let shows_bars = view.figure().is_some_and(FigureKind::takes_bars) && !self.state.display.hide_bars;
+        let shows_bars =
+            view.figure().is_some_and(FigureKind::takes_bars) && !self.state.display.hide_bars;
         self.absent_bars(!shows_bars || self.state.uncertainty().is_some())
     }
 
@@ -99,13 +138,20 @@ impl GdcmApp {
     pub(super) fn analysis_to_write(&self, what: &str) -> Result<Arc<Analysis>, String> {
         let results = &self.state.results;
         if results.stopped {
-            return Err(format!("{}, for computing was stopped; compute first", self.state.after_stop()));
+            return Err(format!(
+                "{}, for computing was stopped; compute first",
+                self.state.after_stop()
+            ));
         }
         if !results.background.proofs.is_empty() {
-            return Err(format!("the gains are still being proven; {what} again in a moment, or stop it"));
+            return Err(format!(
+                "the gains are still being proven; {what} again in a moment, or stop it"
+            ));
         }
         let analysis = results.analysis.clone().filter(|_| !results.is_waiting());
-        analysis.ok_or_else(|| format!("the newest results are still being computed; {what} again in a moment"))
+        analysis.ok_or_else(|| {
+            format!("the newest results are still being computed; {what} again in a moment")
+        })
     }
 
     /// Puts the numbers of a view on the clipboard.
@@ -113,18 +159,29 @@ impl GdcmApp {
         let tables = tables_in_place(&self.state, view);
         if let Some(tables) = tables.or_else(|| Some(self.figure_of(view)?.tables())) {
             self.ctx.copy_text(csv_text(&tables));
-            self.done(format!("copied the numbers of {}{}", view.name(), self.absent_bars_of(view)));
+            self.done(format!(
+                "copied the numbers of {}{}",
+                view.name(),
+                self.absent_bars_of(view)
+            ));
         }
     }
 
     /// Asks where to save a view; the folder of the last figure is proposed.
     pub(super) fn ask_save_figure(&mut self, view: View, format: FigureFormat) {
         // Tables are numbers, whatever a figure in their place would be saved as.
-        let format = if tables_in_place(&self.state, view).is_some() { FigureFormat::Csv } else { format };
+        let format = if tables_in_place(&self.state, view).is_some() {
+            FigureFormat::Csv
+        } else {
+            format
+        };
         let name = format!("{}.{}", figure_name(&self.state, view), format.extension());
         self.state.forms.figure = Some(view);
         let path = self.state.forms.typed_in(FormKind::SaveFigure);
-        *path = Path::new(path.trim()).with_file_name(name).display().to_string();
+        *path = Path::new(path.trim())
+            .with_file_name(name)
+            .display()
+            .to_string();
         self.state.forms.shown = Some(FormKind::SaveFigure);
     }
 
@@ -132,7 +189,9 @@ impl GdcmApp {
     pub(super) fn save_figure(&mut self, view: View, width: ColumnWidth, path: PathBuf) {
         let path = self.at_home(path);
         let written = match tables_in_place(&self.state, view) {
-            Some(tables) if figure_format(&path).is_ok_and(|format| format == FigureFormat::Csv) => {
+            Some(tables)
+                if figure_format(&path).is_ok_and(|format| format == FigureFormat::Csv) =>
+            {
                 save_tables(&tables, &path, self.outputs())
             }
             Some(_) => {
@@ -143,11 +202,19 @@ impl GdcmApp {
                 ));
             }
             None => {
-                let Some(figure) = self.figure_of(view) else { return };
+                let Some(figure) = self.figure_of(view) else {
+                    return;
+                };
                 write_figure(&figure, width, &path, self.outputs())
             }
         };
-        let words = |()| format!("saved {}{}", sanitized_path(&path), self.absent_bars_of(view));
+        let words = |()| {
+            format!(
+                "saved {}{}",
+                sanitized_path(&path),
+                self.absent_bars_of(view)
+            )
+        };
         let again = Command::SaveFigure(view, width, path.clone());
         self.written(written.map(words), FormKind::SaveFigure, again);
     }
@@ -167,7 +234,10 @@ impl GdcmApp {
 
     /// Asks where to save a table as it is now.
     pub(super) fn ask_save_table(&mut self, name: &str, table: Arc<Table>) {
-        let name: String = name.chars().filter(|letter| letter.is_alphanumeric() || *letter == ' ').collect();
+        let name: String = name
+            .chars()
+            .filter(|letter| letter.is_alphanumeric() || *letter == ' ')
+            .collect();
         self.state.forms.table = Some(table);
         *self.state.forms.typed_in(FormKind::SaveTable) = format!("{}.csv", name.replace(' ', "-"));
         self.state.forms.shown = Some(FormKind::SaveTable);
@@ -177,7 +247,12 @@ impl GdcmApp {
     pub(super) fn save_table(&mut self, table: Arc<Table>, path: PathBuf) {
         let path = self.at_home(path);
         let written = save_tables(std::slice::from_ref(&*table), &path, self.outputs());
-        self.saved_to(written, &path, FormKind::SaveTable, Command::SaveTable(table, path.clone()));
+        self.saved_to(
+            written,
+            &path,
+            FormKind::SaveTable,
+            Command::SaveTable(table, path.clone()),
+        );
     }
 
     /// Where results go: never over what the program reads from, and over other files only where that was agreed to.
@@ -198,7 +273,12 @@ impl GdcmApp {
     }
 
     /// Says what was written, asks in a form whether `again` may write over files, or says why nothing was written.
-    pub(super) fn written(&mut self, written: Result<String, FileError>, form: FormKind, again: Command) {
+    pub(super) fn written(
+        &mut self,
+        written: Result<String, FileError>,
+        form: FormKind,
+        again: Command,
+    ) {
         match written {
             Ok(words) => {
                 self.state.forms.shown = None;
@@ -210,8 +290,18 @@ impl GdcmApp {
     }
 
     /// The same of one file.
-    pub(super) fn saved_to(&mut self, saved: Result<(), FileError>, path: &Path, form: FormKind, again: Command) {
-        self.written(saved.map(|()| format!("saved {}", sanitized_path(path))), form, again);
+    pub(super) fn saved_to(
+        &mut self,
+        saved: Result<(), FileError>,
+        path: &Path,
+        form: FormKind,
+        again: Command,
+    ) {
+        self.written(
+            saved.map(|()| format!("saved {}", sanitized_path(path))),
+            form,
+            again,
+        );
     }
 
     /// Asks in a form whether to overwrite files, which `command` would do.
@@ -223,22 +313,35 @@ impl GdcmApp {
 
     /// What the program reads from, which is never overwritten by results.
     pub(super) fn inputs(&self) -> Vec<PathBuf> {
-        self.saved.path.iter().cloned().chain(self.loaded.origin.file()).collect()
+        self.saved
+            .path
+            .iter()
+            .cloned()
+            .chain(self.loaded.origin.file())
+            .collect()
     }
 
     /// Asks where to write the report, unless there is nothing to report on yet.
     pub(super) fn ask_report(&mut self) {
-        if self.unless_error(self.analysis_to_write("write the report")).is_some() {
+        if self
+            .unless_error(self.analysis_to_write("write the report"))
+            .is_some()
+        {
             let form = self.state.forms.typed_in(FormKind::Report);
             let name = report_name(self.saved.path.as_deref().or(self.loaded.path()));
-            *form = Path::new(form.trim()).with_file_name(name).display().to_string();
+            *form = Path::new(form.trim())
+                .with_file_name(name)
+                .display()
+                .to_string();
             self.state.forms.shown = Some(FormKind::Report);
         }
     }
 
     /// Has the report written; asks before it overwrites a file.
     pub(super) fn write_report(&mut self, path: PathBuf) {
-        let Some(analysis) = self.unless_error(self.analysis_to_write("write the report")) else { return };
+        let Some(analysis) = self.unless_error(self.analysis_to_write("write the report")) else {
+            return;
+        };
         let (path, inputs, existing) = (self.at_home(path), self.inputs(), self.existing);
         match self.outputs().check(&[&path]) {
             Ok(()) => {
@@ -247,7 +350,15 @@ impl GdcmApp {
                 // What requirements are asked with has no part in the live answer, which may be older.
                 let analysis = Arc::new(analysis.asked_with(&self.state.study.requirements));
                 let (records, known) = (all_records(&self.state), known_poles(&self.state));
-                self.reporting = Some(ReportJob { analysis, records, known, source, path, existing, inputs });
+                self.reporting = Some(ReportJob {
+                    analysis,
+                    records,
+                    known,
+                    source,
+                    path,
+                    existing,
+                    inputs,
+                });
             }
             Err(error) => self.written(Err(error), FormKind::Report, Command::WriteReport(path)),
         }
@@ -258,14 +369,19 @@ impl GdcmApp {
         self.reporting = None;
         match outcome {
             Ok(()) => self.done(format!("wrote the report {}", sanitized_path(&job.path))),
-            Err(error) => self.written(Err(error), FormKind::Report, Command::WriteReport(job.path)),
+            Err(error) => {
+                self.written(Err(error), FormKind::Report, Command::WriteReport(job.path))
+            }
         }
     }
 
     /// Says that a report under way was given up, by hand or by a fault.
     pub(super) fn give_up_report(&mut self) {
         if let Some(job) = self.reporting.take() {
-            self.notify_error(format!("{} was not written: it was stopped", sanitized_path(&job.path)));
+            self.notify_error(format!(
+                "{} was not written: it was stopped",
+                sanitized_path(&job.path)
+            ));
         }
     }
 
@@ -274,19 +390,31 @@ impl GdcmApp {
         let path = self.at_home(path);
         let mut settings = RequirementSettings::clone(&self.state.study.requirements);
         let (what, read) = match table {
-            RequirementTable::Levels => {
-                ("levels", read_levels(&path).map(|levels| (settings.levels = levels, Vec::new()).1))
-            }
+            RequirementTable::Levels => (
+                "levels",
+                read_levels(&path).map(|levels| (settings.levels = levels, Vec::new()).1),
+            ),
             RequirementTable::Tolerances => {
                 let read = load_tolerances(&path);
-                ("tolerances", read.map(|(tolerances, cautions)| (settings.tolerances = tolerances, cautions).1))
+                (
+                    "tolerances",
+                    read.map(|(tolerances, cautions)| {
+                        (settings.tolerances = tolerances, cautions).1
+                    }),
+                )
             }
         };
-        let Some(cautions) = self.unless_error(read) else { return };
+        let Some(cautions) = self.unless_error(read) else {
+            return;
+        };
         self.state.forms.shown = None;
         self.decide(&Edit::SetRequirements(what, Arc::new(settings)));
         if !cautions.is_empty() {
-            self.notify_error(format!("taken, but {}: {}", sanitized_path(&path), cautions.join("; ")));
+            self.notify_error(format!(
+                "taken, but {}: {}",
+                sanitized_path(&path),
+                cautions.join("; ")
+            ));
         }
     }
 
@@ -304,7 +432,12 @@ impl GdcmApp {
         let path = self.at_home(path);
         let tolerances = &self.state.study.requirements.tolerances;
         let written = self.write_all(&[], |outputs| add_tolerances(tolerances, &path, outputs));
-        self.saved_to(written, &path, FormKind::WriteTolerances, Command::WriteTolerances(path.clone()));
+        self.saved_to(
+            written,
+            &path,
+            FormKind::WriteTolerances,
+            Command::WriteTolerances(path.clone()),
+        );
     }
 }
 
@@ -347,13 +480,21 @@ impl Job for ReportJob {
             [] => None,
             records => Some(engine.time_histories(&self.analysis, records, progress)?),
         };
-        let subject = ReportSubject { analysis: &self.analysis, histories: histories.as_ref(), known: &self.known };
+        let subject = ReportSubject {
+            analysis: &self.analysis,
+            histories: histories.as_ref(),
+            known: &self.known,
+        };
         let report = report(subject, &self.source, engine, progress)?;
         // Whoever stopped it does not want a file any more.
         if progress.cancelled() {
             return Err(Cancelled);
         }
-        Ok(save_report(&report, &self.path, OutputSet::new(self.existing, self.inputs.clone())))
+        Ok(save_report(
+            &report,
+            &self.path,
+            OutputSet::new(self.existing, self.inputs.clone()),
+        ))
     }
 }
 
@@ -372,7 +513,13 @@ mod tests {
     #[test]
     fn a_report_is_named_for_its_study_or_else_for_its_dataset() {
         assert_eq!(report_name(None), "example-report.html");
-        assert_eq!(report_name(Some(Path::new("/a/flight 7.gdcm-study.json"))), "flight 7-report.html");
-        assert_eq!(report_name(Some(Path::new("data.json.gz"))), "data-report.html");
+        assert_eq!(
+            report_name(Some(Path::new("/a/flight 7.gdcm-study.json"))),
+            "flight 7-report.html"
+        );
+        assert_eq!(
+            report_name(Some(Path::new("data.json.gz"))),
+            "data-report.html"
+        );
     }
 }

@@ -7,20 +7,23 @@ use std::sync::atomic::AtomicBool;
 
 use gdcm_io::variables::ReadingBudget;
 use gdcm_io::{
-    DatasetOrigin, FileError, FolderProgress, add_dataset, example_records, load_records, read_records, relative_entry,
+    DatasetOrigin, FileError, FolderProgress, add_dataset, example_records, load_records,
+    read_records, relative_entry,
 };
 use gdcm_model::assembly::ChannelRule;
 use gdcm_model::dataset::{Band, ChannelRemedy, ConditionId, ConditionRecord, Dataset};
 use gdcm_study::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
 use gdcm_sysid::identification::{Identification, IdentificationError, Signal};
 use gdcm_sysid::records::{
-    LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, dataset_of_records, leave_out_copies,
-    with_topics_joined,
+    LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, dataset_of_records,
+    leave_out_copies, with_topics_joined,
 };
 
 use super::threads::Untold;
 use super::{DialogPurpose, GdcmApp};
-use crate::view::records::{AddedRecord, ConditionRecords, RecordsBefore, RecordsCommand, RecordsPage, WantedDataset};
+use crate::view::records::{
+    AddedRecord, ConditionRecords, RecordsBefore, RecordsCommand, RecordsPage, WantedDataset,
+};
 use crate::view::views::RequirementsPage;
 use crate::view::{Command, FormKind, View};
 
@@ -55,11 +58,20 @@ impl GdcmApp {
             RecordsCommand::Show(page) => self.state.records.page = page,
             RecordsCommand::ChooseParts(chooses) => self.state.records.chooses_parts = chooses,
             RecordsCommand::ShowSpectrogram(input) => self.state.records.spectrogram = input,
-            RecordsCommand::ShowTimeModel(model, true) => drop(self.state.records.time_models.insert(model)),
-            RecordsCommand::ShowTimeModel(model, false) => drop(self.state.records.time_models.remove(&model)),
+            RecordsCommand::ShowTimeModel(model, true) => {
+                drop(self.state.records.time_models.insert(model))
+            }
+            RecordsCommand::ShowTimeModel(model, false) => {
+                drop(self.state.records.time_models.remove(&model))
+            }
             RecordsCommand::Identify => self.identify_conditions(&[condition]),
             RecordsCommand::IdentifyAll => {
-                let all = self.state.records.conditions.iter().filter(|(_, of)| of.used_rows().next().is_some());
+                let all = self
+                    .state
+                    .records
+                    .conditions
+                    .iter()
+                    .filter(|(_, of)| of.used_rows().next().is_some());
                 let all: Vec<ConditionId> = all.map(|(id, _)| *id).collect();
                 self.identify_conditions(&all);
             }
@@ -87,7 +99,9 @@ impl GdcmApp {
     fn edit_records(&mut self, condition: ConditionId, command: RecordsCommand) {
         let channels = self.record_channels(condition);
         let before = self.state.records.before([condition]);
-        let Some(records) = self.state.records.conditions.get_mut(&condition) else { return };
+        let Some(records) = self.state.records.conditions.get_mut(&condition) else {
+            return;
+        };
         let label = format!("{} (condition {condition})", edit_words(records, &command));
         match say(records, command, &channels) {
             Ok(true) => {
@@ -112,7 +126,9 @@ impl GdcmApp {
     fn set_layout(&mut self, condition: ConditionId, index: usize, layout: &RecordLayout) {
         let dataset = Arc::clone(&self.state.study.dataset);
         let of_condition = self.state.records.conditions.get(&condition);
-        let Some(row) = of_condition.and_then(|records| records.rows.get(index)) else { return };
+        let Some(row) = of_condition.and_then(|records| records.rows.get(index)) else {
+            return;
+        };
         let edited = (Arc::clone(&row.table), row.layout.clone());
         let (table, former) = (&edited.0, &edited.1);
         let is_named = table.entry_of_dataset(&dataset).is_some();
@@ -123,7 +139,8 @@ impl GdcmApp {
                 return Some(layout.clone());
             }
             let is_alike = of.table.entry_of_dataset(&dataset).is_some() == is_named;
-            (is_told(id) && is_alike).then(|| of.layout.following(&of.table, [former, layout], table))
+            (is_told(id) && is_alike)
+                .then(|| of.layout.following(&of.table, [former, layout], table))
         });
     }
 
@@ -134,13 +151,19 @@ impl GdcmApp {
     }
 
     /// Lays records of all conditions out anew, as one step that can be undone.
-    fn edit_layouts(&mut self, label: String, layout_of: impl Fn(ConditionId, &LaidOutRecord) -> Option<RecordLayout>) {
+    fn edit_layouts(
+        &mut self,
+        label: String,
+        layout_of: impl Fn(ConditionId, &LaidOutRecord) -> Option<RecordLayout>,
+    ) {
         let ids: Vec<ConditionId> = self.state.records.conditions.keys().copied().collect();
         let mut changed = RecordsBefore::default();
         for id in ids {
             let channels = self.record_channels(id);
             let before = self.state.records.conditions.get(&id).cloned();
-            let Some(records) = self.state.records.conditions.get_mut(&id) else { continue };
+            let Some(records) = self.state.records.conditions.get_mut(&id) else {
+                continue;
+            };
             let (mut is_changed, mut is_any_clear_now) = (false, false);
             for row in &mut records.rows {
                 if let Some(layout) = layout_of(id, row).filter(|layout| *layout != row.layout) {
@@ -165,10 +188,16 @@ impl GdcmApp {
 
     /// Shows the first record whose units are still to be said, and its columns.
     fn show_unclear(&mut self) {
-        let Some(id) = self.state.records.open_units().and_then(|open| open.first) else { return };
+        let Some(id) = self.state.records.open_units().and_then(|open| open.first) else {
+            return;
+        };
         if let Some(records) = self.state.records.conditions.get_mut(&id) {
             let is_unclear = |row: &LaidOutRecord| !row.problems.is_empty();
-            let index = records.rows.iter().position(is_unclear).unwrap_or(records.chosen);
+            let index = records
+                .rows
+                .iter()
+                .position(is_unclear)
+                .unwrap_or(records.chosen);
             records.choose(index);
         }
         self.state.records.page = RecordsPage::Columns;
@@ -178,14 +207,24 @@ impl GdcmApp {
     /// The band that a condition is identified over: its own, or the study's.
     fn identified_band(&self, condition: ConditionId) -> [f64; 2] {
         let of_study = self.state.study.settings.band;
-        let own = self.state.records.conditions.get(&condition).and_then(|records| records.band);
+        let own = self
+            .state
+            .records
+            .conditions
+            .get(&condition)
+            .and_then(|records| records.band);
         own.unwrap_or([of_study.min(), of_study.max()])
     }
 
     /// Brings the topics of a condition to the clock that its band takes, where that has changed.
     fn follow_band(&mut self, condition: ConditionId) {
         let [_, end] = self.identified_band(condition);
-        let known = self.state.records.conditions.get(&condition).map(|records| records.clock_band_end);
+        let known = self
+            .state
+            .records
+            .conditions
+            .get(&condition)
+            .map(|records| records.clock_band_end);
         if known.is_none_or(|known| known == Some(end)) {
             return;
         }
@@ -202,7 +241,12 @@ impl GdcmApp {
         let [_, end] = self.identified_band(condition);
         channels.resampling.band_end = Some(end);
         if let Some(made) = self.made_of_records() {
-            let said: Vec<&ChannelRule> = made.channels.inputs.iter().chain(&made.channels.outputs).collect();
+            let said: Vec<&ChannelRule> = made
+                .channels
+                .inputs
+                .iter()
+                .chain(&made.channels.outputs)
+                .collect();
             for rule in channels.inputs.iter_mut().chain(&mut channels.outputs) {
                 if let Some(said) = said.iter().find(|said| said.name == rule.name) {
                     rule.aliases.clone_from(&said.aliases);
@@ -215,16 +259,26 @@ impl GdcmApp {
 
     /// How the dataset shown was made of records, where it was.
     fn made_of_records(&self) -> Option<&DatasetOfRecords> {
-        self.made_of_records.as_ref().filter(|made| self.loaded.path() == Some(&made.path))
+        self.made_of_records
+            .as_ref()
+            .filter(|made| self.loaded.path() == Some(&made.path))
     }
 
     /// Asks of which channels a dataset is to be made, with what is proposed for the record shown.
     fn ask_record_dataset(&mut self) {
         let condition = self.state.condition().id();
-        let Some(records) = self.state.records.conditions.get(&condition) else { return };
-        let beside = self.state.records.sources.first().map(|path| path.with_extension("json.gz"));
+        let Some(records) = self.state.records.conditions.get(&condition) else {
+            return;
+        };
+        let beside = self
+            .state
+            .records
+            .sources
+            .first()
+            .map(|path| path.with_extension("json.gz"));
         let path = beside.map_or(String::new(), |path| path.display().to_string());
-        self.state.records.wanted = WantedDataset::proposed(records, self.state.study.settings.band, path);
+        self.state.records.wanted =
+            WantedDataset::proposed(records, self.state.study.settings.band, path);
         self.state.forms.shown = Some(FormKind::RecordDataset);
     }
 
@@ -236,7 +290,10 @@ impl GdcmApp {
             Ok(said) => said,
             Err(why) => return records.wanted.problems.push(why),
         };
-        let (sources, typed) = (records.sources.clone(), PathBuf::from(records.wanted.path.trim()));
+        let (sources, typed) = (
+            records.sources.clone(),
+            PathBuf::from(records.wanted.path.trim()),
+        );
         let path = self.at_home(typed);
         let (number, stop) = self.record_reader.join();
         self.state.records.reading = Some("records".to_owned());
@@ -255,13 +312,19 @@ impl GdcmApp {
     }
 
     fn write_record_dataset(&mut self, dataset: &Dataset, made: DatasetOfRecords) {
-        match self.write_all(&[&made.path], |outputs| add_dataset(dataset, &made.path, outputs)) {
+        match self.write_all(&[&made.path], |outputs| {
+            add_dataset(dataset, &made.path, outputs)
+        }) {
             Ok(()) => {
                 self.state.forms.shown = None;
                 self.open(made.path.clone(), None);
                 self.made_of_records = Some(made);
             }
-            Err(error) => self.written(Err(error), FormKind::RecordDataset, RecordsCommand::MakeDataset.into()),
+            Err(error) => self.written(
+                Err(error),
+                FormKind::RecordDataset,
+                RecordsCommand::MakeDataset.into(),
+            ),
         }
     }
 
@@ -294,14 +357,19 @@ impl GdcmApp {
 
     /// Where the records that belong to conditions come from.
     fn own_records(&self) -> OwnRecords {
-        OwnRecords { dataset: Arc::clone(&self.state.study.dataset), origin: self.loaded.origin.clone() }
+        OwnRecords {
+            dataset: Arc::clone(&self.state.study.dataset),
+            origin: self.loaded.origin.clone(),
+        }
     }
 
     fn add_records(&mut self, paths: Vec<PathBuf>) {
         let paths: Vec<PathBuf> = paths.into_iter().map(|path| self.at_home(path)).collect();
         let sources = self.state.records.sources.clone();
         self.state.records.sources.extend(paths.iter().cloned());
-        let name = paths.first().map_or(String::new(), |path| path.display().to_string());
+        let name = paths
+            .first()
+            .map_or(String::new(), |path| path.display().to_string());
         let shown = self.state.condition().id();
         let known = self.state.records.conditions.keys().copied().collect();
         let own = self.own_records();
@@ -315,7 +383,9 @@ impl GdcmApp {
         &mut self,
         name: String,
         sources: Vec<PathBuf>,
-        read: impl FnOnce(&RecordChannels, Arc<AtomicBool>) -> Result<ReadRecords, FileError> + Send + 'static,
+        read: impl FnOnce(&RecordChannels, Arc<AtomicBool>) -> Result<ReadRecords, FileError>
+        + Send
+        + 'static,
     ) {
         let channels = self.record_channels(self.state.condition().id());
         let clock_band_end = channels.resampling.band_end;
@@ -324,7 +394,9 @@ impl GdcmApp {
         let (number, stop) = self.record_reader.join();
         let read = move || read(&channels, stop);
         self.in_thread("the reading of records", read, move |app, found| {
-            if !app.record_reader.is_newest(number) || !Arc::ptr_eq(&of, app.state.study.file_dataset()) {
+            if !app.record_reader.is_newest(number)
+                || !Arc::ptr_eq(&of, app.state.study.file_dataset())
+            {
                 return;
             }
             app.state.records.reading = None;
@@ -339,12 +411,29 @@ impl GdcmApp {
     /// The records of a condition, none at first.
     pub(super) fn records_of(&mut self, id: ConditionId) -> &mut ConditionRecords {
         let nothing = || ConditionRecords::new(Vec::new(), &self.state.study.dataset);
-        self.state.records.conditions.entry(id).or_insert_with(nothing)
+        self.state
+            .records
+            .conditions
+            .entry(id)
+            .or_insert_with(nothing)
     }
 
-    fn take_records(&mut self, found: ReadRecords, clock_band_end: Option<f64>, sources: Vec<PathBuf>) {
-        let ReadRecords { own, added, faults, read_from } = found;
-        let left_out = self.made_of_records().into_iter().flat_map(|made| made.left_out.iter().cloned());
+    fn take_records(
+        &mut self,
+        found: ReadRecords,
+        clock_band_end: Option<f64>,
+        sources: Vec<PathBuf>,
+    ) {
+        let ReadRecords {
+            own,
+            added,
+            faults,
+            read_from,
+        } = found;
+        let left_out = self
+            .made_of_records()
+            .into_iter()
+            .flat_map(|made| made.left_out.iter().cloned());
         self.state.records.faults = faults.into_iter().chain(left_out).collect();
         self.state.records.read_from.extend(read_from);
         let own_count: usize = own.values().map(Vec::len).sum();
@@ -398,7 +487,10 @@ impl GdcmApp {
             }
         }
         if !before.conditions.is_empty() {
-            self.record_edited(format!("add {}", counted_records(counts.new + counts.read_again)), before);
+            self.record_edited(
+                format!("add {}", counted_records(counts.new + counts.read_again)),
+                before,
+            );
         }
         self.done(counts.words());
     }
@@ -408,7 +500,10 @@ impl GdcmApp {
         let left = std::mem::take(&mut self.state.records.running).len();
         let asked = self.state.records.asked;
         if asked > 1 && left > 0 {
-            self.done(format!("stopped identifying after {} of {asked} conditions", asked.saturating_sub(left)));
+            self.done(format!(
+                "stopped identifying after {} of {asked} conditions",
+                asked.saturating_sub(left)
+            ));
         }
     }
 
@@ -420,19 +515,27 @@ impl GdcmApp {
         for id in conditions {
             self.follow_band(*id);
             let (band, channels) = (self.identified_band(*id), self.record_channels(*id));
-            let Some(records) = self.state.records.conditions.get(id) else { continue };
+            let Some(records) = self.state.records.conditions.get(id) else {
+                continue;
+            };
             match records.job(*id, band, &channels) {
                 Ok(job) => {
                     let waiting = self.state.records.running.len();
-                    self.state.records.running.retain(|other| other.condition != *id);
-                    self.state.records.asked += usize::from(waiting == self.state.records.running.len());
+                    self.state
+                        .records
+                        .running
+                        .retain(|other| other.condition != *id);
+                    self.state.records.asked +=
+                        usize::from(waiting == self.state.records.running.len());
                     self.state.records.running.push(job);
                 }
                 Err(why) => refusal = Some(format!("condition {id}: {why}")),
             }
         }
         self.state.records.page = match self.state.records.page {
-            RecordsPage::Histories | RecordsPage::Columns | RecordsPage::Inputs => RecordsPage::Response,
+            RecordsPage::Histories | RecordsPage::Columns | RecordsPage::Inputs => {
+                RecordsPage::Response
+            }
             page => page,
         };
         if let Some(why) = refusal {
@@ -441,14 +544,21 @@ impl GdcmApp {
     }
 
     /// Takes what was identified.
-    pub(super) fn identified(&mut self, job: IdentifyJob, found: Result<Arc<Identification>, IdentificationError>) {
+    pub(super) fn identified(
+        &mut self,
+        job: IdentifyJob,
+        found: Result<Arc<Identification>, IdentificationError>,
+    ) {
         if !self.state.records.running.contains(&job) {
             // It was given up meanwhile.
             return;
         }
         self.state.records.running.retain(|other| *other != job);
         if self.state.records.running.is_empty() && self.state.records.asked > 1 {
-            self.done(format!("finished: models of {} conditions identified", self.state.records.asked));
+            self.done(format!(
+                "finished: models of {} conditions identified",
+                self.state.records.asked
+            ));
             self.state.records.page = RecordsPage::Conditions;
         }
         if let Some(records) = self.state.records.conditions.get_mut(&job.condition) {
@@ -462,7 +572,8 @@ impl GdcmApp {
             let records = self.state.records.conditions.get(id)?;
             Some((*id, records.taken(offered, &self.record_channels(*id))?))
         };
-        let taken: Vec<(ConditionId, Arc<AdoptedModels>)> = conditions.iter().filter_map(of).collect();
+        let taken: Vec<(ConditionId, Arc<AdoptedModels>)> =
+            conditions.iter().filter_map(of).collect();
         if taken.is_empty() {
             return self.notify_error("nothing was identified yet".to_owned());
         }
@@ -471,8 +582,15 @@ impl GdcmApp {
         let before = self.state.study.clone();
         self.decide(&Edit::TakeModels(taken));
         if self.state.study != before {
-            let conditions = if names.len() == 1 { "condition" } else { "conditions" };
-            self.done(format!("took {models} models into {conditions} {}", names.join(", ")));
+            let conditions = if names.len() == 1 {
+                "condition"
+            } else {
+                "conditions"
+            };
+            self.done(format!(
+                "took {models} models into {conditions} {}",
+                names.join(", ")
+            ));
         }
     }
 }
@@ -504,7 +622,11 @@ impl AddedCounts {
 
     /// "81 records of 9 conditions added; 18 were there already".
     fn words(&self) -> String {
-        let of = if self.conditions > 1 { format!(" of {} conditions", self.conditions) } else { String::new() };
+        let of = if self.conditions > 1 {
+            format!(" of {} conditions", self.conditions)
+        } else {
+            String::new()
+        };
         let mut parts = Vec::new();
         if self.new > 0 {
             parts.push(format!("{}{of} added", counted_records(self.new)));
@@ -513,7 +635,10 @@ impl AddedCounts {
             parts.push(format!("{} read again", counted_records(self.read_again)));
         }
         if self.known > 0 && parts.is_empty() {
-            parts.push(format!("nothing added: {} there already", counted_records(self.known)));
+            parts.push(format!(
+                "nothing added: {} there already",
+                counted_records(self.known)
+            ));
         } else if self.known > 0 {
             parts.push(format!("{} there already", self.known));
         }
@@ -522,12 +647,21 @@ impl AddedCounts {
 }
 
 fn counted_records(count: usize) -> String {
-    if count == 1 { "1 record".to_owned() } else { format!("{count} records") }
+    if count == 1 {
+        "1 record".to_owned()
+    } else {
+        format!("{count} records")
+    }
 }
 
 /// An edit of the records of a condition in a few words, for the undo list.
 fn edit_words(records: &ConditionRecords, command: &RecordsCommand) -> String {
-    let name = |index: &usize| records.rows.get(*index).map_or("a record", |row| row.table.name.as_str());
+    let name = |index: &usize| {
+        records
+            .rows
+            .get(*index)
+            .map_or("a record", |row| row.table.name.as_str())
+    };
     match command {
         RecordsCommand::SetKind(index, kind) => format!("{} is a {}", name(index), kind.word()),
         RecordsCommand::SetUsed(index, true) => format!("use {}", name(index)),
@@ -550,20 +684,36 @@ fn edit_words(records: &ConditionRecords, command: &RecordsCommand) -> String {
 ///
 /// # Errors
 /// In words: it cannot be.
-fn say(records: &mut ConditionRecords, command: RecordsCommand, channels: &RecordChannels) -> Result<bool, String> {
+fn say(
+    records: &mut ConditionRecords,
+    command: RecordsCommand,
+    channels: &RecordChannels,
+) -> Result<bool, String> {
     match command {
         RecordsCommand::SetUsed(index, used) => return Ok(records.set_used(index, used)),
-        RecordsCommand::AddPart(index, part_s) => return records.add_part(index, part_s, channels).map(|()| true),
+        RecordsCommand::AddPart(index, part_s) => {
+            return records.add_part(index, part_s, channels).map(|()| true);
+        }
         RecordsCommand::RemovePart(index) => return Ok(records.remove_part(index)),
-        RecordsCommand::SetKind(index, kind) => set(records.rows.get_mut(index), |row| row.guess.kind = kind),
+        RecordsCommand::SetKind(index, kind) => {
+            set(records.rows.get_mut(index), |row| row.guess.kind = kind)
+        }
         RecordsCommand::SetHeldOut(index, held_out) => {
-            set(records.rows.get_mut(index), |row| row.guess.held_out = held_out);
+            set(records.rows.get_mut(index), |row| {
+                row.guess.held_out = held_out
+            });
         }
         RecordsCommand::SetDelay(signal, delay_s) => {
-            set(records.channel_mut(&signal), |channel| channel.delay_s = delay_s);
+            set(records.channel_mut(&signal), |channel| {
+                channel.delay_s = delay_s
+            });
         }
-        RecordsCommand::SetRemedies(index, remedies) => set_remedies(records, index, &remedies, channels),
-        RecordsCommand::SetHold(signal, hold) => set(records.channel_mut(&signal), |channel| channel.hold = hold),
+        RecordsCommand::SetRemedies(index, remedies) => {
+            set_remedies(records, index, &remedies, channels)
+        }
+        RecordsCommand::SetHold(signal, hold) => {
+            set(records.channel_mut(&signal), |channel| channel.hold = hold)
+        }
         RecordsCommand::SetBand(band) => records.band = band,
         RecordsCommand::SetSearch(search) => records.search = search,
         RecordsCommand::SetReferences(references) => records.references = references,
@@ -579,16 +729,24 @@ fn set_remedies(
     remedies: &[(Signal, ChannelRemedy)],
     channels: &RecordChannels,
 ) {
-    let Some(row) = records.rows.get_mut(index) else { return };
+    let Some(row) = records.rows.get_mut(index) else {
+        return;
+    };
     let mut layout = row.layout.clone();
     for (signal, remedy) in remedies {
-        set(layout.channel_mut(signal.role, signal.index), |used| used.remedy = *remedy);
+        set(layout.channel_mut(signal.role, signal.index), |used| {
+            used.remedy = *remedy
+        });
     }
     *row = row.laid_out(layout, channels);
 }
 
 /// A record with its channels, as a dataset says of it where there is one that names it.
-fn row_of(table: RecordTable, channels: &RecordChannels, dataset: Option<&Dataset>) -> LaidOutRecord {
+fn row_of(
+    table: RecordTable,
+    channels: &RecordChannels,
+    dataset: Option<&Dataset>,
+) -> LaidOutRecord {
     let time = TimeWish::default();
     let (mut row, notes) = match dataset {
         Some(dataset) => LaidOutRecord::as_dataset_says(table, channels, dataset, &time),
@@ -610,7 +768,9 @@ impl OwnRecords {
     }
 
     fn entries(&self, id: ConditionId) -> &[ConditionRecord] {
-        self.dataset.condition(id).map_or(&[], |condition| condition.records())
+        self.dataset
+            .condition(id)
+            .map_or(&[], |condition| condition.records())
     }
 
     /// Reads the records of conditions: those that the dataset names, or of the example those that are inside the program.
@@ -625,7 +785,11 @@ impl OwnRecords {
         for id in ids {
             let rows = found.own.entry(*id).or_default();
             if self.origin == DatasetOrigin::EmbeddedExample {
-                rows.extend(example_records(id.0)?.into_iter().map(|table| row_of(table, channels, None)));
+                rows.extend(
+                    example_records(id.0)?
+                        .into_iter()
+                        .map(|table| row_of(table, channels, None)),
+                );
             }
         }
         if let DatasetOrigin::File(path) = &self.origin {
@@ -651,7 +815,10 @@ impl OwnRecords {
             }
         }
         for (file, entries) in of_files {
-            let variables: Vec<Option<&str>> = entries.iter().map(|(_, entry)| entry.variable.as_deref()).collect();
+            let variables: Vec<Option<&str>> = entries
+                .iter()
+                .map(|(_, entry)| entry.variable.as_deref())
+                .collect();
             let budget = ReadingBudget::default().stopped_by(Arc::clone(stop));
             let path = folder.join(file);
             let tables = match load_records(&path, &variables, &budget) {
@@ -664,8 +831,14 @@ impl OwnRecords {
             for ((id, entry), table) in entries.into_iter().zip(tables) {
                 match table {
                     Ok(table) => {
-                        found.read_from.insert(table.source.sha256.clone(), real_path(&path));
-                        let table = RecordTable { name: entry.name.clone(), part_s: entry.part_s, ..table };
+                        found
+                            .read_from
+                            .insert(table.source.sha256.clone(), real_path(&path));
+                        let table = RecordTable {
+                            name: entry.name.clone(),
+                            part_s: entry.part_s,
+                            ..table
+                        };
                         let row = row_of(table, channels, None).as_said(entry, channels);
                         found.own.entry(id).or_default().push(row);
                     }
@@ -684,7 +857,9 @@ fn real_path(path: &Path) -> PathBuf {
 /// The file of a record among those that were asked for: one of them, or below one that is a folder.
 fn place_of(file: &str, asked: &[PathBuf]) -> Option<PathBuf> {
     asked.iter().find_map(|path| {
-        let is_it = path.file_name().is_some_and(|name| name.to_string_lossy() == file);
+        let is_it = path
+            .file_name()
+            .is_some_and(|name| name.to_string_lossy() == file);
         let below = path.join(file);
         if is_it {
             Some(real_path(path))
@@ -706,8 +881,15 @@ fn of_files(
     progress: &Untold,
 ) -> Result<ReadRecords, FileError> {
     let read = read_records(paths, progress)?;
-    let mut found = ReadRecords { faults: read.faults, ..ReadRecords::default() };
-    found.faults.extend(read.ignored.into_iter().map(|words| format!("no record: {words}")));
+    let mut found = ReadRecords {
+        faults: read.faults,
+        ..ReadRecords::default()
+    };
+    found.faults.extend(
+        read.ignored
+            .into_iter()
+            .map(|words| format!("no record: {words}")),
+    );
     for table in with_topics_joined(read.tables, channels, &TimeWish::default()) {
         if let Some(path) = place_of(&table.source.file, paths) {
             found.read_from.insert(table.source.sha256.clone(), path);
@@ -716,7 +898,12 @@ fn of_files(
         let id = row.guess.condition_of(&own.dataset).unwrap_or(shown);
         found.added.entry(id).or_default().push(row);
     }
-    let unknown: Vec<ConditionId> = found.added.keys().copied().filter(|id| !known.contains(id)).collect();
+    let unknown: Vec<ConditionId> = found
+        .added
+        .keys()
+        .copied()
+        .filter(|id| !known.contains(id))
+        .collect();
     own.read(&unknown, channels, &progress.stop(), &mut found)?;
     Ok(found)
 }
@@ -747,10 +934,16 @@ fn dataset_of_files(
     let mut entries = Vec::new();
     for table in with_topics_joined(read.tables, &channels, &TimeWish::default()) {
         let (row, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());
-        problems.extend(row.problems.iter().map(|problem| format!("{}: {problem}", row.table.name)));
+        problems.extend(
+            row.problems
+                .iter()
+                .map(|problem| format!("{}: {problem}", row.table.name)),
+        );
         if row.problems.is_empty() {
             channels.take_units(&row.layout, &row.table);
-            let entry = row.layout.condition_record(&row.table, &row.guess, &channels);
+            let entry = row
+                .layout
+                .condition_record(&row.table, &row.guess, &channels);
             entries.push(relative_entry(entry, sources, &path));
         }
     }
@@ -758,9 +951,22 @@ fn dataset_of_files(
         problems.truncate(MOST_PROBLEMS);
         return Err(problems);
     }
-    let name = path.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+    let name = path
+        .file_name()
+        .map_or(String::new(), |name| name.to_string_lossy().into_owned());
     let name = name.split('.').next().unwrap_or_default();
-    let dataset = dataset_of_records(name, &channels, band, entries).map_err(|error| vec![error.to_string()])?;
-    let left_out = problems.into_iter().map(|why| format!("left out of the dataset: {why}")).collect();
-    Ok((dataset, DatasetOfRecords { path, channels, left_out }))
+    let dataset = dataset_of_records(name, &channels, band, entries)
+        .map_err(|error| vec![error.to_string()])?;
+    let left_out = problems
+        .into_iter()
+        .map(|why| format!("left out of the dataset: {why}"))
+        .collect();
+    Ok((
+        dataset,
+        DatasetOfRecords {
+            path,
+            channels,
+            left_out,
+        },
+    ))
 }

@@ -94,7 +94,11 @@ pub struct Autosave {
 
 impl Autosave {
     /// Starts the thread, which first offers what was lost.
-    pub(super) fn start(directory: Option<&Path>, keep_after: Duration, replies: ReplySender) -> std::io::Result<Self> {
+    pub(super) fn start(
+        directory: Option<&Path>,
+        keep_after: Duration,
+        replies: ReplySender,
+    ) -> std::io::Result<Self> {
         let (tasks, to_do) = channel();
         let folder = directory.map(|directory| directory.join(FOLDER));
         let kept = Arc::<Mutex<Option<Kept>>>::default();
@@ -104,10 +108,25 @@ impl Autosave {
                 replies.send(move |app| app.offer(lost));
             }
             let (file, waits, restored) = (None, None, Vec::new());
-            Keeper { folder, keep_after, replies, file, waits, kept: keeper_kept, restored }.work(&to_do);
+            Keeper {
+                folder,
+                keep_after,
+                replies,
+                file,
+                waits,
+                kept: keeper_kept,
+                restored,
+            }
+            .work(&to_do);
         };
-        std::thread::Builder::new().name("autosave".to_owned()).spawn(work)?;
-        Ok(Self { tasks, kept, at_end: Arc::default() })
+        std::thread::Builder::new()
+            .name("autosave".to_owned())
+            .spawn(work)?;
+        Ok(Self {
+            tasks,
+            kept,
+            at_end: Arc::default(),
+        })
     }
 
     fn send(&self, task: Task) {
@@ -134,7 +153,10 @@ impl Autosave {
         self.send(Task::Flush(answer));
         match answered.recv_timeout(limit) {
             Ok(remains) => remains,
-            Err(_) => Remains::new(locked(&self.kept).clone(), Some("the disk did not answer".to_owned())),
+            Err(_) => Remains::new(
+                locked(&self.kept).clone(),
+                Some("the disk did not answer".to_owned()),
+            ),
         }
     }
 
@@ -165,11 +187,20 @@ struct Keeper {
 impl Keeper {
     fn work(mut self, to_do: &Receiver<Task>) {
         loop {
-            let due = self.waits.as_ref().map_or(NEVER, |(_, _, due)| due.saturating_duration_since(Instant::now()));
+            let due = self.waits.as_ref().map_or(NEVER, |(_, _, due)| {
+                due.saturating_duration_since(Instant::now())
+            });
             match to_do.recv_timeout(due) {
                 Ok(Task::Keep(unsaved, decided)) => {
-                    let after = if self.folder.is_some() { self.keep_after } else { NEVER };
-                    let due = self.waits.take().map_or_else(|| Instant::now() + after, |(_, _, due)| due);
+                    let after = if self.folder.is_some() {
+                        self.keep_after
+                    } else {
+                        NEVER
+                    };
+                    let due = self
+                        .waits
+                        .take()
+                        .map_or_else(|| Instant::now() + after, |(_, _, due)| due);
                     self.waits = Some((unsaved, decided, due));
                 }
                 Ok(Task::Clear) => {
@@ -202,8 +233,12 @@ impl Keeper {
 
     /// Keeps what waits; what cannot be kept waits to be tried again.
     fn keep(&mut self) -> Result<(), FileError> {
-        let Some(folder) = &self.folder else { return Ok(()) };
-        let Some((unsaved, decided, _)) = self.waits.take() else { return Ok(()) };
+        let Some(folder) = &self.folder else {
+            return Ok(());
+        };
+        let Some((unsaved, decided, _)) = self.waits.take() else {
+            return Ok(());
+        };
         match keep(&unsaved, &mut self.file, folder) {
             Ok(path) => {
                 *locked(&self.kept) = Some(Kept { path, at: decided });
@@ -228,7 +263,11 @@ impl Keeper {
     }
 }
 
-fn keep(unsaved: &Unsaved, file: &mut Option<RecoveryFile>, folder: &Path) -> Result<PathBuf, FileError> {
+fn keep(
+    unsaved: &Unsaved,
+    file: &mut Option<RecoveryFile>,
+    folder: &Path,
+) -> Result<PathBuf, FileError> {
     let file = match file {
         Some(file) => file,
         None => file.insert(RecoveryFile::claim(folder)?),
@@ -245,7 +284,10 @@ impl GdcmApp {
     fn offer(&mut self, lost: Vec<LostStudy>) {
         for lost in lost {
             let sentence = offer_words(&lost, &TimeZone::system());
-            self.state.bars.push(Bar::Recovery { offer: self.offers.len(), sentence });
+            self.state.bars.push(Bar::Recovery {
+                offer: self.offers.len(),
+                sentence,
+            });
             self.offers.push(Some(lost));
         }
     }
@@ -254,7 +296,11 @@ impl GdcmApp {
     pub(super) fn keep_unsaved(&self) {
         if self.state.unsaved {
             let (study, loaded) = (self.state.study.clone(), self.loaded.clone());
-            self.autosave.keep(Unsaved { study, loaded, saved_as: self.saved.path.clone() });
+            self.autosave.keep(Unsaved {
+                study,
+                loaded,
+                saved_as: self.saved.path.clone(),
+            });
         } else {
             self.autosave.clear();
         }
@@ -265,14 +311,23 @@ impl GdcmApp {
         if let Some(Some(lost)) = self.offers.get(offer) {
             let path = lost.path().to_owned();
             let read = move |budget: &ReadingBudget<'_>| load_any(&path, budget);
-            self.read(ReadFor::Restoring(offer), "decisions that were not saved".to_owned(), read);
+            self.read(
+                ReadFor::Restoring(offer),
+                "decisions that were not saved".to_owned(),
+                read,
+            );
         }
     }
 
     /// Shows what was lost, not saved still.
     pub(super) fn show_restored(&mut self, offer: usize, opened: Opened) {
-        let Some(lost) = self.offers.get_mut(offer).and_then(Option::take) else { return };
-        let words = format!("restored the decisions of {}", when(lost.kept_at, &TimeZone::system()));
+        let Some(lost) = self.offers.get_mut(offer).and_then(Option::take) else {
+            return;
+        };
+        let words = format!(
+            "restored the decisions of {}",
+            when(lost.kept_at, &TimeZone::system())
+        );
         let saved_as = lost.saved_as.clone();
         self.show(opened);
         self.state.study_name = study_name(saved_as.as_deref());
@@ -293,21 +348,31 @@ impl GdcmApp {
     }
 
     fn close_offer(&mut self, closed: usize) {
-        self.state.bars.retain(|bar| !matches!(bar, Bar::Recovery { offer, .. } if *offer == closed));
+        self.state
+            .bars
+            .retain(|bar| !matches!(bar, Bar::Recovery { offer, .. } if *offer == closed));
     }
 }
 
 /// "Decisions of 14:32 on 21 Nov 2026 for data.json.gz (study mine.gdcm-study.json) were not saved."
 fn offer_words(lost: &LostStudy, zone: &TimeZone) -> String {
     let study = lost.saved_as.as_ref().and_then(|path| path.file_name());
-    let study = study.map_or(String::new(), |name| format!(" (study {})", sanitized(&name.to_string_lossy())));
-    format!("Decisions of {} for {}{study} were not saved.", when(lost.kept_at, zone), sanitized(&lost.dataset))
+    let study = study.map_or(String::new(), |name| {
+        format!(" (study {})", sanitized(&name.to_string_lossy()))
+    });
+    format!(
+        "Decisions of {} for {}{study} were not saved.",
+        when(lost.kept_at, zone),
+        sanitized(&lost.dataset)
+    )
 }
 
 /// "14:32 on 21 Nov 2026", in the given zone.
 fn when(at: SystemTime, zone: &TimeZone) -> String {
     let at = Timestamp::try_from(at).unwrap_or(Timestamp::UNIX_EPOCH);
-    at.to_zoned(zone.clone()).strftime("%H:%M on %-d %b %Y").to_string()
+    at.to_zoned(zone.clone())
+        .strftime("%H:%M on %-d %b %Y")
+        .to_string()
 }
 
 /// What is said on standard error when the window itself fails.
@@ -315,12 +380,17 @@ pub(super) fn end_words(fault: &str, remains: &Remains) -> String {
     let fault = format!("stopped by a fault in its window: {fault}");
     let kept_words = |kept: &Kept| {
         let time = when(kept.at, &TimeZone::system());
-        format!("your decisions up to {time} are in {}", sanitized_path(&kept.path))
+        format!(
+            "your decisions up to {time} are in {}",
+            sanitized_path(&kept.path)
+        )
     };
     match remains {
         Remains::Kept(kept) => format!("{fault}; {}", kept_words(kept)),
         Remains::Saved => format!("{fault}; every decision was saved"),
-        Remains::KeptInPart(kept, why) => format!("{fault}; {}, later ones are lost: {why}", kept_words(kept)),
+        Remains::KeptInPart(kept, why) => {
+            format!("{fault}; {}, later ones are lost: {why}", kept_words(kept))
+        }
         Remains::Lost(why) => format!("{fault}; the decisions that were not saved are lost: {why}"),
     }
 }
@@ -333,16 +403,28 @@ mod tests {
     fn the_time_is_that_of_the_clock_on_the_wall() {
         let at = SystemTime::UNIX_EPOCH + Duration::from_secs(1_795_271_520);
         assert_eq!(when(at, &TimeZone::UTC), "14:32 on 21 Nov 2026");
-        assert_eq!(when(at, &TimeZone::fixed(jiff::tz::offset(1))), "15:32 on 21 Nov 2026");
+        assert_eq!(
+            when(at, &TimeZone::fixed(jiff::tz::offset(1))),
+            "15:32 on 21 Nov 2026"
+        );
     }
 
     fn unsaved() -> Unsaved {
         let loaded = gdcm_io::embedded_example().unwrap();
-        Unsaved { study: Study::new(Arc::clone(&loaded.dataset)), loaded, saved_as: None }
+        Unsaved {
+            study: Study::new(Arc::clone(&loaded.dataset)),
+            loaded,
+            saved_as: None,
+        }
     }
 
     fn autosave(directory: Option<&Path>) -> Autosave {
-        Autosave::start(directory, NEVER, ReplySender::new(&egui::Context::default()).0).unwrap()
+        Autosave::start(
+            directory,
+            NEVER,
+            ReplySender::new(&egui::Context::default()).0,
+        )
+        .unwrap()
     }
 
     /// Far above what the slowest disk needs.
@@ -355,10 +437,15 @@ mod tests {
         autosave.keep(unsaved());
         // The window goes with the display, and its thread with it; then the program says what became of the decisions.
         autosave.clone().close(LONG);
-        let Remains::Kept(kept) = autosave.flush(LONG) else { panic!("{:?}", autosave.flush(LONG)) };
+        let Remains::Kept(kept) = autosave.flush(LONG) else {
+            panic!("{:?}", autosave.flush(LONG))
+        };
         assert!(kept.path.is_file() && gdcm_io::open_study(&kept.path).is_ok());
         let words = end_words("no display", &autosave.flush(LONG));
-        assert!(words.contains(&*kept.path.to_string_lossy()) && !words.contains("lost"), "{words}");
+        assert!(
+            words.contains(&*kept.path.to_string_lossy()) && !words.contains("lost"),
+            "{words}"
+        );
     }
 
     #[test]
@@ -378,7 +465,9 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let autosave = autosave(Some(directory.path()));
         autosave.keep(unsaved());
-        let Remains::Kept(first) = autosave.flush(LONG) else { panic!("the disk takes it") };
+        let Remains::Kept(first) = autosave.flush(LONG) else {
+            panic!("the disk takes it")
+        };
         // A folder in the place of the file: no file can be put there.
         std::fs::remove_file(&first.path).unwrap();
         std::fs::create_dir(&first.path).unwrap();
@@ -391,13 +480,21 @@ mod tests {
     #[test]
     fn the_last_words_name_the_fault_its_place_and_the_recovery_file() {
         let fault = "out of range at src/view/centre.rs:7";
-        let kept = Kept { path: "/data/recovery/7-1.gdcm-study.json".into(), at: SystemTime::UNIX_EPOCH };
+        let kept = Kept {
+            path: "/data/recovery/7-1.gdcm-study.json".into(),
+            at: SystemTime::UNIX_EPOCH,
+        };
         let words = end_words(fault, &Remains::Kept(kept));
         assert!(
-            words.starts_with("stopped by a fault in its window: out of range at src/view/centre.rs:7;"),
+            words.starts_with(
+                "stopped by a fault in its window: out of range at src/view/centre.rs:7;"
+            ),
             "{words}"
         );
-        assert!(words.ends_with("1970 are in /data/recovery/7-1.gdcm-study.json"), "{words}");
+        assert!(
+            words.ends_with("1970 are in /data/recovery/7-1.gdcm-study.json"),
+            "{words}"
+        );
         assert!(end_words(fault, &Remains::Saved).ends_with("; every decision was saved"));
     }
 }

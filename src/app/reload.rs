@@ -23,20 +23,26 @@ impl GdcmApp {
         }
         self.keep_open();
         if seen.sha256 != self.loaded.sha256 {
-            self.state.bars.push(Bar::Changed { name: self.loaded.file_name() });
+            self.state.bars.push(Bar::Changed {
+                name: self.loaded.file_name(),
+            });
         }
     }
 
     /// Stays with what is open until the file changes again.
     pub(super) fn keep_open(&mut self) {
-        self.state.bars.retain(|bar| !matches!(bar, Bar::Changed { .. }));
+        self.state
+            .bars
+            .retain(|bar| !matches!(bar, Bar::Changed { .. }));
     }
 
     /// Reads the dataset's file again; what is open stays until it is read.
     pub(super) fn reload(&mut self) {
         if let Some(path) = self.loaded.path().map(ToOwned::to_owned) {
             let name = path.display().to_string();
-            self.read(ReadFor::Reloading, name, move |budget| load_dataset_within(&path, budget).map(Opened::Dataset));
+            self.read(ReadFor::Reloading, name, move |budget| {
+                load_dataset_within(&path, budget).map(Opened::Dataset)
+            });
         }
     }
 
@@ -47,11 +53,15 @@ impl GdcmApp {
             return;
         }
         self.keep_open();
-        self.state.bars.retain(|bar| !matches!(bar, Bar::Differences { .. }));
+        self.state
+            .bars
+            .retain(|bar| !matches!(bar, Bar::Differences { .. }));
         let name = loaded.file_name();
         let (study, differences) = self.state.study.reconciled(Arc::clone(&loaded.dataset));
         let before = std::mem::replace(&mut self.state.study, study);
-        self.state.history.record_reload(before, format!("reload {name}"));
+        self.state
+            .history
+            .record_reload(before, format!("reload {name}"));
         self.earlier.push(loaded);
         self.study_changed();
         let sentences: Vec<String> = differences.iter().map(ToString::to_string).collect();
@@ -65,7 +75,11 @@ impl GdcmApp {
     /// Takes up the file of the dataset that the study is about, after a reload or a step back or forth across one.
     pub(super) fn follow_dataset(&mut self) {
         let dataset = self.state.study.file_dataset();
-        if let Some(index) = self.earlier.iter().position(|loaded| Arc::ptr_eq(&loaded.dataset, dataset)) {
+        if let Some(index) = self
+            .earlier
+            .iter()
+            .position(|loaded| Arc::ptr_eq(&loaded.dataset, dataset))
+        {
             std::mem::swap(&mut self.loaded, &mut self.earlier[index]);
             self.state.file_cautions.clone_from(&self.loaded.cautions);
         }
@@ -92,8 +106,13 @@ impl DiskWatch {
     pub(super) fn start(every: Duration, replies: ReplySender) -> std::io::Result<Self> {
         let (paths, to_watch) = channel();
         let look = move || look(&to_watch, every, &replies);
-        std::thread::Builder::new().name("disk".to_owned()).spawn(look)?;
-        Ok(Self { paths, watched: None })
+        std::thread::Builder::new()
+            .name("disk".to_owned())
+            .spawn(look)?;
+        Ok(Self {
+            paths,
+            watched: None,
+        })
     }
 
     /// Looks at this file from now on, or at none.
@@ -121,7 +140,10 @@ impl Known {
     /// Looks once; what the file holds, where that is new. A file that is being written is read once it rests.
     fn look(&mut self, path: &Path) -> Option<Seen> {
         if self.path != path {
-            *self = Known { path: path.to_owned(), ..Known::default() };
+            *self = Known {
+                path: path.to_owned(),
+                ..Known::default()
+            };
         }
         // A file that is not there is about to be, or what is open stays.
         let stamp = FileStamp::of(path)?;
@@ -138,7 +160,10 @@ impl Known {
         self.read = Some(stamp);
         let is_new = self.sha256.as_ref() != Some(&sha256);
         self.sha256 = Some(sha256.clone());
-        is_new.then(|| Seen { path: path.to_owned(), sha256 })
+        is_new.then(|| Seen {
+            path: path.to_owned(),
+            sha256,
+        })
     }
 }
 
@@ -178,6 +203,9 @@ mod tests {
         std::fs::remove_file(&path).unwrap();
         std::thread::sleep(Duration::from_millis(20));
         std::fs::write(&path, "one, and more").unwrap();
-        assert_eq!([known.look(&path), known.look(&path), known.look(&path)], [None, None, None]);
+        assert_eq!(
+            [known.look(&path), known.look(&path), known.look(&path)],
+            [None, None, None]
+        );
     }
 }

@@ -21,7 +21,10 @@ pub(super) struct Mailbox<T> {
 
 impl<T> Mailbox<T> {
     pub(super) fn new(content: T) -> Self {
-        Self { content: Mutex::new(content), changed: Condvar::new() }
+        Self {
+            content: Mutex::new(content),
+            changed: Condvar::new(),
+        }
     }
 
     /// To look at it.
@@ -44,7 +47,10 @@ impl<T> Mailbox<T> {
             if let Some(taken) = take(&mut content) {
                 return taken;
             }
-            content = self.changed.wait(content).unwrap_or_else(PoisonError::into_inner);
+            content = self
+                .changed
+                .wait(content)
+                .unwrap_or_else(PoisonError::into_inner);
         }
     }
 }
@@ -62,7 +68,13 @@ pub(super) struct ReplySender {
 impl ReplySender {
     pub(super) fn new(ctx: &Context) -> (Self, Receiver<Reply>) {
         let (sender, receiver) = channel();
-        (Self { sender, ctx: ctx.clone() }, receiver)
+        (
+            Self {
+                sender,
+                ctx: ctx.clone(),
+            },
+            receiver,
+        )
     }
 
     pub(super) fn send(&self, reply: impl FnOnce(&mut GdcmApp) + Send + 'static) {
@@ -75,8 +87,12 @@ impl ReplySender {
 impl GdcmApp {
     /// Does `work`, called `what`, in a thread of its own, and has the window take what comes of it: nothing where that was a fault, or
     /// no thread was to be had, which is told before.
-    pub(super) fn in_thread<T: Send + 'static, Work, Take>(&self, what: &'static str, work: Work, take: Take)
-    where
+    pub(super) fn in_thread<T: Send + 'static, Work, Take>(
+        &self,
+        what: &'static str,
+        work: Work,
+        take: Take,
+    ) where
         Work: FnOnce() -> T + Send + 'static,
         Take: FnOnce(&mut Self, Option<T>) + Send + 'static,
     {
@@ -84,14 +100,22 @@ impl GdcmApp {
         let (order, ordered) = channel::<(Work, Take)>();
         let replies = self.replies.clone();
         let thread = move || {
-            let Ok((work, take)) = ordered.recv() else { return };
+            let Ok((work, take)) = ordered.recv() else {
+                return;
+            };
             let made = caught(work);
             replies.send(move |app| {
-                made.as_ref().err().iter().for_each(|fault| app.tell_fault(what, fault));
+                made.as_ref()
+                    .err()
+                    .iter()
+                    .for_each(|fault| app.tell_fault(what, fault));
                 take(app, made.ok());
             });
         };
-        match std::thread::Builder::new().name(what.to_owned()).spawn(thread) {
+        match std::thread::Builder::new()
+            .name(what.to_owned())
+            .spawn(thread)
+        {
             Ok(_) => drop(order.send((work, take))),
             Err(error) => self.replies.send(move |app| {
                 app.notify_error(format!("{what} cannot begin: {error}"));
@@ -205,12 +229,17 @@ const MOST_NOTED: usize = 50;
 
 /// To be called by the process's panic hook: keeps what was said, and where.
 pub fn note(panic: &PanicHookInfo<'_>) {
-    let place = panic.location().map(|location| format!("{}:{}", location.file(), location.line()));
+    let place = panic
+        .location()
+        .map(|location| format!("{}:{}", location.file(), location.line()));
     let mut noted = NOTED.lock().unwrap_or_else(PoisonError::into_inner);
     if noted.len() == MOST_NOTED {
         noted.remove(0);
     }
-    noted.push(Fault { message: message_of(panic.payload()), place });
+    noted.push(Fault {
+        message: message_of(panic.payload()),
+        place,
+    });
 }
 
 /// What `work` makes, or the fault that ended it.
@@ -221,14 +250,23 @@ pub(super) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
         let mut noted = NOTED.lock().unwrap_or_else(PoisonError::into_inner);
         match noted.iter().rposition(|fault| fault.message == message) {
             Some(index) => noted.remove(index),
-            None => Fault { message, place: None },
+            None => Fault {
+                message,
+                place: None,
+            },
         }
     })
 }
 
 fn message_of(payload: &(dyn Any + Send)) -> String {
-    let text = payload.downcast_ref::<String>().map(String::as_str).or_else(|| payload.downcast_ref::<&str>().copied());
-    text.unwrap_or("a fault without a message").split_whitespace().collect::<Vec<_>>().join(" ")
+    let text = payload
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| payload.downcast_ref::<&str>().copied());
+    text.unwrap_or("a fault without a message")
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ")
 }
 
 #[cfg(test)]
@@ -244,7 +282,10 @@ mod tests {
 
     #[test]
     fn the_place_is_told_where_it_is_known() {
-        let fault = Fault { message: "no".to_owned(), place: Some("src/a.rs:3".to_owned()) };
+        let fault = Fault {
+            message: "no".to_owned(),
+            place: Some("src/a.rs:3".to_owned()),
+        };
         assert_eq!(fault.words(), "no at src/a.rs:3");
     }
 }

@@ -10,8 +10,8 @@ use crate::view::records::{RecordsBefore, RecordsState};
 use crate::view::state::State;
 use crate::view::views::PairSet;
 use crate::view::{
-    Arrangement, Command, CurveCommand, Display, FormKind, Notice, NoticeKind, View, focus_field, leave_region,
-    table_of,
+    Arrangement, Command, CurveCommand, Display, FormKind, Notice, NoticeKind, View, focus_field,
+    leave_region, table_of,
 };
 use gdcm_io::Existing;
 use gdcm_model::dataset::ConditionId;
@@ -43,14 +43,19 @@ impl GdcmApp {
     /// Carries out the commands of one frame.
     pub(super) fn carry_out(&mut self, commands: Vec<Command>) {
         let display = &mut self.state.display;
-        let pointed = (display.hovered.take(), display.hovered_condition.take(), display.told.take());
+        let pointed = (
+            display.hovered.take(),
+            display.hovered_condition.take(),
+            display.told.take(),
+        );
         let before = (pointed, display.curves.cursor.take());
         for command in commands {
             self.carry_out_one(command);
         }
         let display = &self.state.display;
         let ((hovered, condition, told), cursor) = &before;
-        let is_pointed = (&display.hovered, &display.hovered_condition, &display.told) == (hovered, condition, told);
+        let is_pointed = (&display.hovered, &display.hovered_condition, &display.told)
+            == (hovered, condition, told);
         if !is_pointed || display.curves.cursor != *cursor {
             self.ctx.request_repaint();
         }
@@ -61,9 +66,13 @@ impl GdcmApp {
         match command {
             Command::Edit(edit) => self.decide(&edit),
             Command::EndEdit => self.state.history.seal(),
-            Command::Undo => self.take_study(|history, study, records| history.undo(study, |of| records.exchange(of))),
+            Command::Undo => self.take_study(|history, study, records| {
+                history.undo(study, |of| records.exchange(of))
+            }),
             Command::Forget(edit) => self.take_study(|history, _, _| history.forget(&edit)),
-            Command::Redo => self.take_study(|history, study, records| history.redo(study, |of| records.exchange(of))),
+            Command::Redo => self.take_study(|history, study, records| {
+                history.redo(study, |of| records.exchange(of))
+            }),
             Command::SelectCondition(condition) => select_condition(display, condition),
             Command::FocusPair(pair) if display.pair != pair => {
                 display.pair = pair;
@@ -75,7 +84,11 @@ impl GdcmApp {
             Command::HoverCondition(condition) => display.hovered_condition = Some(condition),
             Command::Tell(words) => display.told = Some(words),
             Command::Isolate(model) => {
-                display.isolated = if display.isolated.as_ref() == Some(&model) { None } else { Some(model) };
+                display.isolated = if display.isolated.as_ref() == Some(&model) {
+                    None
+                } else {
+                    Some(model)
+                };
             }
             Command::ShowView(view) => {
                 self.state.on_start_page = false;
@@ -112,7 +125,8 @@ impl GdcmApp {
             Command::ShowAcross(role) => display.across_role = role,
             Command::Assess(figures) => display.assessed = figures,
             Command::ShowRequirements(page) => {
-                (display.requirements_page, display.requirements_sorting) = (page, Default::default());
+                (display.requirements_page, display.requirements_sorting) =
+                    (page, Default::default());
                 // Another page has other plots.
                 display.figures.remove(&View::Requirements);
             }
@@ -125,7 +139,10 @@ impl GdcmApp {
             Command::SetLooks(looks) => display.looks = looks,
             Command::FitPlots => {
                 display.fit_frequency_plots();
-                display.figures.values_mut().for_each(FigureView::request_fit);
+                display
+                    .figures
+                    .values_mut()
+                    .for_each(FigureView::request_fit);
             }
             Command::SetTheme(theme) => self.ctx.set_theme(theme),
             Command::ShowForm(form) => self.show_form(form),
@@ -135,7 +152,9 @@ impl GdcmApp {
                 self.ctx.copy_text(table_of(&self.state, kind).text());
                 self.done(format!("copied the table of {}", kind.name()));
             }
-            Command::AskSaveTable(kind) => self.ask_save_table(kind.name(), table_of(&self.state, kind).into()),
+            Command::AskSaveTable(kind) => {
+                self.ask_save_table(kind.name(), table_of(&self.state, kind).into())
+            }
             Command::AskSaveShownTable(table) => self.ask_save_table(&table.title, table.clone()),
             Command::SaveTable(table, path) => self.save_table(table, path),
             Command::Assembling(command) => self.assemble(command),
@@ -154,7 +173,12 @@ impl GdcmApp {
             Command::StartTour => self.state.tour = Some(0),
             Command::ShowTourStep(step) => self.state.tour = step,
             Command::AskReason(model) => {
-                let reason = self.state.study.reason(&model).unwrap_or_default().to_owned();
+                let reason = self
+                    .state
+                    .study
+                    .reason(&model)
+                    .unwrap_or_default()
+                    .to_owned();
                 self.state.forms.typed.insert(FormKind::Reason, reason);
                 self.state.forms.rejected_model = Some(model);
                 self.state.forms.shown = Some(FormKind::Reason);
@@ -192,7 +216,9 @@ impl GdcmApp {
             Command::LookForRecent => self.read_recent(None),
             Command::CloseBar(bar) => self.state.bars.retain(|shown| *shown != bar),
             Command::CopyText(text) => self.ctx.copy_text(text),
-            Command::Quit if self.state.unsaved && !self.closing => self.ask_to_lose(PendingAction::Quit),
+            Command::Quit if self.state.unsaved && !self.closing => {
+                self.ask_to_lose(PendingAction::Quit)
+            }
             Command::Quit => self.quit(),
             Command::SaveStudy => self.save(),
             Command::SaveStudyAs(path) => self.save_as(path, self.existing),
@@ -224,7 +250,12 @@ impl GdcmApp {
         &mut self,
         find: impl FnOnce(&mut History<RecordsBefore>, &Study, &mut RecordsState) -> Option<Study>,
     ) {
-        let State { history, study, records, .. } = &mut self.state;
+        let State {
+            history,
+            study,
+            records,
+            ..
+        } = &mut self.state;
         if let Some(study) = find(history, study, records) {
             self.state.study = study;
             self.study_changed();
@@ -234,7 +265,10 @@ impl GdcmApp {
     /// Says what is true of the study now: saved or not.
     pub(super) fn study_changed(&mut self) {
         self.state.notice = None;
-        self.state.display.once_held.extend(self.state.study.settings.constrained.marked());
+        self.state
+            .display
+            .once_held
+            .extend(self.state.study.settings.constrained.marked());
         self.state.unsaved = self.saved.study.as_ref() != Some(&self.state.study);
         self.follow_dataset();
         self.keep_unsaved();
@@ -248,7 +282,9 @@ impl GdcmApp {
 
     /// Gives the focus to what was asked for, once no form is in front of it.
     pub(super) fn move_focus(&mut self) {
-        if self.state.forms.shown.is_some() || self.ctx.memory(|memory| memory.top_modal_layer().is_some()) {
+        if self.state.forms.shown.is_some()
+            || self.ctx.memory(|memory| memory.top_modal_layer().is_some())
+        {
             return;
         }
         match self.next_focus.take() {
@@ -261,7 +297,13 @@ impl GdcmApp {
     fn show_form(&mut self, form: Option<FormKind>) {
         match form {
             Some(FormKind::Export) => {
-                let all = self.state.study.dataset.conditions().iter().map(|condition| condition.id());
+                let all = self
+                    .state
+                    .study
+                    .dataset
+                    .conditions()
+                    .iter()
+                    .map(|condition| condition.id());
                 self.state.forms.exported = all.collect();
             }
             Some(FormKind::ExportAs) => self.propose_export_name(),
@@ -296,17 +338,24 @@ impl GdcmApp {
 
     /// Tells the engineer that something was done.
     pub(super) fn done(&mut self, text: String) {
-        self.state.notice = Some(Notice { kind: NoticeKind::Done, text: shortened_message(&sanitized(&text)) });
+        self.state.notice = Some(Notice {
+            kind: NoticeKind::Done,
+            text: shortened_message(&sanitized(&text)),
+        });
     }
 
     /// What came of something, where it went well; an error is told.
     pub(super) fn unless_error<T, E: InWords>(&mut self, made: Result<T, E>) -> Option<T> {
-        made.map_err(|error| self.notify_error(error.to_string())).ok()
+        made.map_err(|error| self.notify_error(error.to_string()))
+            .ok()
     }
 
     /// Tells the engineer that something could not be done.
     pub(super) fn notify_error(&mut self, text: String) {
-        self.state.notice = Some(Notice { kind: NoticeKind::Trouble, text: shortened_message(&sanitized(&text)) });
+        self.state.notice = Some(Notice {
+            kind: NoticeKind::Trouble,
+            text: shortened_message(&sanitized(&text)),
+        });
     }
 }
 

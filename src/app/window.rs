@@ -4,15 +4,21 @@ use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
 use std::sync::{Arc, OnceLock};
 
-use egui::{CentralPanel, Context, Frame, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, ViewportCommand, Visuals};
+use egui::{
+    CentralPanel, Context, Frame, Margin, Panel, Rect, ScrollArea, Ui, UiBuilder, ViewportCommand,
+    Visuals,
+};
 
 use crate::view::assembling::{AssemblingCommand, assembling_ui};
 use crate::view::palette::{self, Palette};
 use crate::view::records::RecordsCommand;
 use crate::view::start_page::OpensWith;
-use crate::view::{Bar, Command, Need, Preferences, Sheet, State, View, restore_panel_size, sheet_ui};
 use crate::view::{
-    answer_panel, bars, centre, conditions_panel, explanation, focus, forms, help, models_panel, start_page,
+    Bar, Command, Need, Preferences, Sheet, State, View, restore_panel_size, sheet_ui,
+};
+use crate::view::{
+    answer_panel, bars, centre, conditions_panel, explanation, focus, forms, help, models_panel,
+    start_page,
 };
 use gdcm_io::{Existing, LoadedDataset, LostStudy, Opened, holds_models, is_first_start};
 use gdcm_method::correction::{ProblemError, Solution};
@@ -99,7 +105,11 @@ impl GdcmApp {
         ctx.add_plugin(KeyOrder::default());
         let (replies, received) = ReplySender::new(ctx);
         let jobs = BackgroundJobs::start(&setup.engine, &replies)?;
-        let autosave = Autosave::start(setup.directory.as_deref(), setup.keep_after, replies.clone())?;
+        let autosave = Autosave::start(
+            setup.directory.as_deref(),
+            setup.keep_after,
+            replies.clone(),
+        )?;
         let disk = DiskWatch::start(setup.look_every, replies.clone())?;
         let (mut state, loaded, saved) = Self::parts_of(opened);
         setup.preferences.apply(&mut state.display);
@@ -136,9 +146,13 @@ impl GdcmApp {
             title: String::new(),
             requested: None,
         };
-        let begins_there = app.state.is_example && app.state.display.opens_with == OpensWith::StartPage;
+        let begins_there =
+            app.state.is_example && app.state.display.opens_with == OpensWith::StartPage;
         app.state.on_start_page = begins_there && setup.trouble.is_none();
-        setup.trouble.into_iter().for_each(|words| app.notify_error(words));
+        setup
+            .trouble
+            .into_iter()
+            .for_each(|words| app.notify_error(words));
         let is_first = setup.offers_tour && app.directory.as_deref().is_some_and(is_first_start);
         app.state.tour = is_first.then_some(0);
         app.look_for_recent();
@@ -159,7 +173,11 @@ impl GdcmApp {
     fn request(&mut self) {
         let now = self.now();
         let (study, condition) = (&self.state.study, self.state.condition().id());
-        if self.requested.as_ref().is_some_and(|(of, at)| *at == condition && asks_the_same(of, study)) {
+        if self
+            .requested
+            .as_ref()
+            .is_some_and(|(of, at)| *at == condition && asks_the_same(of, study))
+        {
             return;
         }
         self.requested = Some((study.clone(), condition));
@@ -172,11 +190,20 @@ impl GdcmApp {
 
     /// Has the newest request answered, with all proofs that there are.
     fn ask(&mut self) {
-        let Some((study, condition)) = self.requested.clone() else { return };
+        let Some((study, condition)) = self.requested.clone() else {
+            return;
+        };
         let number = self.asked.as_ref().map_or(0, |job| job.number + 1);
         let (generation, proofs) = (self.state.results.requested, self.proven.clone());
         let replies = self.replies.clone();
-        self.asked = Some(AnalysisJob { number, generation, study, condition, proofs, replies });
+        self.asked = Some(AnalysisJob {
+            number,
+            generation,
+            study,
+            condition,
+            proofs,
+            replies,
+        });
     }
 
     /// Says that the live answer was given up, by hand or by a fault; what is shown stays.
@@ -190,7 +217,9 @@ impl GdcmApp {
     /// Asks again for what was given up.
     pub(super) fn compute_again(&mut self) {
         self.requested = None;
-        self.state.bars.retain(|bar| !matches!(bar, Bar::Fault { .. }));
+        self.state
+            .bars
+            .retain(|bar| !matches!(bar, Bar::Fault { .. }));
         self.jobs.resume();
     }
 
@@ -202,12 +231,22 @@ impl GdcmApp {
         let now = self.now();
         let results = &mut self.state.results;
         results.background = self.jobs.told();
-        results.background.proofs.extend(self.proven.iter().map(|(problem, _)| Arc::clone(problem)));
-        results.background_since = results.background.is_busy().then(|| results.background_since.unwrap_or(now));
+        results
+            .background
+            .proofs
+            .extend(self.proven.iter().map(|(problem, _)| Arc::clone(problem)));
+        results.background_since = results
+            .background
+            .is_busy()
+            .then(|| results.background_since.unwrap_or(now));
     }
 
     /// Shows an analysis, and asks for the jobs that it leaves.
-    pub(super) fn answered(&mut self, job: AnalysisJob, (analysis, elapsed_ms): (Arc<Analysis>, f64)) {
+    pub(super) fn answered(
+        &mut self,
+        job: AnalysisJob,
+        (analysis, elapsed_ms): (Arc<Analysis>, f64),
+    ) {
         let now = self.now();
         let results = &mut self.state.results;
         // One with a proof added has the number of the one without it, and took no time.
@@ -219,7 +258,8 @@ impl GdcmApp {
         results.first = None;
         results.stopped &= results.is_behind();
         results.waiting_since = results.is_waiting().then_some(now);
-        self.proven.retain(|(of, _)| !job.proofs.iter().any(|(proven, _)| Arc::ptr_eq(of, proven)));
+        self.proven
+            .retain(|(of, _)| !job.proofs.iter().any(|(proven, _)| Arc::ptr_eq(of, proven)));
         self.want_jobs();
     }
 
@@ -235,7 +275,8 @@ impl GdcmApp {
     pub(super) fn take_curves(&mut self, job: CurvesJob, curves: Option<Arc<ConditionCurves>>) {
         let Some(curves) = curves else { return };
         let study = &self.state.study;
-        if Arc::ptr_eq(&job.dataset, &study.dataset) && job.condition == self.state.condition().id() {
+        if Arc::ptr_eq(&job.dataset, &study.dataset) && job.condition == self.state.condition().id()
+        {
             self.state.results.curves = Some((job, curves));
         }
     }
@@ -249,13 +290,18 @@ impl GdcmApp {
             env!("CARGO_PKG_VERSION"),
             fault.words(),
         );
-        self.state.bars.retain(|bar| !matches!(bar, Bar::Fault { .. }));
+        self.state
+            .bars
+            .retain(|bar| !matches!(bar, Bar::Fault { .. }));
         self.state.bars.push(Bar::Fault { sentence });
     }
 
     fn take_dropped_files(&mut self, commands: &mut Vec<Command>) {
         let dropped = self.ctx.input(|input| input.raw.dropped_files.clone());
-        let paths: Vec<PathBuf> = dropped.iter().map(|file| file.path().to_path_buf()).collect();
+        let paths: Vec<PathBuf> = dropped
+            .iter()
+            .map(|file| file.path().to_path_buf())
+            .collect();
         // A dataset or a study is opened; several files, a folder, and files of other programs are models.
         match paths.as_slice() {
             [] => {}
@@ -263,7 +309,9 @@ impl GdcmApp {
                 commands.push(Command::Open(path.clone()))
             }
             // Beside the records of a condition, files are more of them.
-            _ if self.state.assembling.is_none() && self.state.display.arrangement.is_shown(View::Records) => {
+            _ if self.state.assembling.is_none()
+                && self.state.display.arrangement.is_shown(View::Records) =>
+            {
                 commands.push(RecordsCommand::Add(paths).into());
             }
             _ => commands.push(AssemblingCommand::Add(paths).into()),
@@ -271,7 +319,10 @@ impl GdcmApp {
     }
 
     fn guard_closing(&mut self) {
-        if self.ctx.input(|input| input.viewport().close_requested()) && self.state.unsaved && !self.closing {
+        if self.ctx.input(|input| input.viewport().close_requested())
+            && self.state.unsaved
+            && !self.closing
+        {
             self.ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.ask_to_lose(PendingAction::Quit);
         }
@@ -281,20 +332,25 @@ impl GdcmApp {
     fn name_window(&mut self) {
         let title = self.state.window_title();
         if title != self.title {
-            self.ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.ctx
+                .send_viewport_cmd(ViewportCommand::Title(title.clone()));
             self.title = title;
         }
     }
 
     fn panels_ui(&mut self, ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
-        let bar = Frame::new().fill(palette.panel).inner_margin(Margin::symmetric(12, 0));
+        let bar = Frame::new()
+            .fill(palette.panel)
+            .inner_margin(Margin::symmetric(12, 0));
         let state = &mut self.state;
         state.display.is_wide = ui.ctx().content_rect().width() >= WIDE;
         let top = Panel::top("menu bar").frame(bar).exact_size(36.0);
         top.show(ui, |ui| bars::menu_bar_ui(ui, state, palette, commands));
         if !state.bars.is_empty() {
             let frame = bar.inner_margin(Margin::symmetric(12, 4));
-            Panel::top("bars").frame(frame).show(ui, |ui| bars::bars_ui(ui, &state.bars, palette, commands));
+            Panel::top("bars")
+                .frame(frame)
+                .show(ui, |ui| bars::bars_ui(ui, &state.bars, palette, commands));
         }
         let status = Panel::bottom("status bar").frame(bar).exact_size(24.0);
         status.show(ui, |ui| bars::status_bar_ui(ui, state, palette, commands));
@@ -310,14 +366,27 @@ impl GdcmApp {
         let is_wide = state.display.is_wide;
         left_ui(ui, state, palette, commands);
         // The name of a panel says for which windows its width was dragged.
-        let (name, width) = if is_wide { ("answer", 352.0) } else { ("answer beside the rail", 320.0) };
+        let (name, width) = if is_wide {
+            ("answer", 352.0)
+        } else {
+            ("answer beside the rail", 320.0)
+        };
         let side = Frame::new().fill(palette.panel);
         restore_panel_size(ui, name);
-        let panel = Panel::right(name).frame(side).default_size(width).size_range(300.0..=520.0);
-        panel.show(ui, |ui| steady_ui(ui, |ui| answer_panel::answer_ui(ui, state, palette, commands)));
+        let panel = Panel::right(name)
+            .frame(side)
+            .default_size(width)
+            .size_range(300.0..=520.0);
+        panel.show(ui, |ui| {
+            steady_ui(ui, |ui| {
+                answer_panel::answer_ui(ui, state, palette, commands)
+            })
+        });
         let middle = Frame::new();
         let centre = ui.available_rect_before_wrap();
-        CentralPanel::default().frame(middle).show(ui, |ui| centre::centre_ui(ui, state, palette, commands));
+        CentralPanel::default()
+            .frame(middle)
+            .show(ui, |ui| centre::centre_ui(ui, state, palette, commands));
         sheets_ui(ui, centre, state, palette, commands);
     }
 }
@@ -329,30 +398,47 @@ const WIDE: f32 = 1400.0;
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let side = Frame::new().fill(palette.panel);
     if !state.display.left_open.unwrap_or(state.display.is_wide) {
-        let frame = side.inner_margin(Margin { left: 4, right: 2, top: 2, bottom: 4 });
+        let frame = side.inner_margin(Margin {
+            left: 4,
+            right: 2,
+            top: 2,
+            bottom: 4,
+        });
         let panel = Panel::left("rail").frame(frame).exact_size(104.0);
         panel.show(ui, |ui| {
-            ScrollArea::vertical().id_salt("rail").auto_shrink(false).show(ui, |ui| {
-                ui.set_width(ui.available_width());
-                conditions_panel::rail_ui(ui, state, palette, commands);
-            });
+            ScrollArea::vertical()
+                .id_salt("rail")
+                .auto_shrink(false)
+                .show(ui, |ui| {
+                    ui.set_width(ui.available_width());
+                    conditions_panel::rail_ui(ui, state, palette, commands);
+                });
         });
         return;
     }
     restore_panel_size(ui, "conditions and models");
-    let panel = Panel::left("conditions and models").frame(side).default_size(272.0).size_range(240.0..=420.0);
+    let panel = Panel::left("conditions and models")
+        .frame(side)
+        .default_size(272.0)
+        .size_range(240.0..=420.0);
     panel.show(ui, |ui| {
         steady_ui(ui, |ui| {
-            let frame = Frame::new().inner_margin(Margin { left: 12, right: 12, top: 4, bottom: 0 });
+            let frame = Frame::new().inner_margin(Margin {
+                left: 12,
+                right: 12,
+                top: 4,
+                bottom: 0,
+            });
             frame.show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 0.0;
                 let most = 0.45 * ui.available_height();
-                ScrollArea::vertical().id_salt("conditions").max_height(most).auto_shrink([false, true]).show(
-                    ui,
-                    |ui| {
+                ScrollArea::vertical()
+                    .id_salt("conditions")
+                    .max_height(most)
+                    .auto_shrink([false, true])
+                    .show(ui, |ui| {
                         conditions_panel::conditions_ui(ui, state, palette, commands);
-                    },
-                );
+                    });
                 ui.separator();
                 models_panel::models_ui(ui, state, palette, commands);
             });
@@ -372,17 +458,29 @@ fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 /// What lies over the middle of the window.
 fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let asked = state.display.asked.as_ref().map(|_| Sheet::Derivation);
-    let Some(sheet) = asked.or(state.display.sheet) else { return };
+    let Some(sheet) = asked.or(state.display.sheet) else {
+        return;
+    };
     let is_closed = sheet_ui(ui, centre, sheet, palette, |ui| match sheet {
         Sheet::Derivation => explanation::derivation_sheet_ui(ui, state, palette, commands),
         Sheet::Reasons => explanation::reasons_ui(ui, state, palette, commands),
-        Sheet::Models => models_panel::bundle_sheet_ui(ui, state, BundleKind::Physics, palette, commands),
-        Sheet::Identified => models_panel::bundle_sheet_ui(ui, state, BundleKind::Identified, palette, commands),
+        Sheet::Models => {
+            models_panel::bundle_sheet_ui(ui, state, BundleKind::Physics, palette, commands)
+        }
+        Sheet::Identified => {
+            models_panel::bundle_sheet_ui(ui, state, BundleKind::Identified, palette, commands)
+        }
     });
     // A click beside it may ask about another value: that is shown then.
-    let asks = commands.iter().any(|command| matches!(command, Command::Explain(_)));
+    let asks = commands
+        .iter()
+        .any(|command| matches!(command, Command::Explain(_)));
     if is_closed && !asks {
-        commands.push(if sheet == Sheet::Derivation { Command::Explain(None) } else { Command::ShowSheet(None) });
+        commands.push(if sheet == Sheet::Derivation {
+            Command::Explain(None)
+        } else {
+            Command::ShowSheet(None)
+        });
     }
 }
 

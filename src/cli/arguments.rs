@@ -176,9 +176,18 @@ impl FromArgMatches for SettingOptions {
         let said = SETTINGS.into_iter().filter_map(|setting| {
             let is_said = matches.value_source(setting.option) == Some(ValueSource::CommandLine);
             let words = matches.get_raw(setting.option).into_iter().flatten();
-            is_said.then(|| (setting, words.map(|word| word.to_string_lossy().into_owned()).collect()))
+            is_said.then(|| {
+                (
+                    setting,
+                    words
+                        .map(|word| word.to_string_lossy().into_owned())
+                        .collect(),
+                )
+            })
         });
-        Ok(Self { said: said.collect() })
+        Ok(Self {
+            said: said.collect(),
+        })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
@@ -191,8 +200,14 @@ impl Args for SettingOptions {
     fn augment_args(command: clap::Command) -> clap::Command {
         command.args(SETTINGS.map(|setting| {
             let (name, unit) = (setting.option, setting.unit.file);
-            let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
-            let argument = Arg::new(name).long(name.trim_start_matches('-')).help(format!("{}{unit}", setting.help));
+            let unit = if unit.is_empty() {
+                String::new()
+            } else {
+                format!(" [{unit}]")
+            };
+            let argument = Arg::new(name)
+                .long(name.trim_start_matches('-'))
+                .help(format!("{}{unit}", setting.help));
             let argument = match setting.kind {
                 Kind::Flag { .. } => return argument.action(ArgAction::SetTrue),
                 Kind::Range { nothing: None, .. } => argument.value_names(["LO", "HI"]).num_args(2),
@@ -228,7 +243,12 @@ pub struct StudyArguments {
     #[command(flatten)]
     pub opening: OpeningArguments,
     /// Conditions, by their ids, separated by commas, to keep from the schedule and to judge it by.
-    #[arg(long, value_name = "IDS", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "IDS",
+        value_delimiter = ',',
+        allow_negative_numbers = true
+    )]
     pub hold_out: Vec<i64>,
     /// Turn the models of a channel whose sign is the other way round, CHANNEL=-1 (the identified models), CHANNEL=-1:physics or
     /// CHANNEL=-1:all; CHANNEL=1 puts them back. May be repeated.
@@ -267,7 +287,9 @@ pub type ChannelSign = OfChannel<Option<SignRole>>;
 /// The parts of "NZ=-1:physics": the channel, its sign, and whose it is, that of the identified models where nothing is said.
 fn sign_parts(text: &str) -> Option<(&str, f64, &str)> {
     let (channel, rest) = text.rsplit_once('=')?;
-    let (sign, of) = rest.split_once(':').unwrap_or((rest, SignRole::Identified.word()));
+    let (sign, of) = rest
+        .split_once(':')
+        .unwrap_or((rest, SignRole::Identified.word()));
     Some((channel.trim(), sign_of(sign.trim())?, of.trim()))
 }
 
@@ -281,11 +303,20 @@ fn sign_of(text: &str) -> Option<f64> {
 
 /// The sign of a channel: "NZ=-1", "NZ=-1:physics", "NZ=1".
 fn channel_sign(text: &str) -> Result<ChannelSign, String> {
-    let expected =
-        || format!("expected CHANNEL=-1, with :identified, :physics or :all behind it, or CHANNEL=1; found {text}");
+    let expected = || {
+        format!(
+            "expected CHANNEL=-1, with :identified, :physics or :all behind it, or CHANNEL=1; found {text}"
+        )
+    };
     let (channel, sign, of) = sign_parts(text).ok_or_else(expected)?;
-    let of = SignRole::EACH.into_iter().find(|role| role.word() == of).ok_or_else(expected)?;
-    Ok(OfChannel { channel: channel.to_owned(), said: (sign < 0.0).then_some(of) })
+    let of = SignRole::EACH
+        .into_iter()
+        .find(|role| role.word() == of)
+        .ok_or_else(expected)?;
+    Ok(OfChannel {
+        channel: channel.to_owned(),
+        said: (sign < 0.0).then_some(of),
+    })
 }
 
 /// What is to be analysed, and where the results go.
@@ -397,11 +428,18 @@ pub struct RequirementsArguments {
 }
 
 /// One of some values by its name.
-fn one_of<T, const N: usize>(all: [T; N], name: fn(T) -> &'static str) -> impl TypedValueParser<Value = T>
+fn one_of<T, const N: usize>(
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T>
 where
     T: Copy + Send + Sync + 'static,
 {
-    let find = move |word: String| all.into_iter().find(|of| name(*of) == word).ok_or("there is no such value");
+    let find = move |word: String| {
+        all.into_iter()
+            .find(|of| name(*of) == word)
+            .ok_or("there is no such value")
+    };
     PossibleValuesParser::new(all.map(name)).try_map(find)
 }
 
@@ -428,11 +466,19 @@ fn pair_choice(text: &str) -> Result<PairChoice, String> {
 }
 
 pub(super) fn real_number(text: &str) -> Result<f64, String> {
-    text.trim().parse().map_err(|_| format!("expected a number, found {text}"))
+    text.trim()
+        .parse()
+        .map_err(|_| format!("expected a number, found {text}"))
 }
 
-pub(super) fn whole_number<const LEAST: usize, const MOST: usize>(text: &str) -> Result<usize, String> {
-    let number = text.trim().parse().ok().filter(|number| (LEAST..=MOST).contains(number));
+pub(super) fn whole_number<const LEAST: usize, const MOST: usize>(
+    text: &str,
+) -> Result<usize, String> {
+    let number = text
+        .trim()
+        .parse()
+        .ok()
+        .filter(|number| (LEAST..=MOST).contains(number));
     number.ok_or_else(|| format!("expected a whole number from {LEAST} to {MOST}, found {text}"))
 }
 
@@ -441,10 +487,18 @@ pub type PairList = Vec<(String, String)>;
 
 fn pair_list(text: &str) -> Result<PairList, String> {
     let pair = |words: &str| match words.trim().split_once('/') {
-        Some((output, input)) if !output.is_empty() && !input.is_empty() => Ok((output.to_owned(), input.to_owned())),
-        _ => Err(format!("expected OUTPUT/INPUT, as P/LAT, found \"{words}\"")),
+        Some((output, input)) if !output.is_empty() && !input.is_empty() => {
+            Ok((output.to_owned(), input.to_owned()))
+        }
+        _ => Err(format!(
+            "expected OUTPUT/INPUT, as P/LAT, found \"{words}\""
+        )),
     };
-    if text == "none" { Ok(Vec::new()) } else { text.split(',').map(pair).collect() }
+    if text == "none" {
+        Ok(Vec::new())
+    } else {
+        text.split(',').map(pair).collect()
+    }
 }
 
 /// A model to be rejected.
@@ -459,7 +513,10 @@ pub struct Rejection {
 fn rejection(text: &str) -> Result<Rejection, String> {
     let expected = || format!("expected ID:NAME, as 10:nominal, found \"{text}\"");
     let (id, model) = text.split_once(':').ok_or_else(expected)?;
-    Ok(Rejection { condition: id.trim().parse().map_err(|_| expected())?, model: model.to_owned() })
+    Ok(Rejection {
+        condition: id.trim().parse().map_err(|_| expected())?,
+        model: model.to_owned(),
+    })
 }
 
 /// What an option says of a channel in files that are assembled.
@@ -482,17 +539,21 @@ impl<T> OfFiles<T> {
         if channel.is_empty() || said.is_empty() || of.is_empty() {
             return None;
         }
-        Some(Self { channel: channel.to_owned(), said: value(said)?, of: FileScope::from(of.to_owned()) })
+        Some(Self {
+            channel: channel.to_owned(),
+            said: value(said)?,
+            of: FileScope::from(of.to_owned()),
+        })
     }
 }
 
 /// Whose channel an option speaks of, for its error.
-const OF_FILES: &str =
-    ":identified, :physics, :all or : and the file of a model or a pattern of folders may stand behind it";
+const OF_FILES: &str = ":identified, :physics, :all or : and the file of a model or a pattern of folders may stand behind it";
 
 fn file_sign(text: &str) -> Result<OfFiles<f64>, String> {
-    OfFiles::read(text, sign_of)
-        .ok_or_else(|| format!("expected a channel with 1 or -1, as NZ=-1; {OF_FILES}; found \"{text}\""))
+    OfFiles::read(text, sign_of).ok_or_else(|| {
+        format!("expected a channel with 1 or -1, as NZ=-1; {OF_FILES}; found \"{text}\"")
+    })
 }
 
 fn file_unit(text: &str) -> Result<OfFiles<String>, String> {
@@ -501,7 +562,11 @@ fn file_unit(text: &str) -> Result<OfFiles<String>, String> {
 }
 
 fn file_factor(text: &str) -> Result<OfFiles<f64>, String> {
-    let factor = |text: &str| text.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor != 0.0);
+    let factor = |text: &str| {
+        text.parse()
+            .ok()
+            .filter(|factor: &f64| factor.is_finite() && *factor != 0.0)
+    };
     OfFiles::read(text, factor).ok_or_else(|| {
         format!("expected CHANNEL=X with X a number other than 0, as LON=8 or NZ=-1; {OF_FILES}; found \"{text}\"")
     })
@@ -521,7 +586,9 @@ mod tests {
     fn every_command_ends_its_help_with_two_examples_that_are_understood() {
         use clap::CommandFactory;
         for command in Arguments::command().get_subcommands() {
-            let help = command.get_after_help().unwrap_or_else(|| panic!("{} has no examples", command.get_name()));
+            let help = command
+                .get_after_help()
+                .unwrap_or_else(|| panic!("{} has no examples", command.get_name()));
             let help = help.to_string();
             let examples: Vec<&str> = help.lines().skip(1).map(str::trim).collect();
             assert_eq!(examples.len(), 2, "{help}");
@@ -537,15 +604,24 @@ mod tests {
     #[test]
     fn a_model_name_may_hold_a_colon() {
         let found = rejection("10:V+5kt: again").unwrap();
-        assert_eq!((found.condition, found.model.as_str()), (10, "V+5kt: again"));
+        assert_eq!(
+            (found.condition, found.model.as_str()),
+            (10, "V+5kt: again")
+        );
         assert!(rejection("nominal").is_err() && rejection("x:nominal").is_err());
     }
 
     #[test]
     fn a_sign_says_its_channel_and_whose_models_are_turned() {
         let said = |text: &str| channel_sign(text).map(|sign| (sign.channel, sign.said));
-        assert_eq!(said("NZ=-1"), Ok(("NZ".to_owned(), Some(SignRole::Identified))));
-        assert_eq!(said("az (down)=-1:all"), Ok(("az (down)".to_owned(), Some(SignRole::All))));
+        assert_eq!(
+            said("NZ=-1"),
+            Ok(("NZ".to_owned(), Some(SignRole::Identified)))
+        );
+        assert_eq!(
+            said("az (down)=-1:all"),
+            Ok(("az (down)".to_owned(), Some(SignRole::All)))
+        );
         assert_eq!(said("NZ=1"), Ok(("NZ".to_owned(), None)));
         assert!(said("NZ").is_err() && said("NZ=-2").is_err() && said("NZ=-1:none").is_err());
     }
@@ -556,17 +632,41 @@ mod tests {
         let expected = |of: FileScope| Ok(("P".to_owned(), "rad/s".to_owned(), of));
         assert_eq!(unit("P=rad/s"), expected(FileScope::Identified));
         assert_eq!(unit("P=rad/s:physics"), expected(FileScope::Physics));
-        assert_eq!(unit("P = rad/s : c1/x=2.mat"), expected(FileScope::Files("c1/x=2.mat".into())));
-        assert_eq!(file_factor("NZ=-9.81:all").map(|of| (of.said, of.of)), Ok((-9.81, FileScope::All)));
-        assert_eq!(file_sign("NZ=-1:flight_*").map(|of| of.of), Ok(FileScope::Files("flight_*".into())));
-        assert!(["P", "P=", "=in", "P=in:"].iter().all(|wrong| file_unit(wrong).is_err()));
-        assert!(["P=0", "P=x", "P=inf"].iter().all(|wrong| file_factor(wrong).is_err()) && file_sign("P=2").is_err());
+        assert_eq!(
+            unit("P = rad/s : c1/x=2.mat"),
+            expected(FileScope::Files("c1/x=2.mat".into()))
+        );
+        assert_eq!(
+            file_factor("NZ=-9.81:all").map(|of| (of.said, of.of)),
+            Ok((-9.81, FileScope::All))
+        );
+        assert_eq!(
+            file_sign("NZ=-1:flight_*").map(|of| of.of),
+            Ok(FileScope::Files("flight_*".into()))
+        );
+        assert!(
+            ["P", "P=", "=in", "P=in:"]
+                .iter()
+                .all(|wrong| file_unit(wrong).is_err())
+        );
+        assert!(
+            ["P=0", "P=x", "P=inf"]
+                .iter()
+                .all(|wrong| file_factor(wrong).is_err())
+                && file_sign("P=2").is_err()
+        );
     }
 
     #[test]
     fn pairs_are_written_output_first() {
         let list = pair_list("P/LAT, Q/LON").unwrap();
-        assert_eq!(list, [("P".to_owned(), "LAT".to_owned()), ("Q".to_owned(), "LON".to_owned())]);
+        assert_eq!(
+            list,
+            [
+                ("P".to_owned(), "LAT".to_owned()),
+                ("Q".to_owned(), "LON".to_owned())
+            ]
+        );
         assert!(pair_list("P-LAT").is_err() && pair_list("").is_err());
         assert!(pair_list("none").unwrap().is_empty());
     }

@@ -4,12 +4,17 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use gdcm_io::{
-    ContentFault, FileError, LoadedDataset, Opened, OpenedStudy, check_beginning, dataset_faults, holds_models,
+    ContentFault, FileError, LoadedDataset, Opened, OpenedStudy, check_beginning, dataset_faults,
+    holds_models,
 };
-use gdcm_model::dataset::{BundleKind, Channel, ConditionRecord, Dataset, Dynamics, Model, RecordKind};
+use gdcm_model::dataset::{
+    BundleKind, Channel, ConditionRecord, Dataset, Dynamics, Model, RecordKind,
+};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::number;
-use gdcm_study::study::{ConditionFailure, Execution, Study, Table, Unobserved, cautions_of_models, doubts_of_models};
+use gdcm_study::study::{
+    ConditionFailure, Execution, Study, Table, Unobserved, cautions_of_models, doubts_of_models,
+};
 
 use super::arguments::{ChannelSign, OpeningArguments};
 use super::open;
@@ -18,18 +23,26 @@ use super::summary::doubt_words;
 use super::terminal::{Failure, by_words, error, indented, line, of_conditions, say};
 
 /// Says what a dataset or a study holds.
-pub(super) fn check(file: &Path, arguments: &OpeningArguments, signs: &[ChannelSign]) -> Result<(), Failure> {
+pub(super) fn check(
+    file: &Path,
+    arguments: &OpeningArguments,
+    signs: &[ChannelSign],
+) -> Result<(), Failure> {
     if file.is_file() && !holds_models(file) {
         // A wrong structure is found before a large file is read to its end.
         check_beginning(file)?;
     }
     let opened = match open(file, arguments) {
-        Err(Failure::File(error)) if has_several_faults(&error) => return Err(all_faults(file, error)),
+        Err(Failure::File(error)) if has_several_faults(&error) => {
+            return Err(all_faults(file, error));
+        }
         opened => opened?,
     };
     let (decided, mut study, loaded) = match opened {
         Opened::Dataset(loaded) => (String::new(), Study::new(loaded.dataset.clone()), loaded),
-        Opened::Study(OpenedStudy { study, loaded, .. }) => (decisions(file, &study), study, loaded),
+        Opened::Study(OpenedStudy { study, loaded, .. }) => {
+            (decisions(file, &study), study, loaded)
+        }
     };
     turn(&mut study, signs)?;
     say(&(decided + &contents(&loaded) + &model_cautions(&study)?))
@@ -45,7 +58,10 @@ fn all_faults(file: &Path, first: FileError) -> Failure {
     match dataset_faults(file) {
         Ok(faults) if faults.len() > 1 => {
             faults.iter().for_each(|fault| error(&fault.to_string()));
-            Failure::Faulty { path: sanitized_path(file), count: faults.len() }
+            Failure::Faulty {
+                path: sanitized_path(file),
+                count: faults.len(),
+            }
         }
         // One, or a study: what was said first is all there is.
         _ => Failure::File(first),
@@ -54,11 +70,26 @@ fn all_faults(file: &Path, first: FileError) -> Failure {
 
 fn contents(loaded: &LoadedDataset) -> String {
     let dataset = &loaded.dataset;
-    let on_axis: Vec<String> = dataset.on_axis().marked().map(|pair| sanitized(&dataset.pair_name(pair))).collect();
-    let on_axis = if on_axis.is_empty() { "none given: every response counts".to_owned() } else { on_axis.join(", ") };
-    let band = format!("{} to {} rad/s", number(dataset.band().min()), number(dataset.band().max()));
+    let on_axis: Vec<String> = dataset
+        .on_axis()
+        .marked()
+        .map(|pair| sanitized(&dataset.pair_name(pair)))
+        .collect();
+    let on_axis = if on_axis.is_empty() {
+        "none given: every response counts".to_owned()
+    } else {
+        on_axis.join(", ")
+    };
+    let band = format!(
+        "{} to {} rad/s",
+        number(dataset.band().min()),
+        number(dataset.band().max())
+    );
     let lines = [
-        ("Dataset", format!("{}, {}", sanitized(dataset.name()), loaded.origin)),
+        (
+            "Dataset",
+            format!("{}, {}", sanitized(dataset.name()), loaded.origin),
+        ),
         ("SHA-256", loaded.sha256.clone()),
         ("About", sanitized(dataset.description())),
         ("Inputs", channel_words(dataset.inputs())),
@@ -67,8 +98,15 @@ fn contents(loaded: &LoadedDataset) -> String {
         ("Band", band),
         ("Conditions", dataset.conditions().len().to_string()),
     ];
-    let text: String = lines.iter().map(|(label, words)| line(label, words)).collect();
-    let cautions: String = loaded.cautions.iter().map(|words| caution_line(words)).collect();
+    let text: String = lines
+        .iter()
+        .map(|(label, words)| line(label, words))
+        .collect();
+    let cautions: String = loaded
+        .cautions
+        .iter()
+        .map(|words| caution_line(words))
+        .collect();
     text + &condition_table(dataset) + &timings(dataset) + &records(dataset) + &cautions
 }
 
@@ -77,14 +115,25 @@ fn model_cautions(study: &Study) -> Result<String, Failure> {
     let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
     // Signs and units first: what follows may come of them.
     let doubts = doubts_of_models(study, &execution)?;
-    let doubts = doubts.iter().map(|doubt| doubt_words(doubt, &study.dataset));
+    let doubts = doubts
+        .iter()
+        .map(|doubt| doubt_words(doubt, &study.dataset));
     let cautions = cautions_of_models(study, &execution)?;
-    let cautions = cautions.into_iter().map(|(id, caution)| (id, caution.words(|pair| study.dataset.pair_name(pair))));
-    let cautions = by_words(cautions).into_iter().map(|(conditions, words)| of_conditions(&conditions, &words));
+    let cautions = cautions
+        .into_iter()
+        .map(|(id, caution)| (id, caution.words(|pair| study.dataset.pair_name(pair))));
+    let cautions = by_words(cautions)
+        .into_iter()
+        .map(|(conditions, words)| of_conditions(&conditions, &words));
     let without = study.dataset.without_reference();
-    let no_reference =
-        (!without.is_empty()).then(|| of_conditions(&without, &ConditionFailure::NoReference.to_string()));
-    Ok(no_reference.into_iter().chain(doubts).chain(cautions).map(|words| caution_line(&words)).collect())
+    let no_reference = (!without.is_empty())
+        .then(|| of_conditions(&without, &ConditionFailure::NoReference.to_string()));
+    Ok(no_reference
+        .into_iter()
+        .chain(doubts)
+        .chain(cautions)
+        .map(|words| caution_line(&words))
+        .collect())
 }
 
 fn caution_line(words: &str) -> String {
@@ -92,18 +141,39 @@ fn caution_line(words: &str) -> String {
 }
 
 fn channel_words(channels: &[Channel]) -> String {
-    let words = channels.iter().map(|channel| format!("{} [{}]", sanitized(&channel.name), sanitized(&channel.unit)));
+    let words = channels.iter().map(|channel| {
+        format!(
+            "{} [{}]",
+            sanitized(&channel.name),
+            sanitized(&channel.unit)
+        )
+    });
     words.collect::<Vec<_>>().join(", ")
 }
 
 fn condition_table(dataset: &Dataset) -> String {
-    let with_unit =
-        |value: Option<f64>, unit: &str| value.map_or("-".to_owned(), |value| format!("{} {unit}", number(value)));
-    let mut table =
-        Table::new("", ["id", "airspeed", "altitude", "mass", "physics", "states", "identified", "states", "name"]);
+    let with_unit = |value: Option<f64>, unit: &str| {
+        value.map_or("-".to_owned(), |value| format!("{} {unit}", number(value)))
+    };
+    let mut table = Table::new(
+        "",
+        [
+            "id",
+            "airspeed",
+            "altitude",
+            "mass",
+            "physics",
+            "states",
+            "identified",
+            "states",
+            "name",
+        ],
+    );
     for condition in dataset.conditions() {
-        let (state, [physics, identified]) =
-            (condition.flight_state(), BundleKind::BOTH.map(|of| condition.bundle(of)));
+        let (state, [physics, identified]) = (
+            condition.flight_state(),
+            BundleKind::BOTH.map(|of| condition.bundle(of)),
+        );
         table.row([
             state.id.to_string(),
             format!("{} kt", number(state.airspeed_kt)),
@@ -126,13 +196,22 @@ fn timings(dataset: &Dataset) -> String {
         for kind in BundleKind::BOTH {
             let mut named: BTreeMap<String, Vec<String>> = BTreeMap::new();
             for model in condition.bundle(kind) {
-                let Dynamics::StateSpace(matrices) = &model.dynamics else { continue };
+                let Dynamics::StateSpace(matrices) = &model.dynamics else {
+                    continue;
+                };
                 if !matrices.timing().is_plain() {
-                    named.entry(matrices.timing().words()).or_default().push(sanitized(&model.name));
+                    named
+                        .entry(matrices.timing().words())
+                        .or_default()
+                        .push(sanitized(&model.name));
                 }
             }
             for (words, names) in named {
-                let words = format!("condition {}, {kind} {}: {words}", condition.id(), names.join(", "));
+                let words = format!(
+                    "condition {}, {kind} {}: {words}",
+                    condition.id(),
+                    names.join(", ")
+                );
                 text += &line("Timing", &words);
             }
         }
@@ -143,15 +222,31 @@ fn timings(dataset: &Dataset) -> String {
 /// The flight records of each condition that has some: how many, of which manoeuvre, and what is done with them.
 fn records(dataset: &Dataset) -> String {
     let mut text = String::new();
-    for condition in dataset.conditions().iter().filter(|condition| !condition.records().is_empty()) {
+    for condition in dataset
+        .conditions()
+        .iter()
+        .filter(|condition| !condition.records().is_empty())
+    {
         let count = |is_it: &dyn Fn(&ConditionRecord) -> bool, what: &str| {
-            let count = condition.records().iter().filter(|record| is_it(record)).count();
+            let count = condition
+                .records()
+                .iter()
+                .filter(|record| is_it(record))
+                .count();
             (count > 0).then(|| format!("{count} {what}"))
         };
-        let kinds = RecordKind::ALL.into_iter().filter_map(|kind| count(&|record| record.kind == kind, kind.word()));
-        let rest = [count(&|record| record.held_out, "held out"), count(&|record| !record.used, "not used")];
+        let kinds = RecordKind::ALL
+            .into_iter()
+            .filter_map(|kind| count(&|record| record.kind == kind, kind.word()));
+        let rest = [
+            count(&|record| record.held_out, "held out"),
+            count(&|record| !record.used, "not used"),
+        ];
         let words: Vec<String> = kinds.chain(rest.into_iter().flatten()).collect();
-        text += &line("Records", &format!("condition {}: {}", condition.id(), words.join(", ")));
+        text += &line(
+            "Records",
+            &format!("condition {}: {}", condition.id(), words.join(", ")),
+        );
     }
     text
 }
@@ -165,8 +260,18 @@ fn order_words(models: &[Model]) -> String {
     let orders: Vec<usize> = orders.collect();
     let measured = (orders.len() < models.len()).then(|| "measured".to_owned());
     let ends = orders.iter().min().zip(orders.iter().max());
-    let range = ends.map(|(least, most)| if least == most { least.to_string() } else { format!("{least}-{most}") });
-    range.into_iter().chain(measured).collect::<Vec<_>>().join(", ")
+    let range = ends.map(|(least, most)| {
+        if least == most {
+            least.to_string()
+        } else {
+            format!("{least}-{most}")
+        }
+    });
+    range
+        .into_iter()
+        .chain(measured)
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// What a study has decided.
@@ -174,14 +279,27 @@ fn decisions(file: &Path, study: &Study) -> String {
     let mut text = line("Study", &sanitized_path(file));
     for condition in study.dataset.conditions() {
         let (id, choice) = (condition.id(), study.choice(condition.id()));
-        let rejected: Vec<String> = study.rejected_names(id).into_iter().map(sanitized).collect();
+        let rejected: Vec<String> = study
+            .rejected_names(id)
+            .into_iter()
+            .map(sanitized)
+            .collect();
         if !rejected.is_empty() {
-            text += &line("Rejected", &format!("condition {id}: {}", rejected.join(", ")));
+            text += &line(
+                "Rejected",
+                &format!("condition {id}: {}", rejected.join(", ")),
+            );
         }
-        for name in BundleKind::BOTH.iter().filter_map(|kind| choice.bundle(*kind).pinned.as_ref()) {
+        for name in BundleKind::BOTH
+            .iter()
+            .filter_map(|kind| choice.bundle(*kind).pinned.as_ref())
+        {
             text += &line("Pinned", &format!("condition {id}: {}", sanitized(name)));
         }
-        for (label, is_so) in [("Held out", choice.held_out), ("Unscheduled", !choice.scheduled)] {
+        for (label, is_so) in [
+            ("Held out", choice.held_out),
+            ("Unscheduled", !choice.scheduled),
+        ] {
             if is_so {
                 text += &line(label, &format!("condition {id}"));
             }

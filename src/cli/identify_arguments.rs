@@ -10,7 +10,9 @@ use gdcm_model::dataset::{Band, Dataset};
 use gdcm_model::units::number;
 use gdcm_study::study::OfferedModels;
 use gdcm_sysid::identification::{ChannelPreparation, Preparation, SearchSpace};
-use gdcm_sysid::records::{ChannelList, RecordChannels, ResamplingWish, SaidChannel, SaidConversion};
+use gdcm_sysid::records::{
+    ChannelList, RecordChannels, ResamplingWish, SaidChannel, SaidConversion,
+};
 
 use super::arguments::{OfChannel, real_number, whole_number};
 use super::terminal::Failure;
@@ -83,13 +85,25 @@ pub struct IdentifyArguments {
     #[arg(long, value_name = "DATASET", requires = "where")]
     pub into: Option<PathBuf>,
     /// The condition of the dataset, by its id.
-    #[arg(long, value_name = "ID", requires = "into", allow_negative_numbers = true, group = "where")]
+    #[arg(
+        long,
+        value_name = "ID",
+        requires = "into",
+        allow_negative_numbers = true,
+        group = "where"
+    )]
     pub condition: Option<i64>,
     /// Every condition of the dataset: each record goes to the one that its name, or that of its folder, says.
     #[arg(long, requires = "into", group = "where")]
     pub every_condition: bool,
     /// Which of the models are put into the dataset.
-    #[arg(long, value_enum, value_name = "WHICH", default_value_t, requires = "into")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "WHICH",
+        default_value_t,
+        requires = "into"
+    )]
     pub take: OfferedChoice,
     /// Description of the dataset that is written; without it, as it was.
     #[arg(long, value_name = "TEXT", requires = "into")]
@@ -110,38 +124,65 @@ impl IdentifyArguments {
 
     /// What is tried in place of the defaults.
     pub fn search(&self) -> SearchSpace {
-        SearchSpace { orders: self.order.clone(), pasts: self.past.clone(), poles: self.pole.clone() }
+        SearchSpace {
+            orders: self.order.clone(),
+            pasts: self.past.clone(),
+            poles: self.pole.clone(),
+        }
     }
 
     /// The band to identify, which is that of the dataset where none is said.
     pub(super) fn band(&self, dataset: Option<&Dataset>) -> Result<Band, Failure> {
         match (self.band.as_deref(), dataset) {
-            (Some(&[min, max]), _) => Band::new(min, max).map_err(|error| Failure::option("--band", error)),
+            (Some(&[min, max]), _) => {
+                Band::new(min, max).map_err(|error| Failure::option("--band", error))
+            }
             (_, Some(dataset)) => Ok(dataset.band()),
             _ => Err(Failure::option("--band", "expected two frequencies")),
         }
     }
 
     /// The channels asked for, with what is said of their samples.
-    pub(super) fn channels(&self, dataset: Option<&Dataset>, band: Band) -> Result<RecordChannels, Failure> {
+    pub(super) fn channels(
+        &self,
+        dataset: Option<&Dataset>,
+        band: Band,
+    ) -> Result<RecordChannels, Failure> {
         let mut channels = self.named_channels(dataset)?;
         for reference in self.references() {
             if has_channel(&channels, &reference.name) {
-                let reason = format!("{} is an input or an output already; a reference is neither", reference.name);
+                let reason = format!(
+                    "{} is an input or an output already; a reference is neither",
+                    reference.name
+                );
                 return Err(Failure::option("--reference", reason));
             }
             // Read as an input, after those of the model.
             channels.inputs.push(reference.rule());
         }
         if let Some(channel) = said_twice(&self.topic) {
-            return Err(Failure::option("--topic", format!("{channel} stands twice; a channel is found in one place")));
+            return Err(Failure::option(
+                "--topic",
+                format!("{channel} stands twice; a channel is found in one place"),
+            ));
         }
         for OfChannel { channel, said } in &self.topic {
-            let rule = channels.inputs.iter_mut().chain(&mut channels.outputs).find(|rule| rule.name == *channel);
+            let rule = channels
+                .inputs
+                .iter_mut()
+                .chain(&mut channels.outputs)
+                .find(|rule| rule.name == *channel);
             rule.ok_or_else(|| unknown("--topic", channel))?.aliases = vec![said.clone()];
         }
-        if let Some(held) = self.held.iter().find(|held| channels.inputs.iter().all(|rule| rule.name != **held)) {
-            return Err(Failure::option("--held", format!("{held} is none of the inputs")));
+        if let Some(held) = self
+            .held
+            .iter()
+            .find(|held| channels.inputs.iter().all(|rule| rule.name != **held))
+        {
+            return Err(Failure::option(
+                "--held",
+                format!("{held} is none of the inputs"),
+            ));
         }
         channels.resampling = ResamplingWish {
             band_end: Some(band.max()),
@@ -149,7 +190,10 @@ impl IdentifyArguments {
             held: self.held.iter().cloned().collect(),
         };
         say_conversions("--unit", &self.unit, SaidConversion::Unit, &mut channels)?;
-        let factors = self.factor.iter().filter(|of| of_one_record(&of.channel).is_none());
+        let factors = self
+            .factor
+            .iter()
+            .filter(|of| of_one_record(&of.channel).is_none());
         say_conversions("--factor", factors, SaidConversion::Factor, &mut channels)?;
         Ok(channels)
     }
@@ -160,22 +204,33 @@ impl IdentifyArguments {
             list.iter().flat_map(|list| &list.channels)
         }
         let Some(dataset) = dataset else {
-            let [inputs, outputs] =
-                [&self.inputs, &self.outputs].map(|list| said(list).map(SaidChannel::rule).collect());
-            return Ok(RecordChannels { inputs, outputs, ..RecordChannels::default() });
+            let [inputs, outputs] = [&self.inputs, &self.outputs]
+                .map(|list| said(list).map(SaidChannel::rule).collect());
+            return Ok(RecordChannels {
+                inputs,
+                outputs,
+                ..RecordChannels::default()
+            });
         };
         let mut channels = RecordChannels::of_dataset(dataset);
-        for (option, list, rules) in
-            [("--inputs", &self.inputs, &mut channels.inputs), ("--outputs", &self.outputs, &mut channels.outputs)]
-        {
+        for (option, list, rules) in [
+            ("--inputs", &self.inputs, &mut channels.inputs),
+            ("--outputs", &self.outputs, &mut channels.outputs),
+        ] {
             for SaidChannel { name, unit, column } in said(list) {
                 let Some(rule) = rules.iter_mut().find(|rule| rule.name == *name) else {
                     let names: Vec<&str> = rules.iter().map(|rule| rule.name.as_str()).collect();
-                    let reason = format!("the dataset has no {name} there; it has {}", names.join(", "));
+                    let reason = format!(
+                        "the dataset has no {name} there; it has {}",
+                        names.join(", ")
+                    );
                     return Err(Failure::option(option, reason));
                 };
                 if !unit.is_empty() && *unit != rule.unit {
-                    let reason = format!("{name} has the unit {} in the dataset, not {unit}", rule.unit);
+                    let reason = format!(
+                        "{name} has the unit {} in the dataset, not {unit}",
+                        rule.unit
+                    );
                     return Err(Failure::option(option, reason));
                 }
                 rule.aliases = column.iter().cloned().collect();
@@ -187,16 +242,29 @@ impl IdentifyArguments {
 
     /// How the channels are prepared: their known delays are taken out.
     pub(super) fn preparation(&self, channels: &RecordChannels) -> Result<Preparation, Failure> {
-        let delays: Vec<_> = self.delay.iter().filter(|of| of_one_record(&of.channel).is_none()).collect();
+        let delays: Vec<_> = self
+            .delay
+            .iter()
+            .filter(|of| of_one_record(&of.channel).is_none())
+            .collect();
         if let Some(of) = delays.iter().find(|of| !has_channel(channels, &of.channel)) {
             return Err(unknown("--delay", &of.channel));
         }
         if let Some(channel) = said_twice(delays.iter().copied()) {
-            return Err(Failure::option("--delay", format!("{channel} stands twice")));
+            return Err(Failure::option(
+                "--delay",
+                format!("{channel} stands twice"),
+            ));
         }
         let prepared = |rule: &ChannelRule| {
-            let delay_s = delays.iter().find(|of| of.channel == rule.name).map_or(0.0, |of| of.said);
-            ChannelPreparation { delay_s, ..ChannelPreparation::named(rule.name.clone()) }
+            let delay_s = delays
+                .iter()
+                .find(|of| of.channel == rule.name)
+                .map_or(0.0, |of| of.said);
+            ChannelPreparation {
+                delay_s,
+                ..ChannelPreparation::named(rule.name.clone())
+            }
         };
         Ok(Preparation {
             inputs: channels.inputs.iter().map(prepared).collect(),
@@ -208,7 +276,11 @@ impl IdentifyArguments {
 
 /// Whether there is a channel of this name.
 pub(super) fn has_channel(channels: &RecordChannels, name: &str) -> bool {
-    channels.inputs.iter().chain(&channels.outputs).any(|rule| rule.name == name)
+    channels
+        .inputs
+        .iter()
+        .chain(&channels.outputs)
+        .any(|rule| rule.name == name)
 }
 
 /// An option is about a channel that there is not.
@@ -217,9 +289,13 @@ pub(super) fn unknown(option: &'static str, channel: &str) -> Failure {
 }
 
 /// The first channel of which an option says something once more.
-pub(super) fn said_twice<'a, T: 'a>(said: impl IntoIterator<Item = &'a OfChannel<T>>) -> Option<&'a str> {
+pub(super) fn said_twice<'a, T: 'a>(
+    said: impl IntoIterator<Item = &'a OfChannel<T>>,
+) -> Option<&'a str> {
     let mut seen = BTreeSet::new();
-    said.into_iter().map(|of| of.channel.as_str()).find(|channel| !seen.insert(*channel))
+    said.into_iter()
+        .map(|of| of.channel.as_str())
+        .find(|channel| !seen.insert(*channel))
 }
 
 /// Which models of an identification are put into a dataset.
@@ -257,8 +333,15 @@ pub(super) fn say_conversions<'a, T: Clone + 'a>(
         if !has_channel(channels, channel) {
             return Err(unknown(option, channel));
         }
-        if channels.said.insert(channel.clone(), conversion(said.clone())).is_some() {
-            return Err(Failure::option(option, format!("{channel} has a unit or a factor already")));
+        if channels
+            .said
+            .insert(channel.clone(), conversion(said.clone()))
+            .is_some()
+        {
+            return Err(Failure::option(
+                option,
+                format!("{channel} has a unit or a factor already"),
+            ));
         }
     }
     Ok(())
@@ -267,8 +350,13 @@ pub(super) fn say_conversions<'a, T: Clone + 'a>(
 /// A channel, and what `read` makes of the text behind it; none where there is no channel, or that is nothing.
 fn of_channel<T>(text: &str, read: impl FnOnce(&str) -> Option<T>) -> Option<OfChannel<T>> {
     let (channel, said) = text.split_once('=')?;
-    let channel = Some(channel.trim()).filter(|channel| !channel.is_empty())?.to_owned();
-    Some(OfChannel { channel, said: read(said.trim())? })
+    let channel = Some(channel.trim())
+        .filter(|channel| !channel.is_empty())?
+        .to_owned();
+    Some(OfChannel {
+        channel,
+        said: read(said.trim())?,
+    })
 }
 
 fn any_text(text: &str) -> Option<String> {
@@ -277,18 +365,31 @@ fn any_text(text: &str) -> Option<String> {
 
 /// A channel with the unit of its samples: "P=rad/s".
 pub(super) fn channel_unit(text: &str) -> Result<OfChannel<String>, String> {
-    of_channel(text, any_text).ok_or_else(|| format!("expected CHANNEL=UNIT, as P=rad/s, found \"{text}\""))
+    of_channel(text, any_text)
+        .ok_or_else(|| format!("expected CHANNEL=UNIT, as P=rad/s, found \"{text}\""))
 }
 
 fn channel_factor(text: &str) -> Result<OfChannel<f64>, String> {
-    of_channel(text, |factor| factor.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor != 0.0))
-        .ok_or_else(|| format!("expected CHANNEL=X with X a number other than 0, as LON=25 or NZ=-1, found \"{text}\""))
+    of_channel(text, |factor| {
+        factor
+            .parse()
+            .ok()
+            .filter(|factor: &f64| factor.is_finite() && *factor != 0.0)
+    })
+    .ok_or_else(|| {
+        format!(
+            "expected CHANNEL=X with X a number other than 0, as LON=25 or NZ=-1, found \"{text}\""
+        )
+    })
 }
 
 /// Where a channel is found: the topic and its field, or a column.
 fn channel_topic(text: &str) -> Result<OfChannel<String>, String> {
-    of_channel(text, |column| any_text(column.trim_matches('"')))
-        .ok_or_else(|| format!("expected CHANNEL=TOPIC.FIELD, as P=vehicle_angular_velocity.xyz[0], found \"{text}\""))
+    of_channel(text, |column| any_text(column.trim_matches('"'))).ok_or_else(|| {
+        format!(
+            "expected CHANNEL=TOPIC.FIELD, as P=vehicle_angular_velocity.xyz[0], found \"{text}\""
+        )
+    })
 }
 
 /// A known delay of a channel \[s\], positive where the channel is logged late.
@@ -300,14 +401,19 @@ fn channel_delay(text: &str) -> Result<OfChannel<f64>, String> {
     if (-MOST_S..=MOST_S).contains(&delay.said) {
         Ok(delay)
     } else {
-        Err(format!("{}; a delay is from -{MOST_S} to {MOST_S} s", expected()))
+        Err(format!(
+            "{}; a delay is from -{MOST_S} to {MOST_S} s",
+            expected()
+        ))
     }
 }
 
 fn positive_rate(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(rate) if rate.is_finite() && rate > 0.0 => Ok(rate),
-        _ => Err(format!("expected a positive number of samples in a second, found \"{text}\"")),
+        _ => Err(format!(
+            "expected a positive number of samples in a second, found \"{text}\""
+        )),
     }
 }
 
@@ -325,7 +431,11 @@ pub struct RecordPart {
 impl RecordPart {
     /// First and last time \[s\] on the clock of a record that starts at `start_s`.
     pub(super) fn on_clock_s(&self, start_s: f64) -> [f64; 2] {
-        if self.is_from_start { self.part_s.map(|time_s| start_s + time_s) } else { self.part_s }
+        if self.is_from_start {
+            self.part_s.map(|time_s| start_s + time_s)
+        } else {
+            self.part_s
+        }
     }
 
     /// The times as they were given: `5:34`, `+5:+34`.
@@ -343,13 +453,21 @@ pub(super) fn record_part(text: &str) -> Result<RecordPart, String> {
         )
     };
     let (rest, to) = text.rsplit_once(':').ok_or_else(expected)?;
-    let (record, from) = rest.rsplit_once(':').map_or((None, rest), |(record, from)| (Some(record.trim()), from));
+    let (record, from) = rest
+        .rsplit_once(':')
+        .map_or((None, rest), |(record, from)| (Some(record.trim()), from));
     let [from, to] = [from, to].map(str::trim);
     let is_from_start = from.starts_with('+');
     let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite());
     match number(from).zip(number(to)) {
-        Some((first, last)) if first < last && record != Some("") && is_from_start == to.starts_with('+') => {
-            Ok(RecordPart { record: record.map(ToOwned::to_owned), part_s: [first, last], is_from_start })
+        Some((first, last))
+            if first < last && record != Some("") && is_from_start == to.starts_with('+') =>
+        {
+            Ok(RecordPart {
+                record: record.map(ToOwned::to_owned),
+                part_s: [first, last],
+                is_from_start,
+            })
         }
         _ => Err(expected()),
     }
@@ -357,7 +475,8 @@ pub(super) fn record_part(text: &str) -> Result<RecordPart, String> {
 
 /// A channel with what stands before it, where that is a record: "sweep.csv:P".
 pub fn of_one_record(said: &str) -> Option<(&str, &str)> {
-    said.rsplit_once(':').filter(|(record, channel)| !record.is_empty() && !channel.is_empty())
+    said.rsplit_once(':')
+        .filter(|(record, channel)| !record.is_empty() && !channel.is_empty())
 }
 
 #[cfg(test)]
@@ -368,28 +487,68 @@ mod tests {
     fn a_unit_or_a_factor_is_of_a_channel() {
         assert_eq!(channel_unit("P = rad/s").unwrap().said, "rad/s");
         assert_eq!(channel_factor("NZ=-1").unwrap().said, -1.0);
-        assert!(["P", "P=", "=1"].iter().all(|wrong| channel_unit(wrong).is_err()));
-        assert!(["P", "P=x", "P=0", "P=NaN", "=1"].iter().all(|wrong| channel_factor(wrong).is_err()));
+        assert!(
+            ["P", "P=", "=1"]
+                .iter()
+                .all(|wrong| channel_unit(wrong).is_err())
+        );
+        assert!(
+            ["P", "P=x", "P=0", "P=NaN", "=1"]
+                .iter()
+                .all(|wrong| channel_factor(wrong).is_err())
+        );
     }
 
     #[test]
     fn a_part_is_of_all_records_or_of_one() {
         let part = |record: Option<&str>, part_s, is_from_start| {
-            Ok(RecordPart { record: record.map(str::to_owned), part_s, is_from_start })
+            Ok(RecordPart {
+                record: record.map(str::to_owned),
+                part_s,
+                is_from_start,
+            })
         };
         assert_eq!(record_part("29:58"), part(None, [29.0, 58.0], false));
-        assert_eq!(record_part("log:1:-1:5"), part(Some("log:1"), [-1.0, 5.0], false));
-        assert_eq!(record_part("prbs: +5 : +34"), part(Some("prbs"), [5.0, 34.0], true));
-        assert_eq!(record_part("+5:+34").unwrap().on_clock_s(42.3), [47.3, 76.3]);
-        let wrong = ["29", "58:29", "5:5", ":1:2", "a:b", "0:inf", "+5:34", "5:+34", "++5:+34", "+5:-34"];
+        assert_eq!(
+            record_part("log:1:-1:5"),
+            part(Some("log:1"), [-1.0, 5.0], false)
+        );
+        assert_eq!(
+            record_part("prbs: +5 : +34"),
+            part(Some("prbs"), [5.0, 34.0], true)
+        );
+        assert_eq!(
+            record_part("+5:+34").unwrap().on_clock_s(42.3),
+            [47.3, 76.3]
+        );
+        let wrong = [
+            "29", "58:29", "5:5", ":1:2", "a:b", "0:inf", "+5:34", "5:+34", "++5:+34", "+5:-34",
+        ];
         assert!(wrong.iter().all(|wrong| record_part(wrong).is_err()));
-        assert!(positive_rate("50") == Ok(50.0) && ["0", "-1", "x"].iter().all(|wrong| positive_rate(wrong).is_err()));
-        assert_eq!(channel_topic("P = a.b[0]"), Ok(OfChannel { channel: "P".into(), said: "a.b[0]".into() }));
+        assert!(
+            positive_rate("50") == Ok(50.0)
+                && ["0", "-1", "x"]
+                    .iter()
+                    .all(|wrong| positive_rate(wrong).is_err())
+        );
+        assert_eq!(
+            channel_topic("P = a.b[0]"),
+            Ok(OfChannel {
+                channel: "P".into(),
+                said: "a.b[0]".into()
+            })
+        );
     }
 
     #[test]
     fn a_delay_is_of_a_channel_and_short() {
-        assert_eq!(channel_delay("P=-0.02"), Ok(OfChannel { channel: "P".into(), said: -0.02 }));
+        assert_eq!(
+            channel_delay("P=-0.02"),
+            Ok(OfChannel {
+                channel: "P".into(),
+                said: -0.02
+            })
+        );
         for wrong in ["P", "P=x", "P=20", "=0.1", "P=NaN"] {
             assert!(channel_delay(wrong).is_err(), "{wrong}");
         }

@@ -12,27 +12,37 @@ use super::terminal::Failure;
 /// The failure of a command line whose first word is neither a command nor a file, and differs from a command by a letter or two; none
 /// of any other. The first of `arguments` is the program.
 pub(super) fn misspelt_command(arguments: &[OsString]) -> Option<Failure> {
-    let word = arguments.iter().skip(1).find(|argument| !argument.to_string_lossy().starts_with('-'))?;
+    let word = arguments
+        .iter()
+        .skip(1)
+        .find(|argument| !argument.to_string_lossy().starts_with('-'))?;
     let word = word.to_str()?;
     let names_a_file = word.contains(['/', '\\', '.']) || Path::new(word).exists();
     if names_a_file {
         return None;
     }
     let commands = Arguments::command();
-    let names: Vec<&str> =
-        commands.get_subcommands().flat_map(|command| command.get_name_and_visible_aliases()).collect();
+    let names: Vec<&str> = commands
+        .get_subcommands()
+        .flat_map(|command| command.get_name_and_visible_aliases())
+        .collect();
     let is_a_command = word == "help" || commands.find_subcommand(word).is_some();
     if is_a_command {
         return None;
     }
-    let distances = names.into_iter().map(|name| (edit_distance(word, name), name));
+    let distances = names
+        .into_iter()
+        .map(|name| (edit_distance(word, name), name));
     let (distance, suggestion) = distances.min_by_key(|(distance, _)| *distance)?;
     // Of a short word two letters are half of it: that is another word.
     let most = if word.chars().count() < 5 { 1 } else { 2 };
     if distance > most {
         return None;
     }
-    Some(Failure::UnknownCommand { found: shortened(&sanitized(word)), suggestion: suggestion.to_owned() })
+    Some(Failure::UnknownCommand {
+        found: shortened(&sanitized(word)),
+        suggestion: suggestion.to_owned(),
+    })
 }
 
 /// The least number of letters to insert, delete or replace that makes one word the other: V. I. Levenshtein, "Binary codes capable of
@@ -67,10 +77,17 @@ mod tests {
 
     #[test]
     fn a_command_that_is_written_wrongly_is_told_from_a_file() {
-        for (word, command) in
-            [("analize", "analyze"), ("exprot", "export"), ("chek", "check"), ("Assemble", "assemble")]
-        {
-            assert_eq!(suggestion(&["--json", word, "x"]).as_deref(), Some(command), "{word}");
+        for (word, command) in [
+            ("analize", "analyze"),
+            ("exprot", "export"),
+            ("chek", "check"),
+            ("Assemble", "assemble"),
+        ] {
+            assert_eq!(
+                suggestion(&["--json", word, "x"]).as_deref(),
+                Some(command),
+                "{word}"
+            );
         }
         for words in [
             &["analyze", "analize"][..],
@@ -88,8 +105,15 @@ mod tests {
 
     #[test]
     fn the_distance_counts_letters() {
-        for (from, to, distance) in [("", "abc", 3), ("kitten", "sitting", 3), ("same", "same", 0)] {
-            assert_eq!((edit_distance(from, to), edit_distance(to, from)), (distance, distance));
+        for (from, to, distance) in [
+            ("", "abc", 3),
+            ("kitten", "sitting", 3),
+            ("same", "same", 0),
+        ] {
+            assert_eq!(
+                (edit_distance(from, to), edit_distance(to, from)),
+                (distance, distance)
+            );
         }
     }
 }

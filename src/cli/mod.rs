@@ -41,16 +41,32 @@ pub fn run(
     let arguments = joined(arguments);
     // A command line that is not understood is told of in the manner that it asks for.
     let asks = |option: &str| arguments.iter().any(|argument| argument == option);
-    terminal::speak(Manner { quiet: asks("--quiet"), json: asks("--json") });
+    terminal::speak(Manner {
+        quiet: asks("--quiet"),
+        json: asks("--json"),
+    });
     if let Some(misspelling) = misspelling::misspelt_command(&arguments) {
         return finish(Err(misspelling));
     }
     match Arguments::try_parse_from(arguments) {
-        Ok(Arguments { command: Some(command), quiet, json, .. }) => {
+        Ok(Arguments {
+            command: Some(command),
+            quiet,
+            json,
+            ..
+        }) => {
             terminal::speak(Manner { quiet, json });
-            finish(start_threads().map_err(|reason| Failure::NoThreads { reason }).and_then(|()| carry_out(&command)))
+            finish(
+                start_threads()
+                    .map_err(|reason| Failure::NoThreads { reason })
+                    .and_then(|()| carry_out(&command)),
+            )
         }
-        Ok(Arguments { command: None, file, .. }) => open_window(file),
+        Ok(Arguments {
+            command: None,
+            file,
+            ..
+        }) => open_window(file),
         Err(wrong) if wrong.use_stderr() => {
             error(&usage_words(&wrong));
             ExitCode::from(terminal::end(WRONG_INPUT))
@@ -66,7 +82,10 @@ fn joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     for argument in arguments {
         let joins = SETTINGS.iter().any(|setting| {
             let is_word = match setting.kind {
-                Kind::Range { nothing: Some([word, _]), .. } => argument == word,
+                Kind::Range {
+                    nothing: Some([word, _]),
+                    ..
+                } => argument == word,
                 Kind::Choice { words, .. } if setting.bare.is_some() => {
                     words.iter().any(|[word, ..]| argument == *word)
                 }
@@ -95,7 +114,11 @@ fn carry_out(command: &Command) -> Result<(), Failure> {
         Command::Assemble(arguments) => models::assemble(arguments),
         Command::Convert(arguments) => models::convert(arguments),
         Command::Identify(arguments) => identify::identify(arguments),
-        Command::Check { file, opening, sign } => check::check(file, opening, sign),
+        Command::Check {
+            file,
+            opening,
+            sign,
+        } => check::check(file, opening, sign),
         Command::Example { directory, force } => example(directory, existing(*force)),
     }
 }
@@ -103,7 +126,9 @@ fn carry_out(command: &Command) -> Result<(), Failure> {
 /// Opens a dataset or a study; what is different in a study's dataset is told on standard error, a line each.
 fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
     if file.is_file() && file.extension().is_some() && holds_models(file) {
-        return Err(Failure::Models { path: sanitized_path(file) });
+        return Err(Failure::Models {
+            path: sanitized_path(file),
+        });
     }
     let opened = match &arguments.dataset {
         Some(dataset) => Opened::Study(open_study_of(file, dataset, &ReadingBudget::default())?),
@@ -114,7 +139,10 @@ fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
             caution(&format!("{}: {difference}", file.display()));
         }
         if arguments.strict && !study.differences.is_empty() {
-            return Err(Failure::Different { path: sanitized_path(file), count: study.differences.len() });
+            return Err(Failure::Different {
+                path: sanitized_path(file),
+                count: study.differences.len(),
+            });
         }
     }
     Ok(opened)
@@ -131,7 +159,11 @@ fn example(directory: &Path, existing: Existing) -> Result<(), Failure> {
 }
 
 fn existing(force: bool) -> Existing {
-    if force { Existing::Replace } else { Existing::Keep }
+    if force {
+        Existing::Replace
+    } else {
+        Existing::Keep
+    }
 }
 
 fn finish(result: Result<(), Failure>) -> ExitCode {
@@ -144,13 +176,26 @@ fn finish(result: Result<(), Failure>) -> ExitCode {
 
 /// clap's complaint on one line, without the usage that it repeats below; of a value, the option and what is wrong with it.
 fn usage_words(error: &clap::Error) -> String {
-    if let (Some(ContextValue::String(option)), Some(reason)) = (error.get(ContextKind::InvalidArg), error.source()) {
+    if let (Some(ContextValue::String(option)), Some(reason)) =
+        (error.get(ContextKind::InvalidArg), error.source())
+    {
         return format!("{}: {reason}", option.split(' ').next().unwrap_or(option));
     }
     let words = error.to_string();
     let complaint = words.split("\n\nUsage:").next().unwrap_or(&words);
-    let paragraphs = complaint.split("\n\n").filter(|paragraph| !paragraph.starts_with("For more information"));
-    let line = |paragraph: &str| paragraph.lines().map(str::trim).collect::<Vec<_>>().join(" ");
+    let paragraphs = complaint
+        .split("\n\n")
+        .filter(|paragraph| !paragraph.starts_with("For more information"));
+    let line = |paragraph: &str| {
+        paragraph
+            .lines()
+            .map(str::trim)
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
     let line = paragraphs.map(line).collect::<Vec<_>>().join("; ");
-    format!("{} (gdcm --help says more)", line.strip_prefix("error: ").unwrap_or(&line).trim_end())
+    format!(
+        "{} (gdcm --help says more)",
+        line.strip_prefix("error: ").unwrap_or(&line).trim_end()
+    )
 }

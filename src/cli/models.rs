@@ -6,17 +6,21 @@ use std::path::{Path, PathBuf};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use gdcm_io::{
-    EVERY_TABLE, FolderProgress, FoundModels, OutputSet, add_dataset, add_models, add_rules, load_rules, read_models,
-    relative_folder, rules_path, sources_folder,
+    EVERY_TABLE, FolderProgress, FoundModels, OutputSet, add_dataset, add_models, add_rules,
+    load_rules, read_models, relative_folder, rules_path, sources_folder,
 };
-use gdcm_model::assembly::{Assembly, ChannelDeclarations, FileScope, FoundModel, Headings, Rules, proposed_rules};
+use gdcm_model::assembly::{
+    Assembly, ChannelDeclarations, FileScope, FoundModel, Headings, Rules, proposed_rules,
+};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::number;
 use gdcm_study::study::{ConditionFailure, Table};
 
 use super::arguments::{AssembleArguments, ConvertArguments, OfFiles};
 use super::existing;
-use super::terminal::{Failure, caution, coded_caution, error, indented, note, progress_target, say};
+use super::terminal::{
+    Failure, caution, coded_caution, error, indented, note, progress_target, say,
+};
 
 /// Which file is read, on a terminal only.
 pub(super) struct ReadingProgress {
@@ -55,10 +59,16 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
     if found.models.is_empty() {
         return Err(Failure::nothing_in(&arguments.files, "model"));
     }
-    let models: Vec<FoundModel> = found.models.into_iter().map(FoundModel::with_names_of_file).collect();
+    let models: Vec<FoundModel> = found
+        .models
+        .into_iter()
+        .map(FoundModel::with_names_of_file)
+        .collect();
     add_models(&models, &arguments.out, &mut outputs)?;
     outputs.persist()?;
-    let lines = models.iter().map(|model| format!("{}: {}\n", sanitized(&model.key()), model.words()));
+    let lines = models
+        .iter()
+        .map(|model| format!("{}: {}\n", sanitized(&model.key()), model.words()));
     say(&format!(
         "{}{}: {}\n",
         lines.collect::<String>(),
@@ -70,17 +80,27 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
 /// Makes a dataset of the models in a folder.
 pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     check_declared_once(arguments)?;
-    let rules_path = arguments.rules.clone().unwrap_or_else(|| rules_path(&arguments.out));
+    let rules_path = arguments
+        .rules
+        .clone()
+        .unwrap_or_else(|| rules_path(&arguments.out));
     let is_proposed = arguments.rules.is_none();
-    let mut outputs = OutputSet::new(existing(arguments.force), arguments.rules.iter().cloned().collect());
+    let mut outputs = OutputSet::new(
+        existing(arguments.force),
+        arguments.rules.iter().cloned().collect(),
+    );
     let mut places: Vec<&Path> = vec![&arguments.out];
     places.extend(is_proposed.then_some(rules_path.as_path()));
     outputs.check(&places)?;
     let said = arguments.rules.as_deref().map(said_rules).transpose()?;
-    let mut headings = said.as_ref().map(|rules| rules.headings.clone()).unwrap_or_default();
+    let mut headings = said
+        .as_ref()
+        .map(|rules| rules.headings.clone())
+        .unwrap_or_default();
     headings.extend(said_headings(&arguments.headings));
     let found = found_models(&arguments.folders, &headings)?;
-    let mut rules = said.unwrap_or_else(|| proposed_rules(&name_of(&arguments.folders), &found.models));
+    let mut rules =
+        said.unwrap_or_else(|| proposed_rules(&name_of(&arguments.folders), &found.models));
     rules.headings = headings;
     rules.sample_time_s = arguments.sample_time.or(rules.sample_time_s);
     declare(arguments, &found.models, &mut rules)?;
@@ -112,12 +132,18 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     match dataset {
         Some(dataset) => {
             let conditions = counted(dataset.conditions().len(), "condition");
-            say(&format!("{}: {conditions}\n", sanitized_path(&arguments.out)))
+            say(&format!(
+                "{}: {conditions}\n",
+                sanitized_path(&arguments.out)
+            ))
         }
         None => {
             let problems = assembly.told();
             problems.iter().for_each(|(_, words)| error(words));
-            Err(Failure::Incomplete { count: problems.len(), rules: sanitized_path(&rules_path) })
+            Err(Failure::Incomplete {
+                count: problems.len(),
+                rules: sanitized_path(&rules_path),
+            })
         }
     }
 }
@@ -125,7 +151,9 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
 /// The rules of a file; what is to be known of them is told on standard error.
 fn said_rules(path: &Path) -> Result<Rules, Failure> {
     let (rules, cautions) = load_rules(path)?;
-    cautions.iter().for_each(|words| caution(&format!("{}: {words}", path.display())));
+    cautions
+        .iter()
+        .for_each(|words| caution(&format!("{}: {words}", path.display())));
     Ok(rules)
 }
 
@@ -134,37 +162,62 @@ fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
     let mut signs = BTreeSet::new();
     for OfFiles { channel, of, .. } in &arguments.sign {
         if !signs.insert((channel, of)) {
-            return Err(Failure::option("--sign", format!("{channel} of {of} stands twice")));
+            return Err(Failure::option(
+                "--sign",
+                format!("{channel} of {of} stands twice"),
+            ));
         }
     }
     let mut conversions = BTreeSet::new();
-    let of_units = arguments.unit.iter().map(|unit| ("--unit", &unit.channel, &unit.of));
-    let of_factors = arguments.factor.iter().map(|factor| ("--factor", &factor.channel, &factor.of));
+    let of_units = arguments
+        .unit
+        .iter()
+        .map(|unit| ("--unit", &unit.channel, &unit.of));
+    let of_factors = arguments
+        .factor
+        .iter()
+        .map(|factor| ("--factor", &factor.channel, &factor.of));
     for (option, channel, of) in of_units.chain(of_factors) {
         if !conversions.insert((channel, of)) {
-            return Err(Failure::option(option, format!("{channel} of {of} has a unit or a factor already")));
+            return Err(Failure::option(
+                option,
+                format!("{channel} of {of} has a unit or a factor already"),
+            ));
         }
     }
     Ok(())
 }
 
 /// Puts the units, factors and signs of the command line into the rules.
-fn declare(arguments: &AssembleArguments, models: &[FoundModel], rules: &mut Rules) -> Result<(), Failure> {
+fn declare(
+    arguments: &AssembleArguments,
+    models: &[FoundModel],
+    rules: &mut Rules,
+) -> Result<(), Failure> {
     for OfFiles { channel, said, of } in &arguments.unit {
         let units = [(channel.clone(), said.clone())].into();
-        let declared = ChannelDeclarations { units, ..ChannelDeclarations::default() };
+        let declared = ChannelDeclarations {
+            units,
+            ..ChannelDeclarations::default()
+        };
         check_declared("--unit", channel, of, models, rules)?;
         declare_of(of, &declared, models, rules);
     }
     for OfFiles { channel, said, of } in &arguments.factor {
         let factors = [(channel.clone(), *said)].into();
-        let declared = ChannelDeclarations { factors, ..ChannelDeclarations::default() };
+        let declared = ChannelDeclarations {
+            factors,
+            ..ChannelDeclarations::default()
+        };
         check_declared("--factor", channel, of, models, rules)?;
         declare_of(of, &declared, models, rules);
     }
     for OfFiles { channel, said, of } in &arguments.sign {
         let signs = [(channel.clone(), *said)].into();
-        let declared = ChannelDeclarations { signs, ..ChannelDeclarations::default() };
+        let declared = ChannelDeclarations {
+            signs,
+            ..ChannelDeclarations::default()
+        };
         check_declared("--sign", channel, of, models, rules)?;
         declare_of(of, &declared, models, rules);
     }
@@ -172,7 +225,12 @@ fn declare(arguments: &AssembleArguments, models: &[FoundModel], rules: &mut Rul
 }
 
 /// Declares something of one model beside what the rules say of that model, or of more models by their scope.
-fn declare_of(of: &FileScope, declared: &ChannelDeclarations, models: &[FoundModel], rules: &mut Rules) {
+fn declare_of(
+    of: &FileScope,
+    declared: &ChannelDeclarations,
+    models: &[FoundModel],
+    rules: &mut Rules,
+) {
     match of {
         FileScope::Files(key) if models.iter().any(|model| model.key() == *key) => {
             rules.rows.entry(key.clone()).or_default().declare(declared);
@@ -191,14 +249,24 @@ fn check_declared(
 ) -> Result<(), Failure> {
     let mut channels = rules.inputs.iter().chain(&rules.outputs);
     if !channels.any(|rule| rule.name == channel) {
-        let names: Vec<&str> = rules.inputs.iter().chain(&rules.outputs).map(|rule| rule.name.as_str()).collect();
-        let reason = format!("the dataset has no channel {channel}; it has {}", names.join(", "));
+        let names: Vec<&str> = rules
+            .inputs
+            .iter()
+            .chain(&rules.outputs)
+            .map(|rule| rule.name.as_str())
+            .collect();
+        let reason = format!(
+            "the dataset has no channel {channel}; it has {}",
+            names.join(", ")
+        );
         return Err(Failure::option(option, reason));
     }
     if let FileScope::Files(pattern) = of
         && !models.iter().any(|model| of.holds(model, None))
     {
-        let reason = format!("{channel}: no model is in \"{pattern}\"; models are named as in the last column, file");
+        let reason = format!(
+            "{channel}: no model is in \"{pattern}\"; models are named as in the last column, file"
+        );
         return Err(Failure::option(option, reason));
     }
     Ok(())
@@ -207,8 +275,14 @@ fn check_declared(
 /// The models of files and folders; what could not be taken is told on standard error.
 fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<FoundModels, Failure> {
     let found = read_models(paths, headings, &ReadingProgress::new())?;
-    found.faults.iter().for_each(|fault| caution(&format!("not taken: {fault}")));
-    found.ignored.iter().for_each(|words| note(&format!("no model: {words}")));
+    found
+        .faults
+        .iter()
+        .for_each(|fault| caution(&format!("not taken: {fault}")));
+    found
+        .ignored
+        .iter()
+        .for_each(|words| note(&format!("no model: {words}")));
     for words in found.unused_words() {
         note(&words);
     }
@@ -217,8 +291,15 @@ fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<FoundModels, F
 
 /// What is said of every table of as many columns.
 fn said_headings(headings: &[String]) -> Headings {
-    let said: Vec<String> = headings.iter().map(|heading| heading.trim().to_owned()).collect();
-    if said.is_empty() { Headings::new() } else { Headings::from([(EVERY_TABLE.to_owned(), said)]) }
+    let said: Vec<String> = headings
+        .iter()
+        .map(|heading| heading.trim().to_owned())
+        .collect();
+    if said.is_empty() {
+        Headings::new()
+    } else {
+        Headings::from([(EVERY_TABLE.to_owned(), said)])
+    }
 }
 
 fn name_of(folders: &[PathBuf]) -> String {
@@ -228,14 +309,33 @@ fn name_of(folders: &[PathBuf]) -> String {
 
 /// A line a model: what it is to be.
 fn table(assembly: &Assembly) -> String {
-    let mut table = Table::new("", ["condition", "role", "name", "airspeed", "altitude", "weight", "trim", "file"]);
+    let mut table = Table::new(
+        "",
+        [
+            "condition",
+            "role",
+            "name",
+            "airspeed",
+            "altitude",
+            "weight",
+            "trim",
+            "file",
+        ],
+    );
     for part in assembly.parts() {
         let row = &part.row;
         let or_dash = |text: Option<String>| text.unwrap_or_else(|| "?".to_owned());
-        let trim = row.perturbation.iter().map(|(coordinate, by)| format!("{coordinate} {}", number(*by)));
+        let trim = row
+            .perturbation
+            .iter()
+            .map(|(coordinate, by)| format!("{coordinate} {}", number(*by)));
         table.row([
             or_dash(row.condition.map(|condition| condition.to_string())),
-            if row.left_out { "left out".to_owned() } else { or_dash(row.role.map(|role| role.word().to_owned())) },
+            if row.left_out {
+                "left out".to_owned()
+            } else {
+                or_dash(row.role.map(|role| role.word().to_owned()))
+            },
             sanitized(&row.name),
             or_dash(row.airspeed_words()),
             row.altitude_words(),
@@ -248,5 +348,9 @@ fn table(assembly: &Assembly) -> String {
 }
 
 pub(super) fn counted(count: usize, what: &str) -> String {
-    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+    if count == 1 {
+        format!("1 {what}")
+    } else {
+        format!("{count} {what}s")
+    }
 }

@@ -9,15 +9,19 @@ use gdcm_io::{FoundRecords, read_records};
 use gdcm_model::dataset::{Band, ConditionId, Dataset};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::{number, telling};
-use gdcm_study::study::{Analysis, Execution, HistoryRecords, Table, TimeHistories, time_histories_of};
+use gdcm_study::study::{
+    Analysis, Execution, HistoryRecords, Table, TimeHistories, time_histories_of,
+};
 use gdcm_sysid::identification::{CautionNote, Preparation};
 use gdcm_sysid::records::{
-    LaidOutRecord, LayoutCaution, LayoutProblem, RecordChannels, RecordSource, RecordTable, SaidConversion, TimeWish,
-    leave_out_copies, median_step, with_topics_joined,
+    LaidOutRecord, LayoutCaution, LayoutProblem, RecordChannels, RecordSource, RecordTable,
+    SaidConversion, TimeWish, leave_out_copies, median_step, with_topics_joined,
 };
 
 use super::arguments::OfChannel;
-use super::identify_arguments::{IdentifyArguments, RecordPart, channel_unit, record_part, say_conversions};
+use super::identify_arguments::{
+    IdentifyArguments, RecordPart, channel_unit, record_part, say_conversions,
+};
 use super::models::ReadingProgress;
 use super::terminal::{Failure, TerminalProgress, caution, error, indented, note};
 use crate::executor::Pool;
@@ -58,29 +62,46 @@ pub(super) fn laid_out(
     channels: &mut RecordChannels,
     dataset: Option<&Dataset>,
 ) -> Result<ReadRecords, Failure> {
-    let wish = TimeWish { column: arguments.time.clone(), sample_time_s: arguments.sample_rate.map(|rate| 1.0 / rate) };
+    let wish = TimeWish {
+        column: arguments.time.clone(),
+        sample_time_s: arguments.sample_rate.map(|rate| 1.0 / rate),
+    };
     let (mut records, mut told): (Vec<LaidOutRecord>, Vec<String>) = (Vec::new(), Vec::new());
     let FoundRecords { tables, unread, .. } = found_records(&arguments.records)?;
     let (mut reading, mut wrong): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
-    let units_are_known = channels.inputs.iter().chain(&channels.outputs).all(|rule| !rule.unit.is_empty());
+    let units_are_known = channels
+        .inputs
+        .iter()
+        .chain(&channels.outputs)
+        .all(|rule| !rule.unit.is_empty());
     let tables = with_topics_joined(tables, channels, &wish);
     let mut wholes = Vec::new();
     let tables = if arguments.part.is_empty() {
         tables
     } else {
-        let lay_out = |table: &RecordTable| as_dataset_says(table.clone(), channels, dataset, &wish).0;
+        let lay_out =
+            |table: &RecordTable| as_dataset_says(table.clone(), channels, dataset, &wish).0;
         parts(tables, &arguments.part, lay_out, &mut wholes)?
     };
     for table in tables {
         let (record, notes) = as_dataset_says(table, channels, dataset, &wish);
         // A part is of those records that have samples then.
-        if record.table.part_s.is_some() && record.flight.as_ref().is_some_and(|flight| flight.time_s.len() < 2) {
+        if record.table.part_s.is_some()
+            && record
+                .flight
+                .as_ref()
+                .is_some_and(|flight| flight.time_s.len() < 2)
+        {
             note(&format!("{}: no samples then", record.table.name));
             continue;
         }
         let name = &record.table.name;
         // What a log is, and the signs of its system, no other file tells.
-        let is_log = record.table.columns.iter().any(|column| column.topic.is_some() || column.meaning.is_some());
+        let is_log = record
+            .table
+            .columns
+            .iter()
+            .any(|column| column.topic.is_some() || column.meaning.is_some());
         let of_log = record.table.notes.iter().filter(|_| is_log).cloned();
         let notes: Vec<String> = of_log.chain(notes).collect();
         // Records of one flight are alike: what is chosen is said once.
@@ -89,17 +110,26 @@ pub(super) fn laid_out(
             reading.extend(words.inspect(|words| note(words)));
             told = notes;
         }
-        record.cautions.iter().for_each(|words| caution(&format!("{name}: {words}")));
+        record
+            .cautions
+            .iter()
+            .for_each(|words| caution(&format!("{name}: {words}")));
         // What is wrong with all of them is told of the first.
         let problems: Vec<String> = record.problems.iter().map(ToString::to_string).collect();
         if problems != wrong {
-            problems.iter().for_each(|words| error(&format!("{name}: {words}")));
+            problems
+                .iter()
+                .for_each(|words| error(&format!("{name}: {words}")));
             wrong = problems;
         }
         channels.take_units(&record.layout, &record.table);
         records.push(record);
     }
-    let has_samples = |part: &&RecordPart| records.iter().any(|record| is_part(&record.table, part, &wholes));
+    let has_samples = |part: &&RecordPart| {
+        records
+            .iter()
+            .any(|record| is_part(&record.table, part, &wholes))
+    };
     if let Some(part) = arguments.part.iter().find(|part| !has_samples(part)) {
         return Err(Failure::option("--part", no_samples(part, &wholes)));
     }
@@ -108,8 +138,12 @@ pub(super) fn laid_out(
         if units_are_known || !record.problems.is_empty() {
             return record;
         }
-        let (record, _) = as_dataset_says(Arc::unwrap_or_clone(record.table), channels, dataset, &wish);
-        record.problems.iter().for_each(|words| error(&format!("{}: {words}", record.table.name)));
+        let (record, _) =
+            as_dataset_says(Arc::unwrap_or_clone(record.table), channels, dataset, &wish);
+        record
+            .problems
+            .iter()
+            .for_each(|words| error(&format!("{}: {words}", record.table.name)));
         record
     };
     let mut records: Vec<LaidOutRecord> = records.into_iter().map(by_units).collect();
@@ -118,15 +152,35 @@ pub(super) fn laid_out(
     for copy in records.iter().filter(|record| !record.used) {
         for (first, text) in tell_copies(copy) {
             let records = vec![copy.table.name.clone()];
-            copies.push((first.clone(), CautionNote { code: "duplicate", records, text, ..CautionNote::default() }));
+            copies.push((
+                first.clone(),
+                CautionNote {
+                    code: "duplicate",
+                    records,
+                    text,
+                    ..CautionNote::default()
+                },
+            ));
         }
     }
     records.retain(|record| record.used);
-    let wrong = records.iter().filter(|record| !record.problems.is_empty()).count();
+    let wrong = records
+        .iter()
+        .filter(|record| !record.problems.is_empty())
+        .count();
     if wrong > 0 {
-        Err(Failure::Records { wrong, of: records.len() })
+        Err(Failure::Records {
+            wrong,
+            of: records.len(),
+        })
     } else {
-        Ok(ReadRecords { records, unread, reading, copies, wholes })
+        Ok(ReadRecords {
+            records,
+            unread,
+            reading,
+            copies,
+            wholes,
+        })
     }
 }
 
@@ -140,7 +194,13 @@ fn as_dataset_says(
     match dataset {
         Some(dataset) => {
             let (record, notes) = LaidOutRecord::as_dataset_says(table, channels, dataset, wish);
-            (LaidOutRecord { used: true, ..record }, notes)
+            (
+                LaidOutRecord {
+                    used: true,
+                    ..record
+                },
+                notes,
+            )
         }
         None => LaidOutRecord::proposed(table, channels, wish),
     }
@@ -158,16 +218,27 @@ fn parts(
     for part in asked {
         let mut is_called_so = false;
         for table in &tables {
-            if !part.record.as_ref().is_none_or(|wanted| is_called(table, wanted)) {
+            if !part
+                .record
+                .as_ref()
+                .is_none_or(|wanted| is_called(table, wanted))
+            {
                 continue;
             }
             is_called_so = true;
-            let known = wholes.iter().find(|whole| whole.source == table.source).map(|whole| whole.span_s);
+            let known = wholes
+                .iter()
+                .find(|whole| whole.source == table.source)
+                .map(|whole| whole.span_s);
             match known.or_else(|| lay_out(table).span_s()) {
                 Some(span_s) => {
                     if known.is_none() {
                         let (name, source) = (table.name.clone(), table.source.clone());
-                        wholes.push(WholeRecord { name, source, span_s });
+                        wholes.push(WholeRecord {
+                            name,
+                            source,
+                            span_s,
+                        });
                     }
                     found.push(table.part_of_time(part.on_clock_s(span_s[0])));
                 }
@@ -177,7 +248,10 @@ fn parts(
         }
         if !is_called_so {
             let record = part.record.as_deref().unwrap_or_default();
-            return Err(Failure::option("--part", format!("\"{record}\" is none of the records")));
+            return Err(Failure::option(
+                "--part",
+                format!("\"{record}\" is none of the records"),
+            ));
         }
     }
     Ok(found)
@@ -185,7 +259,11 @@ fn parts(
 
 /// Whether a record is a part that was asked for, of any record that is called so; one whose columns are not clear is every part.
 fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRecord]) -> bool {
-    if !part.record.as_ref().is_none_or(|record| is_called(table, record) || is_called_before_part(table, record)) {
+    if !part
+        .record
+        .as_ref()
+        .is_none_or(|record| is_called(table, record) || is_called_before_part(table, record))
+    {
         return false;
     }
     match wholes.iter().find(|whole| whole.source == table.source) {
@@ -196,7 +274,11 @@ fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRecord]) -> bo
 
 /// Whether a part is one of the record called so: its name is that of the record with the times behind it.
 fn is_called_before_part(table: &RecordTable, wanted: &str) -> bool {
-    table.part_s.is_some() && table.name.strip_prefix(wanted).is_some_and(|rest| rest.starts_with(", "))
+    table.part_s.is_some()
+        && table
+            .name
+            .strip_prefix(wanted)
+            .is_some_and(|rest| rest.starts_with(", "))
 }
 
 /// Why a part is none: where the records are that it was asked of.
@@ -204,12 +286,25 @@ fn no_samples(part: &RecordPart, wholes: &[WholeRecord]) -> String {
     /// Most records whose spans are told.
     const MOST: usize = 4;
     let is_asked = |whole: &&WholeRecord| {
-        let table = RecordTable { source: whole.source.clone(), ..RecordTable::new(whole.name.clone(), Vec::new()) };
-        part.record.as_ref().is_none_or(|record| is_called(&table, record))
+        let table = RecordTable {
+            source: whole.source.clone(),
+            ..RecordTable::new(whole.name.clone(), Vec::new())
+        };
+        part.record
+            .as_ref()
+            .is_none_or(|record| is_called(&table, record))
     };
-    let spans: Vec<String> = wholes.iter().filter(is_asked).map(WholeRecord::words).collect();
+    let spans: Vec<String> = wholes
+        .iter()
+        .filter(is_asked)
+        .map(WholeRecord::words)
+        .collect();
     let more = spans.len().saturating_sub(MOST);
-    let more = if more == 0 { String::new() } else { format!("; {more} more") };
+    let more = if more == 0 {
+        String::new()
+    } else {
+        format!("; {more} more")
+    };
     let shown = spans[..spans.len().min(MOST)].join("; ");
     let asked = part.words();
     if part.is_from_start {
@@ -218,7 +313,11 @@ fn no_samples(part: &RecordPart, wholes: &[WholeRecord]) -> String {
     let [from, to] = part.part_s;
     let mut words = format!("no record has samples at {asked} s on its own clock: {shown}{more}");
     if from >= 0.0 {
-        words += &format!(" (--part +{}:+{} counts from the start of a record)", number(from), number(to));
+        words += &format!(
+            " (--part +{}:+{} counts from the start of a record)",
+            number(from),
+            number(to)
+        );
     }
     words
 }
@@ -226,16 +325,31 @@ fn no_samples(part: &RecordPart, wholes: &[WholeRecord]) -> String {
 /// Whether a record is called so: by its file, its name, or its name in its file.
 pub(super) fn is_called(table: &RecordTable, wanted: &str) -> bool {
     let source = &table.source;
-    let file = Path::new(wanted).file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    source.file.rsplit('/').next() == Some(&file) || table.name == *wanted || source.variable.as_deref() == Some(wanted)
+    let file = Path::new(wanted)
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default();
+    source.file.rsplit('/').next() == Some(&file)
+        || table.name == *wanted
+        || source.variable.as_deref() == Some(wanted)
 }
 
 /// The records of files and folders; what could not be taken is told on standard error.
 pub(super) fn found_records(paths: &[PathBuf]) -> Result<FoundRecords, Failure> {
     let found = read_records(paths, &ReadingProgress::new())?;
-    found.faults.iter().for_each(|fault| caution(&format!("not taken: {fault}")));
-    found.ignored.iter().for_each(|words| note(&format!("no record: {words}")));
-    if found.tables.is_empty() { Err(Failure::nothing_in(paths, "record")) } else { Ok(found) }
+    found
+        .faults
+        .iter()
+        .for_each(|fault| caution(&format!("not taken: {fault}")));
+    found
+        .ignored
+        .iter()
+        .for_each(|words| note(&format!("no record: {words}")));
+    if found.tables.is_empty() {
+        Err(Failure::nothing_in(paths, "record"))
+    } else {
+        Ok(found)
+    }
 }
 
 /// Holds out the records asked for, or parts of `wholes`; without a word those whose names say so stay held out.
@@ -245,21 +359,25 @@ pub(super) fn hold_out(
     wholes: &[WholeRecord],
 ) -> Result<(), Failure> {
     if !wanted.is_empty() {
-        records.iter_mut().for_each(|record| record.guess.held_out = false);
+        records
+            .iter_mut()
+            .for_each(|record| record.guess.held_out = false);
     }
     for wanted in wanted {
         let part = record_part(wanted).ok();
         let mut is_found = false;
         for record in records.iter_mut() {
             let table = &record.table;
-            let is_of_part = |part: &RecordPart| table.part_s.is_some() && is_part(table, part, wholes);
+            let is_of_part =
+                |part: &RecordPart| table.part_s.is_some() && is_part(table, part, wholes);
             if is_called(table, wanted) || part.as_ref().is_some_and(is_of_part) {
                 record.guess.held_out = true;
                 is_found = true;
             }
         }
         if !is_found {
-            let reason = format!("\"{wanted}\" is none of the records; give its file among them too");
+            let reason =
+                format!("\"{wanted}\" is none of the records; give its file among them too");
             return Err(Failure::option("--hold-out", reason));
         }
     }
@@ -269,10 +387,22 @@ pub(super) fn hold_out(
 /// A line a record, each behind `indent` spaces.
 pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
     let mut table = Table::new("", ["record", "kind", "samples", "step", "length", ""]);
-    for LaidOutRecord { table: record, layout, guess, flight, .. } in records {
+    for LaidOutRecord {
+        table: record,
+        layout,
+        guess,
+        flight,
+        ..
+    } in records
+    {
         // As it is used: topics are brought to one clock, parts are cut.
-        let clock = flight.as_ref().map(|flight| (flight.time_s.len(), median_step(&flight.time_s)));
-        let (samples, step_s) = clock.unwrap_or((record.rows(), layout.time.and_then(|time| time.step_s(record))));
+        let clock = flight
+            .as_ref()
+            .map(|flight| (flight.time_s.len(), median_step(&flight.time_s)));
+        let (samples, step_s) = clock.unwrap_or((
+            record.rows(),
+            layout.time.and_then(|time| time.step_s(record)),
+        ));
         let step_s = step_s.unwrap_or(f64::NAN);
         table.row([
             sanitized(&record.name),
@@ -280,7 +410,11 @@ pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
             samples.to_string(),
             format!("{} s", telling(step_s, 3)),
             format!("{:.1} s", step_s * samples as f64),
-            if guess.held_out { "held out".to_owned() } else { String::new() },
+            if guess.held_out {
+                "held out".to_owned()
+            } else {
+                String::new()
+            },
         ]);
     }
     indented(&table, indent)
@@ -311,7 +445,11 @@ impl ReadHistories {
     /// How the command ends whose work was done with them.
     pub(super) fn ended(&self) -> Result<(), Failure> {
         let paths = self.unread.join(", ");
-        if paths.is_empty() { Ok(()) } else { Err(Failure::Unread { paths }) }
+        if paths.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::Unread { paths })
+        }
     }
 }
 
@@ -327,25 +465,42 @@ impl HistoryArguments {
         channels.resampling.band_end = Some(band.max());
         say_conversions("--unit", &self.unit, SaidConversion::Unit, &mut channels)?;
         let tables = with_topics_joined(tables, &channels, &TimeWish::default());
-        let records = tables.into_iter().filter_map(|table| record_of(table, dataset, &channels, &mut unread));
+        let records = tables
+            .into_iter()
+            .filter_map(|table| record_of(table, dataset, &channels, &mut unread));
         let (of, mut records): (Vec<ConditionId>, Vec<LaidOutRecord>) = records.unzip();
         leave_out_copies(&mut records);
         records.iter().for_each(|record| drop(tell_copies(record)));
         let preparation = preparation(dataset);
         let conditions = dataset.conditions().iter().map(|condition| {
-            let own = of.iter().zip(&records).filter(|(of, _)| **of == condition.id()).map(|(_, record)| record);
+            let own = of
+                .iter()
+                .zip(&records)
+                .filter(|(of, _)| **of == condition.id())
+                .map(|(_, record)| record);
             HistoryRecords::of(condition.id(), own, preparation.clone())
         });
-        Ok(ReadHistories { conditions: conditions.filter(|of| !of.records.is_empty()).collect(), unread })
+        Ok(ReadHistories {
+            conditions: conditions.filter(|of| !of.records.is_empty()).collect(),
+            unread,
+        })
     }
 }
 
 /// The answers of the models to records, with a word about how far it is on a terminal.
-pub(super) fn time_histories(analysis: &Analysis, records: &ReadHistories) -> Result<TimeHistories, Failure> {
+pub(super) fn time_histories(
+    analysis: &Analysis,
+    records: &ReadHistories,
+) -> Result<TimeHistories, Failure> {
     let records = records.conditions.as_slice();
     let progress = TerminalProgress::new("simulating records");
     let execution = Execution::new(&Pool, &progress, HistoryRecords::steps(records));
-    Ok(time_histories_of(analysis, records, &analysis.study.requirements.tolerances, &execution)?)
+    Ok(time_histories_of(
+        analysis,
+        records,
+        &analysis.study.requirements.tolerances,
+        &execution,
+    )?)
 }
 
 /// A record and its condition, as the dataset says of it where it does; none where it has no condition, or its columns are not clear:
@@ -367,12 +522,23 @@ fn record_of(
         (None, _) => (record.guess.condition_of(dataset), record),
     };
     let Some(condition) = condition else {
-        caution(&format!("{name}: left out: its name says no condition of the dataset"));
+        caution(&format!(
+            "{name}: left out: its name says no condition of the dataset"
+        ));
         return None;
     };
-    record.cautions.iter().for_each(|words| caution(&format!("{name}: {words}")));
-    record.problems.iter().for_each(|words| caution(&format!("{name}: left out: {words}")));
-    let is_unsaid = record.problems.iter().any(|problem| matches!(problem, LayoutProblem::UnsaidUnit { .. }));
+    record
+        .cautions
+        .iter()
+        .for_each(|words| caution(&format!("{name}: {words}")));
+    record
+        .problems
+        .iter()
+        .for_each(|words| caution(&format!("{name}: left out: {words}")));
+    let is_unsaid = record
+        .problems
+        .iter()
+        .any(|problem| matches!(problem, LayoutProblem::UnsaidUnit { .. }));
     unread.extend(is_unsaid.then(|| sanitized(&name)));
     if !record.used {
         note(&format!("{name}: left out: the dataset says so"));
@@ -393,6 +559,7 @@ fn tell_copies(record: &LaidOutRecord) -> Vec<(&String, String)> {
 /// Every channel as it is.
 fn preparation(dataset: &Dataset) -> Preparation {
     let (inputs, outputs) = dataset.names_of_channels();
-    let [inputs, outputs]: [Vec<&str>; 2] = [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
+    let [inputs, outputs]: [Vec<&str>; 2] =
+        [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
     Preparation::of(&inputs, &outputs)
 }

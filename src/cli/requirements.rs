@@ -2,20 +2,24 @@
 
 use std::collections::BTreeSet;
 
-use gdcm_io::{REQUIREMENT_FILES, add_tolerances, make_directory, requirement_paths, write_requirements};
+use gdcm_io::{
+    REQUIREMENT_FILES, add_tolerances, make_directory, requirement_paths, write_requirements,
+};
 use gdcm_method::requirements::ModeVerdict;
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::s_to_ms;
 use gdcm_study::study::{
-    Analysis, BandwidthFinding, KnownPoles, MissingFinding, RequirementRole, Requirements, SummaryFinding, Table,
-    TimeHistories,
+    Analysis, BandwidthFinding, KnownPoles, MissingFinding, RequirementRole, Requirements,
+    SummaryFinding, Table, TimeHistories,
 };
 
 use super::arguments::RequirementsArguments;
 use super::models::counted;
 use super::records::time_histories;
 use super::study_options::{analysis_of, study_of};
-use super::terminal::{Failure, TerminalProgress, by_words, caution_of, indented, line, note, of_conditions, say};
+use super::terminal::{
+    Failure, TerminalProgress, by_words, caution_of, indented, line, note, of_conditions, say,
+};
 
 /// Writes the table of tolerances where that is asked for; analyses, writes the requirements, and prints a short table.
 pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Failure> {
@@ -39,13 +43,20 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     make_directory(out)?;
     let records = histories.read(&study.dataset, study.settings.band)?;
     let (analysis, engine) = analysis_of(study, &arguments.study, true)?;
-    let requirements =
-        engine.requirements(&analysis, &KnownPoles::default(), &TerminalProgress::new("reading bandwidths"))?;
+    let requirements = engine.requirements(
+        &analysis,
+        &KnownPoles::default(),
+        &TerminalProgress::new("reading bandwidths"),
+    )?;
     let histories = time_histories(&analysis, &records)?;
     let dataset = (analysis.study.dataset.name(), loaded.sha256.as_str());
     write_requirements((&requirements, &histories), dataset, out, outputs)?;
     tell_cautions(&requirements, &histories);
-    let files = format!("{} in {}", REQUIREMENT_FILES.join(", "), sanitized_path(out));
+    let files = format!(
+        "{} in {}",
+        REQUIREMENT_FILES.join(", "),
+        sanitized_path(out)
+    );
     let text = bandwidth_section(&analysis, &requirements)
         + &summary_section(&requirements)
         + &mode_section(&requirements)
@@ -58,16 +69,31 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
 
 /// What has to be known, and what is missing; that there are no records at all is no surprise to who gave none.
 fn tell_cautions(requirements: &Requirements, histories: &TimeHistories) {
-    for (conditions, words) in by_words(requirements.cautions.iter().map(|of| (of.condition, of.text.clone()))) {
+    for (conditions, words) in by_words(
+        requirements
+            .cautions
+            .iter()
+            .map(|of| (of.condition, of.text.clone())),
+    ) {
         caution_of(&conditions, &words);
     }
-    let of_records = histories.missing.iter().filter(|_| !histories.records.is_empty());
+    let of_records = histories
+        .missing
+        .iter()
+        .filter(|_| !histories.records.is_empty());
     // Conditions without a result have been told already.
-    let missing = requirements.missing.iter().filter(|of| of.what != "all").chain(of_records);
+    let missing = requirements
+        .missing
+        .iter()
+        .filter(|of| of.what != "all")
+        .chain(of_records);
     let mut missing: Vec<&MissingFinding> = missing.collect();
     missing.sort_by_key(|of| of.condition.is_some());
-    for (conditions, words) in by_words(missing.iter().map(|of| (of.condition, format!("no {}: {}", of.what, of.why))))
-    {
+    for (conditions, words) in by_words(
+        missing
+            .iter()
+            .map(|of| (of.condition, format!("no {}: {}", of.what, of.why))),
+    ) {
         note(&of_conditions(&conditions, &words));
     }
 }
@@ -91,19 +117,31 @@ fn both_numbers(finding: &BandwidthFinding) -> String {
 
 /// Bandwidth and phase delay of every response that has one of them, role by role; of the others the reason, once.
 fn bandwidth_section(analysis: &Analysis, requirements: &Requirements) -> String {
-    let same_response = |a: &BandwidthFinding, b: &BandwidthFinding| (a.condition, a.pair) == (b.condition, b.pair);
-    let has_number = |of: &BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
+    let same_response =
+        |a: &BandwidthFinding, b: &BandwidthFinding| (a.condition, a.pair) == (b.condition, b.pair);
+    let has_number =
+        |of: &BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
     let responses = || requirements.bandwidth.chunk_by(same_response);
     let name = |of: &[BandwidthFinding]| analysis.study.dataset.pair_name(of[0].pair);
     let known = responses().filter(|of| of.iter().any(has_number));
     let table = bandwidth_table(known.map(|of| (name(of), of)));
     let is_marked = table.rows.iter().flatten().any(|cell| cell.contains('*'));
-    let star = if is_marked { "; * rests on the response above the band" } else { "" };
-    let mut text = line("Bandwidth", &format!("of the attitude [rad/s] / phase delay [ms]{star}:"));
+    let star = if is_marked {
+        "; * rests on the response above the band"
+    } else {
+        ""
+    };
+    let mut text = line(
+        "Bandwidth",
+        &format!("of the attitude [rad/s] / phase delay [ms]{star}:"),
+    );
     if !table.rows.is_empty() {
         text += &indented(&table, 2);
     }
-    for (label, quantity) in [("No bandwidth", "omega_bw_rad_s"), ("No delay", "phase_delay_s")] {
+    for (label, quantity) in [
+        ("No bandwidth", "omega_bw_rad_s"),
+        ("No delay", "phase_delay_s"),
+    ] {
         let absent = responses().flat_map(|of| absent_words(&name(of), of, quantity));
         // Of a response without any number, one reason does for both.
         let absent = absent.filter(|(of, _)| quantity == "omega_bw_rad_s" || has_number(of));
@@ -120,12 +158,24 @@ fn absent_words<'a>(
     findings: &'a [BandwidthFinding],
     quantity: &str,
 ) -> Vec<(&'a BandwidthFinding, String)> {
-    let reasons: BTreeSet<&String> = findings.iter().filter_map(|of| of.absent.get(quantity)).collect();
+    let reasons: BTreeSet<&String> = findings
+        .iter()
+        .filter_map(|of| of.absent.get(quantity))
+        .collect();
     let told = |why: &String| {
-        let of: Vec<&BandwidthFinding> = findings.iter().filter(|of| of.absent.get(quantity) == Some(why)).collect();
+        let of: Vec<&BandwidthFinding> = findings
+            .iter()
+            .filter(|of| of.absent.get(quantity) == Some(why))
+            .collect();
         let roles = match of.len() == findings.len() {
             true => String::new(),
-            false => format!(" ({})", of.iter().map(|of| of.role.name()).collect::<Vec<_>>().join(", ")),
+            false => format!(
+                " ({})",
+                of.iter()
+                    .map(|of| of.role.name())
+                    .collect::<Vec<_>>()
+                    .join(", ")
+            ),
         };
         (of[0], format!("{name}{roles}: {why}"))
     };
@@ -134,10 +184,17 @@ fn absent_words<'a>(
 
 /// A row for each response, with its name and the numbers of each role.
 fn bandwidth_table<'a>(responses: impl Iterator<Item = (String, &'a [BandwidthFinding])>) -> Table {
-    let headings = ["condition", "response"].into_iter().chain(RequirementRole::ALL.map(RequirementRole::name));
+    let headings = ["condition", "response"]
+        .into_iter()
+        .chain(RequirementRole::ALL.map(RequirementRole::name));
     let mut table = Table::new("", headings);
     for (name, findings) in responses {
-        let numbers = |role| findings.iter().find(|of| of.role == role).map_or_else(|| "-".to_owned(), both_numbers);
+        let numbers = |role| {
+            findings
+                .iter()
+                .find(|of| of.role == role)
+                .map_or_else(|| "-".to_owned(), both_numbers)
+        };
         let cells = [findings[0].condition.to_string(), sanitized(&name)];
         table.row(cells.into_iter().chain(RequirementRole::ALL.map(numbers)));
     }
@@ -146,19 +203,34 @@ fn bandwidth_table<'a>(responses: impl Iterator<Item = (String, &'a [BandwidthFi
 
 /// Mean J and share of the band inside the envelopes, on-axis, role by role.
 fn summary_section(requirements: &Requirements) -> String {
-    let roles = [RequirementRole::Physics, RequirementRole::Corrected, RequirementRole::Scheduled];
+    let roles = [
+        RequirementRole::Physics,
+        RequirementRole::Corrected,
+        RequirementRole::Scheduled,
+    ];
     let of_roles = |quantity: &str| roles.map(|role| format!("{quantity} {}", role.name()));
     let headings = ["J", "MUAD [%]"].into_iter().flat_map(of_roles);
     let mut table = Table::new("", std::iter::once("condition".to_owned()).chain(headings));
-    for findings in requirements.summary.chunk_by(|a, b| a.condition == b.condition) {
+    for findings in requirements
+        .summary
+        .chunk_by(|a, b| a.condition == b.condition)
+    {
         let of_role = |role| findings.iter().find(|of| of.role == role);
         let value = |role, of: fn(&SummaryFinding) -> Option<f64>| of_role(role).and_then(of);
         let mut cells = vec![findings[0].condition.to_string()];
         cells.extend(roles.map(|role| cell(value(role, |of| of.mean_j_on_axis), 1)));
-        cells.extend(roles.map(|role| cell(value(role, |of| of.muad_share_on_axis.map(|share| 100.0 * share)), 0)));
+        cells.extend(roles.map(|role| {
+            cell(
+                value(role, |of| of.muad_share_on_axis.map(|share| 100.0 * share)),
+                0,
+            )
+        }));
         table.row(cells);
     }
-    line("Summary", "on-axis mean of J, and of the share of the band inside the MUAD envelopes:") + &indented(&table, 2)
+    line(
+        "Summary",
+        "on-axis mean of J, and of the share of the band inside the MUAD envelopes:",
+    ) + &indented(&table, 2)
 }
 
 /// How many modes of the physics models, and of the corrected ones where couplings move them, are within their tolerances.
@@ -176,7 +248,11 @@ fn mode_section(requirements: &Requirements) -> String {
         format!("of {model} against identified: {}", counts.join(", "))
     };
     let physics: Vec<ModeVerdict> = requirements.modes.iter().map(|mode| mode.verdict).collect();
-    let corrected: Vec<ModeVerdict> = requirements.modes.iter().filter_map(|mode| mode.corrected_verdict).collect();
+    let corrected: Vec<ModeVerdict> = requirements
+        .modes
+        .iter()
+        .filter_map(|mode| mode.corrected_verdict)
+        .collect();
     let mut text = line("Modes", &counted("physics", &physics));
     if !corrected.is_empty() {
         text += &line("", &counted("corrected with its couplings", &corrected));
@@ -188,13 +264,23 @@ fn mode_section(requirements: &Requirements) -> String {
 fn history_section(histories: &TimeHistories) -> String {
     const HEADING: &str = "Time history";
     if histories.records.is_empty() {
-        let why = histories.missing.first().map_or("no record was compared", |of| of.why.as_str());
+        let why = histories
+            .missing
+            .first()
+            .map_or("no record was compared", |of| of.why.as_str());
         return line(HEADING, &sanitized(why));
     }
     let mut table = histories.share_table();
     let all = table.rows.len();
-    table.rows.retain(|row| row[3..].iter().any(|share| !matches!(share.as_str(), "100.0" | "-")));
-    table.rows.iter_mut().for_each(|row| row[2] = sanitized(&row[2]));
+    table.rows.retain(|row| {
+        row[3..]
+            .iter()
+            .any(|share| !matches!(share.as_str(), "100.0" | "-"))
+    });
+    table
+        .rows
+        .iter_mut()
+        .for_each(|row| row[2] = sanitized(&row[2]));
     let source = match histories.tolerance_table.source() {
         "" => String::new(),
         source => format!(" of {}", sanitized(source)),
@@ -209,7 +295,19 @@ fn history_section(histories: &TimeHistories) -> String {
         histories.weights_words().replace('\u{b2}', "^2")
     );
     line(HEADING, &words)
-        + &indented(&Table { title: String::new(), ..table }, 2)
+        + &indented(
+            &Table {
+                title: String::new(),
+                ..table
+            },
+            2,
+        )
         + &line("", &costs)
-        + &indented(&Table { title: String::new(), ..histories.cost_table() }, 2)
+        + &indented(
+            &Table {
+                title: String::new(),
+                ..histories.cost_table()
+            },
+            2,
+        )
 }

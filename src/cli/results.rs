@@ -8,23 +8,25 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use gdcm_io::{
-    EXPORTERS, ExportFormat, ExportRequest, ExportSource, ExportedRole, ReportSource, ReportSubject, check_export,
-    export_contents, figure_format, make_directory, report as report_of, result_paths, save_report, write_export,
-    write_figure, write_results,
+    EXPORTERS, ExportFormat, ExportRequest, ExportSource, ExportedRole, ReportSource,
+    ReportSubject, check_export, export_contents, figure_format, make_directory,
+    report as report_of, result_paths, save_report, write_export, write_figure, write_results,
 };
 use gdcm_method::correction::{Channel, HIGHEST_PADE_ORDER, Pade};
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_plot::figure::{
-    Across, BodeOptions, ConditionSource, Figure, FigureKind, FigureRequest, FrequencyUnit, Measure, Role, all_channels,
+    Across, BodeOptions, ConditionSource, Figure, FigureKind, FigureRequest, FrequencyUnit,
+    Measure, Role, all_channels,
 };
 use gdcm_study::study::{
-    Analysis, AssessedCorrection, CURVE_POINTS, CouplingCorrection, CouplingsAssessment, Engine, KnownPoles, Study,
-    Unobserved, curves_band,
+    Analysis, AssessedCorrection, CURVE_POINTS, CouplingCorrection, CouplingsAssessment, Engine,
+    KnownPoles, Study, Unobserved, curves_band,
 };
 
 use super::arguments::{
-    AnalyzeArguments, FigureArguments, PairChoice, ReportArguments, StudyArguments, real_number, whole_number,
+    AnalyzeArguments, FigureArguments, PairChoice, ReportArguments, StudyArguments, real_number,
+    whole_number,
 };
 use super::records::time_histories;
 use super::study_options::{analysis_of, condition_of, ids, names, pairs_of, study_of};
@@ -40,7 +42,11 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
     let all = analysis.conditions.keys().copied().collect();
     write_results(&analysis, &loaded.sha256, &all, &arguments.out, outputs)?;
     say(&summary(&analysis, &loaded, &arguments.out))?;
-    if arguments.leave_one_out { say(&leave_one_out_section(&analysis)) } else { Ok(()) }
+    if arguments.leave_one_out {
+        say(&leave_one_out_section(&analysis))
+    } else {
+        Ok(())
+    }
 }
 
 /// Analyses, and writes all that was found and done as one page.
@@ -48,28 +54,50 @@ pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
     let outputs = outputs.also_reading(arguments.histories.records.iter().cloned());
     outputs.check(&[&arguments.out])?;
-    let ending = arguments.out.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let ending = arguments
+        .out
+        .extension()
+        .map(|ending| ending.to_string_lossy().to_lowercase());
     if !matches!(ending.as_deref(), Some("html" | "htm")) {
         let found = sanitized_path(&arguments.out);
-        let reason = format!("expected a name that ends in .html, found {found}; a browser prints the report as PDF");
+        let reason = format!(
+            "expected a name that ends in .html, found {found}; a browser prints the report as PDF"
+        );
         return Err(Failure::option("--out", reason));
     }
-    let records = arguments.histories.read(&study.dataset, study.settings.band)?;
+    let records = arguments
+        .histories
+        .read(&study.dataset, study.settings.band)?;
     let (analysis, mut engine) = analysis_of(study, &arguments.study, false)?;
     let histories = match arguments.histories.records.as_slice() {
         [] => None,
         _ => Some(time_histories(&analysis, &records)?),
     };
-    let study_file = arguments.study.file.as_deref().filter(|file| loaded.path() != Some(file));
+    let study_file = arguments
+        .study
+        .file
+        .as_deref()
+        .filter(|file| loaded.path() != Some(file));
     let source = ReportSource::of(&loaded, study_file);
     let progress = TerminalProgress::new("drawing");
     let known = KnownPoles::default();
-    let subject = ReportSubject { analysis: &analysis, histories: histories.as_ref(), known: &known };
+    let subject = ReportSubject {
+        analysis: &analysis,
+        histories: histories.as_ref(),
+        known: &known,
+    };
     let report = report_of(subject, &source, &mut engine, &progress)?;
     drop(progress);
     save_report(&report, &arguments.out, outputs)?;
-    let solved = analysis.conditions.values().filter(|outcome| outcome.is_ok()).count();
-    say(&format!("{}: a report on {solved} conditions\n", sanitized_path(&arguments.out)))?;
+    let solved = analysis
+        .conditions
+        .values()
+        .filter(|outcome| outcome.is_ok())
+        .count();
+    say(&format!(
+        "{}: a report on {solved} conditions\n",
+        sanitized_path(&arguments.out)
+    ))?;
     records.ended()
 }
 
@@ -109,17 +137,25 @@ pub struct ExportArguments {
 pub type Breakpoints = Vec<f64>;
 
 fn breakpoints(text: &str) -> Result<Breakpoints, String> {
-    let airspeeds_kt = text.split(',').map(real_number).collect::<Result<Breakpoints, _>>()?;
+    let airspeeds_kt = text
+        .split(',')
+        .map(real_number)
+        .collect::<Result<Breakpoints, _>>()?;
     let rising = airspeeds_kt.windows(2).all(|pair| pair[0] < pair[1]);
     if !rising || !airspeeds_kt.iter().all(|airspeed| airspeed.is_finite()) {
-        return Err(format!("expected airspeeds that rise, as 40,60,80, found {text}"));
+        return Err(format!(
+            "expected airspeeds that rise, as 40,60,80, found {text}"
+        ));
     }
     Ok(airspeeds_kt)
 }
 
 fn formats() -> impl TypedValueParser<Value = ExportFormat> {
-    let values = EXPORTERS.iter().map(|exporter| PossibleValue::new(exporter.name).help(exporter.words));
-    PossibleValuesParser::new(values).try_map(|name| ExportFormat::named(&name).ok_or("there is no such format"))
+    let values = EXPORTERS
+        .iter()
+        .map(|exporter| PossibleValue::new(exporter.name).help(exporter.words));
+    PossibleValuesParser::new(values)
+        .try_map(|name| ExportFormat::named(&name).ok_or("there is no such format"))
 }
 
 fn corrections() -> impl TypedValueParser<Value = AssessedCorrection> {
@@ -136,17 +172,31 @@ pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     check_export(request.format, &arguments.out)?;
     outputs.check(&[&arguments.out])?;
     let (analysis, _) = analysis_of(study, &arguments.study, true)?;
-    let source = ExportSource { name: name(&arguments.study), sha256: loaded.sha256.clone() };
+    let source = ExportSource {
+        name: name(&arguments.study),
+        sha256: loaded.sha256.clone(),
+    };
     let contents = export_contents(&analysis, &request).lines(&analysis.study.dataset);
     let remarks = write_export(&analysis, &source, &request, &arguments.out, outputs)?;
-    let remarks: String = contents.iter().chain(&remarks).map(|remark| format!("{}\n", sanitized(remark))).collect();
-    say(&format!("{}: {}\n{remarks}", sanitized_path(&arguments.out), request.format.words))
+    let remarks: String = contents
+        .iter()
+        .chain(&remarks)
+        .map(|remark| format!("{}\n", sanitized(remark)))
+        .collect();
+    say(&format!(
+        "{}: {}\n{remarks}",
+        sanitized_path(&arguments.out),
+        request.format.words
+    ))
 }
 
 /// What an export is called: the file of the study or of the dataset.
 fn name(arguments: &StudyArguments) -> String {
     let file = arguments.file.as_ref().and_then(|file| file.file_name());
-    file.map_or_else(|| "the embedded example".to_owned(), |name| name.to_string_lossy().into_owned())
+    file.map_or_else(
+        || "the embedded example".to_owned(),
+        |name| name.to_string_lossy().into_owned(),
+    )
 }
 
 /// The request of a command line; an option that its format knows nothing of is refused.
@@ -159,13 +209,22 @@ fn export_request(study: &Study, arguments: &ExportArguments) -> Result<ExportRe
         ("--correction", arguments.correction.is_some()),
         ("--pade", arguments.pade.is_some()),
     ];
-    let misplaced = |(option, is_given): &(&str, bool)| *is_given && !format.options.contains(option);
+    let misplaced =
+        |(option, is_given): &(&str, bool)| *is_given && !format.options.contains(option);
     if let Some((option, _)) = given.into_iter().find(misplaced) {
-        let takes = EXPORTERS.iter().filter(|about| about.options.contains(&option));
+        let takes = EXPORTERS
+            .iter()
+            .filter(|about| about.options.contains(&option));
         let names: Vec<&str> = takes.map(|about| about.name).collect();
-        return Err(Failure::option(option, format!("is an option of --as {}", names.join(" and "))));
+        return Err(Failure::option(
+            option,
+            format!("is an option of --as {}", names.join(" and ")),
+        ));
     }
-    let condition = arguments.condition.map(|id| condition_of(&study.dataset, id)).transpose()?;
+    let condition = arguments
+        .condition
+        .map(|id| condition_of(&study.dataset, id))
+        .transpose()?;
     let role = match arguments.model.as_deref() {
         None | Some("nominal") => ExportedRole::Nominal,
         Some("representative") => ExportedRole::Representative,
@@ -191,7 +250,11 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     let with_bars = arguments.bars || arguments.view.needs_bars();
     let (analysis, mut engine) = analysis_of(study, &arguments.study, with_bars)?;
     if arguments.view == FigureKind::Requirements {
-        request.requirements = Some(Arc::new(engine.requirements(&analysis, &KnownPoles::default(), &Unobserved)?));
+        request.requirements = Some(Arc::new(engine.requirements(
+            &analysis,
+            &KnownPoles::default(),
+            &Unobserved,
+        )?));
     }
     if arguments.view == FigureKind::Couplings {
         request.couplings = Some(assessed_couplings(&analysis.study, &mut engine)?);
@@ -200,18 +263,35 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
         None => request.figure(Some(&analysis), None),
         Some(condition) => figure_of_condition(&request, &analysis, condition, &mut engine)?,
     };
-    let figure = figure.ok_or_else(|| Failure::NoResult { reason: "there is nothing to draw".to_owned() })?;
+    let figure = figure.ok_or_else(|| Failure::NoResult {
+        reason: "there is nothing to draw".to_owned(),
+    })?;
     write_figure(&figure, arguments.width, &arguments.out, outputs)?;
-    say(&format!("{}: {}\n", sanitized_path(&arguments.out), sanitized(&figure.title)))
+    say(&format!(
+        "{}: {}\n",
+        sanitized_path(&arguments.out),
+        sanitized(&figure.title)
+    ))
 }
 
 /// What couplings do to a study: those that it asks for, or else mixing and feedback.
-fn assessed_couplings(study: &Study, engine: &mut Engine) -> Result<Arc<CouplingsAssessment>, Failure> {
+fn assessed_couplings(
+    study: &Study,
+    engine: &mut Engine,
+) -> Result<Arc<CouplingsAssessment>, Failure> {
     let asked = study.settings.couplings;
-    let asked = if asked == CouplingCorrection::None { CouplingCorrection::MixingAndFeedback } else { asked };
+    let asked = if asked == CouplingCorrection::None {
+        CouplingCorrection::MixingAndFeedback
+    } else {
+        asked
+    };
     let found = engine.assess_couplings(study, asked, &TerminalProgress::new("couplings"))?;
-    let found = found.ok_or_else(|| Failure::NoResult { reason: "no couplings".to_owned() })?;
-    found.map_err(|why| Failure::NoResult { reason: why.words(&study.dataset.names_of_channels().0) })
+    let found = found.ok_or_else(|| Failure::NoResult {
+        reason: "no couplings".to_owned(),
+    })?;
+    found.map_err(|why| Failure::NoResult {
+        reason: why.words(&study.dataset.names_of_channels().0),
+    })
 }
 
 /// The figure of one condition, of the curves that the window draws.
@@ -224,15 +304,31 @@ fn figure_of_condition(
     let study = &analysis.study;
     let result = match analysis.conditions.get(&condition) {
         Some(Ok(result)) => result,
-        Some(Err(failure)) => return Err(Failure::NoResult { reason: format!("condition {condition}: {failure}") }),
+        Some(Err(failure)) => {
+            return Err(Failure::NoResult {
+                reason: format!("condition {condition}: {failure}"),
+            });
+        }
         None => return Ok(None),
     };
     let grid = (curves_band(&study.settings), CURVE_POINTS);
-    let Some(curves) = engine.curves(&study.dataset, condition, grid, &TerminalProgress::new("drawing"))? else {
+    let Some(curves) = engine.curves(
+        &study.dataset,
+        condition,
+        grid,
+        &TerminalProgress::new("drawing"),
+    )?
+    else {
         return Ok(None);
     };
     let schedule = analysis.schedule.as_ref().ok();
-    let source = ConditionSource { study, analysis: Some(result), schedule, curves: &curves, variant: None };
+    let source = ConditionSource {
+        study,
+        analysis: Some(result),
+        schedule,
+        curves: &curves,
+        variant: None,
+    };
     Ok(request.figure(Some(analysis), Some(&source)))
 }
 
@@ -241,20 +337,55 @@ fn figure_request(study: &Study, arguments: &FigureArguments) -> Result<FigureRe
     let dataset = &study.dataset;
     let pairs = match &arguments.pair {
         Some(choice) => chosen_pairs(dataset, choice)?,
-        None if arguments.view == FigureKind::NetGain => study.settings.constrained.marked().collect(),
+        None if arguments.view == FigureKind::NetGain => {
+            study.settings.constrained.marked().collect()
+        }
         None => dataset.measuring_pairs().marked().collect(),
     };
     let channels = chosen_channels(dataset, arguments.channel.as_deref())?;
-    let measure = if arguments.delays { Measure::Delay } else { Measure::Gain };
-    let across = if arguments.over_conditions { Across::Conditions } else { Across::Airspeed };
-    let unit = if arguments.hertz { FrequencyUnit::Hertz } else { FrequencyUnit::RadPerSecond };
+    let measure = if arguments.delays {
+        Measure::Delay
+    } else {
+        Measure::Gain
+    };
+    let across = if arguments.over_conditions {
+        Across::Conditions
+    } else {
+        Across::Airspeed
+    };
+    let unit = if arguments.hertz {
+        FrequencyUnit::Hertz
+    } else {
+        FrequencyUnit::RadPerSecond
+    };
     // Couplings alone are drawn on wish, which is the window's.
-    let hidden = arguments.hide.iter().copied().chain([Role::Coupled]).collect();
-    let zeros = arguments.zeros.as_ref().map(|list| pairs_of(dataset, list, "--zeros")).transpose()?;
+    let hidden = arguments
+        .hide
+        .iter()
+        .copied()
+        .chain([Role::Coupled])
+        .collect();
+    let zeros = arguments
+        .zeros
+        .as_ref()
+        .map(|list| pairs_of(dataset, list, "--zeros"))
+        .transpose()?;
     let zeros_of = zeros.and_then(|pairs| pairs.first().copied());
-    let bode = BodeOptions { unit, hidden, zeros_of, shows_muad: arguments.muad, ..BodeOptions::default() };
+    let bode = BodeOptions {
+        unit,
+        hidden,
+        zeros_of,
+        shows_muad: arguments.muad,
+        ..BodeOptions::default()
+    };
     let across_role = arguments.model;
-    Ok(FigureRequest { measure, across, across_role, bode, ..FigureRequest::new(arguments.view, pairs, channels) })
+    Ok(FigureRequest {
+        measure,
+        across,
+        across_role,
+        bode,
+        ..FigureRequest::new(arguments.view, pairs, channels)
+    })
 }
 
 fn chosen_pairs(dataset: &Dataset, choice: &PairChoice) -> Result<Vec<Pair>, Failure> {
@@ -281,7 +412,10 @@ fn chosen_channels(dataset: &Dataset, choice: Option<&str>) -> Result<Vec<Channe
     match choice {
         None => Ok(all),
         Some("inputs") => Ok(all.into_iter().filter(is_input).collect()),
-        Some("outputs") => Ok(all.into_iter().filter(|channel| !is_input(channel)).collect()),
+        Some("outputs") => Ok(all
+            .into_iter()
+            .filter(|channel| !is_input(channel))
+            .collect()),
         Some(list) => list.split(',').map(|name| find(name.trim())).collect(),
     }
 }
@@ -294,8 +428,11 @@ fn condition(study: &Study, arguments: &FigureArguments) -> Result<Option<Condit
         return Ok(None);
     }
     let Some(id) = arguments.condition else {
-        let reason =
-            format!("{} is a figure of one condition; the dataset has {}", arguments.view.name(), ids(&study.dataset));
+        let reason = format!(
+            "{} is a figure of one condition; the dataset has {}",
+            arguments.view.name(),
+            ids(&study.dataset)
+        );
         return Err(Failure::option("--condition", reason));
     };
     condition_of(&study.dataset, id).map(Some)
@@ -308,6 +445,10 @@ mod tests {
     #[test]
     fn breakpoints_rise() {
         assert_eq!(breakpoints("40, 60,80.5"), Ok(vec![40.0, 60.0, 80.5]));
-        assert!(["60,40", "40,40", "40,NaN", ""].iter().all(|wrong| breakpoints(wrong).is_err()));
+        assert!(
+            ["60,40", "40,40", "40,NaN", ""]
+                .iter()
+                .all(|wrong| breakpoints(wrong).is_err())
+        );
     }
 }

@@ -10,13 +10,18 @@ use gdcm_study::study::{Analysis, ConditionFailure, Edit, Engine, RequirementSet
 
 use super::arguments::{ChannelSign, OfChannel, Rejection, StudyArguments};
 use super::identify_arguments::said_twice;
-use super::terminal::{Failure, TerminalProgress, by_words, caution, coded_caution, listed_conditions, of_conditions};
+use super::terminal::{
+    Failure, TerminalProgress, by_words, caution, coded_caution, listed_conditions, of_conditions,
+};
 use super::{existing, open};
 use crate::executor::Pool;
 
 /// The study, the dataset that it is about, and the files that a command about it writes: none of those that it reads is overwritten.
 /// Cautions of the file are told on standard error.
-pub(super) fn study_of(arguments: &StudyArguments, force: bool) -> Result<(Study, LoadedDataset, OutputSet), Failure> {
+pub(super) fn study_of(
+    arguments: &StudyArguments,
+    force: bool,
+) -> Result<(Study, LoadedDataset, OutputSet), Failure> {
     let (mut study, loaded) = match &arguments.file {
         Some(file) => {
             let (study, loaded, _) = open(file, &arguments.opening)?.into_study();
@@ -62,22 +67,40 @@ pub(super) fn analysis_of(
         analysis.coupling_assessment = assessed.and_then(Result::ok);
     }
     drop(progress);
-    let failures = analysis.conditions.iter().filter_map(|(id, outcome)| Some((*id, outcome.as_ref().err()?)));
+    let failures = analysis
+        .conditions
+        .iter()
+        .filter_map(|(id, outcome)| Some((*id, outcome.as_ref().err()?)));
     let failures: Vec<(ConditionId, &ConditionFailure)> = failures.collect();
-    let told = by_words(failures.iter().map(|(id, failure)| (*id, failure.to_string())));
-    if let Some((conditions, first)) = told.first().filter(|_| failures.len() == analysis.conditions.len()) {
-        return Err(Failure::NoResult { reason: of_conditions(conditions, first) });
+    let told = by_words(
+        failures
+            .iter()
+            .map(|(id, failure)| (*id, failure.to_string())),
+    );
+    if let Some((conditions, first)) = told
+        .first()
+        .filter(|_| failures.len() == analysis.conditions.len())
+    {
+        return Err(Failure::NoResult {
+            reason: of_conditions(conditions, first),
+        });
     }
     for (conditions, words) in &told {
         let of_words = failures.iter().find(|(id, _)| conditions.contains(id));
-        coded_caution(of_words.map(|(_, failure)| failure.code()), conditions, words);
+        coded_caution(
+            of_words.map(|(_, failure)| failure.code()),
+            conditions,
+            words,
+        );
     }
     Ok((analysis, engine))
 }
 
 /// The condition that an option gave by its id.
 pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Failure> {
-    let found = dataset.condition(ConditionId(id)).map(|condition| condition.id());
+    let found = dataset
+        .condition(ConditionId(id))
+        .map(|condition| condition.id());
     found.ok_or_else(|| {
         let reason = format!("the dataset has no condition {id}; it has {}", ids(dataset));
         Failure::option("--condition", reason)
@@ -86,13 +109,19 @@ pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Fa
 
 /// The ids of the conditions, with commas.
 pub(super) fn ids(dataset: &Dataset) -> String {
-    let ids: Vec<String> = dataset.conditions().iter().map(|condition| condition.id().to_string()).collect();
+    let ids: Vec<String> = dataset
+        .conditions()
+        .iter()
+        .map(|condition| condition.id().to_string())
+        .collect();
     ids.join(", ")
 }
 
 /// Takes a decision that an option asks for.
 fn apply(study: &mut Study, option: &'static str, edit: &Edit) -> Result<(), Failure> {
-    study.apply(edit).map_err(|refusal| Failure::option(option, refusal))
+    study
+        .apply(edit)
+        .map_err(|refusal| Failure::option(option, refusal))
 }
 
 /// Puts the options into the study, over what it says itself.
@@ -100,19 +129,31 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
     for (setting, words) in &arguments.settings.said {
         let option = setting.option;
         let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        let value = setting.read(&words).map_err(|reason| Failure::option(option, sanitized(&reason)))?;
+        let value = setting
+            .read(&words)
+            .map_err(|reason| Failure::option(option, sanitized(&reason)))?;
         apply(study, option, &setting.to(value))?;
     }
     turn(study, &arguments.sign)?;
     for &id in &arguments.hold_out {
-        apply(study, "--hold-out", &Edit::SetHeldOut { condition: ConditionId(id), held_out: true })?;
+        apply(
+            study,
+            "--hold-out",
+            &Edit::SetHeldOut {
+                condition: ConditionId(id),
+                held_out: true,
+            },
+        )?;
     }
     require(study, arguments)?;
     check_second_variable(study)?;
     if let Some(list) = &arguments.on {
         hold(study, list)?;
     }
-    arguments.reject.iter().try_for_each(|rejection| reject(study, rejection))
+    arguments
+        .reject
+        .iter()
+        .try_for_each(|rejection| reject(study, rejection))
 }
 
 /// Asks requirements with what the options say, over what the study says itself.
@@ -121,7 +162,10 @@ fn require(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure>
     let (_, outputs) = study.dataset.names_of_channels();
     for name in &arguments.attitude_command {
         if !outputs.contains(name) {
-            let reason = sanitized(&format!("expected one of {}, found {name}", outputs.join(", ")));
+            let reason = sanitized(&format!(
+                "expected one of {}, found {name}",
+                outputs.join(", ")
+            ));
             return Err(Failure::option("--attitude-command", reason));
         }
         settings.attitude_command.insert(name.clone());
@@ -131,26 +175,43 @@ fn require(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure>
         let unknown = settings.levels.unknown_axes(&outputs);
         if !unknown.is_empty() {
             let (unknown, outputs) = (unknown.join(", "), outputs.join(", "));
-            caution(&sanitized(&format!("levels of {unknown} are drawn nowhere: outputs are {outputs}")));
+            caution(&sanitized(&format!(
+                "levels of {unknown} are drawn nowhere: outputs are {outputs}"
+            )));
         }
     }
     if let Some(path) = &arguments.tolerances {
         let (tolerances, cautions) = load_tolerances(path)?;
-        cautions.iter().for_each(|words| caution(&format!("{}: {words}", path.display())));
+        cautions
+            .iter()
+            .for_each(|words| caution(&format!("{}: {words}", path.display())));
         settings.tolerances = tolerances;
     }
     if settings != *study.requirements {
-        apply(study, "--levels", &Edit::SetRequirements("options", Arc::new(settings)))?;
+        apply(
+            study,
+            "--levels",
+            &Edit::SetRequirements("options", Arc::new(settings)),
+        )?;
     }
     Ok(())
 }
 
 /// Refuses a second variable that a scheduled condition does not say: the schedule would be missing after all the work.
 fn check_second_variable(study: &Study) -> Result<(), Failure> {
-    let Some(variable) = study.settings.schedule.second else { return Ok(()) };
+    let Some(variable) = study.settings.schedule.second else {
+        return Ok(());
+    };
     let is_scheduled = |id| study.choice(id).scheduled && !study.choice(id).held_out;
-    let lacking = study.dataset.conditions().iter().filter(|of| variable.value(of.flight_state()).is_none());
-    let lacking: Vec<ConditionId> = lacking.map(|of| of.id()).filter(|id| is_scheduled(*id)).collect();
+    let lacking = study
+        .dataset
+        .conditions()
+        .iter()
+        .filter(|of| variable.value(of.flight_state()).is_none());
+    let lacking: Vec<ConditionId> = lacking
+        .map(|of| of.id())
+        .filter(|id| is_scheduled(*id))
+        .collect();
     if lacking.is_empty() {
         return Ok(());
     }
@@ -166,15 +227,26 @@ fn check_second_variable(study: &Study) -> Result<(), Failure> {
 pub(super) fn turn(study: &mut Study, signs: &[ChannelSign]) -> Result<(), Failure> {
     const OPTION: &str = "--sign";
     if let Some(channel) = said_twice(signs) {
-        return Err(Failure::option(OPTION, sanitized(&format!("{channel} stands twice"))));
+        return Err(Failure::option(
+            OPTION,
+            sanitized(&format!("{channel} stands twice")),
+        ));
     }
-    for OfChannel { channel: name, said: of } in signs {
+    for OfChannel {
+        channel: name,
+        said: of,
+    } in signs
+    {
         let (inputs, outputs) = study.dataset.names_of_channels();
         let all = correction::Channel::all(inputs.len(), outputs.len());
-        let named: Vec<correction::Channel> = all.filter(|channel| channel.name(&inputs, &outputs) == *name).collect();
+        let named: Vec<correction::Channel> = all
+            .filter(|channel| channel.name(&inputs, &outputs) == *name)
+            .collect();
         let [channel] = named[..] else {
             let (found, all) = (named.len(), [inputs, outputs].concat().join(", "));
-            let reason = sanitized(&format!("expected one of {all}; {found} channels are called {name}"));
+            let reason = sanitized(&format!(
+                "expected one of {all}; {found} channels are called {name}"
+            ));
             return Err(Failure::option(OPTION, reason));
         };
         apply(study, OPTION, &Edit::SetSign { channel, of: *of })?;
@@ -203,7 +275,11 @@ pub(super) fn pairs_of(
 
 /// The names of channels, with commas.
 pub(super) fn names(channels: &[Channel]) -> String {
-    channels.iter().map(|channel| channel.name.as_str()).collect::<Vec<_>>().join(", ")
+    channels
+        .iter()
+        .map(|channel| channel.name.as_str())
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn hold(study: &mut Study, list: &[(String, String)]) -> Result<(), Failure> {
@@ -216,17 +292,26 @@ fn hold(study: &mut Study, list: &[(String, String)]) -> Result<(), Failure> {
 }
 
 fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
-    let Rejection { condition: id, model: name } = rejection;
+    let Rejection {
+        condition: id,
+        model: name,
+    } = rejection;
     let wrong = |reason: String| Failure::option("--reject", reason);
     let id = ConditionId(*id);
     let condition = study.dataset.condition(id);
     let condition = condition.ok_or_else(|| wrong(format!("the dataset has no condition {id}")))?;
-    let find = |bundle| condition.position(bundle, name).map(|_| ModelId::new(id, bundle, name));
+    let find = |bundle| {
+        condition
+            .position(bundle, name)
+            .map(|_| ModelId::new(id, bundle, name))
+    };
     let model = match (find(BundleKind::Physics), find(BundleKind::Identified)) {
         (Some(model), None) | (None, Some(model)) => model,
         (None, None) => return Err(wrong(format!("condition {id} has no model \"{name}\""))),
         (Some(_), Some(_)) => {
-            let reason = format!("\"{name}\" is both a physics and an identified model of condition {id}; use a study");
+            let reason = format!(
+                "\"{name}\" is both a physics and an identified model of condition {id}; use a study"
+            );
             return Err(wrong(reason));
         }
     };
@@ -237,8 +322,15 @@ fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
 fn reject_suggested(study: &mut Study, analysis: &Analysis) -> Result<bool, Failure> {
     let before = study.clone();
     for (&condition, result) in &analysis.conditions {
-        let models = result.as_ref().map(|result| result.suggested()).unwrap_or_default();
-        apply(study, "--reject-suggested", &Edit::reject_physics(condition, &models))?;
+        let models = result
+            .as_ref()
+            .map(|result| result.suggested())
+            .unwrap_or_default();
+        apply(
+            study,
+            "--reject-suggested",
+            &Edit::reject_physics(condition, &models),
+        )?;
     }
     Ok(*study != before)
 }

@@ -10,12 +10,14 @@ use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, Pair};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::{number, s_to_ms, signed, six_digits};
 use gdcm_study::study::{
-    Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ConditionAnalysis, ConventionDoubt,
-    PhaseCorrection, Remark, RemarkKind, Repeated, Study, Table, held_out_verdict, lead_limit_words, remarks,
-    scatter_table,
+    Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable,
+    ConditionAnalysis, ConventionDoubt, PhaseCorrection, Remark, RemarkKind, Repeated, Study,
+    Table, held_out_verdict, lead_limit_words, remarks, scatter_table,
 };
 
-use super::terminal::{by_words, detail, detail_list, indented, keep_caution, keep_coded_caution, line, of_conditions};
+use super::terminal::{
+    by_words, detail, detail_list, indented, keep_caution, keep_coded_caution, line, of_conditions,
+};
 
 /// The results for a person to read: the settings, each condition, the schedule, the assessment, and where the files are.
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
@@ -25,8 +27,12 @@ pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -
         line("Caution", &sanitized(&words))
     });
     let doubts: String = doubts.collect();
-    let conditions =
-        analysis.study.dataset.conditions().iter().map(|of| format!("\n{}", condition_section(analysis, of)));
+    let conditions = analysis
+        .study
+        .dataset
+        .conditions()
+        .iter()
+        .map(|of| format!("\n{}", condition_section(analysis, of)));
     let conditions: String = conditions.collect();
     heading(analysis, loaded)
         + &doubts
@@ -38,21 +44,33 @@ pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -
         + &assessment_lines(analysis)
         + &held_out_lines(analysis)
         + &evidence_section(analysis)
-        + &line("Written", &format!("{} in {}", RESULT_FILES.join(", "), sanitized_path(out)))
+        + &line(
+            "Written",
+            &format!("{} in {}", RESULT_FILES.join(", "), sanitized_path(out)),
+        )
 }
 
 /// A doubt of a channel's sign or unit, with the option that turns the sign.
 pub(super) fn doubt_words(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
     let (inputs, outputs) = dataset.names_of_channels();
-    let option = doubt.turns().map(|channel| format!(" (--sign {}=-1)", channel.name(&inputs, &outputs)));
+    let option = doubt
+        .turns()
+        .map(|channel| format!(" (--sign {}=-1)", channel.name(&inputs, &outputs)));
     doubt.words(dataset) + &option.unwrap_or_default()
 }
 
 fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     let (study, settings) = (&analysis.study, &analysis.study.settings);
-    let held: Vec<String> =
-        settings.constrained.marked().map(|pair| sanitized(&study.dataset.pair_name(pair))).collect();
-    let held = if held.is_empty() { "none".to_owned() } else { held.join(", ") };
+    let held: Vec<String> = settings
+        .constrained
+        .marked()
+        .map(|pair| sanitized(&study.dataset.pair_name(pair)))
+        .collect();
+    let held = if held.is_empty() {
+        "none".to_owned()
+    } else {
+        held.join(", ")
+    };
     let band = format!(
         "{} to {} rad/s, {} frequencies; alpha {} (gains), {} (delays)",
         six_digits(settings.band.min()),
@@ -77,7 +95,11 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
         text += &line("G from", &settings.gain_source_words());
     }
     for turned in study.turned_channels() {
-        let words = format!("{} of {} is turned", sanitized(&turned.channel), turned.of.models());
+        let words = format!(
+            "{} of {} is turned",
+            sanitized(&turned.channel),
+            turned.of.models()
+        );
         text += &line("Sign", &words);
     }
     text + &line("Phase", &phase) + &line("Held", &held)
@@ -95,7 +117,9 @@ fn couplings_section(analysis: &Analysis) -> String {
         text += &indented(&assessment.cost_table(), 2);
         for mut table in assessment.matrix_tables(&analysis.study.dataset) {
             let names = table.rows.iter_mut().filter_map(|row| row.first_mut());
-            names.chain(&mut table.columns).for_each(|name| *name = sanitized(name));
+            names
+                .chain(&mut table.columns)
+                .for_each(|name| *name = sanitized(name));
             text += &indented(&table, 2);
         }
     }
@@ -115,8 +139,14 @@ fn couplings_section(analysis: &Analysis) -> String {
 /// How far the scheduled correction brings the nominal models, and which conditions it is not judged in.
 fn assessment_lines(analysis: &Analysis) -> String {
     let mut text = line("Assessment", &sanitized(&assessment_sentence(analysis)));
-    for left_out in AssessmentTable::of(analysis, usual(analysis, AssessedCorrection::Scheduled)).left_out {
-        let words = format!("condition {}: {}", left_out.condition, sanitized(&left_out.why));
+    for left_out in
+        AssessmentTable::of(analysis, usual(analysis, AssessedCorrection::Scheduled)).left_out
+    {
+        let words = format!(
+            "condition {}: {}",
+            left_out.condition,
+            sanitized(&left_out.why)
+        );
         text += &line("Left out", &words);
     }
     text
@@ -125,7 +155,11 @@ fn assessment_lines(analysis: &Analysis) -> String {
 /// One condition: representatives, rejections, the on-axis and held responses, and what could not be matched.
 fn condition_section(analysis: &Analysis, condition: &Condition) -> String {
     let state = condition.flight_state();
-    let title = format!("{} ({} kt)", sanitized(&state.name), number(state.airspeed_kt));
+    let title = format!(
+        "{} ({} kt)",
+        sanitized(&state.name),
+        number(state.airspeed_kt)
+    );
     let mut text = line(&format!("Condition {}", state.id), &title);
     match analysis.conditions.get(&condition.id()) {
         None => {}
@@ -142,12 +176,26 @@ fn condition_section(analysis: &Analysis, condition: &Condition) -> String {
 
 fn model_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let id = result.condition.id();
-    let rejected: Vec<String> = analysis.study.rejected_names(id).into_iter().map(sanitized).collect();
+    let rejected: Vec<String> = analysis
+        .study
+        .rejected_names(id)
+        .into_iter()
+        .map(sanitized)
+        .collect();
     let is_rejected = |name: &String| analysis.study.choice(id).physics.rejected.contains(name);
-    let suggested = result.suggested().into_iter().filter(|name| !is_rejected(name));
+    let suggested = result
+        .suggested()
+        .into_iter()
+        .filter(|name| !is_rejected(name));
     let suggested: Vec<String> = suggested.map(|name| sanitized(&name)).collect();
-    let mut text = detail("physics", &sanitized(result.representative_name(BundleKind::Physics)));
-    text += &detail("identified", &sanitized(result.representative_name(BundleKind::Identified)));
+    let mut text = detail(
+        "physics",
+        &sanitized(result.representative_name(BundleKind::Physics)),
+    );
+    text += &detail(
+        "identified",
+        &sanitized(result.representative_name(BundleKind::Identified)),
+    );
     text += &detail_list("rejected", &rejected);
     if !suggested.is_empty() {
         text += &detail_list("outliers?", &suggested);
@@ -163,14 +211,39 @@ fn shown_pairs(study: &Study) -> impl Iterator<Item = Pair> {
 }
 
 fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
-    let columns =
-        ["response", "held", "G", "± %", "net gain", "± %", "D [ms]", "± ms", "net delay [ms]", "J before", "J after"];
-    let price = result.compensated.as_ref().and_then(|compensated| LeadPrice::of(&compensated.leads));
-    let mut table = Table::new("", columns.map(str::to_owned).into_iter().chain(price.as_ref().map(price_heading)));
+    let columns = [
+        "response",
+        "held",
+        "G",
+        "± %",
+        "net gain",
+        "± %",
+        "D [ms]",
+        "± ms",
+        "net delay [ms]",
+        "J before",
+        "J after",
+    ];
+    let price = result
+        .compensated
+        .as_ref()
+        .and_then(|compensated| LeadPrice::of(&compensated.leads));
+    let mut table = Table::new(
+        "",
+        columns
+            .map(str::to_owned)
+            .into_iter()
+            .chain(price.as_ref().map(price_heading)),
+    );
     let dataset = &analysis.study.dataset;
     let half = |scalar: Scalar, factor: f64| {
         let uncertainty = analysis.uncertainty.as_ref()?;
-        Some(factor * uncertainty.bar(result.condition.id(), scalar)?.half_width(uncertainty.level)?)
+        Some(
+            factor
+                * uncertainty
+                    .bar(result.condition.id(), scalar)?
+                    .half_width(uncertainty.level)?,
+        )
     };
     for pair in shown_pairs(&analysis.study) {
         let cost = result.cost[pair];
@@ -187,7 +260,9 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
             value(cost.map(|cost| cost.uncorrected.total()), 1),
             value(cost.map(|cost| cost.corrected.total()), 1),
         ];
-        let price_db = price.as_ref().map(|price| signed(price.of_pair_db(pair), 1));
+        let price_db = price
+            .as_ref()
+            .map(|price| signed(price.of_pair_db(pair), 1));
         table.row(cells.into_iter().chain(price_db));
     }
     table
@@ -200,7 +275,9 @@ fn price_heading(price: &LeadPrice) -> String {
 
 fn value(value: Option<f64>, digits: usize) -> String {
     // Adding zero turns a rounded minus zero into zero.
-    let rounded = |value: f64| (value * 10_f64.powi(digits as i32)).round() / 10_f64.powi(digits as i32) + 0.0;
+    let rounded = |value: f64| {
+        (value * 10_f64.powi(digits as i32)).round() / 10_f64.powi(digits as i32) + 0.0
+    };
     value.map_or("-".to_owned(), |value| match value.abs() {
         ..1e7 => format!("{:.digits$}", rounded(value)),
         _ => format!("{value:.digits$e}"),
@@ -212,23 +289,48 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     if let Some(compensated) = &result.compensated {
         return indented(&lead_table(dataset, correction, &compensated.leads), 2);
     }
-    let channels = || dataset.inputs().iter().chain(dataset.outputs()).map(|channel| sanitized(&channel.name));
-    let gains = correction.input_gains.iter().chain(&correction.output_gains);
-    let gains: Vec<String> =
-        channels().zip(gains).map(|(name, gain)| format!("{name} {}", value(Some(*gain), 3))).collect();
+    let channels = || {
+        dataset
+            .inputs()
+            .iter()
+            .chain(dataset.outputs())
+            .map(|channel| sanitized(&channel.name))
+    };
+    let gains = correction
+        .input_gains
+        .iter()
+        .chain(&correction.output_gains);
+    let gains: Vec<String> = channels()
+        .zip(gains)
+        .map(|(name, gain)| format!("{name} {}", value(Some(*gain), 3)))
+        .collect();
     let delays_s = correction.signed_delays_s();
-    let delays = channels().zip(delays_s.iter()).filter_map(|(name, (_, delay))| {
-        let words = value(Some(s_to_ms(*delay)), 1);
-        (words != "0.0").then(|| format!("{name} {words} ms"))
-    });
+    let delays = channels()
+        .zip(delays_s.iter())
+        .filter_map(|(name, (_, delay))| {
+            let words = value(Some(s_to_ms(*delay)), 1);
+            (words != "0.0").then(|| format!("{name} {words} ms"))
+        });
     detail_list("gains", &gains) + &detail_list("delays", &delays.collect::<Vec<_>>())
 }
 
 /// Gain, delay or lead of each channel, and the servos that its filter stands for: as if the one were replaced by the other (M15).
 fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &ChannelLeads) -> Table {
-    let columns = ["channel", "k", "delay/lead [ms]", "servo of [rad/s]", "replaced by"];
+    let columns = [
+        "channel",
+        "k",
+        "delay/lead [ms]",
+        "servo of [rad/s]",
+        "replaced by",
+    ];
     let price = LeadPrice::of(leads);
-    let mut table = Table::new("", columns.map(str::to_owned).into_iter().chain(price.as_ref().map(price_heading)));
+    let mut table = Table::new(
+        "",
+        columns
+            .map(str::to_owned)
+            .into_iter()
+            .chain(price.as_ref().map(price_heading)),
+    );
     let (inputs, outputs) = dataset.names_of_channels();
     for (channel, delay_s) in correction.signed_delays_s().iter() {
         let filter = leads.filters()[channel];
@@ -239,8 +341,9 @@ fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &Channel
             value(filter.map(|filter| filter.zero_rad_s()), 0),
             value(filter.map(|filter| filter.lag_rad_s()), 0),
         ];
-        let price_db =
-            price.as_ref().map(|price| filter.map_or("-".to_owned(), |_| signed(price.gains_db[channel], 1)));
+        let price_db = price
+            .as_ref()
+            .map(|price| filter.map_or("-".to_owned(), |_| signed(price.gains_db[channel], 1)));
         table.row(cells.into_iter().chain(price_db));
     }
     table
@@ -249,13 +352,31 @@ fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &Channel
 /// What most conditions have in one table with one sentence, and each other caution once with the conditions that it is of.
 fn cautions_section(analysis: &Analysis) -> String {
     let (mut rows, mut others) = (Vec::new(), Vec::new());
-    for result in analysis.study.dataset.conditions().iter().filter_map(|of| analysis.condition(of.id())) {
-        let (id, said) = (result.condition.id(), remarks(&analysis.study, result, None));
+    for result in analysis
+        .study
+        .dataset
+        .conditions()
+        .iter()
+        .filter_map(|of| analysis.condition(of.id()))
+    {
+        let (id, said) = (
+            result.condition.id(),
+            remarks(&analysis.study, result, None),
+        );
         // What is said of signs and units stands above all conditions.
-        let cautions = said.into_iter().skip(result.doubts.len()).filter(|of| of.kind == RemarkKind::Caution);
-        let (repeated, rest): (Vec<Remark>, Vec<Remark>) = cautions.partition(|of| of.repeated.is_some());
+        let cautions = said
+            .into_iter()
+            .skip(result.doubts.len())
+            .filter(|of| of.kind == RemarkKind::Caution);
+        let (repeated, rest): (Vec<Remark>, Vec<Remark>) =
+            cautions.partition(|of| of.repeated.is_some());
         rows.extend((!repeated.is_empty()).then_some((id, repeated)));
-        others.extend(rest.into_iter().map(|of| of.text).chain(lead_limit_words(result)).map(|text| (id, text)));
+        others.extend(
+            rest.into_iter()
+                .map(|of| of.text)
+                .chain(lead_limit_words(result))
+                .map(|text| (id, text)),
+        );
     }
     let text = match &rows[..] {
         [] => String::new(),
@@ -266,22 +387,33 @@ fn cautions_section(analysis: &Analysis) -> String {
         }
         rows => repeated_table(analysis, rows),
     };
-    by_words(others).into_iter().fold(text, |text, (conditions, words)| {
-        keep_caution(&conditions, &words);
-        text + &line("Caution", &sanitized(&of_conditions(&conditions, &words)))
-    })
+    by_words(others)
+        .into_iter()
+        .fold(text, |text, (conditions, words)| {
+            keep_caution(&conditions, &words);
+            text + &line("Caution", &sanitized(&of_conditions(&conditions, &words)))
+        })
 }
 
 /// A row for each condition; a column for each response that needs lead or is farther from flight, and for what else is said.
 fn repeated_table(analysis: &Analysis, rows: &[(ConditionId, Vec<Remark>)]) -> String {
     let dataset = &analysis.study.dataset;
-    let all = || rows.iter().flat_map(|(_, row)| row).filter_map(|of| of.repeated.as_ref());
-    let is_farther = |of: &Repeated, pair: Pair| matches!(of, Repeated::Farther(pairs) if pairs.contains(&pair));
+    let all = || {
+        rows.iter()
+            .flat_map(|(_, row)| row)
+            .filter_map(|of| of.repeated.as_ref())
+    };
+    let is_farther =
+        |of: &Repeated, pair: Pair| matches!(of, Repeated::Farther(pairs) if pairs.contains(&pair));
     let lead_ms = |of: &Repeated, pair: Pair| match of {
-        Repeated::NeedsLead(needed) => needed.iter().find(|(at, _)| *at == pair).map(|(_, lead_ms)| lead_ms.clone()),
+        Repeated::NeedsLead(needed) => needed
+            .iter()
+            .find(|(at, _)| *at == pair)
+            .map(|(_, lead_ms)| lead_ms.clone()),
         _ => None,
     };
-    let is_told = |pair: &Pair| all().any(|of| is_farther(of, *pair) || lead_ms(of, *pair).is_some());
+    let is_told =
+        |pair: &Pair| all().any(|of| is_farther(of, *pair) || lead_ms(of, *pair).is_some());
     let pairs: Vec<Pair> = dataset.on_axis().pairs().filter(is_told).collect();
     let mut sentences = Vec::new();
     if all().any(|of| matches!(of, Repeated::NeedsLead(_))) {
@@ -290,20 +422,36 @@ fn repeated_table(analysis: &Analysis, rows: &[(ConditionId, Vec<Remark>)]) -> S
     if all().any(|of| matches!(of, Repeated::Farther(_))) {
         sentences.push("* is farther from flight (larger J) than without a correction");
     }
-    let columns: Vec<&(&str, &str, CellOf)> =
-        REPEATED.iter().filter(|(.., cell)| all().any(|of| cell(of, dataset).is_some())).collect();
+    let columns: Vec<&(&str, &str, CellOf)> = REPEATED
+        .iter()
+        .filter(|(.., cell)| all().any(|of| cell(of, dataset).is_some()))
+        .collect();
     sentences.extend(columns.iter().map(|(_, sentence, _)| *sentence));
-    let headings = std::iter::once("condition".to_owned()).chain(pairs.iter().map(|pair| dataset.pair_name(*pair)));
-    let mut table = Table::new("", headings.chain(columns.iter().map(|(heading, ..)| (*heading).to_owned())));
+    let headings = std::iter::once("condition".to_owned())
+        .chain(pairs.iter().map(|pair| dataset.pair_name(*pair)));
+    let mut table = Table::new(
+        "",
+        headings.chain(columns.iter().map(|(heading, ..)| (*heading).to_owned())),
+    );
     for (id, row) in rows {
         let row = || row.iter().filter_map(|of| of.repeated.as_ref());
         let or_none = |cell: Option<String>| cell.unwrap_or_else(|| "-".to_owned());
         let of_pair = |pair: &Pair| {
             let lead = or_none(row().find_map(|of| lead_ms(of, *pair)));
-            if row().any(|of| is_farther(of, *pair)) { format!("{lead} *") } else { lead }
+            if row().any(|of| is_farther(of, *pair)) {
+                format!("{lead} *")
+            } else {
+                lead
+            }
         };
-        let others = columns.iter().map(|(.., cell)| or_none(row().find_map(|of| cell(of, dataset))));
-        table.row(std::iter::once(id.to_string()).chain(pairs.iter().map(of_pair)).chain(others));
+        let others = columns
+            .iter()
+            .map(|(.., cell)| or_none(row().find_map(|of| cell(of, dataset))));
+        table.row(
+            std::iter::once(id.to_string())
+                .chain(pairs.iter().map(of_pair))
+                .chain(others),
+        );
     }
     let conditions: Vec<ConditionId> = rows.iter().map(|(id, _)| *id).collect();
     let sentence = sentences.join("; ");
@@ -320,13 +468,21 @@ const REPEATED: [(&str, &str, CellOf); 3] = [
         "all",
         "where all want about the same lead (column all [ms]), check first the time alignment of the records, the simulation's \
          integration and sampling delay, then servo and sensor models: a common lag is better taken out where it arises than corrected",
-        |of, _| if let Repeated::CommonLead(lead_ms) = of { Some(lead_ms.clone()) } else { None },
+        |of, _| {
+            if let Repeated::CommonLead(lead_ms) = of {
+                Some(lead_ms.clone())
+            } else {
+                None
+            }
+        },
     ),
     (
         "gain",
         "column gain [dB] is what the lead filters raise the gain within the band by at most, which the gains take back",
         |of, dataset| match of {
-            Repeated::RaisedGain(most_db, pair) => Some(format!("{most_db} ({})", dataset.pair_name(*pair))),
+            Repeated::RaisedGain(most_db, pair) => {
+                Some(format!("{most_db} ({})", dataset.pair_name(*pair)))
+            }
             _ => None,
         },
     ),
@@ -344,13 +500,21 @@ const REPEATED: [(&str, &str, CellOf); 3] = [
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let said = remarks(&analysis.study, result, None);
     // What is said of signs and units stands above all conditions; cautions of all conditions stand together.
-    let troubles = said.iter().skip(result.doubts.len()).filter(|remark| remark.kind == RemarkKind::Trouble);
+    let troubles = said
+        .iter()
+        .skip(result.doubts.len())
+        .filter(|remark| remark.kind == RemarkKind::Trouble);
     // What is missed comes first, then the reasons and the ways out.
     let labels = std::iter::once("not matched").chain(std::iter::repeat("why"));
-    let lines = labels.zip(troubles).map(|(label, remark)| detail(label, &sanitized(&remark.text)));
+    let lines = labels
+        .zip(troubles)
+        .map(|(label, remark)| detail(label, &sanitized(&remark.text)));
     let mut text: String = lines.collect();
     if matches!(result.gains.proof.outcome, Outcome::NotProven { .. }) {
-        text += &detail("not proven", &sanitized(&result.gains.proof.outcome.words()));
+        text += &detail(
+            "not proven",
+            &sanitized(&result.gains.proof.outcome.words()),
+        );
     }
     text
 }
@@ -369,7 +533,11 @@ fn schedule_section(analysis: &Analysis) -> String {
         Some(degree) => format!("polynomial of degree {degree} in airspeed, fitted to {of}"),
         None => format!("lookup table in airspeed, of {of}"),
     };
-    let range = format!("{} to {} kt", number(schedule.airspeeds.min_kt), number(schedule.airspeeds.max_kt));
+    let range = format!(
+        "{} to {} kt",
+        number(schedule.airspeeds.min_kt),
+        number(schedule.airspeeds.max_kt)
+    );
     let second = schedule.second.as_ref().map_or_else(String::new, |term| {
         format!(
             "; with {}, here in the middle of its range, {} {}",
@@ -388,9 +556,14 @@ fn schedule_section(analysis: &Analysis) -> String {
         text += &detail("caution", &sanitized(&words));
     }
     for delayed in analysis.unscheduled_delays() {
-        text += &detail("left out", &sanitized(&delayed.words(&analysis.study.dataset)));
+        text += &detail(
+            "left out",
+            &sanitized(&delayed.words(&analysis.study.dataset)),
+        );
     }
-    text += &schedule_table(analysis, schedule, |correction, pair| value(Some(correction.net_gain(pair)), 3));
+    text += &schedule_table(analysis, schedule, |correction, pair| {
+        value(Some(correction.net_gain(pair)), 3)
+    });
     if schedule.has_delays() {
         text += &line("", "net delays in ms:");
         text += &schedule_table(analysis, schedule, |correction, pair| {
@@ -422,30 +595,54 @@ fn schedule_table(
 
 /// What the scatter is made of, the differences at equal airspeed, and the second variables; nothing where bars were not computed.
 fn evidence_section(analysis: &Analysis) -> String {
-    let Some(uncertainty) = &analysis.uncertainty else { return String::new() };
+    let Some(uncertainty) = &analysis.uncertainty else {
+        return String::new();
+    };
     let pair_name = |pair| sanitized(&analysis.study.dataset.pair_name(pair));
     let level = 100.0 * uncertainty.level;
-    let mut text =
-        line("Scatter", "of the on-axis net gains, and what trim and identification uncertainty explain of it:");
-    let table = Table { title: String::new(), ..scatter_table(&analysis.study.dataset, uncertainty) };
+    let mut text = line(
+        "Scatter",
+        "of the on-axis net gains, and what trim and identification uncertainty explain of it:",
+    );
+    let table = Table {
+        title: String::new(),
+        ..scatter_table(&analysis.study.dataset, uncertainty)
+    };
     text += &indented(&table, 2);
-    let significant = uncertainty.differences.iter().filter(|difference| difference.is_significant(uncertainty.level));
-    let words =
-        format!("{} (error bars of {level:.0} %, Holm)", uncertainty.differences_in_words().trim_end_matches('.'));
+    let significant = uncertainty
+        .differences
+        .iter()
+        .filter(|difference| difference.is_significant(uncertainty.level));
+    let words = format!(
+        "{} (error bars of {level:.0} %, Holm)",
+        uncertainty.differences_in_words().trim_end_matches('.')
+    );
     text += &line("Differences", &words);
     for difference in significant {
-        let words = format!("{}: {}", pair_name(difference.pair), difference.words(uncertainty.level));
+        let words = format!(
+            "{}: {}",
+            pair_name(difference.pair),
+            difference.words(uncertainty.level)
+        );
         text += &detail("", &words);
     }
     if let Some(variable) = analysis.study.settings.schedule.second {
-        let tests = uncertainty.second_variables.iter().filter(|test| test.variable == variable);
+        let tests = uncertainty
+            .second_variables
+            .iter()
+            .filter(|test| test.variable == variable);
         if !tests.clone().any(|test| test.needed) {
-            let words =
-                format!("the schedule is one of airspeed and {variable}, though no response is found to need it");
+            let words = format!(
+                "the schedule is one of airspeed and {variable}, though no response is found to need it"
+            );
             text += &line("Caution", &words);
         }
     }
-    for test in uncertainty.second_variables.iter().filter(|test| test.needed) {
+    for test in uncertainty
+        .second_variables
+        .iter()
+        .filter(|test| test.needed)
+    {
         text += &line("Schedule", &format!("{}: {}", pair_name(test.pair), test));
     }
     text
@@ -459,24 +656,44 @@ fn held_out_lines(analysis: &Analysis) -> String {
 
 /// The change of J of each condition's nominal model under the schedule of the others.
 pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
-    let [seen, unseen] = [AssessedCorrection::Scheduled, AssessedCorrection::ScheduleOfOthers]
-        .map(|correction| AssessmentTable::of(analysis, usual(analysis, correction)));
+    let [seen, unseen] = [
+        AssessedCorrection::Scheduled,
+        AssessedCorrection::ScheduleOfOthers,
+    ]
+    .map(|correction| AssessmentTable::of(analysis, usual(analysis, correction)));
     let measuring: Vec<_> = analysis.study.dataset.measuring_pairs().marked().collect();
-    let text = line("Left out", "change of J of each condition under the schedule of the others, on-axis mean:");
+    let text = line(
+        "Left out",
+        "change of J of each condition under the schedule of the others, on-axis mean:",
+    );
     let mut table = Table::new("", ["condition", "kt", "schedule of all", "of the others"]);
     for condition in &unseen.conditions {
         let id = condition.condition;
         let mean = |table: &AssessmentTable| {
-            let changes = measuring.iter().filter_map(|&pair| Some(table.change(id, pair)?.total()));
+            let changes = measuring
+                .iter()
+                .filter_map(|&pair| Some(table.change(id, pair)?.total()));
             let changes: Vec<f64> = changes.collect();
             (!changes.is_empty()).then(|| changes.iter().sum::<f64>() / changes.len() as f64)
         };
         let airspeed = value(Some(condition.airspeed_kt), 0);
-        table.row([id.to_string(), airspeed, value(mean(&seen), 1), value(mean(&unseen), 1)]);
+        table.row([
+            id.to_string(),
+            airspeed,
+            value(mean(&seen), 1),
+            value(mean(&unseen), 1),
+        ]);
     }
     let mut text = text + &indented(&table, 2);
     for left_out in &unseen.left_out {
-        text += &detail("", &format!("condition {}: {}", left_out.condition, sanitized(&left_out.why)));
+        text += &detail(
+            "",
+            &format!(
+                "condition {}: {}",
+                left_out.condition,
+                sanitized(&left_out.why)
+            ),
+        );
     }
     if analysis.fitted_couplings().is_some() {
         let words = "the couplings here are those of all conditions; J with couplings found without each stands under Couplings";
@@ -487,5 +704,9 @@ pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
 
 fn usual(analysis: &Analysis, correction: AssessedCorrection) -> AssessmentChoice {
     let average = analysis.study.settings.cost_average;
-    AssessmentChoice { model: AssessedModel::Nominal, correction, average }
+    AssessmentChoice {
+        model: AssessedModel::Nominal,
+        correction,
+        average,
+    }
 }

@@ -56,7 +56,10 @@ struct SaidCaution {
 
 /// A process carries out one command.
 static SAID: Mutex<Said> = Mutex::new(Said {
-    manner: Manner { quiet: false, json: false },
+    manner: Manner {
+        quiet: false,
+        json: false,
+    },
     format: "gdcm-messages",
     version: 1,
     status: 0,
@@ -79,7 +82,10 @@ pub(super) fn speak(manner: Manner) {
 /// Prints a text that ends with its own line end. A reader that has seen enough (`gdcm … | head`) is no failure.
 pub(super) fn say(text: &str) -> Result<(), Failure> {
     // Whatever a file holds, control codes never reach a terminal.
-    let text: String = text.split_inclusive('\n').map(|line| plain(line.trim_end_matches('\n'), line)).collect();
+    let text: String = text
+        .split_inclusive('\n')
+        .map(|line| plain(line.trim_end_matches('\n'), line))
+        .collect();
     let mut said = said();
     if said.manner.json {
         said.text += &text;
@@ -95,10 +101,13 @@ fn plain(words: &str, line: &str) -> String {
 
 fn print(text: &str) -> Result<(), Failure> {
     let mut output = std::io::stdout().lock();
-    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::StandardOutput { reason: system_words(&error) })
-        }
+    match output
+        .write_all(text.as_bytes())
+        .and_then(|()| output.flush())
+    {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::StandardOutput {
+            reason: system_words(&error),
+        }),
         _ => Ok(()),
     }
 }
@@ -136,9 +145,17 @@ pub(super) fn keep_caution(conditions: &[ConditionId], words: &str) {
     keep_coded_caution(None, conditions, words);
 }
 
-pub(super) fn keep_coded_caution(code: Option<&'static str>, conditions: &[ConditionId], words: &str) {
+pub(super) fn keep_coded_caution(
+    code: Option<&'static str>,
+    conditions: &[ConditionId],
+    words: &str,
+) {
     let conditions = conditions.iter().map(|id| id.0).collect();
-    said().cautions.push(SaidCaution { code, text: plain(words, ""), conditions });
+    said().cautions.push(SaidCaution {
+        code,
+        text: plain(words, ""),
+        conditions,
+    });
 }
 
 /// Says what is wrong.
@@ -184,7 +201,11 @@ pub(super) fn end(status: u8) -> u8 {
 
 /// Where progress is drawn: nowhere where standard error is no terminal, or nothing but results is asked for.
 pub(super) fn progress_target() -> ProgressDrawTarget {
-    if said().manner == Manner::default() { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() }
+    if said().manner == Manner::default() {
+        ProgressDrawTarget::stderr()
+    } else {
+        ProgressDrawTarget::hidden()
+    }
 }
 
 /// An analysis that is done sooner needs no progress.
@@ -204,7 +225,9 @@ impl TerminalProgress {
     pub(super) fn new(doing: &str) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         // A template that is not understood leaves the bar its own looks.
-        if let Ok(style) = ProgressStyle::with_template(&format!("{doing} {{bar:40}} {{percent}} % (Ctrl+C stops)")) {
+        if let Ok(style) = ProgressStyle::with_template(&format!(
+            "{doing} {{bar:40}} {{percent}} % (Ctrl+C stops)"
+        )) {
             bar.set_style(style);
         }
         Self {
@@ -259,7 +282,10 @@ struct Interruption {
 #[cfg(unix)]
 static INTERRUPTION: LazyLock<Interruption> = LazyLock::new(|| {
     use signal_hook::{consts::SIGINT, flag};
-    let interruption = Interruption { is_asked: Arc::default(), ends_process: Arc::new(AtomicBool::new(true)) };
+    let interruption = Interruption {
+        is_asked: Arc::default(),
+        ends_process: Arc::new(AtomicBool::new(true)),
+    };
     // In this order: the first interruption of work only arms what the second does. Where the system refuses, Ctrl+C ends the process.
     let _ = flag::register_conditional_default(SIGINT, Arc::clone(&interruption.ends_process));
     let _ = flag::register(SIGINT, Arc::clone(&interruption.ends_process));
@@ -299,12 +325,17 @@ pub(super) enum Failure {
     File(#[from] FileError),
     /// An option's value is wrong for this dataset.
     #[error("{option}: {reason}")]
-    Option { option: &'static str, reason: String },
+    Option {
+        option: &'static str,
+        reason: String,
+    },
     /// A word stands in place of a command or a file, and is neither.
     #[error("{found}: there is no such command and no such file; did you mean gdcm {suggestion}?")]
     UnknownCommand { found: String, suggestion: String },
     /// The dataset of a study is not the one that it was made with.
-    #[error("{path}: {count} differences from what the study was made with, and --strict asks for none")]
+    #[error(
+        "{path}: {count} differences from what the study was made with, and --strict asks for none"
+    )]
     Different { path: String, count: usize },
     /// A dataset has several faults, which were told.
     #[error("{path}: {count} faults; once they are mended, check the file again")]
@@ -350,12 +381,18 @@ pub(super) enum Failure {
 impl Failure {
     /// Nothing could be taken of files.
     pub(super) fn nothing_in(paths: &[PathBuf], what: &'static str) -> Self {
-        Failure::Nothing { paths: listed_paths(paths), what }
+        Failure::Nothing {
+            paths: listed_paths(paths),
+            what,
+        }
     }
 
     /// What an option says is refused.
     pub(super) fn option(option: &'static str, reason: impl ToString) -> Self {
-        Failure::Option { option, reason: reason.to_string() }
+        Failure::Option {
+            option,
+            reason: reason.to_string(),
+        }
     }
 
     /// The stable code by which scripts tell it from others; none where there is none yet.
@@ -395,14 +432,26 @@ impl Failure {
 
 /// Paths with commas.
 pub(super) fn listed_paths(paths: &[PathBuf]) -> String {
-    paths.iter().map(|path| sanitized_path(path)).collect::<Vec<_>>().join(", ")
+    paths
+        .iter()
+        .map(|path| sanitized_path(path))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// A table as lines, each behind so many spaces; long names are cut.
 pub(super) fn indented(table: &Table, indent: usize) -> String {
     let mut table = table.clone();
-    table.rows.iter_mut().flatten().for_each(|cell| *cell = shortened(cell));
-    table.text().lines().map(|line| format!("{:indent$}{line}\n", "")).collect()
+    table
+        .rows
+        .iter_mut()
+        .flatten()
+        .for_each(|cell| *cell = shortened(cell));
+    table
+        .text()
+        .lines()
+        .map(|line| format!("{:indent$}{line}\n", ""))
+        .collect()
 }
 
 /// Most columns of a page.
@@ -434,13 +483,22 @@ pub(super) fn detail_list(label: &str, entries: &[String]) -> String {
     let last = entries.len().saturating_sub(1);
     let with_comma = |(index, entry): (usize, &String)| {
         let entry = shortened_message(entry);
-        if index < last { format!("{entry},") } else { entry }
+        if index < last {
+            format!("{entry},")
+        } else {
+            entry
+        }
     };
     let entries: Vec<String> = entries.iter().enumerate().map(with_comma).collect();
     hanging(2, label, LABEL - 2, entries.iter().map(String::as_str))
 }
 
-fn hanging<'w>(indent: usize, label: &str, width: usize, pieces: impl Iterator<Item = &'w str>) -> String {
+fn hanging<'w>(
+    indent: usize,
+    label: &str,
+    width: usize,
+    pieces: impl Iterator<Item = &'w str>,
+) -> String {
     let mut text = format!("{:indent$}{label:<width$}", "");
     let start = text.chars().count();
     let mut column = start;
@@ -470,12 +528,19 @@ pub(super) fn listed_conditions(conditions: &[ConditionId]) -> String {
         few => few.iter().map(ToString::to_string).collect(),
     });
     let several = if conditions.len() == 1 { "" } else { "s" };
-    format!("condition{several} {}", words.collect::<Vec<_>>().join(", "))
+    format!(
+        "condition{several} {}",
+        words.collect::<Vec<_>>().join(", ")
+    )
 }
 
 /// Words with the conditions that they are about before them; none where they are about the whole.
 pub(super) fn of_conditions(conditions: &[ConditionId], words: &str) -> String {
-    if conditions.is_empty() { words.to_owned() } else { format!("{}: {words}", listed_conditions(conditions)) }
+    if conditions.is_empty() {
+        words.to_owned()
+    } else {
+        format!("{}: {words}", listed_conditions(conditions))
+    }
 }
 
 /// Words about conditions, each once with all conditions that it is said of, in the order in which they were said first.
@@ -484,12 +549,19 @@ pub(super) fn by_words<C: Into<Option<ConditionId>>>(
 ) -> Vec<(Vec<ConditionId>, String)> {
     let mut grouped: Vec<(Vec<ConditionId>, String)> = Vec::new();
     for (condition, words) in said {
-        let place = grouped.iter().position(|(_, known)| *known == words).unwrap_or(grouped.len());
+        let place = grouped
+            .iter()
+            .position(|(_, known)| *known == words)
+            .unwrap_or(grouped.len());
         if place == grouped.len() {
             grouped.push((Vec::new(), words));
         }
         let conditions = &mut grouped[place].0;
-        conditions.extend(condition.into().filter(|condition| !conditions.contains(condition)));
+        conditions.extend(
+            condition
+                .into()
+                .filter(|condition| !conditions.contains(condition)),
+        );
     }
     grouped
 }
@@ -505,7 +577,10 @@ mod tests {
         assert!(!progress.cancelled());
         signal_hook::low_level::raise(signal_hook::consts::SIGINT).unwrap();
         assert!(progress.cancelled());
-        assert!(INTERRUPTION.ends_process.load(Ordering::SeqCst), "the next one ends the process");
+        assert!(
+            INTERRUPTION.ends_process.load(Ordering::SeqCst),
+            "the next one ends the process"
+        );
         assert_eq!(Failure::Cancelled(Cancelled).code(), Some("stopped"));
     }
 
@@ -513,11 +588,19 @@ mod tests {
     fn the_same_words_of_many_conditions_are_said_once_with_the_conditions_named() {
         let said = [(3, "late"), (4, "noisy"), (7, "late"), (7, "late")];
         let said = by_words(said.map(|(id, words)| (ConditionId(id), words.to_owned())));
-        let lines: Vec<String> = said.iter().map(|(of, words)| format!("{}: {words}", listed_conditions(of))).collect();
+        let lines: Vec<String> = said
+            .iter()
+            .map(|(of, words)| format!("{}: {words}", listed_conditions(of)))
+            .collect();
         assert_eq!(lines, ["conditions 3, 7: late", "condition 4: noisy"]);
-        let listed = |ids: &[i64]| listed_conditions(&ids.iter().copied().map(ConditionId).collect::<Vec<_>>());
+        let listed = |ids: &[i64]| {
+            listed_conditions(&ids.iter().copied().map(ConditionId).collect::<Vec<_>>())
+        };
         assert_eq!(listed(&[1, 2, 4, 5, 6, 9]), "conditions 1, 2, 4 to 6, 9");
-        assert_eq!(listed(&[i64::MAX, i64::MIN, 3]), format!("conditions {}, {}, 3", i64::MAX, i64::MIN));
+        assert_eq!(
+            listed(&[i64::MAX, i64::MIN, 3]),
+            format!("conditions {}, {}, 3", i64::MAX, i64::MIN)
+        );
     }
 
     #[test]
@@ -525,7 +608,9 @@ mod tests {
         let text = labelled(2, "rejected", 10, &"model ".repeat(40));
         assert!(text.lines().all(|line| line.chars().count() <= PAGE));
         assert!(
-            text.lines().skip(1).all(|line| line.starts_with(&" ".repeat(12)) && line.chars().nth(12) == Some('m'))
+            text.lines()
+                .skip(1)
+                .all(|line| line.starts_with(&" ".repeat(12)) && line.chars().nth(12) == Some('m'))
         );
         assert_eq!(text.matches("model").count(), 40);
     }

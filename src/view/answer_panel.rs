@@ -1,7 +1,8 @@
 //! The right side of the window: verdict, result, matrix, the response in focus, settings in one line, and the way to export.
 
 use egui::{
-    Align, Button, CornerRadius, Frame, Layout, Margin, Panel, Rect, RichText, Role, ScrollArea, Sense, Ui, pos2, vec2,
+    Align, Button, CornerRadius, Frame, Layout, Margin, Panel, Rect, RichText, Role, ScrollArea,
+    Sense, Ui, pos2, vec2,
 };
 
 use gdcm_method::correction::GainSource;
@@ -12,8 +13,8 @@ use super::controls::{elided, text_width};
 use super::palette::{TITLE_SIZE, body, medium, small};
 use super::verdict::{Step, Verdict, VerdictRow, band_words, export};
 use super::{
-    Asks, BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, matrix_panel, named, named_switch,
-    painted_text, region_ui, result_panel, settings_panel, take_escape,
+    Asks, BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, matrix_panel, named,
+    named_switch, painted_text, region_ui, result_panel, settings_panel, take_escape,
 };
 
 /// Space around everything \[pt\].
@@ -31,29 +32,50 @@ const LEAST_WITH_RESULT: f32 = 600.0;
 pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let verdict = Verdict::of(state);
     let foot = Frame::new().inner_margin(Margin::ZERO);
-    Panel::bottom("export").frame(foot).exact_size(LINE + FOOT).show(ui, |ui| {
-        region_ui(ui, Region::Settings, |ui| settings_line_ui(ui, state, palette, commands));
-        export_ui(ui, state, &verdict, palette, commands);
-    });
+    Panel::bottom("export")
+        .frame(foot)
+        .exact_size(LINE + FOOT)
+        .show(ui, |ui| {
+            region_ui(ui, Region::Settings, |ui| {
+                settings_line_ui(ui, state, palette, commands)
+            });
+            export_ui(ui, state, &verdict, palette, commands);
+        });
     let window = ui.ctx().content_rect().height();
-    let frame = Frame::new().inner_margin(Margin { left: PADDING as i8, right: PADDING as i8, top: 8, bottom: 4 });
+    let frame = Frame::new().inner_margin(Margin {
+        left: PADDING as i8,
+        right: PADDING as i8,
+        top: 8,
+        bottom: 4,
+    });
     frame.show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         // Whatever is written in one part, the next one is no wider.
         let width = ui.available_width();
-        region_ui(ui, Region::Verdict, |ui| verdict_ui(ui, &verdict, palette, commands));
+        region_ui(ui, Region::Verdict, |ui| {
+            verdict_ui(ui, &verdict, palette, commands)
+        });
         ui.add_space(8.0);
         if state.display.settings_open {
-            ScrollArea::vertical().id_salt("settings").auto_shrink([false, false]).show(ui, |ui| {
-                settings_panel::settings_ui(ui, state, palette, commands);
-            });
+            ScrollArea::vertical()
+                .id_salt("settings")
+                .auto_shrink([false, false])
+                .show(ui, |ui| {
+                    settings_panel::settings_ui(ui, state, palette, commands);
+                });
             return;
         }
         ui.set_max_width(width);
         let is_folded = window < LEAST_WITH_RESULT;
-        region_ui(ui, Region::Result, |ui| result_panel::result_ui(ui, state, is_folded, palette, commands));
+        region_ui(ui, Region::Result, |ui| {
+            result_panel::result_ui(ui, state, is_folded, palette, commands)
+        });
         ui.add_space(8.0);
-        let card = if window >= LEAST_WITH_CARD { matrix_panel::CARD_HEIGHT + 12.0 } else { 0.0 };
+        let card = if window >= LEAST_WITH_CARD {
+            matrix_panel::CARD_HEIGHT + 12.0
+        } else {
+            0.0
+        };
         matrix_panel::matrix_ui(ui, state, ui.available_height() - card, palette, commands);
         if card > 0.0 {
             ui.add_space(12.0);
@@ -66,11 +88,20 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
 fn verdict_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
     let (ground, mark) = match verdict.is_met() {
         true => (palette.good_ground, palette.good),
-        false if verdict.rows[0].here.is_none() && verdict.caution.is_none() => (palette.raised, palette.line),
+        false if verdict.rows[0].here.is_none() && verdict.caution.is_none() => {
+            (palette.raised, palette.line)
+        }
         false => (palette.warning_ground, palette.warning),
     };
-    let frame = Frame::new().fill(ground).corner_radius(CornerRadius::same(8));
-    let frame = frame.inner_margin(Margin { left: 16, right: 12, top: 6, bottom: 8 });
+    let frame = Frame::new()
+        .fill(ground)
+        .corner_radius(CornerRadius::same(8));
+    let frame = frame.inner_margin(Margin {
+        left: 16,
+        right: 12,
+        top: 6,
+        bottom: 8,
+    });
     let shown = frame.show(ui, |ui| {
         ui.set_width(ui.available_width());
         heads_ui(ui, verdict, palette);
@@ -80,8 +111,20 @@ fn verdict_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut 
         ui.add_space(4.0);
         steps_ui(ui, verdict, palette, commands);
     });
-    let edge = shown.response.rect.with_max_x(shown.response.rect.left() + 4.0);
-    ui.painter().rect_filled(edge, CornerRadius { nw: 8, sw: 8, ne: 0, se: 0 }, mark);
+    let edge = shown
+        .response
+        .rect
+        .with_max_x(shown.response.rect.left() + 4.0);
+    ui.painter().rect_filled(
+        edge,
+        CornerRadius {
+            nw: 8,
+            sw: 8,
+            ne: 0,
+            se: 0,
+        },
+        mark,
+    );
 }
 
 /// Where the counts and the words of the rows begin \[pt from their left edge\].
@@ -104,13 +147,24 @@ fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
         (_, true) => palette.warning,
         _ => palette.text,
     };
-    painted_text(ui, rect, COLUMNS[0], &VerdictRow::count(row.here), medium(TITLE_SIZE), color);
+    painted_text(
+        ui,
+        rect,
+        COLUMNS[0],
+        &VerdictRow::count(row.here),
+        medium(TITLE_SIZE),
+        color,
+    );
     let everywhere = VerdictRow::count(row.everywhere);
     let all = painted_text(ui, rect, -0.01, &everywhere, body(), palette.dim_text);
     let room = all.left() - rect.left() - COLUMNS[1] - 6.0;
     // Where there is no room for the band, the word alone: "matched".
     let fits = text_width(ui, &row.words, body()) <= room;
-    let words = if fits { row.words.as_str() } else { row.words.split(", ").next().unwrap_or_default() };
+    let words = if fits {
+        row.words.as_str()
+    } else {
+        row.words.split(", ").next().unwrap_or_default()
+    };
     let words = elided(ui, words, room, BODY_SIZE);
     painted_text(ui, rect, COLUMNS[1], &words, body(), palette.text);
     response.on_hover_text(row.sentence());
@@ -120,16 +174,32 @@ fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Ve
     // What exports is the primary button at the foot.
     let is_at_foot = |step: &&Step| step.command == export();
     let primary = verdict.steps.first().filter(|step| !is_at_foot(step));
-    let links: Vec<Step> = verdict.steps.iter().skip(1).cloned().chain(notes_step(verdict)).collect();
+    let links: Vec<Step> = verdict
+        .steps
+        .iter()
+        .skip(1)
+        .cloned()
+        .chain(notes_step(verdict))
+        .collect();
     match (&verdict.caution, primary) {
         // A price and something to decide: each has a line of its own.
         (Some(caution), Some(_)) => {
             let (notes, links): (Vec<Step>, Vec<Step>) = links.into_iter().partition(is_of_reasons);
             line_ui(ui, (Some(caution), None, &notes, ""), palette, commands);
-            line_ui(ui, (None, primary, &links, &verdict.note), palette, commands);
+            line_ui(
+                ui,
+                (None, primary, &links, &verdict.note),
+                palette,
+                commands,
+            );
         }
         (caution, primary) => {
-            line_ui(ui, (caution.as_deref(), primary, &links, &verdict.note), palette, commands);
+            line_ui(
+                ui,
+                (caution.as_deref(), primary, &links, &verdict.note),
+                palette,
+                commands,
+            );
         }
     }
 }
@@ -141,7 +211,10 @@ fn is_of_reasons(step: &Step) -> bool {
 /// The way to the list of reasons, where no other step leads there.
 fn notes_step(verdict: &Verdict) -> Option<Step> {
     let is_offered = verdict.steps.iter().any(is_of_reasons);
-    let notes = Step { label: format!("{} notes", verdict.reasons), command: Command::ShowSheet(Some(Sheet::Reasons)) };
+    let notes = Step {
+        label: format!("{} notes", verdict.reasons),
+        command: Command::ShowSheet(Some(Sheet::Reasons)),
+    };
     (!is_offered && verdict.reasons > 0).then_some(notes)
 }
 
@@ -153,23 +226,36 @@ fn line_ui(
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {
-        ui.set_min_height(if primary.is_some() || caution.is_none() { 28.0 } else { 22.0 });
+        ui.set_min_height(if primary.is_some() || caution.is_none() {
+            28.0
+        } else {
+            22.0
+        });
         if let Some(caution) = caution {
-            let width: f32 = primary.into_iter().chain(links).map(|of| text_width(ui, &of.label, body()) + 24.0).sum();
+            let width: f32 = primary
+                .into_iter()
+                .chain(links)
+                .map(|of| text_width(ui, &of.label, body()) + 24.0)
+                .sum();
             let room = ui.available_width() - width;
             let whole = format!("⚠ {caution}");
             let fits = text_width(ui, &whole, body()) <= room;
             let short = format!("⚠ {}", caution.strip_prefix("Price: ").unwrap_or(caution));
-            let text = palette.small_warning(if fits { whole } else { short }).size(BODY_SIZE);
+            let text = palette
+                .small_warning(if fits { whole } else { short })
+                .size(BODY_SIZE);
             ui.scope(|ui| {
                 ui.set_max_width(room);
-                ui.add(egui::Label::new(text).truncate()).on_hover_text(caution);
+                ui.add(egui::Label::new(text).truncate())
+                    .on_hover_text(caution);
             });
         }
         if let Some(step) = primary {
             step_ui(ui, step, true, palette, commands);
         }
-        let (at_end, links): (Vec<&Step>, Vec<&Step>) = links.iter().partition(|step| step.label.ends_with(" notes"));
+        let (at_end, links): (Vec<&Step>, Vec<&Step>) = links
+            .iter()
+            .partition(|step| step.label.ends_with(" notes"));
         for step in links {
             step_ui(ui, step, false, palette, commands);
         }
@@ -181,8 +267,13 @@ fn line_ui(
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                     // Where there is no room for all of it: "of 19 models".
                     let fits = text_width(ui, note, small()) <= ui.available_width();
-                    let shown = if fits { note } else { note.split(", ").next().unwrap_or(note) };
-                    ui.add(egui::Label::new(palette.small(shown)).truncate()).on_hover_text(note);
+                    let shown = if fits {
+                        note
+                    } else {
+                        note.split(", ").next().unwrap_or(note)
+                    };
+                    ui.add(egui::Label::new(palette.small(shown)).truncate())
+                        .on_hover_text(note);
                 });
             }
         });
@@ -190,49 +281,87 @@ fn line_ui(
 }
 
 /// A step as a link, or as the one primary button of the window; Enter on it does it.
-fn step_ui(ui: &mut Ui, step: &Step, is_primary: bool, palette: &Palette, commands: &mut Vec<Command>) {
+fn step_ui(
+    ui: &mut Ui,
+    step: &Step,
+    is_primary: bool,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let label = RichText::new(&step.label);
     let button = if is_primary {
         Button::new(label.font(medium(BODY_SIZE)).color(palette.on_accent())).fill(palette.accent)
     } else {
         Button::new(label.color(palette.accent)).frame(false)
     };
-    ui.add(button.min_size(vec2(0.0, 28.0))).asks(step.command.clone(), commands);
+    ui.add(button.min_size(vec2(0.0, 28.0)))
+        .asks(step.command.clone(), commands);
 }
 
 /// The settings in one line; a click opens them in place, over matrix and card.
 fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let is_open = state.display.settings_open;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::click());
-    ui.painter().hline(rect.x_range(), rect.top(), ui.visuals().widgets.noninteractive.bg_stroke);
+    ui.painter().hline(
+        rect.x_range(),
+        rect.top(),
+        ui.visuals().widgets.noninteractive.bg_stroke,
+    );
     if response.hovered() {
-        ui.painter().rect_filled(rect.shrink2(vec2(0.0, 1.0)), 0.0, palette.raised);
+        ui.painter()
+            .rect_filled(rect.shrink2(vec2(0.0, 1.0)), 0.0, palette.raised);
     }
     let inner = rect.shrink2(vec2(PADDING, 0.0));
     let title = painted_text(ui, inner, 0.0, "Settings", medium(BODY_SIZE), palette.text);
     let words = settings_words(state);
     let shown = elided(ui, &words, inner.right() - title.right() - 32.0, SMALL_SIZE);
-    painted_text(ui, inner, title.right() - inner.left() + 10.0, &shown, small(), palette.dim_text);
-    chevron(ui, pos2(inner.right() - 5.0, inner.center().y), is_open, palette);
+    painted_text(
+        ui,
+        inner,
+        title.right() - inner.left() + 10.0,
+        &shown,
+        small(),
+        palette.dim_text,
+    );
+    chevron(
+        ui,
+        pos2(inner.right() - 5.0, inner.center().y),
+        is_open,
+        palette,
+    );
     let response = named_switch(response, Role::Button, is_open, "Settings");
     if response.clicked() || (is_open && take_escape(ui.ctx())) {
         commands.push(Command::ShowSettings(!is_open));
     }
-    response.on_hover_text(format!("{words}. Click, or Ctrl+comma: {} them", if is_open { "fold" } else { "open" }));
+    response.on_hover_text(format!(
+        "{words}. Click, or Ctrl+comma: {} them",
+        if is_open { "fold" } else { "open" }
+    ));
 }
 
 /// A small arrow: to the right where what it stands beside is folded, down where it is open.
 pub(super) fn chevron(ui: &Ui, center: egui::Pos2, is_open: bool, palette: &Palette) {
-    let turn = |x: f32, y: f32| if is_open { center + vec2(-y, x) } else { center + vec2(x, y) };
+    let turn = |x: f32, y: f32| {
+        if is_open {
+            center + vec2(-y, x)
+        } else {
+            center + vec2(x, y)
+        }
+    };
     let points = vec![turn(-2.0, -4.0), turn(2.0, 0.0), turn(-2.0, 4.0)];
-    ui.painter().line(points, egui::Stroke::new(1.3, palette.dim_text));
+    ui.painter()
+        .line(points, egui::Stroke::new(1.3, palette.dim_text));
 }
 
 /// "α 1 · 0.5–12 rad/s · delays · representatives".
 fn settings_words(state: &State) -> String {
     let settings = &state.study.settings;
     let [gains, delays] = [settings.alpha_gain, settings.alpha_delay].map(number);
-    let alpha = if gains == delays { format!("α {gains}") } else { format!("α {gains}, {delays}") };
+    let alpha = if gains == delays {
+        format!("α {gains}")
+    } else {
+        format!("α {gains}, {delays}")
+    };
     let phase = match settings.phase {
         PhaseCorrection::None => "gains alone",
         PhaseCorrection::Delay => "delays",
@@ -247,15 +376,40 @@ fn settings_words(state: &State) -> String {
 }
 
 /// The way to the export form, always in sight; primary where nothing else is to be done.
-fn export_ui(ui: &mut Ui, state: &State, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
+fn export_ui(
+    ui: &mut Ui,
+    state: &State,
+    verdict: &Verdict,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), FOOT), Sense::hover());
-    ui.painter().hline(rect.x_range(), rect.top(), ui.visuals().widgets.noninteractive.bg_stroke);
+    ui.painter().hline(
+        rect.x_range(),
+        rect.top(),
+        ui.visuals().widgets.noninteractive.bg_stroke,
+    );
     let inner = rect.shrink2(vec2(PADDING, 10.0));
     let is_ready = state.analysis().is_some();
-    let is_primary = verdict.steps.first().is_some_and(|step| step.command == export());
-    let color = if is_primary { palette.on_accent() } else { palette.text };
-    let button = Button::new(RichText::new("Export corrections…").font(medium(BODY_SIZE)).color(color));
-    let button = if is_primary { button.fill(palette.accent) } else { button };
+    let is_primary = verdict
+        .steps
+        .first()
+        .is_some_and(|step| step.command == export());
+    let color = if is_primary {
+        palette.on_accent()
+    } else {
+        palette.text
+    };
+    let button = Button::new(
+        RichText::new("Export corrections…")
+            .font(medium(BODY_SIZE))
+            .color(color),
+    );
+    let button = if is_primary {
+        button.fill(palette.accent)
+    } else {
+        button
+    };
     let place = Rect::from_min_size(inner.min, vec2(140.0, 28.0));
     region_ui(ui, Region::Export, |ui| {
         ui.scope_builder(egui::UiBuilder::new().max_rect(place), |ui| {
@@ -264,9 +418,18 @@ fn export_ui(ui: &mut Ui, state: &State, verdict: &Verdict, palette: &Palette, c
             export_button.on_hover_text(hint).asks(export(), commands);
         });
     });
-    let schedule = state.analysis().is_some_and(|analysis| analysis.schedule.is_ok());
+    let schedule = state
+        .analysis()
+        .is_some_and(|analysis| analysis.schedule.is_ok());
     let count = state.dataset().conditions().len();
-    let conditions = if count == 1 { "condition" } else { "conditions" };
-    let what = format!("{count} {conditions}{}", if schedule { ", schedule" } else { "" });
+    let conditions = if count == 1 {
+        "condition"
+    } else {
+        "conditions"
+    };
+    let what = format!(
+        "{count} {conditions}{}",
+        if schedule { ", schedule" } else { "" }
+    );
     painted_text(ui, inner, -0.01, &what, body(), palette.dim_text);
 }

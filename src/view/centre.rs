@@ -2,8 +2,8 @@
 
 use egui::containers::menu::MenuButton;
 use egui::{
-    Align, AsIdSalt, Button, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui,
-    UiBuilder, pos2, vec2,
+    Align, AsIdSalt, Button, Frame, Layout, Margin, Panel, Rect, RichText, Role, Sense, Stroke,
+    StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
 
 use super::answer_panel::chevron;
@@ -11,8 +11,8 @@ use super::controls::{in_line_ui, text_width};
 use super::palette::{TITLE_SIZE, body, medium};
 use super::start_page::example_line_ui;
 use super::{
-    Asks, BODY_SIZE, Command, Palette, Region, State, View, ViewGroup, ViewTitle, button_ui, entries_ui,
-    figure_button_ui, named, named_switch, region_ui, restore_panel_size,
+    Asks, BODY_SIZE, Command, Palette, Region, State, View, ViewGroup, ViewTitle, button_ui,
+    entries_ui, figure_button_ui, named, named_switch, region_ui, restore_panel_size,
 };
 
 /// Height of the bar of the views \[pt\].
@@ -32,21 +32,37 @@ const PADDING: i8 = 16;
 pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     view_bar_ui(ui, state, palette, commands);
     if state.is_example {
-        let frame = Frame::new().inner_margin(Margin { left: PADDING, right: PADDING, top: 2, bottom: 0 });
+        let frame = Frame::new().inner_margin(Margin {
+            left: PADDING,
+            right: PADDING,
+            top: 2,
+            bottom: 0,
+        });
         frame.show(ui, |ui| example_line_ui(ui, palette, commands));
     }
     if let Some(dock) = state.display.arrangement.dock() {
         dock_ui(ui, state, dock, palette, commands);
     }
-    let (view, beside) = (state.display.arrangement.view(), state.display.arrangement.beside());
+    let (view, beside) = (
+        state.display.arrangement.view(),
+        state.display.arrangement.beside(),
+    );
     let area = ui.available_rect_before_wrap();
     let Some(beside) = beside else {
         return part_ui(ui, area, state, view, palette, commands);
     };
     let middle = area.center().x;
     part_ui(ui, area.with_max_x(middle), state, view, palette, commands);
-    ui.painter().vline(middle, area.y_range(), Stroke::new(1.0, palette.line));
-    part_ui(ui, area.with_min_x(middle), state, beside, palette, commands);
+    ui.painter()
+        .vline(middle, area.y_range(), Stroke::new(1.0, palette.line));
+    part_ui(
+        ui,
+        area.with_min_x(middle),
+        state,
+        beside,
+        palette,
+        commands,
+    );
 }
 
 /// Groups at the left, the views of the one in front beside them, and what can be done with the view at the right.
@@ -54,7 +70,8 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
     let bar = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), BAR));
     ui.allocate_rect(bar, Sense::hover());
     ui.painter().rect_filled(bar, 0.0, palette.panel);
-    ui.painter().hline(bar.x_range(), bar.bottom(), Stroke::new(1.0, palette.line));
+    ui.painter()
+        .hline(bar.x_range(), bar.bottom(), Stroke::new(1.0, palette.line));
     let inner = bar.shrink2(vec2(f32::from(PADDING), 0.0));
     let left = in_line_ui(ui, inner, false, |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
@@ -62,34 +79,73 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         ui.add_space(12.0);
         tabs_ui(ui, state, bar, palette, commands);
     });
-    in_line_ui(ui, inner.with_min_x(left.response.rect.right() + 8.0), true, |ui| {
-        figure_button_ui(ui, state, state.display.arrangement.view(), commands);
-        let hint = "Bring every curve into view (F, or double click)";
-        button_ui(ui, Button::new("Fit").frame(false), hint, Command::FitPlots, commands);
-        beside_ui(ui, state, palette, commands);
-    });
+    in_line_ui(
+        ui,
+        inner.with_min_x(left.response.rect.right() + 8.0),
+        true,
+        |ui| {
+            figure_button_ui(ui, state, state.display.arrangement.view(), commands);
+            let hint = "Bring every curve into view (F, or double click)";
+            button_ui(
+                ui,
+                Button::new("Fit").frame(false),
+                hint,
+                Command::FitPlots,
+                commands,
+            );
+            beside_ui(ui, state, palette, commands);
+        },
+    );
 }
 
 /// One button of several joined ones for each group.
 fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let font = medium(BODY_SIZE);
     let widths = ViewGroup::ALL.map(|group| text_width(ui, group.name(), font.clone()) + 24.0);
-    let (area, _) = ui.allocate_exact_size(vec2(widths.iter().sum::<f32>() + 4.0, 30.0), Sense::hover());
-    ui.painter().rect(area, 6.0, palette.background, Stroke::new(1.0, palette.line), StrokeKind::Inside);
+    let (area, _) =
+        ui.allocate_exact_size(vec2(widths.iter().sum::<f32>() + 4.0, 30.0), Sense::hover());
+    ui.painter().rect(
+        area,
+        6.0,
+        palette.background,
+        Stroke::new(1.0, palette.line),
+        StrokeKind::Inside,
+    );
     let mut left = area.left() + 2.0;
     for (group, width) in ViewGroup::ALL.into_iter().zip(widths) {
         let place = Rect::from_min_size(pos2(left, area.top() + 2.0), vec2(width, 26.0));
         left = place.right();
         let is_front = state.display.arrangement.group() == group;
-        let response = ui.interact(place, ui.scope_id().with(("group", group.name())), Sense::click());
+        let response = ui.interact(
+            place,
+            ui.scope_id().with(("group", group.name())),
+            Sense::click(),
+        );
         if is_front || response.hovered() {
             ui.painter().rect_filled(place, 5.0, palette.raised);
         }
-        let color = if is_front { palette.text } else { palette.dim_text };
-        ui.painter().text(place.center(), egui::Align2::CENTER_CENTER, group.name(), font.clone(), color);
-        let response = named_switch(response, Role::Button, is_front, format!("Views: {}", group.name()));
+        let color = if is_front {
+            palette.text
+        } else {
+            palette.dim_text
+        };
+        ui.painter().text(
+            place.center(),
+            egui::Align2::CENTER_CENTER,
+            group.name(),
+            font.clone(),
+            color,
+        );
+        let response = named_switch(
+            response,
+            Role::Button,
+            is_front,
+            format!("Views: {}", group.name()),
+        );
         let names: Vec<&str> = group.views().map(View::name).collect();
-        response.on_hover_text(names.join(", ")).asks(Command::ShowGroup(group), commands);
+        response
+            .on_hover_text(names.join(", "))
+            .asks(Command::ShowGroup(group), commands);
     }
 }
 
@@ -110,50 +166,105 @@ fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &
     let text = RichText::new(format!("{} ▾", front.name())).font(medium(BODY_SIZE));
     let (button, _) = MenuButton::from_button(Button::new(text).frame(false)).ui(ui, |ui| {
         let views = arrangement.group().views();
-        entries_ui(ui, views.map(|view| (view.name(), Command::ShowView(view))), commands);
+        entries_ui(
+            ui,
+            views.map(|view| (view.name(), Command::ShowView(view))),
+            commands,
+        );
     });
     named_switch(button, Role::Tab, true, front.name()).on_hover_text("The views of this group");
 }
 
 /// The name of a view, with a line of accent below the one in front.
-fn tab_ui(ui: &mut Ui, bar: Rect, view: View, is_front: bool, palette: &Palette, commands: &mut Vec<Command>) {
+fn tab_ui(
+    ui: &mut Ui,
+    bar: Rect,
+    view: View,
+    is_front: bool,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let font = if is_front { medium(BODY_SIZE) } else { body() };
-    let color = if is_front { palette.text } else { palette.dim_text };
+    let color = if is_front {
+        palette.text
+    } else {
+        palette.dim_text
+    };
     let galley = ui.fonts_mut(|fonts| fonts.layout_no_wrap(view.name().to_owned(), font, color));
-    let (place, response) = ui.allocate_exact_size(vec2(galley.size().x + 14.0, BAR), Sense::click());
-    ui.painter().galley(place.center() - 0.5 * galley.size(), galley, color);
+    let (place, response) =
+        ui.allocate_exact_size(vec2(galley.size().x + 14.0, BAR), Sense::click());
+    ui.painter()
+        .galley(place.center() - 0.5 * galley.size(), galley, color);
     if is_front || response.hovered() {
-        let line = Rect::from_x_y_ranges(place.shrink2(vec2(4.0, 0.0)).x_range(), bar.bottom() - 2.0..=bar.bottom());
-        ui.painter().rect_filled(line, 1.0, if is_front { palette.accent } else { palette.line });
+        let line = Rect::from_x_y_ranges(
+            place.shrink2(vec2(4.0, 0.0)).x_range(),
+            bar.bottom() - 2.0..=bar.bottom(),
+        );
+        ui.painter().rect_filled(
+            line,
+            1.0,
+            if is_front {
+                palette.accent
+            } else {
+                palette.line
+            },
+        );
     }
     let response = named_switch(response, Role::Tab, is_front, view.name());
-    response.on_hover_text(view.kind().purpose).asks(Command::ShowView(view), commands);
+    response
+        .on_hover_text(view.kind().purpose)
+        .asks(Command::ShowView(view), commands);
 }
 
 /// The button that shows a second view beside the one in front, or puts it away.
 fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let arrangement = &state.display.arrangement;
     let (button, _) = MenuButton::from_button(Button::new("     ").frame(false)).ui(ui, |ui| {
-        let views = View::ALL.into_iter().filter(|view| *view != arrangement.view());
+        let views = View::ALL
+            .into_iter()
+            .filter(|view| *view != arrangement.view());
         entries_ui(
             ui,
-            views.map(|view| (format!("{} beside it", view.name()), Command::ShowBeside(Some(view)))),
+            views.map(|view| {
+                (
+                    format!("{} beside it", view.name()),
+                    Command::ShowBeside(Some(view)),
+                )
+            }),
             commands,
         );
         if arrangement.beside().is_some() {
             ui.separator();
-            entries_ui(ui, [("One view alone", Command::ShowBeside(None))], commands);
+            entries_ui(
+                ui,
+                [("One view alone", Command::ShowBeside(None))],
+                commands,
+            );
         }
     });
     let symbol = Rect::from_center_size(button.rect.center(), vec2(14.0, 12.0));
-    let color = if arrangement.beside().is_some() { palette.accent } else { palette.dim_text };
-    ui.painter().rect_stroke(symbol, 2.0, Stroke::new(1.3, color), StrokeKind::Inside);
-    ui.painter().vline(symbol.center().x, symbol.y_range(), Stroke::new(1.3, color));
-    named(button, Role::Button, "Show another view beside").on_hover_text("Another view beside this one");
+    let color = if arrangement.beside().is_some() {
+        palette.accent
+    } else {
+        palette.dim_text
+    };
+    ui.painter()
+        .rect_stroke(symbol, 2.0, Stroke::new(1.3, color), StrokeKind::Inside);
+    ui.painter()
+        .vline(symbol.center().x, symbol.y_range(), Stroke::new(1.3, color));
+    named(button, Role::Button, "Show another view beside")
+        .on_hover_text("Another view beside this one");
 }
 
 /// A view with its title and its tools in an area.
-fn part_ui(ui: &mut Ui, area: Rect, state: &mut State, view: View, palette: &Palette, commands: &mut Vec<Command>) {
+fn part_ui(
+    ui: &mut Ui,
+    area: Rect,
+    state: &mut State,
+    view: View,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let top = if state.is_example { 0 } else { 6 };
     clipped_ui(ui, ("view", view), area, [top, 4], |ui| {
         title_row_ui(ui, state, view, palette, commands);
@@ -163,16 +274,35 @@ fn part_ui(ui: &mut Ui, area: Rect, state: &mut State, view: View, palette: &Pal
 }
 
 /// Content that stays within an area, with space around it, above and below as given.
-fn clipped_ui(ui: &mut Ui, id: impl AsIdSalt, area: Rect, [top, bottom]: [i8; 2], add: impl FnOnce(&mut Ui)) {
+fn clipped_ui(
+    ui: &mut Ui,
+    id: impl AsIdSalt,
+    area: Rect,
+    [top, bottom]: [i8; 2],
+    add: impl FnOnce(&mut Ui),
+) {
     ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(area), |ui| {
         ui.set_clip_rect(area.intersect(ui.clip_rect()));
-        Frame::new().inner_margin(Margin { left: PADDING, right: PADDING, top, bottom }).show(ui, add);
+        Frame::new()
+            .inner_margin(Margin {
+                left: PADDING,
+                right: PADDING,
+                top,
+                bottom,
+            })
+            .show(ui, add);
     });
     ui.advance_cursor_after_rect(area);
 }
 
 /// What the view shows at the left, its tools at the right; these stand in a line of their own where there is no room beside.
-fn title_row_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette, commands: &mut Vec<Command>) {
+fn title_row_ui(
+    ui: &mut Ui,
+    state: &State,
+    view: View,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     /// A title is not narrower \[pt\].
     const LEAST: f32 = 200.0;
     let kind = view.kind();
@@ -185,19 +315,31 @@ fn title_row_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette, comma
         row_ui(ui, width, |ui| {
             tools_ui(ui, state, view, palette, commands);
             let rest = ui.available_rect_before_wrap();
-            in_line_ui(ui, rest, false, |ui| title_ui(ui, state, kind.title, palette));
+            in_line_ui(ui, rest, false, |ui| {
+                title_ui(ui, state, kind.title, palette)
+            });
         });
     }
 }
 
 fn row_ui(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
-    ui.allocate_ui_with_layout(vec2(width, TITLE), Layout::right_to_left(Align::Center).with_main_wrap(false), |ui| {
-        ui.set_min_size(vec2(width, TITLE));
-        add(ui);
-    });
+    ui.allocate_ui_with_layout(
+        vec2(width, TITLE),
+        Layout::right_to_left(Align::Center).with_main_wrap(false),
+        |ui| {
+            ui.set_min_size(vec2(width, TITLE));
+            add(ui);
+        },
+    );
 }
 
-fn tools_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette, commands: &mut Vec<Command>) {
+fn tools_ui(
+    ui: &mut Ui,
+    state: &State,
+    view: View,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     // That of the view in front stands in the bar.
     if view != state.display.arrangement.view() {
         figure_button_ui(ui, state, view, commands);
@@ -205,14 +347,20 @@ fn tools_ui(ui: &mut Ui, state: &State, view: View, palette: &Palette, commands:
     (view.kind().tools)(ui, state, palette, commands);
     if view.kind().is_of_all_conditions && state.others_are_older() {
         let text = palette.small_warning("of older settings");
-        ui.label(text).on_hover_text("The condition shown is computed anew already; the others are on their way");
+        ui.label(text).on_hover_text(
+            "The condition shown is computed anew already; the others are on their way",
+        );
     }
 }
 
 /// "LON → Q  condition 10: 60 kt, low altitude, high weight".
 fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
     let condition = state.condition();
-    let of_condition = format!("condition {}: {}", condition.id(), condition.flight_state().name);
+    let of_condition = format!(
+        "condition {}: {}",
+        condition.id(),
+        condition.flight_state().name
+    );
     let heading = |ui: &mut Ui, text: &str| ui.label(RichText::new(text).font(medium(TITLE_SIZE)));
     match title {
         ViewTitle::Response => {
@@ -224,20 +372,34 @@ fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
             heading(ui, &format!("Condition {}", condition.id()));
             ui.add(egui::Label::new(palette.dim(&condition.flight_state().name)).truncate());
         }
-        ViewTitle::Words(words) => drop(ui.add(egui::Label::new(palette.dim(words(state))).truncate())),
+        ViewTitle::Words(words) => {
+            drop(ui.add(egui::Label::new(palette.dim(words(state))).truncate()))
+        }
         ViewTitle::None => {}
     }
 }
 
 /// The view below the others, folded to its bar in a low window.
-fn dock_ui(ui: &mut Ui, state: &mut State, view: View, palette: &Palette, commands: &mut Vec<Command>) {
+fn dock_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    view: View,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let window = ui.ctx().content_rect().height();
-    let is_open = state.display.arrangement.is_dock_open(window >= LEAST_WITH_DOCK);
+    let is_open = state
+        .display
+        .arrangement
+        .is_dock_open(window >= LEAST_WITH_DOCK);
     let frame = Frame::new().fill(palette.background);
     restore_panel_size(ui, "dock");
     let panel = Panel::bottom(if is_open { "dock" } else { "folded dock" }).frame(frame);
     let panel = if is_open {
-        panel.resizable(true).default_size((DOCK_PART * window).round()).size_range(140.0..=0.6 * window)
+        panel
+            .resizable(true)
+            .default_size((DOCK_PART * window).round())
+            .size_range(140.0..=0.6 * window)
     } else {
         panel.exact_size(FOLDED)
     };
@@ -262,32 +424,48 @@ fn dock_head_ui(
     commands: &mut Vec<Command>,
 ) {
     let width = ui.available_width();
-    ui.allocate_ui_with_layout(vec2(width, FOLDED), Layout::right_to_left(Align::Center), |ui| {
-        ui.set_min_size(vec2(width, FOLDED));
-        if is_open {
-            tools_ui(ui, state, view, palette, commands);
-        }
-        let rest = ui.available_rect_before_wrap();
-        in_line_ui(ui, rest, false, |ui| {
-            let (place, response) = ui.allocate_exact_size(vec2(16.0, FOLDED), Sense::click());
-            chevron(ui, place.center(), is_open, palette);
-            let response = named_switch(response, Role::Button, is_open, "Dock");
-            let hint = if is_open { "Fold the plots below" } else { "Unfold the plots below" };
-            response.on_hover_text(hint).asks(Command::OpenDock(!is_open), commands);
-            let others: Vec<View> = View::docked(state).collect();
-            for docked in &others {
-                let is_front = *docked == view;
-                let text = RichText::new(docked.kind().long_name.unwrap_or(docked.name())).font(medium(BODY_SIZE));
-                if others.len() == 1 {
-                    ui.label(text);
-                } else {
-                    let button = ui.add(Button::selectable(is_front, text));
-                    let button = named_switch(button, Role::Tab, is_front, format!("{} in the dock", docked.name()));
-                    button.asks(Command::ShowInDock(*docked), commands);
-                }
+    ui.allocate_ui_with_layout(
+        vec2(width, FOLDED),
+        Layout::right_to_left(Align::Center),
+        |ui| {
+            ui.set_min_size(vec2(width, FOLDED));
+            if is_open {
+                tools_ui(ui, state, view, palette, commands);
             }
-            ui.add_space(4.0);
-            title_ui(ui, state, view.kind().title, palette);
-        });
-    });
+            let rest = ui.available_rect_before_wrap();
+            in_line_ui(ui, rest, false, |ui| {
+                let (place, response) = ui.allocate_exact_size(vec2(16.0, FOLDED), Sense::click());
+                chevron(ui, place.center(), is_open, palette);
+                let response = named_switch(response, Role::Button, is_open, "Dock");
+                let hint = if is_open {
+                    "Fold the plots below"
+                } else {
+                    "Unfold the plots below"
+                };
+                response
+                    .on_hover_text(hint)
+                    .asks(Command::OpenDock(!is_open), commands);
+                let others: Vec<View> = View::docked(state).collect();
+                for docked in &others {
+                    let is_front = *docked == view;
+                    let text = RichText::new(docked.kind().long_name.unwrap_or(docked.name()))
+                        .font(medium(BODY_SIZE));
+                    if others.len() == 1 {
+                        ui.label(text);
+                    } else {
+                        let button = ui.add(Button::selectable(is_front, text));
+                        let button = named_switch(
+                            button,
+                            Role::Tab,
+                            is_front,
+                            format!("{} in the dock", docked.name()),
+                        );
+                        button.asks(Command::ShowInDock(*docked), commands);
+                    }
+                }
+                ui.add_space(4.0);
+                title_ui(ui, state, view.kind().title, palette);
+            });
+        },
+    );
 }

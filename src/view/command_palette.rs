@@ -6,7 +6,8 @@ use egui::text::{CCursor, CCursorRange};
 use egui::{Key, Modifiers, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
 use super::{
-    BODY_SIZE, Command, Entry, Palette, Room, SMALL_SIZE, State, every_command, row_text, row_text_within, row_ui,
+    BODY_SIZE, Command, Entry, Palette, Room, SMALL_SIZE, State, every_command, row_text,
+    row_text_within, row_ui,
 };
 
 /// Height of the list \[pt\].
@@ -24,13 +25,20 @@ pub struct PaletteForm {
 }
 
 /// The field and the commands that answer it. Up and Down choose, Enter carries out.
-pub fn command_palette_ui(ui: &mut Ui, state: &mut State, opens: bool, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn command_palette_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    opens: bool,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let entries = every_command(state);
     let form = &mut state.forms.palette;
     if opens {
         *form = PaletteForm::default();
     }
-    let pressed = |ui: &Ui, key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
+    let pressed =
+        |ui: &Ui, key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
     let (down, up) = (pressed(ui, Key::ArrowDown), pressed(ui, Key::ArrowUp));
     let entered = pressed(ui, Key::Enter) > 0;
     if field_ui(ui, &mut form.query, opens) {
@@ -38,26 +46,35 @@ pub fn command_palette_ui(ui: &mut Ui, state: &mut State, opens: bool, palette: 
     }
     let mut found = answers(entries.iter().map(|entry| entry.name.as_str()), &form.query);
     found.truncate(MOST_ROWS);
-    form.chosen = (form.chosen + down).saturating_sub(up).min(found.len().saturating_sub(1));
+    form.chosen = (form.chosen + down)
+        .saturating_sub(up)
+        .min(found.len().saturating_sub(1));
     let (chosen, has_moved) = (form.chosen, down + up > 0);
     ui.add_space(4.0);
     let mut taken = found.get(chosen).filter(|_| entered).copied();
     // As high whatever is found, so that the field stays in its place while letters are typed.
-    ScrollArea::vertical().max_height(HEIGHT).min_scrolled_height(HEIGHT).auto_shrink(false).show(ui, |ui| {
-        if found.is_empty() {
-            ui.label(palette.dim("No command has these letters"));
-        }
-        for (row, &place) in found.iter().enumerate() {
-            let response = entry_ui(ui, &entries[place], row == chosen, palette);
-            if response.clicked() {
-                taken = Some(place);
+    ScrollArea::vertical()
+        .max_height(HEIGHT)
+        .min_scrolled_height(HEIGHT)
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            if found.is_empty() {
+                ui.label(palette.dim("No command has these letters"));
             }
-            if row == chosen && has_moved {
-                response.scroll_to_me(None);
+            for (row, &place) in found.iter().enumerate() {
+                let response = entry_ui(ui, &entries[place], row == chosen, palette);
+                if response.clicked() {
+                    taken = Some(place);
+                }
+                if row == chosen && has_moved {
+                    response.scroll_to_me(None);
+                }
             }
-        }
-    });
-    if let Some(entry) = taken.map(|place| &entries[place]).filter(|entry| entry.enabled) {
+        });
+    if let Some(entry) = taken
+        .map(|place| &entries[place])
+        .filter(|entry| entry.enabled)
+    {
         commands.push(Command::ShowForm(None));
         commands.push(entry.command.clone());
     }
@@ -65,7 +82,10 @@ pub fn command_palette_ui(ui: &mut Ui, state: &mut State, opens: bool, palette: 
 
 /// What is looked for; whether it was changed.
 fn field_ui(ui: &mut Ui, query: &mut String, opens: bool) -> bool {
-    let shown = TextEdit::singleline(query).hint_text("what to do").desired_width(f32::INFINITY).show(ui);
+    let shown = TextEdit::singleline(query)
+        .hint_text("what to do")
+        .desired_width(f32::INFINITY)
+        .show(ui);
     let response = shown.response.response;
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::TextInput, true, "Command palette");
@@ -74,7 +94,9 @@ fn field_ui(ui: &mut Ui, query: &mut String, opens: bool) -> bool {
     });
     if opens || !response.has_focus() {
         let mut edited = shown.state;
-        edited.cursor.set_char_range(Some(CCursorRange::one(CCursor::new(query.chars().count()))));
+        edited
+            .cursor
+            .set_char_range(Some(CCursorRange::one(CCursor::new(query.chars().count()))));
         edited.store(ui.ctx(), response.id);
         response.request_focus();
     }
@@ -83,10 +105,21 @@ fn field_ui(ui: &mut Ui, query: &mut String, opens: bool) -> bool {
 
 fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui::Response {
     let (row, response) = row_ui(ui, palette, chosen, false, &entry.name);
-    let color = if entry.enabled { palette.text } else { palette.quiet_text };
-    let keys = entry.shortcuts.first().map(|shortcut| ui.ctx().format_shortcut(shortcut)).unwrap_or_default();
+    let color = if entry.enabled {
+        palette.text
+    } else {
+        palette.quiet_text
+    };
+    let keys = entry
+        .shortcuts
+        .first()
+        .map(|shortcut| ui.ctx().format_shortcut(shortcut))
+        .unwrap_or_default();
     let keys = row_text(ui, row, -6.0, &keys, SMALL_SIZE, palette.dim_text);
-    let room = Room { left: 8.0, right: keys.left() - row.left() - 10.0 };
+    let room = Room {
+        left: 8.0,
+        right: keys.left() - row.left() - 10.0,
+    };
     row_text_within(ui, row, room, &entry.name, BODY_SIZE, color);
     response.on_hover_text(entry.meaning)
 }
@@ -105,8 +138,11 @@ pub fn answer_score(name: &str, query: &str) -> Option<(bool, usize, usize, Reve
         score += word_score(&name, word)?;
         of_command += word_score(command, word).unwrap_or_default();
     }
-    let goes_back = ["undo", "redo"].into_iter().find(|back| words_of(&name).next() == Some(back));
-    let is_asked = goes_back.is_none_or(|back| query.split_whitespace().any(|word| back.starts_with(word)));
+    let goes_back = ["undo", "redo"]
+        .into_iter()
+        .find(|back| words_of(&name).next() == Some(back));
+    let is_asked =
+        goes_back.is_none_or(|back| query.split_whitespace().any(|word| back.starts_with(word)));
     Some((is_asked, score, of_command, Reverse(name.chars().count())))
 }
 
@@ -124,7 +160,9 @@ fn word_score(name: &str, word: &str) -> Option<usize> {
 
 /// The places of the names that answer the query, the best first; all in their order for an empty one.
 pub fn answers<'a>(names: impl Iterator<Item = &'a str>, query: &str) -> Vec<usize> {
-    let scored = names.enumerate().filter_map(|(place, name)| Some((answer_score(name, query)?, place)));
+    let scored = names
+        .enumerate()
+        .filter_map(|(place, name)| Some((answer_score(name, query)?, place)));
     let mut found: Vec<_> = scored.collect();
     if !query.trim().is_empty() {
         found.sort_by_key(|(score, _)| Reverse(*score));
@@ -137,24 +175,38 @@ fn words_of(name: &str) -> impl Iterator<Item = &str> {
 }
 
 fn starts_a_word(name: &str, word: &str) -> bool {
-    let begins = |at: usize| name[..at].chars().next_back().is_none_or(|before| !before.is_alphanumeric());
+    let begins = |at: usize| {
+        name[..at]
+            .chars()
+            .next_back()
+            .is_none_or(|before| !before.is_alphanumeric())
+    };
     name.match_indices(word).any(|(at, _)| begins(at))
 }
 
 fn has_letters(name: &str, word: &str) -> bool {
     let mut letters = name.chars();
-    word.chars().all(|wanted| letters.any(|letter| letter == wanted))
+    word.chars()
+        .all(|wanted| letters.any(|letter| letter == wanted))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const NAMES: [&str; 5] =
-        ["Open…", "Save study as…", "Hold LON → Q exactly", "Export corrections…", "Set the lower gain bound…"];
+    const NAMES: [&str; 5] = [
+        "Open…",
+        "Save study as…",
+        "Hold LON → Q exactly",
+        "Export corrections…",
+        "Set the lower gain bound…",
+    ];
 
     fn found(query: &str) -> Vec<&'static str> {
-        answers(NAMES.into_iter(), query).into_iter().map(|place| NAMES[place]).collect()
+        answers(NAMES.into_iter(), query)
+            .into_iter()
+            .map(|place| NAMES[place])
+            .collect()
     }
 
     #[test]
@@ -166,15 +218,22 @@ mod tests {
     }
 
     #[test]
-    fn the_beginning_of_a_word_comes_before_letters_inside_and_the_shorter_name_before_the_longer() {
+    fn the_beginning_of_a_word_comes_before_letters_inside_and_the_shorter_name_before_the_longer()
+    {
         assert_eq!(found("ex"), ["Export corrections…", "Hold LON → Q exactly"]);
-        assert_eq!(found("s")[..2], ["Save study as…", "Set the lower gain bound…"]);
+        assert_eq!(
+            found("s")[..2],
+            ["Save study as…", "Set the lower gain bound…"]
+        );
     }
 
     #[test]
     fn what_undoes_comes_last_unless_it_is_asked_for_and_a_command_comes_before_its_arguments() {
-        let names =
-            ["Undo reject 3 suggested (condition 10)", "Reject (condition 10)", "Condition 10: 60 kt, low altitude"];
+        let names = [
+            "Undo reject 3 suggested (condition 10)",
+            "Reject (condition 10)",
+            "Condition 10: 60 kt, low altitude",
+        ];
         let first = |query: &str| names[answers(names.into_iter(), query)[0]];
         assert_eq!(first("cond 10"), names[2]);
         assert_eq!(first("undo"), names[0]);

@@ -6,8 +6,8 @@ use std::ops::RangeInclusive;
 
 use egui::containers::panel::PanelState;
 use egui::{
-    Align, Align2, Button, Color32, ComboBox, Context, DragValue, FontId, Id, InnerResponse, Key, Layout, Rect,
-    Response, RichText, Role, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Align, Align2, Button, Color32, ComboBox, Context, DragValue, FontId, Id, InnerResponse, Key,
+    Layout, Rect, Response, RichText, Role, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
 use gdcm_model::units::number;
@@ -42,7 +42,12 @@ pub fn named(response: Response, role: Role, name: impl Into<String>) -> Respons
 }
 
 /// Names a control that is on or off.
-pub fn named_switch(response: Response, role: Role, is_on: bool, name: impl Into<String>) -> Response {
+pub fn named_switch(
+    response: Response,
+    role: Role,
+    is_on: bool,
+    name: impl Into<String>,
+) -> Response {
     let (enabled, name) = (response.enabled(), name.into());
     response.widget_info(|| WidgetInfo::selected(role, enabled, is_on, &name));
     response
@@ -51,11 +56,20 @@ pub fn named_switch(response: Response, role: Role, is_on: bool, name: impl Into
 /// Says a hint where there is one: an empty one would be an empty box.
 fn hint_ui(response: Response, hint: impl Into<String>) -> Response {
     let hint = hint.into();
-    if hint.is_empty() { response } else { response.on_hover_text(hint) }
+    if hint.is_empty() {
+        response
+    } else {
+        response.on_hover_text(hint)
+    }
 }
 
 /// A check box; whether it is on after a click on it.
-pub fn check_ui(ui: &mut Ui, is_on: bool, text: impl Into<String>, hint: impl Into<String>) -> Option<bool> {
+pub fn check_ui(
+    ui: &mut Ui,
+    is_on: bool,
+    text: impl Into<String>,
+    hint: impl Into<String>,
+) -> Option<bool> {
     let mut value = is_on;
     let response = ui.checkbox(&mut value, text.into());
     let changed = response.changed();
@@ -103,8 +117,18 @@ pub fn entries_ui<N: Into<String>>(
 }
 
 /// A line of text to type into, of this accessible name.
-pub fn text_field_ui(ui: &mut Ui, name: &str, text: &mut String, hint: &str, width: f32) -> Response {
-    let response = ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(width));
+pub fn text_field_ui(
+    ui: &mut Ui,
+    name: &str,
+    text: &mut String,
+    hint: &str,
+    width: f32,
+) -> Response {
+    let response = ui.add(
+        TextEdit::singleline(text)
+            .hint_text(hint)
+            .desired_width(width),
+    );
     name_text_field(&response, name, text);
     response
 }
@@ -127,7 +151,13 @@ pub fn is_entered(ui: &Ui, field: &Response) -> bool {
 pub const ROW_HEIGHT: f32 = 20.0;
 
 /// Allocates a row that can be clicked, paints its background, and names it for screen readers and tests.
-pub fn row_ui(ui: &mut Ui, palette: &Palette, selected: bool, pointed: bool, name: &str) -> (Rect, Response) {
+pub fn row_ui(
+    ui: &mut Ui,
+    palette: &Palette,
+    selected: bool,
+    pointed: bool,
+    name: &str,
+) -> (Rect, Response) {
     row_of_height_ui(ui, palette, (selected, pointed, ROW_HEIGHT), name)
 }
 
@@ -138,7 +168,8 @@ pub fn row_of_height_ui(
     (selected, pointed, height): (bool, bool, f32),
     name: &str,
 ) -> (Rect, Response) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), height), Sense::click());
     response.widget_info(|| WidgetInfo::selected(Role::Button, ui.is_enabled(), selected, name));
     if selected {
         begin_with(ui.ctx(), response.id);
@@ -157,7 +188,10 @@ pub fn row_of_height_ui(
 /// Puts the panel of this name back to its own size where its edge was double clicked; called before it is shown.
 pub fn restore_panel_size(ui: &Ui, name: &str) {
     let panel = ui.scope_id().with(name);
-    if ui.read_response(panel.with("__resize")).is_some_and(|edge| edge.double_clicked()) {
+    if ui
+        .read_response(panel.with("__resize"))
+        .is_some_and(|edge| edge.double_clicked())
+    {
         ui.ctx().data_mut(|data| data.remove::<PanelState>(panel));
     }
 }
@@ -186,7 +220,13 @@ pub fn elided(ui: &Ui, text: &str, room: f32, size: f32) -> String {
 
 /// As [`elided`], of a name in a list: where its neighbours would be shortened to the same text, what is left out is at its
 /// beginning or at its end instead.
-pub fn elided_among(ui: &Ui, text: &str, neighbours: [Option<&str>; 2], room: f32, size: f32) -> String {
+pub fn elided_among(
+    ui: &Ui,
+    text: &str,
+    neighbours: [Option<&str>; 2],
+    room: f32,
+    size: f32,
+) -> String {
     /// Which part of what is kept stands before the gap.
     const HEADS: [f32; 3] = [0.5, 0.0, 1.0];
     let candidates = HEADS.map(|head| (head, elided_at(ui, text, room, size, head)));
@@ -194,7 +234,10 @@ pub fn elided_among(ui: &Ui, text: &str, neighbours: [Option<&str>; 2], room: f3
         let mut others = neighbours.iter().flatten().filter(|other| **other != text);
         others.all(|other| elided_at(ui, other, room, size, *head) != *shown)
     };
-    let found = candidates.iter().find(is_told_apart).unwrap_or(&candidates[0]);
+    let found = candidates
+        .iter()
+        .find(is_told_apart)
+        .unwrap_or(&candidates[0]);
     found.1.clone()
 }
 
@@ -207,7 +250,11 @@ fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
     let keeping = |kept: usize| {
         let before = (head * kept as f32) as usize;
         let after = letters.len() - (kept - before);
-        letters[..before].iter().chain(&['…']).chain(&letters[after..]).collect::<String>()
+        letters[..before]
+            .iter()
+            .chain(&['…'])
+            .chain(&letters[after..])
+            .collect::<String>()
     };
     // The widths grow with what is kept: the greatest that fits is found by halving.
     let (mut fits, mut too_wide) = (0, letters.len());
@@ -219,17 +266,35 @@ fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
             too_wide = middle;
         }
     }
-    if fits == 0 { String::new() } else { keeping(fits) }
+    if fits == 0 {
+        String::new()
+    } else {
+        keeping(fits)
+    }
 }
 
 /// How wide a text is in one line \[pt\].
 pub fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
-    ui.fonts_mut(|fonts| fonts.layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER).size().x)
+    ui.fonts_mut(|fonts| {
+        fonts
+            .layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER)
+            .size()
+            .x
+    })
 }
 
 /// What is added stands in `place`, from left to right or from right to left, each centred in height.
-pub fn in_line_ui<R>(ui: &mut Ui, place: Rect, from_right: bool, add: impl FnOnce(&mut Ui) -> R) -> InnerResponse<R> {
-    let layout = if from_right { Layout::right_to_left(Align::Center) } else { Layout::left_to_right(Align::Center) };
+pub fn in_line_ui<R>(
+    ui: &mut Ui,
+    place: Rect,
+    from_right: bool,
+    add: impl FnOnce(&mut Ui) -> R,
+) -> InnerResponse<R> {
+    let layout = if from_right {
+        Layout::right_to_left(Align::Center)
+    } else {
+        Layout::left_to_right(Align::Center)
+    };
     ui.scope_builder(UiBuilder::new().max_rect(place).layout(layout), add)
 }
 
@@ -240,21 +305,30 @@ pub fn list_ui<T: Copy>(
     (width, text): (f32, &str),
     choices: impl IntoIterator<Item = (T, bool, String)>,
 ) -> Option<T> {
-    let shown = ComboBox::from_id_salt(name).width(width).selected_text(text).show_ui(ui, |ui| {
-        let clicked = |(choice, is_chosen, text): (T, bool, String)| {
-            ui.selectable_label(is_chosen, text).clicked().then_some(choice)
-        };
-        choices.into_iter().filter_map(clicked).last()
-    });
+    let shown = ComboBox::from_id_salt(name)
+        .width(width)
+        .selected_text(text)
+        .show_ui(ui, |ui| {
+            let clicked = |(choice, is_chosen, text): (T, bool, String)| {
+                ui.selectable_label(is_chosen, text)
+                    .clicked()
+                    .then_some(choice)
+            };
+            choices.into_iter().filter_map(clicked).last()
+        });
     named(shown.response, Role::ComboBox, name);
     shown.inner.flatten()
 }
 
 /// Paints text of a font at `x` points from the row's left edge (before its right edge where negative), centred in height.
 pub fn painted_text(ui: &Ui, row: Rect, x: f32, text: &str, font: FontId, color: Color32) -> Rect {
-    let (left, align) =
-        if x < 0.0 { (row.right() + x, Align2::RIGHT_CENTER) } else { (row.left() + x, Align2::LEFT_CENTER) };
-    ui.painter().text(pos2(left, row.center().y), align, text, font, color)
+    let (left, align) = if x < 0.0 {
+        (row.right() + x, Align2::RIGHT_CENTER)
+    } else {
+        (row.left() + x, Align2::LEFT_CENTER)
+    };
+    ui.painter()
+        .text(pos2(left, row.center().y), align, text, font, color)
 }
 
 /// Paints text at `x` points from the row's left edge (from its right edge where negative), centred in height.
@@ -265,7 +339,9 @@ pub fn row_text(ui: &Ui, row: Rect, x: f32, text: &str, size: f32, color: Color3
 /// A button of this text and accessible name that is on or off; gives whether it was clicked.
 pub fn toggle_ui(ui: &mut Ui, (text, name): (&str, &str), is_on: bool, hint: &str) -> bool {
     let button = Button::new(text).selected(is_on).corner_radius(6.0);
-    named_switch(ui.add(button), Role::CheckBox, is_on, name).on_hover_text(hint).clicked()
+    named_switch(ui.add(button), Role::CheckBox, is_on, name)
+        .on_hover_text(hint)
+        .clicked()
 }
 
 /// A heading on the left, a value on the right, over a table: a right-click copies it or saves it, as the palette does.
@@ -279,27 +355,42 @@ pub fn table_heading_ui(
     ui.add_space(4.0);
     let heading = ui.horizontal(|ui| {
         ui.label(RichText::new(title).font(medium(BODY_SIZE)));
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(palette.small(value)));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.label(palette.small(value))
+        });
     });
     table_menu_ui(ui, &heading.response, kind, commands);
 }
 
 /// What a right-click offers on the heading of a table.
-pub fn table_menu_ui(ui: &mut Ui, heading: &egui::Response, kind: TableKind, commands: &mut Vec<Command>) {
+pub fn table_menu_ui(
+    ui: &mut Ui,
+    heading: &egui::Response,
+    kind: TableKind,
+    commands: &mut Vec<Command>,
+) {
     // No stop of the Tab key: nothing on it can be pressed.
     let response = ui.interact(heading.rect, heading.id.with("table"), Sense::CLICK);
     let response = named(response, Role::Label, format!("Heading of {}", kind.name()));
     response.context_menu(|ui| {
-        let choices = [("Copy table", Command::CopyTable(kind)), ("Save table as CSV…", Command::AskSaveTable(kind))];
+        let choices = [
+            ("Copy table", Command::CopyTable(kind)),
+            ("Save table as CSV…", Command::AskSaveTable(kind)),
+        ];
         entries_ui(ui, choices, commands);
     });
 }
 
 /// A tab of a page of a view; gives whether it was clicked. Its accessible name is "Page NAME".
-pub fn page_tab_ui(ui: &mut Ui, is_shown: bool, short_name: &str, (name, purpose): (&str, &str)) -> (Response, bool) {
+pub fn page_tab_ui(
+    ui: &mut Ui,
+    is_shown: bool,
+    short_name: &str,
+    (name, purpose): (&str, &str),
+) -> (Response, bool) {
     let tab = ui.selectable_label(is_shown, short_name);
-    let tab =
-        named_switch(tab, Role::Button, is_shown, format!("Page {name}")).on_hover_text(format!("{name}: {purpose}"));
+    let tab = named_switch(tab, Role::Button, is_shown, format!("Page {name}"))
+        .on_hover_text(format!("{name}: {purpose}"));
     let is_clicked = tab.clicked();
     (tab, is_clicked)
 }
@@ -309,7 +400,9 @@ pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) ->
     let id = Id::unique(("entry", name));
     let held = ui.data(|data| data.get_temp::<String>(id));
     let mut text = held.unwrap_or_else(|| value.to_owned());
-    let edit = TextEdit::singleline(&mut text).id(id.with("field")).hint_text(hint);
+    let edit = TextEdit::singleline(&mut text)
+        .id(id.with("field"))
+        .hint_text(hint);
     let response = ui.add_sized(vec2(width, ROW_HEIGHT), edit);
     name_text_field(&response, name, &text);
     if response.lost_focus() {
@@ -333,7 +426,9 @@ pub fn number_entry_ui(
     commands: &mut Vec<Command>,
 ) -> Option<Option<f64>> {
     let typed = typed_number(&entry_ui(ui, name, value, hint, width)?);
-    typed.map_err(|why| commands.push(Command::Refuse(format!("{name}: {why}")))).ok()
+    typed
+        .map_err(|why| commands.push(Command::Refuse(format!("{name}: {why}"))))
+        .ok()
 }
 
 /// A number as engineers type it, with a decimal comma or a point; nothing for an empty text.
@@ -392,7 +487,17 @@ impl<'a> NumberField<'a> {
     /// A field for any pure number in the range, as wide as its text.
     pub fn new(name: &'a str, hint: &'a str, range: RangeInclusive<f64>) -> Self {
         let (unit, shows_unit, is_whole) = ("", false, false);
-        Self { name, hint, unit, shows_unit, range, is_whole, step: 0.01, width: 0.0, digits: Digits::Significant }
+        Self {
+            name,
+            hint,
+            unit,
+            shows_unit,
+            range,
+            is_whole,
+            step: 0.01,
+            width: 0.0,
+            digits: Digits::Significant,
+        }
     }
 
     /// The field with `value` in it. A number is dragged within the range; one that is typed is taken up by Enter, or when the
@@ -412,8 +517,11 @@ impl<'a> NumberField<'a> {
         if self.shows_unit {
             field = field.suffix(format!(" {}", self.unit));
         }
-        let response =
-            if self.width > 0.0 { ui.add_sized(vec2(self.width, FIELD_HEIGHT), field) } else { ui.add(field) };
+        let response = if self.width > 0.0 {
+            ui.add_sized(vec2(self.width, FIELD_HEIGHT), field)
+        } else {
+            ui.add(field)
+        };
         let enabled = response.enabled();
         response.widget_info(|| WidgetInfo::labeled(Role::SpinButton, enabled, self.name));
         if response.lost_focus() && ui.input(|input| input.key_pressed(Key::Escape)) {
@@ -430,7 +538,13 @@ impl<'a> NumberField<'a> {
     }
 
     /// The number that was typed; that in the field where it was left as it is shown, which may be less exact.
-    fn read(&self, text: &str, value: f64, is_escaped: bool, wrong: &RefCell<Option<String>>) -> Option<f64> {
+    fn read(
+        &self,
+        text: &str,
+        value: f64,
+        is_escaped: bool,
+        wrong: &RefCell<Option<String>>,
+    ) -> Option<f64> {
         if is_escaped {
             return None;
         }
@@ -444,10 +558,21 @@ impl<'a> NumberField<'a> {
         number
     }
 
-    fn entered(&self, before: f64, after: f64, wrong: Option<String>, response: &Response) -> Entered {
+    fn entered(
+        &self,
+        before: f64,
+        after: f64,
+        wrong: Option<String>,
+        response: &Response,
+    ) -> Entered {
         let is_dragged = response.dragged();
-        let after = if is_dragged { after.clamp(*self.range.start(), *self.range.end()) } else { after };
-        let is_allowed = self.range.contains(&after) && (!self.is_whole || after.fract() == 0.0 || is_dragged);
+        let after = if is_dragged {
+            after.clamp(*self.range.start(), *self.range.end())
+        } else {
+            after
+        };
+        let is_allowed =
+            self.range.contains(&after) && (!self.is_whole || after.fract() == 0.0 || is_dragged);
         let refused = wrong.map(|text| format!("\"{text}\""));
         let refused = refused.or_else(|| (after != before && !is_allowed).then(|| number(after)));
         Entered {
@@ -460,11 +585,22 @@ impl<'a> NumberField<'a> {
 
     /// "Band from: expected a number from 0.0001 to 12 rad/s, found 30; it stays 0.500 rad/s."
     fn refusal(&self, found: &str, before: f64) -> String {
-        let kind = if self.is_whole { "a whole number" } else { "a number" };
+        let kind = if self.is_whole {
+            "a whole number"
+        } else {
+            "a number"
+        };
         let (least, most) = (number(*self.range.start()), number(*self.range.end()));
-        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        let unit = if self.unit.is_empty() {
+            String::new()
+        } else {
+            format!(" {}", self.unit)
+        };
         let stays = number_text(self.digits, before);
-        format!("{}: expected {kind} from {least} to {most}{unit}, found {found}; it stays {stays}{unit}", self.name)
+        format!(
+            "{}: expected {kind} from {least} to {most}{unit}, found {found}; it stays {stays}{unit}",
+            self.name
+        )
     }
 }
 
@@ -478,9 +614,17 @@ pub fn focus_field(ctx: &Context, name: &str) {
 /// A finite number with or without its unit; a comma alone is a decimal point, and the minus sign may be the typographical one.
 fn number_in(text: &str, unit: &str) -> Option<f64> {
     let text = text.trim();
-    let text = text.strip_suffix(unit).unwrap_or(text).trim().replace('−', "-");
+    let text = text
+        .strip_suffix(unit)
+        .unwrap_or(text)
+        .trim()
+        .replace('−', "-");
     let is_decimal_comma = text.matches(',').count() == 1 && !text.contains('.');
-    let text = if is_decimal_comma { text.replace(',', ".") } else { text };
+    let text = if is_decimal_comma {
+        text.replace(',', ".")
+    } else {
+        text
+    };
     text.parse().ok().filter(|value: &f64| value.is_finite())
 }
 
@@ -523,13 +667,25 @@ mod tests {
     fn long_names_that_differ_only_at_one_end_differ_when_they_are_shortened() {
         let ctx = egui::Context::default();
         let output = ctx.run_ui(egui::RawInput::default(), |ui| {
-            let names = ["FLIGHTLAB BO105 trim V+5kt weight 2300kg", "FLIGHTLAB BO105 trim V+5kt weight 2400kg"];
+            let names = [
+                "FLIGHTLAB BO105 trim V+5kt weight 2300kg",
+                "FLIGHTLAB BO105 trim V+5kt weight 2400kg",
+            ];
             let [first, second] = names.map(|name| elided(ui, name, 90.0, 13.0));
-            assert!(first != second && first.starts_with("FLI") && first.ends_with("00kg"), "{first} {second}");
+            assert!(
+                first != second && first.starts_with("FLI") && first.ends_with("00kg"),
+                "{first} {second}"
+            );
             assert_eq!(elided(ui, "nominal", 90.0, 13.0), "nominal");
             let shown = |name, other| elided_among(ui, name, [None, Some(other)], 52.0, 13.0);
-            let [first, second] = [shown("ROC-300fpm", "ROC-150fpm"), shown("ROC-150fpm", "ROC-300fpm")];
-            assert!(first != second && first.ends_with("00fpm"), "{first} {second}: they differ in the middle");
+            let [first, second] = [
+                shown("ROC-300fpm", "ROC-150fpm"),
+                shown("ROC-150fpm", "ROC-300fpm"),
+            ];
+            assert!(
+                first != second && first.ends_with("00fpm"),
+                "{first} {second}: they differ in the middle"
+            );
             assert_eq!(elided(ui, "nominal", 4.0, 13.0), "");
         });
         output.drop_without_applying_deltas();
@@ -544,21 +700,38 @@ mod tests {
 
     #[test]
     fn alpha_is_shown_with_three_significant_digits() {
-        for (value, text) in [(0.0, "0"), (1.0, "1.00"), (0.00123, "0.00123"), (120.0, "120"), (1e6, "1.00e6")] {
+        for (value, text) in [
+            (0.0, "0"),
+            (1.0, "1.00"),
+            (0.00123, "0.00123"),
+            (120.0, "120"),
+            (1e6, "1.00e6"),
+        ] {
             assert_eq!(significant(value), text);
         }
     }
 
     #[test]
     fn a_gain_is_shown_with_two_or_three_digits_behind_the_point() {
-        for (value, text) in [(1.0, "1.00"), (1.25, "1.25"), (1.2346, "1.235"), (1e-6, "1.00e-6")] {
+        for (value, text) in [
+            (1.0, "1.00"),
+            (1.25, "1.25"),
+            (1.2346, "1.235"),
+            (1e-6, "1.00e-6"),
+        ] {
             assert_eq!(gain_text(value), text);
         }
     }
 
     #[test]
     fn a_number_is_read_as_engineers_type_it() {
-        let cases = [("30", 30.0), (" 0,5 rad/s", 0.5), ("−2e-3", -0.002), ("12rad/s", 12.0), ("1e6", 1e6)];
+        let cases = [
+            ("30", 30.0),
+            (" 0,5 rad/s", 0.5),
+            ("−2e-3", -0.002),
+            ("12rad/s", 12.0),
+            ("1e6", 1e6),
+        ];
         for (text, value) in cases {
             assert_eq!(number_in(text, "rad/s"), Some(value), "{text}");
         }

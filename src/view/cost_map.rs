@@ -51,7 +51,12 @@ pub struct CostColumn {
 pub fn columns(state: &State) -> Vec<CostColumn> {
     let mut columns = held_columns(state);
     if state.study.settings.couplings != CouplingCorrection::None {
-        let others = state.study.settings.constrained.iter().filter(|(_, is_held)| !**is_held);
+        let others = state
+            .study
+            .settings
+            .constrained
+            .iter()
+            .filter(|(_, is_held)| !**is_held);
         columns.push(CostColumn {
             head: "off".to_owned(),
             pairs: others.map(|(pair, _)| pair).collect(),
@@ -65,14 +70,30 @@ fn held_columns(state: &State) -> Vec<CostColumn> {
     let dataset = state.dataset();
     let held: Vec<Pair> = state.study.settings.constrained.marked().collect();
     if held.len() > MOST_COLUMNS {
-        let of_input = |input: usize| held.iter().copied().filter(|pair| pair.input == input).collect::<Vec<_>>();
-        let columns =
-            dataset.inputs().iter().enumerate().map(|(input, channel)| (channel.name.clone(), of_input(input)));
-        let columns = columns.map(|(head, pairs)| CostColumn { head, pairs, is_mean: false });
+        let of_input = |input: usize| {
+            held.iter()
+                .copied()
+                .filter(|pair| pair.input == input)
+                .collect::<Vec<_>>()
+        };
+        let columns = dataset
+            .inputs()
+            .iter()
+            .enumerate()
+            .map(|(input, channel)| (channel.name.clone(), of_input(input)));
+        let columns = columns.map(|(head, pairs)| CostColumn {
+            head,
+            pairs,
+            is_mean: false,
+        });
         return columns.filter(|column| !column.pairs.is_empty()).collect();
     }
     let head = |pair: &Pair| dataset.outputs()[pair.output].name.clone();
-    let column = |pair: &Pair| CostColumn { head: head(pair), pairs: vec![*pair], is_mean: false };
+    let column = |pair: &Pair| CostColumn {
+        head: head(pair),
+        pairs: vec![*pair],
+        is_mean: false,
+    };
     held.iter().map(column).collect()
 }
 
@@ -80,7 +101,9 @@ fn held_columns(state: &State) -> Vec<CostColumn> {
 pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost> {
     let analysis = state.analysis()?;
     if state.display.mapped_cost == MappedCost::Scheduled {
-        let Ok(costs) = analysis.assessment.get(&condition)? else { return None };
+        let Ok(costs) = analysis.assessment.get(&condition)? else {
+            return None;
+        };
         return costs[pair].map(|change| change.corrected);
     }
     let result = analysis.condition(condition)?;
@@ -91,13 +114,32 @@ pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost
 }
 
 /// The cost of a column, magnitude and phase each for itself, with its response that has the greater sum.
-pub fn cost_of_column(state: &State, condition: ConditionId, column: &CostColumn) -> Option<(Pair, Cost)> {
-    let costs: Vec<(Pair, Cost)> =
-        column.pairs.iter().filter_map(|pair| Some((*pair, cost_of(state, condition, *pair)?))).collect();
-    let (worst, _) = *costs.iter().max_by(|(_, a), (_, b)| a.total().total_cmp(&b.total()))?;
+pub fn cost_of_column(
+    state: &State,
+    condition: ConditionId,
+    column: &CostColumn,
+) -> Option<(Pair, Cost)> {
+    let costs: Vec<(Pair, Cost)> = column
+        .pairs
+        .iter()
+        .filter_map(|pair| Some((*pair, cost_of(state, condition, *pair)?)))
+        .collect();
+    let (worst, _) = *costs
+        .iter()
+        .max_by(|(_, a), (_, b)| a.total().total_cmp(&b.total()))?;
     let of = |part: fn(&Cost) -> f64| {
         let parts = costs.iter().map(|(_, cost)| part(cost));
-        if column.is_mean { parts.sum::<f64>() / costs.len() as f64 } else { parts.fold(0.0, f64::max) }
+        if column.is_mean {
+            parts.sum::<f64>() / costs.len() as f64
+        } else {
+            parts.fold(0.0, f64::max)
+        }
     };
-    Some((worst, Cost { magnitude: of(|cost| cost.magnitude), phase: of(|cost| cost.phase) }))
+    Some((
+        worst,
+        Cost {
+            magnitude: of(|cost| cost.magnitude),
+            phase: of(|cost| cost.phase),
+        },
+    ))
 }

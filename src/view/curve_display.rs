@@ -123,10 +123,19 @@ impl CurveDisplay {
                 }
             }
             CurveCommand::ShowRoleAlone(role) => {
-                let others: BTreeSet<Role> = Role::ALL.into_iter().filter(|other| *other != role).collect();
-                self.hidden_roles = if self.hidden_roles == others { Self::hidden_at_first() } else { others };
+                let others: BTreeSet<Role> = Role::ALL
+                    .into_iter()
+                    .filter(|other| *other != role)
+                    .collect();
+                self.hidden_roles = if self.hidden_roles == others {
+                    Self::hidden_at_first()
+                } else {
+                    others
+                };
             }
-            CurveCommand::RaiseRole(role) => self.raised = (self.raised != Some(role)).then_some(role),
+            CurveCommand::RaiseRole(role) => {
+                self.raised = (self.raised != Some(role)).then_some(role)
+            }
             CurveCommand::ShowBands(wanted) => self.shows_bands = wanted,
             CurveCommand::HideModel(model) => {
                 self.hidden_models.insert(model);
@@ -176,8 +185,9 @@ pub(super) fn curve_entries(state: &State) -> Vec<Entry> {
 /// Each leads to the other of two ways.
 fn unit_entries(state: &State) -> Vec<Entry> {
     let curves = &state.display.curves;
-    let entry =
-        |name: &str, meaning, command: CurveCommand| Entry::new(name, meaning, command.into()).within(Menu::Curves, 0);
+    let entry = |name: &str, meaning, command: CurveCommand| {
+        Entry::new(name, meaning, command.into()).within(Menu::Curves, 0)
+    };
     vec![
         match curves.magnitude {
             MagnitudeUnit::Decibel => entry(
@@ -216,7 +226,11 @@ fn unit_entries(state: &State) -> Vec<Entry> {
             ),
         },
         entry(
-            if curves.lists_values { "List no values at the cursor" } else { "List values at the cursor" },
+            if curves.lists_values {
+                "List no values at the cursor"
+            } else {
+                "List values at the cursor"
+            },
             "What every role has there, and its difference from the identified model",
             CurveCommand::ListValues(!curves.lists_values),
         ),
@@ -230,7 +244,11 @@ fn unit_entries(state: &State) -> Vec<Entry> {
             CurveCommand::ShowBands(!curves.shows_bands),
         ),
         entry(
-            if curves.shows_muad { "Hide what a pilot does not notice" } else { "Show what a pilot does not notice" },
+            if curves.shows_muad {
+                "Hide what a pilot does not notice"
+            } else {
+                "Show what a pilot does not notice"
+            },
             "Envelopes of maximum unnoticeable added dynamics about the identified response in Bode, and in the plot of errors, with where \
              the mismatch leaves them",
             CurveCommand::ShowMuad(!curves.shows_muad),
@@ -240,15 +258,32 @@ fn unit_entries(state: &State) -> Vec<Entry> {
 
 fn look_entries(looks: PlotStyle) -> Vec<Entry> {
     let mut entries = Vec::new();
-    for curve_colors in CurveColors::ALL.into_iter().filter(|colors| *colors != looks.curve_colors) {
-        let command = Command::SetLooks(PlotStyle { curve_colors, ..looks });
+    for curve_colors in CurveColors::ALL
+        .into_iter()
+        .filter(|colors| *colors != looks.curve_colors)
+    {
+        let command = Command::SetLooks(PlotStyle {
+            curve_colors,
+            ..looks
+        });
         let meaning = "For all eyes: colours that stay apart for people who do not see red, green or blue as others do";
         entries.push(Entry::new(curve_colors.name(), meaning, command).within(Menu::Curves, 1));
     }
     for line_width in PlotStyle::LINE_WIDTHS {
-        let command = Command::SetLooks(PlotStyle { line_width, ..looks });
-        let entry = Entry::new(format!("Lines × {line_width}"), "Widths of all curves, by the usual ones", command);
-        entries.push(entry.within(Menu::Curves, 2).enabled(looks.line_width != line_width));
+        let command = Command::SetLooks(PlotStyle {
+            line_width,
+            ..looks
+        });
+        let entry = Entry::new(
+            format!("Lines × {line_width}"),
+            "Widths of all curves, by the usual ones",
+            command,
+        );
+        entries.push(
+            entry
+                .within(Menu::Curves, 2)
+                .enabled(looks.line_width != line_width),
+        );
     }
     entries
 }
@@ -257,12 +292,24 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
     let display = &state.display;
     let is_isolated = display.isolated.is_some() || !display.curves.selected.is_empty();
     let is_hidden = !(display.curves.hidden_models.is_empty()
-        && display.curves.hidden_roles.is_subset(&CurveDisplay::hidden_at_first()));
-    let isolation = Entry::new("End isolation and selection", "Show every model, select none", Command::EndIsolation);
+        && display
+            .curves
+            .hidden_roles
+            .is_subset(&CurveDisplay::hidden_at_first()));
+    let isolation = Entry::new(
+        "End isolation and selection",
+        "Show every model, select none",
+        Command::EndIsolation,
+    );
     vec![
         // The key of an entry is taken from fields and menus, whether the entry is enabled or not: it is one only where it has
         // something to end here.
-        if is_isolated { isolation.free_key(Key::Escape) } else { isolation.enabled(false) }.within(Menu::Curves, 3),
+        if is_isolated {
+            isolation.free_key(Key::Escape)
+        } else {
+            isolation.enabled(false)
+        }
+        .within(Menu::Curves, 3),
         Entry::new(
             "Show hidden curves",
             "Draw every model, and the roles that are drawn at first",
@@ -278,9 +325,13 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         .free_key(Key::M)
         .within(Menu::Curves, 3)
         .enabled(display.curves.cursor.is_some()),
-        Entry::new("Remove marks of frequencies", "In every plot over frequency", CurveCommand::UnpinCursors.into())
-            .within(Menu::Curves, 3)
-            .enabled(!(display.curves.pinned.is_empty() && display.curves.crossings.is_empty())),
+        Entry::new(
+            "Remove marks of frequencies",
+            "In every plot over frequency",
+            CurveCommand::UnpinCursors.into(),
+        )
+        .within(Menu::Curves, 3)
+        .enabled(!(display.curves.pinned.is_empty() && display.curves.crossings.is_empty())),
     ]
 }
 
@@ -302,12 +353,21 @@ mod tests {
     #[test]
     fn a_role_can_be_shown_alone_and_in_front_and_again_as_usual() {
         let mut display = CurveDisplay::default();
-        for command in [CurveCommand::ShowRoleAlone(Role::Corrected), CurveCommand::RaiseRole(Role::Nominal)] {
+        for command in [
+            CurveCommand::ShowRoleAlone(Role::Corrected),
+            CurveCommand::RaiseRole(Role::Nominal),
+        ] {
             display.carry_out(command);
         }
-        assert_eq!((display.hidden_roles.len(), display.raised), (Role::ALL.len() - 1, Some(Role::Nominal)));
+        assert_eq!(
+            (display.hidden_roles.len(), display.raised),
+            (Role::ALL.len() - 1, Some(Role::Nominal))
+        );
         assert!(!display.hidden_roles.contains(&Role::Corrected));
-        for command in [CurveCommand::ShowRoleAlone(Role::Corrected), CurveCommand::RaiseRole(Role::Nominal)] {
+        for command in [
+            CurveCommand::ShowRoleAlone(Role::Corrected),
+            CurveCommand::RaiseRole(Role::Nominal),
+        ] {
             display.carry_out(command);
         }
         assert_eq!(display, CurveDisplay::default());

@@ -11,11 +11,13 @@ use gdcm_study::study::{AcrossRole, ExplainTarget};
 
 use super::cost_map::MappedCost;
 use super::plot::{
-    Across, BodeCurve, BodeView, FigureView, FrequencyUnit, MagnitudeUnit, Measure, OverviewView, PhaseErrorUnit,
-    PhaseUnit, Role,
+    Across, BodeCurve, BodeView, FigureView, FrequencyUnit, MagnitudeUnit, Measure, OverviewView,
+    PhaseErrorUnit, PhaseUnit, Role,
 };
 use super::start_page::OpensWith;
-use super::views::{AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, RequirementsPage, View};
+use super::views::{
+    AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, RequirementsPage, View,
+};
 use super::{CurveDisplay, PlotStyle, Sheet, Sorting};
 
 /// What is shown, none of which changes a result.
@@ -193,7 +195,11 @@ impl Preferences {
 
     /// Gives a window these preferences.
     pub fn apply(&self, display: &mut Display) {
-        display.arrangement = self.arrangement.clone().and_then(Arrangement::if_whole).unwrap_or_default();
+        display.arrangement = self
+            .arrangement
+            .clone()
+            .and_then(Arrangement::if_whole)
+            .unwrap_or_default();
         display.opens_with = self.opens_with;
         display.left_open = self.left_open;
         display.unit = self.frequency_unit;
@@ -238,7 +244,9 @@ impl ViewGroup {
 
     /// Its views, from left to right.
     pub fn views(self) -> impl Iterator<Item = View> {
-        View::ALL.into_iter().filter(move |view| view.kind().group == self)
+        View::ALL
+            .into_iter()
+            .filter(move |view| view.kind().group == self)
     }
 }
 
@@ -261,7 +269,13 @@ pub struct Arrangement {
 impl Default for Arrangement {
     fn default() -> Self {
         let of_groups = [View::Bode, View::Poles, View::Channels, View::Assessment];
-        Self { group: ViewGroup::Response, of_groups, beside: None, dock: View::NetGain, dock_open: None }
+        Self {
+            group: ViewGroup::Response,
+            of_groups,
+            beside: None,
+            dock: View::NetGain,
+            dock_open: None,
+        }
     }
 }
 
@@ -283,7 +297,9 @@ impl Arrangement {
 
     /// The view that the dock shows; none where the view in front takes its room.
     pub fn dock(&self) -> Option<View> {
-        let is_free = !self.view().kind().takes_dock && self.view() != self.dock && self.beside() != Some(self.dock);
+        let is_free = !self.view().kind().takes_dock
+            && self.view() != self.dock
+            && self.beside() != Some(self.dock);
         is_free.then_some(self.dock)
     }
 
@@ -326,7 +342,10 @@ impl Arrangement {
     /// The view so many places further in the group in front, round about.
     pub fn neighbour(&self, by: isize) -> View {
         let views: Vec<View> = self.group.views().collect();
-        let here = views.iter().position(|view| *view == self.view()).unwrap_or(0);
+        let here = views
+            .iter()
+            .position(|view| *view == self.view())
+            .unwrap_or(0);
         views[(here as isize + by).rem_euclid(views.len() as isize) as usize]
     }
 
@@ -348,9 +367,16 @@ mod tests {
 
     #[test]
     fn every_view_stands_in_one_group_and_every_group_has_views() {
-        let views: Vec<View> = ViewGroup::ALL.into_iter().flat_map(ViewGroup::views).collect();
+        let views: Vec<View> = ViewGroup::ALL
+            .into_iter()
+            .flat_map(ViewGroup::views)
+            .collect();
         assert_eq!(views.len(), View::ALL.len());
-        assert!(ViewGroup::ALL.into_iter().all(|group| group.views().count() > 1));
+        assert!(
+            ViewGroup::ALL
+                .into_iter()
+                .all(|group| group.views().count() > 1)
+        );
     }
 
     #[test]
@@ -361,7 +387,10 @@ mod tests {
         assert_eq!(arrangement.view(), View::Assessment);
         arrangement.show_group(ViewGroup::Response);
         assert_eq!(arrangement.view(), View::Overview);
-        assert_eq!((arrangement.neighbour(1), arrangement.neighbour(-1)), (View::Across, View::Error));
+        assert_eq!(
+            (arrangement.neighbour(1), arrangement.neighbour(-1)),
+            (View::Across, View::Error)
+        );
     }
 
     #[test]
@@ -372,7 +401,10 @@ mod tests {
         assert_eq!(arrangement.dock(), None);
         arrangement.show(View::Bode);
         arrangement.show_beside(Some(View::NetGain));
-        assert_eq!((arrangement.dock(), arrangement.beside()), (None, Some(View::NetGain)));
+        assert_eq!(
+            (arrangement.dock(), arrangement.beside()),
+            (None, Some(View::NetGain))
+        );
         arrangement.show_beside(Some(View::Poles));
         arrangement.show(View::Poles);
         assert_eq!(arrangement.beside(), None);
@@ -386,8 +418,16 @@ mod tests {
         arrangement.show(View::Evidence);
         arrangement.show_beside(Some(View::Bode));
         let text = serde_json::to_string(&arrangement).unwrap();
-        assert_eq!(serde_json::from_str::<Arrangement>(&text).unwrap().if_whole(), Some(arrangement));
-        let mixed = Arrangement { of_groups: [View::Poles; 4], ..Arrangement::default() };
+        assert_eq!(
+            serde_json::from_str::<Arrangement>(&text)
+                .unwrap()
+                .if_whole(),
+            Some(arrangement)
+        );
+        let mixed = Arrangement {
+            of_groups: [View::Poles; 4],
+            ..Arrangement::default()
+        };
         assert_eq!(mixed.if_whole(), None);
     }
 }

@@ -4,20 +4,23 @@
 use std::collections::BTreeSet;
 
 use egui::{
-    Align, Area, Button, CollapsingHeader, CursorIcon, Frame, Grid, Id, Label, Layout, Margin, Order, Rect, Response,
-    RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetText, vec2,
+    Align, Area, Button, CollapsingHeader, CursorIcon, Frame, Grid, Id, Label, Layout, Margin,
+    Order, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetText, vec2,
 };
 
 use gdcm_method::correction::{Channel, GainObjective, Outcome, Quantity, kkt_residual};
 use gdcm_model::dataset::Pair;
 use gdcm_study::study::{
-    ConditionAnalysis, Derivation, Edit, ExplainTarget, Remark, RemarkKind, SignRole, derivation, details, lead_words,
-    no_couplings, remarks, setting,
+    ConditionAnalysis, Derivation, Edit, ExplainTarget, Remark, RemarkKind, SignRole, derivation,
+    details, lead_words, no_couplings, remarks, setting,
 };
 
 use super::palette::{TITLE_SIZE, medium};
 use super::views::{offered_couplings, used_couplings};
-use super::{Asks, BODY_SIZE, Command, Palette, SMALL_SIZE, State, View, button_ui, entries_ui, named, take_escape};
+use super::{
+    Asks, BODY_SIZE, Command, Palette, SMALL_SIZE, State, View, button_ui, entries_ui, named,
+    take_escape,
+};
 
 /// What a sheet may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,31 +57,56 @@ impl Sheet {
 }
 
 /// Draws a sheet over `centre`; gives whether it is to be closed.
-pub fn sheet_ui(ui: &Ui, centre: Rect, sheet: Sheet, palette: &Palette, add: impl FnOnce(&mut Ui)) -> bool {
+pub fn sheet_ui(
+    ui: &Ui,
+    centre: Rect,
+    sheet: Sheet,
+    palette: &Palette,
+    add: impl FnOnce(&mut Ui),
+) -> bool {
     let (is_right, width) = sheet.place();
     let width = width.min(centre.width());
-    let place =
-        if is_right { centre.with_min_x(centre.right() - width) } else { centre.with_max_x(centre.left() + width) };
+    let place = if is_right {
+        centre.with_min_x(centre.right() - width)
+    } else {
+        centre.with_max_x(centre.left() + width)
+    };
     let id = Id::unique(("sheet", sheet.title()));
     let mut is_closed = false;
-    let shown = Area::new(id).order(Order::Middle).fixed_pos(place.min).show(ui.ctx(), |ui| {
-        let stroke = Stroke::new(1.0, palette.line);
-        Frame::new().fill(palette.panel).stroke(stroke).inner_margin(Margin::same(12)).show(ui, |ui| {
-            ui.set_min_size(place.size() - vec2(26.0, 26.0));
-            ui.set_max_size(place.size() - vec2(26.0, 26.0));
-            ui.horizontal(|ui| {
-                ui.label(RichText::new(sheet.title()).font(medium(BODY_SIZE)));
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    is_closed = named(ui.small_button("×"), Role::Button, "Close the sheet").clicked();
+    let shown = Area::new(id)
+        .order(Order::Middle)
+        .fixed_pos(place.min)
+        .show(ui.ctx(), |ui| {
+            let stroke = Stroke::new(1.0, palette.line);
+            Frame::new()
+                .fill(palette.panel)
+                .stroke(stroke)
+                .inner_margin(Margin::same(12))
+                .show(ui, |ui| {
+                    ui.set_min_size(place.size() - vec2(26.0, 26.0));
+                    ui.set_max_size(place.size() - vec2(26.0, 26.0));
+                    ui.horizontal(|ui| {
+                        ui.label(RichText::new(sheet.title()).font(medium(BODY_SIZE)));
+                        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                            is_closed =
+                                named(ui.small_button("×"), Role::Button, "Close the sheet")
+                                    .clicked();
+                        });
+                    });
+                    ScrollArea::vertical()
+                        .auto_shrink([false, false])
+                        .show(ui, |ui| add(ui));
                 });
-            });
-            ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| add(ui));
         });
-    });
     // A first frame that draws it is that of the click which asked for it.
-    let is_new = ui.ctx().data_mut(|data| !std::mem::replace(data.get_temp_mut_or_default::<bool>(id), true));
+    let is_new = ui
+        .ctx()
+        .data_mut(|data| !std::mem::replace(data.get_temp_mut_or_default::<bool>(id), true));
     let beside = ui.input(|input| {
-        let at = input.pointer.interact_pos().filter(|_| input.pointer.any_pressed());
+        let at = input
+            .pointer
+            .interact_pos()
+            .filter(|_| input.pointer.any_pressed());
         at.is_some_and(|at| !shown.response.rect.contains(at))
     });
     let is_over = egui::Popup::is_any_open(ui.ctx());
@@ -93,9 +121,18 @@ pub fn sheet_ui(ui: &Ui, centre: Rect, sheet: Sheet, palette: &Palette, add: imp
 pub const QUESTION: &str = "How was this computed?";
 
 /// How the value asked about was computed, in a sheet; it follows the results while it is open.
-pub fn derivation_sheet_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let Some(asked) = &state.display.asked else { return };
-    let found = state.analysis_with_bars().and_then(|analysis| derivation(&analysis, asked));
+pub fn derivation_sheet_ui(
+    ui: &mut Ui,
+    state: &State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let Some(asked) = &state.display.asked else {
+        return;
+    };
+    let found = state
+        .analysis_with_bars()
+        .and_then(|analysis| derivation(&analysis, asked));
     match &found {
         Some(found) => {
             derivation_ui(ui, found, palette, commands);
@@ -117,13 +154,17 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
         ui.label(step);
     }
     ui.add_space(4.0);
-    Grid::new("terms of the equation").num_columns(2).min_row_height(14.0).spacing([10.0, 2.0]).show(ui, |ui| {
-        for (symbol, meaning) in found.terms() {
-            ui.label(RichText::new(symbol).size(SMALL_SIZE));
-            ui.add(Label::new(palette.small(meaning)).wrap());
-            ui.end_row();
-        }
-    });
+    Grid::new("terms of the equation")
+        .num_columns(2)
+        .min_row_height(14.0)
+        .spacing([10.0, 2.0])
+        .show(ui, |ui| {
+            for (symbol, meaning) in found.terms() {
+                ui.label(RichText::new(symbol).size(SMALL_SIZE));
+                ui.add(Label::new(palette.small(meaning)).wrap());
+                ui.end_row();
+            }
+        });
     ui.add_space(4.0);
     ui.label(palette.small("It rests on"));
     for part in &found.rests_on {
@@ -139,10 +180,16 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
 
 /// What holding or freeing the response that is asked about would cost.
 fn toggle_costs_ui(ui: &mut Ui, state: &State, asked: &ExplainTarget, palette: &Palette) {
-    let (ExplainTarget::DeltaGain(condition, pair) | ExplainTarget::DeltaDelay(condition, pair)) = asked else {
+    let (ExplainTarget::DeltaGain(condition, pair) | ExplainTarget::DeltaDelay(condition, pair)) =
+        asked
+    else {
         return;
     };
-    let costs = if *condition == state.condition().id() { toggle_costs(state, *pair) } else { Vec::new() };
+    let costs = if *condition == state.condition().id() {
+        toggle_costs(state, *pair)
+    } else {
+        Vec::new()
+    };
     if !costs.is_empty() {
         ui.add_space(4.0);
         ui.label(palette.small("What holding or freeing it would cost"));
@@ -154,9 +201,18 @@ fn toggle_costs_ui(ui: &mut Ui, state: &State, asked: &ExplainTarget, palette: &
 
 /// The derivation as lines of text, the symbols with tabs before what they stand for.
 pub fn text_of(found: &Derivation) -> String {
-    let heads = [&found.title, &found.equation].into_iter().chain(&found.with_numbers).cloned();
-    let terms = found.terms().into_iter().map(|(symbol, meaning)| format!("{symbol}\t{meaning}"));
-    let lines = heads.chain(terms).chain(found.rests_on.iter().cloned()).chain([found.section.to_owned()]);
+    let heads = [&found.title, &found.equation]
+        .into_iter()
+        .chain(&found.with_numbers)
+        .cloned();
+    let terms = found
+        .terms()
+        .into_iter()
+        .map(|(symbol, meaning)| format!("{symbol}\t{meaning}"));
+    let lines = heads
+        .chain(terms)
+        .chain(found.rests_on.iter().cloned())
+        .chain([found.section.to_owned()]);
     lines.collect::<Vec<_>>().join("\n")
 }
 
@@ -173,9 +229,19 @@ pub fn value_label_ui(
 }
 
 /// The part of a menu that asks how values were computed.
-pub fn question_menu_ui(ui: &mut Ui, values: Vec<(String, ExplainTarget)>, commands: &mut Vec<Command>) {
+pub fn question_menu_ui(
+    ui: &mut Ui,
+    values: Vec<(String, ExplainTarget)>,
+    commands: &mut Vec<Command>,
+) {
     ui.menu_button(QUESTION, |ui| {
-        entries_ui(ui, values.into_iter().map(|(name, asked)| (name, Command::Explain(Some(asked)))), commands);
+        entries_ui(
+            ui,
+            values
+                .into_iter()
+                .map(|(name, asked)| (name, Command::Explain(Some(asked)))),
+            commands,
+        );
     });
 }
 
@@ -183,13 +249,19 @@ pub fn question_menu_ui(ui: &mut Ui, values: Vec<(String, ExplainTarget)>, comma
 pub fn turn_entry(state: &State, channel: Channel, of: Option<SignRole>) -> (String, Command) {
     let (inputs, outputs) = state.dataset().names_of_channels();
     let name = channel.name(&inputs, &outputs);
-    let label = if of.is_some() { format!("Turn {name}") } else { format!("Turn {name} back") };
+    let label = if of.is_some() {
+        format!("Turn {name}")
+    } else {
+        format!("Turn {name} back")
+    };
     (label, Edit::SetSign { channel, of }.into())
 }
 
 /// The remarks on the result shown, on the schedule, and on the couplings that are used.
 pub fn remarks_shown(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
-    let schedule = state.analysis().and_then(|analysis| analysis.schedule.as_ref().ok());
+    let schedule = state
+        .analysis()
+        .and_then(|analysis| analysis.schedule.as_ref().ok());
     let mut remarks = remarks(&state.study, shown, schedule);
     remarks.extend(coupling_remarks(state));
     remarks
@@ -197,7 +269,10 @@ pub fn remarks_shown(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
 
 /// What couplings that are used are worth and cost, or why there are none; nothing where none are asked for.
 pub fn coupling_remarks(state: &State) -> Vec<Remark> {
-    match (state.analysis().map(|analysis| analysis.asked_couplings()), used_couplings(state)) {
+    match (
+        state.analysis().map(|analysis| analysis.asked_couplings()),
+        used_couplings(state),
+    ) {
         (Some(Err(why)), _) => vec![no_couplings(&why)],
         (Some(Ok(Some(_))), Some(assessment)) => assessment.consequences(state.dataset()),
         _ => Vec::new(),
@@ -207,14 +282,26 @@ pub fn coupling_remarks(state: &State) -> Vec<Remark> {
 /// The responses and the channels that are in each other's way, of the gains; channels of another sign or unit too.
 pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
     let conflicts = &shown.gains.conflicts;
-    let pairs = conflicts.iter().flat_map(|conflict| conflict.entries.iter().copied()).collect();
+    let pairs = conflicts
+        .iter()
+        .flat_map(|conflict| conflict.entries.iter().copied())
+        .collect();
     let doubted = shown.doubts.iter().map(|doubt| doubt.channel);
-    (pairs, conflicts.iter().flat_map(|conflict| conflict.channels()).chain(doubted).collect())
+    (
+        pairs,
+        conflicts
+            .iter()
+            .flat_map(|conflict| conflict.channels())
+            .chain(doubted)
+            .collect(),
+    )
 }
 
 /// What holding or freeing a response would cost, in words; nothing until the table of all toggles of this very result is computed.
 pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
-    let Some(toggles) = state.toggles() else { return Vec::new() };
+    let Some(toggles) = state.toggles() else {
+        return Vec::new();
+    };
     let (inputs, outputs) = state.dataset().names_of_channels();
     let (gain, delay) = toggles.of_pair(pair);
     let gain = gain.map(|toggle| format!("Gains: {}", toggle.words(&inputs, &outputs)));
@@ -303,22 +390,46 @@ fn proof_ui(ui: &mut Ui, shown: &ConditionAnalysis, is_proving: bool, palette: &
 }
 
 /// Sentences, each with what can be done about it.
-fn remarks_ui(ui: &mut Ui, state: &State, remarks: &[Remark], palette: &Palette, commands: &mut Vec<Command>) {
+fn remarks_ui(
+    ui: &mut Ui,
+    state: &State,
+    remarks: &[Remark],
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     for remark in remarks {
         remark_ui(ui, palette, remark);
         if let Some(pair) = remark.ignore {
             let name = state.dataset().pair_name(pair);
-            let button = named(ui.small_button("Ignore it"), Role::Button, format!("Ignore {name}"));
+            let button = named(
+                ui.small_button("Ignore it"),
+                Role::Button,
+                format!("Ignore {name}"),
+            );
             let hint = format!("Give {name} no weight in the objective, in every condition");
-            button.on_hover_text(hint).asks(Edit::Fit(pair, false), commands);
+            button
+                .on_hover_text(hint)
+                .asks(Edit::Fit(pair, false), commands);
         }
         if let Some((channel, of)) = remark.turn {
             let (label, turn) = turn_entry(state, channel, of);
-            button_ui(ui, Button::new(label).small(), "In every condition; can be undone", turn, commands);
+            button_ui(
+                ui,
+                Button::new(label).small(),
+                "In every condition; can be undone",
+                turn,
+                commands,
+            );
         }
         if let Some(phase) = remark.phase {
             let label = format!("Correct the phase by {}", setting::PHASE.text(phase.into()));
-            button_ui(ui, Button::new(label).small(), UNDONE, setting::PHASE.to(phase), commands);
+            button_ui(
+                ui,
+                Button::new(label).small(),
+                UNDONE,
+                setting::PHASE.to(phase),
+                commands,
+            );
         }
     }
 }
@@ -326,19 +437,42 @@ fn remarks_ui(ui: &mut Ui, state: &State, remarks: &[Remark], palette: &Palette,
 /// What is said of a button that decides for every condition.
 const UNDONE: &str = "In every condition; undo takes it back";
 
-fn objective_ui(ui: &mut Ui, shown: &ConditionAnalysis, palette: &Palette, commands: &mut Vec<Command>) {
-    let unit = if shown.gains.quantity == Quantity::Gain(GainObjective::Decibel) { " dB²" } else { "" };
+fn objective_ui(
+    ui: &mut Ui,
+    shown: &ConditionAnalysis,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
+    let unit = if shown.gains.quantity == Quantity::Gain(GainObjective::Decibel) {
+        " dB²"
+    } else {
+        ""
+    };
     let gains = format!("objective {:.4}{unit}", shown.gains.objective);
     let delays = format!("delays {:.4} s²", shown.delays.objective);
     let id = shown.condition.id();
     ui.horizontal_wrapped(|ui| {
-        let label = value_label_ui(ui, palette.small(gains), ExplainTarget::GainObjective(id), commands);
+        let label = value_label_ui(
+            ui,
+            palette.small(gains),
+            ExplainTarget::GainObjective(id),
+            commands,
+        );
         label.on_hover_text(format!(
             "eq. (7): {}{unit}, lower bound {}{unit}",
             shown.gains.objective, shown.gains.proof.lower_bound
         ));
-        let label = value_label_ui(ui, palette.small(delays), ExplainTarget::DelayObjective(id), commands);
-        let equation = if shown.compensated.is_some() { "M15.4" } else { "eq. (11)" };
+        let label = value_label_ui(
+            ui,
+            palette.small(delays),
+            ExplainTarget::DelayObjective(id),
+            commands,
+        );
+        let equation = if shown.compensated.is_some() {
+            "M15.4"
+        } else {
+            "eq. (11)"
+        };
         label.on_hover_text(format!(
             "{equation}: {} s², global optimum (convex); KKT residual {:.0e} s",
             shown.delays.objective,
@@ -353,21 +487,40 @@ fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Pale
         return;
     }
     let header = palette.small("Leads in words");
-    CollapsingHeader::new(header).id_salt("leads").default_open(true).show(ui, |ui| {
-        for sentence in lead_words(&state.study, shown, state.uncertainty().map(AsRef::as_ref)) {
-            ui.label(RichText::new(sentence).size(SMALL_SIZE));
-        }
-    });
+    CollapsingHeader::new(header)
+        .id_salt("leads")
+        .default_open(true)
+        .show(ui, |ui| {
+            for sentence in lead_words(&state.study, shown, state.uncertainty().map(AsRef::as_ref))
+            {
+                ui.label(RichText::new(sentence).size(SMALL_SIZE));
+            }
+        });
 }
 
 /// What couplings would bring off the axis, where that is worth it, and the click that uses them.
 fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
-    let Some((assessment, _)) = offered_couplings(state) else { return };
+    let Some((assessment, _)) = offered_couplings(state) else {
+        return;
+    };
     let couplings = assessment.couplings;
-    assessment.offer().into_iter().for_each(|text| remark_ui(ui, palette, &Remark::new(RemarkKind::Good, text)));
+    assessment
+        .offer()
+        .into_iter()
+        .for_each(|text| remark_ui(ui, palette, &Remark::new(RemarkKind::Good, text)));
     let button = Button::new(format!("Use {}", couplings.name())).small();
-    button_ui(ui, button, UNDONE, setting::COUPLINGS.to(couplings), commands);
-    entries_ui(ui, [("Look at the couplings", Command::ShowView(View::Couplings))], commands);
+    button_ui(
+        ui,
+        button,
+        UNDONE,
+        setting::COUPLINGS.to(couplings),
+        commands,
+    );
+    entries_ui(
+        ui,
+        [("Look at the couplings", Command::ShowView(View::Couplings))],
+        commands,
+    );
 }
 
 fn remark_ui(ui: &mut Ui, palette: &Palette, remark: &Remark) {

@@ -2,20 +2,26 @@
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Role, Ui};
-use gdcm_plot::figure::{BodeOptions, Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
+use gdcm_plot::figure::{
+    BodeOptions, Figure, FigureFormat, FigureKind, FigureRequest, all_channels,
+};
 use gdcm_study::study::Table;
 
 use super::plot::{BodeView, PANES};
 use super::views::{
-    ViewFigure, assessment_choice, bode_options, condition_source, requirement_tables, shown_couplings,
-    shown_over_time, shown_requirements,
+    ViewFigure, assessment_choice, bode_options, condition_source, requirement_tables,
+    shown_couplings, shown_over_time, shown_requirements,
 };
 use super::{Command, State, View, named};
 
 /// The figure that a view shows; none until its results are there.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     let bars = !state.display.hide_bars || view.figure().is_some_and(FigureKind::needs_bars);
-    let with_bars = if bars { state.analysis_with_bars() } else { state.analysis().cloned() };
+    let with_bars = if bars {
+        state.analysis_with_bars()
+    } else {
+        state.analysis().cloned()
+    };
     // What requirements are asked with has no part in the live answer, which may be older.
     let with_bars = with_bars.map(|analysis| analysis.asked_with(&state.study.requirements));
     let analysis = with_bars.as_ref();
@@ -35,7 +41,11 @@ pub fn figure_name(state: &State, view: View) -> String {
         parts.extend([input, output]);
     }
     let is_plain = |letter: char| letter.is_alphanumeric() || letter == '-';
-    parts.join("-").chars().map(|letter| if is_plain(letter) { letter } else { '_' }).collect()
+    parts
+        .join("-")
+        .chars()
+        .map(|letter| if is_plain(letter) { letter } else { '_' })
+        .collect()
 }
 
 /// The views that have a figure.
@@ -56,7 +66,11 @@ pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
     };
     // The parts of the axes that the engineer chose to see.
     let values = PANES.map(|pane| plot.and_then(|plot| plot.chosen_values(pane)));
-    let bode = BodeOptions { omega: plot.and_then(BodeView::chosen_omega), values, ..bode_options(state) };
+    let bode = BodeOptions {
+        omega: plot.and_then(BodeView::chosen_omega),
+        values,
+        ..bode_options(state)
+    };
     let assessed = Some(assessment_choice(state));
     let usual = FigureRequest::new(kind, pairs(state), all_channels(state.dataset()));
     let requirements = shown_requirements(state, kind);
@@ -77,21 +91,35 @@ pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
 
 /// The tables that a view shows in place of a figure; none where it shows one.
 pub fn tables_in_place(state: &State, view: View) -> Option<Vec<Table>> {
-    (view == View::Requirements).then(|| requirement_tables(state)).flatten()
+    (view == View::Requirements)
+        .then(|| requirement_tables(state))
+        .flatten()
 }
 
 /// The button that copies or saves what a view shows.
-pub(super) fn figure_button_ui(ui: &mut Ui, state: &State, view: View, commands: &mut Vec<Command>) {
+pub(super) fn figure_button_ui(
+    ui: &mut Ui,
+    state: &State,
+    view: View,
+    commands: &mut Vec<Command>,
+) {
     if view.figure().is_none() {
         return;
     }
     let has_figure = tables_in_place(state, view).is_none();
     let (button, _) = MenuButton::from_button(Button::new("Save").frame(false)).ui(ui, |ui| {
-        if ui.button("Copy the numbers").on_hover_text("As CSV, to the clipboard").clicked() {
+        if ui
+            .button("Copy the numbers")
+            .on_hover_text("As CSV, to the clipboard")
+            .clicked()
+        {
             commands.push(Command::CopyFigure(view));
             ui.close();
         }
-        for format in FigureFormat::ALL.into_iter().filter(|format| has_figure || *format == FigureFormat::Csv) {
+        for format in FigureFormat::ALL
+            .into_iter()
+            .filter(|format| has_figure || *format == FigureFormat::Csv)
+        {
             let text = format!("Save as {}…", format.extension().to_uppercase());
             if ui.button(text).on_hover_text(format.words()).clicked() {
                 commands.push(Command::AskSaveFigure(view, format));
@@ -99,6 +127,10 @@ pub(super) fn figure_button_ui(ui: &mut Ui, state: &State, view: View, commands:
             }
         }
     });
-    let button = named(button, Role::Button, format!("Save or copy {}", view.name()));
+    let button = named(
+        button,
+        Role::Button,
+        format!("Save or copy {}", view.name()),
+    );
     button.on_hover_text("This plot on paper, or its numbers: copy, CSV, SVG, PNG, PDF");
 }

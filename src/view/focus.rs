@@ -65,22 +65,35 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
     let place = Rect::from_min_max(pos2(drawn.left(), top), drawn.max).intersect(ui.clip_rect());
     let controls: Vec<Id> = ctx.viewport(|viewport| {
         let drawn = viewport.this_pass.widgets.get_layer(layer).skip(before);
-        drawn.filter(|widget| widget.enabled && widget.sense.is_focusable()).map(|widget| widget.id).collect()
+        drawn
+            .filter(|widget| widget.enabled && widget.sense.is_focusable())
+            .map(|widget| widget.id)
+            .collect()
     });
-    let focused = ctx.memory(|memory| memory.focused()).filter(|focused| controls.contains(focused));
+    let focused = ctx
+        .memory(|memory| memory.focused())
+        .filter(|focused| controls.contains(focused));
     let pass = ctx.cumulative_pass_nr();
     ctx.data_mut(|data| {
-        let part = data.get_temp_mut_or_default::<Regions>(key()).parts.entry(region).or_default();
+        let part = data
+            .get_temp_mut_or_default::<Regions>(key())
+            .parts
+            .entry(region)
+            .or_default();
         if part.pass != pass {
             part.controls.clear();
             part.place = None;
         }
         part.pass = pass;
         part.controls.extend(controls);
-        part.place = part.place.map_or(Some(place), |others| Some(others.union(place)));
+        part.place = part
+            .place
+            .map_or(Some(place), |others| Some(others.union(place)));
         part.visited = focused.or(part.visited);
     });
-    let arrived = focused.and_then(|focused| ctx.read_response(focused)).filter(|response| response.gained_focus());
+    let arrived = focused
+        .and_then(|focused| ctx.read_response(focused))
+        .filter(|response| response.gained_focus());
     if let Some(response) = arrived {
         ui.scroll_to_rect(response.rect, None);
     }
@@ -101,7 +114,12 @@ pub fn begin_with(ctx: &Context, row: Id) {
 
 /// Where a region is in the window, as far as it is in view.
 pub fn region_place(ctx: &Context, region: Region) -> Option<Rect> {
-    let place = ctx.data_mut(|data| data.get_temp_mut_or_default::<Regions>(key()).parts.get(&region)?.place);
+    let place = ctx.data_mut(|data| {
+        data.get_temp_mut_or_default::<Regions>(key())
+            .parts
+            .get(&region)?
+            .place
+    });
     place.filter(|place| place.is_positive())
 }
 
@@ -110,9 +128,17 @@ pub fn region_place(ctx: &Context, region: Region) -> Option<Rect> {
 pub fn leave_region(ctx: &Context, forward: bool) {
     let focused = ctx.memory(|memory| memory.focused());
     let regions = ctx.data_mut(|data| data.get_temp_mut_or_default::<Regions>(key()).clone());
-    let parts: Vec<&Part> = regions.parts.values().filter(|part| !part.controls.is_empty()).collect();
-    let Some(last) = parts.len().checked_sub(1) else { return };
-    let here = parts.iter().position(|part| focused.is_some_and(|focused| part.controls.contains(&focused)));
+    let parts: Vec<&Part> = regions
+        .parts
+        .values()
+        .filter(|part| !part.controls.is_empty())
+        .collect();
+    let Some(last) = parts.len().checked_sub(1) else {
+        return;
+    };
+    let here = parts
+        .iter()
+        .position(|part| focused.is_some_and(|focused| part.controls.contains(&focused)));
     let next = match (here, forward) {
         (None, true) => 0,
         (None, false) => last,
@@ -120,9 +146,17 @@ pub fn leave_region(ctx: &Context, forward: bool) {
         (Some(here), false) => (here + last) % parts.len(),
     };
     let part = parts[next];
-    let visited = part.visited.filter(|visited| part.controls.contains(visited));
-    let selected = part.controls.iter().find(|control| regions.selected.1.contains(control));
-    if let Some(id) = visited.or(selected.copied()).or(part.controls.first().copied()) {
+    let visited = part
+        .visited
+        .filter(|visited| part.controls.contains(visited));
+    let selected = part
+        .controls
+        .iter()
+        .find(|control| regions.selected.1.contains(control));
+    if let Some(id) = visited
+        .or(selected.copied())
+        .or(part.controls.first().copied())
+    {
         ctx.memory_mut(|memory| memory.request_focus(id));
     }
 }
@@ -150,13 +184,22 @@ const GAP: f32 = 1.0;
 pub fn focus_ring_ui(ctx: &Context, palette: &Palette) {
     let focused = ctx.memory(|memory| memory.focused());
     ctx.data_mut(|data| data.insert_temp(had_focus(), focused.is_some()));
-    let Some(focused) = focused.and_then(|id| ctx.read_response(id)) else { return };
+    let Some(focused) = focused.and_then(|id| ctx.read_response(id)) else {
+        return;
+    };
     let in_view = focused.interact_rect;
     if !in_view.is_positive() {
         return;
     }
-    let painter = ctx.layer_painter(focused.layer_id).with_clip_rect(in_view.expand(GAP + WIDTH));
-    painter.rect_stroke(focused.rect.expand(GAP), 3.0, Stroke::new(WIDTH, palette.accent), StrokeKind::Outside);
+    let painter = ctx
+        .layer_painter(focused.layer_id)
+        .with_clip_rect(in_view.expand(GAP + WIDTH));
+    painter.rect_stroke(
+        focused.rect.expand(GAP),
+        3.0,
+        Stroke::new(WIDTH, palette.accent),
+        StrokeKind::Outside,
+    );
 }
 
 #[cfg(test)]
@@ -175,7 +218,12 @@ mod tests {
     fn the_ring_stands_out_from_every_surface_by_three_to_one() {
         for palette in [Palette::dark(), Palette::light()] {
             let ring = luminance(palette.accent);
-            for surface in [palette.background, palette.panel, palette.raised, palette.selected] {
+            for surface in [
+                palette.background,
+                palette.panel,
+                palette.raised,
+                palette.selected,
+            ] {
                 let surface = luminance(surface);
                 let contrast = (ring.max(surface) + 0.05) / (ring.min(surface) + 0.05);
                 assert!(contrast >= 3.0, "{contrast} in {palette:?}");

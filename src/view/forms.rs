@@ -4,7 +4,10 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use egui::text::{CCursor, CCursorRange};
-use egui::{Align, Button, Context, Id, Label, Layout, Modal, RichText, Role, ScrollArea, TextEdit, Ui, vec2};
+use egui::{
+    Align, Button, Context, Id, Label, Layout, Modal, RichText, Role, ScrollArea, TextEdit, Ui,
+    vec2,
+};
 
 use gdcm_io::{EXPORTERS, ExportContents, ExportRequest, export_contents};
 use gdcm_model::dataset::ConditionId;
@@ -13,8 +16,8 @@ use gdcm_study::study::{Analysis, Difference, Edit};
 
 use super::records::{RecordsCommand, WantedDataset};
 use super::{
-    Command, FormKind, Forms, Palette, RequirementTable, State, command_palette_ui, is_entered, keys_page_ui,
-    name_text_field, named_switch, text_field_ui,
+    Command, FormKind, Forms, Palette, RequirementTable, State, command_palette_ui, is_entered,
+    keys_page_ui, name_text_field, named_switch, text_field_ui,
 };
 
 /// Shows the form that is asked for, if any. Its field has the focus when it opens; Enter submits it; Escape and a click outside
@@ -25,11 +28,17 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
         return;
     };
     let asks_to_overwrite = !state.forms.existing.is_empty();
-    let opens = state.forms.drawn.replace((kind, asks_to_overwrite)) != Some((kind, asks_to_overwrite));
+    let opens =
+        state.forms.drawn.replace((kind, asks_to_overwrite)) != Some((kind, asks_to_overwrite));
     // A form has an id of its own: the size of one is not that of another.
     let modal = Modal::new(Id::unique(("form", kind, asks_to_overwrite))).show(ctx, |ui| {
         ui.set_width(460.0);
-        let form = &mut Form { ui, opens, palette, commands };
+        let form = &mut Form {
+            ui,
+            opens,
+            palette,
+            commands,
+        };
         match kind {
             _ if asks_to_overwrite => overwrite_ui(form, kind, &state.forms.existing),
             FormKind::Export => export_ui(form, state),
@@ -149,11 +158,15 @@ const PATHS: [PathWords; 10] = [
 
 /// A form that asks for a path, and some for one of a few choices; none where it only asks whether to overwrite.
 fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State) {
-    let Some(words) = PATHS.iter().find(|words| words.kind == kind) else { return };
+    let Some(words) = PATHS.iter().find(|words| words.kind == kind) else {
+        return;
+    };
     let waits = kind == FormKind::ExportAs && state.results.is_behind();
     let forms = &mut state.forms;
     let title = match (kind, &forms.table, forms.figure) {
-        (FormKind::SaveTable, Some(table), _) => format!("{} \u{201c}{}\u{201d}", words.title, table.title),
+        (FormKind::SaveTable, Some(table), _) => {
+            format!("{} \u{201c}{}\u{201d}", words.title, table.title)
+        }
         (FormKind::SaveFigure, _, Some(view)) => format!("{} of {}", words.title, view.name()),
         _ => words.title.to_owned(),
     };
@@ -163,23 +176,38 @@ fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State) {
     let before = forms.export_format;
     match kind {
         FormKind::SaveFigure => {
-            form.choices_ui(&mut forms.figure_width, ColumnWidth::BOTH.map(|width| (width, width.words())));
+            form.choices_ui(
+                &mut forms.figure_width,
+                ColumnWidth::BOTH.map(|width| (width, width.words())),
+            );
         }
         FormKind::ExportAs => {
-            form.choices_ui(&mut forms.export_format, EXPORTERS.into_iter().map(|of| (of, of.words)));
+            form.choices_ui(
+                &mut forms.export_format,
+                EXPORTERS.into_iter().map(|of| (of, of.words)),
+            );
         }
         _ => {}
     }
     // The end of the name goes with the format, as long as nobody has typed another.
-    if let Some(stem) = path.strip_suffix(&format!(".{}", before.extension)).filter(|_| kind == FormKind::ExportAs) {
+    if let Some(stem) = path
+        .strip_suffix(&format!(".{}", before.extension))
+        .filter(|_| kind == FormKind::ExportAs)
+    {
         path = format!("{stem}.{}", forms.export_format.extension);
     }
     if kind == FormKind::ExportAs {
-        let request = ExportRequest { format: state.forms.export_format, ..ExportRequest::default() };
+        let request = ExportRequest {
+            format: state.forms.export_format,
+            ..ExportRequest::default()
+        };
         contents_ui(form, state, |analysis| export_contents(analysis, &request));
     }
     let forms = &mut state.forms;
-    let lost = forms.lost_dataset.as_ref().filter(|_| kind == FormKind::FindDataset);
+    let lost = forms
+        .lost_dataset
+        .as_ref()
+        .filter(|_| kind == FormKind::FindDataset);
     let explanation = lost.map_or(words.explanation, |(_, reason)| reason);
     if !explanation.is_empty() {
         form.explain(explanation);
@@ -194,13 +222,20 @@ fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State) {
 }
 
 /// What the file of an export would contain, and what it would leave out; nothing before there are results.
-fn contents_ui(form: &mut Form<'_, '_>, state: &State, contents: impl Fn(&Analysis) -> ExportContents) {
-    let Some(analysis) = state.analysis() else { return };
+fn contents_ui(
+    form: &mut Form<'_, '_>,
+    state: &State,
+    contents: impl Fn(&Analysis) -> ExportContents,
+) {
+    let Some(analysis) = state.analysis() else {
+        return;
+    };
     let contents = contents(analysis);
     form.ui.add_space(4.0);
     form.explain(&format!("Contains: {}.", contents.words()));
     for words in contents.left_out_words(&analysis.study.dataset) {
-        form.ui.add(Label::new(form.palette.small_warning(&format!("Left out: {words}"))).wrap());
+        form.ui
+            .add(Label::new(form.palette.small_warning(&format!("Left out: {words}"))).wrap());
     }
 }
 
@@ -225,15 +260,20 @@ fn export_ui(form: &mut Form<'_, '_>, state: &mut State) {
     form.explain("Writes corrections.json, corrections.csv and assessment.csv into a folder.");
     contents_ui(form, state, ExportContents::of_results);
     let conditions = state.dataset().conditions().iter();
-    let names: Vec<(ConditionId, String)> =
-        conditions.map(|condition| (condition.id(), condition.flight_state().name.clone())).collect();
+    let names: Vec<(ConditionId, String)> = conditions
+        .map(|condition| (condition.id(), condition.flight_state().name.clone()))
+        .collect();
     let waits = state.results.is_behind();
     let exported = &mut state.forms.exported;
     conditions_ui(form.ui, exported, &names);
     form.ui.add_space(4.0);
     let is_any = !exported.is_empty();
     let folder = state.forms.typed_in(FormKind::Export);
-    let entered = form.text_ui("Export folder", folder, "folder; it is made where it does not exist");
+    let entered = form.text_ui(
+        "Export folder",
+        folder,
+        "folder; it is made where it does not exist",
+    );
     let ready = is_any && !folder.trim().is_empty();
     form.line(|form| {
         form.submit_ui("Export", ready, entered, Some(Command::Export));
@@ -242,7 +282,11 @@ fn export_ui(form: &mut Form<'_, '_>, state: &mut State) {
     });
 }
 
-fn conditions_ui(ui: &mut Ui, exported: &mut BTreeSet<ConditionId>, names: &[(ConditionId, String)]) {
+fn conditions_ui(
+    ui: &mut Ui,
+    exported: &mut BTreeSet<ConditionId>,
+    names: &[(ConditionId, String)],
+) {
     ui.horizontal(|ui| {
         if ui.small_button("All conditions").clicked() {
             exported.extend(names.iter().map(|(id, _)| *id));
@@ -255,7 +299,12 @@ fn conditions_ui(ui: &mut Ui, exported: &mut BTreeSet<ConditionId>, names: &[(Co
         for (id, name) in names {
             let mut chosen = exported.contains(id);
             let response = ui.checkbox(&mut chosen, format!("{id}   {name}"));
-            let response = named_switch(response, Role::CheckBox, chosen, format!("Export condition {id}"));
+            let response = named_switch(
+                response,
+                Role::CheckBox,
+                chosen,
+                format!("Export condition {id}"),
+            );
             if response.changed() && !exported.remove(id) {
                 exported.insert(*id);
             }
@@ -282,7 +331,11 @@ fn about_ui(form: &mut Form<'_, '_>) {
 
 /// Asks whether to overwrite files; a cancel goes back to the form that would.
 fn overwrite_ui(form: &mut Form<'_, '_>, kind: FormKind, existing: &[String]) {
-    form.title(if existing.len() == 1 { "This file exists already" } else { "These files exist already" });
+    form.title(if existing.len() == 1 {
+        "This file exists already"
+    } else {
+        "These files exist already"
+    });
     for path in existing {
         form.ui.label(path);
     }
@@ -309,15 +362,25 @@ fn differences_ui(form: &mut Form<'_, '_>, state: &State) {
     form.title("The dataset is not the one the study was made with");
     form.explain("Every decision that still applies was kept. What is different:");
     let palette = form.palette;
-    ScrollArea::vertical().max_height(300.0).show(form.ui, |ui| {
-        for difference in &state.differences {
-            let not_applied = matches!(difference, Difference::NotApplied { .. });
-            let color = if not_applied { palette.warning } else { palette.text };
-            ui.label(RichText::new(format!("• {difference}")).color(color));
-        }
-    });
+    ScrollArea::vertical()
+        .max_height(300.0)
+        .show(form.ui, |ui| {
+            for difference in &state.differences {
+                let not_applied = matches!(difference, Difference::NotApplied { .. });
+                let color = if not_applied {
+                    palette.warning
+                } else {
+                    palette.text
+                };
+                ui.label(RichText::new(format!("• {difference}")).color(color));
+            }
+        });
     form.ui.add_space(4.0);
-    let lines: Vec<String> = state.differences.iter().map(|difference| difference.to_string()).collect();
+    let lines: Vec<String> = state
+        .differences
+        .iter()
+        .map(|difference| difference.to_string())
+        .collect();
     form.line(|form| {
         form.button_ui("Go on", true, Command::ShowForm(None));
         form.button_ui("Copy the list", false, Command::CopyText(lines.join("\n")));
@@ -326,16 +389,27 @@ fn differences_ui(form: &mut Form<'_, '_>, state: &State) {
 
 /// Why a model is rejected; one that is kept is rejected with it.
 fn reason_ui(form: &mut Form<'_, '_>, state: &mut State) {
-    let Some(model) = state.forms.rejected_model.clone() else { return };
+    let Some(model) = state.forms.rejected_model.clone() else {
+        return;
+    };
     let is_rejected = state.study.is_rejected(&model);
-    let (title, button) =
-        if is_rejected { ("Why is it rejected?", "Keep the reason") } else { ("Reject with a reason", "Reject") };
+    let (title, button) = if is_rejected {
+        ("Why is it rejected?", "Keep the reason")
+    } else {
+        ("Reject with a reason", "Reject")
+    };
     form.title(title);
-    let words = format!("{} model {} of condition {}", model.bundle, model.name, model.condition);
+    let words = format!(
+        "{} model {} of condition {}",
+        model.bundle, model.name, model.condition
+    );
     form.explain(&words);
     let reason = state.forms.typed_in(FormKind::Reason);
-    let entered =
-        form.text_ui("Reason of the rejection", reason, "in words; it is kept in the study and in the results");
+    let entered = form.text_ui(
+        "Reason of the rejection",
+        reason,
+        "in words; it is kept in the study and in the results",
+    );
     let reason = reason.trim().to_owned();
     form.line(|form| {
         let edit = match is_rejected {
@@ -366,8 +440,18 @@ fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut WantedDataset) {
         entered |= form.text_ui("Inputs of the dataset", &mut wanted.inputs, hint);
     });
     let texts = [
-        ("outputs", "Outputs of the dataset", &mut wanted.outputs, "P, Q, or q [rad/s]=gyro_y"),
-        ("file", "Path of the dataset of records", &mut wanted.path, "path of a .json.gz file"),
+        (
+            "outputs",
+            "Outputs of the dataset",
+            &mut wanted.outputs,
+            "P, Q, or q [rad/s]=gyro_y",
+        ),
+        (
+            "file",
+            "Path of the dataset of records",
+            &mut wanted.path,
+            "path of a .json.gz file",
+        ),
     ];
     for (label, name, text, hint) in texts {
         form.line(|form| {
@@ -379,24 +463,48 @@ fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut WantedDataset) {
     }
     form.line(|form| {
         form.labelled("band");
-        let names = ["Lower end of the band to identify", "Upper end of the band to identify"];
+        let names = [
+            "Lower end of the band to identify",
+            "Upper end of the band to identify",
+        ];
         for (name, end) in names.iter().zip(&mut wanted.band) {
             text_field_ui(form.ui, name, end, "rad/s", 60.0);
         }
         form.explain("rad/s");
     });
-    let columns = wanted.columns.iter().take(MOST_COLUMNS).cloned().collect::<Vec<_>>().join(", ");
+    let columns = wanted
+        .columns
+        .iter()
+        .take(MOST_COLUMNS)
+        .cloned()
+        .collect::<Vec<_>>()
+        .join(", ");
     let more = wanted.columns.len().saturating_sub(MOST_COLUMNS);
-    let more = if more > 0 { format!(", and {more} more") } else { String::new() };
-    ScrollArea::vertical().id_salt("columns of the records").max_height(96.0).show(form.ui, |ui| {
-        ui.add(Label::new(form.palette.small(format!("columns: {columns}{more}"))).wrap());
-    });
+    let more = if more > 0 {
+        format!(", and {more} more")
+    } else {
+        String::new()
+    };
+    ScrollArea::vertical()
+        .id_salt("columns of the records")
+        .max_height(96.0)
+        .show(form.ui, |ui| {
+            ui.add(Label::new(form.palette.small(format!("columns: {columns}{more}"))).wrap());
+        });
     for problem in &wanted.problems {
-        form.ui.add(Label::new(form.palette.small_warning(problem)).wrap());
+        form.ui
+            .add(Label::new(form.palette.small_warning(problem)).wrap());
     }
-    let is_ready = [&wanted.inputs, &wanted.outputs, &wanted.path].iter().all(|text| !text.trim().is_empty());
+    let is_ready = [&wanted.inputs, &wanted.outputs, &wanted.path]
+        .iter()
+        .all(|text| !text.trim().is_empty());
     form.line(|form| {
-        form.submit_ui("Make the dataset", is_ready, entered, Some(RecordsCommand::MakeDataset.into()));
+        form.submit_ui(
+            "Make the dataset",
+            is_ready,
+            entered,
+            Some(RecordsCommand::MakeDataset.into()),
+        );
         form.cancel_ui(false);
     });
 }
@@ -421,7 +529,11 @@ impl Form<'_, '_> {
         self.ui.label(self.palette.dim(text));
     }
 
-    fn choices_ui<T: PartialEq>(&mut self, chosen: &mut T, choices: impl IntoIterator<Item = (T, &'static str)>) {
+    fn choices_ui<T: PartialEq>(
+        &mut self,
+        chosen: &mut T,
+        choices: impl IntoIterator<Item = (T, &'static str)>,
+    ) {
         for (value, text) in choices {
             self.ui.radio_value(chosen, value, text);
         }
@@ -430,10 +542,11 @@ impl Form<'_, '_> {
     /// What a field of several is, in front of it.
     fn labelled(&mut self, text: &str) {
         let size = vec2(56.0, self.ui.spacing().interact_size.y);
-        self.ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
-            ui.set_min_width(size.x);
-            ui.label(self.palette.dim(text));
-        });
+        self.ui
+            .allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
+                ui.set_min_width(size.x);
+                ui.label(self.palette.dim(text));
+            });
     }
 
     /// The button that closes the form; what it asks for may wait for the newest results.
@@ -446,7 +559,10 @@ impl Form<'_, '_> {
 
     /// The text field of the form; whether the Enter key was pressed in it.
     fn text_ui(&mut self, name: &str, text: &mut String, hint: &str) -> bool {
-        let shown = TextEdit::singleline(text).hint_text(hint).desired_width(f32::INFINITY).show(self.ui);
+        let shown = TextEdit::singleline(text)
+            .hint_text(hint)
+            .desired_width(f32::INFINITY)
+            .show(self.ui);
         let response = shown.response.response;
         name_text_field(&response, name, text);
         if self.opens {
@@ -463,7 +579,8 @@ impl Form<'_, '_> {
     /// The button that submits the form, which Enter does too; others follow on the same line.
     fn submit_ui(&mut self, text: &str, is_ready: bool, entered: bool, command: Option<Command>) {
         let clicked = self.ui.add_enabled(is_ready, Button::new(text)).clicked();
-        self.commands.extend(command.filter(|_| clicked || (entered && is_ready)));
+        self.commands
+            .extend(command.filter(|_| clicked || (entered && is_ready)));
     }
 
     /// A button; the first of a form without a text field has the focus when it opens.
@@ -480,6 +597,13 @@ impl Form<'_, '_> {
     /// What follows stands on one line.
     fn line(&mut self, add: impl FnOnce(&mut Form<'_, '_>)) {
         let (opens, palette, commands) = (self.opens, self.palette, &mut *self.commands);
-        self.ui.horizontal(|ui| add(&mut Form { ui, opens, palette, commands }));
+        self.ui.horizontal(|ui| {
+            add(&mut Form {
+                ui,
+                opens,
+                palette,
+                commands,
+            })
+        });
     }
 }

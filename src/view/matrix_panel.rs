@@ -2,8 +2,8 @@
 //! left, and how sure that is.
 
 use egui::{
-    Align2, Color32, Grid, Key, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke, StrokeKind, Ui, WidgetInfo,
-    pos2, vec2,
+    Align2, Color32, Grid, Key, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke,
+    StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
 use gdcm_method::correction::Channel;
@@ -16,8 +16,9 @@ use gdcm_plot::figure::decimals;
 
 use super::palette::{body, medium, small};
 use super::{
-    BODY_SIZE, Command, Palette, Region, SMALL_SIZE, State, Sureness, TableKind, check_ui, entries_ui,
-    gain_conflict_marks, named_switch, painted_text, question_menu_ui, region_ui, table_menu_ui, turn_entry,
+    BODY_SIZE, Command, Palette, Region, SMALL_SIZE, State, Sureness, TableKind, check_ui,
+    entries_ui, gain_conflict_marks, named_switch, painted_text, question_menu_ui, region_ui,
+    table_menu_ui, turn_entry,
 };
 
 /// Height of a cell, at least and at most \[pt\].
@@ -32,21 +33,40 @@ const LOCK_SIZE: f32 = 13.0;
 const FULL_COST: f64 = 60.0;
 /// Every response as a cell, within `room` points of height. A click on the cell chooses the response for the large plot; a click on its box, a double click or
 /// the space bar holds or releases it; a right-click offers more.
-pub fn matrix_ui(ui: &mut Ui, state: &State, room: f32, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn matrix_ui(
+    ui: &mut Ui,
+    state: &State,
+    room: f32,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let (rect, heading) = ui.allocate_exact_size(vec2(ui.available_width(), 20.0), Sense::hover());
-    painted_text(ui, rect, 0.0, "Constraint matrix", medium(BODY_SIZE), palette.text);
+    painted_text(
+        ui,
+        rect,
+        0.0,
+        "Constraint matrix",
+        medium(BODY_SIZE),
+        palette.text,
+    );
     key_ui(ui, rect, palette);
     table_menu_ui(ui, &heading, TableKind::Matrix, commands);
     let outputs = state.dataset().outputs().len();
     let pitch = (room - 20.0 - HEADER_HEIGHT) / outputs as f32;
     let height = (pitch - GAP).clamp(CELL_HEIGHTS[0], CELL_HEIGHTS[1]);
-    region_ui(ui, Region::Matrix, |ui| cells_ui(ui, state, (room - 20.0, height), palette, commands));
+    region_ui(ui, Region::Matrix, |ui| {
+        cells_ui(ui, state, (room - 20.0, height), palette, commands)
+    });
 }
 
 /// What the underlines mean, from right to left.
 fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
     let mut right = row.right();
-    for (words, color) in [("not reduced", palette.warning), ("after", palette.text), ("before", palette.quiet_mark)] {
+    for (words, color) in [
+        ("not reduced", palette.warning),
+        ("after", palette.text),
+        ("before", palette.quiet_mark),
+    ] {
         let upto = row.with_max_x(right);
         let place = painted_text(ui, upto, -0.01, words, small(), palette.dim_text);
         let mark = Rect::from_center_size(pos2(place.left() - 9.0, row.center().y), vec2(9.0, 3.0));
@@ -54,7 +74,14 @@ fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
         right = mark.left() - 10.0;
     }
     if row.width() > 310.0 {
-        painted_text(ui, row.with_max_x(right), -0.01, "J", small(), palette.dim_text);
+        painted_text(
+            ui,
+            row.with_max_x(right),
+            -0.01,
+            "J",
+            small(),
+            palette.dim_text,
+        );
     }
 }
 
@@ -66,9 +93,13 @@ fn cells_ui(
     commands: &mut Vec<Command>,
 ) {
     let (outputs, inputs) = (state.dataset().outputs(), state.dataset().inputs());
-    let width = ((ui.available_width() - ROW_LABEL_WIDTH + GAP) / inputs.len() as f32).max(LEAST_CELL_WIDTH);
+    let width = ((ui.available_width() - ROW_LABEL_WIDTH + GAP) / inputs.len() as f32)
+        .max(LEAST_CELL_WIDTH);
     let pitch = cell_height + GAP;
-    let size = vec2(ROW_LABEL_WIDTH + width * inputs.len() as f32 - GAP, HEADER_HEIGHT + pitch * outputs.len() as f32);
+    let size = vec2(
+        ROW_LABEL_WIDTH + width * inputs.len() as f32 - GAP,
+        HEADER_HEIGHT + pitch * outputs.len() as f32,
+    );
     let (in_conflict, blamed) = state.shown().map(gain_conflict_marks).unwrap_or_default();
     let focus = state.display.pair;
     let name_look = |channel, is_of_focus| match (blamed.contains(&channel), is_of_focus) {
@@ -77,27 +108,33 @@ fn cells_ui(
         _ => (palette.dim_text, small()),
     };
     // A matrix of more channels than there is room for scrolls by itself: verdict and export stay.
-    ScrollArea::both().id_salt("constraint matrix").max_height(room).show(ui, |ui| {
-        let (area, _) = ui.allocate_exact_size(size, Sense::hover());
-        for (input, channel) in inputs.iter().enumerate() {
-            let x = area.left() + ROW_LABEL_WIDTH + width * input as f32 + 0.5 * (width - GAP);
-            let (color, font) = name_look(Channel::Input(input), input == focus.input);
-            let place = pos2(x, area.top() + 0.5 * HEADER_HEIGHT);
-            ui.painter().text(place, Align2::CENTER_CENTER, &channel.name, font, color);
-        }
-        for (output, channel) in outputs.iter().enumerate() {
-            let top = area.top() + HEADER_HEIGHT + pitch * output as f32;
-            let place = pos2(area.left() + ROW_LABEL_WIDTH - 8.0, top + 0.5 * cell_height);
-            let (color, font) = name_look(Channel::Output(output), output == focus.output);
-            ui.painter().text(place, Align2::RIGHT_CENTER, &channel.name, font, color);
-            for input in 0..inputs.len() {
-                let left = area.left() + ROW_LABEL_WIDTH + width * input as f32;
-                let rect = Rect::from_min_size(pos2(left, top), vec2(width - GAP, cell_height));
-                let pair = Pair { output, input };
-                Cell::of(state, pair, in_conflict.contains(&pair)).ui(ui, rect, palette, commands);
+    ScrollArea::both()
+        .id_salt("constraint matrix")
+        .max_height(room)
+        .show(ui, |ui| {
+            let (area, _) = ui.allocate_exact_size(size, Sense::hover());
+            for (input, channel) in inputs.iter().enumerate() {
+                let x = area.left() + ROW_LABEL_WIDTH + width * input as f32 + 0.5 * (width - GAP);
+                let (color, font) = name_look(Channel::Input(input), input == focus.input);
+                let place = pos2(x, area.top() + 0.5 * HEADER_HEIGHT);
+                ui.painter()
+                    .text(place, Align2::CENTER_CENTER, &channel.name, font, color);
             }
-        }
-    });
+            for (output, channel) in outputs.iter().enumerate() {
+                let top = area.top() + HEADER_HEIGHT + pitch * output as f32;
+                let place = pos2(area.left() + ROW_LABEL_WIDTH - 8.0, top + 0.5 * cell_height);
+                let (color, font) = name_look(Channel::Output(output), output == focus.output);
+                ui.painter()
+                    .text(place, Align2::RIGHT_CENTER, &channel.name, font, color);
+                for input in 0..inputs.len() {
+                    let left = area.left() + ROW_LABEL_WIDTH + width * input as f32;
+                    let rect = Rect::from_min_size(pos2(left, top), vec2(width - GAP, cell_height));
+                    let pair = Pair { output, input };
+                    Cell::of(state, pair, in_conflict.contains(&pair))
+                        .ui(ui, rect, palette, commands);
+                }
+            }
+        });
 }
 
 struct Cell<'a> {
@@ -134,8 +171,17 @@ impl<'a> Cell<'a> {
     }
 
     fn ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
-        let response = ui.interact(rect, ui.scope_id().with(("cell", self.pair)), Sense::click());
-        let response = named_switch(response, Role::Button, self.focused, format!("Response {}", self.name));
+        let response = ui.interact(
+            rect,
+            ui.scope_id().with(("cell", self.pair)),
+            Sense::click(),
+        );
+        let response = named_switch(
+            response,
+            Role::Button,
+            self.focused,
+            format!("Response {}", self.name),
+        );
         if response.gained_focus() {
             response.scroll_to_me(None);
         }
@@ -158,10 +204,20 @@ impl<'a> Cell<'a> {
     fn lock_ui(&self, ui: &mut Ui, rect: Rect, is_pointed: bool, palette: &Palette) -> Response {
         let corner = rect.right_top() + vec2(-LOCK_SIZE, 1.0);
         let place = Rect::from_min_size(corner, vec2(LOCK_SIZE, LOCK_SIZE));
-        let response = ui.interact(place.expand(2.0), ui.scope_id().with(("hold", self.pair)), Sense::click());
+        let response = ui.interact(
+            place.expand(2.0),
+            ui.scope_id().with(("hold", self.pair)),
+            Sense::click(),
+        );
         let name = format!("Hold {}", self.name);
-        response
-            .widget_info(|| WidgetInfo::selected(Role::CheckBox, self.undefined().is_none(), self.constrained, &name));
+        response.widget_info(|| {
+            WidgetInfo::selected(
+                Role::CheckBox,
+                self.undefined().is_none(),
+                self.constrained,
+                &name,
+            )
+        });
         if !(is_pointed || response.contains_pointer() || response.has_focus()) {
             return response;
         }
@@ -176,12 +232,21 @@ impl<'a> Cell<'a> {
             ];
             ui.painter().line(tick.to_vec(), stroke);
         } else if self.undefined().is_none() {
-            ui.painter().rect_stroke(square, 2.0, Stroke::new(1.0, palette.text), StrokeKind::Inside);
+            ui.painter().rect_stroke(
+                square,
+                2.0,
+                Stroke::new(1.0, palette.text),
+                StrokeKind::Inside,
+            );
         }
         let hint = match (self.undefined(), self.constrained) {
             (Some(why), _) => format!("{} cannot be held: {}", self.name, why),
-            (_, true) => "Held: its net gain exactly, its delay where one can; click to free it".to_owned(),
-            (_, false) => "Free; click to hold its net gain exactly, and its delay where one can".to_owned(),
+            (_, true) => {
+                "Held: its net gain exactly, its delay where one can; click to free it".to_owned()
+            }
+            (_, false) => {
+                "Free; click to hold its net gain exactly, and its delay where one can".to_owned()
+            }
         };
         response.on_hover_text(hint)
     }
@@ -196,7 +261,14 @@ impl<'a> Cell<'a> {
         let outline = match (self.in_conflict, self.focused) {
             (_, true) => Stroke::new(2.0, palette.accent),
             (true, false) => Stroke::new(2.0, palette.warning),
-            (false, false) => Stroke::new(1.0, if self.constrained { Color32::TRANSPARENT } else { palette.line }),
+            (false, false) => Stroke::new(
+                1.0,
+                if self.constrained {
+                    Color32::TRANSPARENT
+                } else {
+                    palette.line
+                },
+            ),
         };
         painter.rect(rect, 4.0, fill, outline, StrokeKind::Inside);
         self.paint_values(ui, rect, is_pointed, palette);
@@ -205,22 +277,46 @@ impl<'a> Cell<'a> {
     /// G and D, each with half the width of its bar, over an underline of its part of J.
     fn paint_values(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
         let Some(shown) = self.shown else { return };
-        let (Some(gain), Some(delay_s)) = (shown.wanted_gain(self.pair), shown.wanted_delay_s(self.pair)) else {
+        let (Some(gain), Some(delay_s)) = (
+            shown.wanted_gain(self.pair),
+            shown.wanted_delay_s(self.pair),
+        ) else {
             let nothing = matches!(self.undefined(), Some(Undefined::NumericallyNothing(_)));
             let words = if nothing { "nothing" } else { "no G" };
-            ui.painter().text(rect.center(), Align2::CENTER_CENTER, words, small(), palette.dim_text);
+            ui.painter().text(
+                rect.center(),
+                Align2::CENTER_CENTER,
+                words,
+                small(),
+                palette.dim_text,
+            );
             return;
         };
         let cost = shown.cost[self.pair];
         let parts = cost.map(|of| {
             let (before, after) = (of.uncorrected, of.corrected);
-            [[before.magnitude, after.magnitude], [before.phase, after.phase]]
+            [
+                [before.magnitude, after.magnitude],
+                [before.phase, after.phase],
+            ]
         });
-        let strong = if self.fitted { palette.text } else { palette.quiet_text };
-        let gain_half = self.sureness.half(Scalar::Gain(self.pair)).map(|half| format!("±{:.0}", 100.0 * half));
-        let delay_half = self.sureness.half(shown.wanted_delay(self.pair)).map(|half| format!("±{:.0}", s_to_ms(half)));
-        let values =
-            [(decimals(gain, 2), medium(BODY_SIZE), gain_half), (decimals(s_to_ms(delay_s), 0), small(), delay_half)];
+        let strong = if self.fitted {
+            palette.text
+        } else {
+            palette.quiet_text
+        };
+        let gain_half = self
+            .sureness
+            .half(Scalar::Gain(self.pair))
+            .map(|half| format!("±{:.0}", 100.0 * half));
+        let delay_half = self
+            .sureness
+            .half(shown.wanted_delay(self.pair))
+            .map(|half| format!("±{:.0}", s_to_ms(half)));
+        let values = [
+            (decimals(gain, 2), medium(BODY_SIZE), gain_half),
+            (decimals(s_to_ms(delay_s), 0), small(), delay_half),
+        ];
         let lower = rect.top() + 0.5 * rect.height();
         let halves = [rect.with_max_y(lower), rect.with_min_y(lower - 1.0)];
         for (place, (half, (text, font, bar))) in halves.into_iter().zip(values).enumerate() {
@@ -232,7 +328,10 @@ impl<'a> Cell<'a> {
             if let Some(bar) = bar {
                 let galley = ui.painter().layout_no_wrap(bar, small(), palette.dim_text);
                 // A bar of three digits beside a value of three has no room: both stand in the tooltip and in the card.
-                let place = pos2(line.right() - galley.size().x, line.center().y - 0.5 * galley.size().y);
+                let place = pos2(
+                    line.right() - galley.size().x,
+                    line.center().y - 0.5 * galley.size().y,
+                );
                 if place.x > value.right() {
                     ui.painter().galley(place, galley, palette.dim_text);
                 }
@@ -250,12 +349,33 @@ impl<'a> Cell<'a> {
                 ui.close();
             }
         };
-        switch(ui, self.constrained, format!("Hold {} exactly", self.name), Edit::Hold);
-        switch(ui, self.fitted, format!("Fit {} in the objective", self.name), Edit::Fit);
-        entries_ui(ui, [("Hold exactly the on-axis responses", Edit::ConstrainOnAxis.into())], commands);
+        switch(
+            ui,
+            self.constrained,
+            format!("Hold {} exactly", self.name),
+            Edit::Hold,
+        );
+        switch(
+            ui,
+            self.fitted,
+            format!("Fit {} in the objective", self.name),
+            Edit::Fit,
+        );
+        entries_ui(
+            ui,
+            [(
+                "Hold exactly the on-axis responses",
+                Edit::ConstrainOnAxis.into(),
+            )],
+            commands,
+        );
         let turn = |channel| {
             let is_turned = self.state.study.signs.contains_key(&channel);
-            turn_entry(self.state, channel, (!is_turned).then_some(SignRole::Identified))
+            turn_entry(
+                self.state,
+                channel,
+                (!is_turned).then_some(SignRole::Identified),
+            )
         };
         entries_ui(ui, Channel::of(self.pair).map(turn), commands);
         if let Some(shown) = self.shown.filter(|_| self.undefined().is_none()) {
@@ -268,14 +388,22 @@ impl<'a> Cell<'a> {
                 ("J before", ExplainTarget::CostBefore(id, pair)),
                 ("J after", ExplainTarget::CostAfter(id, pair)),
             ];
-            question_menu_ui(ui, values.map(|(name, asked)| (name.to_owned(), asked)).into(), commands);
+            question_menu_ui(
+                ui,
+                values.map(|(name, asked)| (name.to_owned(), asked)).into(),
+                commands,
+            );
         }
     }
 
     /// Four aligned rows; all else is behind [`QUESTION`](super::QUESTION) in the menu.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         let held = if self.constrained { "held" } else { "free" };
-        let ignored = if self.fitted { "" } else { ", ignored in the objective" };
+        let ignored = if self.fitted {
+            ""
+        } else {
+            ", ignored in the objective"
+        };
         ui.label(RichText::new(format!("{}, {held}{ignored}", self.name)).font(medium(BODY_SIZE)));
         if let Some(why) = self.undefined() {
             ui.label(format!("No G, no D and no J: {why}"));
@@ -296,12 +424,24 @@ fn underline(ui: &Ui, half: Rect, (before, after): (f64, f64), palette: &Palette
         ui.painter().rect_filled(place, 1.0, color);
         if cost > FULL_COST {
             let tip = pos2(place.right(), y + 1.25);
-            let points = vec![tip + vec2(0.0, -2.8), tip + vec2(3.0, 0.0), tip + vec2(0.0, 2.8)];
-            ui.painter().add(egui::Shape::convex_polygon(points, color, Stroke::NONE));
+            let points = vec![
+                tip + vec2(0.0, -2.8),
+                tip + vec2(3.0, 0.0),
+                tip + vec2(0.0, 2.8),
+            ];
+            ui.painter()
+                .add(egui::Shape::convex_polygon(points, color, Stroke::NONE));
         }
     };
     bar(before, palette.quiet_mark);
-    bar(after, if is_not_reduced(before, after) { palette.warning } else { palette.text });
+    bar(
+        after,
+        if is_not_reduced(before, after) {
+            palette.warning
+        } else {
+            palette.text
+        },
+    );
 }
 
 /// Height of the card \[pt\].
@@ -330,24 +470,55 @@ pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<Ca
     let mut rows = Vec::new();
     if let Some(gain) = shown.wanted_gain(pair) {
         let left = gain / shown.correction.net_gain(pair);
-        let half = sureness.half(Scalar::Gain(pair)).map(|half| format!("{} %", decimals(100.0 * half, 1)));
-        let (wants, left, half) = (decimals(gain, 3), decimals(left, 3), half.unwrap_or_default());
-        rows.push(CardRow { name: "gain G", wants, left, half, is_missed: false });
+        let half = sureness
+            .half(Scalar::Gain(pair))
+            .map(|half| format!("{} %", decimals(100.0 * half, 1)));
+        let (wants, left, half) = (
+            decimals(gain, 3),
+            decimals(left, 3),
+            half.unwrap_or_default(),
+        );
+        rows.push(CardRow {
+            name: "gain G",
+            wants,
+            left,
+            half,
+            is_missed: false,
+        });
     }
     if let Some(delay_s) = shown.wanted_delay_s(pair) {
         let left_ms = s_to_ms(delay_s - shown.correction.net_delay_s(pair));
         let ms = |value: f64| format!("{} ms", decimals(value, 1));
-        let half = sureness.half(shown.wanted_delay(pair)).map_or(String::new(), |half| ms(s_to_ms(half)));
+        let half = sureness
+            .half(shown.wanted_delay(pair))
+            .map_or(String::new(), |half| ms(s_to_ms(half)));
         let is_missed = left_ms.abs() > 0.5 && left_ms.abs() >= 0.99 * s_to_ms(delay_s).abs();
-        rows.push(CardRow { name: "delay D", wants: ms(s_to_ms(delay_s)), left: ms(left_ms), half, is_missed });
+        rows.push(CardRow {
+            name: "delay D",
+            wants: ms(s_to_ms(delay_s)),
+            left: ms(left_ms),
+            half,
+            is_missed,
+        });
     }
     if let Some(change) = shown.cost[pair] {
         let (before, after) = (change.uncorrected, change.corrected);
-        for (name, before, after) in
-            [("J magnitude", before.magnitude, after.magnitude), ("J phase", before.phase, after.phase)]
-        {
-            let (wants, left, is_missed) = (decimals(before, 1), decimals(after, 1), is_not_reduced(before, after));
-            rows.push(CardRow { name, wants, left, half: String::new(), is_missed });
+        for (name, before, after) in [
+            ("J magnitude", before.magnitude, after.magnitude),
+            ("J phase", before.phase, after.phase),
+        ] {
+            let (wants, left, is_missed) = (
+                decimals(before, 1),
+                decimals(after, 1),
+                is_not_reduced(before, after),
+            );
+            rows.push(CardRow {
+                name,
+                wants,
+                left,
+                half: String::new(),
+                is_missed,
+            });
         }
     }
     rows
@@ -361,16 +532,34 @@ pub fn is_not_reduced(before: f64, after: f64) -> bool {
 /// The card of the response in focus.
 pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), CARD_HEIGHT), Sense::hover());
-    ui.painter().rect_stroke(rect, 8.0, Stroke::new(1.0, palette.line), StrokeKind::Inside);
+    ui.painter().rect_stroke(
+        rect,
+        8.0,
+        Stroke::new(1.0, palette.line),
+        StrokeKind::Inside,
+    );
     let inner = rect.shrink2(vec2(11.0, 9.0));
     let pair = state.display.pair;
-    let held = if state.study.settings.constrained[pair] { "held" } else { "free" };
+    let held = if state.study.settings.constrained[pair] {
+        "held"
+    } else {
+        "free"
+    };
     let title = format!("{}, {held}", state.dataset().pair_name(pair));
-    let line = |row: usize| Rect::from_min_size(inner.min + vec2(0.0, ROW * row as f32), vec2(inner.width(), ROW));
+    let line = |row: usize| {
+        Rect::from_min_size(
+            inner.min + vec2(0.0, ROW * row as f32),
+            vec2(inner.width(), ROW),
+        )
+    };
     painted_text(ui, line(0), 0.0, &title, medium(BODY_SIZE), palette.text);
     let places = [inner.width() * 0.54, inner.width() * 0.78, inner.width()];
     let right = |at: f32| at - inner.width() - 0.01;
-    let level = state.sureness().level().map(|level| format!("± {:.0} %", 100.0 * level)).unwrap_or_default();
+    let level = state
+        .sureness()
+        .level()
+        .map(|level| format!("± {:.0} %", 100.0 * level))
+        .unwrap_or_default();
     for (at, head) in places.into_iter().zip(["wants", "left", level.as_str()]) {
         painted_text(ui, line(0), right(at), head, small(), palette.dim_text);
     }
@@ -379,27 +568,45 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
         let line = line(place + 1);
         painted_text(ui, line, 0.0, row.name, body(), palette.dim_text);
         painted_text(ui, line, right(places[0]), &row.wants, body(), palette.text);
-        let color = if row.is_missed { palette.warning } else { palette.text };
+        let color = if row.is_missed {
+            palette.warning
+        } else {
+            palette.text
+        };
         painted_text(ui, line, right(places[1]), &row.left, body(), color);
-        painted_text(ui, line, right(places[2]), &row.half, body(), palette.dim_text);
+        painted_text(
+            ui,
+            line,
+            right(places[2]),
+            &row.half,
+            body(),
+            palette.dim_text,
+        );
     }
 }
 
 /// The same rows in a tooltip, where the card has no room.
 pub fn card_grid_ui(ui: &mut Ui, state: &State, pair: Pair, palette: &Palette) {
     let Some(shown) = state.shown() else { return };
-    Grid::new("card").num_columns(4).spacing([16.0, 2.0]).show(ui, |ui| {
-        for head in ["", "wants", "left", "±"] {
-            ui.label(palette.small(head));
-        }
-        ui.end_row();
-        for row in card_rows(state, shown, pair) {
-            ui.label(palette.dim(row.name));
-            ui.label(row.wants);
-            let left = RichText::new(row.left);
-            ui.label(if row.is_missed { left.color(palette.warning) } else { left });
-            ui.label(palette.dim(row.half));
+    Grid::new("card")
+        .num_columns(4)
+        .spacing([16.0, 2.0])
+        .show(ui, |ui| {
+            for head in ["", "wants", "left", "±"] {
+                ui.label(palette.small(head));
+            }
             ui.end_row();
-        }
-    });
+            for row in card_rows(state, shown, pair) {
+                ui.label(palette.dim(row.name));
+                ui.label(row.wants);
+                let left = RichText::new(row.left);
+                ui.label(if row.is_missed {
+                    left.color(palette.warning)
+                } else {
+                    left
+                });
+                ui.label(palette.dim(row.half));
+                ui.end_row();
+            }
+        });
 }

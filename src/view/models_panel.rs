@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use egui::{
-    Align, Checkbox, Grid, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Align, Checkbox, Grid, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, UiBuilder,
+    WidgetInfo, pos2, vec2,
 };
 
 use gdcm_method::fidelity::SUGGESTION_RATIO;
@@ -15,8 +16,9 @@ use gdcm_plot::figure::compact;
 use super::answer_panel::chevron;
 use super::palette::{body, medium, small};
 use super::{
-    Asks, BODY_SIZE, Command, Palette, ROW_HEIGHT, Region, SMALL_SIZE, State, TableKind, elided_among, entries_ui,
-    named, named_switch, painted_text, question_menu_ui, region_ui, row_text, table_heading_ui, table_menu_ui,
+    Asks, BODY_SIZE, Command, Palette, ROW_HEIGHT, Region, SMALL_SIZE, State, TableKind,
+    elided_among, entries_ui, named, named_switch, painted_text, question_menu_ui, region_ui,
+    row_text, table_heading_ui, table_menu_ui,
 };
 
 /// The bundles of the condition shown, below one another in the left panel: the physics models, and the identified ones folded at
@@ -26,24 +28,48 @@ pub fn models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
         let is_open = state.display.identified_open;
         let room = ui.available_height();
         // One line says that there is none.
-        let models = state.condition().bundle(BundleKind::Identified).len().max(1) as f32;
-        let height = if is_open { (FOLD + ROW_HEIGHT * models + 8.0).min(0.5 * room) } else { FOLD };
+        let models = state
+            .condition()
+            .bundle(BundleKind::Identified)
+            .len()
+            .max(1) as f32;
+        let height = if is_open {
+            (FOLD + ROW_HEIGHT * models + 8.0).min(0.5 * room)
+        } else {
+            FOLD
+        };
         ui.spacing_mut().item_spacing.y = 0.0;
-        let (above, below) = ui.available_rect_before_wrap().split_top_bottom_at_y(ui.max_rect().bottom() - height);
-        ui.scope_builder(UiBuilder::new().id_salt("physics models").max_rect(above), |ui| {
-            physics_ui(ui, state, palette, commands);
-        });
-        ui.scope_builder(UiBuilder::new().id_salt("identified models").max_rect(below), |ui| {
-            fold_ui(ui, state, is_open, palette, commands);
-            if is_open {
-                rows_ui(ui, state, palette, BundleKind::Identified, commands);
-            }
-        });
+        let (above, below) = ui
+            .available_rect_before_wrap()
+            .split_top_bottom_at_y(ui.max_rect().bottom() - height);
+        ui.scope_builder(
+            UiBuilder::new().id_salt("physics models").max_rect(above),
+            |ui| {
+                physics_ui(ui, state, palette, commands);
+            },
+        );
+        ui.scope_builder(
+            UiBuilder::new()
+                .id_salt("identified models")
+                .max_rect(below),
+            |ui| {
+                fold_ui(ui, state, is_open, palette, commands);
+                if is_open {
+                    rows_ui(ui, state, palette, BundleKind::Identified, commands);
+                }
+            },
+        );
     });
 }
 
 /// One bundle in a sheet beside the rail.
-pub fn bundle_sheet_ui(ui: &mut Ui, state: &State, kind: BundleKind, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn bundle_sheet_ui(
+    ui: &mut Ui,
+    state: &State,
+    kind: BundleKind,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     ui.spacing_mut().item_spacing.y = 0.0;
     // The sheet has a heading of its own.
     region_ui(ui, Region::Models, |ui| {
@@ -60,7 +86,13 @@ const FOLD: f32 = 36.0;
 fn physics_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let kind = BundleKind::Physics;
     let title = format!("Physics models of {}", state.condition().id());
-    table_heading_ui(ui, palette, (&title, &state.kept_words(kind)), TableKind::of_bundle(kind), commands);
+    table_heading_ui(
+        ui,
+        palette,
+        (&title, &state.kept_words(kind)),
+        TableKind::of_bundle(kind),
+        commands,
+    );
     at_once_ui(ui, state, palette, commands);
     rows_ui(ui, state, palette, kind, commands);
 }
@@ -70,7 +102,10 @@ fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     let condition = state.condition().id();
     let choice = state.study.choice(condition);
     let rejected = choice.physics.rejected.len();
-    let open = state.shown().map(|shown| state.open_suggestions(shown)).unwrap_or_default();
+    let open = state
+        .shown()
+        .map(|shown| state.open_suggestions(shown))
+        .unwrap_or_default();
     ui.allocate_ui_with_layout(vec2(ui.available_width(), 28.0), Layout::left_to_right(Align::Center), |ui| {
         let words = match (open.len(), rejected) {
             (0, 0) => "none suggested".to_owned(),
@@ -96,7 +131,13 @@ fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
 }
 
 /// The line that folds and unfolds the identified models.
-fn fold_ui(ui: &mut Ui, state: &State, is_open: bool, palette: &Palette, commands: &mut Vec<Command>) {
+fn fold_ui(
+    ui: &mut Ui,
+    state: &State,
+    is_open: bool,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let (row, response) = ui.allocate_exact_size(vec2(ui.available_width(), FOLD), Sense::click());
     ui.painter().hline(
         row.expand2(vec2(12.0, 0.0)).x_range(),
@@ -104,14 +145,26 @@ fn fold_ui(ui: &mut Ui, state: &State, is_open: bool, palette: &Palette, command
         ui.visuals().widgets.noninteractive.bg_stroke,
     );
     chevron(ui, pos2(row.left() + 6.0, row.center().y), is_open, palette);
-    painted_text(ui, row, 16.0, "Identified models", medium(BODY_SIZE), palette.text);
+    painted_text(
+        ui,
+        row,
+        16.0,
+        "Identified models",
+        medium(BODY_SIZE),
+        palette.text,
+    );
     let models = state.condition().bundle(BundleKind::Identified);
     let mut words = state.kept_words(BundleKind::Identified);
     if models.is_empty() {
         words = "none yet".to_owned();
     }
-    let name = state.shown().map(|shown| shown.representative_name(BundleKind::Identified));
-    let order = models.iter().find(|model| Some(model.name.as_str()) == name).and_then(Model::order);
+    let name = state
+        .shown()
+        .map(|shown| shown.representative_name(BundleKind::Identified));
+    let order = models
+        .iter()
+        .find(|model| Some(model.name.as_str()) == name)
+        .and_then(Model::order);
     if let Some(order) = order {
         words = format!("order {order} · {words}");
     }
@@ -120,15 +173,31 @@ fn fold_ui(ui: &mut Ui, state: &State, is_open: bool, palette: &Palette, command
         let star = row.with_max_x(place.left() - 3.0);
         painted_text(ui, star, -0.01, "★", small(), palette.identified);
     }
-    table_menu_ui(ui, &response, TableKind::of_bundle(BundleKind::Identified), commands);
+    table_menu_ui(
+        ui,
+        &response,
+        TableKind::of_bundle(BundleKind::Identified),
+        commands,
+    );
     let response = named_switch(response, Role::Button, is_open, "Identified models");
     response.asks(Command::ShowIdentified(!is_open), commands);
 }
 
-fn rows_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, commands: &mut Vec<Command>) {
+fn rows_ui(
+    ui: &mut Ui,
+    state: &State,
+    palette: &Palette,
+    kind: BundleKind,
+    commands: &mut Vec<Command>,
+) {
     let models = state.condition().bundle(kind);
     if models.is_empty() {
-        ui.add(egui::Label::new(palette.small("No identified models yet: identify them from flight records")).wrap());
+        ui.add(
+            egui::Label::new(
+                palette.small("No identified models yet: identify them from flight records"),
+            )
+            .wrap(),
+        );
         return;
     }
     let trims = TrimColumns::of(models).filter(|_| kind == BundleKind::Physics);
@@ -138,19 +207,33 @@ fn rows_ui(ui: &mut Ui, state: &State, palette: &Palette, kind: BundleKind, comm
     let names = short_names(models);
     // No control of a row is higher than the row.
     ui.spacing_mut().interact_size.y = 16.0;
-    ScrollArea::vertical().id_salt(kind).auto_shrink([false, true]).show(ui, |ui| {
-        for (place, model) in models.iter().enumerate() {
-            let neighbours = [place.checked_sub(1), Some(place + 1)].map(|place| names.get(place?).copied());
-            let row = ModelRow::of(state, (kind, model), names[place], neighbours);
-            row.ui(ui, trims.as_ref(), palette, commands);
-        }
-    });
+    ScrollArea::vertical()
+        .id_salt(kind)
+        .auto_shrink([false, true])
+        .show(ui, |ui| {
+            for (place, model) in models.iter().enumerate() {
+                let neighbours =
+                    [place.checked_sub(1), Some(place + 1)].map(|place| names.get(place?).copied());
+                let row = ModelRow::of(state, (kind, model), names[place], neighbours);
+                row.ui(ui, trims.as_ref(), palette, commands);
+            }
+        });
 }
 
 fn heads_ui(ui: &mut Ui, trims: Option<&TrimColumns>, palette: &Palette) {
     let (row, _) = ui.allocate_exact_size(vec2(ui.available_width(), 18.0), Sense::hover());
-    for (head, end) in trims.iter().flat_map(|trims| trims.heads.iter().zip(TRIM_ENDS)) {
-        painted_text(ui, row.with_max_x(row.left() + end), -0.01, head, small(), palette.dim_text);
+    for (head, end) in trims
+        .iter()
+        .flat_map(|trims| trims.heads.iter().zip(TRIM_ENDS))
+    {
+        painted_text(
+            ui,
+            row.with_max_x(row.left() + end),
+            -0.01,
+            head,
+            small(),
+            palette.dim_text,
+        );
     }
     painted_text(ui, row, -1.0, "discontinuity", small(), palette.dim_text);
 }
@@ -181,9 +264,16 @@ impl TrimColumns {
 
     /// The offsets of a model, "·" for none; nothing where it has none at all.
     fn offsets(&self, model: &Model) -> Option<Vec<String>> {
-        let trim = model.perturbation().filter(|trim| trim.values().any(|offset| *offset != 0.0))?;
+        let trim = model
+            .perturbation()
+            .filter(|trim| trim.values().any(|offset| *offset != 0.0))?;
         let offset = |key: &String| trim.get(key).copied().filter(|offset| *offset != 0.0);
-        Some(self.keys.iter().map(|key| offset(key).map_or("·".to_owned(), signed_compact)).collect())
+        Some(
+            self.keys
+                .iter()
+                .map(|key| offset(key).map_or("·".to_owned(), signed_compact))
+                .collect(),
+        )
     }
 }
 
@@ -195,7 +285,13 @@ fn trim_head(key: &str) -> String {
         "roll_deg" => "roll °".to_owned(),
         "pitch_deg" => "pitch °".to_owned(),
         "yaw_deg" | "heading_deg" => "yaw °".to_owned(),
-        other => other.split('_').next().unwrap_or(other).chars().take(6).collect(),
+        other => other
+            .split('_')
+            .next()
+            .unwrap_or(other)
+            .chars()
+            .take(6)
+            .collect(),
     }
 }
 
@@ -236,24 +332,45 @@ impl<'a> ModelRow<'a> {
             neighbours,
             kept: !state.study.is_rejected(&id),
             reason: state.study.reason(&id).map(str::to_owned),
-            pinned: state.study.choice(id.condition).bundle(kind).pinned.as_ref() == Some(&id.name),
+            pinned: state
+                .study
+                .choice(id.condition)
+                .bundle(kind)
+                .pinned
+                .as_ref()
+                == Some(&id.name),
             represents: shown.is_some_and(|shown| shown.representative_name(kind) == id.name),
             pointed: state.display.hovered.as_ref() == Some(&id),
             score: shown.and_then(|shown| shown.score(kind, &id.name)),
-            ratio: shown.filter(|_| kind == BundleKind::Physics).and_then(|shown| shown.discontinuity_ratio(&id.name)),
+            ratio: shown
+                .filter(|_| kind == BundleKind::Physics)
+                .and_then(|shown| shown.discontinuity_ratio(&id.name)),
             set_aside: shown.and_then(|shown| {
-                let caution = shown.cautions.iter().find(|caution| caution.is_set_aside(kind, &model.name))?;
+                let caution = shown
+                    .cautions
+                    .iter()
+                    .find(|caution| caution.is_set_aside(kind, &model.name))?;
                 Some(caution.words(|pair| state.dataset().pair_name(pair)))
             }),
             id,
         }
     }
 
-    fn ui(&self, ui: &mut Ui, trims: Option<&TrimColumns>, palette: &Palette, commands: &mut Vec<Command>) {
+    fn ui(
+        &self,
+        ui: &mut Ui,
+        trims: Option<&TrimColumns>,
+        palette: &Palette,
+        commands: &mut Vec<Command>,
+    ) {
         let width = ui.available_width();
         // No stop of the Tab key: what can be done is on its box, on its star, and in the palette.
         let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::CLICK);
-        let response = named(response, Role::Label, format!("{} model {}", self.id.bundle, self.model.name));
+        let response = named(
+            response,
+            Role::Label,
+            format!("{} model {}", self.id.bundle, self.model.name),
+        );
         if self.pointed || response.contains_pointer() {
             ui.painter().rect_filled(rect, 3.0, palette.raised);
         }
@@ -277,15 +394,36 @@ impl<'a> ModelRow<'a> {
     fn menu_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let id = &self.id;
         let decisions = if self.kept {
-            [("Reject", Edit::Reject(id.clone()).into()), ("Reject with a reason…", Command::AskReason(id.clone()))]
+            [
+                ("Reject", Edit::Reject(id.clone()).into()),
+                ("Reject with a reason…", Command::AskReason(id.clone())),
+            ]
         } else {
-            [("Restore", Edit::Restore(id.clone()).into()), ("Say why it is rejected…", Command::AskReason(id.clone()))]
+            [
+                ("Restore", Edit::Restore(id.clone()).into()),
+                ("Say why it is rejected…", Command::AskReason(id.clone())),
+            ]
         };
         entries_ui(ui, decisions, commands);
-        entries_ui(ui, [("Copy its name", Command::CopyText(self.model.name.clone()))], commands);
-        let ratio = self.ratio.map(|_| ("Discontinuity ratio", ExplainTarget::DiscontinuityRatio(id.clone())));
-        let score = self.score.map(|_| ("Mean distance", ExplainTarget::Score(id.clone())));
-        let values: Vec<_> = ratio.into_iter().chain(score).map(|(name, asked)| (name.to_owned(), asked)).collect();
+        entries_ui(
+            ui,
+            [("Copy its name", Command::CopyText(self.model.name.clone()))],
+            commands,
+        );
+        let ratio = self.ratio.map(|_| {
+            (
+                "Discontinuity ratio",
+                ExplainTarget::DiscontinuityRatio(id.clone()),
+            )
+        });
+        let score = self
+            .score
+            .map(|_| ("Mean distance", ExplainTarget::Score(id.clone())));
+        let values: Vec<_> = ratio
+            .into_iter()
+            .chain(score)
+            .map(|(name, asked)| (name.to_owned(), asked))
+            .collect();
         if !values.is_empty() {
             question_menu_ui(ui, values, commands);
         }
@@ -298,35 +436,72 @@ impl<'a> ModelRow<'a> {
         let name = format!("Keep {} model {}", self.id.bundle, self.model.name);
         let checkbox = named_switch(checkbox, Role::CheckBox, self.kept, name);
         if checkbox.changed() {
-            commands.push(if kept { Edit::Restore(self.id.clone()) } else { Edit::Reject(self.id.clone()) }.into());
+            commands.push(
+                if kept {
+                    Edit::Restore(self.id.clone())
+                } else {
+                    Edit::Reject(self.id.clone())
+                }
+                .into(),
+            );
         }
-        checkbox.on_hover_text(if self.kept { "Reject this model" } else { "Restore this model" });
+        checkbox.on_hover_text(if self.kept {
+            "Reject this model"
+        } else {
+            "Restore this model"
+        });
     }
 
     /// The star of the representative: a click chooses the model, or goes back to the medoid.
     fn star_ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
-        let place = Rect::from_min_size(pos2(rect.left() + 24.0, rect.top()), vec2(16.0, rect.height()));
+        let place = Rect::from_min_size(
+            pos2(rect.left() + 24.0, rect.top()),
+            vec2(16.0, rect.height()),
+        );
         let id = ui.scope_id().with(("star", &self.id));
         let can_represent = self.pinned || (self.kept && self.set_aside.is_none());
-        let sense = if can_represent { Sense::click() } else { Sense::hover() };
+        let sense = if can_represent {
+            Sense::click()
+        } else {
+            Sense::hover()
+        };
         let response = ui.interact(place, id, sense);
-        let name = format!("Use {} model {} as representative", self.id.bundle, self.model.name);
-        response.widget_info(|| WidgetInfo::selected(Role::CheckBox, can_represent, self.pinned, &name));
+        let name = format!(
+            "Use {} model {} as representative",
+            self.id.bundle, self.model.name
+        );
+        response.widget_info(|| {
+            WidgetInfo::selected(Role::CheckBox, can_represent, self.pinned, &name)
+        });
         let visible = self.represents || response.hovered() || response.has_focus();
         if visible && can_represent {
-            let color = if self.represents { palette.accent } else { palette.dim_text };
+            let color = if self.represents {
+                palette.accent
+            } else {
+                palette.dim_text
+            };
             let symbol = if self.represents { "★" } else { "☆" };
             row_text(ui, rect, 25.0, symbol, BODY_SIZE, color);
         }
         if self.pinned {
-            ui.painter().circle_filled(pos2(place.right() + 1.0, rect.top() + 5.0), 1.8, palette.warning);
+            ui.painter().circle_filled(
+                pos2(place.right() + 1.0, rect.top() + 5.0),
+                1.8,
+                palette.warning,
+            );
         }
         let (condition, bundle) = (self.id.condition, self.id.bundle);
-        let edit = if self.pinned { Edit::Unpin { condition, bundle } } else { Edit::Pin(self.id.clone()) };
+        let edit = if self.pinned {
+            Edit::Unpin { condition, bundle }
+        } else {
+            Edit::Pin(self.id.clone())
+        };
         response.asks(edit, commands);
         let hint = match (self.pinned, self.represents) {
             _ if !can_represent => "Cannot be the representative: rejected or set aside",
-            (true, _) if self.set_aside.is_some() => "Chosen as representative, but set aside; click: use the medoid",
+            (true, _) if self.set_aside.is_some() => {
+                "Chosen as representative, but set aside; click: use the medoid"
+            }
             (true, _) => "Representative, chosen by hand; click: use the medoid again",
             (false, true) => "Representative (medoid); click: keep it as representative",
             (false, false) => "Click: use as representative",
@@ -336,7 +511,11 @@ impl<'a> ModelRow<'a> {
 
     /// The ratio with its bar, or the order; returns the width taken on the right.
     fn paint_value(&self, ui: &Ui, rect: Rect, palette: &Palette) -> f32 {
-        let dim = if self.kept { palette.text } else { palette.quiet_text };
+        let dim = if self.kept {
+            palette.text
+        } else {
+            palette.quiet_text
+        };
         if self.set_aside.is_some() {
             row_text(ui, rect, -5.0, "set aside", SMALL_SIZE, palette.warning);
             return 60.0;
@@ -344,17 +523,35 @@ impl<'a> ModelRow<'a> {
         if let Some(ratio) = self.ratio {
             row_text(ui, rect, -1.0, &format!("{ratio:.2}"), BODY_SIZE, dim);
             let full = 38.0;
-            let bar = Rect::from_min_size(pos2(rect.right() - 74.0, rect.center().y - 2.0), vec2(full, 4.0));
+            let bar = Rect::from_min_size(
+                pos2(rect.right() - 74.0, rect.center().y - 2.0),
+                vec2(full, 4.0),
+            );
             ui.painter().rect_filled(bar, 2.0, palette.line);
             let at = |ratio: f64| full * (ratio / FULL_RATIO).clamp(0.0, 1.0) as f32;
-            let color = if self.is_suspect() && self.kept { palette.warning } else { palette.quiet_mark };
-            ui.painter().rect_filled(Rect::from_min_size(bar.min, vec2(at(ratio), 4.0)), 2.0, color);
+            let color = if self.is_suspect() && self.kept {
+                palette.warning
+            } else {
+                palette.quiet_mark
+            };
+            ui.painter().rect_filled(
+                Rect::from_min_size(bar.min, vec2(at(ratio), 4.0)),
+                2.0,
+                color,
+            );
             let tick = bar.left() + at(SUGGESTION_RATIO);
-            ui.painter().vline(tick, bar.expand(2.0).y_range(), egui::Stroke::new(1.0, palette.dim_text));
+            ui.painter().vline(
+                tick,
+                bar.expand(2.0).y_range(),
+                egui::Stroke::new(1.0, palette.dim_text),
+            );
             return 80.0;
         }
         if self.id.bundle == BundleKind::Identified {
-            let words = self.model.order().map_or("measured".to_owned(), |order| format!("order {order}"));
+            let words = self
+                .model
+                .order()
+                .map_or("measured".to_owned(), |order| format!("order {order}"));
             row_text(ui, rect, -5.0, &words, SMALL_SIZE, palette.dim_text);
             return 60.0;
         }
@@ -364,17 +561,29 @@ impl<'a> ModelRow<'a> {
     /// The offsets of its trim, struck out where it is rejected.
     fn paint_offsets(&self, ui: &Ui, rect: Rect, offsets: &[String], palette: &Palette) {
         for (offset, end) in offsets.iter().zip(TRIM_ENDS) {
-            let color = if !self.kept || offset == "·" { palette.quiet_text } else { palette.text };
+            let color = if !self.kept || offset == "·" {
+                palette.quiet_text
+            } else {
+                palette.text
+            };
             let upto = rect.with_max_x(rect.left() + end);
             let place = painted_text(ui, upto, -0.01, offset, body(), color);
             if !self.kept && offset != "·" {
-                ui.painter().hline(place.x_range(), place.center().y, egui::Stroke::new(1.0, color));
+                ui.painter().hline(
+                    place.x_range(),
+                    place.center().y,
+                    egui::Stroke::new(1.0, color),
+                );
             }
         }
     }
 
     fn paint_name(&self, ui: &Ui, rect: Rect, value_width: f32, palette: &Palette) {
-        let color = if self.kept { palette.text } else { palette.quiet_text };
+        let color = if self.kept {
+            palette.text
+        } else {
+            palette.quiet_text
+        };
         let left = rect.left() + 42.0;
         let room = rect.right() - value_width - left;
         let name = elided_among(ui, self.name, self.neighbours, room, BODY_SIZE);
@@ -383,29 +592,48 @@ impl<'a> ModelRow<'a> {
             job.sections[0].format.strikethrough = egui::Stroke::new(1.0, color);
         }
         let galley = ui.fonts_mut(|fonts| fonts.layout_job(job));
-        ui.painter().galley(pos2(left, rect.center().y - 0.5 * galley.size().y), galley, color);
+        ui.painter().galley(
+            pos2(left, rect.center().y - 0.5 * galley.size().y),
+            galley,
+            color,
+        );
     }
 
     /// Its name over four aligned rows; all else is behind [`QUESTION`](super::QUESTION) in the menu.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         ui.label(RichText::new(&self.model.name).font(medium(BODY_SIZE)));
-        Grid::new("model").num_columns(2).spacing([16.0, 2.0]).show(ui, |ui| {
-            for (name, value) in self.tooltip_rows() {
-                ui.label(palette.dim(name));
-                ui.label(value);
-                ui.end_row();
-            }
-        });
+        Grid::new("model")
+            .num_columns(2)
+            .spacing([16.0, 2.0])
+            .show(ui, |ui| {
+                for (name, value) in self.tooltip_rows() {
+                    ui.label(palette.dim(name));
+                    ui.label(value);
+                    ui.end_row();
+                }
+            });
     }
 
     fn tooltip_rows(&self) -> Vec<(&'static str, String)> {
-        let verdict = if self.is_suspect() { ", suggested as an outlier" } else { "" };
+        let verdict = if self.is_suspect() {
+            ", suggested as an outlier"
+        } else {
+            ""
+        };
         let out = self.set_aside.clone().map(|why| ("set aside", why));
         let rows = [
-            self.model.perturbation().map(|trim| ("trim", trim_words(trim))),
+            self.model
+                .perturbation()
+                .map(|trim| ("trim", trim_words(trim))),
             method(self.model).map(|method| ("identified by", method.to_owned())),
-            self.ratio.map(|ratio| ("discontinuity ratio", format!("{ratio:.3}{verdict}"))),
-            self.score.map(|score| ("mean distance", format!("{score:.3} to the others that are kept"))),
+            self.ratio
+                .map(|ratio| ("discontinuity ratio", format!("{ratio:.3}{verdict}"))),
+            self.score.map(|score| {
+                (
+                    "mean distance",
+                    format!("{score:.3} to the others that are kept"),
+                )
+            }),
             out.or(self.reason.clone().map(|reason| ("rejected", reason))),
         ];
         rows.into_iter().flatten().collect()
@@ -419,8 +647,14 @@ impl<'a> ModelRow<'a> {
 /// "airspeed_kt +5, roll_deg −3".
 fn trim_words(trim: &BTreeMap<String, f64>) -> String {
     let offsets = trim.iter().filter(|(_, offset)| **offset != 0.0);
-    let offsets: Vec<String> = offsets.map(|(name, offset)| format!("{name} {}", signed_compact(*offset))).collect();
-    if offsets.is_empty() { "that of the condition".to_owned() } else { offsets.join(", ") }
+    let offsets: Vec<String> = offsets
+        .map(|(name, offset)| format!("{name} {}", signed_compact(*offset)))
+        .collect();
+    if offsets.is_empty() {
+        "that of the condition".to_owned()
+    } else {
+        offsets.join(", ")
+    }
 }
 
 /// "+5", "−3".
@@ -431,11 +665,17 @@ fn signed_compact(value: f64) -> String {
 /// The names without the method that every model of an identified bundle repeats: without "CT-PBSID" where some are of "CT-PBSID" and the
 /// others of "CT-PBSID, refined".
 fn short_names(models: &[Model]) -> Vec<&str> {
-    let repeated = models.iter().filter_map(method).min_by_key(|method| method.len()).unwrap_or_default();
+    let repeated = models
+        .iter()
+        .filter_map(method)
+        .min_by_key(|method| method.len())
+        .unwrap_or_default();
     let is_repeated = models.iter().all(|model| model.name.starts_with(repeated));
     let names = models.iter().map(|model| {
         let rest = model.name.strip_prefix(repeated).filter(|_| is_repeated);
-        let rest = rest.map(|rest| rest.trim_start_matches([',', ' '])).filter(|rest| !rest.is_empty());
+        let rest = rest
+            .map(|rest| rest.trim_start_matches([',', ' ']))
+            .filter(|rest| !rest.is_empty());
         rest.unwrap_or(&model.name)
     });
     names.collect()
@@ -459,16 +699,31 @@ mod tests {
     fn names_are_shown_without_the_method_that_all_of_them_repeat() {
         let gain = || DMatrix::from_element(1, 1, 1.0);
         let model = |name: &str, method: &str| {
-            let origin = Origin::Identified { method: Some(method.to_owned()), order: None };
-            Model::new(name, origin, Dynamics::StateSpace(StateSpace::new(gain(), gain(), gain(), gain()).unwrap()))
+            let origin = Origin::Identified {
+                method: Some(method.to_owned()),
+                order: None,
+            };
+            Model::new(
+                name,
+                origin,
+                Dynamics::StateSpace(StateSpace::new(gain(), gain(), gain(), gain()).unwrap()),
+            )
         };
         let refined = "CT-PBSID, refined";
-        let of_refined =
-            [model("CT-PBSID, refined, order 16", refined), model("CT-PBSID, refined, without LON 1", refined)];
+        let of_refined = [
+            model("CT-PBSID, refined, order 16", refined),
+            model("CT-PBSID, refined, without LON 1", refined),
+        ];
         assert_eq!(short_names(&of_refined), ["order 16", "without LON 1"]);
-        let of_both = [model("CT-PBSID, refined, order 16", refined), model("CT-PBSID, order 16", "CT-PBSID")];
+        let of_both = [
+            model("CT-PBSID, refined, order 16", refined),
+            model("CT-PBSID, order 16", "CT-PBSID"),
+        ];
         assert_eq!(short_names(&of_both), ["refined, order 16", "order 16"]);
-        let others = [model("CT-PBSID n=12 sweeps A", "CT-PBSID"), model("by hand", "CT-PBSID")];
+        let others = [
+            model("CT-PBSID n=12 sweeps A", "CT-PBSID"),
+            model("by hand", "CT-PBSID"),
+        ];
         assert_eq!(short_names(&others), ["CT-PBSID n=12 sweeps A", "by hand"]);
         assert_eq!(short_names(&[model("CT-PBSID", "CT-PBSID")]), ["CT-PBSID"]);
     }

@@ -5,8 +5,8 @@ use egui::style::{HandleShape, ScrollStyle, Selection, WidgetVisuals, Widgets};
 use std::sync::Arc;
 
 use egui::{
-    Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke, Style, TextStyle,
-    Theme, Visuals, vec2,
+    Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke,
+    Style, TextStyle, Theme, Visuals, vec2,
 };
 use serde::{Deserialize, Serialize};
 
@@ -119,7 +119,13 @@ impl Palette {
             good_ground: hex(0x1b2d26),
             quiet_text: hex(0x9aa2b0),
             quiet_mark: hex(0x6d7583),
-            heat: [hex(0x2b3038), hex(0x574337), hex(0x9b613d), hex(0xe07f45), hex(0xffb083)],
+            heat: [
+                hex(0x2b3038),
+                hex(0x574337),
+                hex(0x9b613d),
+                hex(0xe07f45),
+                hex(0xffb083),
+            ],
             line_width: 1.0,
         }
     }
@@ -148,14 +154,24 @@ impl Palette {
             good_ground: hex(0xe6f4ec),
             quiet_text: hex(0x5e6674),
             quiet_mark: hex(0x8a92a0),
-            heat: [hex(0xeceef2), hex(0xf6d3b8), hex(0xee9f68), hex(0xd1661f), hex(0x8c3706)],
+            heat: [
+                hex(0xeceef2),
+                hex(0xf6d3b8),
+                hex(0xee9f68),
+                hex(0xd1661f),
+                hex(0x8c3706),
+            ],
             line_width: 1.0,
         }
     }
 
     /// The palette that goes with `visuals`.
     pub fn of(visuals: &Visuals) -> Self {
-        if visuals.dark_mode { Self::dark() } else { Self::light() }
+        if visuals.dark_mode {
+            Self::dark()
+        } else {
+            Self::light()
+        }
     }
 
     /// This palette with curves as the engineer wants them.
@@ -165,7 +181,14 @@ impl Palette {
             CurveColors::Standard => Self { line_width, ..self },
             CurveColors::ForAllEyes => {
                 let [nominal, perturbed, identified, corrected] = for_all_eyes(self.is_dark);
-                Self { nominal, perturbed, identified, corrected, line_width, ..self }
+                Self {
+                    nominal,
+                    perturbed,
+                    identified,
+                    corrected,
+                    line_width,
+                    ..self
+                }
             }
         }
     }
@@ -178,7 +201,11 @@ impl Palette {
     /// The colour of a cost J in a map of costs; the last one beyond the last of [`HEAT_COSTS`].
     pub fn heat_of(&self, cost: f64) -> Color32 {
         let cost = (cost as f32).clamp(HEAT_COSTS[0], HEAT_COSTS[4]);
-        let above = HEAT_COSTS.iter().position(|end| cost < *end).unwrap_or(4).max(1);
+        let above = HEAT_COSTS
+            .iter()
+            .position(|end| cost < *end)
+            .unwrap_or(4)
+            .max(1);
         let part = (cost - HEAT_COSTS[above - 1]) / (HEAT_COSTS[above] - HEAT_COSTS[above - 1]);
         self.heat[above - 1].lerp_to_gamma(self.heat[above], part)
     }
@@ -190,12 +217,20 @@ impl Palette {
 
     /// Text that stands on the accent colour.
     pub fn on_accent(&self) -> Color32 {
-        if self.is_dark { self.background } else { self.panel }
+        if self.is_dark {
+            self.background
+        } else {
+            self.panel
+        }
     }
 
     /// The visuals made of these colours.
     pub fn visuals(&self) -> Visuals {
-        let base = if self.is_dark { Visuals::dark() } else { Visuals::light() };
+        let base = if self.is_dark {
+            Visuals::dark()
+        } else {
+            Visuals::light()
+        };
         let shadow = Shadow {
             offset: [0, 3],
             blur: 10,
@@ -204,7 +239,10 @@ impl Palette {
         };
         Visuals {
             widgets: self.widgets(),
-            selection: Selection { bg_fill: self.selected, stroke: Stroke::new(1.0, self.text) },
+            selection: Selection {
+                bg_fill: self.selected,
+                stroke: Stroke::new(1.0, self.text),
+            },
             weak_text_color: Some(self.dim_text),
             hyperlink_color: self.accent,
             faint_bg_color: self.panel.lerp_to_gamma(self.raised, 0.5),
@@ -214,7 +252,11 @@ impl Palette {
             error_fg_color: self.nominal,
             window_corner_radius: CornerRadius::same(8),
             window_shadow: shadow,
-            window_fill: if self.is_dark { self.raised } else { self.panel },
+            window_fill: if self.is_dark {
+                self.raised
+            } else {
+                self.panel
+            },
             window_stroke: Stroke::new(1.0, self.line),
             menu_corner_radius: CornerRadius::same(6),
             panel_fill: self.panel,
@@ -248,13 +290,29 @@ impl Palette {
 
     /// The whole style made of these colours: small text, close spacing, thin scroll bars.
     pub fn style(&self) -> Style {
-        let mut style = Style { visuals: self.visuals(), animation_time: 0.08, ..Style::default() };
+        let mut style = Style {
+            visuals: self.visuals(),
+            animation_time: 0.08,
+            ..Style::default()
+        };
         style.text_styles = [
-            (TextStyle::Small, FontId::new(SMALL_SIZE, FontFamily::Proportional)),
-            (TextStyle::Body, FontId::new(BODY_SIZE, FontFamily::Proportional)),
-            (TextStyle::Button, FontId::new(BODY_SIZE, FontFamily::Proportional)),
+            (
+                TextStyle::Small,
+                FontId::new(SMALL_SIZE, FontFamily::Proportional),
+            ),
+            (
+                TextStyle::Body,
+                FontId::new(BODY_SIZE, FontFamily::Proportional),
+            ),
+            (
+                TextStyle::Button,
+                FontId::new(BODY_SIZE, FontFamily::Proportional),
+            ),
             (TextStyle::Heading, medium(TITLE_SIZE)),
-            (TextStyle::Monospace, FontId::new(SMALL_SIZE, FontFamily::Monospace)),
+            (
+                TextStyle::Monospace,
+                FontId::new(SMALL_SIZE, FontFamily::Monospace),
+            ),
         ]
         .into();
         let spacing = &mut style.spacing;
@@ -267,7 +325,10 @@ impl Palette {
         spacing.icon_width = 15.0;
         spacing.icon_width_inner = 9.0;
         spacing.icon_spacing = 6.0;
-        spacing.scroll = ScrollStyle { bar_width: 7.0, ..ScrollStyle::thin() };
+        spacing.scroll = ScrollStyle {
+            bar_width: 7.0,
+            ..ScrollStyle::thin()
+        };
         style
     }
 }
@@ -275,14 +336,32 @@ impl Palette {
 /// The two cuts of the typeface, each followed by egui's own fonts, in which other scripts and rarer signs are found.
 pub fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
-    let monospaced = fonts.families.get(&FontFamily::Monospace).cloned().unwrap_or_default();
-    let others = fonts.families.get(&FontFamily::Proportional).cloned().unwrap_or_default();
+    let monospaced = fonts
+        .families
+        .get(&FontFamily::Monospace)
+        .cloned()
+        .unwrap_or_default();
+    let others = fonts
+        .families
+        .get(&FontFamily::Proportional)
+        .cloned()
+        .unwrap_or_default();
     let cuts = [
-        ("Inter", include_bytes!("../../assets/fonts/Inter-Regular.ttf").as_slice(), FontFamily::Proportional),
-        ("Inter Medium", include_bytes!("../../assets/fonts/Inter-Medium.ttf"), FontFamily::Name(MEDIUM.into())),
+        (
+            "Inter",
+            include_bytes!("../../assets/fonts/Inter-Regular.ttf").as_slice(),
+            FontFamily::Proportional,
+        ),
+        (
+            "Inter Medium",
+            include_bytes!("../../assets/fonts/Inter-Medium.ttf"),
+            FontFamily::Name(MEDIUM.into()),
+        ),
     ];
     for (name, bytes, family) in cuts {
-        fonts.font_data.insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
+        fonts
+            .font_data
+            .insert(name.to_owned(), Arc::new(FontData::from_static(bytes)));
         let mut names = vec![name.to_owned()];
         for other in others.iter().chain(&monospaced) {
             if !names.contains(other) {
@@ -297,7 +376,10 @@ pub fn fonts() -> FontDefinitions {
 /// Gives both of egui's themes the style of this program: switching between them is egui's own `set_theme`.
 pub fn apply(ctx: &Context) {
     ctx.set_fonts(fonts());
-    for (theme, palette) in [(Theme::Dark, Palette::dark()), (Theme::Light, Palette::light())] {
+    for (theme, palette) in [
+        (Theme::Dark, Palette::dark()),
+        (Theme::Light, Palette::light()),
+    ] {
         ctx.set_style_of(theme, palette.style());
     }
 }
@@ -341,14 +423,21 @@ impl PlotStyle {
 
     /// These looks where the widths are some that can be seen; a preference may have been written by another version.
     pub fn within_limits(self) -> Self {
-        let line_width = if self.line_width.is_finite() { self.line_width.clamp(0.5, 3.0) } else { 1.0 };
+        let line_width = if self.line_width.is_finite() {
+            self.line_width.clamp(0.5, 3.0)
+        } else {
+            1.0
+        };
         Self { line_width, ..self }
     }
 }
 
 impl Default for PlotStyle {
     fn default() -> Self {
-        Self { curve_colors: CurveColors::default(), line_width: 1.0 }
+        Self {
+            curve_colors: CurveColors::default(),
+            line_width: 1.0,
+        }
     }
 }
 
@@ -395,11 +484,29 @@ mod tests {
     #[test]
     fn text_is_readable_on_every_surface_of_both_themes() {
         for palette in [Palette::dark(), Palette::light()] {
-            let Palette { background, panel, raised, selected, warning_ground, good_ground, .. } = palette;
-            for surface in [background, panel, raised, selected, warning_ground, good_ground] {
+            let Palette {
+                background,
+                panel,
+                raised,
+                selected,
+                warning_ground,
+                good_ground,
+                ..
+            } = palette;
+            for surface in [
+                background,
+                panel,
+                raised,
+                selected,
+                warning_ground,
+                good_ground,
+            ] {
                 assert!(contrast(palette.text, surface) > 6.0, "{palette:?}");
                 for text in [palette.dim_text, palette.warning, palette.good] {
-                    assert!(contrast(text, surface) >= OF_TEXT, "{text:?} on {surface:?} of {palette:?}");
+                    assert!(
+                        contrast(text, surface) >= OF_TEXT,
+                        "{text:?} on {surface:?} of {palette:?}"
+                    );
                 }
             }
             // Names of what is left out and links stand on what is selected too, errors on panels.
@@ -409,7 +516,10 @@ mod tests {
                 (palette.nominal, [panel; 4]),
             ] {
                 for surface in surfaces {
-                    assert!(contrast(text, surface) >= OF_TEXT, "{text:?} on {surface:?} of {palette:?}");
+                    assert!(
+                        contrast(text, surface) >= OF_TEXT,
+                        "{text:?} on {surface:?} of {palette:?}"
+                    );
                 }
             }
         }
@@ -419,10 +529,23 @@ mod tests {
     fn curves_stand_out_from_the_background_of_both_themes() {
         for theme in [Palette::dark(), Palette::light()] {
             for curve_colors in CurveColors::ALL {
-                let palette = theme.with_looks(PlotStyle { curve_colors, ..PlotStyle::default() });
-                let Palette { nominal, perturbed, identified, corrected, rejected, .. } = palette;
+                let palette = theme.with_looks(PlotStyle {
+                    curve_colors,
+                    ..PlotStyle::default()
+                });
+                let Palette {
+                    nominal,
+                    perturbed,
+                    identified,
+                    corrected,
+                    rejected,
+                    ..
+                } = palette;
                 for color in [nominal, perturbed, identified, corrected, rejected] {
-                    assert!(contrast(color, palette.background) > OF_LINES, "{color:?} of {palette:?}");
+                    assert!(
+                        contrast(color, palette.background) > OF_LINES,
+                        "{color:?} of {palette:?}"
+                    );
                 }
             }
         }
@@ -431,9 +554,18 @@ mod tests {
     #[test]
     fn the_names_of_curves_are_readable_beside_their_plots() {
         for theme in [Palette::dark(), Palette::light()] {
-            let curves = [theme.nominal, theme.perturbed, theme.identified, theme.corrected, theme.rejected];
+            let curves = [
+                theme.nominal,
+                theme.perturbed,
+                theme.identified,
+                theme.corrected,
+                theme.rejected,
+            ];
             for name in curves.map(|color| theme.name_of(color)) {
-                assert!(contrast(name, theme.background) >= OF_TEXT, "{name:?} of {theme:?}");
+                assert!(
+                    contrast(name, theme.background) >= OF_TEXT,
+                    "{name:?} of {theme:?}"
+                );
             }
         }
     }
@@ -443,7 +575,10 @@ mod tests {
         for palette in [Palette::dark(), Palette::light()] {
             let of = |cost| contrast(palette.heat_of(cost), palette.panel);
             let steps = [0.0, 5.0, 10.0, 20.0, 30.0, 45.0, 60.0, 90.0, 110.0];
-            assert!(steps.windows(2).all(|pair| of(pair[0]) < of(pair[1])), "{palette:?}");
+            assert!(
+                steps.windows(2).all(|pair| of(pair[0]) < of(pair[1])),
+                "{palette:?}"
+            );
             assert_eq!(palette.heat_of(1e9), palette.heat[4]);
         }
     }
@@ -456,7 +591,10 @@ mod tests {
             for font in [FontId::proportional(BODY_SIZE), medium(BODY_SIZE)] {
                 let mut width = |figure| ui.fonts_mut(|fonts| fonts.glyph_width(&font, figure));
                 let widths: Vec<f32> = "0123456789−+±".chars().map(&mut width).collect();
-                assert!(widths.iter().all(|other| (other - widths[0]).abs() < 1e-3), "{widths:?}");
+                assert!(
+                    widths.iter().all(|other| (other - widths[0]).abs() < 1e-3),
+                    "{widths:?}"
+                );
             }
         });
         output.drop_without_applying_deltas();
@@ -470,7 +608,10 @@ mod tests {
             let font = FontId::proportional(BODY_SIZE);
             for symbol in "→−–·°ωτΔα…●○◆◇■▲★⚠✓±≈".chars() {
                 for font in [&font, &medium(BODY_SIZE)] {
-                    assert!(ui.fonts_mut(|fonts| fonts.has_glyph(font, symbol)), "{symbol}");
+                    assert!(
+                        ui.fonts_mut(|fonts| fonts.has_glyph(font, symbol)),
+                        "{symbol}"
+                    );
                 }
             }
         });
@@ -481,7 +622,10 @@ mod tests {
     fn both_themes_of_a_context_get_their_own_style() {
         let ctx = Context::default();
         apply(&ctx);
-        for (theme, palette) in [(Theme::Dark, Palette::dark()), (Theme::Light, Palette::light())] {
+        for (theme, palette) in [
+            (Theme::Dark, Palette::dark()),
+            (Theme::Light, Palette::light()),
+        ] {
             assert_eq!(ctx.style_of(theme).visuals.panel_fill, palette.panel);
             assert_eq!(Palette::of(&ctx.style_of(theme).visuals), palette);
         }
@@ -493,15 +637,27 @@ mod tests {
         ("full", [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
         (
             "protanopia",
-            [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+            [
+                [0.152286, 1.052583, -0.204868],
+                [0.114503, 0.786281, 0.099216],
+                [-0.003882, -0.048116, 1.051998],
+            ],
         ),
         (
             "deuteranopia",
-            [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
+            [
+                [0.367322, 0.860646, -0.227968],
+                [0.280085, 0.672501, 0.047413],
+                [-0.011820, 0.042940, 0.968881],
+            ],
         ),
         (
             "tritanopia",
-            [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]],
+            [
+                [1.255528, -0.076749, -0.178779],
+                [-0.078411, 0.930809, 0.147602],
+                [0.004733, 0.691367, 0.303900],
+            ],
         ),
     ];
 
@@ -510,8 +666,18 @@ mod tests {
         let x = (0.4124564 * r + 0.3575761 * g + 0.1804375 * b) / 0.95047;
         let y = 0.2126729 * r + 0.7151522 * g + 0.0721750 * b;
         let z = (0.0193339 * r + 0.119192 * g + 0.9503041 * b) / 1.08883;
-        let f = |t: f32| if t > 216.0 / 24389.0 { t.cbrt() } else { (24389.0 / 27.0 * t + 16.0) / 116.0 };
-        [116.0 * f(y) - 16.0, 500.0 * (f(x) - f(y)), 200.0 * (f(y) - f(z))]
+        let f = |t: f32| {
+            if t > 216.0 / 24389.0 {
+                t.cbrt()
+            } else {
+                (24389.0 / 27.0 * t + 16.0) / 116.0
+            }
+        };
+        [
+            116.0 * f(y) - 16.0,
+            500.0 * (f(x) - f(y)),
+            200.0 * (f(y) - f(z)),
+        ]
     }
 
     /// The colour that a translucent one is a part of.
@@ -528,7 +694,11 @@ mod tests {
     /// Distance of two colours to the eye: CIE76, where 2.3 can just be told.
     fn distance(a: Color32, b: Color32, sight: &[[f32; 3]; 3]) -> f32 {
         let (a, b) = (seen(a, sight), seen(b, sight));
-        a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f32>().sqrt()
+        a.iter()
+            .zip(b)
+            .map(|(a, b)| (a - b).powi(2))
+            .sum::<f32>()
+            .sqrt()
     }
 
     /// Far enough for thin lines: ten times what can just be told of large fields.
@@ -537,19 +707,31 @@ mod tests {
     /// The looks of every role in both themes.
     fn roles(curve_colors: CurveColors) -> Vec<Vec<(Role, CurveStyle)>> {
         let of = |theme: Palette| {
-            let palette = theme.with_looks(PlotStyle { curve_colors, ..PlotStyle::default() });
-            Role::ALL.into_iter().map(|role| (role, palette.role_style(role, false))).collect()
+            let palette = theme.with_looks(PlotStyle {
+                curve_colors,
+                ..PlotStyle::default()
+            });
+            Role::ALL
+                .into_iter()
+                .map(|role| (role, palette.role_style(role, false)))
+                .collect()
         };
         [Palette::dark(), Palette::light()].map(of).to_vec()
     }
 
-    fn assert_told_apart(curve_colors: CurveColors, is_told: impl Fn(&CurveStyle, &CurveStyle, f32) -> bool) {
+    fn assert_told_apart(
+        curve_colors: CurveColors,
+        is_told: impl Fn(&CurveStyle, &CurveStyle, f32) -> bool,
+    ) {
         for looks in roles(curve_colors) {
             for (place, (role, look)) in looks.iter().enumerate() {
                 for (other, other_look) in &looks[place + 1..] {
                     for (sight, matrix) in &SIGHTS {
                         let distance = distance(look.color, other_look.color, matrix);
-                        assert!(is_told(look, other_look, distance), "{role:?} {other:?}, {sight}: {distance}");
+                        assert!(
+                            is_told(look, other_look, distance),
+                            "{role:?} {other:?}, {sight}: {distance}"
+                        );
                     }
                 }
             }
@@ -559,15 +741,20 @@ mod tests {
     #[test]
     fn roles_of_two_colours_are_told_apart_by_colour_alone_to_all_eyes() {
         // Some roles share a colour, and differ in pattern or width; translucent ones come back with a rounding error.
-        let is_shared = |a: &CurveStyle, b: &CurveStyle| distance(a.color, b.color, &SIGHTS[0].1) < 2.3;
-        assert_told_apart(CurveColors::ForAllEyes, |a, b, distance| is_shared(a, b) || distance > APART);
+        let is_shared =
+            |a: &CurveStyle, b: &CurveStyle| distance(a.color, b.color, &SIGHTS[0].1) < 2.3;
+        assert_told_apart(CurveColors::ForAllEyes, |a, b, distance| {
+            is_shared(a, b) || distance > APART
+        });
     }
 
     #[test]
     fn with_the_standard_colours_what_looks_alike_to_some_eyes_differs_in_line_and_width() {
         for curve_colors in CurveColors::ALL {
             assert_told_apart(curve_colors, |a, b, distance| {
-                distance > APART || (a.dash, a.length) != (b.dash, b.length) || (a.width - b.width).abs() > 0.5
+                distance > APART
+                    || (a.dash, a.length) != (b.dash, b.length)
+                    || (a.width - b.width).abs() > 0.5
             });
         }
     }
@@ -576,6 +763,9 @@ mod tests {
     fn the_eye_without_green_cones_confuses_red_with_green() {
         let (red, green) = (Palette::dark().nominal, Palette::dark().corrected);
         assert!(distance(red, green, &SIGHTS[0].1) > 100.0);
-        assert!(distance(red, green, &SIGHTS[2].1) < 20.0, "so the simulation sees what it is there for");
+        assert!(
+            distance(red, green, &SIGHTS[2].1) < 20.0,
+            "so the simulation sees what it is there for"
+        );
     }
 }

@@ -8,8 +8,8 @@ use gdcm_study::study::{Kind, PhaseCorrection, Place, SETTINGS, Setting, Value, 
 use super::answer_panel::chevron;
 use super::palette::medium;
 use super::{
-    Asks, BODY_SIZE, Command, Entered, NumberField, Palette, Region, State, named_switch, painted_text, region_ui,
-    row_ui,
+    Asks, BODY_SIZE, Command, Entered, NumberField, Palette, Region, State, named_switch,
+    painted_text, region_ui, row_ui,
 };
 
 /// Largest value on a slider; more can be typed.
@@ -37,13 +37,25 @@ pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
             let place = line[0].control.place;
             matches!(place, Place::Slider | Place::Top) || *line[0] == setting::BAND
         };
-        let (mut first, advanced): (Vec<_>, Vec<_>) = lines_of(state).into_iter().partition(is_first);
+        let (mut first, advanced): (Vec<_>, Vec<_>) =
+            lines_of(state).into_iter().partition(is_first);
         first.sort_by_key(|line| line[0].control.place != Place::Slider);
         for line in first {
             match line[0].control.place {
-                Place::Slider => Panel { ui, state, palette, commands }.slider_ui(line[0]),
+                Place::Slider => Panel {
+                    ui,
+                    state,
+                    palette,
+                    commands,
+                }
+                .slider_ui(line[0]),
                 _ => drop(ui.horizontal_wrapped(|ui| {
-                    let mut panel = Panel { ui, state, palette, commands };
+                    let mut panel = Panel {
+                        ui,
+                        state,
+                        palette,
+                        commands,
+                    };
                     panel.caption_ui(line[0]);
                     panel.controls_ui(&line);
                 })),
@@ -54,14 +66,37 @@ pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
         if !state.display.advanced_open {
             return;
         }
-        Grid::new("settings").num_columns(2).spacing([8.0, 5.0]).show(ui, |ui| {
-            for line in advanced {
-                Panel { ui, state, palette, commands }.caption_ui(line[0]);
-                ui.horizontal(|ui| Panel { ui, state, palette, commands }.controls_ui(&line));
-                ui.end_row();
-                Panel { ui, state, palette, commands }.note_ui(line[0]);
-            }
-        });
+        Grid::new("settings")
+            .num_columns(2)
+            .spacing([8.0, 5.0])
+            .show(ui, |ui| {
+                for line in advanced {
+                    Panel {
+                        ui,
+                        state,
+                        palette,
+                        commands,
+                    }
+                    .caption_ui(line[0]);
+                    ui.horizontal(|ui| {
+                        Panel {
+                            ui,
+                            state,
+                            palette,
+                            commands,
+                        }
+                        .controls_ui(&line)
+                    });
+                    ui.end_row();
+                    Panel {
+                        ui,
+                        state,
+                        palette,
+                        commands,
+                    }
+                    .note_ui(line[0]);
+                }
+            });
     });
 }
 
@@ -70,7 +105,8 @@ fn advanced_head_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mu
     let (row, response) = row_ui(ui, palette, false, false, "Advanced settings");
     chevron(ui, pos2(row.left() + 6.0, row.center().y), is_open, palette);
     painted_text(ui, row, 16.0, "Advanced", medium(BODY_SIZE), palette.text);
-    named_switch(response, Role::Button, is_open, "Advanced settings").asks(Command::ShowAdvanced(!is_open), commands);
+    named_switch(response, Role::Button, is_open, "Advanced settings")
+        .asks(Command::ShowAdvanced(!is_open), commands);
 }
 
 /// The control of one setting, where a view is about it.
@@ -81,13 +117,22 @@ pub(super) fn setting_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    Panel { ui, state, palette, commands }.control_ui(setting);
+    Panel {
+        ui,
+        state,
+        palette,
+        commands,
+    }
+    .control_ui(setting);
 }
 
 /// The settings that have an effect, line by line.
 fn lines_of(state: &State) -> Vec<Vec<&'static Setting>> {
     let mut lines: Vec<Vec<&'static Setting>> = Vec::new();
-    for setting in SETTINGS.iter().filter(|setting| (setting.control.applies)(&state.study)) {
+    for setting in SETTINGS
+        .iter()
+        .filter(|setting| (setting.control.applies)(&state.study))
+    {
         match (setting.control.place, lines.last_mut()) {
             (Place::Elsewhere, _) => {}
             (Place::Beside, Some(line)) => line.push(setting),
@@ -152,21 +197,43 @@ impl Panel<'_, '_> {
     /// What has to be known of a setting beside its value.
     fn note_ui(&mut self, setting: &Setting) {
         let settings = &self.state.study.settings;
-        let is_idle = settings.gain_source == GainSource::MeanOfPairs && settings.phase == PhaseCorrection::Lead;
+        let is_idle = settings.gain_source == GainSource::MeanOfPairs
+            && settings.phase == PhaseCorrection::Lead;
         if *setting == setting::GAIN_SOURCE && is_idle {
             self.ui.label("");
             let text = self.palette.small_warning("No effect with leads");
-            self.ui.label(text).on_hover_text(format!("G from {}", settings.gain_source_words()));
+            self.ui
+                .label(text)
+                .on_hover_text(format!("G from {}", settings.gain_source_words()));
             self.ui.end_row();
         }
     }
 
     fn control_ui(&mut self, setting: &'static Setting) {
         match (setting.kind, setting.value(&self.state.study.settings)) {
-            (Kind::Number { range, .. }, Value::Number(value)) => self.number_ui(setting, value, range),
-            (Kind::Optional { range, on: Some(on), .. }, value) => self.threshold_ui(setting, value, on, range),
-            (Kind::Optional { range, .. }, value) => self.automatic_number_ui(setting, value, range),
-            (Kind::Range { range, ends, nothing, .. }, value) => {
+            (Kind::Number { range, .. }, Value::Number(value)) => {
+                self.number_ui(setting, value, range)
+            }
+            (
+                Kind::Optional {
+                    range,
+                    on: Some(on),
+                    ..
+                },
+                value,
+            ) => self.threshold_ui(setting, value, on, range),
+            (Kind::Optional { range, .. }, value) => {
+                self.automatic_number_ui(setting, value, range)
+            }
+            (
+                Kind::Range {
+                    range,
+                    ends,
+                    nothing,
+                    ..
+                },
+                value,
+            ) => {
                 self.range_ui(setting, value, ends, range, nothing.is_some());
             }
             (Kind::Flag { .. }, Value::Flag(mut flag)) => {
@@ -177,7 +244,9 @@ impl Panel<'_, '_> {
             }
             (Kind::Choice { words, .. }, Value::Choice(index)) => {
                 let mut chosen = index;
-                let choices: Vec<_> = (0..words.len()).map(|index| (index, words[index][1], words[index][2])).collect();
+                let choices: Vec<_> = (0..words.len())
+                    .map(|index| (index, words[index][1], words[index][2]))
+                    .collect();
                 choice_ui(self.ui, setting.control.label, &mut chosen, &choices);
                 if chosen != index {
                     self.set(setting, Value::Choice(chosen));
@@ -209,20 +278,27 @@ impl Panel<'_, '_> {
         };
         let mut value = now;
         let label = setting.control.label;
-        let field = NumberField { step: 0.01 * now.max(0.01), width: TYPED_WIDTH, ..field_of(setting, label, range) };
+        let field = NumberField {
+            step: 0.01 * now.max(0.01),
+            width: TYPED_WIDTH,
+            ..field_of(setting, label, range)
+        };
         let (slider, typed) = self
             .ui
             .horizontal(|ui| {
                 let caption = ui.label(self.palette.dim(setting.control.caption));
                 ui.add_space((LABEL_WIDTH - caption.rect.width()).max(0.0));
                 let gap = ui.spacing().item_spacing.x;
-                ui.spacing_mut().slider_width = (ui.available_width() - TYPED_WIDTH - 2.0 * gap).max(60.0);
+                ui.spacing_mut().slider_width =
+                    (ui.available_width() - TYPED_WIDTH - 2.0 * gap).max(60.0);
                 let slider = Slider::new(&mut value, 0.0..=SLIDER_END)
                     .logarithmic(true)
                     .smallest_positive(SLIDER_START)
                     .show_value(false);
                 let slider = ui.add(slider);
-                slider.widget_info(|| WidgetInfo::labeled(Role::Slider, true, format!("{label} slider")));
+                slider.widget_info(|| {
+                    WidgetInfo::labeled(Role::Slider, true, format!("{label} slider"))
+                });
                 (slider, field.ui(ui, now))
             })
             .inner;
@@ -240,11 +316,23 @@ impl Panel<'_, '_> {
     fn threshold_ui(&mut self, setting: &'static Setting, value: Value, on: f64, range: [f64; 2]) {
         let mut counts = value != Value::Nothing;
         let response = self.ui.checkbox(&mut counts, "from");
-        let response = named_switch(response, Role::CheckBox, counts, format!("{} counts", setting.control.caption));
+        let response = named_switch(
+            response,
+            Role::CheckBox,
+            counts,
+            format!("{} counts", setting.control.caption),
+        );
         let clicked = response.on_hover_text(setting.help).changed();
-        let shown = if let Value::Number(value) = value { value } else { on };
+        let shown = if let Value::Number(value) = value {
+            value
+        } else {
+            on
+        };
         let field = field_of(setting, setting.control.label, range);
-        let entered = self.ui.add_enabled_ui(counts, |ui| field.ui(ui, shown)).inner;
+        let entered = self
+            .ui
+            .add_enabled_ui(counts, |ui| field.ui(ui, shown))
+            .inner;
         if clicked {
             self.set(setting, counts.then_some(on));
             // Two clicks are two decisions.
@@ -256,8 +344,14 @@ impl Panel<'_, '_> {
     /// A number that the program finds where it is not set by hand.
     fn automatic_number_ui(&mut self, setting: &'static Setting, value: Value, range: [f64; 2]) {
         let by_hand = value != Value::Nothing;
-        let shown = if by_hand { Some(value) } else { found_value(self.state, setting) };
-        let Some(Value::Number(number)) = shown else { return self.small_ui("…") };
+        let shown = if by_hand {
+            Some(value)
+        } else {
+            found_value(self.state, setting)
+        };
+        let Some(Value::Number(number)) = shown else {
+            return self.small_ui("…");
+        };
         let field = field_of(setting, setting.control.label, range);
         let typed = field.ui(self.ui, setting.unit.scale * number);
         let automatic = self.automatic_ui(setting, by_hand);
@@ -277,15 +371,33 @@ impl Panel<'_, '_> {
         is_optional: bool,
     ) {
         let by_hand = value != Value::Nothing;
-        let shown = if by_hand { Some(value) } else { found_value(self.state, setting) };
-        let Some(Value::Range([lower, upper])) = shown else { return self.small_ui("…") };
-        let low = NumberField { shows_unit: false, ..field_of(setting, low_name, [least, upper]) }.ui(self.ui, lower);
+        let shown = if by_hand {
+            Some(value)
+        } else {
+            found_value(self.state, setting)
+        };
+        let Some(Value::Range([lower, upper])) = shown else {
+            return self.small_ui("…");
+        };
+        let low = NumberField {
+            shows_unit: false,
+            ..field_of(setting, low_name, [least, upper])
+        }
+        .ui(self.ui, lower);
         self.small_ui("–");
-        let high = NumberField { shows_unit: false, ..field_of(setting, high_name, [lower, most]) }.ui(self.ui, upper);
+        let high = NumberField {
+            shows_unit: false,
+            ..field_of(setting, high_name, [lower, most])
+        }
+        .ui(self.ui, upper);
         if !setting.unit.shown.is_empty() {
             self.small_ui(setting.unit.shown);
         }
-        let automatic = if is_optional { self.automatic_ui(setting, by_hand) } else { None };
+        let automatic = if is_optional {
+            self.automatic_ui(setting, by_hand)
+        } else {
+            None
+        };
         if low.value.is_some() || high.value.is_some() {
             let ends = Value::Range([low.value.unwrap_or(lower), high.value.unwrap_or(upper)]);
             match setting.check(ends) {
@@ -295,7 +407,14 @@ impl Panel<'_, '_> {
                 Err(error) => self.commands.push(Command::Refuse(error.to_string())),
             }
         } else if let Some(automatic) = automatic {
-            self.set(setting, if automatic { Value::Nothing } else { Value::Range([lower, upper]) });
+            self.set(
+                setting,
+                if automatic {
+                    Value::Nothing
+                } else {
+                    Value::Range([lower, upper])
+                },
+            );
         }
         self.end(low);
         self.end(high);
@@ -306,14 +425,19 @@ impl Panel<'_, '_> {
         let mut automatic = !by_hand;
         let response = self.ui.checkbox(&mut automatic, "auto");
         let name = format!("{} automatic", setting.control.caption);
-        let hint = "From the quantiles of each condition; off: set by hand, the same for every condition";
+        let hint =
+            "From the quantiles of each condition; off: set by hand, the same for every condition";
         let response = named_switch(response, Role::CheckBox, automatic, name).on_hover_text(hint);
         response.changed().then_some(automatic)
     }
 }
 
 /// The field of a number of a setting, in the unit for people.
-fn field_of(setting: &'static Setting, name: &'static str, [least, most]: [f64; 2]) -> NumberField<'static> {
+fn field_of(
+    setting: &'static Setting,
+    name: &'static str,
+    [least, most]: [f64; 2],
+) -> NumberField<'static> {
     let is_whole = matches!(setting.kind, Kind::Number { whole: true, .. });
     NumberField {
         unit: setting.unit.shown,
@@ -321,18 +445,36 @@ fn field_of(setting: &'static Setting, name: &'static str, [least, most]: [f64; 
         is_whole,
         step: setting.control.step,
         digits: setting.control.digits,
-        ..NumberField::new(name, setting.help, setting.unit.scale * least..=setting.unit.scale * most)
+        ..NumberField::new(
+            name,
+            setting.help,
+            setting.unit.scale * least..=setting.unit.scale * most,
+        )
     }
 }
 
 /// A small drop-down list.
-pub(super) fn choice_ui<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut T, choices: &[(T, &str, &str)]) {
-    let current = choices.iter().find(|(choice, ..)| choice == value).map_or("…", |(_, text, _)| *text);
-    let shown = ComboBox::from_id_salt(name).selected_text(current).width(60.0).show_ui(ui, |ui| {
-        for (choice, text, hint) in choices {
-            ui.selectable_value(value, *choice, *text).on_hover_text(*hint);
-        }
-    });
-    shown.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, name));
+pub(super) fn choice_ui<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    name: &str,
+    value: &mut T,
+    choices: &[(T, &str, &str)],
+) {
+    let current = choices
+        .iter()
+        .find(|(choice, ..)| choice == value)
+        .map_or("…", |(_, text, _)| *text);
+    let shown = ComboBox::from_id_salt(name)
+        .selected_text(current)
+        .width(60.0)
+        .show_ui(ui, |ui| {
+            for (choice, text, hint) in choices {
+                ui.selectable_value(value, *choice, *text)
+                    .on_hover_text(*hint);
+            }
+        });
+    shown
+        .response
+        .widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, name));
     shown.response.on_hover_text(name);
 }

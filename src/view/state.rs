@@ -10,10 +10,11 @@ use gdcm_method::uncertainty::{Bar as ErrorBar, Scalar};
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
 use gdcm_plot::figure::ColumnWidth;
 use gdcm_study::study::{
-    AcrossCurves, AcrossJob, Analysis, AssessedCouplings, AssessmentJob, AssessmentTable, ConditionAnalysis,
-    ConditionCurves, ConditionFailure, ConditionModes, CouplingsJob, CurvesJob, Difference, History, ModesJob,
-    RecordHistory, RecordHistoryJob, Requirements, RequirementsJob, SimulationJob, Study, Table, TestAnswers,
-    TestAnswersJob, TimeHistories, TimeHistoriesJob, Toggles, TogglesJob, Uncertainty, UncertaintyJob, VariantJob,
+    AcrossCurves, AcrossJob, Analysis, AssessedCouplings, AssessmentJob, AssessmentTable,
+    ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModes, CouplingsJob, CurvesJob,
+    Difference, History, ModesJob, RecordHistory, RecordHistoryJob, Requirements, RequirementsJob,
+    SimulationJob, Study, Table, TestAnswers, TestAnswersJob, TimeHistories, TimeHistoriesJob,
+    Toggles, TogglesJob, Uncertainty, UncertaintyJob, VariantJob,
 };
 use gdcm_sysid::identification::Validation;
 
@@ -135,10 +136,20 @@ pub struct State {
 impl State {
     /// The state of a window that shows `study` for the first time.
     pub fn new(study: Study, study_name: String, file_cautions: Vec<String>) -> Self {
-        let pair = study.dataset.measuring_pairs().marked().next().unwrap_or_default();
+        let pair = study
+            .dataset
+            .measuring_pairs()
+            .marked()
+            .next()
+            .unwrap_or_default();
         let condition = study.dataset.conditions()[0].id();
         let once_held = study.settings.constrained.marked().collect();
-        let display = Display { condition, pair, once_held, ..Display::default() };
+        let display = Display {
+            condition,
+            pair,
+            once_held,
+            ..Display::default()
+        };
         Self {
             followed: Arc::clone(&study.dataset),
             study,
@@ -165,7 +176,11 @@ impl State {
     /// What the window's title says: the study, marked where it is not saved, and the dataset.
     pub fn window_title(&self) -> String {
         let mark = if self.unsaved { " •" } else { "" };
-        format!("{}{mark} – {} – gdcm", self.study_name, self.dataset().name())
+        format!(
+            "{}{mark} – {} – gdcm",
+            self.study_name,
+            self.dataset().name()
+        )
     }
 
     /// The dataset.
@@ -187,24 +202,29 @@ impl State {
     /// The models that a result suggests as outliers and that are not rejected.
     pub fn open_suggestions(&self, result: &ConditionAnalysis) -> Vec<String> {
         let rejected = &self.study.choice(result.condition.id()).physics.rejected;
-        result.suggested().into_iter().filter(|model| !rejected.contains(model)).collect()
+        result
+            .suggested()
+            .into_iter()
+            .filter(|model| !rejected.contains(model))
+            .collect()
     }
 
     /// What came of the condition shown: the newest there is of this dataset.
     pub fn outcome(&self) -> Option<&Result<ConditionAnalysis, ConditionFailure>> {
         let condition = self.condition().id();
-        let first = self
-            .results
-            .first
-            .as_ref()
-            .filter(|first| first.condition == condition && Arc::ptr_eq(&first.dataset, &self.study.dataset));
-        first.map(|first| &first.outcome).or_else(|| self.analysis()?.conditions.get(&condition))
+        let first = self.results.first.as_ref().filter(|first| {
+            first.condition == condition && Arc::ptr_eq(&first.dataset, &self.study.dataset)
+        });
+        first
+            .map(|first| &first.outcome)
+            .or_else(|| self.analysis()?.conditions.get(&condition))
     }
 
     /// Whether the results of the other conditions, and all that is made from them, are of older settings than what is shown of
     /// this one: it is said beside each of them.
     pub fn others_are_older(&self) -> bool {
-        let of_this_dataset = |first: &FirstResult| Arc::ptr_eq(&first.dataset, &self.study.dataset);
+        let of_this_dataset =
+            |first: &FirstResult| Arc::ptr_eq(&first.dataset, &self.study.dataset);
         self.results.first_is_ahead()
             && self.results.first.as_ref().is_some_and(of_this_dataset)
             && self.analysis().is_some()
@@ -219,7 +239,8 @@ impl State {
     /// The responses of the condition shown, for drawing.
     pub fn curves(&self) -> Option<&Arc<ConditionCurves>> {
         let (job, curves) = self.results.curves.as_ref()?;
-        let fits = job.condition == self.condition().id() && Arc::ptr_eq(&job.dataset, &self.study.dataset);
+        let fits = job.condition == self.condition().id()
+            && Arc::ptr_eq(&job.dataset, &self.study.dataset);
         fits.then_some(curves)
     }
 
@@ -247,11 +268,15 @@ impl State {
     pub fn test_answers(&self) -> Option<&Result<Arc<TestAnswers>, String>> {
         let (job, found) = self.results.test_answers.as_ref()?;
         let of_this = Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset);
-        (of_this && (job.condition, job.input) == (self.condition().id(), self.display.pair.input)).then_some(found)
+        (of_this && (job.condition, job.input) == (self.condition().id(), self.display.pair.input))
+            .then_some(found)
     }
 
     /// The record of a job against the tolerances, in words why there is nothing; of an older analysis until it is there.
-    pub fn record_history(&self, job: &RecordHistoryJob) -> Option<&Result<Arc<RecordHistory>, String>> {
+    pub fn record_history(
+        &self,
+        job: &RecordHistoryJob,
+    ) -> Option<&Result<Arc<RecordHistory>, String>> {
         let (known, found) = self.results.record_history.as_ref()?;
         (known.condition == job.condition && known.record == job.record).then_some(found)
     }
@@ -307,13 +332,19 @@ impl State {
     /// How sure the values of the condition shown are; none until that is computed, or where it is of older settings.
     pub fn sureness(&self) -> Sureness<'_> {
         let uncertainty = self.uncertainty().filter(|_| !self.others_are_older());
-        Sureness { condition: self.condition().id(), uncertainty: uncertainty.map(AsRef::as_ref) }
+        Sureness {
+            condition: self.condition().id(),
+            uncertainty: uncertainty.map(AsRef::as_ref),
+        }
     }
 
     /// The newest analysis with how sure its values are, as far as that is computed: what files and derivations are made of.
     pub fn analysis_with_bars(&self) -> Option<Analysis> {
         let analysis = self.analysis()?.clone();
-        Some(Analysis { uncertainty: self.uncertainty().cloned(), ..analysis })
+        Some(Analysis {
+            uncertainty: self.uncertainty().cloned(),
+            ..analysis
+        })
     }
 
     /// What giving up a computation leaves, in words.
@@ -334,7 +365,11 @@ impl State {
         self.followed = Arc::clone(dataset);
         let pair = self.display.pair;
         if pair.output >= dataset.outputs().len() || pair.input >= dataset.inputs().len() {
-            self.display.pair = dataset.measuring_pairs().marked().next().unwrap_or_default();
+            self.display.pair = dataset
+                .measuring_pairs()
+                .marked()
+                .next()
+                .unwrap_or_default();
         }
         self.display.hovered = None;
         self.display.isolated = None;
@@ -346,7 +381,12 @@ impl State {
     /// How many models of a bundle of the condition shown are kept: "14 of 19".
     pub fn kept_words(&self, kind: BundleKind) -> String {
         let count = self.condition().bundle(kind).len();
-        let rejected = self.study.choice(self.condition().id()).bundle(kind).rejected.len();
+        let rejected = self
+            .study
+            .choice(self.condition().id())
+            .bundle(kind)
+            .rejected
+            .len();
         format!("{} of {count}", count - rejected)
     }
 
@@ -372,7 +412,8 @@ impl<'a> Sureness<'a> {
 
     /// Half-width of its bar: relative, of delays \[s\].
     pub fn half(&self, scalar: Scalar) -> Option<f64> {
-        self.bar(scalar).and_then(|(bar, level)| bar.half_width(level))
+        self.bar(scalar)
+            .and_then(|(bar, level)| bar.half_width(level))
     }
 
     /// The level of all bars.
@@ -501,14 +542,20 @@ impl Results {
 
     /// What stands in the place of a result that is not there.
     pub fn absence(&self) -> &'static str {
-        if self.stopped { "not computed" } else { "computing …" }
+        if self.stopped {
+            "not computed"
+        } else {
+            "computing …"
+        }
     }
 
     /// What stands in the place of error bars that are not there.
     pub fn absence_of_bars(&self) -> String {
         match self.background.bars {
             Some(progress) if !self.is_behind() => bar_words(progress),
-            None if self.background.stopped => "Error bars: stopped; Compute, below, goes on with them".to_owned(),
+            None if self.background.stopped => {
+                "Error bars: stopped; Compute, below, goes on with them".to_owned()
+            }
             _ => self.absence().to_owned(),
         }
     }
@@ -520,23 +567,35 @@ impl Results {
 
     /// Whether the condition shown is of newer settings than the analysis of all of them.
     pub fn first_is_ahead(&self) -> bool {
-        self.analysis.is_some() && self.first.as_ref().is_some_and(|first| first.generation > self.received)
+        self.analysis.is_some()
+            && self
+                .first
+                .as_ref()
+                .is_some_and(|first| first.generation > self.received)
     }
 
     /// Whether something has been under way beside the live answer for so long that it should be told at `now`.
     pub fn is_background_told(&self, now: f64) -> bool {
-        self.background_since.is_some_and(|since| now - since > BACKGROUND_AFTER_S)
+        self.background_since
+            .is_some_and(|since| now - since > BACKGROUND_AFTER_S)
     }
 
     /// Whether what is shown should be marked as stale at `now` \[s of the window's clock\].
     pub fn is_stale(&self, now: f64) -> bool {
-        self.stopped || self.waiting_since.is_some_and(|since| now - since > STALE_AFTER_S)
+        self.stopped
+            || self
+                .waiting_since
+                .is_some_and(|since| now - since > STALE_AFTER_S)
     }
 }
 
 /// How far error bars are, in words.
 pub(super) fn bar_words((done, total): (usize, usize)) -> String {
-    if total == 0 { "error bars …".to_owned() } else { format!("error bars, {done} of {total} steps …") }
+    if total == 0 {
+        "error bars …".to_owned()
+    } else {
+        format!("error bars, {done} of {total} steps …")
+    }
 }
 
 #[cfg(test)]
@@ -550,10 +609,19 @@ mod tests {
         let study = Study::new(embedded_example().unwrap().dataset);
         let mut state = State::new(study.clone(), String::new(), Vec::new());
         assert_eq!(state.after_stop(), "there are no results yet");
-        state.results.analysis = Some(Arc::new(Engine::default().analyze(&study, &Unobserved).unwrap()));
-        assert_eq!(state.after_stop(), "the results are older than the settings");
+        state.results.analysis = Some(Arc::new(
+            Engine::default().analyze(&study, &Unobserved).unwrap(),
+        ));
+        assert_eq!(
+            state.after_stop(),
+            "the results are older than the settings"
+        );
         let other = Study::new(embedded_example().unwrap().dataset);
         state.study = other;
-        assert_eq!(state.after_stop(), "there are no results yet", "of the dataset that is shown now");
+        assert_eq!(
+            state.after_stop(),
+            "there are no results yet",
+            "of the dataset that is shown now"
+        );
     }
 }

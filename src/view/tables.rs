@@ -30,8 +30,13 @@ pub enum TableKind {
 
 impl TableKind {
     /// Every table, in the order of the window.
-    pub const ALL: [TableKind; 5] =
-        [Self::Conditions, Self::PhysicsModels, Self::IdentifiedModels, Self::Matrix, Self::Channels];
+    pub const ALL: [TableKind; 5] = [
+        Self::Conditions,
+        Self::PhysicsModels,
+        Self::IdentifiedModels,
+        Self::Matrix,
+        Self::Channels,
+    ];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -67,7 +72,9 @@ pub fn table_of(state: &State, kind: TableKind) -> Table {
 /// A number with every digit; nothing where there is none.
 fn digits(value: Option<f64>) -> String {
     // Debug writes an exponent where Display would write hundreds of zeros.
-    value.filter(|value| value.is_finite()).map_or(String::new(), |value| format!("{value:?}"))
+    value
+        .filter(|value| value.is_finite())
+        .map_or(String::new(), |value| format!("{value:?}"))
 }
 
 fn yes(is_so: bool) -> String {
@@ -76,7 +83,12 @@ fn yes(is_so: bool) -> String {
 
 fn title(state: &State, what: &str) -> String {
     let condition = state.condition();
-    format!("{}, condition {} ({}): {what}", state.dataset().name(), condition.id(), condition.flight_state().name)
+    format!(
+        "{}, condition {} ({}): {what}",
+        state.dataset().name(),
+        condition.id(),
+        condition.flight_state().name
+    )
 }
 
 /// A row of a table: each heading with what stands below it.
@@ -84,7 +96,9 @@ type Row = Vec<(&'static str, String)>;
 
 /// A table of rows that have the same headings.
 fn table_of_rows(title: String, rows: Vec<Row>) -> Table {
-    let headings = rows.first().map(|row| row.iter().map(|(heading, _)| *heading).collect::<Vec<_>>());
+    let headings = rows
+        .first()
+        .map(|row| row.iter().map(|(heading, _)| *heading).collect::<Vec<_>>());
     let mut table = Table::new(title, headings.unwrap_or_default());
     for row in rows {
         table.row(row.into_iter().map(|(_, cell)| cell));
@@ -96,8 +110,9 @@ fn conditions(state: &State) -> Table {
     let row = |condition: &Arc<Condition>| {
         let (id, flight) = (condition.id(), condition.flight_state());
         let result = state.analysis().and_then(|analysis| analysis.condition(id));
-        let count =
-            |of: &dyn Fn(&ConditionAnalysis) -> usize| result.map_or(String::new(), |result| of(result).to_string());
+        let count = |of: &dyn Fn(&ConditionAnalysis) -> usize| {
+            result.map_or(String::new(), |result| of(result).to_string())
+        };
         vec![
             ("condition", id.to_string()),
             ("name", flight.name.clone()),
@@ -107,9 +122,18 @@ fn conditions(state: &State) -> Table {
             ("weight", flight.weight.clone().unwrap_or_default()),
             ("mass [kg]", digits(flight.mass_kg)),
             ("scheduled", yes(state.study.choice(id).scheduled)),
-            ("suggested outliers not rejected", count(&|result| state.open_suggestions(result).len())),
-            ("held gains not matched", count(&|result| result.gains.unmatched.len())),
-            ("held delays not matched", count(&|result| result.delays.unmatched.len())),
+            (
+                "suggested outliers not rejected",
+                count(&|result| state.open_suggestions(result).len()),
+            ),
+            (
+                "held gains not matched",
+                count(&|result| result.gains.unmatched.len()),
+            ),
+            (
+                "held delays not matched",
+                count(&|result| result.delays.unmatched.len()),
+            ),
         ]
     };
     let rows = state.dataset().conditions().iter().map(row).collect();
@@ -122,16 +146,31 @@ fn models(state: &State, bundle: BundleKind) -> Table {
     let row = |model: &Model| {
         let ratio = shown.filter(|_| bundle == BundleKind::Physics);
         let ratio = ratio.and_then(|shown| shown.discontinuity_ratio(&model.name));
-        let is_representative = shown.is_some_and(|shown| shown.representative_name(bundle) == model.name);
+        let is_representative =
+            shown.is_some_and(|shown| shown.representative_name(bundle) == model.name);
         vec![
             ("model", model.name.clone()),
             ("kept", yes(!choice.rejected.contains(&model.name))),
-            ("chosen as representative", yes(choice.pinned.as_ref() == Some(&model.name))),
+            (
+                "chosen as representative",
+                yes(choice.pinned.as_ref() == Some(&model.name)),
+            ),
             ("representative", yes(is_representative)),
-            ("states", model.order().map_or(String::new(), |order| order.to_string())),
-            ("mean distance [√J]", digits(shown.and_then(|shown| shown.score(bundle, &model.name)))),
+            (
+                "states",
+                model
+                    .order()
+                    .map_or(String::new(), |order| order.to_string()),
+            ),
+            (
+                "mean distance [√J]",
+                digits(shown.and_then(|shown| shown.score(bundle, &model.name))),
+            ),
             ("discontinuity ratio", digits(ratio)),
-            ("suggested", ratio.map_or(String::new(), |ratio| yes(ratio > SUGGESTION_RATIO))),
+            (
+                "suggested",
+                ratio.map_or(String::new(), |ratio| yes(ratio > SUGGESTION_RATIO)),
+            ),
         ]
     };
     let rows = condition.bundle(bundle).iter().map(row).collect();
@@ -140,14 +179,28 @@ fn models(state: &State, bundle: BundleKind) -> Table {
 
 /// What a table is of, with the level of its bars.
 fn title_with_bars(state: &State, kind: TableKind) -> String {
-    let level = state.sureness().level().map(|level| format!(", ± of {:.0} %", 100.0 * level));
-    title(state, &format!("{}{}", kind.name(), level.unwrap_or_default()))
+    let level = state
+        .sureness()
+        .level()
+        .map(|level| format!(", ± of {:.0} %", 100.0 * level));
+    title(
+        state,
+        &format!("{}{}", kind.name(), level.unwrap_or_default()),
+    )
 }
 
 /// Half-width of the bar of a value, and of its inner bar, "for this physics model": \[%\], of delays \[ms\].
 fn halves(sure: &Sureness<'_>, scalar: Scalar) -> [Option<f64>; 2] {
-    let Some((bar, level)) = sure.bar(scalar) else { return [None; 2] };
-    let shown = |half: f64| if scalar.is_delay() { s_to_ms(half) } else { 100.0 * half };
+    let Some((bar, level)) = sure.bar(scalar) else {
+        return [None; 2];
+    };
+    let shown = |half: f64| {
+        if scalar.is_delay() {
+            s_to_ms(half)
+        } else {
+            100.0 * half
+        }
+    };
     [bar.half_width(level), bar.inner_half_width(level)].map(|half| half.map(shown))
 }
 
@@ -157,9 +210,13 @@ fn matrix(state: &State) -> Table {
     let row = |pair: Pair| {
         let (output, input) = state.dataset().channel_names(pair);
         let cost = shown.and_then(|shown| shown.cost[pair]);
-        let (before, after) = (cost.map(|cost| cost.uncorrected), cost.map(|cost| cost.corrected));
+        let (before, after) = (
+            cost.map(|cost| cost.uncorrected),
+            cost.map(|cost| cost.corrected),
+        );
         let [gain, gain_inner] = halves(&sure, Scalar::Gain(pair));
-        let [delay, delay_inner] = shown.map_or([None; 2], |shown| halves(&sure, shown.wanted_delay(pair)));
+        let [delay, delay_inner] =
+            shown.map_or([None; 2], |shown| halves(&sure, shown.wanted_delay(pair)));
         let [net, net_inner] = halves(&sure, Scalar::NetGain(pair));
         let net_delay = shown.map(|shown| s_to_ms(shown.correction.net_delay_s(pair)));
         let words = [
@@ -173,10 +230,18 @@ fn matrix(state: &State) -> Table {
             ("G [-]", shown.and_then(|shown| shown.wanted_gain(pair))),
             ("G ± [%]", gain),
             ("G ± of identification [%]", gain_inner),
-            ("D [ms]", shown.and_then(|shown| shown.wanted_delay_s(pair)).map(s_to_ms)),
+            (
+                "D [ms]",
+                shown
+                    .and_then(|shown| shown.wanted_delay_s(pair))
+                    .map(s_to_ms),
+            ),
             ("D ± [ms]", delay),
             ("D ± of identification [ms]", delay_inner),
-            ("net gain [-]", shown.map(|shown| shown.correction.net_gain(pair))),
+            (
+                "net gain [-]",
+                shown.map(|shown| shown.correction.net_gain(pair)),
+            ),
             ("net gain ± [%]", net),
             ("net gain ± of identification [%]", net_inner),
             ("net delay [ms]", net_delay),
@@ -187,16 +252,29 @@ fn matrix(state: &State) -> Table {
             ("J_phase before", before.map(|cost| cost.phase)),
             ("J_phase after", after.map(|cost| cost.phase)),
         ];
-        words.into_iter().chain(values.map(|(heading, value)| (heading, digits(value)))).collect()
+        words
+            .into_iter()
+            .chain(values.map(|(heading, value)| (heading, digits(value))))
+            .collect()
     };
-    table_of_rows(title_with_bars(state, TableKind::Matrix), state.dataset().on_axis().pairs().map(row).collect())
+    table_of_rows(
+        title_with_bars(state, TableKind::Matrix),
+        state.dataset().on_axis().pairs().map(row).collect(),
+    )
 }
 
 fn channels(state: &State) -> Table {
-    let (sure, correction) = (state.sureness(), state.shown().map(|shown| &shown.correction));
+    let (sure, correction) = (
+        state.sureness(),
+        state.shown().map(|shown| &shown.correction),
+    );
     let (inputs, outputs) = state.dataset().names_of_channels();
     let row = |channel: Channel| {
-        let side = if matches!(channel, Channel::Input(_)) { "input" } else { "output" };
+        let side = if matches!(channel, Channel::Input(_)) {
+            "input"
+        } else {
+            "output"
+        };
         let [half, inner] = halves(&sure, Scalar::ChannelGain(channel));
         let [delay_half, delay_inner] = halves(&sure, Scalar::ChannelDelay(channel));
         let values = [
@@ -207,8 +285,14 @@ fn channels(state: &State) -> Table {
             ("τ ± [ms]", delay_half),
             ("τ ± of identification [ms]", delay_inner),
         ];
-        let words = [("side", side.to_owned()), ("channel", channel.name(&inputs, &outputs))];
-        words.into_iter().chain(values.map(|(heading, value)| (heading, digits(value)))).collect()
+        let words = [
+            ("side", side.to_owned()),
+            ("channel", channel.name(&inputs, &outputs)),
+        ];
+        words
+            .into_iter()
+            .chain(values.map(|(heading, value)| (heading, digits(value))))
+            .collect()
     };
     let rows = all_channels(state.dataset()).into_iter().map(row).collect();
     table_of_rows(title_with_bars(state, TableKind::Channels), rows)
@@ -230,13 +314,17 @@ impl Sorting {
 
     /// The rows of a table in this order: numbers by value, words by letters, empty cells last. Equal rows stay as they are.
     pub fn order(self, table: &Table) -> Vec<usize> {
-        self.order_of(table.rows.len(), |row, column| table.rows[row].get(column).cloned().unwrap_or_default())
+        self.order_of(table.rows.len(), |row, column| {
+            table.rows[row].get(column).cloned().unwrap_or_default()
+        })
     }
 
     /// The same of so many rows, by what stands in the cell of a row and a column.
     pub fn order_of(self, rows: usize, cell: impl Fn(usize, usize) -> String) -> Vec<usize> {
         let mut order: Vec<usize> = (0..rows).collect();
-        let Some((column, falling)) = self.0 else { return order };
+        let Some((column, falling)) = self.0 else {
+            return order;
+        };
         let cells: Vec<String> = order.iter().map(|&row| cell(row, column)).collect();
         order.sort_by(|a, b| {
             let (a, b) = (&cells[*a], &cells[*b]);
@@ -244,7 +332,11 @@ impl Sorting {
                 (Some(a), Some(b)) => a.total_cmp(&b),
                 _ => a.cmp(b),
             };
-            let compared = if falling { compared.reverse() } else { compared };
+            let compared = if falling {
+                compared.reverse()
+            } else {
+                compared
+            };
             a.is_empty().cmp(&b.is_empty()).then(compared)
         });
         order
@@ -262,7 +354,11 @@ impl Sorting {
 
 /// The number that a cell begins with, whichever its minus sign.
 fn number_in(cell: &str) -> Option<f64> {
-    cell.split_whitespace().next()?.replacen('\u{2212}', "-", 1).parse().ok()
+    cell.split_whitespace()
+        .next()?
+        .replacen('\u{2212}', "-", 1)
+        .parse()
+        .ok()
 }
 
 /// What the engineer did in a table.
@@ -284,7 +380,10 @@ pub struct TableLook<'a> {
 
 impl TableLook<'_> {
     /// Every cell in the usual colour, no row in focus.
-    pub const PLAIN: TableLook<'static> = TableLook { color: &|_, _| None, selected: &|_| false };
+    pub const PLAIN: TableLook<'static> = TableLook {
+        color: &|_, _| None,
+        selected: &|_| false,
+    };
 }
 
 /// Draws a table that scrolls where it is too large. Its headings sort it; a right-click copies or saves it.
@@ -296,8 +395,13 @@ pub fn table_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) -> Option<TableClick> {
-    let area = ScrollArea::both().id_salt(("table", &table.title)).auto_shrink(false);
-    area.show(ui, |ui| table_grid_ui(ui, table, sorting, look, palette, commands)).inner
+    let area = ScrollArea::both()
+        .id_salt(("table", &table.title))
+        .auto_shrink(false);
+    area.show(ui, |ui| {
+        table_grid_ui(ui, table, sorting, look, palette, commands)
+    })
+    .inner
 }
 
 /// The same, as large as it is.
@@ -312,45 +416,69 @@ pub fn table_grid_ui(
     let mut clicked = None;
     let order = sorting.order(table);
     // The heading is row 0.
-    let is_selected: Vec<bool> = std::iter::once(false).chain(order.iter().map(|row| (look.selected)(*row))).collect();
+    let is_selected: Vec<bool> = std::iter::once(false)
+        .chain(order.iter().map(|row| (look.selected)(*row)))
+        .collect();
     let selected = palette.selected;
     let row_color = move |row: usize, style: &egui::Style| match is_selected.get(row) {
         Some(true) => Some(selected),
         _ => (row % 2 == 1).then_some(style.visuals.faint_bg_color),
     };
-    Grid::new(("cells", &table.title)).spacing([12.0, 3.0]).with_row_color(row_color).show(ui, |ui| {
-        for (column, heading) in table.columns.iter().enumerate() {
-            let text = palette.small(format!("{heading}{}", sorting.mark(column)));
-            let button = ui.add(Button::new(text).frame(false));
-            let button = named(button, Role::Button, format!("Sort {} by {heading}", table.title));
-            button.context_menu(|ui| copy_ui(ui, table, commands));
-            if button.on_hover_text("Sort; right-click: copy or save the table").clicked() {
-                *sorting = sorting.clicked(column);
-            }
-        }
-        ui.end_row();
-        for row in order {
-            for (column, cell) in table.rows[row].iter().enumerate() {
-                let color = (look.color)(row, column).unwrap_or(palette.text);
-                let text = RichText::new(cell).size(SMALL_SIZE).color(color);
-                let layout = if number_in(cell).is_some() || cell == "-" { Align::Max } else { Align::Min };
-                let label = Label::new(text).sense(Sense::click()).selectable(false).extend();
-                let response = ui.with_layout(Layout::top_down(layout), |ui| ui.add(label)).inner;
-                response.context_menu(|ui| copy_ui(ui, table, commands));
-                if response.clicked() {
-                    clicked = Some(TableClick { row, column });
+    Grid::new(("cells", &table.title))
+        .spacing([12.0, 3.0])
+        .with_row_color(row_color)
+        .show(ui, |ui| {
+            for (column, heading) in table.columns.iter().enumerate() {
+                let text = palette.small(format!("{heading}{}", sorting.mark(column)));
+                let button = ui.add(Button::new(text).frame(false));
+                let button = named(
+                    button,
+                    Role::Button,
+                    format!("Sort {} by {heading}", table.title),
+                );
+                button.context_menu(|ui| copy_ui(ui, table, commands));
+                if button
+                    .on_hover_text("Sort; right-click: copy or save the table")
+                    .clicked()
+                {
+                    *sorting = sorting.clicked(column);
                 }
             }
             ui.end_row();
-        }
-    });
+            for row in order {
+                for (column, cell) in table.rows[row].iter().enumerate() {
+                    let color = (look.color)(row, column).unwrap_or(palette.text);
+                    let text = RichText::new(cell).size(SMALL_SIZE).color(color);
+                    let layout = if number_in(cell).is_some() || cell == "-" {
+                        Align::Max
+                    } else {
+                        Align::Min
+                    };
+                    let label = Label::new(text)
+                        .sense(Sense::click())
+                        .selectable(false)
+                        .extend();
+                    let response = ui
+                        .with_layout(Layout::top_down(layout), |ui| ui.add(label))
+                        .inner;
+                    response.context_menu(|ui| copy_ui(ui, table, commands));
+                    if response.clicked() {
+                        clicked = Some(TableClick { row, column });
+                    }
+                }
+                ui.end_row();
+            }
+        });
     clicked
 }
 
 fn copy_ui(ui: &mut Ui, table: &Table, commands: &mut Vec<Command>) {
     let entries = [
         ("Copy the table as text", Command::CopyText(table.text())),
-        ("Save the table as CSV…", Command::AskSaveShownTable(Arc::new(table.clone()))),
+        (
+            "Save the table as CSV…",
+            Command::AskSaveShownTable(Arc::new(table.clone())),
+        ),
     ];
     entries_ui(ui, entries, commands);
 }
@@ -371,7 +499,11 @@ mod tests {
     fn numbers_are_sorted_by_value_and_words_by_letters() {
         let by = |column| Sorting::default().clicked(column);
         assert_eq!(by(1).order(&table()), [1, 3, 0, 2], "empty cells last");
-        assert_eq!(by(1).clicked(1).order(&table()), [0, 3, 1, 2], "downwards too");
+        assert_eq!(
+            by(1).clicked(1).order(&table()),
+            [0, 3, 1, 2],
+            "downwards too"
+        );
         assert_eq!(by(0).order(&table()), [1, 0, 2, 3]);
     }
 
@@ -379,6 +511,9 @@ mod tests {
     fn the_third_click_on_a_heading_leaves_the_table_as_it_was_made() {
         let sorting = Sorting::default().clicked(1).clicked(1).clicked(1);
         assert_eq!(sorting.order(&table()), [0, 1, 2, 3]);
-        assert_eq!(Sorting::default().clicked(0).clicked(1), Sorting::default().clicked(1));
+        assert_eq!(
+            Sorting::default().clicked(0).clicked(1),
+            Sorting::default().clicked(1)
+        );
     }
 }

@@ -6,8 +6,8 @@ use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
 use gdcm_model::response::median;
 use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
 use gdcm_study::study::{
-    ConditionAnalysis, ConditionFailure, CouplingCorrection, CouplingCost, Edit, PhaseCorrection, RemarkKind, SignRole,
-    Value, setting,
+    ConditionAnalysis, ConditionFailure, CouplingCorrection, CouplingCost, Edit, PhaseCorrection,
+    RemarkKind, SignRole, Value, setting,
 };
 
 use super::views::{offered_couplings, used_couplings};
@@ -58,7 +58,10 @@ pub struct Step {
 
 impl Step {
     fn new(label: impl Into<String>, command: impl Into<Command>) -> Self {
-        Self { label: label.into(), command: command.into() }
+        Self {
+            label: label.into(),
+            command: command.into(),
+        }
     }
 
     /// The way to what explains the result.
@@ -69,7 +72,13 @@ impl Step {
 
 impl VerdictRow {
     fn without_result(name: &'static str, words: String) -> Self {
-        Self { name, here: None, everywhere: None, words, is_met: false }
+        Self {
+            name,
+            here: None,
+            everywhere: None,
+            words,
+            is_met: false,
+        }
     }
 
     /// "5 of 5".
@@ -80,7 +89,10 @@ impl VerdictRow {
     /// All of it as one sentence, for screen readers.
     pub fn sentence(&self) -> String {
         let [here, everywhere] = [self.here, self.everywhere].map(Self::count);
-        format!("{}: {here} {}, of all conditions {everywhere}", self.name, self.words)
+        format!(
+            "{}: {here} {}, of all conditions {everywhere}",
+            self.name, self.words
+        )
     }
 }
 
@@ -90,7 +102,10 @@ impl Verdict {
         let condition = state.condition().id();
         let nothing = |gain: String, steps: Vec<Step>| Self {
             condition,
-            rows: [VerdictRow::without_result("Gain", gain), VerdictRow::without_result("Phase", String::new())],
+            rows: [
+                VerdictRow::without_result("Gain", gain),
+                VerdictRow::without_result("Phase", String::new()),
+            ],
             steps,
             note: String::new(),
             caution: None,
@@ -101,11 +116,15 @@ impl Verdict {
             None => nothing(state.results.absence().to_owned(), Vec::new()),
             Some(Err(failure @ ConditionFailure::NoReference)) => {
                 let identify = Step::new("Identify from records", Command::ShowView(View::Records));
-                Self { caution: Some(failure.to_string()), ..nothing("no reference yet".to_owned(), vec![identify]) }
+                Self {
+                    caution: Some(failure.to_string()),
+                    ..nothing("no reference yet".to_owned(), vec![identify])
+                }
             }
-            Some(Err(failure)) => {
-                Self { caution: Some(failure.to_string()), ..nothing("no result".to_owned(), Vec::new()) }
-            }
+            Some(Err(failure)) => Self {
+                caution: Some(failure.to_string()),
+                ..nothing("no result".to_owned(), Vec::new())
+            },
             Some(Ok(shown)) => Self::of_result(state, shown),
         }
     }
@@ -141,10 +160,17 @@ fn counts(shown: &ConditionAnalysis) -> [[usize; 2]; 2] {
 fn rows(state: &State, shown: &ConditionAnalysis) -> [VerdictRow; 2] {
     let phase = state.study.settings.phase;
     let [gain, delay] = counts(shown);
-    let results = state.analysis().map(|analysis| analysis.conditions.values().filter_map(|of| of.as_ref().ok()));
+    let results = state.analysis().map(|analysis| {
+        analysis
+            .conditions
+            .values()
+            .filter_map(|of| of.as_ref().ok())
+    });
     let everywhere = results.map(|results| {
         let none = [[0; 2]; 2];
-        results.map(counts).fold(none, |sum, of| [0, 1].map(|row| [0, 1].map(|at| sum[row][at] + of[row][at])))
+        results.map(counts).fold(none, |sum, of| {
+            [0, 1].map(|row| [0, 1].map(|at| sum[row][at] + of[row][at]))
+        })
     });
     let is_corrected = phase != PhaseCorrection::None;
     let is_any_held = gain[1] > 0;
@@ -153,7 +179,11 @@ fn rows(state: &State, shown: &ConditionAnalysis) -> [VerdictRow; 2] {
         name: "Gain",
         here: Some(gain),
         everywhere: everywhere.map(|of| of[0]),
-        words: if is_any_held { gain_words(state, shown) } else { "fitted, none held".to_owned() },
+        words: if is_any_held {
+            gain_words(state, shown)
+        } else {
+            "fitted, none held".to_owned()
+        },
         is_met: is_any_held && shown.gains.matched,
     };
     let phases = VerdictRow {
@@ -164,9 +194,14 @@ fn rows(state: &State, shown: &ConditionAnalysis) -> [VerdictRow; 2] {
             (false, _) => "not corrected".to_owned(),
             (true, false) => "fitted, none held".to_owned(),
             (true, true) if is_phase_met => format!("matched, {}", band_words(state)),
-            (true, true) => {
-                lag_words(&mut shown.delays.unmatched.iter().map(|missed| s_to_ms(missed.excess)).collect::<Vec<_>>())
-            }
+            (true, true) => lag_words(
+                &mut shown
+                    .delays
+                    .unmatched
+                    .iter()
+                    .map(|missed| s_to_ms(missed.excess))
+                    .collect::<Vec<_>>(),
+            ),
         },
         is_met: is_any_held && is_phase_met,
     };
@@ -176,28 +211,49 @@ fn rows(state: &State, shown: &ConditionAnalysis) -> [VerdictRow; 2] {
 /// "0.5–12 rad/s".
 pub(super) fn band_words(state: &State) -> String {
     let band = state.study.settings.band;
-    format!("{}–{} rad/s", six_digits(band.min()), six_digits(band.max()))
+    format!(
+        "{}–{} rad/s",
+        six_digits(band.min()),
+        six_digits(band.max())
+    )
 }
 
 fn gain_words(state: &State, shown: &ConditionAnalysis) -> String {
-    let Some(miss) = shown.gains.unmatched.first() else { return "matched".to_owned() };
+    let Some(miss) = shown.gains.unmatched.first() else {
+        return "matched".to_owned();
+    };
     match miss.why.kind {
-        ConflictKind::AboveUpper { .. } | ConflictKind::BelowLower { .. } | ConflictKind::TooFarApart { .. } => {
-            format!("{} stops at a bound", joined(&state.dataset().pair_name(miss.pair)))
+        ConflictKind::AboveUpper { .. }
+        | ConflictKind::BelowLower { .. }
+        | ConflictKind::TooFarApart { .. } => {
+            format!(
+                "{} stops at a bound",
+                joined(&state.dataset().pair_name(miss.pair))
+            )
         }
         ConflictKind::Loop { .. } | ConflictKind::Unclear => {
             let missed: Vec<Pair> = shown.gains.unmatched.iter().map(|miss| miss.pair).collect();
-            shared_words(state, &missed).unwrap_or_else(|| format!("{} disagree", miss.why.entries.len().max(2)))
+            shared_words(state, &missed)
+                .unwrap_or_else(|| format!("{} disagree", miss.why.entries.len().max(2)))
         }
     }
 }
 
 /// "2 share PED": responses that have an input or an output in common, by which they pull at one another.
 fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
-    let [first, rest @ ..] = pairs else { return None };
+    let [first, rest @ ..] = pairs else {
+        return None;
+    };
     let (inputs, outputs) = (state.dataset().inputs(), state.dataset().outputs());
-    let input = rest.iter().all(|pair| pair.input == first.input).then(|| &inputs[first.input]);
-    let output = || rest.iter().all(|pair| pair.output == first.output).then(|| &outputs[first.output]);
+    let input = rest
+        .iter()
+        .all(|pair| pair.input == first.input)
+        .then(|| &inputs[first.input]);
+    let output = || {
+        rest.iter()
+            .all(|pair| pair.output == first.output)
+            .then(|| &outputs[first.output])
+    };
     let channel = input.or_else(output).filter(|_| !rest.is_empty())?;
     Some(format!("{} share {}", pairs.len(), channel.name))
 }
@@ -210,11 +266,19 @@ pub(super) fn joined(name: &str) -> String {
 /// "lags by ≈ 66 ms" where all want about the same, as the remark on a common lead understands it; "lags 20–110 ms" otherwise, short
 /// enough for the narrowest window.
 fn lag_words(left_ms: &mut [f64]) -> String {
-    let (least, most) = left_ms.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(*at), b.max(*at)));
+    let (least, most) = left_ms
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| {
+            (a.min(*at), b.max(*at))
+        });
     let middle = median(left_ms);
     let verb = if middle >= 0.0 { "lags" } else { "leads" };
-    let [low, high] =
-        if middle >= 0.0 { [least, most] } else { [-most, -least] }.map(|at| telling(at, 0).replace('-', "\u{2212}"));
+    let [low, high] = if middle >= 0.0 {
+        [least, most]
+    } else {
+        [-most, -least]
+    }
+    .map(|at| telling(at, 0).replace('-', "\u{2212}"));
     if low == high {
         format!("{verb} by {low} ms")
     } else if most - least <= 0.5 * middle.abs() {
@@ -239,32 +303,54 @@ fn steps(state: &State, shown: &ConditionAnalysis) -> (Vec<Step>, String) {
     }
     let open = state.open_suggestions(shown);
     if !open.is_empty() {
-        let reject = Step::new(format!("Reject {} suggested", open.len()), Edit::reject_physics(condition, &open));
-        return (vec![reject], format!("of {} models, first", state.condition().bundle(BundleKind::Physics).len()));
+        let reject = Step::new(
+            format!("Reject {} suggested", open.len()),
+            Edit::reject_physics(condition, &open),
+        );
+        return (
+            vec![reject],
+            format!(
+                "of {} models, first",
+                state.condition().bundle(BundleKind::Physics).len()
+            ),
+        );
     }
     if shown.held().marked().next().is_none() {
-        return alone(vec![Step::new("Hold the on-axis responses", Edit::ConstrainOnAxis)]);
+        return alone(vec![Step::new(
+            "Hold the on-axis responses",
+            Edit::ConstrainOnAxis,
+        )]);
     }
     if !shown.gains.matched {
         return alone(gain_steps(state, shown));
     }
     match state.study.settings.phase {
-        PhaseCorrection::None => alone(vec![Step::new("Use delays", setting::PHASE.to(PhaseCorrection::Delay))]),
+        PhaseCorrection::None => alone(vec![Step::new(
+            "Use delays",
+            setting::PHASE.to(PhaseCorrection::Delay),
+        )]),
         PhaseCorrection::Delay if !shown.delays.matched => {
             let leads = Step::new("Use leads", setting::PHASE.to(PhaseCorrection::Lead));
             alone(vec![leads, Step::reasons("Find the cause first")])
         }
         PhaseCorrection::Lead if !shown.delays.matched => {
-            let free = shown.delays.remedy.iter().flat_map(|remedy| &remedy.free).next();
+            let free = shown
+                .delays
+                .remedy
+                .iter()
+                .flat_map(|remedy| &remedy.free)
+                .next();
             let free = free.map(|pair| free_step(state, *pair));
             alone(free.into_iter().chain([Step::reasons("Why?")]).collect())
         }
         PhaseCorrection::Lead => couplings_steps(state).unwrap_or_else(|| {
-            alone(vec![Step::new("Export corrections…", export()), Step::reasons("Find the cause")])
+            alone(vec![
+                Step::new("Export corrections…", export()),
+                Step::reasons("Find the cause"),
+            ])
         }),
-        PhaseCorrection::Delay => {
-            couplings_steps(state).unwrap_or_else(|| alone(vec![Step::new("Export corrections…", export())]))
-        }
+        PhaseCorrection::Delay => couplings_steps(state)
+            .unwrap_or_else(|| alone(vec![Step::new("Export corrections…", export())])),
     }
 }
 
@@ -272,8 +358,9 @@ fn steps(state: &State, shown: &ConditionAnalysis) -> (Vec<Step>, String) {
 fn couplings_steps(state: &State) -> Option<(Vec<Step>, String)> {
     let words = |cost: CouplingCost| {
         let others = cost.without.others.zip(cost.with.others);
-        others
-            .map_or(String::new(), |(without, with)| format!("off-axis J {}→{}", telling(without, 0), telling(with, 0)))
+        others.map_or(String::new(), |(without, with)| {
+            format!("off-axis J {}→{}", telling(without, 0), telling(with, 0))
+        })
     };
     let look = || Step::new("Look first", Command::ShowView(View::Couplings));
     if let Some((assessment, cost)) = offered_couplings(state) {
@@ -282,7 +369,10 @@ fn couplings_steps(state: &State) -> Option<(Vec<Step>, String)> {
     }
     let used = used_couplings(state)?;
     let cost = used.deciding_cost();
-    let leave_them = Step::new("Switch couplings off", setting::COUPLINGS.to(CouplingCorrection::None));
+    let leave_them = Step::new(
+        "Switch couplings off",
+        setting::COUPLINGS.to(CouplingCorrection::None),
+    );
     let is_doubtful = !cost.is_worth_it() || used.unstable_in_band() > 0;
     is_doubtful.then(|| (vec![leave_them, look()], words(cost)))
 }
@@ -298,30 +388,50 @@ pub(super) fn export() -> Command {
 }
 
 fn free_step(state: &State, pair: Pair) -> Step {
-    Step::new(format!("Free {}", joined(&state.dataset().pair_name(pair))), Edit::Hold(pair, false))
+    Step::new(
+        format!("Free {}", joined(&state.dataset().pair_name(pair))),
+        Edit::Hold(pair, false),
+    )
 }
 
 /// The bound that would do, where one would; then the response to be freed.
 fn gain_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
-    let Some(remedy) = &shown.gains.remedy else { return vec![Step::reasons("Why?")] };
-    let widen = widened(remedy, shown).map(|range| Step::new("Widen the bound", setting::GAIN_BOUNDS.to(range)));
+    let Some(remedy) = &shown.gains.remedy else {
+        return vec![Step::reasons("Why?")];
+    };
+    let widen = widened(remedy, shown)
+        .map(|range| Step::new("Widen the bound", setting::GAIN_BOUNDS.to(range)));
     let free = remedy.free.first().map(|pair| free_step(state, *pair));
-    widen.into_iter().chain(free).chain([Step::reasons("Why?")]).collect()
+    widen
+        .into_iter()
+        .chain(free)
+        .chain([Step::reasons("Why?")])
+        .collect()
 }
 
 fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
     let bounds = shown.gain_bounds();
     let upper = remedy.upper.map(|upper| [bounds.lower, upper]);
-    upper.or(remedy.lower.map(|lower| [lower, bounds.upper])).map(Value::Range)
+    upper
+        .or(remedy.lower.map(|lower| [lower, bounds.upper]))
+        .map(Value::Range)
 }
 
 /// That there are no couplings where some are asked for, or what they do to poles and loop; else the price of the leads; else what the
 /// schedule costs here.
 fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
     let of_couplings = coupling_caution(state);
-    let is_trouble = of_couplings.as_ref().is_some_and(|(kind, _)| *kind == RemarkKind::Trouble);
+    let is_trouble = of_couplings
+        .as_ref()
+        .is_some_and(|(kind, _)| *kind == RemarkKind::Trouble);
     let words = of_couplings.map(|(_, words)| words);
-    if is_trouble { words } else { lead_caution(shown).or(words).or_else(|| schedule_caution(state, shown)) }
+    if is_trouble {
+        words
+    } else {
+        lead_caution(shown)
+            .or(words)
+            .or_else(|| schedule_caution(state, shown))
+    }
 }
 
 /// That the schedule leaves more than twice the J of the condition's own correction here (M12).
@@ -341,13 +451,22 @@ fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<String> 
 /// The gravest of what there is to say of the couplings that are used, in a few words; the list of reasons has all of it.
 fn coupling_caution(state: &State) -> Option<(RemarkKind, String)> {
     if state.analysis()?.asked_couplings().is_err() {
-        return Some((RemarkKind::Trouble, "No couplings could be found".to_owned()));
+        return Some((
+            RemarkKind::Trouble,
+            "No couplings could be found".to_owned(),
+        ));
     }
     let cautions = used_couplings(state)?.cautions(state.dataset());
     match (unstable_in_band(state), cautions.len()) {
         (0, 0) => None,
-        (1, _) => Some((RemarkKind::Trouble, "Couplings: 1 pole unstable in the band".to_owned())),
-        (count @ 2.., _) => Some((RemarkKind::Trouble, format!("Couplings: {count} poles unstable in the band"))),
+        (1, _) => Some((
+            RemarkKind::Trouble,
+            "Couplings: 1 pole unstable in the band".to_owned(),
+        )),
+        (count @ 2.., _) => Some((
+            RemarkKind::Trouble,
+            format!("Couplings: {count} poles unstable in the band"),
+        )),
         (0, 1) => Some((RemarkKind::Caution, "Couplings: 1 caution".to_owned())),
         (0, count) => Some((RemarkKind::Caution, format!("Couplings: {count} cautions"))),
     }
@@ -356,7 +475,11 @@ fn coupling_caution(state: &State) -> Option<(RemarkKind, String)> {
 /// The price of the leads: what the filters of the held response that pays most add above the band (M15.6).
 fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
     let price = LeadPrice::of(&shown.compensated.as_ref()?.leads)?;
-    let most_db = shown.held().marked().map(|pair| price.of_pair_db(pair)).fold(0.0, f64::max);
+    let most_db = shown
+        .held()
+        .marked()
+        .map(|pair| price.of_pair_db(pair))
+        .fold(0.0, f64::max);
     let top = number(price.limit_rad_s);
     (most_db > 0.05).then(|| format!("Price: {} dB above {top} rad/s", signed(most_db, 0)))
 }
@@ -372,11 +495,19 @@ mod tests {
     use super::*;
 
     fn state_of(decide: &[Edit]) -> State {
-        let mut study = Study::new(gdcm_io::embedded_example().expect("it is in the program").dataset);
-        decide.iter().for_each(|edit| study.apply(edit).expect("the example takes it"));
+        let mut study = Study::new(
+            gdcm_io::embedded_example()
+                .expect("it is in the program")
+                .dataset,
+        );
+        decide
+            .iter()
+            .for_each(|edit| study.apply(edit).expect("the example takes it"));
         let mut state = State::new(study.clone(), String::new(), Vec::new());
         state.display.condition = ConditionId(10);
-        let analysis = Engine::default().analyze(&study, &Unobserved).expect("nothing stops it");
+        let analysis = Engine::default()
+            .analyze(&study, &Unobserved)
+            .expect("nothing stops it");
         state.results.analysis = Some(Arc::new(analysis));
         state
     }
@@ -388,7 +519,11 @@ mod tests {
     }
 
     fn labels(verdict: &Verdict) -> Vec<&str> {
-        verdict.steps.iter().map(|step| step.label.as_str()).collect()
+        verdict
+            .steps
+            .iter()
+            .map(|step| step.label.as_str())
+            .collect()
     }
 
     #[test]
@@ -402,8 +537,14 @@ mod tests {
     fn gains_alone_do_not_make_a_verdict_good() {
         let verdict = Verdict::of(&state_of(&[reject()]));
         let [gain, phase] = &verdict.rows;
-        assert_eq!((gain.here, gain.everywhere, gain.words.as_str()), (Some([5, 5]), Some([55, 55]), "matched"));
-        assert_eq!((phase.here, phase.everywhere), (Some([0, 5]), Some([0, 55])));
+        assert_eq!(
+            (gain.here, gain.everywhere, gain.words.as_str()),
+            (Some([5, 5]), Some([55, 55]), "matched")
+        );
+        assert_eq!(
+            (phase.here, phase.everywhere),
+            (Some([0, 5]), Some([0, 55]))
+        );
         // The medians of D of the example's held responses in condition 10: 56 to 72 ms of lead.
         assert_eq!(phase.words, "lags by ≈ 66 ms");
         assert!(!verdict.is_met() && verdict.caution.is_none());
@@ -412,21 +553,35 @@ mod tests {
 
     #[test]
     fn leads_are_met_and_say_their_price() {
-        let verdict = Verdict::of(&state_of(&[reject(), setting::PHASE.to(PhaseCorrection::Lead)]));
+        let verdict = Verdict::of(&state_of(&[
+            reject(),
+            setting::PHASE.to(PhaseCorrection::Lead),
+        ]));
         assert!(verdict.is_met(), "{verdict:?}");
         let caution = verdict.caution.as_deref().unwrap_or_default();
-        assert!(caution.starts_with("Price: +") && caution.ends_with(" dB above 12 rad/s"), "{caution}");
+        assert!(
+            caution.starts_with("Price: +") && caution.ends_with(" dB above 12 rad/s"),
+            "{caution}"
+        );
         assert_eq!(verdict.steps[0].command, export());
     }
 
     #[test]
     fn poles_that_couplings_make_unstable_in_the_band_keep_the_verdict_from_being_good() {
         let couplings = setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback);
-        let mut state = state_of(&[reject(), setting::PHASE.to(PhaseCorrection::Lead), couplings]);
+        let mut state = state_of(&[
+            reject(),
+            setting::PHASE.to(PhaseCorrection::Lead),
+            couplings,
+        ]);
         let study = state.study.clone();
         let mut engine = Engine::default();
-        let assessed = engine.assess_couplings(&study, CouplingCorrection::MixingAndFeedback, &Unobserved);
-        let assessed = assessed.expect("nothing stops it").expect("it asks for some").expect("there are some");
+        let assessed =
+            engine.assess_couplings(&study, CouplingCorrection::MixingAndFeedback, &Unobserved);
+        let assessed = assessed
+            .expect("nothing stops it")
+            .expect("it asks for some")
+            .expect("there are some");
         let mut verdict_with = |poles: &[(f64, bool)]| {
             let mut changed = (*assessed).clone();
             changed.unstable = poles
@@ -446,18 +601,40 @@ mod tests {
         let sound = verdict_with(&[]);
         assert!(sound.is_met() && sound.unstable_in_band == 0, "{sound:?}");
         let beyond = verdict_with(&[(90.0, false)]);
-        assert!(beyond.is_met() && beyond.unstable_in_band == 0, "{beyond:?}");
+        assert!(
+            beyond.is_met() && beyond.unstable_in_band == 0,
+            "{beyond:?}"
+        );
         let within = verdict_with(&[(2.0, true), (90.0, false), (3.0, true)]);
-        assert!(!within.is_met() && within.unstable_in_band == 2, "{within:?}");
-        assert!(within.rows.iter().all(|row| row.is_met), "gains and phases are met all the same");
-        assert!(within.caution.as_ref().is_some_and(|words| words.contains("2 poles")), "{within:?}");
-        assert_eq!(within.steps[0].command, setting::COUPLINGS.to(CouplingCorrection::None).into());
+        assert!(
+            !within.is_met() && within.unstable_in_band == 2,
+            "{within:?}"
+        );
+        assert!(
+            within.rows.iter().all(|row| row.is_met),
+            "gains and phases are met all the same"
+        );
+        assert!(
+            within
+                .caution
+                .as_ref()
+                .is_some_and(|words| words.contains("2 poles")),
+            "{within:?}"
+        );
+        assert_eq!(
+            within.steps[0].command,
+            setting::COUPLINGS.to(CouplingCorrection::None).into()
+        );
     }
 
     #[test]
     fn where_nothing_is_held_the_on_axis_responses_are_offered() {
         let pairs: Vec<Pair> = state_of(&[]).dataset().on_axis().marked().collect();
-        let release: Vec<Edit> = pairs.into_iter().map(|pair| Edit::Hold(pair, false)).chain([reject()]).collect();
+        let release: Vec<Edit> = pairs
+            .into_iter()
+            .map(|pair| Edit::Hold(pair, false))
+            .chain([reject()])
+            .collect();
         let verdict = Verdict::of(&state_of(&release));
         assert_eq!(verdict.rows[0].words, "fitted, none held");
         assert_eq!(labels(&verdict), ["Hold the on-axis responses"]);
@@ -468,12 +645,21 @@ mod tests {
     fn responses_that_have_a_channel_in_common_are_told_by_it() {
         let state = state_of(&[]);
         let words = |pairs: &[(usize, usize)]| {
-            let pairs: Vec<Pair> = pairs.iter().map(|(output, input)| Pair::new(*output, *input)).collect();
+            let pairs: Vec<Pair> = pairs
+                .iter()
+                .map(|(output, input)| Pair::new(*output, *input))
+                .collect();
             shared_words(&state, &pairs)
         };
         assert_eq!(words(&[(2, 2), (4, 2)]).as_deref(), Some("2 share PED"));
-        assert_eq!(words(&[(1, 0), (1, 3), (1, 2)]).as_deref(), Some("3 share Q"));
-        assert_eq!((words(&[(2, 2), (5, 3)]), words(&[(2, 2)]), words(&[])), (None, None, None));
+        assert_eq!(
+            words(&[(1, 0), (1, 3), (1, 2)]).as_deref(),
+            Some("3 share Q")
+        );
+        assert_eq!(
+            (words(&[(2, 2), (5, 3)]), words(&[(2, 2)]), words(&[])),
+            (None, None, None)
+        );
     }
 
     #[test]
@@ -489,9 +675,14 @@ mod tests {
     fn a_bound_that_is_in_the_way_can_be_widened() {
         let bounds = setting::GAIN_BOUNDS.to(Value::Range([0.99, 1.01]));
         let verdict = Verdict::of(&state_of(&[reject(), bounds]));
-        assert!(!verdict.rows[0].is_met && verdict.rows[0].words.ends_with("stops at a bound"), "{verdict:?}");
+        assert!(
+            !verdict.rows[0].is_met && verdict.rows[0].words.ends_with("stops at a bound"),
+            "{verdict:?}"
+        );
         assert_eq!(labels(&verdict)[0], "Widen the bound");
-        let Command::Edit(widen) = &verdict.steps[0].command else { panic!("{verdict:?}") };
+        let Command::Edit(widen) = &verdict.steps[0].command else {
+            panic!("{verdict:?}")
+        };
         let bounds = setting::GAIN_BOUNDS.to(Value::Range([0.99, 1.01]));
         assert!(Verdict::of(&state_of(&[reject(), bounds, widen.clone()])).rows[0].is_met);
     }

@@ -10,7 +10,9 @@ use gdcm_io::{FolderProgress, FoundModels, load_dataset, read_models, write_mat,
 use gdcm_model::assembly::{
     Assembly, ChannelRule, FoundModel, Headings, ProblemKind, RowRole, UnitRule, proposed_rules,
 };
-use gdcm_model::dataset::{BundleKind, Condition, ConditionRecord, Dataset, Dynamics, Model, StateSpace};
+use gdcm_model::dataset::{
+    BundleKind, Condition, ConditionRecord, Dataset, Dynamics, Model, StateSpace,
+};
 use nalgebra::DMatrix;
 use serde_json::json;
 
@@ -23,7 +25,12 @@ impl FolderProgress for Silent {
 }
 
 fn run(arguments: &[&str]) -> Ended {
-    Ended::of(&Command::new(env!("CARGO_BIN_EXE_gdcm")).args(arguments).output().unwrap())
+    Ended::of(
+        &Command::new(env!("CARGO_BIN_EXE_gdcm"))
+            .args(arguments)
+            .output()
+            .unwrap(),
+    )
 }
 
 fn found_in(folder: &Path) -> FoundModels {
@@ -38,21 +45,35 @@ fn matrices(model: &Model) -> [&DMatrix<f64>; 4] {
 }
 
 fn array(matrix: &DMatrix<f64>) -> Value {
-    Value::Array(Array::matrix(matrix.nrows(), matrix.ncols(), matrix.as_slice().to_vec()))
+    Value::Array(Array::matrix(
+        matrix.nrows(),
+        matrix.ncols(),
+        matrix.as_slice().to_vec(),
+    ))
 }
 
 fn text(text: &str) -> Value {
-    Value::Text(TextArray { shape: vec![1, 1], texts: vec![text.to_owned()] })
+    Value::Text(TextArray {
+        shape: vec![1, 1],
+        texts: vec![text.to_owned()],
+    })
 }
 
 fn cell(texts: &[String]) -> Value {
-    Value::Cell(CellArray { shape: vec![texts.len(), 1], values: texts.iter().map(|of| text(of)).collect() })
+    Value::Cell(CellArray {
+        shape: vec![texts.len(), 1],
+        values: texts.iter().map(|of| text(of)).collect(),
+    })
 }
 
 /// Names and units of the example's channels, as MATLAB names their lists.
 fn labels(dataset: &Dataset) -> [(&'static str, Vec<String>); 4] {
-    let of = |channels: &[gdcm_model::dataset::Channel], part: fn(&gdcm_model::dataset::Channel) -> &String| {
-        channels.iter().map(|channel| part(channel).clone()).collect()
+    let of = |channels: &[gdcm_model::dataset::Channel],
+              part: fn(&gdcm_model::dataset::Channel) -> &String| {
+        channels
+            .iter()
+            .map(|channel| part(channel).clone())
+            .collect()
     };
     [
         ("InputName", of(dataset.inputs(), |channel| &channel.name)),
@@ -86,7 +107,10 @@ fn write_folders(root: &Path, dataset: &Dataset, write: impl Fn(&Path, &Model)) 
         let folder = root.join(name);
         std::fs::create_dir_all(&folder).unwrap();
         for kind in BundleKind::BOTH {
-            condition.bundle(kind).iter().for_each(|model| write(&folder.join(stem(kind, model)), model));
+            condition
+                .bundle(kind)
+                .iter()
+                .for_each(|model| write(&folder.join(stem(kind, model)), model));
         }
     }
 }
@@ -97,18 +121,31 @@ fn write_as_mat(dataset: &Dataset, path: &Path, model: &Model) {
 
 /// A system in a struct of MATLAB, with names and units.
 fn write_sys(path: &Path, matrices: [&DMatrix<f64>; 4], labels: [(&'static str, Vec<String>); 4]) {
-    let names =
-        ["A", "B", "C", "D"].into_iter().zip(matrices).map(|(name, matrix)| (name.to_owned(), vec![array(matrix)]));
-    let lists = labels.into_iter().map(|(name, list)| (name.to_owned(), vec![cell(&list)]));
-    let sys = Value::Struct(StructArray { shape: vec![1, 1], fields: names.chain(lists).collect() });
-    let bytes = write_mat(&[Variable { name: "sys".into(), value: sys }]).unwrap();
+    let names = ["A", "B", "C", "D"]
+        .into_iter()
+        .zip(matrices)
+        .map(|(name, matrix)| (name.to_owned(), vec![array(matrix)]));
+    let lists = labels
+        .into_iter()
+        .map(|(name, list)| (name.to_owned(), vec![cell(&list)]));
+    let sys = Value::Struct(StructArray {
+        shape: vec![1, 1],
+        fields: names.chain(lists).collect(),
+    });
+    let bytes = write_mat(&[Variable {
+        name: "sys".into(),
+        value: sys,
+    }])
+    .unwrap();
     std::fs::write(path.with_file_name(file_name(path, "mat")), bytes).unwrap();
 }
 
 /// The models of the example in a folder of MATLAB files.
 pub(crate) fn example_folder(root: &Path) {
     let example = &crate::EXAMPLE.dataset;
-    write_folders(root, example, |path, model| write_as_mat(example, path, model));
+    write_folders(root, example, |path, model| {
+        write_as_mat(example, path, model)
+    });
 }
 
 /// Per cent of the travel of the longitudinal stick in an inch of it.
@@ -119,19 +156,30 @@ pub(crate) const PERCENT_IN_AN_INCH: f64 = 12.5;
 pub(crate) fn foreign_tree(root: &Path) {
     let example = &crate::EXAMPLE.dataset;
     let of_tree = |condition: &&Arc<Condition>| [1, 3].contains(&condition.id().0);
-    let conditions = example.conditions().iter().filter(of_tree).map(|condition| condition.as_ref().clone()).collect();
+    let conditions = example
+        .conditions()
+        .iter()
+        .filter(of_tree)
+        .map(|condition| condition.as_ref().clone())
+        .collect();
     let two = Dataset::new(example.header(), conditions).unwrap();
     write_folders(root, &two, |path, model| {
         let mut of = matrices(model).map(DMatrix::clone);
         let mut labels = labels(example);
-        if path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("flight_")) {
+        if path
+            .file_name()
+            .is_some_and(|name| name.to_string_lossy().starts_with("flight_"))
+        {
             let nz = example.outputs().len() - 1;
             of[1].column_mut(0).scale_mut(PERCENT_IN_AN_INCH);
             of[3].column_mut(0).scale_mut(PERCENT_IN_AN_INCH);
             of[2].row_mut(nz).scale_mut(-1.0);
             of[3].row_mut(nz).scale_mut(-1.0);
             for (name, first) in [("InputName", "xb"), ("InputUnit", "in")] {
-                labels.iter_mut().filter(|label| label.0 == name).for_each(|label| label.1[0] = first.to_owned());
+                labels
+                    .iter_mut()
+                    .filter(|label| label.0 == name)
+                    .for_each(|label| label.1[0] = first.to_owned());
             }
         }
         write_sys(path, of.each_ref(), labels);
@@ -139,13 +187,31 @@ pub(crate) fn foreign_tree(root: &Path) {
 }
 
 fn write_as_npz(dataset: &Dataset, path: &Path, model: &Model) {
-    let numbers = ["A", "B", "C", "D"].into_iter().zip(matrices(model)).map(|(name, matrix)| (name, array(matrix)));
-    let lists = labels(dataset)
+    let numbers = ["A", "B", "C", "D"]
         .into_iter()
-        .map(|(name, texts)| (name, Value::Text(TextArray { shape: vec![1, texts.len()], texts })));
-    let variables: Vec<Variable> =
-        numbers.chain(lists).map(|(name, value)| Variable { name: name.to_owned(), value }).collect();
-    std::fs::write(path.with_file_name(file_name(path, "npz")), write_npz(&variables).unwrap()).unwrap();
+        .zip(matrices(model))
+        .map(|(name, matrix)| (name, array(matrix)));
+    let lists = labels(dataset).into_iter().map(|(name, texts)| {
+        (
+            name,
+            Value::Text(TextArray {
+                shape: vec![1, texts.len()],
+                texts,
+            }),
+        )
+    });
+    let variables: Vec<Variable> = numbers
+        .chain(lists)
+        .map(|(name, value)| Variable {
+            name: name.to_owned(),
+            value,
+        })
+        .collect();
+    std::fs::write(
+        path.with_file_name(file_name(path, "npz")),
+        write_npz(&variables).unwrap(),
+    )
+    .unwrap();
 }
 
 fn write_as_csv(path: &Path, model: &Model) {
@@ -155,7 +221,10 @@ fn write_as_csv(path: &Path, model: &Model) {
             let cells: Vec<String> = row.iter().map(|value| format!("{value:?}")).collect();
             writeln!(text, "{}", cells.join(",")).unwrap();
         }
-        let name = format!("{}_{letter}.csv", path.file_name().unwrap().to_str().unwrap());
+        let name = format!(
+            "{}_{letter}.csv",
+            path.file_name().unwrap().to_str().unwrap()
+        );
         std::fs::write(path.with_file_name(name), text).unwrap();
     }
 }
@@ -165,7 +234,12 @@ fn write_as_literals(dataset: &Dataset, path: &Path, model: &Model) {
     for (letter, matrix) in ["A", "B", "C", "D"].into_iter().zip(matrices(model)) {
         let rows: Vec<String> = matrix
             .row_iter()
-            .map(|row| row.iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(" "))
+            .map(|row| {
+                row.iter()
+                    .map(|value| format!("{value:?}"))
+                    .collect::<Vec<_>>()
+                    .join(" ")
+            })
             .collect();
         write!(text, "{letter} = [{}];\r\n", rows.join("; ...\r\n  ")).unwrap();
     }
@@ -178,26 +252,47 @@ fn write_as_literals(dataset: &Dataset, path: &Path, model: &Model) {
 
 /// "roll+5" and "mat" make "roll+5.mat"; `with_extension` would cut names at their points.
 fn file_name(path: &Path, extension: &str) -> String {
-    format!("{}.{extension}", path.file_name().unwrap().to_str().unwrap())
+    format!(
+        "{}.{extension}",
+        path.file_name().unwrap().to_str().unwrap()
+    )
 }
 
 /// Asserts that a dataset has the example's numbers, bit for bit, with the names of the files.
 fn assert_same_numbers(made: &Dataset, example: &Dataset, route: &str) {
-    assert_eq!(made.conditions().len(), example.conditions().len(), "{route}");
+    assert_eq!(
+        made.conditions().len(),
+        example.conditions().len(),
+        "{route}"
+    );
     for expected in example.conditions() {
         let found: &Arc<Condition> = made.condition(expected.id()).unwrap();
         let (found_state, state) = (found.flight_state(), expected.flight_state());
         assert_eq!(
-            (found_state.airspeed_kt, &found_state.altitude, &found_state.weight),
+            (
+                found_state.airspeed_kt,
+                &found_state.altitude,
+                &found_state.weight
+            ),
             (state.airspeed_kt, &state.altitude, &state.weight)
         );
         for kind in BundleKind::BOTH {
-            assert_eq!(found.bundle(kind).len(), expected.bundle(kind).len(), "{route}");
+            assert_eq!(
+                found.bundle(kind).len(),
+                expected.bundle(kind).len(),
+                "{route}"
+            );
             for model in expected.bundle(kind) {
-                let same =
-                    found.model(kind, &stem(kind, model)).unwrap_or_else(|| panic!("{route}: {}", stem(kind, model)));
+                let same = found
+                    .model(kind, &stem(kind, model))
+                    .unwrap_or_else(|| panic!("{route}: {}", stem(kind, model)));
                 assert_eq!(matrices(same), matrices(model), "{route}: {}", model.name);
-                assert_eq!(same.is_nominal(), model.is_nominal(), "{route}: {}", model.name);
+                assert_eq!(
+                    same.is_nominal(),
+                    model.is_nominal(),
+                    "{route}: {}",
+                    model.name
+                );
             }
         }
     }
@@ -222,7 +317,11 @@ fn the_example_in_a_folder_of_any_format_is_the_same_dataset_to_the_last_digit()
         assert!(found.faults.is_empty(), "{route}: {:?}", found.faults);
         let rules = proposed_rules(route, &found.models);
         let assembly = Assembly::new(found.models, rules);
-        assert!(assembly.problems().is_empty(), "{route}: {:?}", assembly.told());
+        assert!(
+            assembly.problems().is_empty(),
+            "{route}: {:?}",
+            assembly.told()
+        );
         assert_same_numbers(&assembly.dataset("").unwrap(), example, route);
     }
 }
@@ -231,14 +330,18 @@ fn the_example_in_a_folder_of_any_format_is_the_same_dataset_to_the_last_digit()
 fn perturbations_of_file_names_are_the_example_s() {
     let example = &crate::EXAMPLE.dataset;
     let folder = tempfile::tempdir().unwrap();
-    write_folders(folder.path(), example, |path, model| write_as_mat(example, path, model));
+    write_folders(folder.path(), example, |path, model| {
+        write_as_mat(example, path, model)
+    });
     let found = found_in(folder.path());
     let rules = proposed_rules("", &found.models);
     let made = Assembly::new(found.models, rules).dataset("").unwrap();
     for expected in example.conditions() {
         for model in expected.bundle(BundleKind::Physics) {
             let condition = made.condition(expected.id()).unwrap();
-            let found = condition.model(BundleKind::Physics, &stem(BundleKind::Physics, model)).unwrap();
+            let found = condition
+                .model(BundleKind::Physics, &stem(BundleKind::Physics, model))
+                .unwrap();
             assert_eq!(found.perturbation(), model.perturbation(), "{}", model.name);
         }
     }
@@ -255,14 +358,21 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
     let first = run(&["assemble", root, "--out", made]);
     assert_eq!(first.status, 2, "{}", first.error);
     let said = &first.error;
-    let models: usize =
-        example.conditions().iter().flat_map(|of| BundleKind::BOTH.map(|kind| of.bundle(kind).len())).sum();
+    let models: usize = example
+        .conditions()
+        .iter()
+        .flat_map(|of| BundleKind::BOTH.map(|kind| of.bundle(kind).len()))
+        .sum();
     let others = format!("and {} other models", models - 1);
-    assert!(said.contains("input 1: choose a unit") && said.contains(&others), "{said}");
+    assert!(
+        said.contains("input 1: choose a unit") && said.contains(&others),
+        "{said}"
+    );
     assert!(!out.exists(), "nothing half made");
     // The rules that were proposed, with the names and units of the channels.
     let path = folder.path().join("made.gdcm-rules.json");
-    let mut rules: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    let mut rules: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
     for (side, channels) in [("inputs", example.inputs()), ("outputs", example.outputs())] {
         rules[side] = channels
             .iter()
@@ -270,25 +380,71 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
             .collect();
     }
     std::fs::write(&path, rules.to_string()).unwrap();
-    let second = run(&["assemble", root, "--rules", path.to_str().unwrap(), "--out", made]);
+    let second = run(&[
+        "assemble",
+        root,
+        "--rules",
+        path.to_str().unwrap(),
+        "--out",
+        made,
+    ]);
     assert_eq!(second.status, 0, "{}", second.error);
     assert!(second.out.contains("11 conditions"), "{}", second.out);
-    assert!(second.error.contains("caution: no names of channels in the file"), "{}", second.error);
+    assert!(
+        second
+            .error
+            .contains("caution: no names of channels in the file"),
+        "{}",
+        second.error
+    );
     let analysed = folder.path().join("analysed");
-    let analysis = run(&["--json", "analyze", made, "--out", analysed.to_str().unwrap()]);
+    let analysis = run(&[
+        "--json",
+        "analyze",
+        made,
+        "--out",
+        analysed.to_str().unwrap(),
+    ]);
     assert_eq!(analysis.status, 0, "{}", analysis.error);
     let said: serde_json::Value = serde_json::from_str(&analysis.out).unwrap();
-    let by_position =
-        |caution: &&serde_json::Value| caution["text"].as_str().unwrap().contains("taken by their position");
-    let cautions: Vec<&serde_json::Value> = said["cautions"].as_array().unwrap().iter().filter(by_position).collect();
+    let by_position = |caution: &&serde_json::Value| {
+        caution["text"]
+            .as_str()
+            .unwrap()
+            .contains("taken by their position")
+    };
+    let cautions: Vec<&serde_json::Value> = said["cautions"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(by_position)
+        .collect();
     assert!(!cautions.is_empty(), "{said}");
     let dataset = load_dataset(&out).unwrap().dataset;
     assert_same_numbers(&dataset, example, "csv");
     let nominal = &dataset.conditions()[0].bundle(BundleKind::Physics)[0];
     let source = nominal.source.as_ref().unwrap();
-    assert_eq!(source.file.as_deref(), Some("csv/c01_120kt_low_low/nominal"), "relative to the dataset");
-    assert!(source.note.as_ref().unwrap().contains("SHA-256 of its files"), "{source:?}");
-    let again = run(&["assemble", root, "--rules", path.to_str().unwrap(), "--out", made]);
+    assert_eq!(
+        source.file.as_deref(),
+        Some("csv/c01_120kt_low_low/nominal"),
+        "relative to the dataset"
+    );
+    assert!(
+        source
+            .note
+            .as_ref()
+            .unwrap()
+            .contains("SHA-256 of its files"),
+        "{source:?}"
+    );
+    let again = run(&[
+        "assemble",
+        root,
+        "--rules",
+        path.to_str().unwrap(),
+        "--out",
+        made,
+    ]);
     assert_eq!(again.status, 2, "nothing is overwritten unasked");
     assert!(again.error.contains("--force"), "{}", again.error);
 }
@@ -296,11 +452,26 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
 /// Two physics models and a measured response of one input and one output, as files.
 pub(crate) fn small_folder(root: &Path) {
     let model = |gain: f64| {
-        let values = [("A", vec![-1.0]), ("B", vec![gain]), ("C", vec![1.0]), ("D", vec![0.0])];
-        let numbers = values
-            .map(|(name, values)| Variable { name: name.into(), value: Value::Array(Array::matrix(1, 1, values)) });
-        let names = [("InputName", "xb"), ("OutputName", "pitch rate"), ("InputUnit", "in"), ("OutputUnit", "rad/s")];
-        let texts = names.map(|(name, of)| Variable { name: name.into(), value: text(of) });
+        let values = [
+            ("A", vec![-1.0]),
+            ("B", vec![gain]),
+            ("C", vec![1.0]),
+            ("D", vec![0.0]),
+        ];
+        let numbers = values.map(|(name, values)| Variable {
+            name: name.into(),
+            value: Value::Array(Array::matrix(1, 1, values)),
+        });
+        let names = [
+            ("InputName", "xb"),
+            ("OutputName", "pitch rate"),
+            ("InputUnit", "in"),
+            ("OutputUnit", "rad/s"),
+        ];
+        let texts = names.map(|(name, of)| Variable {
+            name: name.into(),
+            value: text(of),
+        });
         write_mat(&[&numbers[..], &texts[..]].concat()).unwrap()
     };
     let folder = root.join("c1_60kt");
@@ -311,7 +482,12 @@ pub(crate) fn small_folder(root: &Path) {
     for step in 0..40 {
         let omega = 0.3 * 1.1f64.powi(step);
         let magnitude = -10.0 * (1.0 + omega * omega).log10();
-        writeln!(frf, "{omega},{magnitude},{},0.9", -omega.atan().to_degrees()).unwrap();
+        writeln!(
+            frf,
+            "{omega},{magnitude},{},0.9",
+            -omega.atan().to_degrees()
+        )
+        .unwrap();
     }
     std::fs::write(folder.join("frf_Q_LON.csv"), frf).unwrap();
     std::fs::write(folder.join("broken.mat"), b"not a mat file at all").unwrap();
@@ -323,11 +499,19 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
     small_folder(folder.path());
     let found = found_in(folder.path());
     assert_eq!(found.models.len(), 3);
-    assert!(found.faults.iter().any(|fault| fault.contains("broken.mat")), "{:?}", found.faults);
+    assert!(
+        found
+            .faults
+            .iter()
+            .any(|fault| fault.contains("broken.mat")),
+        "{:?}",
+        found.faults
+    );
     let mut rules = proposed_rules("small", &found.models);
     let assembly = Assembly::new(found.models, rules.clone());
-    let asked =
-        |assembly: &Assembly, wanted: fn(&ProblemKind) -> bool| assembly.problems().iter().any(|of| wanted(&of.kind));
+    let asked = |assembly: &Assembly, wanted: fn(&ProblemKind) -> bool| {
+        assembly.problems().iter().any(|of| wanted(&of.kind))
+    };
     assert!(
         asked(&assembly, |kind| matches!(kind, ProblemKind::UnitOfFile(_))),
         "the response has no units: {:?}",
@@ -339,25 +523,47 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
     rules.outputs[0].unit_in_files = Some("deg/s".into());
     let assembly = assembly.with_rules(rules.clone());
     assert!(
-        asked(&assembly, |kind| matches!(kind, ProblemKind::Conversion { .. })),
+        asked(&assembly, |kind| matches!(
+            kind,
+            ProblemKind::Conversion { .. }
+        )),
         "inches of a stick: {:?}",
         assembly.told()
     );
-    rules.units.push(UnitRule { channel: "LON".into(), from: "in".into(), factor: 8.0 });
+    rules.units.push(UnitRule {
+        channel: "LON".into(),
+        from: "in".into(),
+        factor: 8.0,
+    });
     let assembly = assembly.with_rules(rules);
     assert!(assembly.problems().is_empty(), "{:?}", assembly.told());
-    assert_eq!(assembly.parts().iter().filter(|part| part.row.role == Some(RowRole::Identified)).count(), 1);
+    assert_eq!(
+        assembly
+            .parts()
+            .iter()
+            .filter(|part| part.row.role == Some(RowRole::Identified))
+            .count(),
+        1
+    );
     let dataset = assembly.dataset("there").unwrap();
     let nominal = &dataset.conditions()[0].bundle(BundleKind::Physics)[0];
     let [_, b, c, _] = matrices(nominal);
     // One inch is 8 %, one radian 57.3 degrees.
-    assert_eq!((b[(0, 0)], c[(0, 0)]), (1.0 / 8.0, 180.0 / std::f64::consts::PI));
+    assert_eq!(
+        (b[(0, 0)], c[(0, 0)]),
+        (1.0 / 8.0, 180.0 / std::f64::consts::PI)
+    );
     let source = nominal.source.as_ref().unwrap();
     assert_eq!(source.file.as_deref(), Some("there/c1_60kt/trim.mat"));
     let note = source.note.as_ref().unwrap();
-    assert!(note.contains("LON in → % (× 8)") && note.contains("Q rad/s → deg/s"), "{note}");
+    assert!(
+        note.contains("LON in → % (× 8)") && note.contains("Q rad/s → deg/s"),
+        "{note}"
+    );
     assert_eq!(source.sha256.as_ref().map(String::len), Some(64));
-    let Dynamics::Measured(response) = &dataset.conditions()[0].bundle(BundleKind::Identified)[0].dynamics else {
+    let Dynamics::Measured(response) =
+        &dataset.conditions()[0].bundle(BundleKind::Identified)[0].dynamics
+    else {
         panic!("the response is measured")
     };
     assert!(response.coherence().is_some());
@@ -379,20 +585,43 @@ fn stacks_with_airspeeds_become_conditions_and_what_is_not_used_is_noted_once_a_
         ("physics.json", [1.0, 2.0, 3.0], [60.0, 80.0, 100.0]),
         ("identified.json", [30.0, 20.0, 10.0], [100.0, 80.0, 60.0]),
     ] {
-        std::fs::write(folder.path().join(name), stack(gains, airspeeds).to_string()).unwrap();
+        std::fs::write(
+            folder.path().join(name),
+            stack(gains, airspeeds).to_string(),
+        )
+        .unwrap();
     }
     let out = folder.path().join("made.json");
-    let ended = run(&["assemble", folder.path().to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    let ended = run(&[
+        "assemble",
+        folder.path().to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+    ]);
     assert_eq!(ended.status, 0, "{}", ended.error);
-    assert_eq!(ended.error.matches("not used: torque").count(), 2, "{}", ended.error);
+    assert_eq!(
+        ended.error.matches("not used: torque").count(),
+        2,
+        "{}",
+        ended.error
+    );
     let made = load_dataset(&out).unwrap().dataset;
     let mut found = Vec::new();
     for condition in made.conditions() {
         let gains = BundleKind::BOTH.map(|kind| matrices(&condition.bundle(kind)[0])[1][(0, 0)]);
         found.push((condition.flight_state().airspeed_kt, gains));
     }
-    assert_eq!(found, [(60.0, [1.0, 10.0]), (80.0, [2.0, 20.0]), (100.0, [3.0, 30.0])]);
-    let Dynamics::StateSpace(nominal) = &made.conditions()[0].bundle(BundleKind::Physics)[0].dynamics else {
+    assert_eq!(
+        found,
+        [
+            (60.0, [1.0, 10.0]),
+            (80.0, [2.0, 20.0]),
+            (100.0, [3.0, 30.0])
+        ]
+    );
+    let Dynamics::StateSpace(nominal) =
+        &made.conditions()[0].bundle(BundleKind::Physics)[0].dynamics
+    else {
         panic!("it has matrices")
     };
     assert_eq!(nominal.timing().input_delays_s, Some(vec![0.03]));
@@ -402,19 +631,51 @@ fn stacks_with_airspeeds_become_conditions_and_what_is_not_used_is_noted_once_a_
 fn what_was_converted_is_read_again_as_the_same_models() {
     let folder = tempfile::tempdir().unwrap();
     small_folder(folder.path());
-    let file = |name: &str| folder.path().join("c1_60kt").join(name).to_str().unwrap().to_owned();
+    let file = |name: &str| {
+        folder
+            .path()
+            .join("c1_60kt")
+            .join(name)
+            .to_str()
+            .unwrap()
+            .to_owned()
+    };
     let out = folder.path().join("models.json");
-    let ended = run(&["convert", &file("trim.mat"), &file("frf_Q_LON.csv"), "--out", out.to_str().unwrap()]);
+    let ended = run(&[
+        "convert",
+        &file("trim.mat"),
+        &file("frf_Q_LON.csv"),
+        "--out",
+        out.to_str().unwrap(),
+    ]);
     assert_eq!(ended.status, 0, "{}", ended.error);
     let again = read_models(&[out], &Headings::new(), &Silent).unwrap();
     assert_eq!(again.models.len(), 2, "{:?}", again.faults);
-    let first =
-        read_models(&[file("trim.mat").into(), file("frf_Q_LON.csv").into()], &Headings::new(), &Silent).unwrap();
-    for (a, b) in first.models.into_iter().map(FoundModel::with_names_of_file).zip(&again.models) {
-        assert_eq!((&a.draft.matrices, &a.inputs, &a.outputs), (&b.draft.matrices, &b.inputs, &b.outputs));
+    let first = read_models(
+        &[file("trim.mat").into(), file("frf_Q_LON.csv").into()],
+        &Headings::new(),
+        &Silent,
+    )
+    .unwrap();
+    for (a, b) in first
+        .models
+        .into_iter()
+        .map(FoundModel::with_names_of_file)
+        .zip(&again.models)
+    {
         assert_eq!(
-            a.draft.response.as_ref().map(|of| (&of.omega, &of.re, &of.im)),
-            b.draft.response.as_ref().map(|of| (&of.omega, &of.re, &of.im))
+            (&a.draft.matrices, &a.inputs, &a.outputs),
+            (&b.draft.matrices, &b.inputs, &b.outputs)
+        );
+        assert_eq!(
+            a.draft
+                .response
+                .as_ref()
+                .map(|of| (&of.omega, &of.re, &of.im)),
+            b.draft
+                .response
+                .as_ref()
+                .map(|of| (&of.omega, &of.re, &of.im))
         );
     }
 }
@@ -422,15 +683,36 @@ fn what_was_converted_is_read_again_as_the_same_models() {
 #[test]
 fn a_discrete_time_model_keeps_its_sample_time_and_its_delays_in_samples_become_seconds() {
     let folder = tempfile::tempdir().unwrap();
-    let numbers = [("A", 0.9), ("B", 1.0), ("C", 1.0), ("D", 0.0), ("Ts", 0.02), ("InputDelay", 3.0)];
-    let variables = numbers
-        .map(|(name, value)| Variable { name: name.into(), value: Value::Array(Array::matrix(1, 1, vec![value])) });
-    std::fs::write(folder.path().join("sys.mat"), write_mat(&variables).unwrap()).unwrap();
+    let numbers = [
+        ("A", 0.9),
+        ("B", 1.0),
+        ("C", 1.0),
+        ("D", 0.0),
+        ("Ts", 0.02),
+        ("InputDelay", 3.0),
+    ];
+    let variables = numbers.map(|(name, value)| Variable {
+        name: name.into(),
+        value: Value::Array(Array::matrix(1, 1, vec![value])),
+    });
+    std::fs::write(
+        folder.path().join("sys.mat"),
+        write_mat(&variables).unwrap(),
+    )
+    .unwrap();
     let found = found_in(folder.path());
     let timing = &found.models[0].draft.timing;
-    assert_eq!((timing.sample_time_s, timing.input_delays_s.as_deref()), (Some(0.02), Some(&[0.06][..])));
+    assert_eq!(
+        (timing.sample_time_s, timing.input_delays_s.as_deref()),
+        (Some(0.02), Some(&[0.06][..]))
+    );
     let [a, b, c, d] = found.models[0].draft.matrices.clone().map(Option::unwrap);
-    assert!(StateSpace::new(a, b, c, d).unwrap().timed(timing.clone()).is_ok());
+    assert!(
+        StateSpace::new(a, b, c, d)
+            .unwrap()
+            .timed(timing.clone())
+            .is_ok()
+    );
 }
 
 #[test]
@@ -438,13 +720,23 @@ fn columns_are_read_by_the_headings_that_the_rules_say_in_place_of_the_file_s() 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("frf-omega-re-im.csv");
     std::fs::write(&path, "1,0,-90\n2,-6,-100\n4,-12,-120\n").unwrap();
-    let of = |headings: &Headings| read_models(&[folder.path().to_owned()], headings, &Silent).unwrap();
+    let of =
+        |headings: &Headings| read_models(&[folder.path().to_owned()], headings, &Silent).unwrap();
     let unsaid = of(&Headings::new());
     assert_eq!(unsaid.tables["frf-omega-re-im.csv"], ["", "", ""]);
-    assert!(unsaid.models.is_empty(), "numbers alone do not say what they are");
-    assert!(unsaid.ignored[0].contains("under \"headings\" in the rules"), "{:?}", unsaid.ignored);
+    assert!(
+        unsaid.models.is_empty(),
+        "numbers alone do not say what they are"
+    );
+    assert!(
+        unsaid.ignored[0].contains("under \"headings\" in the rules"),
+        "{:?}",
+        unsaid.ignored
+    );
 
-    let said = ["f [Hz]", "mag P/LAT [dB]", "phase P/LAT [deg]"].map(str::to_owned).to_vec();
+    let said = ["f [Hz]", "mag P/LAT [dB]", "phase P/LAT [deg]"]
+        .map(str::to_owned)
+        .to_vec();
     let headings = Headings::from([("frf-omega-re-im.csv".to_owned(), said.clone())]);
     let found = of(&headings);
     assert_eq!(found.tables, headings);
@@ -456,7 +748,9 @@ fn columns_are_read_by_the_headings_that_the_rules_say_in_place_of_the_file_s() 
     assert_eq!(found.models[0].outputs[0].name.as_deref(), Some("P"));
 
     let short = Headings::from([("frf-omega-re-im.csv".to_owned(), said[..2].to_vec())]);
-    let fault = read_models(&[folder.path().to_owned()], &short, &Silent).unwrap_err().to_string();
+    let fault = read_models(&[folder.path().to_owned()], &short, &Silent)
+        .unwrap_err()
+        .to_string();
     assert!(fault.contains("2 headings for 3 columns"), "{fault}");
 }
 
@@ -466,40 +760,80 @@ fn names_are_said_for_the_channels_of_one_model_and_a_wrong_number_of_them_is_to
     small_folder(folder.path());
     let found = found_in(folder.path());
     let rules = proposed_rules("", &found.models);
-    let key = found.models.iter().find(|model| model.file().ends_with("trim.mat")).unwrap().key();
+    let key = found
+        .models
+        .iter()
+        .find(|model| model.file().ends_with("trim.mat"))
+        .unwrap()
+        .key();
     let with = |names: &[&str]| {
         let mut rules = rules.clone();
         rules.rows.entry(key.clone()).or_default().outputs =
             Some(names.iter().map(|name| (*name).to_owned()).collect());
         Assembly::new(found.models.clone(), rules)
     };
-    let told = |assembly: &Assembly| assembly.told().into_iter().map(|(_, words)| words).collect::<Vec<_>>().join("\n");
-    assert!(told(&with(&["NZ"])).contains("NZ"), "the model has another output now: {}", told(&with(&["NZ"])));
-    assert!(told(&with(&["Q", "P"])).contains("2 names are said for the 1 outputs"), "{}", told(&with(&["Q", "P"])));
+    let told = |assembly: &Assembly| {
+        assembly
+            .told()
+            .into_iter()
+            .map(|(_, words)| words)
+            .collect::<Vec<_>>()
+            .join("\n")
+    };
+    assert!(
+        told(&with(&["NZ"])).contains("NZ"),
+        "the model has another output now: {}",
+        told(&with(&["NZ"]))
+    );
+    assert!(
+        told(&with(&["Q", "P"])).contains("2 names are said for the 1 outputs"),
+        "{}",
+        told(&with(&["Q", "P"]))
+    );
 }
 
 #[test]
 fn measured_responses_of_one_model_at_differing_frequencies_are_told_with_what_mends_it() {
     let folder = tempfile::tempdir().unwrap();
     small_folder(folder.path());
-    let frf: String = (1..=30).map(|step| format!("{},0,-10\n", 0.5 * f64::from(step))).collect();
+    let frf: String = (1..=30)
+        .map(|step| format!("{},0,-10\n", 0.5 * f64::from(step)))
+        .collect();
     let text = format!("omega [rad/s],mag [dB],phase [deg]\n{frf}");
     std::fs::write(folder.path().join("c1_60kt/frf_P_LAT.csv"), text).unwrap();
     let found = found_in(folder.path());
     let mut rules = proposed_rules("small", &found.models);
     rules.inputs.push(ChannelRule::named("LAT"));
     rules.outputs.push(ChannelRule::named("P"));
-    let told: Vec<String> = Assembly::new(found.models, rules).told().into_iter().map(|(_, words)| words).collect();
-    let words = told.iter().find(|words| words.contains("same frequencies")).unwrap_or_else(|| panic!("{told:#?}"));
-    assert!(words.contains("frf_P_LAT.csv has 30 from 0.5 to 15.0 rad/s"), "{words}");
-    assert!(words.contains("frf_Q_LON.csv has 40 from 0.3 to 12.3 rad/s"), "{words}");
-    assert!(words.ends_with("or give one of them another name: it is a model of its own then"), "{words}");
+    let told: Vec<String> = Assembly::new(found.models, rules)
+        .told()
+        .into_iter()
+        .map(|(_, words)| words)
+        .collect();
+    let words = told
+        .iter()
+        .find(|words| words.contains("same frequencies"))
+        .unwrap_or_else(|| panic!("{told:#?}"));
+    assert!(
+        words.contains("frf_P_LAT.csv has 30 from 0.5 to 15.0 rad/s"),
+        "{words}"
+    );
+    assert!(
+        words.contains("frf_Q_LON.csv has 40 from 0.3 to 12.3 rad/s"),
+        "{words}"
+    );
+    assert!(
+        words.ends_with("or give one of them another name: it is a model of its own then"),
+        "{words}"
+    );
 }
 
 #[test]
-fn the_flight_records_of_a_dataset_stay_with_its_condition_and_are_found_from_where_the_new_one_lies() {
+fn the_flight_records_of_a_dataset_stay_with_its_condition_and_are_found_from_where_the_new_one_lies()
+ {
     let folder = tempfile::tempdir().unwrap();
-    let mut text: serde_json::Value = serde_json::from_str(include_str!("../data/small-dataset.json")).unwrap();
+    let mut text: serde_json::Value =
+        serde_json::from_str(include_str!("../data/small-dataset.json")).unwrap();
     text["conditions"][0]["records"] = json!([
         {"name": "LON 1", "file": "records/lon_1.csv", "kind": "sweep", "used_s": [[0.0, 30.5]]},
         {"name": "steps", "file": "all.mat", "variable": "run 2", "held_out": true}
@@ -511,25 +845,58 @@ fn the_flight_records_of_a_dataset_stay_with_its_condition_and_are_found_from_wh
     let before = load_dataset(&old).unwrap().dataset;
     let made = |source: &Path, name: &str| {
         let path = folder.path().join(name);
-        let ended = run(&["assemble", source.to_str().unwrap(), "--out", path.to_str().unwrap()]);
+        let ended = run(&[
+            "assemble",
+            source.to_str().unwrap(),
+            "--out",
+            path.to_str().unwrap(),
+        ]);
         assert_eq!(ended.status, 0, "{}", ended.error);
         let made = load_dataset(&path).unwrap().dataset;
-        let files: Vec<PathBuf> =
-            made.conditions()[0].records().iter().map(|record| path.parent().unwrap().join(&record.file)).collect();
+        let files: Vec<PathBuf> = made.conditions()[0]
+            .records()
+            .iter()
+            .map(|record| path.parent().unwrap().join(&record.file))
+            .collect();
         let beside = old.parent().unwrap();
         let expected = ["records/lon_1.csv", "all.mat"].map(|file| beside.join(file));
-        let plain = |path: &PathBuf| path.components().filter(|part| part.as_os_str() != ".").collect::<PathBuf>();
-        assert_eq!(files.iter().map(plain).collect::<Vec<_>>(), expected, "from {}", source.display());
+        let plain = |path: &PathBuf| {
+            path.components()
+                .filter(|part| part.as_os_str() != ".")
+                .collect::<PathBuf>()
+        };
+        assert_eq!(
+            files.iter().map(plain).collect::<Vec<_>>(),
+            expected,
+            "from {}",
+            source.display()
+        );
         made
     };
-    for (source, name) in [(folder.path().join("flights"), "of_folder.json"), (old.clone(), "of_file.json")] {
+    for (source, name) in [
+        (folder.path().join("flights"), "of_folder.json"),
+        (old.clone(), "of_file.json"),
+    ] {
         let made = made(&source, name);
         let (condition, old) = (&made.conditions()[0], &before.conditions()[0]);
         let unplaced = |records: &[ConditionRecord]| -> Vec<ConditionRecord> {
-            records.iter().map(|record| ConditionRecord { file: String::new(), ..record.clone() }).collect()
+            records
+                .iter()
+                .map(|record| ConditionRecord {
+                    file: String::new(),
+                    ..record.clone()
+                })
+                .collect()
         };
         assert_eq!(unplaced(condition.records()), unplaced(old.records()));
-        assert_eq!(condition.bundle(BundleKind::Identified)[0].source.as_ref().unwrap().records, ["LON 1"]);
+        assert_eq!(
+            condition.bundle(BundleKind::Identified)[0]
+                .source
+                .as_ref()
+                .unwrap()
+                .records,
+            ["LON 1"]
+        );
         assert_eq!(made.conditions()[1].records(), []);
     }
 }
@@ -540,19 +907,42 @@ fn a_folder_without_identified_models_makes_a_dataset_that_says_what_it_needs_ne
     let models = folder.path().join("models");
     foreign_tree(&models);
     for entry in walk(&models) {
-        if entry.file_name().unwrap().to_string_lossy().starts_with("flight_") {
+        if entry
+            .file_name()
+            .unwrap()
+            .to_string_lossy()
+            .starts_with("flight_")
+        {
             std::fs::remove_file(entry).unwrap();
         }
     }
     let out = folder.path().join("made.json");
-    let ended = run(&["assemble", models.to_str().unwrap(), "--out", out.to_str().unwrap(), "--json"]);
+    let ended = run(&[
+        "assemble",
+        models.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+        "--json",
+    ]);
     assert_eq!(ended.status, 0, "{ended:?}");
     let said: serde_json::Value = serde_json::from_str(&ended.out).unwrap();
-    let of_code: Vec<_> =
-        said["cautions"].as_array().unwrap().iter().filter(|caution| caution["code"] == "no-reference").collect();
-    assert_eq!((of_code.len(), &of_code[0]["conditions"]), (1, &json!([1, 3])));
+    let of_code: Vec<_> = said["cautions"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|caution| caution["code"] == "no-reference")
+        .collect();
+    assert_eq!(
+        (of_code.len(), &of_code[0]["conditions"]),
+        (1, &json!([1, 3]))
+    );
     let dataset = load_dataset(&out).unwrap().dataset;
-    assert!(dataset.conditions().iter().all(|condition| !condition.has_reference()));
+    assert!(
+        dataset
+            .conditions()
+            .iter()
+            .all(|condition| !condition.has_reference())
+    );
 }
 
 /// Every file below a folder.
@@ -560,7 +950,11 @@ fn walk(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
-        if path.is_dir() { files.extend(walk(&path)) } else { files.push(path) }
+        if path.is_dir() {
+            files.extend(walk(&path))
+        } else {
+            files.push(path)
+        }
     }
     files
 }
@@ -569,7 +963,13 @@ fn walk(folder: &Path) -> Vec<PathBuf> {
 fn write_response(folder: &Path, name: &str) {
     let mut frf = String::from("omega [rad/s],mag [dB],phase [deg]\n");
     for step in 0..40 {
-        writeln!(frf, "{},{},-10", 0.3 * 1.1f64.powi(step), -0.5 * f64::from(step)).unwrap();
+        writeln!(
+            frf,
+            "{},{},-10",
+            0.3 * 1.1f64.powi(step),
+            -0.5 * f64::from(step)
+        )
+        .unwrap();
     }
     std::fs::write(folder.join(name), frf).unwrap();
 }
@@ -577,14 +977,24 @@ fn write_response(folder: &Path, name: &str) {
 /// A model of one state in a file of MATLAB: gain, and names and units of its input and output.
 fn write_small(path: &Path, gain: f64, names: [&str; 2], units: [Option<&str>; 2]) {
     let scalar = |value: f64| DMatrix::from_element(1, 1, value);
-    let lists = [("InputName", names[0]), ("OutputName", names[1])].map(|(key, name)| (key, vec![name.to_owned()]));
+    let lists = [("InputName", names[0]), ("OutputName", names[1])]
+        .map(|(key, name)| (key, vec![name.to_owned()]));
     let mut variables: Vec<Variable> = [("A", -1.0), ("B", gain), ("C", 1.0), ("D", 0.0)]
         .into_iter()
-        .map(|(name, value)| Variable { name: name.into(), value: array(&scalar(value)) })
+        .map(|(name, value)| Variable {
+            name: name.into(),
+            value: array(&scalar(value)),
+        })
         .collect();
-    variables.extend(lists.map(|(key, names)| Variable { name: key.into(), value: cell(&names) }));
+    variables.extend(lists.map(|(key, names)| Variable {
+        name: key.into(),
+        value: cell(&names),
+    }));
     for (key, unit) in ["InputUnit", "OutputUnit"].into_iter().zip(units) {
-        variables.extend(unit.map(|unit| Variable { name: key.into(), value: cell(&[unit.to_owned()]) }));
+        variables.extend(unit.map(|unit| Variable {
+            name: key.into(),
+            value: cell(&[unit.to_owned()]),
+        }));
     }
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
     std::fs::write(path, write_mat(&variables).unwrap()).unwrap();
@@ -601,31 +1011,66 @@ fn gain_of(dataset: &Path, kind: BundleKind) -> f64 {
 fn a_response_whose_name_says_no_channels_makes_no_dataset_and_one_that_does_is_taken() {
     let folder = tempfile::tempdir().unwrap();
     let models = folder.path().join("models/c1_60kt");
-    write_small(&models.join("nominal.mat"), 1.0, ["LON", "Q"], [Some("%"), Some("deg/s")]);
+    write_small(
+        &models.join("nominal.mat"),
+        1.0,
+        ["LON", "Q"],
+        [Some("%"), Some("deg/s")],
+    );
     let out = folder.path().join("made.json");
     let assemble = |more: &[&str]| {
         let root = folder.path().join("models");
-        run(&[&["assemble", root.to_str().unwrap(), "--out", out.to_str().unwrap(), "--force"], more].concat())
+        run(&[
+            &[
+                "assemble",
+                root.to_str().unwrap(),
+                "--out",
+                out.to_str().unwrap(),
+                "--force",
+            ],
+            more,
+        ]
+        .concat())
     };
     let units = ["--unit", "LON=%", "--unit", "Q=deg/s"];
     // It names the pedals, which the dataset does not have; a dataset of zeros was made of it.
     write_response(&models, "frf_r_ped_run2.csv");
     let ended = assemble(&units);
     assert_eq!(ended.status, 2, "{}{}", ended.out, ended.error);
-    assert!(ended.error.contains("frf_r_ped_run2.csv: no input of the measured response"), "{}", ended.error);
-    assert!(ended.error.contains("--headings") && ended.error.contains("\"models\""), "two ways: {}", ended.error);
+    assert!(
+        ended
+            .error
+            .contains("frf_r_ped_run2.csv: no input of the measured response"),
+        "{}",
+        ended.error
+    );
+    assert!(
+        ended.error.contains("--headings") && ended.error.contains("\"models\""),
+        "two ways: {}",
+        ended.error
+    );
     assert!(!out.exists());
     std::fs::remove_file(models.join("frf_r_ped_run2.csv")).unwrap();
-    for name in ["frf_q_delta_lon.csv", "q_per_lon.csv", "frf_q_lon_run2.csv", "frf_pitch_rate_lon_cyclic.csv"] {
+    for name in [
+        "frf_q_delta_lon.csv",
+        "q_per_lon.csv",
+        "frf_q_lon_run2.csv",
+        "frf_pitch_rate_lon_cyclic.csv",
+    ] {
         write_response(&models, name);
         let ended = assemble(&units);
         assert_eq!(ended.status, 0, "{name}: {}", ended.error);
         let dataset = load_dataset(&out).unwrap().dataset;
-        let Dynamics::Measured(response) = &dataset.conditions()[0].bundle(BundleKind::Identified)[0].dynamics else {
+        let Dynamics::Measured(response) =
+            &dataset.conditions()[0].bundle(BundleKind::Identified)[0].dynamics
+        else {
             panic!("{name}: the response is measured")
         };
         let first = response.values()[gdcm_model::dataset::Pair::new(0, 0)][0];
-        assert!((first.norm() - 1.0).abs() < 1e-12, "{name}: 0 dB, not {first}");
+        assert!(
+            (first.norm() - 1.0).abs() < 1e-12,
+            "{name}: 0 dB, not {first}"
+        );
         std::fs::remove_file(models.join(name)).unwrap();
     }
 }
@@ -635,17 +1080,38 @@ fn units_factors_and_signs_are_said_for_a_role_a_folder_or_a_file_by_the_option_
     let folder = tempfile::tempdir().unwrap();
     let root = folder.path().join("models");
     // The identified file has another unit and says none, another name of the same input, and an output whose sign is open.
-    write_small(&root.join("c1_60kt/nominal.mat"), 1.0, ["LON", "NZ"], [Some("%"), Some("m/s^2")]);
-    write_small(&root.join("c1_60kt/flight.mat"), -2.0, ["xb", "az"], [None, Some("g")]);
+    write_small(
+        &root.join("c1_60kt/nominal.mat"),
+        1.0,
+        ["LON", "NZ"],
+        [Some("%"), Some("m/s^2")],
+    );
+    write_small(
+        &root.join("c1_60kt/flight.mat"),
+        -2.0,
+        ["xb", "az"],
+        [None, Some("g")],
+    );
     let out = folder.path().join("made.json");
     let assemble = |more: &[&str]| {
-        run(&[&["assemble", root.to_str().unwrap(), "--out", out.to_str().unwrap(), "--force"], more].concat())
+        run(&[
+            &[
+                "assemble",
+                root.to_str().unwrap(),
+                "--out",
+                out.to_str().unwrap(),
+                "--force",
+            ],
+            more,
+        ]
+        .concat())
     };
     let rules = folder.path().join("made.gdcm-rules.json");
     let ended = assemble(&[]);
     assert_eq!(ended.status, 2, "{}", ended.error);
     // The engineer's dataset has the channels of the physics model.
-    let mut said: serde_json::Value = serde_json::from_slice(&std::fs::read(&rules).unwrap()).unwrap();
+    let mut said: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(&rules).unwrap()).unwrap();
     said["inputs"] = json!([{"name": "LON", "unit": "%"}]);
     said["outputs"] = json!([{"name": "NZ", "unit": "m/s^2"}]);
     let rules = folder.path().join("said.gdcm-rules.json");
@@ -657,39 +1123,92 @@ fn units_factors_and_signs_are_said_for_a_role_a_folder_or_a_file_by_the_option_
         assert!(ended.error.contains(option), "{option}: {}", ended.error);
     }
     let ended = with(&["--unit", "LON=in:identified", "--sign", "NZ=-1:identified"]);
-    assert!(ended.error.contains("(--factor LON=X:identified)"), "{}", ended.error);
+    assert!(
+        ended.error.contains("(--factor LON=X:identified)"),
+        "{}",
+        ended.error
+    );
     let gravity = 9.806_65;
-    for of in [":identified", "", ":flight*", ":c1_60kt/flight.mat", ":c1_*/flight.mat"] {
+    for of in [
+        ":identified",
+        "",
+        ":flight*",
+        ":c1_60kt/flight.mat",
+        ":c1_*/flight.mat",
+    ] {
         let sign = format!("NZ=-1{of}");
         let ended = with(&["--factor", &format!("LON=8{of}"), "--sign", &sign]);
         assert_eq!(ended.status, 0, "{of}: {}", ended.error);
-        assert_eq!(gain_of(&out, BundleKind::Physics), 1.0, "{of}: the physics model is as it was");
+        assert_eq!(
+            gain_of(&out, BundleKind::Physics),
+            1.0,
+            "{of}: the physics model is as it was"
+        );
         let identified = gain_of(&out, BundleKind::Identified);
-        assert!((identified / (2.0 * gravity / 8.0) - 1.0).abs() < 1e-12, "{of}: {identified}");
+        assert!(
+            (identified / (2.0 * gravity / 8.0) - 1.0).abs() < 1e-12,
+            "{of}: {identified}"
+        );
     }
     let ended = with(&["--factor", "LON=8", "--factor", "NZ=-9.8:flight.mat"]);
     assert_eq!(ended.status, 0, "{}", ended.error);
     let identified = gain_of(&out, BundleKind::Identified);
-    assert!((identified / (2.0 * 9.8 / 8.0) - 1.0).abs() < 1e-12, "a factor has its sign: {identified}");
+    assert!(
+        (identified / (2.0 * 9.8 / 8.0) - 1.0).abs() < 1e-12,
+        "a factor has its sign: {identified}"
+    );
     for (wrong, words) in [
-        (["--factor", "PED=8"], "--factor: the dataset has no channel PED"),
-        (["--sign", "NZ=-1:c7/*"], "--sign: NZ: no model is in \"c7/*\""),
+        (
+            ["--factor", "PED=8"],
+            "--factor: the dataset has no channel PED",
+        ),
+        (
+            ["--sign", "NZ=-1:c7/*"],
+            "--sign: NZ: no model is in \"c7/*\"",
+        ),
     ] {
         let ended = with(&wrong);
         assert_eq!(ended.status, 2);
         assert!(ended.error.contains(words), "{}", ended.error);
     }
     let ended = with(&["--factor", "LON=8", "--unit", "LON=in"]);
-    assert!(ended.error.contains("LON of identified has a unit or a factor already"), "{}", ended.error);
+    assert!(
+        ended
+            .error
+            .contains("LON of identified has a unit or a factor already"),
+        "{}",
+        ended.error
+    );
 }
 
 #[test]
 fn units_are_proposed_from_most_files() {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join("c1_60kt").join(name);
-    write_small(&place("a_flight.mat"), 1.0, ["LON", "Q"], [Some("in"), Some("rad/s")]);
-    write_small(&place("nominal.mat"), 1.0, ["LON", "Q"], [Some("%"), Some("deg/s")]);
-    write_small(&place("roll+5.mat"), 1.0, ["LON", "Q"], [Some("percent"), Some("°/s")]);
+    write_small(
+        &place("a_flight.mat"),
+        1.0,
+        ["LON", "Q"],
+        [Some("in"), Some("rad/s")],
+    );
+    write_small(
+        &place("nominal.mat"),
+        1.0,
+        ["LON", "Q"],
+        [Some("%"), Some("deg/s")],
+    );
+    write_small(
+        &place("roll+5.mat"),
+        1.0,
+        ["LON", "Q"],
+        [Some("percent"), Some("°/s")],
+    );
     let rules = proposed_rules("", &found_in(folder.path()).models);
-    assert_eq!((rules.inputs[0].unit.as_str(), rules.outputs[0].unit.as_str()), ("%", "deg/s"));
+    assert_eq!(
+        (
+            rules.inputs[0].unit.as_str(),
+            rules.outputs[0].unit.as_str()
+        ),
+        ("%", "deg/s")
+    );
 }

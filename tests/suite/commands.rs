@@ -66,16 +66,28 @@ pub(crate) struct Ended {
 impl Ended {
     pub(crate) fn of(output: &Output) -> Self {
         let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-        Self { status: output.status.code().unwrap(), out: text(&output.stdout), error: text(&output.stderr) }
+        Self {
+            status: output.status.code().unwrap(),
+            out: text(&output.stdout),
+            error: text(&output.stderr),
+        }
     }
 
     /// Asserts a failure told in one or two lines of standard error that hold these words, and nothing on standard output.
     #[track_caller]
     pub(crate) fn assert_failed(&self, status: i32, words: &[&str]) {
         assert_eq!((self.status, self.out.as_str()), (status, ""), "{self:?}");
-        assert!((1..=2).contains(&self.error.lines().count()), "{}", self.error);
+        assert!(
+            (1..=2).contains(&self.error.lines().count()),
+            "{}",
+            self.error
+        );
         for word in words {
-            assert!(self.error.contains(word), "expected \"{word}\" in: {}", self.error);
+            assert!(
+                self.error.contains(word),
+                "expected \"{word}\" in: {}",
+                self.error
+            );
         }
     }
 
@@ -86,7 +98,11 @@ impl Ended {
 }
 
 fn rows(path: &Path) -> Vec<csv::StringRecord> {
-    csv::Reader::from_path(path).unwrap().records().map(Result::unwrap).collect()
+    csv::Reader::from_path(path)
+        .unwrap()
+        .records()
+        .map(Result::unwrap)
+        .collect()
 }
 
 #[test]
@@ -95,13 +111,28 @@ fn the_embedded_example_is_analysed_without_a_file() {
     let ended = desk.gdcm(&["analyze", "--out", "results/of/today", "--reject-suggested"]);
     ended.assert_done();
     let corrections = crate::read_json(&desk.path("results/of/today/corrections.json"));
-    assert_eq!((entries(&corrections["conditions"]).len(), entries(&corrections["failed"]).len()), (11, 0));
+    assert_eq!(
+        (
+            entries(&corrections["conditions"]).len(),
+            entries(&corrections["failed"]).len()
+        ),
+        (11, 0)
+    );
     let tenth = condition_of(&corrections, "10");
-    assert_eq!(tenth["rejected"], json!(["nominal", "ROLL+5deg", "V+5kt ROC+150fpm ROLL+5deg"]));
+    assert_eq!(
+        tenth["rejected"],
+        json!(["nominal", "ROLL+5deg", "V+5kt ROC+150fpm ROLL+5deg"])
+    );
     assert_eq!(tenth["rejected"], tenth["suggested_outliers"]);
     assert_eq!(corrections["assessment"]["left_out"][0]["id"], 10);
-    assert_eq!(rows(&desk.path("results/of/today/corrections.csv")).len(), 11 * 10);
-    assert_eq!(rows(&desk.path("results/of/today/assessment.csv")).len(), 11 * 24);
+    assert_eq!(
+        rows(&desk.path("results/of/today/corrections.csv")).len(),
+        11 * 10
+    );
+    assert_eq!(
+        rows(&desk.path("results/of/today/assessment.csv")).len(),
+        11 * 24
+    );
     for words in [
         "Condition 10",
         "rejected    nominal, ROLL+5deg",
@@ -110,21 +141,34 @@ fn the_embedded_example_is_analysed_without_a_file() {
         "Schedule",
         "Left out      condition 10",
     ] {
-        assert!(ended.out.contains(words), "expected \"{words}\" in:\n{}", ended.out);
+        assert!(
+            ended.out.contains(words),
+            "expected \"{words}\" in:\n{}",
+            ended.out
+        );
     }
-    let widest = ended.out.lines().map(|line| line.chars().count()).max().unwrap();
+    let widest = ended
+        .out
+        .lines()
+        .map(|line| line.chars().count())
+        .max()
+        .unwrap();
     assert!(widest <= 120, "{widest} columns");
 }
 
 /// The result of a condition, of a file of corrections.
 fn condition_of<'j>(corrections: &'j Value, id: &str) -> &'j Value {
-    entries(&corrections["conditions"]).iter().find(|condition| condition["id"].as_u64() == id.parse().ok()).unwrap()
+    entries(&corrections["conditions"])
+        .iter()
+        .find(|condition| condition["id"].as_u64() == id.parse().ok())
+        .unwrap()
 }
 
 #[test]
 fn what_is_written_says_the_same_in_all_three_files() {
     let desk = Desk::new();
-    desk.gdcm(&["analyze", "small.json", "--out", "."]).assert_done();
+    desk.gdcm(&["analyze", "small.json", "--out", "."])
+        .assert_done();
     let corrections = crate::read_json(&desk.path("corrections.json"));
     for row in rows(&desk.path("corrections.csv")) {
         let condition = condition_of(&corrections, &row[0]);
@@ -133,12 +177,19 @@ fn what_is_written_says_the_same_in_all_three_files() {
             assert_eq!(*figure, cell.parse::<f64>().unwrap(), "to the last digit");
         }
     }
-    let header = csv::Reader::from_path(desk.path("assessment.csv")).unwrap().headers().unwrap().clone();
+    let header = csv::Reader::from_path(desk.path("assessment.csv"))
+        .unwrap()
+        .headers()
+        .unwrap()
+        .clone();
     let column = |name: &str| header.iter().position(|heading| heading == name).unwrap();
     for row in rows(&desk.path("assessment.csv")) {
         let condition = condition_of(&corrections, &row[0]);
         let nets = entries(&condition["net_gains"]);
-        let net = nets.iter().find(|net| net["output"] == row[2] && net["input"] == row[3]).unwrap();
+        let net = nets
+            .iter()
+            .find(|net| net["output"] == row[2] && net["input"] == row[3])
+            .unwrap();
         assert_eq!(net["gain"], row[column("net_gain")].parse::<f64>().unwrap());
         let held = entries(&condition["held"]).contains(&json!([&row[2], &row[3]]));
         assert_eq!(&row[column("held")], if held { "true" } else { "false" });
@@ -148,10 +199,32 @@ fn what_is_written_says_the_same_in_all_three_files() {
 #[test]
 fn every_option_reaches_the_analysis() {
     let desk = Desk::new();
-    let options = ["--alpha", "0.25", "--alpha-delay", "2", "--band", "1", "8", "--points", "31", "--degree", "1"];
-    let more = ["--on", "P/LAT, Q/LAT", "--reject", "7:V+5kt", "--reject", "10:static gain"];
-    let arguments: Vec<&str> =
-        ["analyze", "small.json", "--out", "out"].into_iter().chain(options).chain(more).collect();
+    let options = [
+        "--alpha",
+        "0.25",
+        "--alpha-delay",
+        "2",
+        "--band",
+        "1",
+        "8",
+        "--points",
+        "31",
+        "--degree",
+        "1",
+    ];
+    let more = [
+        "--on",
+        "P/LAT, Q/LAT",
+        "--reject",
+        "7:V+5kt",
+        "--reject",
+        "10:static gain",
+    ];
+    let arguments: Vec<&str> = ["analyze", "small.json", "--out", "out"]
+        .into_iter()
+        .chain(options)
+        .chain(more)
+        .collect();
     desk.gdcm(&arguments).assert_done();
     let written = crate::read_json(&desk.path("out/corrections.json"));
     let settings = &written["settings"];
@@ -172,7 +245,15 @@ fn every_option_reaches_the_analysis() {
 #[test]
 fn delays_are_scheduled_and_a_tolerance_is_set_by_options() {
     let desk = Desk::new();
-    let ended = desk.gdcm(&["analyze", "small.json", "--out", "out", "--schedule-delays", "--agreement", "0.2"]);
+    let ended = desk.gdcm(&[
+        "analyze",
+        "small.json",
+        "--out",
+        "out",
+        "--schedule-delays",
+        "--agreement",
+        "0.2",
+    ]);
     ended.assert_done();
     assert!(ended.out.contains("net delays in ms:"), "{}", ended.out);
     let written = crate::read_json(&desk.path("out/corrections.json"));
@@ -181,14 +262,25 @@ fn delays_are_scheduled_and_a_tolerance_is_set_by_options() {
     assert!(written["schedule"]["delays_s"].is_object());
     assert_eq!(written["settings"]["agreement_db"], 0.2);
     let words = ["--agreement: loop tolerance: expected a number of dB from 0 to 3, found 4"];
-    desk.gdcm(&["analyze", "small.json", "--out", "out", "--force", "--agreement", "4"]).assert_failed(2, &words);
+    desk.gdcm(&[
+        "analyze",
+        "small.json",
+        "--out",
+        "out",
+        "--force",
+        "--agreement",
+        "4",
+    ])
+    .assert_failed(2, &words);
 }
 
 #[test]
 fn the_phase_is_corrected_as_an_option_says() {
     let desk = Desk::new();
     let reference = crate::REFERENCE_DATASET.path().unwrap().to_str().unwrap();
-    let analyze = |more: &[&str]| desk.gdcm(&[&["analyze", reference, "--out", "out", "--force"][..], more].concat());
+    let analyze = |more: &[&str]| {
+        desk.gdcm(&[&["analyze", reference, "--out", "out", "--force"][..], more].concat())
+    };
     let read = || crate::read_json(&desk.path("out/corrections.json"));
     // Figures of the leads are the same wherever G is taken from, and the text says so.
     let ended = analyze(&["--phase", "lead", "--gain-from", "mean"]);
@@ -203,10 +295,22 @@ fn the_phase_is_corrected_as_an_option_says() {
         "condition PED → NY all gain",
         "conditions 1 to 3, 5 to 11: The leads add 20 states. Do not use the corrected model above 12 rad/s.",
     ] {
-        assert!(ended.out.split_whitespace().collect::<Vec<_>>().join(" ").contains(words), "{}", ended.out);
+        assert!(
+            ended
+                .out
+                .split_whitespace()
+                .collect::<Vec<_>>()
+                .join(" ")
+                .contains(words),
+            "{}",
+            ended.out
+        );
     }
     let led = read();
-    assert_eq!((&led["settings"]["phase"], &led["settings"]["delay_from"]), (&json!("lead"), &json!("median")));
+    assert_eq!(
+        (&led["settings"]["phase"], &led["settings"]["delay_from"]),
+        (&json!("lead"), &json!("median"))
+    );
     let condition = &led["conditions"][0];
     let lat = &condition["lead"]["inputs"]["LAT"];
     // From independent numpy code.
@@ -216,11 +320,24 @@ fn the_phase_is_corrected_as_an_option_says() {
         ("lag_rad_s", 36.0, 1e-9),
         ("gain_at_infinity_db", 11.647, 1e-3),
     ] {
-        assert!((lat[key].as_f64().unwrap() - value).abs() < allowed, "{key}: {lat}");
+        assert!(
+            (lat[key].as_f64().unwrap() - value).abs() < allowed,
+            "{key}: {lat}"
+        );
     }
-    assert_eq!(condition["delays_s"]["inputs"]["LAT"], 0.0, "the positive part");
-    assert!(condition["delay_solution"]["kkt_residual_s"].as_f64().unwrap() < 1e-14);
-    let tau_s = led["schedule"]["tau_s"]["inputs"]["LAT"][0].as_f64().unwrap();
+    assert_eq!(
+        condition["delays_s"]["inputs"]["LAT"], 0.0,
+        "the positive part"
+    );
+    assert!(
+        condition["delay_solution"]["kkt_residual_s"]
+            .as_f64()
+            .unwrap()
+            < 1e-14
+    );
+    let tau_s = led["schedule"]["tau_s"]["inputs"]["LAT"][0]
+        .as_f64()
+        .unwrap();
     assert!((tau_s + 0.037_896_231_201_2).abs() < 1e-9);
     let text = fs::read_to_string(desk.path("out/corrections.csv")).unwrap();
     assert!(
@@ -233,11 +350,19 @@ fn the_phase_is_corrected_as_an_option_says() {
     ended.assert_done();
     assert!(!ended.out.contains("G from"), "{}", ended.out);
     for of in entries(&read()["conditions"]) {
-        assert!(of.get("lead").is_none() && members(&of["delays_s"]["outputs"]).iter().all(|delay_s| **delay_s == 0.0));
+        assert!(
+            of.get("lead").is_none()
+                && members(&of["delays_s"]["outputs"])
+                    .iter()
+                    .all(|delay_s| **delay_s == 0.0)
+        );
     }
     analyze(&["--delay-from", "band"]).assert_done();
     let settings = &read()["settings"];
-    assert_eq!((&settings["phase"], &settings["delay_from"]), (&json!("delay"), &json!("band")));
+    assert_eq!(
+        (&settings["phase"], &settings["delay_from"]),
+        (&json!("delay"), &json!("band"))
+    );
     analyze(&["--phase", "later"]).assert_failed(2, &["expected none, delay or lead, found later"]);
 }
 
@@ -245,15 +370,41 @@ fn the_phase_is_corrected_as_an_option_says() {
 fn coherence_is_switched_by_an_option() {
     let desk = Desk::new();
     for (choice, threshold) in [("off", None), ("on", Some(0.6)), ("0.85", Some(0.85))] {
-        desk.gdcm(&["analyze", "small.json", "--out", "out", "--force", "--coherence", choice]).assert_done();
+        desk.gdcm(&[
+            "analyze",
+            "small.json",
+            "--out",
+            "out",
+            "--force",
+            "--coherence",
+            choice,
+        ])
+        .assert_done();
         let written = crate::read_json(&desk.path("out/corrections.json"));
-        assert_eq!(written["settings"].get("coherence_threshold").and_then(|of| of.as_f64()), threshold, "{choice}");
+        assert_eq!(
+            written["settings"]
+                .get("coherence_threshold")
+                .and_then(|of| of.as_f64()),
+            threshold,
+            "{choice}"
+        );
     }
     for (choice, words) in [
-        ("1.5", "--coherence: coherence threshold: expected a number from 0 to 1, found 1.5"),
+        (
+            "1.5",
+            "--coherence: coherence threshold: expected a number from 0 to 1, found 1.5",
+        ),
         ("some", "expected off, on or a number, found some"),
     ] {
-        let ended = desk.gdcm(&["analyze", "small.json", "--out", "out", "--force", "--coherence", choice]);
+        let ended = desk.gdcm(&[
+            "analyze",
+            "small.json",
+            "--out",
+            "out",
+            "--force",
+            "--coherence",
+            choice,
+        ]);
         ended.assert_failed(2, &[words]);
     }
 }
@@ -268,36 +419,76 @@ fn sample_times_and_delays_are_told() {
     });
     let ended = desk.gdcm(&["check", "timed.json"]);
     ended.assert_done();
-    assert!(ended.out.contains("condition 7, physics nominal: discrete time, T = 0.01 s"), "{}", ended.out);
-    assert!(ended.out.contains("condition 7, physics V+5kt: input delays 0.02, 0 s"), "{}", ended.out);
+    assert!(
+        ended
+            .out
+            .contains("condition 7, physics nominal: discrete time, T = 0.01 s"),
+        "{}",
+        ended.out
+    );
+    assert!(
+        ended
+            .out
+            .contains("condition 7, physics V+5kt: input delays 0.02, 0 s"),
+        "{}",
+        ended.out
+    );
     assert!(!desk.gdcm(&["check", "small.json"]).out.contains("Timing"));
 }
 
 #[test]
 fn no_pair_held_is_a_choice_of_its_own() {
     let desk = Desk::new();
-    desk.gdcm(&["analyze", "small.json", "--out", "out", "--on", "none"]).assert_done();
-    assert_eq!(crate::read_json(&desk.path("out/corrections.json"))["settings"]["constrained"], json!([]));
+    desk.gdcm(&["analyze", "small.json", "--out", "out", "--on", "none"])
+        .assert_done();
+    assert_eq!(
+        crate::read_json(&desk.path("out/corrections.json"))["settings"]["constrained"],
+        json!([])
+    );
 }
 
 #[test]
 fn what_cannot_be_held_together_is_told_with_the_reason() {
     let desk = Desk::new();
-    let ended = desk.gdcm(&["analyze", "small.json", "--out", "out", "--on", "P/LON,P/LAT,Q/LON,Q/LAT"]);
+    let ended = desk.gdcm(&[
+        "analyze",
+        "small.json",
+        "--out",
+        "out",
+        "--on",
+        "P/LON,P/LAT,Q/LON,Q/LAT",
+    ]);
     ended.assert_done();
-    assert!(ended.out.contains("not matched LON → P is held at") && ended.out.contains("form a loop"), "{}", ended.out);
+    assert!(
+        ended.out.contains("not matched LON → P is held at") && ended.out.contains("form a loop"),
+        "{}",
+        ended.out
+    );
     let written = crate::read_json(&desk.path("out/corrections.json"));
     let gains = &written["conditions"][0]["gain_solution"];
     assert_eq!(gains["matched"], false);
     for entry in entries(&gains["unmatched"]) {
-        assert!(entry["why"].as_str().unwrap().contains("form a loop"), "{entry}");
+        assert!(
+            entry["why"].as_str().unwrap().contains("form a loop"),
+            "{entry}"
+        );
         let mut nets = entries(&written["conditions"][0]["net_gains"]).iter();
-        let net = nets.find(|net| net["output"] == entry["output"] && net["input"] == entry["input"]).unwrap();
-        let [gain, target, wanted, short_db] =
-            [&net["gain"], &entry["target"], &entry["wanted"], &entry["short_db"]].map(|of| of.as_f64().unwrap());
+        let net = nets
+            .find(|net| net["output"] == entry["output"] && net["input"] == entry["input"])
+            .unwrap();
+        let [gain, target, wanted, short_db] = [
+            &net["gain"],
+            &entry["target"],
+            &entry["wanted"],
+            &entry["short_db"],
+        ]
+        .map(|of| of.as_f64().unwrap());
         // The products are held at their targets within 1e-8 of the logarithm.
         assert!((gain / target).ln().abs() < 1e-8, "{entry}");
-        assert!((short_db - 20.0 * (target / wanted).log10()).abs() < 1e-9, "{entry}");
+        assert!(
+            (short_db - 20.0 * (target / wanted).log10()).abs() < 1e-9,
+            "{entry}"
+        );
     }
 }
 
@@ -310,13 +501,30 @@ fn a_study_stands_in_place_of_a_dataset_and_options_over_what_it_says() {
         study.apply(&edit).unwrap();
     }
     save_study(&study, &loaded, &desk.path("a.gdcm-study.json")).unwrap();
-    desk.gdcm(&["analyze", "a.gdcm-study.json", "--out", "out", "--points", "44"]).assert_done();
+    desk.gdcm(&[
+        "analyze",
+        "a.gdcm-study.json",
+        "--out",
+        "out",
+        "--points",
+        "44",
+    ])
+    .assert_done();
     let written = crate::read_json(&desk.path("out/corrections.json"));
-    assert_eq!((&written["settings"]["alpha_gain"], &written["settings"]["points"]), (&json!(0.1 + 0.2), &json!(44)));
+    assert_eq!(
+        (
+            &written["settings"]["alpha_gain"],
+            &written["settings"]["points"]
+        ),
+        (&json!(0.1 + 0.2), &json!(44))
+    );
     assert_eq!(written["dataset"]["sha256"], loaded.sha256);
     let checked = desk.gdcm(&["check", "a.gdcm-study.json"]);
     checked.assert_done();
-    assert!(checked.out.contains("Study         a.gdcm-study.json") && checked.out.contains("two conditions"));
+    assert!(
+        checked.out.contains("Study         a.gdcm-study.json")
+            && checked.out.contains("two conditions")
+    );
 }
 
 #[test]
@@ -334,45 +542,75 @@ fn check_says_what_a_file_holds() {
         "0-2          cruise",
         "Caution       the key \"author\" is not known",
     ] {
-        assert!(ended.out.contains(words), "expected \"{words}\" in:\n{}", ended.out);
+        assert!(
+            ended.out.contains(words),
+            "expected \"{words}\" in:\n{}",
+            ended.out
+        );
     }
 }
 
 #[test]
 fn a_wrong_file_is_status_2_with_path_and_place() {
     let desk = Desk::new();
-    desk.write("bad.json", |file| file["conditions"][0]["physics_models"][1]["A"][1][0] = json!("x"));
-    let words = ["bad.json: ", "condition 7", "physics model \"V+5kt\"", "matrix A, row 2, column 1"];
+    desk.write("bad.json", |file| {
+        file["conditions"][0]["physics_models"][1]["A"][1][0] = json!("x")
+    });
+    let words = [
+        "bad.json: ",
+        "condition 7",
+        "physics model \"V+5kt\"",
+        "matrix A, row 2, column 1",
+    ];
     desk.gdcm(&["check", "bad.json"]).assert_failed(2, &words);
-    desk.gdcm(&["analyze", "bad.json", "--out", "out"]).assert_failed(2, &words);
-    assert!(!desk.path("out").exists(), "nothing is made before the file is known to be good");
-    desk.gdcm(&["check", "missing.json"]).assert_failed(2, &["missing.json: there is no such file"]);
-    desk.gdcm(&["check", "."]).assert_failed(2, &["this is a directory"]);
+    desk.gdcm(&["analyze", "bad.json", "--out", "out"])
+        .assert_failed(2, &words);
+    assert!(
+        !desk.path("out").exists(),
+        "nothing is made before the file is known to be good"
+    );
+    desk.gdcm(&["check", "missing.json"])
+        .assert_failed(2, &["missing.json: there is no such file"]);
+    desk.gdcm(&["check", "."])
+        .assert_failed(2, &["this is a directory"]);
 }
 
 #[test]
 fn a_wrong_command_line_is_status_2_with_the_option() {
     let desk = Desk::new();
     let analyze = |options: &[&str]| {
-        let arguments: Vec<&str> = ["analyze", "small.json", "--out", "out"].iter().chain(options).copied().collect();
+        let arguments: Vec<&str> = ["analyze", "small.json", "--out", "out"]
+            .iter()
+            .chain(options)
+            .copied()
+            .collect();
         desk.gdcm(&arguments)
     };
     analyze(&["--alpha", "-1"]).assert_failed(2, &["--alpha: ", "from 0", "found -1"]);
     analyze(&["--alpha", "NaN"]).assert_failed(2, &["--alpha: ", "found NaN"]);
     analyze(&["--alpha", "much"]).assert_failed(2, &["--alpha: expected a number, found much"]);
     analyze(&["--alpha-delay", "1e9"]).assert_failed(2, &["--alpha-delay: ", "found 1000000000"]);
-    analyze(&["--band", "8", "1"]).assert_failed(2, &["--band: ", "0.0001 <= min < max <= 100000", "min 8, max 1"]);
+    analyze(&["--band", "8", "1"]).assert_failed(
+        2,
+        &["--band: ", "0.0001 <= min < max <= 100000", "min 8, max 1"],
+    );
     analyze(&["--band", "8"]).assert_failed(2, &["--band"]);
     analyze(&["--points", "1"]).assert_failed(2, &["--points: ", "from 2 to 5000"]);
-    analyze(&["--degree", "4"]).assert_failed(2, &["--degree: ", "expected 0, 1, 2, 3 or table", "found 4"]);
+    analyze(&["--degree", "4"]).assert_failed(
+        2,
+        &["--degree: ", "expected 0, 1, 2, 3 or table", "found 4"],
+    );
     analyze(&["--on", "P"]).assert_failed(2, &["OUTPUT/INPUT"]);
-    analyze(&["--on", "P/PED"]).assert_failed(2, &["--on: ", "no response P/PED", "inputs are LON, LAT"]);
+    analyze(&["--on", "P/PED"])
+        .assert_failed(2, &["--on: ", "no response P/PED", "inputs are LON, LAT"]);
     analyze(&["--reject", "nominal"]).assert_failed(2, &["ID:NAME"]);
     analyze(&["--reject", "8:nominal"]).assert_failed(2, &["--reject: ", "no condition 8"]);
-    analyze(&["--reject", "7:other"]).assert_failed(2, &["--reject: ", "condition 7 has no model \"other\""]);
+    analyze(&["--reject", "7:other"])
+        .assert_failed(2, &["--reject: ", "condition 7 has no model \"other\""]);
     analyze(&["--reject", "10:nominal"]).assert_failed(2, &["--reject: ", "the last model kept"]);
     analyze(&["--colour"]).assert_failed(2, &["--colour"]);
-    desk.gdcm(&["analyze", "small.json"]).assert_failed(2, &["--out"]);
+    desk.gdcm(&["analyze", "small.json"])
+        .assert_failed(2, &["--out"]);
     assert!(!desk.path("out").exists());
 }
 
@@ -387,7 +625,8 @@ fn an_output_directory_that_cannot_be_made_is_status_2_before_any_work() {
 fn a_directory_where_a_result_has_to_stand_is_status_2_before_any_work() {
     let desk = Desk::new();
     fs::create_dir_all(desk.path("out/corrections.csv")).unwrap();
-    desk.gdcm(&["analyze", "small.json", "--out", "out"]).assert_failed(2, &["corrections.csv", "directory"]);
+    desk.gdcm(&["analyze", "small.json", "--out", "out"])
+        .assert_failed(2, &["corrections.csv", "directory"]);
     assert_eq!(fs::read_dir(desk.path("out")).unwrap().count(), 1);
 }
 
@@ -403,7 +642,10 @@ fn an_analysis_without_any_result_is_status_1() {
         }
     });
     let ended = desk.gdcm(&["analyze", "silent.json", "--out", "out"]);
-    ended.assert_failed(1, &["the analysis has no result: condition 7: no response of \"nominal\""]);
+    ended.assert_failed(
+        1,
+        &["the analysis has no result: condition 7: no response of \"nominal\""],
+    );
 }
 
 #[test]
@@ -416,13 +658,30 @@ fn a_condition_without_result_is_told_and_the_others_are_written() {
     });
     let ended = desk.gdcm(&["analyze", "half.json", "--out", "out"]);
     assert_eq!(ended.status, 0);
-    assert!(ended.error.starts_with("caution: condition 10: no response of \"nominal\""), "{}", ended.error);
+    assert!(
+        ended
+            .error
+            .starts_with("caution: condition 10: no response of \"nominal\""),
+        "{}",
+        ended.error
+    );
     let written = crate::read_json(&desk.path("out/corrections.json"));
-    assert_eq!((entries(&written["conditions"]).len(), &written["failed"][0]["id"]), (1, &json!(10)));
+    assert_eq!(
+        (
+            entries(&written["conditions"]).len(),
+            &written["failed"][0]["id"]
+        ),
+        (1, &json!(10))
+    );
     let text = fs::read_to_string(desk.path("out/corrections.json")).unwrap();
     assert!(!text.contains("NaN"));
-    let undefined = rows(&desk.path("out/corrections.csv")).into_iter().filter(|row| &row[0] == "10");
-    assert!(undefined.into_iter().all(|row| row[4].is_empty()), "an undefined figure is an empty cell");
+    let undefined = rows(&desk.path("out/corrections.csv"))
+        .into_iter()
+        .filter(|row| &row[0] == "10");
+    assert!(
+        undefined.into_iter().all(|row| row[4].is_empty()),
+        "an undefined figure is an empty cell"
+    );
 }
 
 #[test]
@@ -430,7 +689,8 @@ fn a_file_may_be_named_like_a_command() {
     let desk = Desk::new();
     fs::rename(desk.path("small.json"), desk.path("check")).unwrap();
     desk.gdcm(&["check", "check"]).assert_done();
-    desk.gdcm(&["analyze", "./check", "--out", "out"]).assert_done();
+    desk.gdcm(&["analyze", "./check", "--out", "out"])
+        .assert_done();
 }
 
 #[test]
@@ -446,26 +706,45 @@ fn the_example_is_written_and_can_be_read() {
 #[test]
 fn a_reader_that_closes_the_pipe_is_no_failure() {
     let desk = Desk::new();
-    let mut child =
-        desk.command(&["check", "small.json"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = desk
+        .command(&["check", "small.json"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
     drop(child.stdout.take());
     let output = child.wait_with_output().unwrap();
-    assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0), "{output:?}");
+    assert_eq!(
+        (output.status.code(), output.stderr.len()),
+        (Some(0), 0),
+        "{output:?}"
+    );
 }
 
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_behind_standard_output_is_status_1() {
     let desk = Desk::new();
-    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
-    let output = desk.command(&["check", "small.json"]).stdout(full).output().unwrap();
+    let full = fs::OpenOptions::new()
+        .write(true)
+        .open("/dev/full")
+        .unwrap();
+    let output = desk
+        .command(&["check", "small.json"])
+        .stdout(full)
+        .output()
+        .unwrap();
     Ended::of(&output).assert_failed(1, &["standard output cannot be written"]);
 }
 
 #[test]
 fn help_and_version_are_status_0_on_standard_output() {
     let desk = Desk::new();
-    for arguments in [["--help"].as_slice(), &["analyze", "--help"], &["--version"]] {
+    for arguments in [
+        ["--help"].as_slice(),
+        &["analyze", "--help"],
+        &["--version"],
+    ] {
         let ended = desk.gdcm(arguments);
         ended.assert_done();
         assert!(ended.out.contains("gdcm"), "{}", ended.out);
@@ -475,10 +754,16 @@ fn help_and_version_are_status_0_on_standard_output() {
 #[test]
 fn names_from_a_file_cannot_write_to_the_terminal_what_they_like() {
     let desk = Desk::new();
-    desk.write("escape.json", |file| file["conditions"][0]["name"] = json!("\u{1b}[2Jgone\nCondition 99"));
+    desk.write("escape.json", |file| {
+        file["conditions"][0]["name"] = json!("\u{1b}[2Jgone\nCondition 99")
+    });
     let ended = desk.gdcm(&["check", "escape.json"]);
     ended.assert_done();
-    assert!(!ended.out.contains('\u{1b}') && !ended.out.contains("\nCondition 99"), "{}", ended.out);
+    assert!(
+        !ended.out.contains('\u{1b}') && !ended.out.contains("\nCondition 99"),
+        "{}",
+        ended.out
+    );
 }
 
 #[cfg(unix)]
@@ -493,20 +778,38 @@ fn a_path_that_is_not_unicode_is_read_all_the_same() {
 }
 
 #[test]
-fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_has_to_be_the_same() {
+fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_has_to_be_the_same()
+{
     let desk = Desk::new();
     let (study, dataset) = (desk.path("a.gdcm-study.json"), desk.path("small.json"));
     let loaded = load_dataset(&dataset).unwrap();
     save_study(&Study::new(loaded.dataset.clone()), &loaded, &study).unwrap();
-    desk.write("small.json", |file| file["conditions"][0]["airspeed_kt"] = json!(61));
+    desk.write("small.json", |file| {
+        file["conditions"][0]["airspeed_kt"] = json!(61)
+    });
     let told = desk.gdcm(&["check", "a.gdcm-study.json"]);
-    assert!(told.status == 0 && told.error.contains("condition 7 is flown at 61 kt"), "{told:?}");
+    assert!(
+        told.status == 0 && told.error.contains("condition 7 is flown at 61 kt"),
+        "{told:?}"
+    );
     let strict = desk.gdcm(&["check", "a.gdcm-study.json", "--strict"]);
-    assert!(strict.status == 2 && strict.error.contains("--strict asks for none"), "{strict:?}");
+    assert!(
+        strict.status == 2 && strict.error.contains("--strict asks for none"),
+        "{strict:?}"
+    );
     fs::rename(&dataset, desk.path("moved.json")).unwrap();
-    desk.gdcm(&["check", "a.gdcm-study.json"])
-        .assert_failed(2, &["small.json: there is no such file", "with --dataset and its path"]);
-    assert_eq!(desk.gdcm(&["check", "a.gdcm-study.json", "--dataset", "moved.json"]).status, 0);
+    desk.gdcm(&["check", "a.gdcm-study.json"]).assert_failed(
+        2,
+        &[
+            "small.json: there is no such file",
+            "with --dataset and its path",
+        ],
+    );
+    assert_eq!(
+        desk.gdcm(&["check", "a.gdcm-study.json", "--dataset", "moved.json"])
+            .status,
+        0
+    );
 }
 
 #[test]
@@ -517,35 +820,72 @@ fn a_figure_of_every_view_is_written() {
         ("error", &["--condition", "7", "--hertz"]),
         ("overview", &["--condition", "10", "--width", "single"]),
         ("net-gain", &["--pair", "all"]),
-        ("channels", &["--channel", "inputs", "--over-conditions", "--delays"]),
+        (
+            "channels",
+            &["--channel", "inputs", "--over-conditions", "--delays"],
+        ),
         ("evidence", &[]),
         ("assessment", &[]),
-        ("poles", &["--condition", "7", "--hide", "identified,rejected"]),
+        (
+            "poles",
+            &["--condition", "7", "--hide", "identified,rejected"],
+        ),
     ] {
         let out = format!("{view}.svg");
-        let ended = desk.gdcm(&[&["figure", "small.json", "--view", view, "--out", &out][..], rest].concat());
+        let ended = desk.gdcm(
+            &[
+                &["figure", "small.json", "--view", view, "--out", &out][..],
+                rest,
+            ]
+            .concat(),
+        );
         ended.assert_done();
         assert!(ended.out.starts_with(&format!("{out}: ")), "{}", ended.out);
-        assert!(fs::read_to_string(desk.path(&out)).unwrap().starts_with("<svg"), "{out}");
+        assert!(
+            fs::read_to_string(desk.path(&out))
+                .unwrap()
+                .starts_with("<svg"),
+            "{out}"
+        );
     }
 }
 
 #[test]
 fn a_figure_is_written_as_its_name_says() {
     let desk = Desk::new();
-    for (out, start) in
-        [("a.pdf", "%PDF"), ("a.PNG", "\u{fffd}PNG"), ("a.csv", "figure,panel,curve,label,x_quantity,x,y_quantity,y\n")]
-    {
-        desk.gdcm(&["figure", "small.json", "--view", "net-gain", "--out", out]).assert_done();
+    for (out, start) in [
+        ("a.pdf", "%PDF"),
+        ("a.PNG", "\u{fffd}PNG"),
+        (
+            "a.csv",
+            "figure,panel,curve,label,x_quantity,x,y_quantity,y\n",
+        ),
+    ] {
+        desk.gdcm(&["figure", "small.json", "--view", "net-gain", "--out", out])
+            .assert_done();
         let bytes = fs::read(desk.path(out)).unwrap();
-        assert!(String::from_utf8_lossy(&bytes).contains(start) && bytes.len() > 100, "{out}");
+        assert!(
+            String::from_utf8_lossy(&bytes).contains(start) && bytes.len() > 100,
+            "{out}"
+        );
     }
 }
 
 #[test]
 fn the_numbers_of_a_figure_of_several_panels_are_one_table() {
     let desk = Desk::new();
-    let figure = ["figure", "small.json", "--view", "bode", "--condition", "7", "--pair", "all", "--out", "a.csv"];
+    let figure = [
+        "figure",
+        "small.json",
+        "--view",
+        "bode",
+        "--condition",
+        "7",
+        "--pair",
+        "all",
+        "--out",
+        "a.csv",
+    ];
     desk.gdcm(&figure).assert_done();
     let mut table = csv::Reader::from_path(desk.path("a.csv")).unwrap();
     let columns: Vec<String> = table.headers().unwrap().iter().map(str::to_owned).collect();
@@ -553,24 +893,51 @@ fn the_numbers_of_a_figure_of_several_panels_are_one_table() {
     // A reader that is not flexible refuses rows of another length.
     let rows: Vec<csv::StringRecord> = table.records().collect::<Result<_, _>>().unwrap();
     let panels: BTreeSet<&str> = rows.iter().map(|row| &row[1]).collect();
-    assert_eq!(panels.len(), 8, "magnitude and phase of four responses: {panels:?}");
-    assert!(rows.iter().all(|row| row[5].parse::<f64>().is_ok()), "a frequency in every row");
+    assert_eq!(
+        panels.len(),
+        8,
+        "magnitude and phase of four responses: {panels:?}"
+    );
+    assert!(
+        rows.iter().all(|row| row[5].parse::<f64>().is_ok()),
+        "a frequency in every row"
+    );
     assert!(rows.iter().all(|row| &row[7] != "-0.0"));
 }
 
 #[test]
 fn settings_are_printed_with_six_digits() {
     let desk = Desk::new();
-    let settings = ["--alpha", "0.5302786771123", "--band", "0.50000000001", "12"];
+    let settings = [
+        "--alpha",
+        "0.5302786771123",
+        "--band",
+        "0.50000000001",
+        "12",
+    ];
     let ended = desk.gdcm(&[&["analyze", "small.json", "--out", "out"][..], &settings].concat());
     ended.assert_done();
-    let line = ended.out.lines().find(|line| line.starts_with("Band")).unwrap();
-    assert!(line.contains("0.5 to 12 rad/s") && line.contains("alpha 0.530279 (gains)"), "{line}");
+    let line = ended
+        .out
+        .lines()
+        .find(|line| line.starts_with("Band"))
+        .unwrap();
+    assert!(
+        line.contains("0.5 to 12 rad/s") && line.contains("alpha 0.530279 (gains)"),
+        "{line}"
+    );
     let written = crate::read_json(&desk.path("out/corrections.json"));
-    assert_eq!(written["settings"]["alpha_gain"], 0.530_278_677_112_3, "to the last digit in files");
-    desk.gdcm(&[&["report", "small.json", "--out", "r.html"][..], &settings].concat()).assert_done();
+    assert_eq!(
+        written["settings"]["alpha_gain"], 0.530_278_677_112_3,
+        "to the last digit in files"
+    );
+    desk.gdcm(&[&["report", "small.json", "--out", "r.html"][..], &settings].concat())
+        .assert_done();
     let report = fs::read_to_string(desk.path("r.html")).unwrap();
-    assert!(report.contains("α of the gains") && !report.contains("\u{391} of"), "a symbol has no capital");
+    assert!(
+        report.contains("α of the gains") && !report.contains("\u{391} of"),
+        "a symbol has no capital"
+    );
     assert!(report.contains("0.530279") && !report.contains("0.53027867"));
 }
 
@@ -580,10 +947,13 @@ fn a_figure_that_cannot_be_made_is_status_2_and_says_what_there_is() {
     let figure = |rest: &[&str]| desk.gdcm(&[&["figure", "small.json"][..], rest].concat());
     figure(&["--view", "bode", "--out", "a.svg"])
         .assert_failed(2, &["--condition", "a figure of one condition", "7, 10"]);
-    figure(&["--view", "bode", "--condition", "99", "--out", "a.svg"]).assert_failed(2, &["no condition 99", "7, 10"]);
+    figure(&["--view", "bode", "--condition", "99", "--out", "a.svg"])
+        .assert_failed(2, &["no condition 99", "7, 10"]);
     figure(&["--view", "sky", "--out", "a.svg"]).assert_failed(2, &["--view"]);
-    figure(&["--view", "net-gain", "--out", "a.jpg"]).assert_failed(2, &["a.jpg: ", ".svg, .png, .pdf or .csv"]);
-    figure(&["--view", "net-gain", "--pair", "X/Y", "--out", "a.svg"]).assert_failed(2, &["--pair", "no response X/Y"]);
+    figure(&["--view", "net-gain", "--out", "a.jpg"])
+        .assert_failed(2, &["a.jpg: ", ".svg, .png, .pdf or .csv"]);
+    figure(&["--view", "net-gain", "--pair", "X/Y", "--out", "a.svg"])
+        .assert_failed(2, &["--pair", "no response X/Y"]);
     figure(&["--view", "channels", "--channel", "X", "--out", "a.svg"])
         .assert_failed(2, &["--channel", "no channel X"]);
     figure(&["--view", "net-gain", "--out", "small.json"]).assert_failed(2, &["small.json: "]);
@@ -593,7 +963,11 @@ fn a_figure_that_cannot_be_made_is_status_2_and_says_what_there_is() {
     figure(&existing).assert_failed(2, &["a.svg exists already; --force overwrites"]);
     assert_eq!(fs::read_to_string(desk.path("a.svg")).unwrap(), "mine");
     figure(&[&existing[..], &["--force"]].concat()).assert_done();
-    assert!(fs::read_to_string(desk.path("a.svg")).unwrap().starts_with("<svg"));
+    assert!(
+        fs::read_to_string(desk.path("a.svg"))
+            .unwrap()
+            .starts_with("<svg")
+    );
 }
 
 #[test]
@@ -601,11 +975,16 @@ fn check_finds_a_wrong_structure_without_reading_a_large_file_to_its_end() {
     let desk = Desk::new();
     let wrong = SMALL.replacen("\"inputs\": [", "\"inputs\": 5, \"more\": [", 1);
     fs::write(desk.path("large.json"), wrong).unwrap();
-    let file = fs::File::options().write(true).open(desk.path("large.json")).unwrap();
+    let file = fs::File::options()
+        .write(true)
+        .open(desk.path("large.json"))
+        .unwrap();
     // More than is read: what reads it to its end says that.
     file.set_len(gdcm_io::LARGEST_TEXT + 1).unwrap();
-    desk.gdcm(&["check", "large.json"]).assert_failed(2, &["large.json: inputs: expected a list, found 5"]);
-    desk.gdcm(&["analyze", "large.json", "--out", "out"]).assert_failed(2, &["holds more than 128 MiB"]);
+    desk.gdcm(&["check", "large.json"])
+        .assert_failed(2, &["large.json: inputs: expected a list, found 5"]);
+    desk.gdcm(&["analyze", "large.json", "--out", "out"])
+        .assert_failed(2, &["holds more than 128 MiB"]);
 }
 
 #[test]
@@ -618,8 +997,15 @@ fn check_says_what_gain_cannot_be_computed_with() {
     let words = ended.out.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(words.contains("is about 1e74 in I0 → O0"), "{words}");
     let analysed = desk.gdcm(&["analyze", "large.json", "--out", "out"]);
-    let words = analysed.out.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("a gain of about 1e74") && !words.contains("zero or not finite"), "{words}");
+    let words = analysed
+        .out
+        .split_whitespace()
+        .collect::<Vec<_>>()
+        .join(" ");
+    assert!(
+        words.contains("a gain of about 1e74") && !words.contains("zero or not finite"),
+        "{words}"
+    );
 }
 
 #[test]
@@ -628,14 +1014,23 @@ fn check_tells_every_fault_of_a_dataset_at_once_each_with_its_place() {
     desk.write("faulty.json", |dataset| {
         dataset["frequency_band"]["min"] = json!(-1.0);
         dataset["conditions"][0]["physics_models"][0]["A"] = json!([[1.0, 2.0]]);
-        dataset["conditions"][0]["identified_models"][0]["D"] = json!([[1.0], [2.0], [3.0], [4.0], [5.0]]);
+        dataset["conditions"][0]["identified_models"][0]["D"] =
+            json!([[1.0], [2.0], [3.0], [4.0], [5.0]]);
     });
     let ended = desk.gdcm(&["check", "faulty.json"]);
     assert_eq!(ended.status, 2);
     let lines: Vec<&str> = ended.error.lines().collect();
     assert_eq!(lines.len(), 4, "{}", ended.error);
-    assert!(lines[0].contains("band") || lines[0].contains("-1"), "{}", lines[0]);
-    assert!(lines[1].contains("physics model") && lines[1].contains("line"), "{}", lines[1]);
+    assert!(
+        lines[0].contains("band") || lines[0].contains("-1"),
+        "{}",
+        lines[0]
+    );
+    assert!(
+        lines[1].contains("physics model") && lines[1].contains("line"),
+        "{}",
+        lines[1]
+    );
     assert!(lines[2].contains("identified model"), "{}", lines[2]);
     assert!(lines[3].contains("3 faults"), "{}", lines[3]);
 }
@@ -643,32 +1038,57 @@ fn check_tells_every_fault_of_a_dataset_at_once_each_with_its_place() {
 #[test]
 fn conditions_can_be_held_out_and_each_be_left_out_in_turn() {
     let desk = Desk::new();
-    let ran = desk.gdcm(&["analyze", "--hold-out", "3,8", "--leave-one-out", "--out", "out"]);
+    let ran = desk.gdcm(&[
+        "analyze",
+        "--hold-out",
+        "3,8",
+        "--leave-one-out",
+        "--out",
+        "out",
+    ]);
     ran.assert_done();
     let text = &ran.out;
     assert!(text.contains("held out (3, 8): better in "), "{text}");
-    assert!(text.contains("schedule of all") && text.contains("of the others"), "{text}");
+    assert!(
+        text.contains("schedule of all") && text.contains("of the others"),
+        "{text}"
+    );
     let corrections = crate::read_json(&desk.path("out/corrections.json"));
-    let held_out = entries(&corrections["conditions"]).iter().filter(|of| of.get("held_out").is_some());
+    let held_out = entries(&corrections["conditions"])
+        .iter()
+        .filter(|of| of.get("held_out").is_some());
     assert_eq!(held_out.map(|of| &of["id"]).collect::<Vec<_>>(), [3, 8]);
     let uncertainty = &corrections["uncertainty"];
     assert_eq!(uncertainty["level"], 0.9);
     let counts = ["differences", "scatter"].map(|of| entries(&uncertainty[of]).len());
     assert_eq!(counts, [35, 5]);
     let net = &corrections["conditions"][0]["net_gains"][0];
-    let [low, gain, high] =
-        [&net["interval"][0], &net["gain"], &net["interval"][1]].map(|figure| figure.as_f64().unwrap());
+    let [low, gain, high] = [&net["interval"][0], &net["gain"], &net["interval"][1]]
+        .map(|figure| figure.as_f64().unwrap());
     assert!(low < gain && gain < high, "{net}");
-    desk.gdcm(&["analyze", "--hold-out", "99", "--out", "other"]).assert_failed(2, &["--hold-out", "no condition 99"]);
+    desk.gdcm(&["analyze", "--hold-out", "99", "--out", "other"])
+        .assert_failed(2, &["--hold-out", "no condition 99"]);
 }
 
 /// What the program says of a file in a command, and how it ends.
 fn said_of_edge(file: &str, command: &str) -> (i32, String) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/edges").join(file);
-    let options = if command == "analyze" { &["--out", "."][..] } else { &[] };
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/data/edges")
+        .join(file);
+    let options = if command == "analyze" {
+        &["--out", "."][..]
+    } else {
+        &[]
+    };
     let ended = Desk::new().gdcm(&[&[command, path.to_str().unwrap()], options].concat());
     // Long lines are broken and indented.
-    (ended.status, (ended.out + &ended.error).split_whitespace().collect::<Vec<_>>().join(" "))
+    (
+        ended.status,
+        (ended.out + &ended.error)
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" "),
+    )
 }
 
 #[test]
@@ -678,12 +1098,21 @@ fn a_model_that_cannot_be_computed_is_named_with_its_place_by_check_and_by_analy
             "large-entry.json",
             "identified model \"i\" has no I → O over the whole band: its matrix A has 1e200 in row 1, column 2",
         ),
-        ("overflowing-response.json", "its matrix B has -1.7976931348623157e308 in row 1, column 1"),
+        (
+            "overflowing-response.json",
+            "its matrix B has -1.7976931348623157e308 in row 1, column 1",
+        ),
     ] {
         let (status, text) = said_of_edge(file, "check");
-        assert!(status == 0 && text.contains(entry) && text.contains("Caution condition"), "{text}");
+        assert!(
+            status == 0 && text.contains(entry) && text.contains("Caution condition"),
+            "{text}"
+        );
         let (status, text) = said_of_edge(file, "analyze");
-        assert!(status == 1 && text.contains(entry) && text.contains("condition"), "{text}");
+        assert!(
+            status == 1 && text.contains(entry) && text.contains("condition"),
+            "{text}"
+        );
     }
 }
 

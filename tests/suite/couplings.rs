@@ -11,7 +11,12 @@ use crate::{entries, read_json};
 const COUPLED: [&str; 4] = ["--phase", "lead", "--couplings", "feedback"];
 
 fn numbers(rows: &Value) -> Vec<Vec<f64>> {
-    let row = |row: &Value| entries(row).iter().map(|value| value.as_f64().unwrap()).collect();
+    let row = |row: &Value| {
+        entries(row)
+            .iter()
+            .map(|value| value.as_f64().unwrap())
+            .collect()
+    };
     entries(rows).iter().map(row).collect()
 }
 
@@ -36,26 +41,49 @@ fn analyze_says_what_couplings_mean_are_worth_and_cost_and_writes_them() {
     let (of, condition) = (&found["couplings"], &found["conditions"][9]["couplings"]);
     let (feedback, deviations) = (numbers(&of["feedback"]), numbers(&of["feedback_sd"]));
     assert_eq!((feedback.len(), feedback[0].len()), (4, 6));
-    assert!(deviations.iter().flatten().all(|deviation| *deviation > 0.0));
+    assert!(
+        deviations
+            .iter()
+            .flatten()
+            .all(|deviation| *deviation > 0.0)
+    );
     let left_out = &of["left_out"];
-    assert!(left_out["others"].as_f64() < left_out["without_others"].as_f64(), "{left_out}");
+    assert!(
+        left_out["others"].as_f64() < left_out["without_others"].as_f64(),
+        "{left_out}"
+    );
     assert!(of["residual"].as_f64().unwrap() < 1e-12);
     let mixing = numbers(&condition["mixing"]);
-    assert!((0..4).all(|input| mixing[input][input] == 1.0) && (0.03..0.07).contains(&mixing[1][0]), "{mixing:?}");
+    assert!(
+        (0..4).all(|input| mixing[input][input] == 1.0) && (0.03..0.07).contains(&mixing[1][0]),
+        "{mixing:?}"
+    );
     assert!(condition["least_singular_value"]["value"].as_f64().unwrap() > 0.5);
-    assert!(entries(&condition["poles_moved"]).iter().any(|of| of["before_real_rad_s"] != of["after_real_rad_s"]));
+    assert!(
+        entries(&condition["poles_moved"])
+            .iter()
+            .any(|of| of["before_real_rad_s"] != of["after_real_rad_s"])
+    );
     let table = fs::read_to_string(desk.path("with/corrections.csv")).unwrap();
     let mut lines = table.lines();
     assert!(lines.next().unwrap().ends_with(",mixing_LON,mixing_LAT,mixing_PED,mixing_COL,feedback_P,feedback_Q,feedback_R,feedback_NX,feedback_NY,feedback_NZ"));
     let cells: Vec<&str> = lines.next().unwrap().split(',').collect();
     assert_eq!(cells[cells.len() - 6].parse(), Ok(feedback[0][0]));
 
-    desk.gdcm(&["analyze", "--phase", "lead", "--out", "without"]).assert_done();
+    desk.gdcm(&["analyze", "--phase", "lead", "--out", "without"])
+        .assert_done();
     let without = read_json(&desk.path("without/corrections.json"));
     assert!(without.get("couplings").is_none() && without["settings"].get("couplings").is_none());
-    assert!(!fs::read_to_string(desk.path("without/corrections.csv")).unwrap().contains("mixing_"));
+    assert!(
+        !fs::read_to_string(desk.path("without/corrections.csv"))
+            .unwrap()
+            .contains("mixing_")
+    );
     assert_ne!(without["conditions"][9]["G"], found["conditions"][9]["G"]);
-    assert_eq!(without["conditions"][9]["physics_representative"], found["conditions"][9]["physics_representative"]);
+    assert_eq!(
+        without["conditions"][9]["physics_representative"],
+        found["conditions"][9]["physics_representative"]
+    );
 }
 
 #[test]
@@ -63,24 +91,42 @@ fn analyze_says_what_couplings_mean_are_worth_and_cost_and_writes_them() {
 fn octave_closes_the_loop_of_an_exported_function_as_state_space_has_it() {
     let desk = Desk::new();
     let export = |format: &str, name: &str, more: &[&str]| {
-        let ended = desk.gdcm(&[&["export", "--as", format, "--out", name, "--phase", "none"], more].concat());
+        let ended = desk.gdcm(
+            &[
+                &["export", "--as", format, "--out", name, "--phase", "none"],
+                more,
+            ]
+            .concat(),
+        );
         ended.assert_done();
         ended.out
     };
     let feedback = ["--couplings", "feedback"];
     let text = |name: &str| fs::read_to_string(desk.path(name)).unwrap();
     for (format, name, words) in [
-        ("m", "my_study.m", "mixing, feedback] = my_study(airspeed_kt, D)"),
+        (
+            "m",
+            "my_study.m",
+            "mixing, feedback] = my_study(airspeed_kt, D)",
+        ),
         ("table-csv", "t.csv", "mixing of input LAT from LON [-]"),
     ] {
         export(format, name, &feedback);
         assert!(text(name).contains(words), "{name}: {}", text(name));
     }
-    assert!(text("t.csv").contains("# feedback to input PED: P "), "{}", text("t.csv"));
+    assert!(
+        text("t.csv").contains("# feedback to input PED: P "),
+        "{}",
+        text("t.csv")
+    );
     export("table-mat", "t.mat", &feedback);
     export("mat", "c.mat", &feedback);
     let one = ["--condition", "7", "--couplings"];
-    let said = export("state-space", "with.mat", &[&one[..], &["feedback"]].concat());
+    let said = export(
+        "state-space",
+        "with.mat",
+        &[&one[..], &["feedback"]].concat(),
+    );
     assert!(said.contains("with mixing and feedback, exact"), "{said}");
     export("state-space", "plain.mat", &[&one[..], &["none"]].concat());
     export("m", "plain_gains.m", &["--couplings", "none"]);
@@ -96,16 +142,23 @@ fn octave_closes_the_loop_of_an_exported_function_as_state_space_has_it() {
         assert(isequal(size(c.feedback), [4, 6]) && isequal(c.feedback, gdcm_table.feedback)); \
         printf('%.17g ', max(abs(found - expected)(:)) / max(abs(expected)(:)), \
                max(abs(direct - expected)(:)) / max(abs(expected)(:)), max(abs(k - c.feedback)(:)));";
-    let Some(found) = octave(&desk, program) else { return };
-    assert!(found[0] < 1e-9 && found[1] < 1e-9 && found[2] < 1e-15, "{found:?}");
+    let Some(found) = octave(&desk, program) else {
+        return;
+    };
+    assert!(
+        found[0] < 1e-9 && found[1] < 1e-9 && found[2] < 1e-15,
+        "{found:?}"
+    );
 }
 
 #[test]
 fn a_schedule_over_airspeed_and_altitude_has_its_couplings_beside_it() {
     let desk = Desk::new();
     let chosen = [&COUPLED[..], &["--second-variable", "altitude"]].concat();
-    desk.gdcm(&[&["analyze", "--out", "."], &chosen[..]].concat()).assert_done();
-    desk.gdcm(&[&["export", "--as", "m", "--out", "two.m"], &chosen[..]].concat()).assert_done();
+    desk.gdcm(&[&["analyze", "--out", "."], &chosen[..]].concat())
+        .assert_done();
+    desk.gdcm(&[&["export", "--as", "m", "--out", "two.m"], &chosen[..]].concat())
+        .assert_done();
     let found = read_json(&desk.path("corrections.json"));
     let condition = &found["conditions"][6];
     let program = format!(
@@ -113,28 +166,82 @@ fn a_schedule_over_airspeed_and_altitude_has_its_couplings_beside_it() {
          printf('%.17g ', max(abs(low - high)(:)), isequal(m, n) && isequal(k, l), m', k');",
         condition["airspeed_kt"]
     );
-    let Some(values) = octave(&desk, &program) else { return };
-    assert!(values[0] > 1e-3 && values[1] == 1.0, "gains depend on the altitude, couplings do not: {values:?}");
-    let rows = [numbers(&condition["couplings"]["mixing"]), numbers(&found["couplings"]["feedback"])].concat();
+    let Some(values) = octave(&desk, &program) else {
+        return;
+    };
+    assert!(
+        values[0] > 1e-3 && values[1] == 1.0,
+        "gains depend on the altitude, couplings do not: {values:?}"
+    );
+    let rows = [
+        numbers(&condition["couplings"]["mixing"]),
+        numbers(&found["couplings"]["feedback"]),
+    ]
+    .concat();
     let expected: Vec<f64> = rows.into_iter().flatten().collect();
     assert_eq!(values.len(), 2 + expected.len());
     // Seventeen digits of each coefficient.
-    assert!(values[2..].iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-12), "{values:?} {expected:?}");
+    assert!(
+        values[2..]
+            .iter()
+            .zip(&expected)
+            .all(|(a, b)| (a - b).abs() < 1e-12),
+        "{values:?} {expected:?}"
+    );
 }
 
 #[test]
 fn couplings_that_nothing_can_be_fitted_to_are_told_in_words() {
     let desk = Desk::with_few();
-    let ids: Vec<String> = crate::FEW.dataset.conditions().iter().map(|of| of.id().to_string()).collect();
-    let held_out: Vec<&str> = ids[1..].iter().flat_map(|id| ["--hold-out", id.as_str()]).collect();
-    let ended = desk.gdcm(&[&["analyze", "few.json", "--out", "one"], &COUPLED[..], &held_out[..]].concat());
+    let ids: Vec<String> = crate::FEW
+        .dataset
+        .conditions()
+        .iter()
+        .map(|of| of.id().to_string())
+        .collect();
+    let held_out: Vec<&str> = ids[1..]
+        .iter()
+        .flat_map(|id| ["--hold-out", id.as_str()])
+        .collect();
+    let ended = desk.gdcm(
+        &[
+            &["analyze", "few.json", "--out", "one"],
+            &COUPLED[..],
+            &held_out[..],
+        ]
+        .concat(),
+    );
     ended.assert_done();
-    assert!(ended.out.contains("Couplings of 1 condition: three are needed"), "{}", ended.out);
+    assert!(
+        ended
+            .out
+            .contains("Couplings of 1 condition: three are needed"),
+        "{}",
+        ended.out
+    );
     // What leaves must not be without couplings where some are asked for.
-    let all: Vec<&str> = ids.iter().flat_map(|id| ["--hold-out", id.as_str()]).collect();
-    let export = ["export", "few.json", "--as", "state-space", "--correction", "own", "--out", "own.mat"];
+    let all: Vec<&str> = ids
+        .iter()
+        .flat_map(|id| ["--hold-out", id.as_str()])
+        .collect();
+    let export = [
+        "export",
+        "few.json",
+        "--as",
+        "state-space",
+        "--correction",
+        "own",
+        "--out",
+        "own.mat",
+    ];
     let refused = desk.gdcm(&[&export[..], &COUPLED[..], &all[..]].concat());
-    assert!(refused.error.contains("the study asks for couplings, and there are none: "), "{}", refused.error);
+    assert!(
+        refused
+            .error
+            .contains("the study asks for couplings, and there are none: "),
+        "{}",
+        refused.error
+    );
     assert!(refused.status != 0 && !desk.path("own.mat").exists());
     let wrong = desk.gdcm(&["analyze", "--out", "none", "--couplings", "all"]);
     assert_eq!(wrong.status, 2);
@@ -144,11 +251,15 @@ fn couplings_that_nothing_can_be_fitted_to_are_told_in_words() {
 #[test]
 fn the_report_has_a_section_on_couplings() {
     let desk = Desk::with_few();
-    desk.gdcm(&[&["report", "few.json", "--out", "r.html"], &COUPLED[..]].concat()).assert_done();
+    desk.gdcm(&[&["report", "few.json", "--out", "r.html"], &COUPLED[..]].concat())
+        .assert_done();
     let page = fs::read_to_string(desk.path("r.html")).unwrap();
-    for words in
-        ["Couplings</h", "swashplate phase of ", "Feedback: units of an input", "Poles of the physics representatives"]
-    {
+    for words in [
+        "Couplings</h",
+        "swashplate phase of ",
+        "Feedback: units of an input",
+        "Poles of the physics representatives",
+    ] {
         assert!(page.contains(words), "{words}");
     }
 }
@@ -156,8 +267,18 @@ fn the_report_has_a_section_on_couplings() {
 #[test]
 fn a_figure_shows_the_poles_of_the_condition_that_is_asked_for() {
     let desk = Desk::with_few();
-    let figure = ["figure", "few.json", "--view", "couplings", "--condition", "3", "--out", "couplings.svg"];
-    desk.gdcm(&[&figure[..], &COUPLED[..]].concat()).assert_done();
+    let figure = [
+        "figure",
+        "few.json",
+        "--view",
+        "couplings",
+        "--condition",
+        "3",
+        "--out",
+        "couplings.svg",
+    ];
+    desk.gdcm(&[&figure[..], &COUPLED[..]].concat())
+        .assert_done();
     let text = fs::read_to_string(desk.path("couplings.svg")).unwrap();
     assert!(text.contains("Poles of condition 3") && text.contains("close to ringing"));
 }

@@ -12,14 +12,24 @@ const MOVED_PT: f64 = 0.5;
 
 /// The commands of the page, each without `gdcm`, and the file that it makes.
 fn commands(page: &str) -> Vec<Vec<&str>> {
-    let lines = page.lines().filter_map(|line| line.strip_prefix("gdcm figure "));
-    lines.map(|line| std::iter::once("figure").chain(line.split_whitespace()).collect()).collect()
+    let lines = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("gdcm figure "));
+    lines
+        .map(|line| {
+            std::iter::once("figure")
+                .chain(line.split_whitespace())
+                .collect()
+        })
+        .collect()
 }
 
 /// The words of a picture with their places.
 fn words(svg: &str) -> Vec<(String, [f64; 2])> {
     let document = Document::parse(svg).unwrap();
-    let texts = document.descendants().filter(|node| node.has_tag_name("text"));
+    let texts = document
+        .descendants()
+        .filter(|node| node.has_tag_name("text"));
     texts
         .map(|node| {
             let place = ["x", "y"].map(|name| node.attribute(name).unwrap().parse().unwrap());
@@ -48,7 +58,10 @@ fn the_commands_of_the_page_make_its_pictures() {
         let same = made.iter().zip(&kept).all(|((a, at), (b, before))| {
             a == b && (at[0] - before[0]).abs() < MOVED_PT && (at[1] - before[1]).abs() < MOVED_PT
         });
-        assert!(made.len() == kept.len() && same, "{out} is not what its command makes");
+        assert!(
+            made.len() == kept.len() && same,
+            "{out} is not what its command makes"
+        );
     }
 }
 
@@ -56,14 +69,21 @@ fn the_commands_of_the_page_make_its_pictures() {
 fn every_figure_of_the_paper_has_a_picture_on_the_page() {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
     let page = fs::read_to_string(docs.join("figures.md")).unwrap();
-    let pictures: Vec<&str> = page.split("](figures/").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    let pictures: Vec<&str> = page
+        .split("](figures/")
+        .skip(1)
+        .filter_map(|rest| rest.split(')').next())
+        .collect();
     for picture in &pictures {
         assert!(docs.join("figures").join(picture).is_file(), "{picture}");
     }
     // figure-08-12.svg shows 8 to 12.
     let mut shown: Vec<u32> = Vec::new();
     for picture in pictures {
-        let numbers: Vec<u32> = picture.split(['-', '.']).filter_map(|word| word.parse().ok()).collect();
+        let numbers: Vec<u32> = picture
+            .split(['-', '.'])
+            .filter_map(|word| word.parse().ok())
+            .collect();
         if let (Some(first), Some(last)) = (numbers.first(), numbers.last()) {
             shown.extend(*first..=*last);
         }

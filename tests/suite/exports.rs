@@ -15,7 +15,9 @@ use crate::{entries, members};
 
 /// The numbers of JSON; NaN where there is none.
 fn numbers<'j>(json: impl IntoIterator<Item = &'j Value>) -> Vec<f64> {
-    json.into_iter().map(|number| number.as_f64().unwrap_or(f64::NAN)).collect()
+    json.into_iter()
+        .map(|number| number.as_f64().unwrap_or(f64::NAN))
+        .collect()
 }
 
 struct Silent;
@@ -32,13 +34,21 @@ fn models(path: &Path) -> Vec<FoundModel> {
 
 fn state_space(model: &FoundModel) -> StateSpace {
     let [a, b, c, d] = model.draft.matrices.clone().map(Option::unwrap);
-    StateSpace::new(a, b, c, d).unwrap().timed(model.draft.timing.clone()).unwrap()
+    StateSpace::new(a, b, c, d)
+        .unwrap()
+        .timed(model.draft.timing.clone())
+        .unwrap()
 }
 
 #[test]
 fn every_format_is_written_once_and_over_nothing_unasked() {
     let desk = Desk::new();
-    for ExportFormat { name: format, extension, .. } in EXPORTERS {
+    for ExportFormat {
+        name: format,
+        extension,
+        ..
+    } in EXPORTERS
+    {
         let name = format!("{}.{extension}", format.replace('-', "_"));
         let name = name.as_str();
         let arguments = ["export", "small.json", "--as", format, "--out", name];
@@ -46,10 +56,22 @@ fn every_format_is_written_once_and_over_nothing_unasked() {
         ended.assert_done();
         assert!(ended.out.starts_with(&format!("{name}: ")), "{}", ended.out);
         let written = fs::read(desk.path(name)).unwrap();
-        desk.gdcm(&arguments).assert_failed(2, &[name, "exists already; --force overwrites"]);
-        desk.gdcm(&[&arguments[..], &["--force"]].concat()).assert_done();
-        assert!(fs::read(desk.path(name)).unwrap() == written, "{format}: the same every time");
-        desk.gdcm(&["export", "small.json", "--as", format, "--out", "no/such/folder/x.mat"]);
+        desk.gdcm(&arguments)
+            .assert_failed(2, &[name, "exists already; --force overwrites"]);
+        desk.gdcm(&[&arguments[..], &["--force"]].concat())
+            .assert_done();
+        assert!(
+            fs::read(desk.path(name)).unwrap() == written,
+            "{format}: the same every time"
+        );
+        desk.gdcm(&[
+            "export",
+            "small.json",
+            "--as",
+            format,
+            "--out",
+            "no/such/folder/x.mat",
+        ]);
         assert!(!desk.path("no").exists());
     }
 }
@@ -65,10 +87,15 @@ fn every_export_stands_in_the_documentation() {
 #[test]
 fn json_and_csv_are_those_of_analyze() {
     let desk = Desk::new();
-    desk.gdcm(&["analyze", "small.json", "--out", "out"]).assert_done();
+    desk.gdcm(&["analyze", "small.json", "--out", "out"])
+        .assert_done();
     for (format, name) in [("json", "corrections.json"), ("csv", "corrections.csv")] {
-        desk.gdcm(&["export", "small.json", "--as", format, "--out", name]).assert_done();
-        assert_eq!(fs::read(desk.path(name)).unwrap(), fs::read(desk.path("out").join(name)).unwrap());
+        desk.gdcm(&["export", "small.json", "--as", format, "--out", name])
+            .assert_done();
+        assert_eq!(
+            fs::read(desk.path(name)).unwrap(),
+            fs::read(desk.path("out").join(name)).unwrap()
+        );
     }
 }
 
@@ -77,32 +104,64 @@ fn what_cannot_be_exported_is_status_2_before_any_work() {
     let desk = Desk::new();
     let export = |rest: &[&str]| desk.gdcm(&[&["export", "small.json", "--as"][..], rest].concat());
     export(&["xls", "--out", "a"]).assert_failed(2, &["--as", "table-csv"]);
-    export(&["state-space", "--out", "a.csv"]).assert_failed(2, &["a.csv: ", ".mat, .json or .npz"]);
+    export(&["state-space", "--out", "a.csv"])
+        .assert_failed(2, &["a.csv: ", ".mat, .json or .npz"]);
     export(&["m", "--out", "my-study.m"]).assert_failed(2, &["my-study.m: ", "found \"my-study\""]);
-    export(&["json", "--out", "small.json", "--force"]).assert_failed(2, &["small.json: the data are read from this"]);
-    export(&["m", "--out", "a.m", "--pade", "2"]).assert_failed(2, &["--pade: is an option of --as state-space"]);
-    export(&["h", "--out", "a.h", "--breakpoints", "1,2"]).assert_failed(2, &["--breakpoints: ", "table-csv"]);
-    export(&["table-csv", "--out", "a.csv", "--breakpoints", "60,40"]).assert_failed(2, &["airspeeds that rise"]);
+    export(&["json", "--out", "small.json", "--force"])
+        .assert_failed(2, &["small.json: the data are read from this"]);
+    export(&["m", "--out", "a.m", "--pade", "2"])
+        .assert_failed(2, &["--pade: is an option of --as state-space"]);
+    export(&["h", "--out", "a.h", "--breakpoints", "1,2"])
+        .assert_failed(2, &["--breakpoints: ", "table-csv"]);
+    export(&["table-csv", "--out", "a.csv", "--breakpoints", "60,40"])
+        .assert_failed(2, &["airspeeds that rise"]);
     let models = |rest: &[&str]| export(&[&["state-space", "--out", "a.mat"][..], rest].concat());
     models(&["--pade", "9"]).assert_failed(2, &["--pade: ", "from 1 to 8"]);
-    models(&["--condition", "8"]).assert_failed(2, &["--condition: ", "no condition 8; it has 7, 10"]);
+    models(&["--condition", "8"])
+        .assert_failed(2, &["--condition: ", "no condition 8; it has 7, 10"]);
     models(&["--correction", "none"]).assert_failed(2, &["--correction"]);
-    models(&["--model", "V+5kt"]).assert_failed(2, &["condition 10 has no physics model \"V+5kt\""]);
-    assert_eq!(fs::read_dir(desk.directory.path()).unwrap().count(), 1, "nothing was written");
+    models(&["--model", "V+5kt"])
+        .assert_failed(2, &["condition 10 has no physics model \"V+5kt\""]);
+    assert_eq!(
+        fs::read_dir(desk.directory.path()).unwrap().count(),
+        1,
+        "nothing was written"
+    );
     models(&["--model", "V+5kt", "--condition", "7"]).assert_done();
 }
 
 #[test]
 fn the_options_of_a_study_come_first() {
     let desk = Desk::new();
-    let more = ["--degree", "0", "--schedule-delays", "--as", "py", "--out", "a.py"];
+    let more = [
+        "--degree",
+        "0",
+        "--schedule-delays",
+        "--as",
+        "py",
+        "--out",
+        "a.py",
+    ];
     let ended = desk.gdcm(&[&["export", "small.json"][..], &more].concat());
     ended.assert_done();
     let text = fs::read_to_string(desk.path("a.py")).unwrap();
-    assert!(!text.contains("delays are not scheduled") && !ended.out.contains("delays are not scheduled"));
+    assert!(
+        !text.contains("delays are not scheduled")
+            && !ended.out.contains("delays are not scheduled")
+    );
     let ended = desk.gdcm(&["export", "small.json", "--as", "py", "--out", "b.py"]);
-    assert!(ended.out.contains("delays are not scheduled in this study: they are zero here"), "{}", ended.out);
-    assert!(fs::read_to_string(desk.path("b.py")).unwrap().contains("# Note: delays are not scheduled"));
+    assert!(
+        ended
+            .out
+            .contains("delays are not scheduled in this study: they are zero here"),
+        "{}",
+        ended.out
+    );
+    assert!(
+        fs::read_to_string(desk.path("b.py"))
+            .unwrap()
+            .contains("# Note: delays are not scheduled")
+    );
 }
 
 /// The small dataset, flown with the nominal physics model behind delays of the inputs \[s\], which differ from condition to condition.
@@ -128,81 +187,175 @@ fn desk_with_lagging_flight() -> Desk {
 fn delays_of_held_responses_are_exported_unless_that_is_not_wanted() {
     let desk = desk_with_lagging_flight();
     let export = |more: &[&str]| {
-        let line =
-            [&["export", "lagging.json", "--as", "state-space", "--out", "m.json", "--force", "--pade", "8"], more];
+        let line = [
+            &[
+                "export",
+                "lagging.json",
+                "--as",
+                "state-space",
+                "--out",
+                "m.json",
+                "--force",
+                "--pade",
+                "8",
+            ],
+            more,
+        ];
         let ended = desk.gdcm(&line.concat());
         ended.assert_done();
         let text = crate::read_json(&desk.path("m.json"));
-        let contains = entries(&text["models"]).iter().map(|model| model["contains"].clone()).collect::<Vec<_>>();
+        let contains = entries(&text["models"])
+            .iter()
+            .map(|model| model["contains"].clone())
+            .collect::<Vec<_>>();
         (ended.out, contains, models(&desk.path("m.json")))
     };
     let dataset = load_dataset(&desk.path("lagging.json")).unwrap().dataset;
     let omega = [0.5, 3.0, 12.0];
-    for more in [&[][..], &["--schedule-delays"], &["--schedule-delays", "automatic"], &["--schedule-delays=always"]] {
+    for more in [
+        &[][..],
+        &["--schedule-delays"],
+        &["--schedule-delays", "automatic"],
+        &["--schedule-delays=always"],
+    ] {
         let (out, contains, found) = export(more);
-        assert!(out.contains("\ncontains: gains scheduled, delays scheduled, leads none, couplings none\n"), "{out}");
+        assert!(
+            out.contains(
+                "\ncontains: gains scheduled, delays scheduled, leads none, couplings none\n"
+            ),
+            "{out}"
+        );
         assert!(!out.contains("left out"), "{out}");
         for (place, condition) in dataset.conditions().iter().enumerate() {
             assert_eq!(contains[place]["delays"], "scheduled");
             assert_eq!(contains[place]["left_out"], json!([]));
             let flown = &condition.bundle(gdcm_model::dataset::BundleKind::Identified)[0];
-            let gdcm_model::dataset::Dynamics::StateSpace(flown) = &flown.dynamics else { panic!("no matrices") };
-            let (flown, found) = (evaluate(flown, &omega), evaluate(&state_space(&found[place]), &omega));
+            let gdcm_model::dataset::Dynamics::StateSpace(flown) = &flown.dynamics else {
+                panic!("no matrices")
+            };
+            let (flown, found) = (
+                evaluate(flown, &omega),
+                evaluate(&state_space(&found[place]), &omega),
+            );
             for pair in [Pair::new(0, 1), Pair::new(1, 0)] {
                 for (found, flown) in found.curve(pair).iter().zip(flown.curve(pair)) {
                     // Two airspeeds bear a straight line, which goes through both.
-                    assert!((found - flown).norm() <= 1e-6 * flown.norm(), "{pair:?} of condition {}", condition.id());
+                    assert!(
+                        (found - flown).norm() <= 1e-6 * flown.norm(),
+                        "{pair:?} of condition {}",
+                        condition.id()
+                    );
                 }
             }
         }
     }
     let (out, contains, _) = export(&["--schedule-delays", "never"]);
-    assert!(out.contains("\ncontains: gains scheduled, delays none, leads none, couplings none\n"), "{out}");
+    assert!(
+        out.contains("\ncontains: gains scheduled, delays none, leads none, couplings none\n"),
+        "{out}"
+    );
     // 50 ms at 12 rad/s are 34.4 degrees.
-    assert!(out.contains("left out, up to 34.377 deg at 12 rad/s") && !out.contains("delays exact"), "{out}");
+    assert!(
+        out.contains("left out, up to 34.377 deg at 12 rad/s") && !out.contains("delays exact"),
+        "{out}"
+    );
     for contains in &contains {
-        assert_eq!((&contains["gains"], &contains["delays"]), (&json!("scheduled"), &json!("none")));
+        assert_eq!(
+            (&contains["gains"], &contains["delays"]),
+            (&json!("scheduled"), &json!("none"))
+        );
         assert!(!entries(&contains["left_out"]).is_empty(), "{contains}");
     }
     let (out, contains, _) = export(&["--schedule-delays", "never", "--correction", "own"]);
-    assert!(out.contains("\ncontains: gains own, delays own, leads none, couplings none\n"), "{out}");
-    assert!(contains.iter().all(|contains| contains["delays"] == "own" && contains["left_out"] == json!([])));
+    assert!(
+        out.contains("\ncontains: gains own, delays own, leads none, couplings none\n"),
+        "{out}"
+    );
+    assert!(
+        contains
+            .iter()
+            .all(|contains| contains["delays"] == "own" && contains["left_out"] == json!([]))
+    );
 }
 
 #[test]
 fn every_export_states_what_it_contains() {
     let desk = desk_with_lagging_flight();
-    for ExportFormat { name: format, extension, .. } in EXPORTERS {
+    for ExportFormat {
+        name: format,
+        extension,
+        ..
+    } in EXPORTERS
+    {
         let name = format!("{}.{extension}", format.replace('-', "_"));
-        let ended =
-            desk.gdcm(&["export", "lagging.json", "--schedule-delays", "never", "--as", format, "--out", &name]);
+        let ended = desk.gdcm(&[
+            "export",
+            "lagging.json",
+            "--schedule-delays",
+            "never",
+            "--as",
+            format,
+            "--out",
+            &name,
+        ]);
         ended.assert_done();
-        let delays = if ["mat", "csv", "json", "state-space"].contains(&format) { "delays own" } else { "delays none" };
-        let delays = if format == "state-space" { "delays none" } else { delays };
-        let line = ended.out.lines().find(|line| line.starts_with("contains: gains ")).unwrap();
+        let delays = if ["mat", "csv", "json", "state-space"].contains(&format) {
+            "delays own"
+        } else {
+            "delays none"
+        };
+        let delays = if format == "state-space" {
+            "delays none"
+        } else {
+            delays
+        };
+        let line = ended
+            .out
+            .lines()
+            .find(|line| line.starts_with("contains: gains "))
+            .unwrap();
         assert!(line.contains(delays), "{format}: {line}");
-        assert!(ended.out.contains("\nleft out: delay of "), "{format}: {}", ended.out);
+        assert!(
+            ended.out.contains("\nleft out: delay of "),
+            "{format}: {}",
+            ended.out
+        );
     }
     let read = |name: &str| fs::read_to_string(desk.path(name)).unwrap();
     let heading = "Contains: gains scheduled, delays none, leads none, couplings none.";
     for name in ["m.m", "py.py", "h.h", "table_csv.csv"] {
-        assert!(read(name).contains(heading) && read(name).contains("Left out: delay of "), "{name}");
+        assert!(
+            read(name).contains(heading) && read(name).contains("Left out: delay of "),
+            "{name}"
+        );
     }
     assert!(read("h.h").contains("#define GDCM_CONTAINS_DELAYS \"none\"\n"));
     let table = read("csv.csv");
     let heading = table.lines().next().unwrap();
     assert!(heading.ends_with(",contains"), "{heading}");
     assert!(
-        table.contains("gains own and scheduled, delays own, leads none, couplings none; left out: delay of "),
+        table.contains(
+            "gains own and scheduled, delays own, leads none, couplings none; left out: delay of "
+        ),
         "{table}"
     );
     let corrections = crate::read_json(&desk.path("json.json"));
     let contains = &corrections["contains"];
-    assert_eq!((&contains["gains"], &contains["delays"]), (&json!("own and scheduled"), &json!("own")));
+    assert_eq!(
+        (&contains["gains"], &contains["delays"]),
+        (&json!("own and scheduled"), &json!("own"))
+    );
     assert_eq!(entries(&contains["left_out"]).len(), 2, "{contains}");
     let print = "import py; print(py.CONTAINS['gains'], py.CONTAINS['delays'], len(py.CONTAINS['left_out']))";
-    if let Ok(output) = Command::new("python3").args(["-c", print]).current_dir(&desk.directory).output() {
-        assert_eq!(String::from_utf8(output.stdout).unwrap(), "scheduled none 2\n");
+    if let Ok(output) = Command::new("python3")
+        .args(["-c", print])
+        .current_dir(&desk.directory)
+        .output()
+    {
+        assert_eq!(
+            String::from_utf8(output.stdout).unwrap(),
+            "scheduled none 2\n"
+        );
     }
 }
 
@@ -210,25 +363,66 @@ fn every_export_states_what_it_contains() {
 fn a_schedule_that_loses_what_a_condition_gains_is_cautioned_of() {
     let desk = desk_with_lagging_flight();
     let notes = |scheduling: &str| {
-        let ended = desk.gdcm(&["analyze", "lagging.json", "--schedule-delays", scheduling, "--out", "out", "--force"]);
+        let ended = desk.gdcm(&[
+            "analyze",
+            "lagging.json",
+            "--schedule-delays",
+            scheduling,
+            "--out",
+            "out",
+            "--force",
+        ]);
         ended.assert_done();
         let corrections = crate::read_json(&desk.path("out/corrections.json"));
-        let notes = corrections["schedule"]["caution_notes"].as_array().cloned().unwrap_or_default();
-        (ended.out, notes.into_iter().filter(|note| note["code"] == "scheduled-cost-doubled").collect::<Vec<_>>())
+        let notes = corrections["schedule"]["caution_notes"]
+            .as_array()
+            .cloned()
+            .unwrap_or_default();
+        (
+            ended.out,
+            notes
+                .into_iter()
+                .filter(|note| note["code"] == "scheduled-cost-doubled")
+                .collect::<Vec<_>>(),
+        )
     };
     assert_eq!(notes("automatic").1, Vec::<Value>::new());
     let (out, notes) = notes("never");
-    assert_eq!(notes.iter().map(|note| note["condition"].clone()).collect::<Vec<_>>(), [7, 10]);
+    assert_eq!(
+        notes
+            .iter()
+            .map(|note| note["condition"].clone())
+            .collect::<Vec<_>>(),
+        [7, 10]
+    );
     for note in &notes {
         let [scheduled, own] = ["value", "own"].map(|key| note[key].as_f64().unwrap());
         assert!(scheduled > 1.0 && scheduled > 2.0 * own, "{note}");
     }
     let words = out.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("with the condition's own correction") && words.contains("left out"), "{out}");
-    let line = ["analyze", "lagging.json", "--schedule-delays=never", "--out", "out", "--force", "--json"];
+    assert!(
+        words.contains("with the condition's own correction") && words.contains("left out"),
+        "{out}"
+    );
+    let line = [
+        "analyze",
+        "lagging.json",
+        "--schedule-delays=never",
+        "--out",
+        "out",
+        "--force",
+        "--json",
+    ];
     let said: Value = serde_json::from_str(&desk.gdcm(&line).out).unwrap();
-    let doubled = entries(&said["cautions"]).iter().filter(|caution| caution["code"] == "scheduled-cost-doubled");
-    assert_eq!(doubled.map(|caution| caution["conditions"].clone()).collect::<Vec<_>>(), [json!([7]), json!([10])]);
+    let doubled = entries(&said["cautions"])
+        .iter()
+        .filter(|caution| caution["code"] == "scheduled-cost-doubled");
+    assert_eq!(
+        doubled
+            .map(|caution| caution["conditions"].clone())
+            .collect::<Vec<_>>(),
+        [json!([7]), json!([10])]
+    );
 }
 
 #[test]
@@ -236,26 +430,61 @@ fn the_example_has_gains_alone_and_the_delay_that_it_leaves_out_is_named() {
     let desk = Desk::new();
     let ended = desk.gdcm(&["export", "--as", "py", "--out", "a.py"]);
     ended.assert_done();
-    assert!(ended.out.contains("\ncontains: gains scheduled, delays none, "), "{}", ended.out);
-    let left_out: Vec<&str> = ended.out.lines().filter(|line| line.starts_with("left out: ")).collect();
+    assert!(
+        ended
+            .out
+            .contains("\ncontains: gains scheduled, delays none, "),
+        "{}",
+        ended.out
+    );
+    let left_out: Vec<&str> = ended
+        .out
+        .lines()
+        .filter(|line| line.starts_with("left out: "))
+        .collect();
     assert_eq!(left_out.len(), 1, "{left_out:?}");
-    assert!(left_out[0].starts_with("left out: delay of output NX: ") && left_out[0].contains("in condition 4 "));
+    assert!(
+        left_out[0].starts_with("left out: delay of output NX: ")
+            && left_out[0].contains("in condition 4 ")
+    );
 }
 
 #[test]
 fn a_table_says_how_far_it_is_off() {
     let desk = Desk::new();
-    let table = ["export", "--as", "table-csv", "--out", "t.csv", "--breakpoints", "40,90,150"];
+    let table = [
+        "export",
+        "--as",
+        "table-csv",
+        "--out",
+        "t.csv",
+        "--breakpoints",
+        "40,90,150",
+    ];
     let ended = desk.gdcm(&table);
     ended.assert_done();
-    assert!(ended.out.contains("table of the gain of input LON: off by up to "), "{}", ended.out);
+    assert!(
+        ended
+            .out
+            .contains("table of the gain of input LON: off by up to "),
+        "{}",
+        ended.out
+    );
     let text = fs::read_to_string(desk.path("t.csv")).unwrap();
     let rows: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
     assert_eq!(rows.len(), 4);
-    assert!(rows[1].starts_with("4.0") && rows[3].starts_with("1.5"), "{text}");
-    desk.gdcm(&["export", "--as", "table-csv", "--out", "own.csv"]).assert_done();
+    assert!(
+        rows[1].starts_with("4.0") && rows[3].starts_with("1.5"),
+        "{text}"
+    );
+    desk.gdcm(&["export", "--as", "table-csv", "--out", "own.csv"])
+        .assert_done();
     let own = fs::read_to_string(desk.path("own.csv")).unwrap();
-    assert_eq!(own.lines().filter(|line| !line.starts_with('#')).count(), 1 + 5, "45, 60, 90, 120 and 140 kt");
+    assert_eq!(
+        own.lines().filter(|line| !line.starts_with('#')).count(),
+        1 + 5,
+        "45, 60, 90, 120 and 140 kt"
+    );
 }
 
 /// The corrected models of the example by their own corrections, in three formats that say the same.
@@ -263,23 +492,52 @@ fn a_table_says_how_far_it_is_off() {
 fn corrected_models_are_the_program_s_in_every_format() {
     let desk = Desk::new();
     let models_of = |name: &str| {
-        let options = ["--correction", "own", "--model", "representative", "--pade", "8"];
-        let ended = desk.gdcm(&[&["export", "--as", "state-space", "--out", name][..], &options].concat());
+        let options = [
+            "--correction",
+            "own",
+            "--model",
+            "representative",
+            "--pade",
+            "8",
+        ];
+        let ended = desk.gdcm(
+            &[
+                &["export", "--as", "state-space", "--out", name][..],
+                &options,
+            ]
+            .concat(),
+        );
         ended.assert_done();
-        assert!(ended.out.contains("order 8, phase error up to "), "{}", ended.out);
-        ended.out.lines().skip(1).map(str::to_owned).collect::<Vec<_>>()
+        assert!(
+            ended.out.contains("order 8, phase error up to "),
+            "{}",
+            ended.out
+        );
+        ended
+            .out
+            .lines()
+            .skip(1)
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
     };
     let lines = models_of("m.json");
     assert_eq!(models_of("m.mat"), lines);
     assert_eq!(models_of("m.npz"), lines);
     let found = models(&desk.path("m.json"));
     assert_eq!(found.len(), 11);
-    let names: Vec<_> = found[0].outputs.iter().map(|label| label.name.clone().unwrap()).collect();
+    let names: Vec<_> = found[0]
+        .outputs
+        .iter()
+        .map(|label| label.name.clone().unwrap())
+        .collect();
     assert_eq!(names, ["P", "Q", "R", "NX", "NY", "NZ"]);
     let of_matlab = models(&desk.path("m.mat"));
     for (json, mat) in found.iter().zip(&of_matlab) {
         assert_eq!(json.draft.matrices, mat.draft.matrices);
-        assert_eq!((&json.inputs, &json.outputs, &json.draft.states), (&mat.inputs, &mat.outputs, &mat.draft.states));
+        assert_eq!(
+            (&json.inputs, &json.outputs, &json.draft.states),
+            (&mat.inputs, &mat.outputs, &mat.draft.states)
+        );
     }
     // Against the physics models and the corrections as `analyze` writes them.
     desk.gdcm(&["analyze", "--out", "."]).assert_done();
@@ -287,22 +545,44 @@ fn corrected_models_are_the_program_s_in_every_format() {
     let omega = [0.5, 3.0, 12.0];
     let mut delayed = 0;
     for (model, result) in found.iter().zip(entries(&corrections["conditions"])) {
-        let condition = crate::EXAMPLE.dataset.conditions().iter().find(|of| result["id"] == of.id().0).unwrap();
+        let condition = crate::EXAMPLE
+            .dataset
+            .conditions()
+            .iter()
+            .find(|of| result["id"] == of.id().0)
+            .unwrap();
         let representative = result["physics_representative"].as_str().unwrap();
-        let physics = condition.model(gdcm_model::dataset::BundleKind::Physics, representative).unwrap();
+        let physics = condition
+            .model(gdcm_model::dataset::BundleKind::Physics, representative)
+            .unwrap();
         let figures = |metric: &str, side: &str| numbers(members(&result[metric][side]));
-        let gdcm_model::dataset::Dynamics::StateSpace(plain) = &physics.dynamics else { panic!("no matrices") };
-        let (corrected, plain) = (evaluate(&state_space(model), &omega), evaluate(plain, &omega));
+        let gdcm_model::dataset::Dynamics::StateSpace(plain) = &physics.dynamics else {
+            panic!("no matrices")
+        };
+        let (corrected, plain) = (
+            evaluate(&state_space(model), &omega),
+            evaluate(plain, &omega),
+        );
         for (output, output_gain) in figures("gains", "outputs").into_iter().enumerate() {
             for (input, input_gain) in figures("gains", "inputs").into_iter().enumerate() {
-                let delay = figures("delays_s", "outputs")[output] + figures("delays_s", "inputs")[input];
+                let delay =
+                    figures("delays_s", "outputs")[output] + figures("delays_s", "inputs")[input];
                 delayed += usize::from(delay > 0.0);
-                let (corrected, plain) = (corrected.curve(Pair { output, input }), plain.curve(Pair { output, input }));
+                let (corrected, plain) = (
+                    corrected.curve(Pair { output, input }),
+                    plain.curve(Pair { output, input }),
+                );
                 for (at, omega) in omega.into_iter().enumerate() {
-                    let factor = nalgebra::Complex::new(0.0, -omega * delay).exp() * output_gain * input_gain;
+                    let factor = nalgebra::Complex::new(0.0, -omega * delay).exp()
+                        * output_gain
+                        * input_gain;
                     let expected = plain[at] * factor;
                     // What order 8 misses of these delays is less than rounding.
-                    assert!((corrected[at] - expected).norm() <= 1e-9 * expected.norm(), "condition {}", result["id"]);
+                    assert!(
+                        (corrected[at] - expected).norm() <= 1e-9 * expected.norm(),
+                        "condition {}",
+                        result["id"]
+                    );
                 }
             }
         }
@@ -324,9 +604,13 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
     assert!(words.contains("gains and lead filters exact"), "{words}");
     let found = models(&desk.path("m.json"));
     assert_eq!(found[0].draft.states[..2], ["LON lead 1", "LON lead 2"]);
-    desk.gdcm(&["analyze", "few.json", "--phase", "lead", "--out", "."]).assert_done();
+    desk.gdcm(&["analyze", "few.json", "--phase", "lead", "--out", "."])
+        .assert_done();
     let corrections = crate::read_json(&desk.path("corrections.json"));
-    let at = entries(&corrections["schedule"]["table"]).iter().find(|row| row["airspeed_kt"] == 45.0).unwrap();
+    let at = entries(&corrections["schedule"]["table"])
+        .iter()
+        .find(|row| row["airspeed_kt"] == 45.0)
+        .unwrap();
     let filter = |of: &Value, s: nalgebra::Complex<f64>| {
         let side = |omega: &Value| {
             let x = s / omega.as_f64().unwrap();
@@ -336,9 +620,14 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
     };
     let physics = &crate::FEW.dataset.conditions()[0];
     let nominal = &physics.bundle(gdcm_model::dataset::BundleKind::Physics)[physics.nominal()];
-    let gdcm_model::dataset::Dynamics::StateSpace(plain) = &nominal.dynamics else { panic!("no matrices") };
+    let gdcm_model::dataset::Dynamics::StateSpace(plain) = &nominal.dynamics else {
+        panic!("no matrices")
+    };
     let omega = [0.5, 3.0, 12.0, 120.0];
-    let (corrected, plain) = (evaluate(&state_space(&found[0]), &omega), evaluate(plain, &omega));
+    let (corrected, plain) = (
+        evaluate(&state_space(&found[0]), &omega),
+        evaluate(plain, &omega),
+    );
     let [input_leads, output_leads] = ["inputs", "outputs"].map(|side| members(&at["lead"][side]));
     for (output, output_gain) in numbers(members(&at["outputs"])).into_iter().enumerate() {
         for (input, input_gain) in numbers(members(&at["inputs"])).into_iter().enumerate() {
@@ -349,28 +638,69 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
                 let expected = plain.curve(pair)[place] * filters * output_gain * input_gain;
                 // Responses are evaluated to a part of the greatest one, of order 1; far above the band most are 1e-6 of it.
                 let allowed = 1e-9 * expected.norm() + 1e-11;
-                assert!((corrected.curve(pair)[place] - expected).norm() <= allowed, "{pair:?} at {omega} rad/s");
+                assert!(
+                    (corrected.curve(pair)[place] - expected).norm() <= allowed,
+                    "{pair:?} at {omega} rad/s"
+                );
             }
         }
     }
     for (format, name, parts) in [
-        ("m", "c.m", ["[Mi, Mo, tau_i, tau_o, lead_i, lead_o]", "tf([a^2 sqrt(2)*a 1], [b^2 sqrt(2)*b 1])"]),
-        ("py", "c.py", ["def gdcm_leads(airspeed_kt):", "def gdcm_lead_state_space(zero_s):"]),
-        ("h", "c.h", ["#define GDCM_LEAD_ORDER 2", "static inline double gdcm_lead_step("]),
-        ("table-csv", "t.csv", ["lead numerator of input LAT", "# Lead: each input"]),
+        (
+            "m",
+            "c.m",
+            [
+                "[Mi, Mo, tau_i, tau_o, lead_i, lead_o]",
+                "tf([a^2 sqrt(2)*a 1], [b^2 sqrt(2)*b 1])",
+            ],
+        ),
+        (
+            "py",
+            "c.py",
+            [
+                "def gdcm_leads(airspeed_kt):",
+                "def gdcm_lead_state_space(zero_s):",
+            ],
+        ),
+        (
+            "h",
+            "c.h",
+            [
+                "#define GDCM_LEAD_ORDER 2",
+                "static inline double gdcm_lead_step(",
+            ],
+        ),
+        (
+            "table-csv",
+            "t.csv",
+            ["lead numerator of input LAT", "# Lead: each input"],
+        ),
     ] {
         export(format, name);
         let text = fs::read_to_string(desk.path(name)).unwrap();
-        assert!(parts.iter().all(|part| text.contains(part)), "{name}: {text}");
+        assert!(
+            parts.iter().all(|part| text.contains(part)),
+            "{name}: {text}"
+        );
     }
     let zero_s: f64 = 1.0 / at["lead"]["inputs"]["LAT"]["zero_rad_s"].as_f64().unwrap();
     let program = "import c\nzi, zo = c.gdcm_leads(45.0)\nA, B, C, D = c.gdcm_lead_state_space(zi[1])\n\
                    print(repr(zi[1]), repr(D[0][0]), len(zo), len(A))";
-    if let Ok(output) = Command::new("python3").args(["-c", program]).current_dir(&desk.directory).output() {
+    if let Ok(output) = Command::new("python3")
+        .args(["-c", program])
+        .current_dir(&desk.directory)
+        .output()
+    {
         let text = String::from_utf8(output.stdout).unwrap();
-        let numbers: Vec<f64> = text.split_whitespace().map(|word| word.parse().unwrap()).collect();
+        let numbers: Vec<f64> = text
+            .split_whitespace()
+            .map(|word| word.parse().unwrap())
+            .collect();
         let r = (36.0 * zero_s).powi(2);
-        assert!((numbers[0] - zero_s).abs() < 1e-15 && (numbers[1] / r - 1.0).abs() < 1e-12, "{text}");
+        assert!(
+            (numbers[0] - zero_s).abs() < 1e-15 && (numbers[1] / r - 1.0).abs() < 1e-12,
+            "{text}"
+        );
         assert_eq!(numbers[2..], [6.0, 2.0]);
     }
 }
@@ -379,7 +709,8 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
 #[test]
 fn the_filter_of_the_c_header_leads_a_sine() {
     let desk = Desk::new();
-    desk.gdcm(&["export", "--phase", "lead", "--as", "h", "--out", "c.h"]).assert_done();
+    desk.gdcm(&["export", "--phase", "lead", "--as", "h", "--out", "c.h"])
+        .assert_done();
     let program = "#include \"c.h\"\n#include <stdio.h>\nint main(void) { double zi[4], zo[6], c = 0, s = 0; long k;\n\
         struct gdcm_lead f = {0.0, 0.0}; const double h = 0.001, w = 6.283185307179586;\n\
         if (gdcm_leads(120.0, zi, zo) != 0) return 1;\n\
@@ -387,15 +718,40 @@ fn the_filter_of_the_c_header_leads_a_sine() {
         if (k >= 2000) { s += y * sin(w * k * h) * 0.001; c += y * cos(w * k * h) * 0.001; } }\n\
         printf(\"%.12g %.12g %.12g\", zi[1], s, c); return 0; }\n";
     fs::write(desk.path("main.c"), program).unwrap();
-    let flags = ["-std=c99", "-Wall", "-Wextra", "-Wshadow", "-Werror", "-pedantic", "-o", "main", "main.c", "-lm"];
-    let Ok(built) = Command::new("cc").args(flags).current_dir(&desk.directory).output() else {
+    let flags = [
+        "-std=c99",
+        "-Wall",
+        "-Wextra",
+        "-Wshadow",
+        "-Werror",
+        "-pedantic",
+        "-o",
+        "main",
+        "main.c",
+        "-lm",
+    ];
+    let Ok(built) = Command::new("cc")
+        .args(flags)
+        .current_dir(&desk.directory)
+        .output()
+    else {
         eprintln!("SKIPPED: cc is not installed");
         return;
     };
-    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    assert!(
+        built.status.success(),
+        "{}",
+        String::from_utf8_lossy(&built.stderr)
+    );
     let output = Command::new(desk.path("main")).output().unwrap();
     let text = String::from_utf8(output.stdout).unwrap();
-    let [zero_s, s, c] = [0, 1, 2].map(|at| text.split_whitespace().nth(at).unwrap().parse::<f64>().unwrap());
+    let [zero_s, s, c] = [0, 1, 2].map(|at| {
+        text.split_whitespace()
+            .nth(at)
+            .unwrap()
+            .parse::<f64>()
+            .unwrap()
+    });
     let filter = gdcm_model::response::LeadFilter::new(
         gdcm_model::response::LeadOrder::Second,
         2.0_f64.sqrt() * (zero_s - 1.0 / 36.0),
@@ -403,7 +759,10 @@ fn the_filter_of_the_c_header_leads_a_sine() {
     );
     let expected = filter.at(std::f64::consts::TAU);
     // Tustin's rule takes 6.2832 rad/s for 6.2832 (1 + (w h)^2 / 12): 3e-6 of it.
-    assert!((s - expected.re).abs() < 1e-4 && (c - expected.im).abs() < 1e-4, "{text} {expected}");
+    assert!(
+        (s - expected.re).abs() < 1e-4 && (c - expected.im).abs() < 1e-4,
+        "{text} {expected}"
+    );
 }
 
 #[test]
@@ -417,62 +776,134 @@ fn delays_of_discrete_time_are_exact_or_refused() {
             nominal["input_delays_s"] = json!([0.03, 0]);
         }
     });
-    let export = |name: &str| desk.gdcm(&["export", "sampled.json", "--as", "state-space", "--out", name]);
+    let export = |name: &str| {
+        desk.gdcm(&[
+            "export",
+            "sampled.json",
+            "--as",
+            "state-space",
+            "--out",
+            name,
+        ])
+    };
     let ended = export("m.json");
     ended.assert_done();
-    assert!(ended.out.contains("nominal, scheduled correction: gains and delays exact"), "{}", ended.out);
+    assert!(
+        ended
+            .out
+            .contains("nominal, scheduled correction: gains and delays exact"),
+        "{}",
+        ended.out
+    );
     let found = models(&desk.path("m.json"));
     assert_eq!(found[0].draft.timing.sample_time_s, Some(0.01));
-    assert_eq!(found[0].draft.states, ["LON delay 1", "LON delay 2", "LON delay 3", "w", "q"]);
+    assert_eq!(
+        found[0].draft.states,
+        ["LON delay 1", "LON delay 2", "LON delay 3", "w", "q"]
+    );
     desk.write("part.json", |file| {
         let nominal = &mut file["conditions"][0]["physics_models"][0];
         nominal["A"] = json!([[0.99, 0.01], [-0.02, 0.98]]);
         nominal["sample_time_s"] = json!(0.01);
         nominal["input_delays_s"] = json!([0.034, 0]);
     });
-    let words = ["m.npz: condition 7, model \"nominal\": the delay of LON, 0.034 s, is 3.4 samples of 0.01 s"];
-    desk.gdcm(&["export", "part.json", "--as", "state-space", "--out", "m.npz"]).assert_failed(2, &words);
+    let words = [
+        "m.npz: condition 7, model \"nominal\": the delay of LON, 0.034 s, is 3.4 samples of 0.01 s",
+    ];
+    desk.gdcm(&[
+        "export",
+        "part.json",
+        "--as",
+        "state-space",
+        "--out",
+        "m.npz",
+    ])
+    .assert_failed(2, &words);
     assert!(!desk.path("m.npz").exists());
 }
 
 pub(crate) fn octave(desk: &Desk, program: &str) -> Option<Vec<f64>> {
-    let Ok(output) = Command::new("octave-cli").args(["--eval", program]).current_dir(&desk.directory).output() else {
+    let Ok(output) = Command::new("octave-cli")
+        .args(["--eval", program])
+        .current_dir(&desk.directory)
+        .output()
+    else {
         eprintln!("SKIPPED: octave-cli is not installed, files for MATLAB are not read by it");
         return None;
     };
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
     let text = String::from_utf8(output.stdout).unwrap();
-    Some(text.split_whitespace().map(|word| word.parse().unwrap()).collect())
+    Some(
+        text.split_whitespace()
+            .map(|word| word.parse().unwrap())
+            .collect(),
+    )
 }
 
 #[test]
 fn octave_reads_the_corrections_as_analyze_writes_them() {
     let desk = Desk::with_few();
-    desk.gdcm(&["analyze", "few.json", "--out", ".", "--schedule-delays"]).assert_done();
+    desk.gdcm(&["analyze", "few.json", "--out", ".", "--schedule-delays"])
+        .assert_done();
     let corrections = crate::read_json(&desk.path("corrections.json"));
-    desk.gdcm(&["export", "few.json", "--as", "mat", "--out", "c.mat", "--schedule-delays"]).assert_done();
+    desk.gdcm(&[
+        "export",
+        "few.json",
+        "--as",
+        "mat",
+        "--out",
+        "c.mat",
+        "--schedule-delays",
+    ])
+    .assert_done();
     let program = "load c.mat; for c = corrections.conditions, \
                    printf('%.17g ', c.id, c.G', c.D_s', c.gains.inputs, c.delays_s.outputs, c.J.corrected.mag', c.net_gains'); end; \
                    s = corrections.schedule; printf('%.17g ', s.inputs', s.delays_s.upper_s, s.table.outputs'); \
                    assert(strcmp(corrections.inputs{2}, 'LAT') && islogical(corrections.settings.constrained)); \
                    assert(c.net_gain_table.gain(2, 1) == c.net_gains(2, 1) && rows(c.bars.G.interval) == 6);";
-    let Some(found) = octave(&desk, program) else { return };
+    let Some(found) = octave(&desk, program) else {
+        return;
+    };
     let mut expected = Vec::new();
     let table = |table: &Value| numbers(entries(table).iter().flat_map(entries));
     let figures = |of: &Value| numbers(members(of));
     for of in entries(&corrections["conditions"]) {
         expected.push(of["id"].as_f64().unwrap());
         expected.extend([table(&of["G"]), table(&of["D_s"])].concat());
-        expected.extend([figures(&of["gains"]["inputs"]), figures(&of["delays_s"]["outputs"])].concat());
+        expected.extend(
+            [
+                figures(&of["gains"]["inputs"]),
+                figures(&of["delays_s"]["outputs"]),
+            ]
+            .concat(),
+        );
         expected.extend(table(&of["J"]["corrected"]["mag"]));
-        expected.extend(numbers(entries(&of["net_gains"]).iter().map(|net| &net["gain"])));
+        expected.extend(numbers(
+            entries(&of["net_gains"]).iter().map(|net| &net["gain"]),
+        ));
     }
     let schedule = &corrections["schedule"];
-    expected.extend(numbers(members(&schedule["inputs"]).into_iter().flat_map(entries)));
+    expected.extend(numbers(
+        members(&schedule["inputs"]).into_iter().flat_map(entries),
+    ));
     expected.extend(numbers(entries(&schedule["delays_s"]["upper_s"])));
-    expected.extend(entries(&schedule["table"]).iter().flat_map(|row| figures(&row["outputs"])));
+    expected.extend(
+        entries(&schedule["table"])
+            .iter()
+            .flat_map(|row| figures(&row["outputs"])),
+    );
     assert_eq!(found.len(), expected.len());
-    assert!(found.iter().zip(&expected).all(|(a, b)| a == b || (a.is_nan() && b.is_nan())), "to the last digit");
+    assert!(
+        found
+            .iter()
+            .zip(&expected)
+            .all(|(a, b)| a == b || (a.is_nan() && b.is_nan())),
+        "to the last digit"
+    );
 }
 
 #[test]
@@ -480,12 +911,24 @@ fn octave_computes_the_response_of_a_corrected_model() {
     let desk = Desk::with_few();
     let path: PathBuf = desk.path("m.json");
     for name in ["m.mat", "m.json"] {
-        desk.gdcm(&["export", "few.json", "--as", "state-space", "--correction", "own", "--out", name]).assert_done();
+        desk.gdcm(&[
+            "export",
+            "few.json",
+            "--as",
+            "state-space",
+            "--correction",
+            "own",
+            "--out",
+            name,
+        ])
+        .assert_done();
     }
     let program = "load m.mat; for m = models, H = m.C * ((3i * eye(size(m.A)) - m.A) \\ m.B) + m.D; \
                    printf('%.17g ', m.condition, m.Ts, abs(H)'); \
                    assert(numel(m.StateName) == rows(m.A) && strcmp(m.OutputUnit{1}, 'deg/s')); end";
-    let Some(found) = octave(&desk, program) else { return };
+    let Some(found) = octave(&desk, program) else {
+        return;
+    };
     let mut expected = Vec::new();
     for (place, model) in models(&path).iter().enumerate() {
         expected.extend([crate::FEW.dataset.conditions()[place].id().0 as f64, 0.0]);
@@ -494,7 +937,12 @@ fn octave_computes_the_response_of_a_corrected_model() {
         expected.extend(pairs.map(|pair| response.curve(pair)[0].norm()));
     }
     assert_eq!(found.len(), expected.len());
-    assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() <= 1e-9 * b.abs()));
+    assert!(
+        found
+            .iter()
+            .zip(&expected)
+            .all(|(a, b)| (a - b).abs() <= 1e-9 * b.abs())
+    );
 }
 
 #[test]
@@ -502,15 +950,26 @@ fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
     let desk = Desk::with_few();
     // Of the example's conditions the 10th has the strongest lead on LON: as if a servo of 18 rad/s were one of 36.
     let limit = "not valid above 12 rad/s: at 120 rad/s the leads add +";
-    for ExportFormat { name: format, extension, .. } in EXPORTERS {
+    for ExportFormat {
+        name: format,
+        extension,
+        ..
+    } in EXPORTERS
+    {
         let name = if format == "state-space" {
             "state_space.json"
         } else {
             &format!("{}.{extension}", format.replace('-', "_"))
         };
-        let ended = desk.gdcm(&["export", "few.json", "--phase", "lead", "--as", format, "--out", name]);
+        let ended = desk.gdcm(&[
+            "export", "few.json", "--phase", "lead", "--as", format, "--out", name,
+        ]);
         assert_eq!((ended.status, ended.error.as_str()), (0, ""), "{format}");
-        assert!(ended.out.contains(limit) && ended.out.contains(" dB on LON"), "{format}: {}", ended.out);
+        assert!(
+            ended.out.contains(limit) && ended.out.contains(" dB on LON"),
+            "{format}: {}",
+            ended.out
+        );
         let bytes = fs::read(desk.path(name)).unwrap();
         let text = String::from_utf8_lossy(&bytes);
         let is_said = text.contains(limit) || text.contains("not_valid_above_rad_s");

@@ -29,7 +29,10 @@ fn read_json(path: &Path) -> serde_json::Value {
 
 /// The members of an object of JSON, in their order.
 fn members(json: &serde_json::Value) -> Vec<&serde_json::Value> {
-    json.as_object().expect("it is an object").values().collect()
+    json.as_object()
+        .expect("it is an object")
+        .values()
+        .collect()
 }
 
 /// The entries of a list of JSON.
@@ -43,20 +46,28 @@ static EXAMPLE: LazyLock<LoadedDataset> =
 
 /// Conditions 3, 7 and 10 of the example alone, as a file: what needs no more of them is computed in a quarter of the time.
 static FEW_TEXT: LazyLock<Vec<u8>> = LazyLock::new(|| {
-    let packed = std::fs::File::open(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/example-dataset.json.gz"));
+    let packed = std::fs::File::open(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/assets/example-dataset.json.gz"
+    ));
     let unpacked = flate2::read::GzDecoder::new(packed.expect("it can be read"));
     let mut file: serde_json::Value = serde_json::from_reader(unpacked).expect("it is JSON");
-    file["conditions"].as_array_mut().expect("a list").retain(|of| [3, 7, 10].contains(&of["id"].as_i64().unwrap()));
+    file["conditions"]
+        .as_array_mut()
+        .expect("a list")
+        .retain(|of| [3, 7, 10].contains(&of["id"].as_i64().unwrap()));
     serde_json::to_vec(&file).expect("it can be written")
 });
 
 /// The same, read; flight records of conditions 3 and 10 are inside the program.
-static FEW: LazyLock<LoadedDataset> =
-    LazyLock::new(|| load_dataset_bytes(&FEW_TEXT, DatasetOrigin::EmbeddedExample).expect("it is a dataset"));
+static FEW: LazyLock<LoadedDataset> = LazyLock::new(|| {
+    load_dataset_bytes(&FEW_TEXT, DatasetOrigin::EmbeddedExample).expect("it is a dataset")
+});
 
 /// The dataset that reference figures were computed from by independent code: the example's physics models, and three identified
 /// models a condition that are not the program's.
 static REFERENCE_DATASET: LazyLock<LoadedDataset> = LazyLock::new(|| {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference/example-dataset.json.gz");
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/reference/example-dataset.json.gz");
     load_dataset(&path).expect("it is a dataset")
 });

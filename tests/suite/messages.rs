@@ -24,14 +24,24 @@ fn is_plain(text: &str) -> bool {
 #[test]
 fn invisible_characters_of_file_names_are_spelt_out() {
     let message = load_dataset(Path::new(NASTY)).unwrap_err().to_string();
-    assert!(is_plain(&message) && message.lines().count() == 1, "{message:?}");
-    assert!(message.starts_with("a\\u{202e}b\\u{200b}c\\u{2028}d\\u{2066}e\\u{1b}[2Jf\\ng: "), "{message}");
+    assert!(
+        is_plain(&message) && message.lines().count() == 1,
+        "{message:?}"
+    );
+    assert!(
+        message.starts_with("a\\u{202e}b\\u{200b}c\\u{2028}d\\u{2066}e\\u{1b}[2Jf\\ng: "),
+        "{message}"
+    );
     let desk = Desk::new();
     let name = NASTY.replace('\n', "");
     std::fs::write(desk.path(&name), SMALL).unwrap();
     let ended = desk.gdcm(&["check", &name]);
     ended.assert_done();
-    assert!(is_plain(&ended.out) && ended.out.contains("\\u{202e}b"), "{:?}", ended.out);
+    assert!(
+        is_plain(&ended.out) && ended.out.contains("\\u{202e}b"),
+        "{:?}",
+        ended.out
+    );
 }
 
 #[test]
@@ -45,9 +55,15 @@ fn invisible_characters_of_what_a_file_says_are_spelt_out() {
         file["conditions"][0]["identified_models"][0]["name"] = json!(NASTY);
         file["inputs"][0]["unit"] = json!(NASTY);
     });
-    for arguments in [["check", "nasty.json"].as_slice(), &["analyze", "nasty.json", "--out", "out"]] {
+    for arguments in [
+        ["check", "nasty.json"].as_slice(),
+        &["analyze", "nasty.json", "--out", "out"],
+    ] {
         let ended = desk.gdcm(arguments);
-        assert!(ended.status == 0 && is_plain(&ended.out) && is_plain(&ended.error), "{ended:?}");
+        assert!(
+            ended.status == 0 && is_plain(&ended.out) && is_plain(&ended.error),
+            "{ended:?}"
+        );
         assert!(ended.out.contains("a\\u{202e}b"), "{}", ended.out);
     }
 }
@@ -61,12 +77,20 @@ fn a_number_of_three_hundred_digits_is_written_with_an_exponent() {
     });
     let checked = desk.gdcm(&["check", "large.json"]);
     checked.assert_done();
-    assert!(checked.out.contains("1e300 kt") && checked.out.contains("1e-300 kg"), "{}", checked.out);
+    assert!(
+        checked.out.contains("1e300 kt") && checked.out.contains("1e-300 kg"),
+        "{}",
+        checked.out
+    );
     assert!(!checked.out.contains("00000000000"), "{}", checked.out);
     desk.write("id.json", |file| file["conditions"][0]["id"] = json!(1e300));
-    desk.gdcm(&["check", "id.json"]).assert_failed(2, &["expected a whole number, found 1e300"]);
-    desk.write("negative.json", |file| file["conditions"][0]["airspeed_kt"] = json!(-1e300));
-    desk.gdcm(&["check", "negative.json"]).assert_failed(2, &["airspeed [kt]", "found -1e300"]);
+    desk.gdcm(&["check", "id.json"])
+        .assert_failed(2, &["expected a whole number, found 1e300"]);
+    desk.write("negative.json", |file| {
+        file["conditions"][0]["airspeed_kt"] = json!(-1e300)
+    });
+    desk.gdcm(&["check", "negative.json"])
+        .assert_failed(2, &["airspeed [kt]", "found -1e300"]);
     desk.gdcm(&["analyze", "--out", "out", "--alpha", "1e300"])
         .assert_failed(2, &["--alpha: ", "a number from 0 to 1000000, found 1e300"]);
     desk.gdcm(&["analyze", "--out", "out", "--band", "1e-300", "1e300"])
@@ -77,25 +101,53 @@ fn a_number_of_three_hundred_digits_is_written_with_an_exponent() {
 fn the_bounds_that_a_message_names_are_those_that_are_refused() {
     let study = Study::new(gdcm_io::embedded_example().unwrap().dataset);
     for setting in SETTINGS {
-        let (Kind::Number { range, .. } | Kind::Optional { range, .. }) = setting.kind else { continue };
+        let (Kind::Number { range, .. } | Kind::Optional { range, .. }) = setting.kind else {
+            continue;
+        };
         let is_whole = matches!(setting.kind, Kind::Number { whole: true, .. });
         let apply = |value: f64| study.clone().apply(&setting.to(value));
-        range.iter().for_each(|value| assert_eq!(apply(*value), Ok(()), "{}", setting.name));
+        range
+            .iter()
+            .for_each(|value| assert_eq!(apply(*value), Ok(()), "{}", setting.name));
         let [least, greatest] = range;
-        let beyond = if is_whole { [least - 1.0, greatest + 1.0] } else { [least.next_down(), greatest.next_up()] };
+        let beyond = if is_whole {
+            [least - 1.0, greatest + 1.0]
+        } else {
+            [least.next_down(), greatest.next_up()]
+        };
         for value in beyond {
             let message = apply(value).unwrap_err().to_string();
-            let words = format!("from {} to {}, found {}", number(least), number(greatest), number(value));
+            let words = format!(
+                "from {} to {}, found {}",
+                number(least),
+                number(greatest),
+                number(value)
+            );
             assert!(message.ends_with(&words), "{message}");
         }
     }
-    let bounds = |lower, upper| study.clone().apply(&setting::GAIN_BOUNDS.to(Some(GainBounds { lower, upper })));
+    let bounds = |lower, upper| {
+        study
+            .clone()
+            .apply(&setting::GAIN_BOUNDS.to(Some(GainBounds { lower, upper })))
+    };
     assert_eq!(bounds(1e-6, 1e6), Ok(()));
-    assert!(bounds(0.5, 0.4).unwrap_err().to_string().ends_with("from 0.5 to 1000000, found 0.4"));
+    assert!(
+        bounds(0.5, 0.4)
+            .unwrap_err()
+            .to_string()
+            .ends_with("from 0.5 to 1000000, found 0.4")
+    );
     assert!(Band::new(LEAST_OMEGA, GREATEST_OMEGA).is_ok());
-    for (min, max) in [(LEAST_OMEGA.next_down(), 1.0), (1.0, GREATEST_OMEGA.next_up())] {
+    for (min, max) in [
+        (LEAST_OMEGA.next_down(), 1.0),
+        (1.0, GREATEST_OMEGA.next_up()),
+    ] {
         let message = Band::new(min, max).unwrap_err().to_string();
-        assert!(message.contains("0.0001 <= min < max <= 100000 (rad/s), found"), "{message}");
+        assert!(
+            message.contains("0.0001 <= min < max <= 100000 (rad/s), found"),
+            "{message}"
+        );
     }
 }
 
@@ -103,22 +155,58 @@ fn the_bounds_that_a_message_names_are_those_that_are_refused() {
 fn a_number_on_the_command_line_is_refused_with_its_option_and_its_range() {
     let desk = Desk::new();
     for (options, message) in [
-        (["--degree", "-1"].as_slice(), "error: --degree: expected 0, 1, 2, 3 or table, found -1\n"),
-        (&["--degree", "2.5"], "error: --degree: expected 0, 1, 2, 3 or table, found 2.5\n"),
-        (&["--points", "-5"], "error: --points: expected a whole number from 2 to 5000, found -5\n"),
-        (&["--points", "1e3"], "error: --points: expected a whole number from 2 to 5000, found 1e3\n"),
-        (&["--alpha", "-1"], "error: --alpha: α of the gains: expected a number from 0 to 1000000, found -1\n"),
-        (&["--alpha", "one"], "error: --alpha: expected a number, found one\n"),
-        (&["--alpha-delay", "\u{202e}1"], "error: --alpha-delay: expected a number, found \\u{202e}1\n"),
-        (&["--band", "12", "x"], "error: --band: expected a number, found x\n"),
+        (
+            ["--degree", "-1"].as_slice(),
+            "error: --degree: expected 0, 1, 2, 3 or table, found -1\n",
+        ),
+        (
+            &["--degree", "2.5"],
+            "error: --degree: expected 0, 1, 2, 3 or table, found 2.5\n",
+        ),
+        (
+            &["--points", "-5"],
+            "error: --points: expected a whole number from 2 to 5000, found -5\n",
+        ),
+        (
+            &["--points", "1e3"],
+            "error: --points: expected a whole number from 2 to 5000, found 1e3\n",
+        ),
+        (
+            &["--alpha", "-1"],
+            "error: --alpha: α of the gains: expected a number from 0 to 1000000, found -1\n",
+        ),
+        (
+            &["--alpha", "one"],
+            "error: --alpha: expected a number, found one\n",
+        ),
+        (
+            &["--alpha-delay", "\u{202e}1"],
+            "error: --alpha-delay: expected a number, found \\u{202e}1\n",
+        ),
+        (
+            &["--band", "12", "x"],
+            "error: --band: expected a number, found x\n",
+        ),
         (
             &["--band", "12", "0.5"],
             "error: --band: the frequency band must be 0.0001 <= min < max <= 100000 (rad/s), found min 12, max 0.5\n",
         ),
-        (&["--on", "P"], "error: --on: expected OUTPUT/INPUT, as P/LAT, found \"P\"\n"),
-        (&["--reject", "x"], "error: --reject: expected ID:NAME, as 10:nominal, found \"x\"\n"),
+        (
+            &["--on", "P"],
+            "error: --on: expected OUTPUT/INPUT, as P/LAT, found \"P\"\n",
+        ),
+        (
+            &["--reject", "x"],
+            "error: --reject: expected ID:NAME, as 10:nominal, found \"x\"\n",
+        ),
     ] {
-        let ended = desk.gdcm(&[["analyze", "small.json", "--out", "out"].as_slice(), options].concat());
+        let ended = desk.gdcm(
+            &[
+                ["analyze", "small.json", "--out", "out"].as_slice(),
+                options,
+            ]
+            .concat(),
+        );
         assert_eq!((ended.status, ended.error.as_str()), (2, message));
     }
 }
@@ -127,11 +215,14 @@ fn a_number_on_the_command_line_is_refused_with_its_option_and_its_range() {
 fn pointers(value: &Value, at: &str, found: &mut Vec<String>) {
     found.push(at.to_owned());
     match value {
-        Value::Object(entries) => {
-            entries.iter().for_each(|(key, value)| pointers(value, &format!("{at}/{key}"), found))
-        }
+        Value::Object(entries) => entries
+            .iter()
+            .for_each(|(key, value)| pointers(value, &format!("{at}/{key}"), found)),
         Value::Array(entries) => {
-            entries.iter().enumerate().for_each(|(index, value)| pointers(value, &format!("{at}/{index}"), found));
+            entries
+                .iter()
+                .enumerate()
+                .for_each(|(index, value)| pointers(value, &format!("{at}/{index}"), found));
         }
         _ => {}
     }
@@ -192,10 +283,26 @@ fn a_choice_of_words_is_refused_with_the_words_that_may_stand_there() {
     save_study(&Study::new(loaded.dataset.clone()), &loaded, &path).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     for (from, to, words) in [
-        ("\"median\"", "\"mode\"", "settings, cost_average: expected \"median\" or \"mean\", found \"mode\""),
-        ("\"median\"", "5", "settings, cost_average: expected a text in quotation marks, found"),
-        ("\"points\": 200", "\"points\": -1", "settings, points: expected a whole number not below 0, found -1"),
-        ("0.5,\n      12.0", "0.5", "settings, band_rad_s: expected a list of 2 entries, found 1 entries"),
+        (
+            "\"median\"",
+            "\"mode\"",
+            "settings, cost_average: expected \"median\" or \"mean\", found \"mode\"",
+        ),
+        (
+            "\"median\"",
+            "5",
+            "settings, cost_average: expected a text in quotation marks, found",
+        ),
+        (
+            "\"points\": 200",
+            "\"points\": -1",
+            "settings, points: expected a whole number not below 0, found -1",
+        ),
+        (
+            "0.5,\n      12.0",
+            "0.5",
+            "settings, band_rad_s: expected a list of 2 entries, found 1 entries",
+        ),
     ] {
         assert!(text.contains(from), "{from} in {text}");
         std::fs::write(&path, text.replacen(from, to, 1)).unwrap();
@@ -205,7 +312,9 @@ fn a_choice_of_words_is_refused_with_the_words_that_may_stand_there() {
 }
 
 fn dataset_refusal(text: &str) -> String {
-    load_dataset_bytes(text.as_bytes(), DatasetOrigin::File("small.json".into())).unwrap_err().to_string()
+    load_dataset_bytes(text.as_bytes(), DatasetOrigin::File("small.json".into()))
+        .unwrap_err()
+        .to_string()
 }
 
 #[test]
@@ -215,7 +324,11 @@ fn lists_beyond_their_limits_are_refused_with_their_place() {
     let identified = "\"identified_models\": [";
     let numbers = many("0", 1001);
     for (from, to, words) in [
-        ("\"conditions\": [", "\"conditions\": [{},".to_owned(), "condition number 1 in the file: the key \"id\""),
+        (
+            "\"conditions\": [",
+            "\"conditions\": [{},".to_owned(),
+            "condition number 1 in the file: the key \"id\"",
+        ),
         (
             identified,
             format!("{identified}{},", many("{\"name\":\"\"}", 5000)),
@@ -228,10 +341,17 @@ fn lists_beyond_their_limits_are_refused_with_their_place() {
         ),
         (
             "\"outputs\": [",
-            format!("\"outputs\": [{},", many("{\"name\":\"\",\"unit\":\"\"}", 32)),
+            format!(
+                "\"outputs\": [{},",
+                many("{\"name\":\"\",\"unit\":\"\"}", 32)
+            ),
             "outputs: expected at most 32",
         ),
-        ("\"A\": [", format!("\"A\": [[{numbers}],"), "matrix A, row 1: expected at most 1000 entries, found more"),
+        (
+            "\"A\": [",
+            format!("\"A\": [[{numbers}],"),
+            "matrix A, row 1: expected at most 1000 entries, found more",
+        ),
         (
             "\"omega_rad_s\": [",
             format!("\"omega_rad_s\": [{},", many("1", 100_000)),
@@ -239,18 +359,30 @@ fn lists_beyond_their_limits_are_refused_with_their_place() {
         ),
         (
             "\"perturbation\": {",
-            format!("\"perturbation\": {{{},", (0..50).map(|at| format!("\"p{at}\":0")).collect::<Vec<_>>().join(",")),
+            format!(
+                "\"perturbation\": {{{},",
+                (0..50)
+                    .map(|at| format!("\"p{at}\":0"))
+                    .collect::<Vec<_>>()
+                    .join(",")
+            ),
             "physics model \"nominal\" (number 1), perturbation: expected at most 50 entries, found more",
         ),
     ] {
         assert!(SMALL.contains(from), "{from}");
         let message = dataset_refusal(&SMALL.replacen(from, &to, 1));
-        assert!(message.contains(words), "expected {words} in: {}", &message[..message.len().min(400)]);
+        assert!(
+            message.contains(words),
+            "expected {words} in: {}",
+            &message[..message.len().min(400)]
+        );
     }
     // Each bundle is within its limit, all together are not.
     let mut text = small;
     let condition = text["conditions"][0].clone();
-    let models: Vec<Value> = (0..5000).map(|index| json!({"name": index.to_string()})).collect();
+    let models: Vec<Value> = (0..5000)
+        .map(|index| json!({"name": index.to_string()}))
+        .collect();
     text["conditions"] = (0..11)
         .map(|id| {
             let mut condition = condition.clone();
@@ -260,11 +392,23 @@ fn lists_beyond_their_limits_are_refused_with_their_place() {
         })
         .collect();
     let message = dataset_refusal(&text.to_string());
-    assert!(message.contains("conditions: expected at most 50000 models in all, found more"), "{message}");
-    let conditions =
-        many("{\"id\":1,\"name\":\"\",\"airspeed_kt\":1,\"physics_models\":[],\"identified_models\":[]}", 5001);
-    let message = dataset_refusal(&SMALL.replacen("\"conditions\": [", &format!("\"conditions\": [{conditions},"), 1));
-    assert!(message.contains("conditions: expected at most 5000 entries, found more"), "{message}");
+    assert!(
+        message.contains("conditions: expected at most 50000 models in all, found more"),
+        "{message}"
+    );
+    let conditions = many(
+        "{\"id\":1,\"name\":\"\",\"airspeed_kt\":1,\"physics_models\":[],\"identified_models\":[]}",
+        5001,
+    );
+    let message = dataset_refusal(&SMALL.replacen(
+        "\"conditions\": [",
+        &format!("\"conditions\": [{conditions},"),
+        1,
+    ));
+    assert!(
+        message.contains("conditions: expected at most 5000 entries, found more"),
+        "{message}"
+    );
 }
 
 /// Three million models without anything in them, in 36 MB of text and far less when packed: held in memory they would be a gigabyte.
@@ -283,7 +427,15 @@ fn a_file_that_is_refused_for_its_length_takes_memory_for_its_text_only() {
     // KiB of addresses: the program itself, the text while it grows, and the models that are read.
     let line = "ulimit -v 400000; exec \"$0\" check bomb.json.gz";
     let mut command = std::process::Command::new("sh");
-    command.args(["-c", line, env!("CARGO_BIN_EXE_gdcm")]).current_dir(desk.directory.path());
+    command
+        .args(["-c", line, env!("CARGO_BIN_EXE_gdcm")])
+        .current_dir(desk.directory.path());
     let ended = crate::commands::Ended::of(&command.output().unwrap());
-    ended.assert_failed(2, &["condition 7", "identified_models: expected at most 5000 entries, found more"]);
+    ended.assert_failed(
+        2,
+        &[
+            "condition 7",
+            "identified_models: expected at most 5000 entries, found more",
+        ],
+    );
 }

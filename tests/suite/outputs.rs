@@ -12,10 +12,17 @@ use gdcm_study::study::Study;
 use crate::commands::{Desk, Ended, SMALL};
 use crate::window::{Window, click, export_to, save_as, settle, state, window};
 
-const RESULTS: [&str; 4] = ["assessment.csv", "corrections.csv", "corrections.json", "corrections.sha256"];
+const RESULTS: [&str; 4] = [
+    "assessment.csv",
+    "corrections.csv",
+    "corrections.json",
+    "corrections.sha256",
+];
 
 fn names(directory: &Path) -> Vec<String> {
-    let names = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let names = fs::read_dir(directory)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap());
     let mut names: Vec<String> = names.collect();
     names.sort();
     names
@@ -26,7 +33,9 @@ fn names(directory: &Path) -> Vec<String> {
 fn shell(desk: &Desk, line: &str) -> Ended {
     let mut command = std::process::Command::new("sh");
     let line = line.replace("gdcm ", "exec \"$0\" ");
-    command.args(["-c", &line, env!("CARGO_BIN_EXE_gdcm")]).current_dir(desk.directory.path());
+    command
+        .args(["-c", &line, env!("CARGO_BIN_EXE_gdcm")])
+        .current_dir(desk.directory.path());
     Ended::of(&command.output().unwrap())
 }
 
@@ -36,26 +45,44 @@ fn results_that_are_there_are_named_and_only_overwritten_by_force() {
     let analyze = ["analyze", "small.json", "--out", "out"];
     desk.gdcm(&analyze).assert_done();
     fs::write(desk.path("out/corrections.csv"), "mine").unwrap();
-    let all = "out/corrections.json, out/corrections.csv, out/assessment.csv, out/corrections.sha256";
+    let all =
+        "out/corrections.json, out/corrections.csv, out/assessment.csv, out/corrections.sha256";
     let words = [&*format!("{all} exist already; --force overwrites")];
     desk.gdcm(&analyze).assert_failed(2, &words);
     fs::remove_file(desk.path("out/corrections.json")).unwrap();
     fs::remove_file(desk.path("out/assessment.csv")).unwrap();
     fs::remove_file(desk.path("out/corrections.sha256")).unwrap();
-    desk.gdcm(&analyze).assert_failed(2, &["error: out/corrections.csv exists already; --force overwrites"]);
+    desk.gdcm(&analyze).assert_failed(
+        2,
+        &["error: out/corrections.csv exists already; --force overwrites"],
+    );
     assert_eq!(names(&desk.path("out")), ["corrections.csv"]);
-    assert_eq!(fs::read_to_string(desk.path("out/corrections.csv")).unwrap(), "mine");
-    desk.gdcm(&[&analyze[..], &["--force"]].concat()).assert_done();
+    assert_eq!(
+        fs::read_to_string(desk.path("out/corrections.csv")).unwrap(),
+        "mine"
+    );
+    desk.gdcm(&[&analyze[..], &["--force"]].concat())
+        .assert_done();
     assert_eq!(names(&desk.path("out")), RESULTS);
-    assert!(fs::read_to_string(desk.path("out/corrections.csv")).unwrap().starts_with("condition,"));
+    assert!(
+        fs::read_to_string(desk.path("out/corrections.csv"))
+            .unwrap()
+            .starts_with("condition,")
+    );
 }
 
 #[test]
 fn the_example_is_overwritten_only_by_force() {
     let desk = Desk::new();
     fs::write(desk.path("example-dataset.json"), "mine").unwrap();
-    desk.gdcm(&["example", "."]).assert_failed(2, &["./example-dataset.json exists already; --force overwrites"]);
-    assert_eq!(fs::read_to_string(desk.path("example-dataset.json")).unwrap(), "mine");
+    desk.gdcm(&["example", "."]).assert_failed(
+        2,
+        &["./example-dataset.json exists already; --force overwrites"],
+    );
+    assert_eq!(
+        fs::read_to_string(desk.path("example-dataset.json")).unwrap(),
+        "mine"
+    );
     desk.gdcm(&["example", ".", "--force"]).assert_done();
     assert!(load_dataset(&desk.path("example-dataset.json")).is_ok());
 }
@@ -65,32 +92,48 @@ fn an_input_is_not_overwritten_even_by_force() {
     let desk = Desk::new();
     let refused = ["the data are read from this file"];
     fs::write(desk.path("corrections.json"), SMALL).unwrap();
-    desk.gdcm(&["analyze", "corrections.json", "--out", ".", "--force"]).assert_failed(2, &refused);
+    desk.gdcm(&["analyze", "corrections.json", "--out", ".", "--force"])
+        .assert_failed(2, &refused);
 
     let loaded = load_dataset(&desk.path("small.json")).unwrap();
     let study = desk.path("study/corrections.csv");
     fs::create_dir(desk.path("study")).unwrap();
     save_study(&Study::new(loaded.dataset.clone()), &loaded, &study).unwrap();
     let study = study.to_str().unwrap();
-    desk.gdcm(&["analyze", study, "--out", "study", "--force"]).assert_failed(2, &refused);
+    desk.gdcm(&["analyze", study, "--out", "study", "--force"])
+        .assert_failed(2, &refused);
 
     // The dataset of a study, through a link.
     #[cfg(unix)]
     {
         fs::create_dir(desk.path("linked")).unwrap();
         std::os::unix::fs::symlink("../small.json", desk.path("linked/assessment.csv")).unwrap();
-        desk.gdcm(&["analyze", study, "--out", "linked", "--force"]).assert_failed(2, &refused);
+        desk.gdcm(&["analyze", study, "--out", "linked", "--force"])
+            .assert_failed(2, &refused);
     }
     assert_eq!(fs::read_to_string(desk.path("small.json")).unwrap(), SMALL);
-    assert_eq!(fs::read_to_string(desk.path("corrections.json")).unwrap(), SMALL);
+    assert_eq!(
+        fs::read_to_string(desk.path("corrections.json")).unwrap(),
+        SMALL
+    );
 }
 
 #[test]
 fn a_study_is_not_saved_over_its_dataset() {
     let desk = Desk::new();
     let loaded = load_dataset(&desk.path("small.json")).unwrap();
-    let error = save_study(&Study::new(loaded.dataset.clone()), &loaded, &desk.path("small.json")).unwrap_err();
-    assert!(error.to_string().contains("the data are read from this file"), "{error}");
+    let error = save_study(
+        &Study::new(loaded.dataset.clone()),
+        &loaded,
+        &desk.path("small.json"),
+    )
+    .unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("the data are read from this file"),
+        "{error}"
+    );
     assert_eq!(fs::read_to_string(desk.path("small.json")).unwrap(), SMALL);
 }
 
@@ -99,7 +142,9 @@ fn a_study_is_not_saved_over_its_dataset() {
 fn a_file_larger_than_the_system_allows_is_status_1_and_leaves_what_was_there() {
     let desk = Desk::new();
     let limited = "ulimit -f 1; gdcm analyze small.json --out out --force";
-    let words = ["out/corrections.json: cannot be written: it would be larger than the system allows (ulimit -f)"];
+    let words = [
+        "out/corrections.json: cannot be written: it would be larger than the system allows (ulimit -f)",
+    ];
     shell(&desk, limited).assert_failed(1, &words);
     assert_eq!(names(&desk.path("out")), [""; 0]);
     for name in RESULTS {
@@ -108,10 +153,17 @@ fn a_file_larger_than_the_system_allows_is_status_1_and_leaves_what_was_there() 
     shell(&desk, limited).assert_failed(1, &words);
     assert_eq!(names(&desk.path("out")), RESULTS);
     for name in RESULTS {
-        assert_eq!(fs::read_to_string(desk.path("out").join(name)).unwrap(), "before", "{name}");
+        assert_eq!(
+            fs::read_to_string(desk.path("out").join(name)).unwrap(),
+            "before",
+            "{name}"
+        );
     }
     let ended = shell(&desk, "ulimit -f 0; gdcm check small.json > printed");
-    ended.assert_failed(1, &["standard output cannot be written: it would be larger than the system allows"]);
+    ended.assert_failed(
+        1,
+        &["standard output cannot be written: it would be larger than the system allows"],
+    );
 }
 
 /// Runs a command that has to end by itself: one that waits for a pipe is ended after a minute, and fails the test.
@@ -119,7 +171,12 @@ fn a_file_larger_than_the_system_allows_is_status_1_and_leaves_what_was_there() 
 fn ends(desk: &Desk, arguments: &[&str]) -> Ended {
     use std::process::Stdio;
     use std::time::{Duration, Instant};
-    let mut child = desk.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = desk
+        .command(arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
     let started = Instant::now();
     while child.try_wait().unwrap().is_none() {
         if started.elapsed() > Duration::from_secs(60) {
@@ -138,7 +195,11 @@ fn assert_refused(desk: &Desk, arguments: &[&str], code: &str) {
     let ended = ends(desk, &[arguments, &["--json"]].concat());
     let said: serde_json::Value = serde_json::from_str(&ended.out).unwrap();
     let expected = serde_json::json!([code]);
-    assert_eq!((ended.status, &said["error_codes"]), (2, &expected), "{arguments:?}: {said}");
+    assert_eq!(
+        (ended.status, &said["error_codes"]),
+        (2, &expected),
+        "{arguments:?}: {said}"
+    );
 }
 
 #[cfg(unix)]
@@ -160,25 +221,64 @@ fn a_named_pipe_as_output_is_refused_at_once_by_every_command() {
         "learn/example-dataset.json",
     ];
     for pipe in pipes {
-        assert!(std::process::Command::new("mkfifo").arg(desk.path(pipe)).status().unwrap().success());
+        assert!(
+            std::process::Command::new("mkfifo")
+                .arg(desk.path(pipe))
+                .status()
+                .unwrap()
+                .success()
+        );
     }
-    let identify = ["identify", "none.csv", "--inputs", "LON", "--outputs", "Q", "--band", "1", "9"];
+    let identify = [
+        "identify",
+        "none.csv",
+        "--inputs",
+        "LON",
+        "--outputs",
+        "Q",
+        "--band",
+        "1",
+        "9",
+    ];
     let commands: [&[&str]; 11] = [
         &["report", "small.json", "--out", "pipe.html"],
-        &["figure", "small.json", "--view", "net-gain", "--out", "pipe.svg"],
+        &[
+            "figure",
+            "small.json",
+            "--view",
+            "net-gain",
+            "--out",
+            "pipe.svg",
+        ],
         &["export", "small.json", "--as", "py", "--out", "pipe.py"],
-        &["export", "small.json", "--as", "state-space", "--out", "pipe.mat"],
+        &[
+            "export",
+            "small.json",
+            "--as",
+            "state-space",
+            "--out",
+            "pipe.mat",
+        ],
         &["convert", "small.json", "--out", "pipe.json"],
         &["analyze", "small.json", "--out", "results"],
         &["assemble", "models", "--out", "pipe.json"],
         &["requirements", "small.json", "--out", "asked"],
-        &["requirements", "small.json", "--write-tolerances", "pipe.json"],
+        &[
+            "requirements",
+            "small.json",
+            "--write-tolerances",
+            "pipe.json",
+        ],
         &["example", "learn"],
         &[&identify[..], &["--out", "identified"]].concat(),
     ];
     for command in commands {
         assert_refused(&desk, command, "output-not-a-file");
-        assert_refused(&desk, &[command, &["--force"]].concat(), "output-not-a-file");
+        assert_refused(
+            &desk,
+            &[command, &["--force"]].concat(),
+            "output-not-a-file",
+        );
     }
 }
 
@@ -187,24 +287,66 @@ fn a_named_pipe_as_output_is_refused_at_once_by_every_command() {
 fn a_named_pipe_as_input_is_refused_at_once_by_every_command() {
     let desk = Desk::new();
     let pipe = "pipe.json";
-    assert!(std::process::Command::new("mkfifo").arg(desk.path(pipe)).status().unwrap().success());
+    assert!(
+        std::process::Command::new("mkfifo")
+            .arg(desk.path(pipe))
+            .status()
+            .unwrap()
+            .success()
+    );
     // An output that is there already is compared with every input.
     fs::write(desk.path("there.json"), "{}").unwrap();
-    let identify = ["identify", "--inputs", "LON", "--outputs", "Q", "--band", "1", "9", "--out", "identified"];
+    let identify = [
+        "identify",
+        "--inputs",
+        "LON",
+        "--outputs",
+        "Q",
+        "--band",
+        "1",
+        "9",
+        "--out",
+        "identified",
+    ];
     let commands: [&[&str]; 9] = [
         &["check", pipe],
         &["analyze", pipe, "--out", "results"],
-        &["analyze", "small.json", "--levels", pipe, "--out", "results"],
-        &["analyze", "small.json", "--tolerances", pipe, "--out", "results"],
+        &[
+            "analyze",
+            "small.json",
+            "--levels",
+            pipe,
+            "--out",
+            "results",
+        ],
+        &[
+            "analyze",
+            "small.json",
+            "--tolerances",
+            pipe,
+            "--out",
+            "results",
+        ],
         &["report", pipe, "--out", "report.html"],
         &["convert", pipe, "--out", "there.json", "--force"],
-        &["assemble", ".", "--rules", pipe, "--out", "there.json", "--force"],
+        &[
+            "assemble",
+            ".",
+            "--rules",
+            pipe,
+            "--out",
+            "there.json",
+            "--force",
+        ],
         &[&identify[..], &[pipe]].concat(),
         &[&identify[..], &["small.json", "--into", pipe]].concat(),
     ];
     for command in commands {
         let ended = ends(&desk, command);
-        assert!(ended.status > 0 && ended.error.contains("named pipe"), "{command:?}: {ended:?}");
+        assert!(
+            ended.status > 0 && ended.error.contains("named pipe"),
+            "{command:?}: {ended:?}"
+        );
     }
 }
 
@@ -214,7 +356,10 @@ fn a_closed_standard_output_costs_the_summary_and_nothing_else() {
     let desk = Desk::new();
     shell(&desk, "gdcm analyze small.json --out out >&-").assert_done();
     assert_eq!(names(&desk.path("out")), RESULTS);
-    assert_eq!(crate::entries(&crate::read_json(&desk.path("out/corrections.json"))["conditions"]).len(), 2);
+    assert_eq!(
+        crate::entries(&crate::read_json(&desk.path("out/corrections.json"))["conditions"]).len(),
+        2
+    );
     assert_eq!(fs::read_to_string(desk.path("small.json")).unwrap(), SMALL);
 }
 
@@ -223,7 +368,8 @@ fn what_a_killed_run_left_is_removed_by_the_next() {
     let desk = Desk::new();
     fs::create_dir(desk.path("out")).unwrap();
     fs::write(desk.path("out/.gdcm-Ab3xYz.tmp"), "half of a file").unwrap();
-    desk.gdcm(&["analyze", "small.json", "--out", "out"]).assert_done();
+    desk.gdcm(&["analyze", "small.json", "--out", "out"])
+        .assert_done();
     assert_eq!(names(&desk.path("out")), RESULTS);
 }
 
@@ -237,20 +383,29 @@ fn an_export_over_existing_files_asks_first() {
     click(&mut window, "Export corrections…");
     click(&mut window, "Export");
     let existing = state(&window).forms.existing.clone();
-    assert!(existing.len() == 4 && existing[1].ends_with("corrections.csv"), "{existing:?}");
+    assert!(
+        existing.len() == 4 && existing[1].ends_with("corrections.csv"),
+        "{existing:?}"
+    );
     let shown = |window: &Window, label: &str| window.query_by_label(label).is_some();
     assert!(shown(&window, "These files exist already") && shown(&window, &existing[1]));
     assert_eq!(fs::read_to_string(&csv).unwrap(), "mine");
 
     click(&mut window, "Cancel");
-    assert!(!shown(&window, "Overwrite") && shown(&window, "Export folder"), "back at what was being asked for");
+    assert!(
+        !shown(&window, "Overwrite") && shown(&window, "Export folder"),
+        "back at what was being asked for"
+    );
     assert_eq!(fs::read_to_string(&csv).unwrap(), "mine");
 
     // The form is larger than the question, and takes some frames to find its place.
     window.run_steps(10);
     click(&mut window, "Export");
     click(&mut window, "Overwrite");
-    assert_eq!(state(&window).notice.as_ref().map(|notice| notice.kind), Some(NoticeKind::Done));
+    assert_eq!(
+        state(&window).notice.as_ref().map(|notice| notice.kind),
+        Some(NoticeKind::Done)
+    );
     assert!(state(&window).forms.shown.is_none());
     assert!(fs::read_to_string(&csv).unwrap().starts_with("condition,"));
 }
@@ -271,7 +426,10 @@ fn a_study_saved_to_a_typed_path_asks_before_it_overwrites_a_file_that_is_not_it
     save_as(&mut window, &path);
     settle(&mut window);
     assert!(state(&window).forms.existing.is_empty());
-    assert_eq!(state(&window).notice.as_ref().map(|notice| notice.kind), Some(NoticeKind::Done));
+    assert_eq!(
+        state(&window).notice.as_ref().map(|notice| notice.kind),
+        Some(NoticeKind::Done)
+    );
 }
 
 #[cfg(unix)]
@@ -279,32 +437,73 @@ fn a_study_saved_to_a_typed_path_asks_before_it_overwrites_a_file_that_is_not_it
 fn a_directory_that_may_not_be_written_to_is_status_1_without_the_name_of_a_temporary_file() {
     // Nobody can make a file here, the superuser included.
     let desk = Desk::new();
-    let ended = Ended::of(&desk.command(&[OsStr::new("example"), OsStr::new("/proc/self")]).output().unwrap());
+    let ended = Ended::of(
+        &desk
+            .command(&[OsStr::new("example"), OsStr::new("/proc/self")])
+            .output()
+            .unwrap(),
+    );
     assert_eq!(ended.status, 1, "{ended:?}");
-    assert!(ended.error.starts_with("error: /proc/self/example-dataset.json: cannot be written: "), "{}", ended.error);
-    assert!(!ended.error.contains(".tmp") && !ended.error.contains("os error"), "{}", ended.error);
+    assert!(
+        ended
+            .error
+            .starts_with("error: /proc/self/example-dataset.json: cannot be written: "),
+        "{}",
+        ended.error
+    );
+    assert!(
+        !ended.error.contains(".tmp") && !ended.error.contains("os error"),
+        "{}",
+        ended.error
+    );
 }
 
 #[test]
 fn names_that_are_formulas_or_commands_of_a_terminal_do_no_harm_in_what_is_written() {
     for file in ["injected-names.json", "escape-in-title.json"] {
         let desk = Desk::new();
-        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/edges").join(file);
+        let data = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("tests/data/edges")
+            .join(file);
         let data = data.to_str().unwrap();
         desk.gdcm(&["analyze", data, "--out", "."]).assert_done();
-        for (view, name) in [("poles", "poles.csv"), ("poles", "poles.svg"), ("overview", "overview.csv")] {
-            desk.gdcm(&["figure", data, "--view", view, "--condition", "1", "--out", name]).assert_done();
+        for (view, name) in [
+            ("poles", "poles.csv"),
+            ("poles", "poles.svg"),
+            ("overview", "overview.csv"),
+        ] {
+            desk.gdcm(&[
+                "figure",
+                data,
+                "--view",
+                view,
+                "--condition",
+                "1",
+                "--out",
+                name,
+            ])
+            .assert_done();
         }
         for format in ["m", "py", "h", "table-csv"] {
-            desk.gdcm(&["export", data, "--as", format, "--out", &format!("export.{}", format.replace("table-", ""))]);
+            desk.gdcm(&[
+                "export",
+                data,
+                "--as",
+                format,
+                "--out",
+                &format!("export.{}", format.replace("table-", "")),
+            ]);
         }
-        desk.gdcm(&["report", data, "--out", "report.html"]).assert_done();
+        desk.gdcm(&["report", data, "--out", "report.html"])
+            .assert_done();
         let written = names(desk.directory.path());
         assert!(written.len() >= 10, "{written:?}");
         // JSON is data: it holds the names as they are.
         for name in written.iter().filter(|name| !name.ends_with(".json")) {
             let text = fs::read_to_string(desk.path(name)).unwrap();
-            let control = text.chars().find(|letter| letter.is_control() && *letter != '\n');
+            let control = text
+                .chars()
+                .find(|letter| letter.is_control() && *letter != '\n');
             assert_eq!(control, None, "{file}: {name}");
             for line in text.lines().filter(|_| name.ends_with(".csv")) {
                 let is_formula = |cell: &str| {

@@ -21,31 +21,58 @@ pub(crate) fn archive() -> Vec<u8> {
 #[test]
 #[ignore = "all 99 records; those of two conditions are enough by default"]
 fn every_record_of_the_example_is_understood_without_a_word_from_the_engineer() {
-    let found =
-        records_of_bytes(&archive(), "example-records.zip", &gdcm_io::variables::ReadingBudget::new(1 << 30)).unwrap();
+    let found = records_of_bytes(
+        &archive(),
+        "example-records.zip",
+        &gdcm_io::variables::ReadingBudget::new(1 << 30),
+    )
+    .unwrap();
     assert_eq!((found.tables.len(), found.faults.len()), (99, 0));
-    let channels = RecordChannels::of_dataset(&embedded_example().unwrap().dataset).of_named_records();
+    let channels =
+        RecordChannels::of_dataset(&embedded_example().unwrap().dataset).of_named_records();
     let patterns = standard_patterns();
     let mut sweeps = [0; 12];
     for table in &found.tables {
         let proposal = RecordLayout::proposed(table, &channels, &TimeWish::default());
-        assert_eq!((proposal.problems, proposal.cautions), (vec![], vec![]), "{}", table.name);
+        assert_eq!(
+            (proposal.problems, proposal.cautions),
+            (vec![], vec![]),
+            "{}",
+            table.name
+        );
         let record = proposal.layout.flight_record(table, &channels).unwrap();
-        assert!(record.outputs.iter().chain(record.inputs.iter()).all(|sample| sample.is_finite()));
+        assert!(
+            record
+                .outputs
+                .iter()
+                .chain(record.inputs.iter())
+                .all(|sample| sample.is_finite())
+        );
         let guess = RecordGuess::of_table(table, patterns);
         assert_eq!(guess.held_out, table.name.contains("validation"));
         sweeps[guess.condition.unwrap() as usize] += usize::from(guess.kind == RecordKind::Sweep);
     }
     assert_eq!(sweeps[1..], [8; 11]);
-    for table in [3, 10].into_iter().flat_map(|condition| example_records(condition).unwrap()) {
-        let same = found.tables.iter().find(|other| other.name == table.name).unwrap();
-        assert_eq!(same.columns, table.columns, "the record inside the program is the one beside it");
+    for table in [3, 10]
+        .into_iter()
+        .flat_map(|condition| example_records(condition).unwrap())
+    {
+        let same = found
+            .tables
+            .iter()
+            .find(|other| other.name == table.name)
+            .unwrap();
+        assert_eq!(
+            same.columns, table.columns,
+            "the record inside the program is the one beside it"
+        );
     }
 }
 
 /// The units of the records of the late dataset, which their files do not say.
-pub(crate) const LATE_UNITS: [&str; 8] =
-    ["--unit", "LON=%", "--unit", "LAT=%", "--unit", "P=deg/s", "--unit", "Q=deg/s"];
+pub(crate) const LATE_UNITS: [&str; 8] = [
+    "--unit", "LON=%", "--unit", "LAT=%", "--unit", "P=deg/s", "--unit", "Q=deg/s",
+];
 
 /// A desk with two short records of the small dataset's channels, the first in other units and under other names.
 fn desk() -> Desk {
@@ -54,12 +81,25 @@ fn desk() -> Desk {
         let row = |k: u32| {
             let at = f64::from(k);
             let (stick, roll) = (50.0 + 10.0 * (0.3 * at).sin(), rate * (0.2 * at).cos());
-            format!("{:.2},{stick:.3},{:.3},{roll:.4},{:.4}\n", 0.02 * at, 100.0 - stick, roll / 2.0)
+            format!(
+                "{:.2},{stick:.3},{:.3},{roll:.4},{:.4}\n",
+                0.02 * at,
+                100.0 - stick,
+                roll / 2.0
+            )
         };
         head.to_owned() + &(0..80).map(row).collect::<String>()
     };
-    fs::write(desk.path("sweep_1.csv"), text("t,lon,lateral,roll rate [rad/s],pitch rate [rad/s]\n", 0.2)).unwrap();
-    fs::write(desk.path("validation.csv"), text("t,LON,LAT,P [rad/s],Q [rad/s]\n", 0.3)).unwrap();
+    fs::write(
+        desk.path("sweep_1.csv"),
+        text("t,lon,lateral,roll rate [rad/s],pitch rate [rad/s]\n", 0.2),
+    )
+    .unwrap();
+    fs::write(
+        desk.path("validation.csv"),
+        text("t,LON,LAT,P [rad/s],Q [rad/s]\n", 0.3),
+    )
+    .unwrap();
     desk
 }
 
@@ -87,17 +127,34 @@ fn records_are_laid_out_in_words_and_held_out_by_name() {
     ] {
         assert!(ended.error.contains(words), "{words}: {ended:?}");
     }
-    let line = ended.out.lines().find(|line| line.starts_with("validation")).unwrap();
+    let line = ended
+        .out
+        .lines()
+        .find(|line| line.starts_with("validation"))
+        .unwrap();
     assert!(line.contains("80") && line.ends_with("held out"), "{line}");
 }
 
 #[test]
 fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_chosen() {
     let desk = desk();
-    let bare = fs::read_to_string(desk.path("validation.csv")).unwrap().replace(" [rad/s]", "");
+    let bare = fs::read_to_string(desk.path("validation.csv"))
+        .unwrap()
+        .replace(" [rad/s]", "");
     fs::write(desk.path("bare.csv"), bare).unwrap();
     let identify = |records: &[&str], more: &[&str]| {
-        let of = ["--inputs", "LON,LAT", "--outputs", "P,Q", "--band", "0.5", "12", "--out", "out", "--quiet"];
+        let of = [
+            "--inputs",
+            "LON,LAT",
+            "--outputs",
+            "P,Q",
+            "--band",
+            "0.5",
+            "12",
+            "--out",
+            "out",
+            "--quiet",
+        ];
         desk.gdcm(&[&["identify"], records, &of[..], more].concat())
     };
     // Whichever comes first: rad/s of one file say nothing of the other.
@@ -114,45 +171,116 @@ fn a_unit_that_no_file_says_is_refused_with_the_option_that_says_it_and_never_ch
         }
         assert!(!desk.path("out").exists());
     }
-    let said = identify(&["sweep_1.csv", "bare.csv"], &["--unit", "P=rad/s", "--unit", "Q=rad/s"]);
+    let said = identify(
+        &["sweep_1.csv", "bare.csv"],
+        &["--unit", "P=rad/s", "--unit", "Q=rad/s"],
+    );
     assert!(!said.error.contains("does not say the unit"), "{said:?}");
     // Into a dataset of deg/s; the sticks, from 40 to 60, can be nothing but per cent.
-    let into = ["identify", "bare.csv", "--into", "small.json", "--condition", "7", "--out", "out"];
+    let into = [
+        "identify",
+        "bare.csv",
+        "--into",
+        "small.json",
+        "--condition",
+        "7",
+        "--out",
+        "out",
+    ];
     let ended = desk.gdcm(&into);
     assert_eq!(ended.status, 2, "{ended:?}");
-    assert!(ended.error.contains("its samples can be in deg/s or rad/s"), "{}", ended.error);
     assert!(
-        ended.error.contains("note: bare: LON: column \"LON\", taken to be in %: the file does not say"),
+        ended.error.contains("its samples can be in deg/s or rad/s"),
+        "{}",
+        ended.error
+    );
+    assert!(
+        ended
+            .error
+            .contains("note: bare: LON: column \"LON\", taken to be in %: the file does not say"),
         "{ended:?}"
     );
     let outputs = ["--outputs", "P [deg/s],Q [deg/s]"];
     let ended = desk.gdcm(&[&into[..], &outputs[..]].concat());
-    assert!(ended.error.contains("P: column \"P\", in deg/s as is said of the channel"), "{ended:?}");
+    assert!(
+        ended
+            .error
+            .contains("P: column \"P\", in deg/s as is said of the channel"),
+        "{ended:?}"
+    );
     // The records that models are compared with are asked in the same way.
     fs::rename(desk.path("bare.csv"), desk.path("cond7_bare.csv")).unwrap();
-    let report = ["report", "small.json", "--records", "cond7_bare.csv", "--out", "r.html", "--force"];
+    let report = [
+        "report",
+        "small.json",
+        "--records",
+        "cond7_bare.csv",
+        "--out",
+        "r.html",
+        "--force",
+    ];
     let ended = desk.gdcm(&report);
     assert!(
-        ended.status == 1 && ended.error.contains("caution: cond7_bare: left out: the file does not say"),
+        ended.status == 1
+            && ended
+                .error
+                .contains("caution: cond7_bare: left out: the file does not say"),
         "{ended:?}"
     );
     let ended = desk.gdcm(&[&report[..], &["--unit", "P=rad/s", "--unit", "Q=rad/s"]].concat());
-    assert!(ended.status == 0 && !ended.error.contains("left out"), "{ended:?}");
+    assert!(
+        ended.status == 0 && !ended.error.contains("left out"),
+        "{ended:?}"
+    );
 }
 
 #[test]
 fn what_is_said_twice_of_one_channel_is_refused() {
     let desk = desk();
     let refused = |more: &[&str], words: &str| {
-        let of = ["--inputs", "LON,LAT", "--outputs", "P,Q", "--band", "0.5", "12", "--out", "out"];
+        let of = [
+            "--inputs",
+            "LON,LAT",
+            "--outputs",
+            "P,Q",
+            "--band",
+            "0.5",
+            "12",
+            "--out",
+            "out",
+        ];
         let ended = desk.gdcm(&[&["identify", "sweep_1.csv"], &of[..], more].concat());
-        assert!(ended.status == 2 && ended.error.contains(words), "{words}: {ended:?}");
+        assert!(
+            ended.status == 2 && ended.error.contains(words),
+            "{words}: {ended:?}"
+        );
     };
-    refused(&["--topic", "P=roll rate", "--topic", "P=pitch rate"], "--topic: P stands twice");
-    refused(&["--delay", "sweep_1:P=0.1", "--delay", "sweep_1.csv:P=0.1"], "--delay: P of sweep_1.csv stands twice");
-    refused(&["--factor", "sweep_1:P=-1", "--factor", "sweep_1:P=-1"], "--factor: P of sweep_1 stands twice");
-    refused(&["--unit", "P=rad/s", "--unit", "P=deg/s"], "--unit: P has a unit or a factor already");
-    let ended = desk.gdcm(&["assemble", ".", "--sign", "NZ=-1", "--sign", "NZ=1", "--out", "made.json"]);
+    refused(
+        &["--topic", "P=roll rate", "--topic", "P=pitch rate"],
+        "--topic: P stands twice",
+    );
+    refused(
+        &["--delay", "sweep_1:P=0.1", "--delay", "sweep_1.csv:P=0.1"],
+        "--delay: P of sweep_1.csv stands twice",
+    );
+    refused(
+        &["--factor", "sweep_1:P=-1", "--factor", "sweep_1:P=-1"],
+        "--factor: P of sweep_1 stands twice",
+    );
+    refused(
+        &["--unit", "P=rad/s", "--unit", "P=deg/s"],
+        "--unit: P has a unit or a factor already",
+    );
+    let ended = desk.gdcm(&[
+        "assemble",
+        ".",
+        "--sign",
+        "NZ=-1",
+        "--sign",
+        "NZ=1",
+        "--out",
+        "made.json",
+    ]);
     ended.assert_failed(2, &["--sign: NZ of identified stands twice"]);
 }
 
@@ -161,49 +289,98 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
     let desk = desk();
     fs::write(
         desk.path("wrong.csv"),
-        fs::read_to_string(desk.path("sweep_1.csv")).unwrap().replace("rad/s", "deg/s").replace("lateral", "lever"),
+        fs::read_to_string(desk.path("sweep_1.csv"))
+            .unwrap()
+            .replace("rad/s", "deg/s")
+            .replace("lateral", "lever"),
     )
     .unwrap();
     let refused = |arguments: &[&str], words: &[&str]| {
         let ended = desk.gdcm(&[&["identify"], arguments, &["--out", "out"]].concat());
         assert_eq!(ended.status, 2, "{ended:?}");
-        words.iter().for_each(|word| assert!(ended.error.contains(word), "{word}: {ended:?}"));
+        words
+            .iter()
+            .for_each(|word| assert!(ended.error.contains(word), "{word}: {ended:?}"));
         assert!(!desk.path("out").exists());
     };
     let names = ["--inputs", "LON,LAT", "--outputs", "P,Q"];
     let band = ["--band", "0.5", "12"];
-    let all = |record: &'static str, more: &[&'static str]| [&[record], &names[..], &band[..], more].concat();
+    let all = |record: &'static str, more: &[&'static str]| {
+        [&[record], &names[..], &band[..], more].concat()
+    };
     refused(&["sweep_1.csv"], &["--inputs"]);
     refused(&[&["sweep_1.csv"], &names[..]].concat(), &["--band"]);
     refused(
         &all("wrong.csv", &[]),
-        &["wrong: no column is the input LAT; say which is (columns: t, lon, lever", "1 of 1 record cannot be taken"],
+        &[
+            "wrong: no column is the input LAT; say which is (columns: t, lon, lever",
+            "1 of 1 record cannot be taken",
+        ],
     );
-    refused(&all("sweep_1.csv", &["--time", "clock"]), &["there is no column \"clock\""]);
-    refused(&all("sweep_1.csv", &["--sample-rate", "-50"]), &["the sample time is -0.02 s"]);
-    refused(&all("sweep_1.csv", &["--hold-out", "other.csv"]), &["--hold-out: \"other.csv\" is none of the records"]);
-    refused(&all("sweep_1.csv", &["--hold-out", "sweep_1.csv"]), &["--hold-out: every record is held out"]);
-    refused(&all("sweep_1.csv", &["--delay", "X=0.02"]), &["--delay: X is none of the channels"]);
     refused(
-        &all("sweep_1.csv", &["--delay", "P=0.02", "--delay", "LON=0.01", "--delay", "X=0.02"]),
+        &all("sweep_1.csv", &["--time", "clock"]),
+        &["there is no column \"clock\""],
+    );
+    refused(
+        &all("sweep_1.csv", &["--sample-rate", "-50"]),
+        &["the sample time is -0.02 s"],
+    );
+    refused(
+        &all("sweep_1.csv", &["--hold-out", "other.csv"]),
+        &["--hold-out: \"other.csv\" is none of the records"],
+    );
+    refused(
+        &all("sweep_1.csv", &["--hold-out", "sweep_1.csv"]),
+        &["--hold-out: every record is held out"],
+    );
+    refused(
+        &all("sweep_1.csv", &["--delay", "X=0.02"]),
         &["--delay: X is none of the channels"],
     );
-    refused(&all("sweep_1.csv", &["--delay", "P"]), &["--delay", "expected CHANNEL=SECONDS"]);
-    refused(&all("sweep_1.csv", &["--factor", "X=2"]), &["--factor: X is none of the channels"]);
+    refused(
+        &all(
+            "sweep_1.csv",
+            &[
+                "--delay", "P=0.02", "--delay", "LON=0.01", "--delay", "X=0.02",
+            ],
+        ),
+        &["--delay: X is none of the channels"],
+    );
+    refused(
+        &all("sweep_1.csv", &["--delay", "P"]),
+        &["--delay", "expected CHANNEL=SECONDS"],
+    );
+    refused(
+        &all("sweep_1.csv", &["--factor", "X=2"]),
+        &["--factor: X is none of the channels"],
+    );
     refused(
         &all("sweep_1.csv", &["--unit", "P=deg/s", "--factor", "P=2"]),
         &["--factor: P has a unit or a factor already"],
     );
-    refused(&all("missing.csv", &[]), &["missing.csv: there is no such file"]);
+    refused(
+        &all("missing.csv", &[]),
+        &["missing.csv: there is no such file"],
+    );
     refused(
         &["sweep_1.csv", "--into", "small.json", "--condition", "5"],
         &["--condition: the dataset has no condition 5; it has 7, 10"],
     );
-    refused(&["sweep_1.csv", "--into", "small.json"], &["--condition", "--every-condition"]);
+    refused(
+        &["sweep_1.csv", "--into", "small.json"],
+        &["--condition", "--every-condition"],
+    );
     refused(&["sweep_1.csv", "--every-condition"], &["--into"]);
     refused(&all("sweep_1.csv", &["--take", "with-plain"]), &["--into"]);
     refused(
-        &["sweep_1.csv", "--into", "small.json", "--condition", "7", "--every-condition"],
+        &[
+            "sweep_1.csv",
+            "--into",
+            "small.json",
+            "--condition",
+            "7",
+            "--every-condition",
+        ],
         &["cannot be used with"],
     );
     refused(
@@ -214,13 +391,28 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
             "--every-condition: no name says a condition of the dataset (7, 10), as cond03 does",
         ],
     );
-    fs::rename(desk.path("validation.csv"), desk.path("cond7_validation.csv")).unwrap();
+    fs::rename(
+        desk.path("validation.csv"),
+        desk.path("cond7_validation.csv"),
+    )
+    .unwrap();
     refused(
-        &["cond7_validation.csv", "--into", "small.json", "--every-condition"],
+        &[
+            "cond7_validation.csv",
+            "--into",
+            "small.json",
+            "--every-condition",
+        ],
         &["--hold-out: condition 7: every record is held out"],
     );
     refused(
-        &["cond7_validation.csv", "--into", "small.json", "--condition", "10"],
+        &[
+            "cond7_validation.csv",
+            "--into",
+            "small.json",
+            "--condition",
+            "10",
+        ],
         &[
             "caution: 1 of 1 records left out: their names say condition 7, not 10",
             "--condition: no record is left for condition 10; rename what belongs to it",
@@ -229,7 +421,11 @@ fn what_cannot_be_is_refused_with_the_place_and_nothing_is_written() {
     fs::copy(desk.path("sweep_1.csv"), desk.path("again.csv")).unwrap();
     refused(
         &all("sweep_1.csv", &["again.csv", "--hold-out", "sweep_1.csv"]),
-        &["its samples are those of ", "left out, for evidence counts once", "--hold-out: every record is held out"],
+        &[
+            "its samples are those of ",
+            "left out, for evidence counts once",
+            "--hold-out: every record is held out",
+        ],
     );
 }
 
@@ -240,39 +436,87 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
     let records = root.join("assets/example-records-3-and-10.zip");
     let into = root.join("tests/data/reference/example-dataset.json.gz");
     let (records, into) = (records.to_str().unwrap(), into.to_str().unwrap());
-    let of_every = ["--every-condition", "--take", "with-plain", "--description", "anew", "--out", "out"];
+    let of_every = [
+        "--every-condition",
+        "--take",
+        "with-plain",
+        "--description",
+        "anew",
+        "--out",
+        "out",
+    ];
     // The dataset does not name these records, and they do not say their units.
-    let units =
-        ["P=deg/s", "Q=deg/s", "R=deg/s", "NX=m/s2", "NY=m/s2", "NZ=m/s2"].map(|said| ["--unit", said]).concat();
-    let ended = desk.gdcm(&[&["identify", records, "--into", into], &of_every[..], &units].concat());
+    let units = [
+        "P=deg/s", "Q=deg/s", "R=deg/s", "NX=m/s2", "NY=m/s2", "NZ=m/s2",
+    ]
+    .map(|said| ["--unit", said])
+    .concat();
+    let ended = desk.gdcm(
+        &[
+            &["identify", records, "--into", into],
+            &of_every[..],
+            &units,
+        ]
+        .concat(),
+    );
     assert_eq!(ended.status, 0, "{ended:?}");
     assert!(
-        ended.error.contains("note: conditions 1, 2, 4 to 9, 11: no records; the identified models there stay"),
+        ended.error.contains(
+            "note: conditions 1, 2, 4 to 9, 11: no records; the identified models there stay"
+        ),
         "{}",
         ended.error
     );
-    assert!(ended.out.contains("identified models of 2 conditions"), "{}", ended.out);
-    let (before, after) =
-        (&crate::REFERENCE_DATASET.dataset, load_dataset(&desk.path("out/example-dataset.json.gz")).unwrap());
-    assert_eq!((after.dataset.description(), after.cautions), ("anew", vec![]));
+    assert!(
+        ended.out.contains("identified models of 2 conditions"),
+        "{}",
+        ended.out
+    );
+    let (before, after) = (
+        &crate::REFERENCE_DATASET.dataset,
+        load_dataset(&desk.path("out/example-dataset.json.gz")).unwrap(),
+    );
+    assert_eq!(
+        (after.dataset.description(), after.cautions),
+        ("anew", vec![])
+    );
     for (old, new) in before.conditions().iter().zip(after.dataset.conditions()) {
         let id = new.id();
         if [3, 10].contains(&id.0) {
             let file = format!("out/identified-condition-{id}.json");
             assert!(
-                ended.out.contains(&format!("condition {id}: {file}: ")) && desk.path(&file).exists(),
+                ended.out.contains(&format!("condition {id}: {file}: "))
+                    && desk.path(&file).exists(),
                 "{}",
                 ended.out
             );
             // What the window takes, in its order: the refined models, then CT-PBSID (unrefined).
-            let names: Vec<&str> = new.bundle(BundleKind::Identified).iter().map(|model| model.name.as_str()).collect();
+            let names: Vec<&str> = new
+                .bundle(BundleKind::Identified)
+                .iter()
+                .map(|model| model.name.as_str())
+                .collect();
             assert!(
                 names[0].starts_with("CT-PBSID, refined, order ")
                     && names.last().unwrap().starts_with("CT-PBSID, order ")
             );
-            assert_eq!(names.iter().filter(|name| name.contains(", without cond")).count(), 8, "{names:?}");
-            assert!(new.records().iter().all(|record| record.file.ends_with("assets/example-records-3-and-10.zip")));
-            assert_eq!(new.bundle(BundleKind::Physics), old.bundle(BundleKind::Physics));
+            assert_eq!(
+                names
+                    .iter()
+                    .filter(|name| name.contains(", without cond"))
+                    .count(),
+                8,
+                "{names:?}"
+            );
+            assert!(
+                new.records()
+                    .iter()
+                    .all(|record| record.file.ends_with("assets/example-records-3-and-10.zip"))
+            );
+            assert_eq!(
+                new.bundle(BundleKind::Physics),
+                old.bundle(BundleKind::Physics)
+            );
         } else {
             assert_eq!(new, old);
         }
@@ -294,7 +538,12 @@ fn channels_units_and_band_are_the_dataset_s_where_one_is_given() {
         "--out",
         "out",
     ]);
-    assert!(ended.error.contains("P: column \"pitch rate\", rad/s → deg/s"), "{ended:?}");
+    assert!(
+        ended
+            .error
+            .contains("P: column \"pitch rate\", rad/s → deg/s"),
+        "{ended:?}"
+    );
     assert!(
         !ended.error.contains("roll rate\", rad/s"),
         "the engineer's column stands in place of the name: {ended:?}"
@@ -306,17 +555,32 @@ fn a_channel_that_is_late_in_all_records_is_told_with_the_option_that_takes_its_
     let desk = Desk::new();
     late_dataset(&desk.path("."));
     let identified = |more: &[&str], out: &str| {
-        let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv", "flight_3.csv"];
+        let files = [
+            "flight_0.csv",
+            "flight_1.csv",
+            "flight_2.csv",
+            "flight_3.csv",
+        ];
         let into = ["--into", "late.json", "--condition", "7", "--out", out];
         let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], &LATE_UNITS, more].concat());
         assert_eq!(ended.status, 0, "{ended:?}");
         ended.error
     };
     let said = identified(&[], "first");
-    let line = said.lines().find(|line| line.contains("Q seems to be logged")).unwrap_or_else(|| panic!("{said}"));
+    let line = said
+        .lines()
+        .find(|line| line.contains("Q seems to be logged"))
+        .unwrap_or_else(|| panic!("{said}"));
     // Three samples of 40 ms.
-    let option = line.rsplit_once("(--delay Q=").unwrap().1.trim_end_matches(')');
-    assert!((option.parse::<f64>().unwrap() - 0.12).abs() < 0.01, "{line}");
+    let option = line
+        .rsplit_once("(--delay Q=")
+        .unwrap()
+        .1
+        .trim_end_matches(')');
+    assert!(
+        (option.parse::<f64>().unwrap() - 0.12).abs() < 0.01,
+        "{line}"
+    );
     let again = identified(&["--delay", &format!("Q={option}")], "again");
     assert!(!again.contains("seems to be logged"), "{again}");
 }
@@ -327,21 +591,47 @@ fn units_that_were_said_once_are_kept_by_the_dataset_with_its_records() {
     late_dataset(&desk.path("."));
     let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv"];
     let identified = |into: &str, more: &[&str], out: &str| {
-        let into = ["--into", into, "--condition", "7", "--band", "0.5", "9", "--out", out];
+        let into = [
+            "--into",
+            into,
+            "--condition",
+            "7",
+            "--band",
+            "0.5",
+            "9",
+            "--out",
+            out,
+        ];
         let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], more].concat());
         assert_eq!(ended.status, 0, "{ended:?}");
         let models = crate::read_json(&desk.path(out).join("identified.json"))["models"].clone();
         (models, ended.error)
     };
-    let units = ["--unit", "Q=rad/s", "--unit", "P=deg/s", "--unit", "LON=%", "--unit", "LAT=%"];
+    let units = [
+        "--unit", "Q=rad/s", "--unit", "P=deg/s", "--unit", "LON=%", "--unit", "LAT=%",
+    ];
     let (said, _) = identified("late.json", &units, "said");
-    let records = crate::read_json(&desk.path("said/late.json"))["conditions"][0]["records"].clone();
-    assert_eq!(records.as_array().unwrap().len(), 4, "each record once, under whatever name: {records}");
-    assert_eq!(records[3]["file"], "../flight_3.csv", "found from where the dataset is written");
-    assert_eq!((&records[0]["file"], &records[3]["remedies"]), (&json!("../flight_0.csv"), &Value::Null));
+    let records =
+        crate::read_json(&desk.path("said/late.json"))["conditions"][0]["records"].clone();
+    assert_eq!(
+        records.as_array().unwrap().len(),
+        4,
+        "each record once, under whatever name: {records}"
+    );
+    assert_eq!(
+        records[3]["file"], "../flight_3.csv",
+        "found from where the dataset is written"
+    );
+    assert_eq!(
+        (&records[0]["file"], &records[3]["remedies"]),
+        (&json!("../flight_0.csv"), &Value::Null)
+    );
     let (kept, told) = identified("said/late.json", &[], "kept");
     assert_eq!(said, kept, "{told}");
-    assert!(told.contains("Q: times 57.29") && told.contains("as the dataset says of this record"), "{told}");
+    assert!(
+        told.contains("Q: times 57.29") && told.contains("as the dataset says of this record"),
+        "{told}"
+    );
     // What the command line says stands before it.
     let (anew, told) = identified("said/late.json", &units, "anew");
     assert_eq!(said, anew, "{told}");
@@ -365,33 +655,75 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
             }
             row.join(",") + "\n"
         };
-        fs::write(desk.path("flight_3.csv"), rows.iter().enumerate().map(row).collect::<String>()).unwrap();
+        fs::write(
+            desk.path("flight_3.csv"),
+            rows.iter().enumerate().map(row).collect::<String>(),
+        )
+        .unwrap();
     };
     let identified = |more: &[&str], out: &str| {
-        let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv", "flight_3.csv"];
+        let files = [
+            "flight_0.csv",
+            "flight_1.csv",
+            "flight_2.csv",
+            "flight_3.csv",
+        ];
         // Above that no input moves any output enough.
-        let into = ["--into", "late.json", "--condition", "7", "--band", "0.5", "9", "--out", out];
+        let into = [
+            "--into",
+            "late.json",
+            "--condition",
+            "7",
+            "--band",
+            "0.5",
+            "9",
+            "--out",
+            out,
+        ];
         let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], &LATE_UNITS, more].concat());
         assert_eq!(ended.status, 0, "{ended:?}");
         ended.error
     };
-    for (late, sign, option, code) in [(2, "", "--delay", "time-skew"), (0, "-", "--factor", "sign")] {
+    for (late, sign, option, code) in [
+        (2, "", "--delay", "time-skew"),
+        (0, "-", "--factor", "sign"),
+    ] {
         written(late, sign);
         let said = identified(&[], &format!("{code}-first"));
-        let line = said.lines().find(|line| line.contains(" contradict")).unwrap_or_else(|| panic!("{code}: {said}"));
+        let line = said
+            .lines()
+            .find(|line| line.contains(" contradict"))
+            .unwrap_or_else(|| panic!("{code}: {said}"));
         let file = fs::read_to_string(desk.path(&format!("{code}-first/identified.json"))).unwrap();
-        assert!(file.contains(&format!("\"code\": \"{code}\"")) || file.contains(&format!("\"code\":\"{code}\"")));
+        assert!(
+            file.contains(&format!("\"code\": \"{code}\""))
+                || file.contains(&format!("\"code\":\"{code}\""))
+        );
         // Of a pair the options of both stand there, those of the last behind.
-        let said = line.rsplit_once(&format!("{option} ")).unwrap().1.trim_end_matches(')');
+        let said = line
+            .rsplit_once(&format!("{option} "))
+            .unwrap()
+            .1
+            .trim_end_matches(')');
         let again = identified(&[option, said], &format!("{code}-again"));
         // A large delay comes out short (M14.16): what is left is asked again.
         let contrast = |said: &str| {
-            let after = said.split_once("contradict").and_then(|(_, after)| after.split_once("(F "));
-            after.map_or(0.0, |(_, number)| number.split_once(';').unwrap().0.parse::<f64>().unwrap())
+            let after = said
+                .split_once("contradict")
+                .and_then(|(_, after)| after.split_once("(F "));
+            after.map_or(0.0, |(_, number)| {
+                number.split_once(';').unwrap().0.parse::<f64>().unwrap()
+            })
         };
-        assert!(contrast(&again) < 0.5 * contrast(line), "{said}: {line}\n{again}");
+        assert!(
+            contrast(&again) < 0.5 * contrast(line),
+            "{said}: {line}\n{again}"
+        );
         let dataset = fs::read_to_string(desk.path(&format!("{code}-again/late.json"))).unwrap();
-        assert!(dataset.contains("\"remedies\""), "the dataset says what was put right");
+        assert!(
+            dataset.contains("\"remedies\""),
+            "the dataset says what was put right"
+        );
     }
     let ended = desk.gdcm(&[
         "identify",
@@ -413,16 +745,27 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
         "--unit",
         "LAT=%",
     ]);
-    assert!(ended.error.contains("\"x\" is none of the records"), "{ended:?}");
+    assert!(
+        ended.error.contains("\"x\" is none of the records"),
+        "{ended:?}"
+    );
 }
 
 /// Magnitude of the first response of the first model of a file of identified models, at a frequency \[rad/s\].
 fn magnitude_db(identified: &Value, omega: f64) -> f64 {
     let matrix = |name: &str| {
         let rows = identified["models"][0][name].as_array().unwrap();
-        let row = |row: &Value| row.as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect::<Vec<_>>();
+        let row = |row: &Value| {
+            row.as_array()
+                .unwrap()
+                .iter()
+                .map(|value| value.as_f64().unwrap())
+                .collect::<Vec<_>>()
+        };
         let rows: Vec<Vec<f64>> = rows.iter().map(row).collect();
-        DMatrix::from_fn(rows.len(), rows[0].len(), |at, column| Complex::from(rows[at][column]))
+        DMatrix::from_fn(rows.len(), rows[0].len(), |at, column| {
+            Complex::from(rows[at][column])
+        })
     };
     let a = matrix("A");
     let resolvent = DMatrix::identity(a.nrows(), a.nrows()) * Complex::new(0.0, omega) - a;
@@ -434,18 +777,32 @@ fn magnitude_db(identified: &Value, omega: f64) -> f64 {
 fn the_quadrotor_is_identified_from_its_log_as_it_was_logged() {
     let desk = Desk::new();
     let log = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/quadrotor/prbs.mat");
-    let channels = ["--inputs", "M", "--outputs", "q [rad/s]", "--band", "2", "25", "--out", "out"];
+    let channels = [
+        "--inputs",
+        "M",
+        "--outputs",
+        "q [rad/s]",
+        "--band",
+        "2",
+        "25",
+        "--out",
+        "out",
+    ];
     let ended = desk.gdcm(&[&["identify", log.to_str().unwrap()], &channels[..]].concat());
     assert_eq!(ended.status, 0, "{ended:?}");
     assert!(
-        ended.error.contains("one record of 2 topics: M, q") && ended.error.contains("resampled to 106.1"),
+        ended.error.contains("one record of 2 topics: M, q")
+            && ended.error.contains("resampled to 106.1"),
         "{ended:?}"
     );
     let identified = crate::read_json(&desk.path("out/identified.json"));
     // Independent numpy code (M14.14).
     for (omega, expected) in [(5.0, 35.9), (8.0, 30.8), (20.0, 22.6)] {
         let found = magnitude_db(&identified, omega);
-        assert!((found - expected).abs() < 0.7, "{found} dB at {omega} rad/s, not {expected}");
+        assert!(
+            (found - expected).abs() < 0.7,
+            "{found} dB at {omega} rad/s, not {expected}"
+        );
     }
     assert_eq!(identified["cautions"], json!([]));
 }
@@ -454,35 +811,88 @@ fn the_quadrotor_is_identified_from_its_log_as_it_was_logged() {
 fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
     let desk = Desk::new();
     late_dataset(&desk.path("."));
-    let parts = ["--part", "0:20", "--part", "20:40", "--hold-out", "20:40", "--band", "0.5", "9"];
+    let parts = [
+        "--part",
+        "0:20",
+        "--part",
+        "20:40",
+        "--hold-out",
+        "20:40",
+        "--band",
+        "0.5",
+        "9",
+    ];
     let into = ["--into", "late.json", "--condition", "7", "--out", "out"];
-    let ended = desk.gdcm(&[&["identify", "flight_0.csv", "flight_1.csv"], &parts[..], &into[..]].concat());
+    let ended = desk.gdcm(
+        &[
+            &["identify", "flight_0.csv", "flight_1.csv"],
+            &parts[..],
+            &into[..],
+        ]
+        .concat(),
+    );
     assert_eq!(ended.status, 0, "{ended:?}");
     let identified = crate::read_json(&desk.path("out/identified.json"));
     let said = |record: &Value| (record["part_s"].clone(), record["held_out"].clone());
-    let records: Vec<(Value, Value)> = identified["records"].as_array().unwrap().iter().map(said).collect();
-    let (first, second) = ((json!([0.0, 20.0]), json!(false)), (json!([20.0, 40.0]), json!(true)));
+    let records: Vec<(Value, Value)> = identified["records"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(said)
+        .collect();
+    let (first, second) = (
+        (json!([0.0, 20.0]), json!(false)),
+        (json!([20.0, 40.0]), json!(true)),
+    );
     assert_eq!(records, [first.clone(), first, second.clone(), second]);
     // What is used of each lies within it, at 25 Hz.
     let used = &identified["records"][2]["used_s"][0];
-    assert!(used[0].as_f64().unwrap() >= 20.0 && used[1].as_f64().unwrap() <= 40.0, "{used}");
+    assert!(
+        used[0].as_f64().unwrap() >= 20.0 && used[1].as_f64().unwrap() <= 40.0,
+        "{used}"
+    );
     let opened = load_dataset(&desk.path("out/late.json")).unwrap();
     let entries = opened.dataset.condition(ConditionId(7)).unwrap().records();
-    let parts: Vec<_> = entries.iter().filter_map(|record| Some((record.part_s?, record.held_out))).collect();
-    let expected = [([0.0, 20.0], false), ([0.0, 20.0], false), ([20.0, 40.0], true), ([20.0, 40.0], true)];
+    let parts: Vec<_> = entries
+        .iter()
+        .filter_map(|record| Some((record.part_s?, record.held_out)))
+        .collect();
+    let expected = [
+        ([0.0, 20.0], false),
+        ([0.0, 20.0], false),
+        ([20.0, 40.0], true),
+        ([20.0, 40.0], true),
+    ];
     assert_eq!(parts, expected);
     // The whole of a record counts no more beside its parts, that of another does.
-    let wholes: Vec<_> = entries.iter().filter(|record| record.part_s.is_none()).map(|record| record.used).collect();
+    let wholes: Vec<_> = entries
+        .iter()
+        .filter(|record| record.part_s.is_none())
+        .map(|record| record.used)
+        .collect();
     assert_eq!(wholes, [false, false, true, true]);
 }
 
 /// Channels of `prbs.csv`, whose clock starts at 42.3 s.
-const PRBS: [&str; 9] = ["identify", "prbs.csv", "--inputs", "M", "--outputs", "q", "--band", "2", "25"];
+const PRBS: [&str; 9] = [
+    "identify",
+    "prbs.csv",
+    "--inputs",
+    "M",
+    "--outputs",
+    "q",
+    "--band",
+    "2",
+    "25",
+];
 
 /// A desk with the flight of the quadrotor, its clock starting at 42.3 s.
 fn desk_of_prbs() -> Desk {
     let desk = Desk::new();
-    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/quadrotor/prbs.csv")).unwrap();
+    let text = fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/quadrotor/prbs.csv"),
+    )
+    .unwrap();
     let mut lines = text.lines();
     let mut moved = lines.next().unwrap().to_owned() + "\n";
     let mut start_s = None;
@@ -502,29 +912,70 @@ fn a_part_outside_the_clock_of_a_record_is_refused_with_its_span_and_one_from_it
     let identified = |more: &[&str]| desk.gdcm(&[&PRBS[..], more].concat());
     let ended = identified(&["--part", "5:34", "--out", "none"]);
     assert_eq!(ended.status, 2, "{ended:?}");
-    let line = ended.error.lines().find(|line| line.starts_with("error:")).unwrap();
-    assert!(line.contains("--part") && line.contains("prbs runs from 42.30 s to "), "{line}");
-    assert!(line.contains("--part +5:+34 counts from the start of a record"), "{line}");
+    let line = ended
+        .error
+        .lines()
+        .find(|line| line.starts_with("error:"))
+        .unwrap();
+    assert!(
+        line.contains("--part") && line.contains("prbs runs from 42.30 s to "),
+        "{line}"
+    );
+    assert!(
+        line.contains("--part +5:+34 counts from the start of a record"),
+        "{line}"
+    );
     assert!(!desk.path("none").exists());
     let ended = identified(&["--part", "+500:+534", "--out", "none"]);
-    assert!(ended.status == 2 && ended.error.contains("prbs runs from 42.30 s to "), "{ended:?}");
+    assert!(
+        ended.status == 2 && ended.error.contains("prbs runs from 42.30 s to "),
+        "{ended:?}"
+    );
     let ended = identified(&["--part", "+5:34", "--out", "none"]);
-    assert!(ended.status == 2 && ended.error.contains("expected A:B"), "{ended:?}");
+    assert!(
+        ended.status == 2 && ended.error.contains("expected A:B"),
+        "{ended:?}"
+    );
 
     // From its start, by the record's name and held out by the same words.
-    let parts = ["--part", "prbs:+0:+15", "--part", "+15:+30", "--hold-out", "+15:+30", "--out", "relative"];
+    let parts = [
+        "--part",
+        "prbs:+0:+15",
+        "--part",
+        "+15:+30",
+        "--hold-out",
+        "+15:+30",
+        "--out",
+        "relative",
+    ];
     let ended = identified(&parts);
     assert_eq!(ended.status, 0, "{ended:?}");
     let records = crate::read_json(&desk.path("relative/identified.json"))["records"].clone();
     let part = |at: usize, end: usize| records[at]["part_s"][end].as_f64().unwrap();
     for (at, expected) in [(0, [42.3, 57.3]), (1, [57.3, 72.3])] {
-        assert!((0..2).all(|end| (part(at, end) - expected[end]).abs() < 1e-9), "{records}");
+        assert!(
+            (0..2).all(|end| (part(at, end) - expected[end]).abs() < 1e-9),
+            "{records}"
+        );
     }
-    assert_eq!([&records[0]["held_out"], &records[1]["held_out"]], [&json!(false), &json!(true)]);
+    assert_eq!(
+        [&records[0]["held_out"], &records[1]["held_out"]],
+        [&json!(false), &json!(true)]
+    );
     // The same as on its own clock.
-    let ended = identified(&["--part", "42.3:57.3", "--part", "57.3:72.3", "--hold-out", "57.3:72.3", "--out", "own"]);
+    let ended = identified(&[
+        "--part",
+        "42.3:57.3",
+        "--part",
+        "57.3:72.3",
+        "--hold-out",
+        "57.3:72.3",
+        "--out",
+        "own",
+    ]);
     assert_eq!(ended.status, 0, "{ended:?}");
-    let models = |out: &str| crate::read_json(&desk.path(out).join("identified.json"))["models"].clone();
+    let models =
+        |out: &str| crate::read_json(&desk.path(out).join("identified.json"))["models"].clone();
     assert_eq!(models("relative"), models("own"));
 }
 
@@ -534,32 +985,74 @@ fn models_are_identified_into_a_dataset_that_has_none_yet() {
     late_dataset(&desk.path("."));
     let mut dataset = crate::read_json(&desk.path("late.json"));
     for condition in dataset["conditions"].as_array_mut().unwrap() {
-        condition.as_object_mut().unwrap().remove("identified_models");
+        condition
+            .as_object_mut()
+            .unwrap()
+            .remove("identified_models");
     }
     fs::write(desk.path("late.json"), dataset.to_string()).unwrap();
     // Without any reference there is no result, and it is said what is needed.
     let ended = desk.gdcm(&["analyze", "late.json", "--out", "results"]);
     assert_eq!(ended.status, 1, "{ended:?}");
-    assert!(ended.error.contains("conditions 7, 10: no identified models yet"), "{ended:?}");
+    assert!(
+        ended
+            .error
+            .contains("conditions 7, 10: no identified models yet"),
+        "{ended:?}"
+    );
     let ended = desk.gdcm(&["check", "late.json"]);
     assert_eq!(ended.status, 0, "{ended:?}");
-    assert!(ended.out.contains("conditions 7, 10: no identified models yet"), "{ended:?}");
-    let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv", "flight_3.csv"];
-    let into = ["--into", "late.json", "--condition", "7", "--band", "0.5", "9", "--out", "out"];
+    assert!(
+        ended
+            .out
+            .contains("conditions 7, 10: no identified models yet"),
+        "{ended:?}"
+    );
+    let files = [
+        "flight_0.csv",
+        "flight_1.csv",
+        "flight_2.csv",
+        "flight_3.csv",
+    ];
+    let into = [
+        "--into",
+        "late.json",
+        "--condition",
+        "7",
+        "--band",
+        "0.5",
+        "9",
+        "--out",
+        "out",
+    ];
     let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], &LATE_UNITS].concat());
     assert_eq!(ended.status, 0, "{ended:?}");
     let written = load_dataset(&desk.path("out/late.json")).unwrap().dataset;
-    let [filled, empty] = written.conditions() else { panic!("two conditions") };
+    let [filled, empty] = written.conditions() else {
+        panic!("two conditions")
+    };
     assert!(filled.has_reference() && !empty.has_reference());
     // One condition is analysed; of the other it is said that it has no reference.
     let ended = desk.gdcm(&["analyze", "out/late.json", "--out", "results", "--json"]);
     assert_eq!(ended.status, 0, "{ended:?}");
     let said: Value = serde_json::from_str(&ended.out).unwrap();
-    let of_code = said["cautions"].as_array().unwrap().iter().filter(|caution| caution["code"] == "no-reference");
-    assert_eq!(of_code.map(|caution| caution["conditions"].clone()).collect::<Vec<_>>(), [json!([10])]);
+    let of_code = said["cautions"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|caution| caution["code"] == "no-reference");
+    assert_eq!(
+        of_code
+            .map(|caution| caution["conditions"].clone())
+            .collect::<Vec<_>>(),
+        [json!([10])]
+    );
     let corrections = crate::read_json(&desk.path("results/corrections.json"));
     assert_eq!(
-        [&corrections["failed"][0]["id"], &corrections["failed"][0]["code"]],
+        [
+            &corrections["failed"][0]["id"],
+            &corrections["failed"][0]["code"]
+        ],
         [&json!(10), &json!("no-reference")]
     );
     assert_eq!(corrections["conditions"].as_array().unwrap().len(), 1);

@@ -9,8 +9,8 @@ use gdcm_io::{ReportSource, ReportSubject, example_records, load_dataset, report
 use gdcm_method::requirements::ToleranceTable;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 use gdcm_study::study::{
-    Analysis, Cancelled, Edit, Engine, Execution, HistoryRecords, KnownPoles, Progress, RequirementRole, Study,
-    Unobserved, time_histories_of,
+    Analysis, Cancelled, Edit, Engine, Execution, HistoryRecords, KnownPoles, Progress,
+    RequirementRole, Study, Unobserved, time_histories_of,
 };
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
@@ -40,28 +40,57 @@ const REASON: &str = "steps at 2 rad/s <see the & bode plot>";
 static ANALYSIS: LazyLock<Analysis> = LazyLock::new(|| {
     let mut study = Study::new(FEW.dataset.clone());
     let model = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
-    study.apply(&Edit::RejectBecause { model, reason: REASON.to_owned() }).unwrap();
+    study
+        .apply(&Edit::RejectBecause {
+            model,
+            reason: REASON.to_owned(),
+        })
+        .unwrap();
     Engine::default().analyze(&study, &Unobserved).unwrap()
 });
 
 static REPORT: LazyLock<String> = LazyLock::new(|| {
-    report(without_records(&ANALYSIS), &ReportSource::of(&FEW, None), &mut Engine::default(), &Unobserved).unwrap()
+    report(
+        without_records(&ANALYSIS),
+        &ReportSource::of(&FEW, None),
+        &mut Engine::default(),
+        &Unobserved,
+    )
+    .unwrap()
 });
 
 fn without_records(analysis: &Analysis) -> ReportSubject<'_> {
     static NOTHING: LazyLock<KnownPoles> = LazyLock::new(KnownPoles::default);
-    ReportSubject { analysis, histories: None, known: &NOTHING }
+    ReportSubject {
+        analysis,
+        histories: None,
+        known: &NOTHING,
+    }
 }
 
 /// The page as XML; its document type is HTML's, which names no other file.
 fn parsed(text: &str) -> Document<'_> {
-    Document::parse_with_options(text, ParsingOptions { allow_dtd: true, ..ParsingOptions::default() }).unwrap()
+    Document::parse_with_options(
+        text,
+        ParsingOptions {
+            allow_dtd: true,
+            ..ParsingOptions::default()
+        },
+    )
+    .unwrap()
 }
 
 fn texts<'t>(document: &Document<'t>, tag: &str) -> Vec<String> {
-    let all_words =
-        |node: Node<'_, '_>| node.descendants().filter_map(|of| of.text().filter(|_| of.is_text())).collect();
-    document.descendants().filter(|node| node.has_tag_name(tag)).map(all_words).collect()
+    let all_words = |node: Node<'_, '_>| {
+        node.descendants()
+            .filter_map(|of| of.text().filter(|_| of.is_text()))
+            .collect()
+    };
+    document
+        .descendants()
+        .filter(|node| node.has_tag_name(tag))
+        .map(all_words)
+        .collect()
 }
 
 #[test]
@@ -71,12 +100,27 @@ fn the_report_of_the_example_has_every_section_and_every_condition() {
     assert_eq!(sections[1..], SECTIONS, "after the contents");
     let parts = texts(&document, "h3");
     for condition in FEW.dataset.conditions() {
-        let heading = format!("Condition {}: {}", condition.id(), condition.flight_state().name);
-        assert!(parts.iter().any(|part| part.ends_with(&heading)), "{heading} in {parts:?}");
+        let heading = format!(
+            "Condition {}: {}",
+            condition.id(),
+            condition.flight_state().name
+        );
+        assert!(
+            parts.iter().any(|part| part.ends_with(&heading)),
+            "{heading} in {parts:?}"
+        );
     }
     let figures = texts(&document, "figcaption");
-    for words in ["responses on axis", "what the fit sees", "magnitude of every response", "poles of its models"] {
-        let of = figures.iter().filter(|caption| caption.contains(words)).count();
+    for words in [
+        "responses on axis",
+        "what the fit sees",
+        "magnitude of every response",
+        "poles of its models",
+    ] {
+        let of = figures
+            .iter()
+            .filter(|caption| caption.contains(words))
+            .count();
         assert_eq!(of, FEW.dataset.conditions().len(), "{words}");
     }
     for words in [
@@ -86,21 +130,35 @@ fn the_report_of_the_example_has_every_section_and_every_condition() {
         "Change of J of on-axis responses",
         "Change of J of off-axis responses",
     ] {
-        assert!(figures.iter().any(|caption| caption.contains(words)), "{words} in {figures:?}");
+        assert!(
+            figures.iter().any(|caption| caption.contains(words)),
+            "{words} in {figures:?}"
+        );
     }
 }
 
 #[test]
 fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_are_records() {
     let engine = &mut Engine::default();
-    let uncertainty = Some(Arc::new(engine.uncertainty(&ANALYSIS, &Unobserved).unwrap()));
-    let analysis = Analysis { uncertainty, ..ANALYSIS.clone() };
-    let requirements = engine.requirements(&analysis, &KnownPoles::default(), &Unobserved).unwrap();
+    let uncertainty = Some(Arc::new(
+        engine.uncertainty(&ANALYSIS, &Unobserved).unwrap(),
+    ));
+    let analysis = Analysis {
+        uncertainty,
+        ..ANALYSIS.clone()
+    };
+    let requirements = engine
+        .requirements(&analysis, &KnownPoles::default(), &Unobserved)
+        .unwrap();
     let cells = texts(&parsed(&REPORT), "td");
     for row in requirements.summary_table(None).rows {
         assert!(cells.windows(row.len()).any(|of| *of == row), "{row:?}");
     }
-    let known = requirements.bandwidth.iter().find(|of| of.omega_bw_rad_s.is_some()).unwrap();
+    let known = requirements
+        .bandwidth
+        .iter()
+        .find(|of| of.omega_bw_rad_s.is_some())
+        .unwrap();
     let bandwidth = format!("{:.2}", known.omega_bw_rad_s.unwrap());
     assert!(cells.contains(&bandwidth) && REPORT.contains("These numbers are no qualification"));
     assert!(!REPORT.contains("Share of time"), "no record was given");
@@ -110,21 +168,43 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
     let proposed = |table| LaidOutRecord::proposed(table, &channels, &TimeWish::default()).0;
     let records: Vec<LaidOutRecord> = tables.map(proposed).collect();
     let (inputs, outputs) = FEW.dataset.names_of_channels();
-    let [inputs, outputs]: [Vec<&str>; 2] = [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
-    let records = [HistoryRecords::of(ConditionId(3), &records, Preparation::of(&inputs, &outputs))];
+    let [inputs, outputs]: [Vec<&str>; 2] =
+        [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
+    let records = [HistoryRecords::of(
+        ConditionId(3),
+        &records,
+        Preparation::of(&inputs, &outputs),
+    )];
     let table = ToleranceTable::default();
-    let histories = time_histories_of(&analysis, &records, &table, &Execution::sequential()).unwrap();
+    let histories =
+        time_histories_of(&analysis, &records, &table, &Execution::sequential()).unwrap();
     let source = ReportSource::of(&FEW, None);
-    let subject = ReportSubject { histories: Some(&histories), ..without_records(&analysis) };
+    let subject = ReportSubject {
+        histories: Some(&histories),
+        ..without_records(&analysis)
+    };
     let report = report(subject, &source, engine, &Unobserved).unwrap();
     let cells = texts(&parsed(&report), "td");
     let of_records = histories.record_table(ConditionId(3));
-    assert!(!of_records.rows.is_empty(), "the physics model leaves some corridor");
-    for row in histories.share_table().rows.into_iter().chain(of_records.rows) {
+    assert!(
+        !of_records.rows.is_empty(),
+        "the physics model leaves some corridor"
+    );
+    for row in histories
+        .share_table()
+        .rows
+        .into_iter()
+        .chain(of_records.rows)
+    {
         assert!(cells.windows(row.len()).any(|of| *of == row), "{row:?}");
     }
-    let rms = histories.j_rms(ConditionId(3), RequirementRole::Identified).unwrap();
-    assert!(cells.contains(&format!("{rms:.2}")) && report.contains("J_rms over all records of a condition"));
+    let rms = histories
+        .j_rms(ConditionId(3), RequirementRole::Identified)
+        .unwrap();
+    assert!(
+        cells.contains(&format!("{rms:.2}"))
+            && report.contains("J_rms over all records of a condition")
+    );
     assert!(report.contains("Conditions 7, 10: no flight record of it was given."));
 }
 
@@ -132,11 +212,20 @@ fn requirements_are_those_of_the_command_and_time_histories_stand_where_there_ar
 fn a_rejected_model_stands_with_the_words_that_the_analyst_typed() {
     let document = parsed(&REPORT);
     let cells = texts(&document, "td");
-    let place = cells.iter().position(|cell| cell == REASON).expect("the reason is there");
+    let place = cells
+        .iter()
+        .position(|cell| cell == REASON)
+        .expect("the reason is there");
     assert_eq!(cells[place - 4..place - 1], ["10", "physics", "nominal"]);
     assert!(REPORT.contains("Condition 10 is left out: the nominal model is rejected."));
-    assert!(REPORT.contains(&FEW.sha256) && REPORT.contains(concat!("gdcm ", env!("CARGO_PKG_VERSION"))));
-    assert!(REPORT.contains("A delay cannot give it."), "what could not be matched is said in words");
+    assert!(
+        REPORT.contains(&FEW.sha256)
+            && REPORT.contains(concat!("gdcm ", env!("CARGO_PKG_VERSION")))
+    );
+    assert!(
+        REPORT.contains("A delay cannot give it."),
+        "what could not be matched is said in words"
+    );
 }
 
 #[test]
@@ -160,12 +249,21 @@ fn a_report_runs_nothing_and_loads_nothing() {
 #[test]
 fn every_link_and_every_name_within_a_report_leads_to_one_place() {
     let document = parsed(&REPORT);
-    let ids: Vec<&str> = document.descendants().filter_map(|node| node.attribute("id")).collect();
+    let ids: Vec<&str> = document
+        .descendants()
+        .filter_map(|node| node.attribute("id"))
+        .collect();
     let different: BTreeSet<&str> = ids.iter().copied().collect();
     assert_eq!(different.len(), ids.len());
-    let links = document.descendants().filter_map(|node| node.attribute("href")).map(|link| &link[1..]);
-    let clips = document.descendants().filter_map(|node| node.attribute("clip-path"));
-    let referred = links.chain(clips.map(|clip| clip.trim_start_matches("url(#").trim_end_matches(')')));
+    let links = document
+        .descendants()
+        .filter_map(|node| node.attribute("href"))
+        .map(|link| &link[1..]);
+    let clips = document
+        .descendants()
+        .filter_map(|node| node.attribute("clip-path"));
+    let referred =
+        links.chain(clips.map(|clip| clip.trim_start_matches("url(#").trim_end_matches(')')));
     let missing: Vec<&str> = referred.filter(|name| !different.contains(name)).collect();
     assert_eq!(missing, [""; 0]);
 }
@@ -173,8 +271,16 @@ fn every_link_and_every_name_within_a_report_leads_to_one_place() {
 #[test]
 fn the_same_study_makes_the_same_bytes() {
     let again = || {
-        let analysis = Engine::default().analyze(&Study::new(FEW.dataset.clone()), &Unobserved).unwrap();
-        report(without_records(&analysis), &ReportSource::of(&FEW, None), &mut Engine::default(), &Unobserved).unwrap()
+        let analysis = Engine::default()
+            .analyze(&Study::new(FEW.dataset.clone()), &Unobserved)
+            .unwrap();
+        report(
+            without_records(&analysis),
+            &ReportSource::of(&FEW, None),
+            &mut Engine::default(),
+            &Unobserved,
+        )
+        .unwrap()
     };
     assert!(again() == again());
 }
@@ -182,9 +288,17 @@ fn the_same_study_makes_the_same_bytes() {
 #[test]
 #[ignore = "eleven conditions; three are enough by default"]
 fn the_report_of_the_whole_example_is_not_too_long() {
-    let analysis = Engine::default().analyze(&Study::new(EXAMPLE.dataset.clone()), &Unobserved).unwrap();
+    let analysis = Engine::default()
+        .analyze(&Study::new(EXAMPLE.dataset.clone()), &Unobserved)
+        .unwrap();
     let source = ReportSource::of(&EXAMPLE, None);
-    let text = report(without_records(&analysis), &source, &mut Engine::default(), &Unobserved).unwrap();
+    let text = report(
+        without_records(&analysis),
+        &source,
+        &mut Engine::default(),
+        &Unobserved,
+    )
+    .unwrap();
     assert!(text.len() < 15_000_000, "{} bytes", text.len());
 }
 
@@ -198,7 +312,8 @@ impl Progress for Impatient {
 
     fn advanced(&self, done: usize, total: usize) {
         assert_eq!(total, FEW.dataset.conditions().len());
-        self.0.store(2_usize.saturating_sub(done), Ordering::Relaxed);
+        self.0
+            .store(2_usize.saturating_sub(done), Ordering::Relaxed);
     }
 }
 
@@ -206,7 +321,15 @@ impl Progress for Impatient {
 fn a_report_that_is_not_wanted_any_more_is_given_up() {
     let impatient = Impatient(AtomicUsize::new(2));
     let source = ReportSource::of(&FEW, None);
-    assert_eq!(report(without_records(&ANALYSIS), &source, &mut Engine::default(), &impatient), Err(Cancelled));
+    assert_eq!(
+        report(
+            without_records(&ANALYSIS),
+            &source,
+            &mut Engine::default(),
+            &impatient
+        ),
+        Err(Cancelled)
+    );
 }
 
 /// The small dataset with names that are markup, and a condition that has no result.
@@ -217,7 +340,8 @@ fn write_odd(desk: &Desk) {
         let model = &mut file["conditions"][1]["physics_models"][0];
         model["B"] = json!([[0, 0], [0, 0]]);
         model["D"] = json!([[0, 0], [0, 0]]);
-        let source: Value = json!({"file": "models/<a>.mat", "sha256": "c0ffee", "made": "2026-03-01"});
+        let source: Value =
+            json!({"file": "models/<a>.mat", "sha256": "c0ffee", "made": "2026-03-01"});
         file["conditions"][0]["physics_models"][0]["source"] = source;
     });
 }
@@ -227,16 +351,39 @@ fn names_that_are_markup_stay_names_and_a_condition_without_result_says_why() {
     let desk = Desk::new();
     write_odd(&desk);
     let ended = desk.gdcm(&["report", "odd.json", "--out", "report.html"]);
-    assert_eq!((ended.status, ended.out.as_str()), (0, "report.html: a report on 1 conditions\n"), "{ended:?}");
-    assert!(ended.error.starts_with("caution: condition 10: no response of"), "{}", ended.error);
+    assert_eq!(
+        (ended.status, ended.out.as_str()),
+        (0, "report.html: a report on 1 conditions\n"),
+        "{ended:?}"
+    );
+    assert!(
+        ended
+            .error
+            .starts_with("caution: condition 10: no response of"),
+        "{}",
+        ended.error
+    );
     let text = fs::read_to_string(desk.path("report.html")).unwrap();
     assert!(!text.contains("<script") && !text.contains('\u{1b}') && !text.contains('\u{202e}'));
     let document = parsed(&text);
     assert!(texts(&document, "h1")[0].contains("<script>alert(\"1\")</script> & co\\u{1b}[2J"));
-    assert!(texts(&document, "td").iter().any(|cell| cell == "</td><b>&'\"\\u{202e}"));
+    assert!(
+        texts(&document, "td")
+            .iter()
+            .any(|cell| cell == "</td><b>&'\"\\u{202e}")
+    );
     let why = "This condition has no result: no response of \"nominal\"";
-    assert!(texts(&document, "p").iter().any(|words| words.starts_with(why)));
-    assert!(texts(&document, "td").iter().any(|cell| cell == "models/<a>.mat") && text.contains("c0ffee"));
+    assert!(
+        texts(&document, "p")
+            .iter()
+            .any(|words| words.starts_with(why))
+    );
+    assert!(
+        texts(&document, "td")
+            .iter()
+            .any(|cell| cell == "models/<a>.mat")
+            && text.contains("c0ffee")
+    );
 }
 
 #[test]
@@ -244,13 +391,24 @@ fn a_report_is_overwritten_only_by_force_and_never_over_what_it_is_read_from() {
     let desk = Desk::new();
     let command = ["report", "small.json", "--out", "report.html"];
     fs::write(desk.path("report.html"), "mine").unwrap();
-    desk.gdcm(&command).assert_failed(2, &["report.html exists already; --force overwrites"]);
-    assert_eq!(fs::read_to_string(desk.path("report.html")).unwrap(), "mine");
-    desk.gdcm(&[&command[..], &["--force"]].concat()).assert_done();
-    assert!(fs::read_to_string(desk.path("report.html")).unwrap().starts_with("<!DOCTYPE html>"));
+    desk.gdcm(&command)
+        .assert_failed(2, &["report.html exists already; --force overwrites"]);
+    assert_eq!(
+        fs::read_to_string(desk.path("report.html")).unwrap(),
+        "mine"
+    );
+    desk.gdcm(&[&command[..], &["--force"]].concat())
+        .assert_done();
+    assert!(
+        fs::read_to_string(desk.path("report.html"))
+            .unwrap()
+            .starts_with("<!DOCTYPE html>")
+    );
     let over = ["report", "small.json", "--out", "small.json", "--force"];
-    desk.gdcm(&over).assert_failed(2, &["small.json: ", "the data are read from this file"]);
-    desk.gdcm(&["report", "missing.json", "--out", "a.html"]).assert_failed(2, &["missing.json"]);
+    desk.gdcm(&over)
+        .assert_failed(2, &["small.json: ", "the data are read from this file"]);
+    desk.gdcm(&["report", "missing.json", "--out", "a.html"])
+        .assert_failed(2, &["missing.json"]);
     assert!(!desk.path("a.html").exists());
 }
 
@@ -260,11 +418,21 @@ fn a_study_is_reported_by_its_name_with_its_decisions() {
     let loaded = load_dataset(&desk.path("small.json")).unwrap();
     let mut study = Study::new(loaded.dataset.clone());
     let model = ModelId::new(ConditionId(7), BundleKind::Physics, "V+5kt");
-    study.apply(&Edit::RejectBecause { model, reason: "trimmed badly".to_owned() }).unwrap();
+    study
+        .apply(&Edit::RejectBecause {
+            model,
+            reason: "trimmed badly".to_owned(),
+        })
+        .unwrap();
     save_study(&study, &loaded, &desk.path("a.gdcm-study.json")).unwrap();
-    desk.gdcm(&["report", "a.gdcm-study.json", "--out", "a.html"]).assert_done();
+    desk.gdcm(&["report", "a.gdcm-study.json", "--out", "a.html"])
+        .assert_done();
     let text = fs::read_to_string(desk.path("a.html")).unwrap();
-    for words in ["Study a.gdcm-study.json. Dataset small.json.", "trimmed badly", &loaded.sha256] {
+    for words in [
+        "Study a.gdcm-study.json. Dataset small.json.",
+        "trimmed badly",
+        &loaded.sha256,
+    ] {
         assert!(text.contains(words), "{words}");
     }
 }
@@ -273,7 +441,9 @@ fn a_study_is_reported_by_its_name_with_its_decisions() {
 fn of_a_long_bundle_a_part_is_shown_and_said_to_be_one() {
     let desk = Desk::new();
     desk.write("long.json", |file| {
-        let models = file["conditions"][0]["physics_models"].as_array_mut().unwrap();
+        let models = file["conditions"][0]["physics_models"]
+            .as_array_mut()
+            .unwrap();
         let last = models.last().unwrap().clone();
         for number in 0..300 {
             let mut model = last.clone();
@@ -281,7 +451,8 @@ fn of_a_long_bundle_a_part_is_shown_and_said_to_be_one() {
             models.push(model);
         }
     });
-    desk.gdcm(&["report", "long.json", "--out", "long.html"]).assert_done();
+    desk.gdcm(&["report", "long.json", "--out", "long.html"])
+        .assert_done();
     let text = fs::read_to_string(desk.path("long.html")).unwrap();
     assert!(text.contains("40 of 302 physics models are listed and drawn."));
     assert!(text.len() < 3_000_000, "{} bytes", text.len());
@@ -300,12 +471,20 @@ fn the_window_writes_the_report_beside_and_asks_before_it_overwrites() {
     assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
     click(&mut window, "Overwrite");
     crate::window::wait_until(&mut window, "the report", |window| {
-        state(window).notice.as_ref().is_some_and(|notice| notice.text.starts_with("wrote the report"))
+        state(window)
+            .notice
+            .as_ref()
+            .is_some_and(|notice| notice.text.starts_with("wrote the report"))
     });
     settle(&mut window);
     let written = fs::read_to_string(&path).unwrap();
     let analysis = state(&window).results.analysis.clone().unwrap();
-    let expected =
-        report(without_records(&analysis), &ReportSource::of(&FEW, None), &mut Engine::default(), &Unobserved).unwrap();
+    let expected = report(
+        without_records(&analysis),
+        &ReportSource::of(&FEW, None),
+        &mut Engine::default(),
+        &Unobserved,
+    )
+    .unwrap();
     assert!(written == expected, "what the command would write");
 }

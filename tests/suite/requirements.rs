@@ -9,7 +9,11 @@ use crate::entries;
 
 /// The rows of a table, each by its headings.
 fn rows(path: &Path) -> Vec<std::collections::BTreeMap<String, String>> {
-    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
+    csv::Reader::from_path(path)
+        .unwrap()
+        .deserialize()
+        .map(Result::unwrap)
+        .collect()
 }
 
 #[test]
@@ -18,23 +22,51 @@ fn the_embedded_example_has_bandwidths_of_every_role_and_modes_and_costs() {
     let ended = desk.gdcm(&["requirements", "--out", "asked", "--quiet"]);
     assert_eq!(ended.status, 0, "{ended:?}");
     let written = crate::read_json(&desk.path("asked/requirements.json"));
-    assert_eq!((&written["format"], &written["version"]), (&json!("gdcm-requirements"), &json!(1)));
+    assert_eq!(
+        (&written["format"], &written["version"]),
+        (&json!("gdcm-requirements"), &json!(1))
+    );
     for role in ["physics", "corrected", "scheduled", "identified"] {
-        let of_role =
-            |finding: &&Value| finding["role"] == role && finding["output"] == "P" && finding["input"] == "LAT";
-        let findings: Vec<&Value> = entries(&written["bandwidth"]).iter().filter(of_role).collect();
+        let of_role = |finding: &&Value| {
+            finding["role"] == role && finding["output"] == "P" && finding["input"] == "LAT"
+        };
+        let findings: Vec<&Value> = entries(&written["bandwidth"])
+            .iter()
+            .filter(of_role)
+            .collect();
         assert_eq!(findings.len(), 11, "{role}");
-        let known = findings.iter().filter(|finding| finding["omega_bw_rad_s"].as_f64().is_some_and(|bw| bw > 0.0));
+        let known = findings.iter().filter(|finding| {
+            finding["omega_bw_rad_s"]
+                .as_f64()
+                .is_some_and(|bw| bw > 0.0)
+        });
         assert!(known.count() > 5, "{role}: {findings:?}");
     }
     assert_eq!(entries(&written["summary"]).len(), 33);
     let costs = |role: &str| -> f64 {
-        let of_role = entries(&written["summary"]).iter().filter(|finding| finding["role"] == role);
-        of_role.map(|finding| finding["mean_j_on_axis"].as_f64().unwrap()).sum()
+        let of_role = entries(&written["summary"])
+            .iter()
+            .filter(|finding| finding["role"] == role);
+        of_role
+            .map(|finding| finding["mean_j_on_axis"].as_f64().unwrap())
+            .sum()
     };
-    assert!(costs("corrected") < costs("physics"), "a correction lowers J");
-    for words in ["Bandwidth", "phase delay [ms]", "MUAD", "no qualification", "requirements.csv in asked"] {
-        assert!(ended.out.contains(words), "expected \"{words}\" in:\n{}", ended.out);
+    assert!(
+        costs("corrected") < costs("physics"),
+        "a correction lowers J"
+    );
+    for words in [
+        "Bandwidth",
+        "phase delay [ms]",
+        "MUAD",
+        "no qualification",
+        "requirements.csv in asked",
+    ] {
+        assert!(
+            ended.out.contains(words),
+            "expected \"{words}\" in:\n{}",
+            ended.out
+        );
     }
     let again = desk.gdcm(&["requirements", "--out", "asked"]);
     again.assert_failed(2, &["requirements.json", "--force"]);
@@ -43,7 +75,11 @@ fn the_embedded_example_has_bandwidths_of_every_role_and_modes_and_costs() {
 #[test]
 fn the_json_and_the_csv_of_requirements_say_the_same() {
     let desk = Desk::new();
-    assert_eq!(desk.gdcm(&["requirements", "small.json", "--out", "."]).status, 0);
+    assert_eq!(
+        desk.gdcm(&["requirements", "small.json", "--out", "."])
+            .status,
+        0
+    );
     let written = crate::read_json(&desk.path("requirements.json"));
     let table = rows(&desk.path("requirements.csv"));
     assert!(table.len() > 40, "{table:?}");
@@ -56,27 +92,51 @@ fn the_json_and_the_csv_of_requirements_say_the_same() {
             _ => finding.clone(),
         };
         let is_meant = |finding: &&Value| match row["question"].as_str() {
-            "modes" => finding["number"].as_u64() == row["mode"].split(' ').next().and_then(|of| of.parse().ok()),
+            "modes" => {
+                finding["number"].as_u64()
+                    == row["mode"].split(' ').next().and_then(|of| of.parse().ok())
+            }
             "bandwidth" => {
-                finding["role"] == row["role"] && finding["output"] == row["output"] && finding["input"] == row["input"]
+                finding["role"] == row["role"]
+                    && finding["output"] == row["output"]
+                    && finding["input"] == row["input"]
             }
             _ => finding["role"] == row["role"],
         };
         let found = numbers(of_condition.into_iter().find(is_meant).unwrap());
         let quantity = row["quantity"].as_str();
         assert_eq!(found["model"], row["model"]);
-        assert_eq!(found[quantity].as_f64(), row["value"].parse().ok(), "{row:?}");
+        assert_eq!(
+            found[quantity].as_f64(),
+            row["value"].parse().ok(),
+            "{row:?}"
+        );
         if found[quantity].is_null() {
-            assert_eq!(found["absent"][quantity], row["remark"], "the reason stands in both: {row:?}");
+            assert_eq!(
+                found["absent"][quantity], row["remark"],
+                "the reason stands in both: {row:?}"
+            );
             assert!(!row["remark"].is_empty());
         }
-        let interval = found["interval"].get(quantity).map(|ends| [ends[0].as_f64(), ends[1].as_f64()]);
-        assert_eq!(interval.unwrap_or_default(), [row["low"].parse().ok(), row["high"].parse().ok()], "{row:?}");
+        let interval = found["interval"]
+            .get(quantity)
+            .map(|ends| [ends[0].as_f64(), ends[1].as_f64()]);
+        assert_eq!(
+            interval.unwrap_or_default(),
+            [row["low"].parse().ok(), row["high"].parse().ok()],
+            "{row:?}"
+        );
     }
     assert_eq!(entries(&written["time_histories"]["records"]).len(), 0);
-    assert_eq!(written["time_histories"]["missing"][0]["why"], "no flight record was given");
+    assert_eq!(
+        written["time_histories"]["missing"][0]["why"],
+        "no flight record was given"
+    );
     for question in ["bandwidth", "modes", "summary"] {
-        assert!(table.iter().any(|row| row["question"] == question), "{question}");
+        assert!(
+            table.iter().any(|row| row["question"] == question),
+            "{question}"
+        );
     }
 }
 
@@ -97,56 +157,119 @@ fn a_dataset_without_a_rate_has_words_in_place_of_bandwidths() {
         let said = finding["absent"]["phase_delay_s"].as_str().unwrap();
         assert!(finding["output"] != "P" || said == why, "{said}");
     }
-    assert!(ended.out.contains("has no bandwidth: it is neither a rate"), "{}", ended.out);
+    assert!(
+        ended.out.contains("has no bandwidth: it is neither a rate"),
+        "{}",
+        ended.out
+    );
 }
 
 #[test]
 fn what_leads_make_above_the_band_is_refused_and_not_given() {
     let desk = Desk::with_few();
     // In a band that ends below twice the crossings of half a turn; to 12 rad/s nothing of the example rests on more.
-    let ended =
-        desk.gdcm(&["requirements", "few.json", "--phase", "lead", "--band", "0.5", "5", "--out", ".", "--quiet"]);
+    let ended = desk.gdcm(&[
+        "requirements",
+        "few.json",
+        "--phase",
+        "lead",
+        "--band",
+        "0.5",
+        "5",
+        "--out",
+        ".",
+        "--quiet",
+    ]);
     assert_eq!(ended.status, 0, "{ended:?}");
     let written = crate::read_json(&desk.path("requirements.json"));
     let findings = entries(&written["bandwidth"]).iter();
-    let reasons = findings.filter_map(|finding| Some((finding["role"].as_str()?, finding["absent"].as_object()?)));
+    let reasons = findings
+        .filter_map(|finding| Some((finding["role"].as_str()?, finding["absent"].as_object()?)));
     let refused = reasons.filter(|(_, absent)| {
-        absent.values().any(|why| why.as_str().is_some_and(|why| why.starts_with("rests on the leads above the band")))
+        absent.values().any(|why| {
+            why.as_str()
+                .is_some_and(|why| why.starts_with("rests on the leads above the band"))
+        })
     });
     let roles: Vec<&str> = refused.map(|(role, _)| role).collect();
     assert!(roles.contains(&"corrected"), "{roles:?}");
-    assert!(!roles.contains(&"physics") && !roles.contains(&"identified"), "{roles:?}");
+    assert!(
+        !roles.contains(&"physics") && !roles.contains(&"identified"),
+        "{roles:?}"
+    );
 }
 
-const RECORDS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/example-records-3-and-10.zip");
+const RECORDS: &str = concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/assets/example-records-3-and-10.zip"
+);
 
 #[test]
 fn the_models_of_the_example_answer_to_its_records_and_the_files_say_the_same() {
     let desk = Desk::with_few();
-    let ended = desk.gdcm(&["requirements", "few.json", "--records", RECORDS, "--out", ".", "--phase", "lead"]);
+    let ended = desk.gdcm(&[
+        "requirements",
+        "few.json",
+        "--records",
+        RECORDS,
+        "--out",
+        ".",
+        "--phase",
+        "lead",
+    ]);
     assert_eq!(ended.status, 0, "{ended:?}");
     let without = "note: condition 7: no time histories: no flight record of it was given";
     assert!(ended.error.contains(without), "{}", ended.error);
-    assert!(ended.out.contains("share of time inside the tolerances of 14 CFR part 60"), "{}", ended.out);
+    assert!(
+        ended
+            .out
+            .contains("share of time inside the tolerances of 14 CFR part 60"),
+        "{}",
+        ended.out
+    );
     let written = crate::read_json(&desk.path("requirements.json"));
     let histories = &written["time_histories"];
     let records = entries(&histories["records"]);
     // Nine records each of conditions 3 and 10, four models.
     assert_eq!(records.len(), 72);
-    assert!(records.iter().any(|of| of["held_out"] == true && of["record"] == "cond03_validation"));
+    assert!(
+        records
+            .iter()
+            .any(|of| of["held_out"] == true && of["record"] == "cond03_validation")
+    );
     let squares = |role: &str| -> f64 {
-        let of_role = records.iter().filter(|of| of["condition"] == 3 && of["role"] == role);
-        of_role.map(|of| of["j_rms"].as_f64().unwrap().powi(2)).sum()
+        let of_role = records
+            .iter()
+            .filter(|of| of["condition"] == 3 && of["role"] == role);
+        of_role
+            .map(|of| of["j_rms"].as_f64().unwrap().powi(2))
+            .sum()
     };
     let [physics, corrected, identified] = ["physics", "corrected", "identified"].map(squares);
-    assert!(identified < corrected && corrected < physics, "{identified} {corrected} {physics}");
-    let sweep = records.iter().find(|of| of["record"] == "cond03_sweep_LON_1" && of["role"] == "physics").unwrap();
+    assert!(
+        identified < corrected && corrected < physics,
+        "{identified} {corrected} {physics}"
+    );
+    let sweep = records
+        .iter()
+        .find(|of| of["record"] == "cond03_sweep_LON_1" && of["role"] == "physics")
+        .unwrap();
     assert_eq!(sweep["moved_input"], "LON");
-    let pitch = entries(&sweep["tolerances"]).iter().find(|of| of["quantity"] == "pitch rate").unwrap();
-    assert!(pitch["on_axis"] == true && pitch["trend"].is_null() && pitch["correlation"].as_f64().unwrap() > 0.9);
+    let pitch = entries(&sweep["tolerances"])
+        .iter()
+        .find(|of| of["quantity"] == "pitch rate")
+        .unwrap();
+    assert!(
+        pitch["on_axis"] == true
+            && pitch["trend"].is_null()
+            && pitch["correlation"].as_f64().unwrap() > 0.9
+    );
 
     let table = rows(&desk.path("requirements.csv"));
-    let of_histories: Vec<_> = table.iter().filter(|row| row["question"] == "time_histories").collect();
+    let of_histories: Vec<_> = table
+        .iter()
+        .filter(|row| row["question"] == "time_histories")
+        .collect();
     assert!(of_histories.len() > 72 * 40);
     for row in of_histories {
         let is_meant = |of: &&Value| of["record"] == row["record"] && of["role"] == row["role"];
@@ -155,7 +278,10 @@ fn the_models_of_the_example_answer_to_its_records_and_the_files_say_the_same() 
         let number = match (row["tolerance"].as_str(), row["quantity"].as_str()) {
             ("", "theil") => &finding["theil"][&row["output"]],
             ("", quantity) => &finding[quantity],
-            (_, quantity) => &entries(&finding["tolerances"]).iter().find(against).unwrap()[quantity],
+            (_, quantity) => &entries(&finding["tolerances"])
+                .iter()
+                .find(against)
+                .unwrap()[quantity],
         };
         assert_eq!(number.as_f64(), row["value"].parse().ok(), "{row:?}");
     }
@@ -164,65 +290,161 @@ fn the_models_of_the_example_answer_to_its_records_and_the_files_say_the_same() 
 #[test]
 fn a_table_of_tolerances_is_written_edited_and_used() {
     let desk = Desk::new();
-    desk.gdcm(&["requirements", "--write-tolerances", "mine.json"]).assert_done();
+    desk.gdcm(&["requirements", "--write-tolerances", "mine.json"])
+        .assert_done();
     let mut table = crate::read_json(&desk.path("mine.json"));
     assert_eq!(entries(&table["tolerances"]).len(), 9);
-    let write = |table: &Value| std::fs::write(desk.path("mine.json"), serde_json::to_vec(table).unwrap()).unwrap();
+    let write = |table: &Value| {
+        std::fs::write(desk.path("mine.json"), serde_json::to_vec(table).unwrap()).unwrap()
+    };
     table["source"] = json!("ours");
     table["tolerances"].as_array_mut().unwrap().truncate(2);
     table["tolerances"][1]["channel"] = json!("PHI");
     write(&table);
-    let ended = desk.gdcm(&["requirements", "small.json", "--tolerances", "mine.json", "--out", "."]);
+    let ended = desk.gdcm(&[
+        "requirements",
+        "small.json",
+        "--tolerances",
+        "mine.json",
+        "--out",
+        ".",
+    ]);
     assert_eq!(ended.status, 0, "{ended:?}");
     let written = crate::read_json(&desk.path("requirements.json"));
     let histories = &written["time_histories"];
     assert_eq!(histories["tolerance_table"]["source"], "ours");
-    let said: Vec<&str> = entries(&histories["missing"]).iter().map(|of| of["why"].as_str().unwrap()).collect();
-    assert_eq!(said, ["no flight record was given", "\"bank angle\" is not compared: there is no output \"PHI\""]);
+    let said: Vec<&str> = entries(&histories["missing"])
+        .iter()
+        .map(|of| of["why"].as_str().unwrap())
+        .collect();
+    assert_eq!(
+        said,
+        [
+            "no flight record was given",
+            "\"bank angle\" is not compared: there is no output \"PHI\""
+        ]
+    );
     table["tolerances"][0]["absolute"] = json!(-1.0);
     write(&table);
-    let ended = desk.gdcm(&["requirements", "small.json", "--tolerances", "mine.json", "--out", ".", "--force"]);
-    ended.assert_failed(2, &["mine.json", "tolerance 1, \"roll rate\": expected absolute above zero, found -1"]);
-    let onto_itself = ["requirements", "--tolerances", "small.json", "--write-tolerances", "small.json", "--force"];
+    let ended = desk.gdcm(&[
+        "requirements",
+        "small.json",
+        "--tolerances",
+        "mine.json",
+        "--out",
+        ".",
+        "--force",
+    ]);
+    ended.assert_failed(
+        2,
+        &[
+            "mine.json",
+            "tolerance 1, \"roll rate\": expected absolute above zero, found -1",
+        ],
+    );
+    let onto_itself = [
+        "requirements",
+        "--tolerances",
+        "small.json",
+        "--write-tolerances",
+        "small.json",
+        "--force",
+    ];
     desk.gdcm(&onto_itself).assert_failed(2, &["small.json"]);
-    let ended = desk.gdcm(&["requirements", "small.json", "--records", "nothing.csv", "--out", ".", "--force"]);
+    let ended = desk.gdcm(&[
+        "requirements",
+        "small.json",
+        "--records",
+        "nothing.csv",
+        "--out",
+        ".",
+        "--force",
+    ]);
     ended.assert_failed(2, &["nothing.csv"]);
 }
 
 #[test]
 fn what_a_stick_commands_is_an_option_and_levels_are_drawn() {
     let desk = Desk::with_few();
-    let ended = desk.gdcm(&["requirements", "few.json", "--attitude-command", "P", "--out", ".", "--quiet"]);
+    let ended = desk.gdcm(&[
+        "requirements",
+        "few.json",
+        "--attitude-command",
+        "P",
+        "--out",
+        ".",
+        "--quiet",
+    ]);
     assert_eq!(ended.status, 0, "{ended:?}");
     let written = crate::read_json(&desk.path("requirements.json"));
     assert_eq!(written["attitude_command"], json!(["P"]));
     let findings = entries(&written["bandwidth"]);
     let ruled = |output: &str| -> Vec<&Value> {
         let gain_first = |of: &&Value| of["output"] == output && of["gain_limited"] == true;
-        findings.iter().filter(gain_first).map(|of| &of["rule"]).collect()
+        findings
+            .iter()
+            .filter(gain_first)
+            .map(|of| &of["rule"])
+            .collect()
     };
-    assert!(findings.iter().filter(|of| of["output"] == "P").all(|of| of["omega_bw_rad_s"] == of["omega_phase_rad_s"]));
-    assert!(ruled("P").iter().all(|rule| **rule == "phase"), "of attitude command the phase margin alone");
+    assert!(
+        findings
+            .iter()
+            .filter(|of| of["output"] == "P")
+            .all(|of| of["omega_bw_rad_s"] == of["omega_phase_rad_s"])
+    );
+    assert!(
+        ruled("P").iter().all(|rule| **rule == "phase"),
+        "of attitude command the phase margin alone"
+    );
     // The intervals of a number lie about it, those of swapped models too.
     let mut swapped = 0;
     for of in findings.iter().filter(|of| of["role"] == "physics") {
         let (bandwidth, ends) = (&of["omega_bw_rad_s"], &of["interval"]["omega_bw_rad_s"]);
-        if let (Some(bandwidth), Some(low), Some(high)) = (bandwidth.as_f64(), ends[0].as_f64(), ends[1].as_f64()) {
+        if let (Some(bandwidth), Some(low), Some(high)) =
+            (bandwidth.as_f64(), ends[0].as_f64(), ends[1].as_f64())
+        {
             assert!(low <= bandwidth && bandwidth <= high && low < high, "{of}");
             swapped += 1;
         }
     }
-    assert!(swapped > 5, "most bandwidths of the example have kept models beside theirs: {swapped}");
+    assert!(
+        swapped > 5,
+        "most bandwidths of the example have kept models beside theirs: {swapped}"
+    );
 
-    desk.gdcm(&["requirements", "--attitude-command", "X", "--out", "."]).assert_failed(2, &["X"]);
-    let levels = r#"[{"name": "Level 1 of the tests", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#;
+    desk.gdcm(&["requirements", "--attitude-command", "X", "--out", "."])
+        .assert_failed(2, &["X"]);
+    let levels =
+        r#"[{"name": "Level 1 of the tests", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#;
     std::fs::write(desk.path("levels.json"), levels).unwrap();
-    let figure = ["figure", "few.json", "--view", "requirements", "--levels", "levels.json", "--out", "levels.svg"];
+    let figure = [
+        "figure",
+        "few.json",
+        "--view",
+        "requirements",
+        "--levels",
+        "levels.json",
+        "--out",
+        "levels.svg",
+    ];
     desk.gdcm(&figure).assert_done();
-    assert!(std::fs::read_to_string(desk.path("levels.svg")).unwrap().contains("Level 1 of the tests"));
+    assert!(
+        std::fs::read_to_string(desk.path("levels.svg"))
+            .unwrap()
+            .contains("Level 1 of the tests")
+    );
     std::fs::write(desk.path("levels.json"), "[]]").unwrap();
-    desk.gdcm(&["figure", "--view", "requirements", "--levels", "levels.json", "--out", "b.svg"])
-        .assert_failed(2, &["levels.json"]);
+    desk.gdcm(&[
+        "figure",
+        "--view",
+        "requirements",
+        "--levels",
+        "levels.json",
+        "--out",
+        "b.svg",
+    ])
+    .assert_failed(2, &["levels.json"]);
 }
 
 #[test]
@@ -240,36 +462,62 @@ fn what_requirements_are_asked_with_comes_back_with_the_study() {
     let mut modes = settings.mode_tolerances.rows().to_vec();
     modes[1].period_s = Some(0.75);
     settings.mode_tolerances = modes.try_into().unwrap();
-    settings.overview = OverviewLimits { bandwidth: 0.15, ..OverviewLimits::default() };
+    settings.overview = OverviewLimits {
+        bandwidth: 0.15,
+        ..OverviewLimits::default()
+    };
     settings.attitude_command.insert("P".to_owned());
-    study.apply(&Edit::SetRequirements("levels", std::sync::Arc::new(settings))).unwrap();
+    study
+        .apply(&Edit::SetRequirements(
+            "levels",
+            std::sync::Arc::new(settings),
+        ))
+        .unwrap();
     let path = desk.path("a.gdcm-study.json");
     gdcm_io::save_study(&study, &loaded, &path).unwrap();
     let opened = gdcm_io::open_study(&path).unwrap();
     assert_eq!(opened.study.requirements, study.requirements);
     // The command takes them from the study.
-    desk.gdcm(&["requirements", "a.gdcm-study.json", "--write-tolerances", "mine.json"]).assert_done();
-    assert_eq!(crate::read_json(&desk.path("mine.json"))["tolerances"][0]["absolute"], json!(4.25));
+    desk.gdcm(&[
+        "requirements",
+        "a.gdcm-study.json",
+        "--write-tolerances",
+        "mine.json",
+    ])
+    .assert_done();
+    assert_eq!(
+        crate::read_json(&desk.path("mine.json"))["tolerances"][0]["absolute"],
+        json!(4.25)
+    );
 }
 
 #[test]
 fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
     use gdcm_model::executor::{Executor, Sequential};
     use gdcm_plot::figure::{Mark, record_history_figure};
-    use gdcm_study::study::{Engine, HistoryRecord, Job, RecordHistoryJob, RequirementRole, Study, Unobserved};
+    use gdcm_study::study::{
+        Engine, HistoryRecord, Job, RecordHistoryJob, RequirementRole, Study, Unobserved,
+    };
     let dataset = crate::FEW.dataset.clone();
-    let analysis = Engine::default().analyze(&Study::new(dataset.clone()), &Unobserved).unwrap();
+    let analysis = Engine::default()
+        .analyze(&Study::new(dataset.clone()), &Unobserved)
+        .unwrap();
     let channels = gdcm_sysid::records::RecordChannels::of_dataset(&dataset).of_named_records();
     let table = gdcm_io::example_records(3).unwrap().remove(0);
-    let record = gdcm_sysid::records::LaidOutRecord::proposed(table, &channels, &Default::default()).0;
+    let record =
+        gdcm_sysid::records::LaidOutRecord::proposed(table, &channels, &Default::default()).0;
     let flight = std::sync::Arc::clone(record.used_flight().unwrap());
     let (inputs, outputs) = dataset.names_of_channels();
-    let [inputs, outputs]: [Vec<&str>; 2] = [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
+    let [inputs, outputs]: [Vec<&str>; 2] =
+        [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
     let job = RecordHistoryJob {
         tolerances: analysis.study.requirements.tolerances.clone(),
         analysis: std::sync::Arc::new(analysis).into(),
         condition: gdcm_model::dataset::ConditionId(3),
-        record: HistoryRecord { flight: flight.into(), held_out: false },
+        record: HistoryRecord {
+            flight: flight.into(),
+            held_out: false,
+        },
         preparation: gdcm_sysid::identification::Preparation::of(&inputs, &outputs),
     };
     let mut executor: Box<dyn Executor> = Box::new(Sequential);
@@ -277,20 +525,46 @@ fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
     let figure = record_history_figure(&history, &dataset, 0);
     assert_eq!(figure.plots.len(), 1 + history.quantities.len());
     for (plot, of) in figure.plots[1..].iter().zip(&history.quantities) {
-        assert_eq!(plot.panels.len(), 2, "the record above what is left of it less flight");
-        let starts: Vec<Vec<f64>> =
-            of.models.iter().map(|(_, check)| check.windows.iter().map(|window| window.start_s).collect()).collect();
-        assert!(starts.windows(2).all(|pair| pair[0] == pair[1]), "all models in the same windows: {starts:?}");
-        let (_, physics) = of.models.iter().find(|(role, _)| *role == RequirementRole::Physics).unwrap();
+        assert_eq!(
+            plot.panels.len(),
+            2,
+            "the record above what is left of it less flight"
+        );
+        let starts: Vec<Vec<f64>> = of
+            .models
+            .iter()
+            .map(|(_, check)| check.windows.iter().map(|window| window.start_s).collect())
+            .collect();
+        assert!(
+            starts.windows(2).all(|pair| pair[0] == pair[1]),
+            "all models in the same windows: {starts:?}"
+        );
+        let (_, physics) = of
+            .models
+            .iter()
+            .find(|(role, _)| *role == RequirementRole::Physics)
+            .unwrap();
         for (panel, is_difference) in plot.panels.iter().zip([false, true]) {
-            let corridor =
-                panel.marks.iter().find_map(|mark| if let Mark::Envelope(of) = mark { Some(of) } else { None });
+            let corridor = panel.marks.iter().find_map(|mark| {
+                if let Mark::Envelope(of) = mark {
+                    Some(of)
+                } else {
+                    None
+                }
+            });
             let [_, low, high] = corridor.unwrap().points[0];
             let (flown, width) = (physics.windows[0].flown[0], physics.windows[0].width[0]);
             let middle = if is_difference { 0.0 } else { flown };
-            assert!((low - (middle - width)).abs() < 1e-12 && (high - (middle + width)).abs() < 1e-12);
+            assert!(
+                (low - (middle - width)).abs() < 1e-12 && (high - (middle + width)).abs() < 1e-12
+            );
             let is_wide = |mark: &Mark| matches!(mark, Mark::Curve(curve) if curve.name == "physics, outside" && curve.key.is_none());
-            assert_eq!(panel.marks.iter().any(is_wide), physics.share_inside() < 1.0, "{}", plot.title);
+            assert_eq!(
+                panel.marks.iter().any(is_wide),
+                physics.share_inside() < 1.0,
+                "{}",
+                plot.title
+            );
         }
     }
 }

@@ -24,25 +24,60 @@ fn write_record(desk: &Desk) {
     let row = |k: u32| {
         let at = f64::from(k);
         let (stick, rate) = ((0.3 * at).sin(), (0.2 * at).cos());
-        format!("{:.2},{stick:.3},{:.3},{rate:.3},{:.3}\n", 0.02 * at, 0.5 * rate, 0.4 * stick)
+        format!(
+            "{:.2},{stick:.3},{:.3},{rate:.3},{:.3}\n",
+            0.02 * at,
+            0.5 * rate,
+            0.4 * stick
+        )
     };
-    fs::write(desk.path("a.csv"), "t,LON,LAT,P,Q\n".to_owned() + &(0..80).map(row).collect::<String>()).unwrap();
+    fs::write(
+        desk.path("a.csv"),
+        "t,LON,LAT,P,Q\n".to_owned() + &(0..80).map(row).collect::<String>(),
+    )
+    .unwrap();
 }
 
 #[test]
 fn notes_cautions_and_errors_are_told_apart_by_how_their_lines_begin() {
     let desk = desk_with_half();
     let ended = desk.gdcm(&["analyze", "half.json", "--out", "out"]);
-    assert!(ended.status == 0 && ended.error.starts_with("caution: condition 10: "), "{ended:?}");
+    assert!(
+        ended.status == 0 && ended.error.starts_with("caution: condition 10: "),
+        "{ended:?}"
+    );
     let ended = desk.gdcm(&["check", "missing.json"]);
-    assert!(ended.status == 2 && ended.error.starts_with("error: missing.json: "), "{ended:?}");
+    assert!(
+        ended.status == 2 && ended.error.starts_with("error: missing.json: "),
+        "{ended:?}"
+    );
     write_record(&desk);
-    let identify =
-        ["identify", "a.csv", "--inputs", "LON,LAT", "--outputs", "P,Q", "--band", "0.5", "12", "--out", "out"];
+    let identify = [
+        "identify",
+        "a.csv",
+        "--inputs",
+        "LON,LAT",
+        "--outputs",
+        "P,Q",
+        "--band",
+        "0.5",
+        "12",
+        "--out",
+        "out",
+    ];
     let ended = desk.gdcm(&identify);
-    assert!(ended.error.lines().any(|line| line.starts_with("note: a: time from column")), "{ended:?}");
+    assert!(
+        ended
+            .error
+            .lines()
+            .any(|line| line.starts_with("note: a: time from column")),
+        "{ended:?}"
+    );
     let quiet = desk.gdcm(&[&identify[..], &["--quiet"]].concat());
-    assert!(!quiet.error.contains("note: ") && quiet.error.contains("error: "), "{quiet:?}");
+    assert!(
+        !quiet.error.contains("note: ") && quiet.error.contains("error: "),
+        "{quiet:?}"
+    );
     assert_eq!(quiet.status, ended.status);
 }
 
@@ -55,23 +90,67 @@ fn records_that_identify_no_input_are_status_1() {
         let t = 0.02 * f64::from(k);
         let sweep = 10.0 * (std::f64::consts::TAU * (0.08 + 0.015 * t) * t).sin();
         noise = (1_103_515_245 * noise + 12_345) % (1 << 31);
-        format!("{t:.2},{sweep:.4},{:.4}\n", noise as f64 / f64::from(1 << 30) - 1.0)
+        format!(
+            "{t:.2},{sweep:.4},{:.4}\n",
+            noise as f64 / f64::from(1 << 30) - 1.0
+        )
     };
-    fs::write(desk.path("a.csv"), "t,LON,Q\n".to_owned() + &(0..3000).map(&mut row).collect::<String>()).unwrap();
-    let ended =
-        desk.gdcm(&["identify", "a.csv", "--inputs", "LON", "--outputs", "Q", "--band", "0.5", "12", "--out", "out"]);
+    fs::write(
+        desk.path("a.csv"),
+        "t,LON,Q\n".to_owned() + &(0..3000).map(&mut row).collect::<String>(),
+    )
+    .unwrap();
+    let ended = desk.gdcm(&[
+        "identify",
+        "a.csv",
+        "--inputs",
+        "LON",
+        "--outputs",
+        "Q",
+        "--band",
+        "0.5",
+        "12",
+        "--out",
+        "out",
+    ]);
     assert_eq!(ended.status, 1, "{ended:?}");
-    assert!(ended.error.contains("error: no input is identified in these records: the models say nothing of LON"));
-    assert!(desk.path("out/identified.json").exists(), "what was computed can be looked at");
+    assert!(
+        ended.error.contains(
+            "error: no input is identified in these records: the models say nothing of LON"
+        )
+    );
+    assert!(
+        desk.path("out/identified.json").exists(),
+        "what was computed can be looked at"
+    );
 
     // The same record under a second name counts once, and programs are told.
     fs::copy(desk.path("a.csv"), desk.path("b.csv")).unwrap();
-    let more = ["--inputs", "LON", "--outputs", "Q", "--band", "0.5", "12", "--out", "twice"];
+    let more = [
+        "--inputs",
+        "LON",
+        "--outputs",
+        "Q",
+        "--band",
+        "0.5",
+        "12",
+        "--out",
+        "twice",
+    ];
     desk.gdcm(&[&["identify", "a.csv", "b.csv"], &more[..]].concat());
-    let found: Value = serde_json::from_slice(&fs::read(desk.path("twice/identified.json")).unwrap()).unwrap();
-    let copies: Vec<&Value> =
-        found["cautions"].as_array().unwrap().iter().filter(|of| of["code"] == "duplicate").collect();
-    assert_eq!((copies.len(), &copies[0]["record"]), (1, &json!("b")), "{found}");
+    let found: Value =
+        serde_json::from_slice(&fs::read(desk.path("twice/identified.json")).unwrap()).unwrap();
+    let copies: Vec<&Value> = found["cautions"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|of| of["code"] == "duplicate")
+        .collect();
+    assert_eq!(
+        (copies.len(), &copies[0]["record"]),
+        (1, &json!("b")),
+        "{found}"
+    );
 }
 
 #[test]
@@ -81,18 +160,37 @@ fn everything_is_one_json_object_where_that_is_asked_for() {
         let ended = desk.gdcm(arguments);
         assert_eq!(ended.error, "", "{ended:?}");
         let object: Value = serde_json::from_str(&ended.out).unwrap();
-        assert_eq!((&object["format"], &object["status"]), (&json!("gdcm-messages"), &json!(ended.status)));
+        assert_eq!(
+            (&object["format"], &object["status"]),
+            (&json!("gdcm-messages"), &json!(ended.status))
+        );
         object
     };
     let analysed = object(&["analyze", "half.json", "--out", "out", "--json"]);
     assert_eq!(analysed["cautions"][0]["conditions"], json!([10]));
-    assert!(analysed["text"].as_str().unwrap().contains("Condition 7"), "{analysed}");
+    assert!(
+        analysed["text"].as_str().unwrap().contains("Condition 7"),
+        "{analysed}"
+    );
     assert_eq!(analysed["error_codes"], json!([]));
     let missing = object(&["check", "missing.json", "--json"]);
-    assert_eq!(missing["error_codes"], json!([null]), "an error without a code of its own yet");
-    assert!(missing["errors"][0].as_str().unwrap().starts_with("missing.json: "), "{missing}");
+    assert_eq!(
+        missing["error_codes"],
+        json!([null]),
+        "an error without a code of its own yet"
+    );
+    assert!(
+        missing["errors"][0]
+            .as_str()
+            .unwrap()
+            .starts_with("missing.json: "),
+        "{missing}"
+    );
     let wrong = object(&["check", "--json", "--colour", "small.json"]);
-    assert!(wrong["errors"][0].as_str().unwrap().contains("--colour") && wrong["status"] == json!(2), "{wrong}");
+    assert!(
+        wrong["errors"][0].as_str().unwrap().contains("--colour") && wrong["status"] == json!(2),
+        "{wrong}"
+    );
 }
 
 #[test]
@@ -101,41 +199,76 @@ fn a_command_that_is_written_wrongly_is_told_which_one_is_meant() {
     for (line, meant) in [
         (&["analize", "small.json", "--out", "out"][..], "analyze"),
         (&["analize"], "analyze"),
-        (&["exprot", "small.json", "--as", "py", "--out", "c.py"], "export"),
+        (
+            &["exprot", "small.json", "--as", "py", "--out", "c.py"],
+            "export",
+        ),
         (&["chekc", "small.json"], "check"),
     ] {
         let ended = desk.gdcm(&[line, &["--json"]].concat());
         let object: Value = serde_json::from_str(&ended.out).unwrap();
-        assert_eq!((ended.status, &object["error_codes"]), (2, &json!(["unknown-command"])), "{object}");
+        assert_eq!(
+            (ended.status, &object["error_codes"]),
+            (2, &json!(["unknown-command"])),
+            "{object}"
+        );
         let words = object["errors"][0].as_str().unwrap();
-        assert!(words.starts_with(line[0]) && words.contains(&format!("gdcm {meant}?")), "{words}");
+        assert!(
+            words.starts_with(line[0]) && words.contains(&format!("gdcm {meant}?")),
+            "{words}"
+        );
     }
     // Another word is an argument too many, as before.
-    desk.gdcm(&["something", "else"]).assert_failed(2, &["else"]);
+    desk.gdcm(&["something", "else"])
+        .assert_failed(2, &["else"]);
 }
 
 #[test]
 fn analyse_is_understood() {
     let desk = Desk::new();
-    desk.gdcm(&["analyse", "small.json", "--out", "out"]).assert_done();
+    desk.gdcm(&["analyse", "small.json", "--out", "out"])
+        .assert_done();
     assert!(desk.path("out/corrections.json").exists());
 }
 
 #[test]
 fn a_word_in_place_of_a_range_leaves_the_file_behind_it_alone() {
     let desk = Desk::new();
-    desk.gdcm(&["analyze", "--out", "out", "--gain-bounds", "auto", "small.json"]).assert_done();
-    let corrections: Value = serde_json::from_slice(&fs::read(desk.path("out/corrections.json")).unwrap()).unwrap();
-    assert_eq!(corrections["conditions"].as_array().unwrap().len(), 2, "the small dataset, not the example");
+    desk.gdcm(&[
+        "analyze",
+        "--out",
+        "out",
+        "--gain-bounds",
+        "auto",
+        "small.json",
+    ])
+    .assert_done();
+    let corrections: Value =
+        serde_json::from_slice(&fs::read(desk.path("out/corrections.json")).unwrap()).unwrap();
+    assert_eq!(
+        corrections["conditions"].as_array().unwrap().len(),
+        2,
+        "the small dataset, not the example"
+    );
 }
 
 #[test]
 fn a_second_variable_that_the_dataset_does_not_say_is_refused_before_the_work() {
     let desk = Desk::new();
     desk.write("bare.json", |file| {
-        file["conditions"][1].as_object_mut().unwrap().remove("mass_kg");
+        file["conditions"][1]
+            .as_object_mut()
+            .unwrap()
+            .remove("mass_kg");
     });
-    let ended = desk.gdcm(&["analyze", "bare.json", "--out", "out", "--second-variable", "mass"]);
+    let ended = desk.gdcm(&[
+        "analyze",
+        "bare.json",
+        "--out",
+        "out",
+        "--second-variable",
+        "mass",
+    ]);
     ended.assert_failed(2, &["--second-variable: ", "mass [kg]", "condition"]);
     assert!(!desk.path("out").exists());
 }
@@ -162,13 +295,17 @@ fn a_second_delay_of_one_channel_is_refused() {
         "out",
         "--quiet",
     ]);
-    assert!(ended.status == 2 && ended.error.contains("error: --delay: P stands twice"), "{ended:?}");
+    assert!(
+        ended.status == 2 && ended.error.contains("error: --delay: P stands twice"),
+        "{ended:?}"
+    );
 }
 
 #[test]
 fn a_report_is_html_and_nothing_else() {
     let desk = Desk::new();
-    desk.gdcm(&["report", "small.json", "--out", "x.pdf"]).assert_failed(2, &["--out: ", ".html", "x.pdf"]);
+    desk.gdcm(&["report", "small.json", "--out", "x.pdf"])
+        .assert_failed(2, &["--out: ", ".html", "x.pdf"]);
 }
 
 #[test]
@@ -177,7 +314,8 @@ fn a_file_of_models_points_to_what_makes_a_dataset_of_it() {
     fs::write(desk.path("x.mat"), b"MATLAB 5.0 MAT-file").unwrap();
     let words = ["x.mat: ", "gdcm assemble x.mat --out", "Import models"];
     desk.gdcm(&["check", "x.mat"]).assert_failed(2, &words);
-    desk.gdcm(&["analyze", "x.mat", "--out", "out"]).assert_failed(2, &words);
+    desk.gdcm(&["analyze", "x.mat", "--out", "out"])
+        .assert_failed(2, &words);
 }
 
 #[test]
@@ -190,12 +328,26 @@ fn names_of_seventy_thousand_letters_are_shortened_and_control_codes_are_spelt_o
     for arguments in [
         ["check", "long.json"].as_slice(),
         &["analyze", "long.json", "--out", "out"],
-        &["figure", "long.json", "--view", "net-gain", "--out", "f.svg"],
+        &[
+            "figure",
+            "long.json",
+            "--view",
+            "net-gain",
+            "--out",
+            "f.svg",
+        ],
     ] {
         let ended = desk.gdcm(arguments);
         assert_eq!(ended.status, 0, "{arguments:?}");
-        assert!(!(ended.out.clone() + &ended.error).contains(['\u{1b}', '\u{7}']), "{arguments:?}");
-        assert!(ended.out.len() < 20_000, "{arguments:?}: {} letters", ended.out.len());
+        assert!(
+            !(ended.out.clone() + &ended.error).contains(['\u{1b}', '\u{7}']),
+            "{arguments:?}"
+        );
+        assert!(
+            ended.out.len() < 20_000,
+            "{arguments:?}: {} letters",
+            ended.out.len()
+        );
     }
 }
 
@@ -205,7 +357,12 @@ fn no_thread_to_be_had_is_an_error_in_words() {
     let desk = Desk::new();
     // More than any machine can map.
     let mut command = desk.command(&["check", "small.json"]);
-    let ended = crate::commands::Ended::of(&command.env("RUST_MIN_STACK", "140737488355328").output().unwrap());
+    let ended = crate::commands::Ended::of(
+        &command
+            .env("RUST_MIN_STACK", "140737488355328")
+            .output()
+            .unwrap(),
+    );
     ended.assert_failed(1, &["error: no thread is to be had"]);
 }
 
@@ -214,14 +371,26 @@ fn a_record_named_on_the_command_line_that_cannot_be_read_is_status_1_and_the_ot
     let desk = Desk::new();
     late_dataset(&desk.path("."));
     fs::write(desk.path("broken.npz"), b"PK\x03\x04 no archive").unwrap();
-    let files = ["flight_0.csv", "flight_1.csv", "flight_2.csv", "flight_3.csv", "broken.npz"];
+    let files = [
+        "flight_0.csv",
+        "flight_1.csv",
+        "flight_2.csv",
+        "flight_3.csv",
+        "broken.npz",
+    ];
     let into = ["--into", "late.json", "--condition", "7", "--out", "out"];
     let ended = desk.gdcm(&[&["identify"], &files[..], &into[..], &LATE_UNITS].concat());
     assert_eq!(ended.status, 1, "{ended:?}");
-    assert!(ended.error.contains("caution: not taken: ") && ended.error.contains("error: broken.npz: "), "{ended:?}");
+    assert!(
+        ended.error.contains("caution: not taken: ") && ended.error.contains("error: broken.npz: "),
+        "{ended:?}"
+    );
     assert!(desk.path("out/identified.json").exists());
     let nothing = desk.gdcm(&["convert", "broken.npz", "--out", "models.json"]);
-    assert!(nothing.status != 0 && !nothing.error.contains("FILE"), "{nothing:?}");
+    assert!(
+        nothing.status != 0 && !nothing.error.contains("FILE"),
+        "{nothing:?}"
+    );
 }
 
 /// An archive of files that are not packed (APPNOTE 4.3).
@@ -235,15 +404,39 @@ fn stored_zip(files: &[(&str, &[u8])]) -> Vec<u8> {
     for (name, bytes) in files {
         let length = bytes.len() as u32;
         let numbers = [sum(bytes), length, length].map(u32::to_le_bytes).concat();
-        let fields = [&[20, 0, 0, 0, 0, 0, 0, 0, 0, 0][..], &numbers, &[name.len() as u8, 0, 0, 0]].concat();
+        let fields = [
+            &[20, 0, 0, 0, 0, 0, 0, 0, 0, 0][..],
+            &numbers,
+            &[name.len() as u8, 0, 0, 0],
+        ]
+        .concat();
         let begin = (archive.len() as u32).to_le_bytes();
-        directory.extend([b"PK\x01\x02\x14\x00", fields.as_slice(), &[0; 10], &begin, name.as_bytes()].concat());
+        directory.extend(
+            [
+                b"PK\x01\x02\x14\x00",
+                fields.as_slice(),
+                &[0; 10],
+                &begin,
+                name.as_bytes(),
+            ]
+            .concat(),
+        );
         archive.extend([b"PK\x03\x04", fields.as_slice(), name.as_bytes(), bytes].concat());
     }
     let (count, begin) = (files.len() as u8, (archive.len() as u32).to_le_bytes());
     let length = (directory.len() as u32).to_le_bytes();
     archive.extend(directory);
-    archive.extend([b"PK\x05\x06", &[0; 4][..], &[count, 0, count, 0], &length, &begin, &[0, 0]].concat());
+    archive.extend(
+        [
+            b"PK\x05\x06",
+            &[0; 4][..],
+            &[count, 0, count, 0],
+            &length,
+            &begin,
+            &[0, 0],
+        ]
+        .concat(),
+    );
     archive
 }
 
@@ -258,27 +451,46 @@ fn a_file_that_is_broken_is_told_from_a_good_one_of_its_name_and_in_its_archive(
     fs::write(desk.path("one/cond7_a.csv"), "no table at all").unwrap();
     let of_records = |records: [&str; 2]| {
         let records = ["--records", records[0], "--records", records[1]];
-        let units = ["--unit", "LON=%", "--unit", "LAT=%", "--unit", "P=deg/s", "--unit", "Q=deg/s"];
+        let units = [
+            "--unit", "LON=%", "--unit", "LAT=%", "--unit", "P=deg/s", "--unit", "Q=deg/s",
+        ];
         let report = ["report", "small.json", "--out", "r.html", "--force"];
         let requirements = ["requirements", "small.json", "--out", "q", "--force"];
         [report.as_slice(), &requirements].map(|of| desk.gdcm(&[of, &records, &units].concat()))
     };
     for ended in of_records(["one/cond7_a.csv", "two/cond7_a.csv"]) {
         assert_eq!(ended.status, 1, "{ended:?}");
-        assert!(ended.error.contains("error: one/cond7_a.csv: not read, or not all of it"), "{ended:?}");
+        assert!(
+            ended
+                .error
+                .contains("error: one/cond7_a.csv: not read, or not all of it"),
+            "{ended:?}"
+        );
     }
     // A good archive, and one of whose two files one is broken.
     let archive = |name: &str, broken: &str| {
         let text = fs::read(desk.path("two/cond7_a.csv")).unwrap();
-        let files = [("cond7_a.csv", text.as_slice()), ("cond7_b.csv", broken.as_bytes())];
+        let files = [
+            ("cond7_a.csv", text.as_slice()),
+            ("cond7_b.csv", broken.as_bytes()),
+        ];
         fs::write(desk.path(name), stored_zip(&files)).unwrap();
     };
-    archive("good.zip", "t,LON,LAT,P,Q\n0,1,2,3,4\n1,2,3,4,6\n2,3,4,5,5\n3,4,2,2,1\n4,3,2,1,5\n5,1,1,3,2\n");
+    archive(
+        "good.zip",
+        "t,LON,LAT,P,Q\n0,1,2,3,4\n1,2,3,4,6\n2,3,4,5,5\n3,4,2,2,1\n4,3,2,1,5\n5,1,1,3,2\n",
+    );
     archive("bad.zip", "no table at all");
     let [good, _] = of_records(["good.zip", "two/cond7_a.csv"]);
     assert_eq!(good.status, 0, "{good:?}");
     for ended in of_records(["bad.zip", "two/cond7_a.csv"]) {
-        assert!(ended.status == 1 && ended.error.contains("error: bad.zip: not read, or not all of it"), "{ended:?}");
+        assert!(
+            ended.status == 1
+                && ended
+                    .error
+                    .contains("error: bad.zip: not read, or not all of it"),
+            "{ended:?}"
+        );
     }
 }
 
@@ -296,26 +508,42 @@ fn a_turned_channel_is_said_first_by_analyze_and_check_and_turned_by_the_option(
         for condition in file["conditions"].as_array_mut().unwrap() {
             for model in condition["identified_models"].as_array_mut().unwrap() {
                 if model["C"].is_array() {
-                    ["C", "D"].into_iter().for_each(|matrix| turn(&mut model[matrix][1]));
+                    ["C", "D"]
+                        .into_iter()
+                        .for_each(|matrix| turn(&mut model[matrix][1]));
                     continue;
                 }
                 for part in ["re", "im"] {
-                    model["frequency_response"][part][1].as_array_mut().unwrap().iter_mut().for_each(turn);
+                    model["frequency_response"][part][1]
+                        .as_array_mut()
+                        .unwrap()
+                        .iter_mut()
+                        .for_each(turn);
                 }
             }
         }
     });
     let words = "LON → Q differs by half a turn at all frequencies";
     let joined = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let found = |name: &str| crate::read_json(&desk.path(&format!("{name}/corrections.json")))["conditions"].clone();
+    let found = |name: &str| {
+        crate::read_json(&desk.path(&format!("{name}/corrections.json")))["conditions"].clone()
+    };
     let said = desk.gdcm(&["analyze", "turned.json", "--out", "turned"]);
     let out = joined(&said.out);
-    assert!(out.contains(words) && out.contains("has the other sign. Turn it? (--sign Q=-1)"), "{out}");
-    assert!(out.find(words) < out.find("Condition 7"), "before anything is blamed for it");
+    assert!(
+        out.contains(words) && out.contains("has the other sign. Turn it? (--sign Q=-1)"),
+        "{out}"
+    );
+    assert!(
+        out.find(words) < out.find("Condition 7"),
+        "before anything is blamed for it"
+    );
     assert!(joined(&desk.gdcm(&["check", "turned.json"]).out).contains(words));
     assert!(!joined(&desk.gdcm(&["check", "turned.json", "--sign", "Q=-1"]).out).contains(words));
-    desk.gdcm(&["analyze", "turned.json", "--sign", "Q=-1", "--out", "back"]).assert_done();
-    desk.gdcm(&["analyze", "small.json", "--out", "right"]).assert_done();
+    desk.gdcm(&["analyze", "turned.json", "--sign", "Q=-1", "--out", "back"])
+        .assert_done();
+    desk.gdcm(&["analyze", "small.json", "--out", "right"])
+        .assert_done();
     assert_eq!(found("back"), found("right"), "to the last digit");
     assert_ne!(found("turned"), found("right"));
 }
@@ -331,13 +559,28 @@ fn a_sign_that_is_said_of_files_is_in_the_dataset_that_is_made_of_them() {
         let rules = out.replace(".json", ".gdcm-rules.json");
         let mut said = crate::read_json(&desk.path(&rules));
         said["inputs"][0] = json!({"name": "LON", "unit": "%"});
-        said["on_axis"] = json!([["P", "LAT"], ["Q", "LON"], ["R", "PED"], ["NY", "PED"], ["NZ", "COL"]]);
-        said["conversions"] =
-            json!([{"channel": "LON", "from": "in", "factor": crate::assembling::PERCENT_IN_AN_INCH}]);
+        said["on_axis"] = json!([
+            ["P", "LAT"],
+            ["Q", "LON"],
+            ["R", "PED"],
+            ["NY", "PED"],
+            ["NZ", "COL"]
+        ]);
+        said["conversions"] = json!([{"channel": "LON", "from": "in", "factor": crate::assembling::PERCENT_IN_AN_INCH}]);
         fs::write(desk.path(&rules), said.to_string()).unwrap();
-        let ended = desk.gdcm(&[&["assemble", "models", "--rules", &rules, "--out", out], more].concat());
+        let ended = desk.gdcm(
+            &[
+                &["assemble", "models", "--rules", &rules, "--out", out],
+                more,
+            ]
+            .concat(),
+        );
         assert_eq!(ended.status, 0, "{ended:?}");
-        desk.gdcm(&["check", out]).out.split_whitespace().collect::<Vec<_>>().join(" ")
+        desk.gdcm(&["check", out])
+            .out
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ")
     };
     assert!(assemble("plain.json", &[]).contains("COL → NZ differs by half a turn"));
     assert!(!assemble("turned.json", &["--sign", "NZ=-1"]).contains("half a turn"));
@@ -354,34 +597,69 @@ fn what_many_conditions_have_is_one_table_and_one_sentence() {
         "what it would be with a delay or lead in each channel",
         "check first the time alignment of the records",
     ] {
-        assert_eq!(words.matches(sentence).count(), 1, "{sentence}: {}", ended.out);
+        assert_eq!(
+            words.matches(sentence).count(),
+            1,
+            "{sentence}: {}",
+            ended.out
+        );
     }
     let corrections = crate::read_json(&desk.path("out/corrections.json"));
     let channels = |side: &str| -> Vec<(String, String)> {
         let of = corrections[side].as_array().unwrap().iter();
-        of.map(|channel| (channel["name"].as_str().unwrap().to_owned(), channel["unit"].as_str().unwrap().to_owned()))
-            .collect()
+        of.map(|channel| {
+            (
+                channel["name"].as_str().unwrap().to_owned(),
+                channel["unit"].as_str().unwrap().to_owned(),
+            )
+        })
+        .collect()
     };
     let expected = |channels: &[(&str, &str)]| -> Vec<(String, String)> {
-        channels.iter().map(|(name, unit)| ((*name).to_owned(), (*unit).to_owned())).collect()
+        channels
+            .iter()
+            .map(|(name, unit)| ((*name).to_owned(), (*unit).to_owned()))
+            .collect()
     };
-    assert_eq!(channels("inputs"), expected(&[("LON", "%"), ("LAT", "%"), ("PED", "%"), ("COL", "%")]));
-    let rates = [("P", "deg/s"), ("Q", "deg/s"), ("R", "deg/s"), ("NX", "m/s2"), ("NY", "m/s2"), ("NZ", "m/s2")];
+    assert_eq!(
+        channels("inputs"),
+        expected(&[("LON", "%"), ("LAT", "%"), ("PED", "%"), ("COL", "%")])
+    );
+    let rates = [
+        ("P", "deg/s"),
+        ("Q", "deg/s"),
+        ("R", "deg/s"),
+        ("NX", "m/s2"),
+        ("NY", "m/s2"),
+        ("NZ", "m/s2"),
+    ];
     assert_eq!(channels("outputs"), expected(&rates));
 }
 
 #[test]
 fn long_names_of_short_words_are_shortened_and_remedies_name_the_file() {
     let desk = Desk::new();
-    desk.write("long.json", |file| file["conditions"][0]["name"] = json!("hover at low altitude ".repeat(4000)));
-    for arguments in [["check", "long.json"].as_slice(), &["analyze", "long.json", "--out", "out"]] {
+    desk.write("long.json", |file| {
+        file["conditions"][0]["name"] = json!("hover at low altitude ".repeat(4000))
+    });
+    for arguments in [
+        ["check", "long.json"].as_slice(),
+        &["analyze", "long.json", "--out", "out"],
+    ] {
         let ended = desk.gdcm(arguments);
         assert_eq!(ended.status, 0, "{arguments:?}");
-        assert!(ended.out.len() < 20_000, "{arguments:?}: {} letters", ended.out.len());
+        assert!(
+            ended.out.len() < 20_000,
+            "{arguments:?}: {} letters",
+            ended.out.len()
+        );
     }
     fs::write(desk.path("flight 7.parquet"), b"PAR1\x15\x04").unwrap();
     let ended = desk.gdcm(&["convert", "flight 7.parquet", "--out", "models.json"]);
-    ended.assert_failed(2, &["pandas.read_parquet(\"flight 7.parquet\").to_csv(\"flight 7.csv\")"]);
+    ended.assert_failed(
+        2,
+        &["pandas.read_parquet(\"flight 7.parquet\").to_csv(\"flight 7.csv\")"],
+    );
 }
 
 /// Words that command lines are made of: commands, options, values that belong to some of them, and values that belong to none.
@@ -467,18 +745,40 @@ fn command_lines_put_together_at_random_end_with_a_status_and_words() {
     let mut state = 1_u64;
     let mut below = |bound: usize| {
         // The generator of Knuth (MMIX), of which the upper bits are used.
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize % bound
     };
-    for _ in 0..if std::env::var_os("GDCM_THOROUGH").is_some() { 2000 } else { 100 } {
+    for _ in 0..if std::env::var_os("GDCM_THOROUGH").is_some() {
+        2000
+    } else {
+        100
+    } {
         let mut line = vec![WORDS[below(9)]];
         line.extend((0..1 + below(7)).map(|_| WORDS[9 + below(WORDS.len() - 9)]));
         let ended = desk.gdcm(&line);
         assert!((0..=2).contains(&ended.status), "{line:?}: {ended:?}");
-        let is_told = ended.status == 0 || ended.error.contains("error: ") || ended.out.contains("\"errors\"");
-        assert!(is_told && !ended.error.contains("panicked"), "{line:?}: {ended:?}");
-        let printed = [&ended.out, &ended.error].into_iter().flat_map(|text| text.chars());
-        assert!(printed.into_iter().all(|letter| letter == '\n' || !letter.is_control()), "{line:?}: {ended:?}");
-        fs::write(desk.path("small.json"), include_str!("../data/small-dataset.json")).unwrap();
+        let is_told = ended.status == 0
+            || ended.error.contains("error: ")
+            || ended.out.contains("\"errors\"");
+        assert!(
+            is_told && !ended.error.contains("panicked"),
+            "{line:?}: {ended:?}"
+        );
+        let printed = [&ended.out, &ended.error]
+            .into_iter()
+            .flat_map(|text| text.chars());
+        assert!(
+            printed
+                .into_iter()
+                .all(|letter| letter == '\n' || !letter.is_control()),
+            "{line:?}: {ended:?}"
+        );
+        fs::write(
+            desk.path("small.json"),
+            include_str!("../data/small-dataset.json"),
+        )
+        .unwrap();
     }
 }

@@ -16,7 +16,10 @@ const CRATES: &[(&str, &[(&str, &[&str])])] = &[
             ("whole_number", &[]),
             ("dataset", &["units", "message_text", "whole_number"]),
             ("progress", &["dataset"]),
-            ("assembly", &["units", "message_text", "whole_number", "dataset"]),
+            (
+                "assembly",
+                &["units", "message_text", "whole_number", "dataset"],
+            ),
             ("response", &["units", "dataset"]),
             ("simulation", &["executor", "dataset", "response"]),
         ],
@@ -28,11 +31,17 @@ const CRATES: &[(&str, &[(&str, &[&str])])] = &[
             ("correction", &["fidelity"]),
             ("schedule", &["fidelity", "correction"]),
             ("uncertainty", &["fidelity", "correction", "schedule"]),
-            ("couplings", &["fidelity", "correction", "schedule", "uncertainty"]),
+            (
+                "couplings",
+                &["fidelity", "correction", "schedule", "uncertainty"],
+            ),
             ("requirements", &["fidelity", "uncertainty"]),
         ],
     ),
-    ("gdcm-sysid", &[("identification", &[]), ("records", &["identification"])]),
+    (
+        "gdcm-sysid",
+        &[("identification", &[]), ("records", &["identification"])],
+    ),
     ("gdcm-study", &[("study", &[])]),
     ("gdcm-plot", &[("figure", &[]), ("paper", &["figure"])]),
 ];
@@ -44,14 +53,40 @@ const MAY_DEPEND: &[(&str, &[&str])] = &[
     ("gdcm-method", &["gdcm-numerics", "gdcm-model"]),
     ("gdcm-sysid", &["gdcm-numerics", "gdcm-model"]),
     ("gdcm-study", &["gdcm-model", "gdcm-method", "gdcm-sysid"]),
-    ("gdcm-plot", &["gdcm-model", "gdcm-method", "gdcm-sysid", "gdcm-study"]),
-    ("gdcm-io", &["gdcm-model", "gdcm-method", "gdcm-sysid", "gdcm-study", "gdcm-plot"]),
+    (
+        "gdcm-plot",
+        &["gdcm-model", "gdcm-method", "gdcm-sysid", "gdcm-study"],
+    ),
+    (
+        "gdcm-io",
+        &[
+            "gdcm-model",
+            "gdcm-method",
+            "gdcm-sysid",
+            "gdcm-study",
+            "gdcm-plot",
+        ],
+    ),
 ];
 
 /// What the modules of the program may not name: drawing knows no files, the commands no window.
 const MAY_NOT_NAME: &[(&str, &[&str])] = &[
-    ("view", &["crate::app", "crate::cli", "std::fs", "std::thread", "rayon::", "eframe::", "rfd::"]),
-    ("cli", &["crate::view", "crate::app", "egui", "eframe::", "rfd::"]),
+    (
+        "view",
+        &[
+            "crate::app",
+            "crate::cli",
+            "std::fs",
+            "std::thread",
+            "rayon::",
+            "eframe::",
+            "rfd::",
+        ],
+    ),
+    (
+        "cli",
+        &["crate::view", "crate::app", "egui", "eframe::", "rfd::"],
+    ),
     ("app", &["crate::cli", "egui_plot::", "clap::"]),
     ("executor", &["crate::"]),
 ];
@@ -71,22 +106,39 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 
 /// Every source file under `src` of a package with the module it belongs to and its code without tests and comments.
 fn modules(package: &str) -> Vec<(String, PathBuf, String)> {
-    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join(package).join("src");
+    let src = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join(package)
+        .join("src");
     sources(&src)
         .into_iter()
         .map(|path| {
             let inside = path.strip_prefix(&src).unwrap();
-            let first = inside.components().next().unwrap().as_os_str().to_str().unwrap();
+            let first = inside
+                .components()
+                .next()
+                .unwrap()
+                .as_os_str()
+                .to_str()
+                .unwrap();
             let module = first.trim_end_matches(".rs").to_owned();
-            (module, inside.to_owned(), code_of(&fs::read_to_string(&path).unwrap()))
+            (
+                module,
+                inside.to_owned(),
+                code_of(&fs::read_to_string(&path).unwrap()),
+            )
         })
         .filter(|(module, ..)| module != "main" && module != "lib")
         .collect()
 }
 
 fn code_of(text: &str) -> String {
-    let before_tests = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
-    let lines = before_tests.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let before_tests = text
+        .split("#[cfg(test)]\nmod tests {")
+        .next()
+        .unwrap_or_default();
+    let lines = before_tests
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"));
     lines.collect::<Vec<_>>().join("\n")
 }
 
@@ -94,7 +146,9 @@ fn named_modules(code: &str) -> Vec<String> {
     code.match_indices("crate::")
         .map(|(at, prefix)| {
             let rest = &code[at + prefix.len()..];
-            rest.chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect()
+            rest.chars()
+                .take_while(|c| c.is_ascii_alphanumeric() || *c == '_')
+                .collect()
         })
         .collect()
 }
@@ -106,11 +160,16 @@ fn every_module_imports_only_modules_below_it() {
     for (package, table) in CRATES {
         let allowed: BTreeMap<&str, &[&str]> = table.iter().copied().collect();
         for (module, path, code) in modules(&format!("crates/{package}")) {
-            let may = allowed.get(module.as_str()).unwrap_or_else(|| panic!("{package}: {module} is not in the table"));
+            let may = allowed
+                .get(module.as_str())
+                .unwrap_or_else(|| panic!("{package}: {module} is not in the table"));
             for named in named_modules(&code) {
                 seen += 1;
                 if named != module && !may.contains(&named.as_str()) {
-                    wrong.push(format!("{package}/{}: {module} imports {named}", path.display()));
+                    wrong.push(format!(
+                        "{package}/{}: {module} imports {named}",
+                        path.display()
+                    ));
                 }
             }
         }
@@ -122,9 +181,14 @@ fn every_module_imports_only_modules_below_it() {
 #[test]
 fn every_crate_depends_only_on_crates_below_it() {
     for (package, may) in MAY_DEPEND {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates").join(package).join("Cargo.toml");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("crates")
+            .join(package)
+            .join("Cargo.toml");
         let manifest = fs::read_to_string(path).unwrap();
-        let dependencies = manifest.lines().filter_map(|line| line.split(['.', ' ', '=']).next());
+        let dependencies = manifest
+            .lines()
+            .filter_map(|line| line.split(['.', ' ', '=']).next());
         for named in dependencies.filter(|name| name.starts_with("gdcm-")) {
             assert!(may.contains(&named), "{package} depends on {named}");
         }
@@ -136,7 +200,9 @@ fn drawing_names_no_files_and_the_commands_no_window() {
     let mut wrong = Vec::new();
     for (module, path, code) in modules("") {
         for (of, names) in MAY_NOT_NAME {
-            let named = names.iter().filter(|name| *of == module && code.contains(**name));
+            let named = names
+                .iter()
+                .filter(|name| *of == module && code.contains(**name));
             wrong.extend(named.map(|name| format!("{}: {module} names {name}", path.display())));
         }
     }
@@ -150,7 +216,10 @@ fn the_numbers_touch_no_files_and_start_no_threads() {
         for (module, path, code) in modules(&format!("crates/{package}")) {
             for name in ["std::fs", "fs::File", "std::thread", "rayon::"] {
                 if code.contains(name) {
-                    wrong.push(format!("{package}/{}: {module} names {name}", path.display()));
+                    wrong.push(format!(
+                        "{package}/{}: {module} names {name}",
+                        path.display()
+                    ));
                 }
             }
         }
@@ -161,11 +230,20 @@ fn the_numbers_touch_no_files_and_start_no_threads() {
 #[test]
 fn the_front_page_of_a_crate_names_every_module() {
     for (package, table) in CRATES {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates").join(package).join("src/lib.rs");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("crates")
+            .join(package)
+            .join("src/lib.rs");
         let lib = fs::read_to_string(path).unwrap();
         for (module, _) in *table {
-            assert!(lib.contains(&format!("[`{module}`]")), "{package}: {module} is not in its table of modules");
-            assert!(lib.contains(&format!("pub mod {module};")), "{module} is not a module of {package}");
+            assert!(
+                lib.contains(&format!("[`{module}`]")),
+                "{package}: {module} is not in its table of modules"
+            );
+            assert!(
+                lib.contains(&format!("pub mod {module};")),
+                "{module} is not a module of {package}"
+            );
         }
     }
 }

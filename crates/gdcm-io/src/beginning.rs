@@ -39,7 +39,9 @@ pub fn check_beginning(path: &Path) -> Result<(), FileError> {
     while length <= LAST {
         let wanted = length - text.len();
         // What cannot be read or unpacked is reported by the reader proper.
-        let Ok(found) = reader.by_ref().take(wanted as u64).read_to_end(&mut text) else { return Ok(()) };
+        let Ok(found) = reader.by_ref().take(wanted as u64).read_to_end(&mut text) else {
+            return Ok(());
+        };
         if found < wanted {
             return Ok(());
         }
@@ -52,12 +54,17 @@ pub fn check_beginning(path: &Path) -> Result<(), FileError> {
 /// The first error in a text that goes on.
 fn check_text(text: &[u8], path: &Path) -> Result<(), FileError> {
     // A number or a word that is cut off would be another one.
-    let Some(comma) = text.iter().rposition(|&byte| byte == b',') else { return Ok(()) };
+    let Some(comma) = text.iter().rposition(|&byte| byte == b',') else {
+        return Ok(());
+    };
     let text = without_mark(&text[..=comma]);
     let budget = ReadingBudget::default();
     let is_study = Outline::format_of(text, &budget).as_deref() == Some("\"gdcm-study\"");
-    let checked =
-        if is_study { check_study_text(text, path, &budget) } else { check_dataset_text(text, path, &budget) };
+    let checked = if is_study {
+        check_study_text(text, path, &budget)
+    } else {
+        check_dataset_text(text, path, &budget)
+    };
     match checked {
         // Of course: there is more.
         Err(FileError::CutOff { .. }) => Ok(()),
@@ -92,26 +99,46 @@ mod tests {
     fn endless(begin: &str) -> tempfile::NamedTempFile {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(&file, begin).unwrap();
-        std::fs::File::options().write(true).open(&file).unwrap().set_len(LARGEST_TEXT + 1).unwrap();
+        std::fs::File::options()
+            .write(true)
+            .open(&file)
+            .unwrap()
+            .set_len(LARGEST_TEXT + 1)
+            .unwrap();
         file
     }
 
     #[test]
     fn an_error_in_the_beginning_is_found_without_the_rest() {
-        let wrong = SMALL.replacen("\"frequency_band\": {", "\"frequency_band\": 5, \"more\": {", 1);
+        let wrong = SMALL.replacen(
+            "\"frequency_band\": {",
+            "\"frequency_band\": 5, \"more\": {",
+            1,
+        );
         let found = check_beginning(endless(&wrong).path()).unwrap_err();
-        let FileError::Content { fault, place, .. } = &found else { panic!("{found}") };
-        assert!(matches!(**fault, ContentFault::Type { .. }) && place.to_string() == "frequency_band", "{found}");
+        let FileError::Content { fault, place, .. } = &found else {
+            panic!("{found}")
+        };
+        assert!(
+            matches!(**fault, ContentFault::Type { .. }) && place.to_string() == "frequency_band",
+            "{found}"
+        );
         for (text, is_expected) in [
             (
                 "{\"format\": \"gdcm-else\", \"a\": 1,",
                 (|of| matches!(of, FileError::Format { .. })) as fn(&FileError) -> bool,
             ),
-            ("{\"format\": \"gdcm-dataset\", \"version\": 99, \"a\": 1,", |of| matches!(of, FileError::Version { .. })),
-            ("{\"format\": \"gdcm-study\", \"version\": 1, \"settings\": 3, \"a\": 1,", |of| {
-                matches!(of, FileError::Content { .. })
+            (
+                "{\"format\": \"gdcm-dataset\", \"version\": 99, \"a\": 1,",
+                |of| matches!(of, FileError::Version { .. }),
+            ),
+            (
+                "{\"format\": \"gdcm-study\", \"version\": 1, \"settings\": 3, \"a\": 1,",
+                |of| matches!(of, FileError::Content { .. }),
+            ),
+            ("{\"format\" 1,", |of| {
+                matches!(of, FileError::NotJson { .. })
             }),
-            ("{\"format\" 1,", |of| matches!(of, FileError::NotJson { .. })),
         ] {
             let found = check_beginning(endless(text).path()).unwrap_err();
             assert!(is_expected(&found), "{text}: {found}");

@@ -30,7 +30,11 @@ impl PartSource {
     }
 
     fn scheduled_if(is_scheduled: bool) -> Self {
-        if is_scheduled { Self::Scheduled } else { Self::None }
+        if is_scheduled {
+            Self::Scheduled
+        } else {
+            Self::None
+        }
     }
 
     fn own_if(is_own: bool) -> Self {
@@ -97,7 +101,9 @@ impl ExportContents {
     /// Contents of the files of results: each condition's own correction, and the schedule beside it where there is one.
     pub fn of_results(analysis: &Analysis) -> Self {
         let own = Self::of_own(analysis);
-        let Ok(schedule) = &analysis.schedule else { return own };
+        let Ok(schedule) = &analysis.schedule else {
+            return own;
+        };
         let scheduled = Self::of_schedule(analysis, schedule);
         let mut left_out = scheduled.left_out;
         for part in own.left_out {
@@ -141,11 +147,20 @@ impl ExportContents {
             _ => analysis.schedule.as_ref().map_err(|error| *error)?,
         };
         let mut contents = Self::of_schedule(analysis, schedule);
-        contents.left_out.retain(|part| !matches!(part, LeftOutPart::Delay(_)));
+        contents
+            .left_out
+            .retain(|part| !matches!(part, LeftOutPart::Delay(_)));
         if contents.delays == PartSource::None {
-            contents.left_out.extend(analysis.delayed_channels(conditions).into_iter().map(LeftOutPart::Delay));
+            contents.left_out.extend(
+                analysis
+                    .delayed_channels(conditions)
+                    .into_iter()
+                    .map(LeftOutPart::Delay),
+            );
         }
-        if correction == AssessedCorrection::ScheduledWithoutLeads && contents.leads != PartSource::None {
+        if correction == AssessedCorrection::ScheduledWithoutLeads
+            && contents.leads != PartSource::None
+        {
             contents.leads = PartSource::None;
             contents.left_out.push(LeftOutPart::Leads);
         }
@@ -157,7 +172,13 @@ impl ExportContents {
             Ok(fitted) => (PartSource::scheduled_if(fitted.is_some()), Vec::new()),
             Err(why) => (PartSource::None, vec![LeftOutPart::Couplings(why)]),
         };
-        Self { gains: PartSource::None, delays: PartSource::None, leads: PartSource::None, couplings, left_out }
+        Self {
+            gains: PartSource::None,
+            delays: PartSource::None,
+            leads: PartSource::None,
+            couplings,
+            left_out,
+        }
     }
 
     fn of_own(analysis: &Analysis) -> Self {
@@ -177,23 +198,38 @@ impl ExportContents {
             leads: PartSource::scheduled_if(schedule.leads.is_some()),
             ..Self::of_none(analysis)
         };
-        contents.left_out.extend(analysis.unscheduled_delays().into_iter().map(LeftOutPart::Delay));
+        contents.left_out.extend(
+            analysis
+                .unscheduled_delays()
+                .into_iter()
+                .map(LeftOutPart::Delay),
+        );
         contents
     }
 
     /// Each part with its name, in the order in which they are told.
     pub fn parts(&self) -> [(&'static str, PartSource); 4] {
-        [("gains", self.gains), ("delays", self.delays), ("leads", self.leads), ("couplings", self.couplings)]
+        [
+            ("gains", self.gains),
+            ("delays", self.delays),
+            ("leads", self.leads),
+            ("couplings", self.couplings),
+        ]
     }
 
     /// The parts in words: "gains scheduled, delays none, leads none, couplings none".
     pub fn words(&self) -> String {
-        self.parts().map(|(name, source)| format!("{name} {}", source.word())).join(", ")
+        self.parts()
+            .map(|(name, source)| format!("{name} {}", source.word()))
+            .join(", ")
     }
 
     /// What is left out, in words.
     pub fn left_out_words(&self, dataset: &Dataset) -> Vec<String> {
-        self.left_out.iter().map(|part| part.words(dataset)).collect()
+        self.left_out
+            .iter()
+            .map(|part| part.words(dataset))
+            .collect()
     }
 
     /// Lines that say both: "contains: …", then "left out: …" for each part that is.

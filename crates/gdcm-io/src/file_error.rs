@@ -22,13 +22,19 @@ pub enum FileError {
         path: PathBuf,
     },
     /// The path is a directory.
-    #[error("{}: this is a directory; give the name of a file", sanitized_path(path))]
+    #[error(
+        "{}: this is a directory; give the name of a file",
+        sanitized_path(path)
+    )]
     Directory {
         /// The directory.
         path: PathBuf,
     },
     /// The path is neither a file nor a directory: reading it might never end.
-    #[error("{}: this is {kind}, not a file; save what it gives as a file, and give its name", sanitized_path(path))]
+    #[error(
+        "{}: this is {kind}, not a file; save what it gives as a file, and give its name",
+        sanitized_path(path)
+    )]
     NotAFile {
         /// The path.
         path: PathBuf,
@@ -36,7 +42,10 @@ pub enum FileError {
         kind: &'static str,
     },
     /// A named pipe, a socket or a device stands where a file is to be written.
-    #[error("{}: this is {kind}, not a file, and is not written to; give the name of a file", sanitized_path(path))]
+    #[error(
+        "{}: this is {kind}, not a file, and is not written to; give the name of a file",
+        sanitized_path(path)
+    )]
     OutputNotAFile {
         /// The path.
         path: PathBuf,
@@ -52,7 +61,10 @@ pub enum FileError {
         reason: String,
     },
     /// The file, or what it unpacks to, is larger than the program takes.
-    #[error("{}: holds more than {most_mib} MiB, which is the most that is read; split the file", sanitized_path(path))]
+    #[error(
+        "{}: holds more than {most_mib} MiB, which is the most that is read; split the file",
+        sanitized_path(path)
+    )]
     TooLarge {
         /// The file.
         path: PathBuf,
@@ -60,13 +72,19 @@ pub enum FileError {
         most_mib: u64,
     },
     /// The packed data are damaged.
-    #[error("{}: the gzip data are damaged; pack or copy the file again", sanitized_path(path))]
+    #[error(
+        "{}: the gzip data are damaged; pack or copy the file again",
+        sanitized_path(path)
+    )]
     Gzip {
         /// The file.
         path: PathBuf,
     },
     /// The packed data end too early.
-    #[error("{}: the gzip data end too early, the file is cut off; copy it again", sanitized_path(path))]
+    #[error(
+        "{}: the gzip data end too early, the file is cut off; copy it again",
+        sanitized_path(path)
+    )]
     GzipCutOff {
         /// The file.
         path: PathBuf,
@@ -98,7 +116,10 @@ pub enum FileError {
         reason: String,
     },
     /// The file is of another kind.
-    #[error("{}: expected \"format\": \"{expected}\", found {found}", sanitized_path(path))]
+    #[error(
+        "{}: expected \"format\": \"{expected}\", found {found}",
+        sanitized_path(path)
+    )]
     Format {
         /// The file.
         path: PathBuf,
@@ -143,7 +164,10 @@ pub enum FileError {
         fault: VariableFault,
     },
     /// Folders lie in folders, deeper than models are looked for.
-    #[error("{}: folders lie too deep inside one another; give a folder farther down", sanitized_path(path))]
+    #[error(
+        "{}: folders lie too deep inside one another; give a folder farther down",
+        sanitized_path(path)
+    )]
     FolderTooDeep {
         /// The folder.
         path: PathBuf,
@@ -159,7 +183,10 @@ pub enum FileError {
         held: usize,
     },
     /// A folder holds more files than are looked at.
-    #[error("{}: holds more than {most} files; give a folder with fewer", sanitized_path(path))]
+    #[error(
+        "{}: holds more than {most} files; give a folder with fewer",
+        sanitized_path(path)
+    )]
     TooManyFiles {
         /// The folder.
         path: PathBuf,
@@ -178,7 +205,10 @@ pub enum FileError {
         dataset: Box<FileError>,
     },
     /// A file stands where a directory has to be made.
-    #[error("{}: cannot be written: a file stands where this directory would have to be made", sanitized_path(path))]
+    #[error(
+        "{}: cannot be written: a file stands where this directory would have to be made",
+        sanitized_path(path)
+    )]
     NotADirectory {
         /// The directory.
         path: PathBuf,
@@ -199,7 +229,10 @@ pub enum FileError {
         path: PathBuf,
     },
     /// The name of a file does not say what a figure is to be written as.
-    #[error("{}: a figure is written to a name that ends in .svg, .png, .pdf or .csv", sanitized_path(path))]
+    #[error(
+        "{}: a figure is written to a name that ends in .svg, .png, .pdf or .csv",
+        sanitized_path(path)
+    )]
     FigureFormat {
         /// The file.
         path: PathBuf,
@@ -241,7 +274,10 @@ impl FileError {
         match error.kind() {
             ErrorKind::NotFound => FileError::Missing { path },
             ErrorKind::IsADirectory => FileError::Directory { path },
-            _ => FileError::Unreadable { path, reason: system_words(error) },
+            _ => FileError::Unreadable {
+                path,
+                reason: system_words(error),
+            },
         }
     }
 
@@ -253,16 +289,25 @@ impl FileError {
     }
 
     pub(super) fn unwritable(path: &Path, reason: &str) -> Self {
-        FileError::Unwritable { path: path.to_owned(), reason: reason.to_owned() }
+        FileError::Unwritable {
+            path: path.to_owned(),
+            reason: reason.to_owned(),
+        }
     }
 
     /// Why the variables of a file cannot be read; a remedy names the file.
     pub(super) fn variables(path: &Path, mut fault: VariableFault) -> Self {
         if let VariableFault::Unsupported { remedy, .. } = &mut fault {
-            let name = |path: &Path| sanitized(&path.file_name().unwrap_or_default().to_string_lossy());
-            *remedy = remedy.replace("{file}", &name(path)).replace("{stem}", &name(&path.with_extension("")));
+            let name =
+                |path: &Path| sanitized(&path.file_name().unwrap_or_default().to_string_lossy());
+            *remedy = remedy
+                .replace("{file}", &name(path))
+                .replace("{stem}", &name(&path.with_extension("")));
         }
-        FileError::Variables { path: path.to_owned(), fault }
+        FileError::Variables {
+            path: path.to_owned(),
+            fault,
+        }
     }
 
     /// The stable code of an error that scripts tell from others; none where there is none yet.
@@ -276,23 +321,42 @@ impl FileError {
 
     /// Whether the reader was stopped, by whoever asked for the file.
     pub fn is_stopped(&self) -> bool {
-        matches!(self, Self::Variables { fault: VariableFault::Stopped, .. })
+        matches!(
+            self,
+            Self::Variables {
+                fault: VariableFault::Stopped,
+                ..
+            }
+        )
     }
 
     pub(super) fn export(path: &Path, fault: ExportFault) -> Self {
-        FileError::Export { path: path.to_owned(), fault }
+        FileError::Export {
+            path: path.to_owned(),
+            fault,
+        }
     }
 
     pub(super) fn content(path: &Path, flaw: ContentError) -> Self {
         let ContentError { place, fault } = flaw;
-        FileError::Content { path: path.to_owned(), place, fault, line: None }
+        FileError::Content {
+            path: path.to_owned(),
+            place,
+            fault,
+            line: None,
+        }
     }
 
     /// As [`FileError::content`], with the line of the JSON text at which the condition or the model begins.
     pub(super) fn content_of(path: &Path, flaw: ContentError, text: &[u8]) -> Self {
         let ContentError { place, fault } = flaw;
         let line = line_of(text, &place);
-        FileError::Content { path: path.to_owned(), place, fault, line }
+        FileError::Content {
+            path: path.to_owned(),
+            place,
+            fault,
+            line,
+        }
     }
 }
 
@@ -309,7 +373,11 @@ fn no_record_words(record: Option<&str>, held: usize) -> String {
 }
 
 fn listed(paths: &[PathBuf]) -> String {
-    paths.iter().map(|path| sanitized_path(path)).collect::<Vec<_>>().join(", ")
+    paths
+        .iter()
+        .map(|path| sanitized_path(path))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// What the system says, without its numbers.
@@ -432,12 +500,18 @@ pub(super) struct ContentError {
 
 impl From<DraftError> for ContentError {
     fn from(error: DraftError) -> Self {
-        Self { place: error.place, fault: Box::new((*error.fault).into()) }
+        Self {
+            place: error.place,
+            fault: Box::new((*error.fault).into()),
+        }
     }
 }
 
 impl ContentError {
     pub(super) fn new(place: Location, fault: impl Into<ContentFault>) -> Self {
-        Self { place: Box::new(place), fault: Box::new(fault.into()) }
+        Self {
+            place: Box::new(place),
+            fault: Box::new(fault.into()),
+        }
     }
 }

@@ -52,7 +52,9 @@ impl<W: Write> Write for SpelledOut<W> {
                         spelled.push(character);
                     } else {
                         let units = character.encode_utf16(&mut [0; 2]).to_vec();
-                        units.iter().for_each(|unit| spelled.push_str(&format!("\\u{unit:04x}")));
+                        units
+                            .iter()
+                            .for_each(|unit| spelled.push_str(&format!("\\u{unit:04x}")));
                     }
                 }
                 self.0.write_all(spelled.as_bytes())?;
@@ -86,17 +88,21 @@ impl Format {
     ) -> Result<(T, Vec<String>), FileError> {
         check_object(text, path)?;
         self.check(text, path, budget)?;
-        budget.take(text.len() as u64, TYPED, "").map_err(|fault| FileError::variables(path, fault))?;
+        budget
+            .take(text.len() as u64, TYPED, "")
+            .map_err(|fault| FileError::variables(path, fault))?;
         let mut unknown = UnknownKeys::default();
         let mut json = serde_json::Deserializer::from_slice(text);
         let mut track = serde_path_to_error::Track::new();
         let tracked = serde_path_to_error::Deserializer::new(&mut json, &mut track);
         let value = serde_ignored::deserialize(tracked, |key| unknown.add(&key));
         let ended = value.and_then(|value| json.end().map(|()| value));
-        ended.map(|value| (value, unknown.cautions(text))).map_err(|error| {
-            let steps = track.path().iter().filter_map(step_of).collect::<Vec<_>>();
-            json_error(text, path, location_of(&steps, &Outline::of(text)), &error)
-        })
+        ended
+            .map(|value| (value, unknown.cautions(text)))
+            .map_err(|error| {
+                let steps = track.path().iter().filter_map(step_of).collect::<Vec<_>>();
+                json_error(text, path, location_of(&steps, &Outline::of(text)), &error)
+            })
     }
 
     /// Refuses a file that says it is of another format or version.
@@ -104,11 +110,18 @@ impl Format {
         let (format, version) = Outline::format_and_version(text, budget);
         let path = path.to_owned();
         match (format, version) {
-            (Some(found), _) if found != format!("\"{}\"", self.name) => {
-                Err(FileError::Format { path, expected: self.name, found })
-            }
+            (Some(found), _) if found != format!("\"{}\"", self.name) => Err(FileError::Format {
+                path,
+                expected: self.name,
+                found,
+            }),
             (Some(_), Some(found)) if found.parse() != Ok(self.version as f64) => {
-                Err(FileError::Version { path, format: self.name, newest: self.version, found })
+                Err(FileError::Version {
+                    path,
+                    format: self.name,
+                    newest: self.version,
+                    found,
+                })
             }
             _ => Ok(()),
         }
@@ -121,8 +134,16 @@ fn check_object(text: &[u8], path: &Path) -> Result<(), FileError> {
         return Ok(());
     }
     let (expected, found) = ("an object".to_owned(), "a list".to_owned());
-    let fault = ContentFault::Type { expected, found, line: 1, column: 1 };
-    Err(FileError::content(path, ContentError::new(Location::default(), fault)))
+    let fault = ContentFault::Type {
+        expected,
+        found,
+        line: 1,
+        column: 1,
+    };
+    Err(FileError::content(
+        path,
+        ContentError::new(Location::default(), fault),
+    ))
 }
 
 fn step_of(segment: &serde_path_to_error::Segment) -> Option<Step> {
@@ -134,29 +155,74 @@ fn step_of(segment: &serde_path_to_error::Segment) -> Option<Step> {
 }
 
 /// Puts serde_json's complaint into the engineer's words.
-pub(super) fn json_error(text: &[u8], path: &Path, place: Location, error: &serde_json::Error) -> FileError {
+pub(super) fn json_error(
+    text: &[u8],
+    path: &Path,
+    place: Location,
+    error: &serde_json::Error,
+) -> FileError {
     let (line, column) = (error.line(), error.column());
     let full = error.to_string();
-    let reason = full.rsplit_once(" at line ").map_or(full.as_str(), |(reason, _)| reason).to_owned();
+    let reason = full
+        .rsplit_once(" at line ")
+        .map_or(full.as_str(), |(reason, _)| reason)
+        .to_owned();
     let path_owned = path.to_owned();
     match error.classify() {
-        Category::Eof => FileError::CutOff { path: path_owned, place: Box::new(place), line, column },
-        Category::Data => FileError::content(path, ContentError::new(place, data_fault(reason, line, column))),
-        _ if reason.starts_with("recursion limit") => {
-            FileError::content(path, ContentError::new(place, ContentFault::TooDeep { line, column }))
-        }
+        Category::Eof => FileError::CutOff {
+            path: path_owned,
+            place: Box::new(place),
+            line,
+            column,
+        },
+        Category::Data => FileError::content(
+            path,
+            ContentError::new(place, data_fault(reason, line, column)),
+        ),
+        _ if reason.starts_with("recursion limit") => FileError::content(
+            path,
+            ContentError::new(place, ContentFault::TooDeep { line, column }),
+        ),
         _ => match token_at(text, line, column).filter(|token| is_number_like(token)) {
-            Some(found) => {
-                FileError::content(path, ContentError::new(place, ContentFault::NotFinite { found, line, column }))
-            }
+            Some(found) => FileError::content(
+                path,
+                ContentError::new(
+                    place,
+                    ContentFault::NotFinite {
+                        found,
+                        line,
+                        column,
+                    },
+                ),
+            ),
             // A word where the reader can tell at once that none of those it knows will stand there.
             None if is_json_so_far(text) => {
-                let (expected, found) = ("a text in quotation marks".to_owned(), "something else".to_owned());
-                FileError::content(path, ContentError::new(place, ContentFault::Type { expected, found, line, column }))
+                let (expected, found) = (
+                    "a text in quotation marks".to_owned(),
+                    "something else".to_owned(),
+                );
+                FileError::content(
+                    path,
+                    ContentError::new(
+                        place,
+                        ContentFault::Type {
+                            expected,
+                            found,
+                            line,
+                            column,
+                        },
+                    ),
+                )
             }
             None => {
                 let reason = syntax_words(&reason);
-                FileError::NotJson { path: path_owned, place: Box::new(place), line, column, reason }
+                FileError::NotJson {
+                    path: path_owned,
+                    place: Box::new(place),
+                    line,
+                    column,
+                    reason,
+                }
             }
         },
     }
@@ -184,26 +250,46 @@ fn syntax_words(reason: &str) -> String {
 }
 
 fn data_fault(reason: String, line: usize, column: usize) -> ContentFault {
-    let between = |start: &str| reason.strip_prefix(start)?.strip_suffix('`').map(str::to_owned);
+    let between = |start: &str| {
+        reason
+            .strip_prefix(start)?
+            .strip_suffix('`')
+            .map(str::to_owned)
+    };
     if let Some(key) = between("missing field `") {
         return ContentFault::MissingKey { key };
     }
     if let Some(key) = between("duplicate field `") {
         return ContentFault::DuplicateKey { key };
     }
-    if let Some((found, expected)) =
-        reason.strip_prefix("unknown variant `").and_then(|rest| rest.split_once("`, expected "))
+    if let Some((found, expected)) = reason
+        .strip_prefix("unknown variant `")
+        .and_then(|rest| rest.split_once("`, expected "))
     {
-        return ContentFault::Word { expected: expected.replace('`', "\""), found: found.to_owned() };
+        return ContentFault::Word {
+            expected: expected.replace('`', "\""),
+            found: found.to_owned(),
+        };
     }
-    let mismatch = ["invalid type: ", "invalid value: ", "invalid length "].iter().find_map(|start| {
-        let (found, expected) = reason.strip_prefix(start)?.rsplit_once(", expected ")?;
-        let found = found_words(found, *start == "invalid length ");
-        Some((shortened(&sanitized(&found)), expected_words(expected)))
-    });
+    let mismatch = ["invalid type: ", "invalid value: ", "invalid length "]
+        .iter()
+        .find_map(|start| {
+            let (found, expected) = reason.strip_prefix(start)?.rsplit_once(", expected ")?;
+            let found = found_words(found, *start == "invalid length ");
+            Some((shortened(&sanitized(&found)), expected_words(expected)))
+        });
     match mismatch {
-        Some((found, expected)) => ContentFault::Type { expected, found, line, column },
-        None => ContentFault::Text { reason: shortened(&sanitized(&reason)), line, column },
+        Some((found, expected)) => ContentFault::Type {
+            expected,
+            found,
+            line,
+            column,
+        },
+        None => ContentFault::Text {
+            reason: shortened(&sanitized(&reason)),
+            line,
+            column,
+        },
     }
 }
 
@@ -219,7 +305,11 @@ fn found_words(found: &str, is_length: bool) -> String {
     }
     let renamed = [("string ", "the text "), ("integer ", ""), ("boolean ", "")]
         .iter()
-        .find_map(|(start, word)| unquoted.strip_prefix(start).map(|rest| format!("{word}{rest}")));
+        .find_map(|(start, word)| {
+            unquoted
+                .strip_prefix(start)
+                .map(|rest| format!("{word}{rest}"))
+        });
     renamed.unwrap_or_else(|| match unquoted.as_str() {
         "sequence" => "a list".to_owned(),
         "map" => "an object".to_owned(),
@@ -244,7 +334,11 @@ fn expected_words(expected: &str) -> String {
 
 /// The line at which the condition or the model of a place begins, counted from 1.
 pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
-    let mut value = entry(serde_json::from_slice(text).ok()?, "conditions", place.condition.as_ref()?.position)?;
+    let mut value = entry(
+        serde_json::from_slice(text).ok()?,
+        "conditions",
+        place.condition.as_ref()?.position,
+    )?;
     if let Some(model) = &place.model {
         let key = match model.bundle {
             BundleKind::Physics => "physics_models",
@@ -267,12 +361,24 @@ fn entry<'t>(object: &'t RawValue, key: &str, position: usize) -> Option<&'t Raw
 fn token_at(text: &[u8], line: usize, column: usize) -> Option<String> {
     /// Longer than any number that a program writes.
     const LONGEST: usize = 60;
-    let line = text.split(|byte| *byte == b'\n').nth(line.checked_sub(1)?)?;
+    let line = text
+        .split(|byte| *byte == b'\n')
+        .nth(line.checked_sub(1)?)?;
     let is_word = |byte: &u8| byte.is_ascii_alphanumeric() || b"+-.".contains(byte);
     let at = column.saturating_sub(1).min(line.len());
-    let start = line[..at].iter().rposition(|byte| !is_word(byte)).map_or(0, |before| before + 1);
-    let end = line[at..].iter().position(|byte| !is_word(byte)).map_or(line.len(), |after| at + after);
-    let token: String = line[start..end].iter().take(LONGEST).map(|&byte| char::from(byte)).collect();
+    let start = line[..at]
+        .iter()
+        .rposition(|byte| !is_word(byte))
+        .map_or(0, |before| before + 1);
+    let end = line[at..]
+        .iter()
+        .position(|byte| !is_word(byte))
+        .map_or(line.len(), |after| at + after);
+    let token: String = line[start..end]
+        .iter()
+        .take(LONGEST)
+        .map(|&byte| char::from(byte))
+        .collect();
     (!token.is_empty()).then_some(token)
 }
 
@@ -311,15 +417,28 @@ impl Nested<2> {
     /// A matrix, row by row.
     pub(super) fn of_matrix(matrix: &DMatrix<f64>) -> Self {
         // nalgebra stores columns, a file has rows.
-        Self { shape: [matrix.nrows(), matrix.ncols()], values: matrix.transpose().as_slice().to_vec() }
+        Self {
+            shape: [matrix.nrows(), matrix.ncols()],
+            values: matrix.transpose().as_slice().to_vec(),
+        }
     }
 }
 
 impl<'de, const DEPTH: usize> Deserialize<'de> for Nested<DEPTH> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let mut filling = Filling { lengths: [None; DEPTH], values: Vec::new() };
-        List { filling: &mut filling, depth: 0 }.deserialize(deserializer)?;
-        Ok(Self { shape: filling.lengths.map(Option::unwrap_or_default), values: filling.values })
+        let mut filling = Filling {
+            lengths: [None; DEPTH],
+            values: Vec::new(),
+        };
+        List {
+            filling: &mut filling,
+            depth: 0,
+        }
+        .deserialize(deserializer)?;
+        Ok(Self {
+            shape: filling.lengths.map(Option::unwrap_or_default),
+            values: filling.values,
+        })
     }
 }
 
@@ -348,7 +467,11 @@ impl<'de, const DEPTH: usize> Visitor<'de> for List<'_, DEPTH> {
     type Value = ();
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(if self.depth + 1 == DEPTH { "a list of numbers" } else { "a list of lists of numbers" })
+        formatter.write_str(if self.depth + 1 == DEPTH {
+            "a list of numbers"
+        } else {
+            "a list of lists of numbers"
+        })
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut entries: A) -> Result<(), A::Error> {
@@ -356,9 +479,17 @@ impl<'de, const DEPTH: usize> Visitor<'de> for List<'_, DEPTH> {
         let depth = self.depth + 1;
         loop {
             if depth == DEPTH {
-                let Some(value) = entries.next_element::<f64>()? else { break };
+                let Some(value) = entries.next_element::<f64>()? else {
+                    break;
+                };
                 self.filling.values.push(value);
-            } else if entries.next_element_seed(List { filling: &mut *self.filling, depth })?.is_none() {
+            } else if entries
+                .next_element_seed(List {
+                    filling: &mut *self.filling,
+                    depth,
+                })?
+                .is_none()
+            {
                 break;
             }
             length += 1;
@@ -377,7 +508,11 @@ impl<'de, const DEPTH: usize> Visitor<'de> for List<'_, DEPTH> {
 
 impl<const DEPTH: usize> Serialize for Nested<DEPTH> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        Part { shape: &self.shape, values: &self.values }.serialize(serializer)
+        Part {
+            shape: &self.shape,
+            values: &self.values,
+        }
+        .serialize(serializer)
     }
 }
 
@@ -395,7 +530,10 @@ impl Serialize for Part<'_> {
                 let size: usize = shape.iter().product();
                 let mut list = serializer.serialize_seq(Some(*length))?;
                 for part in 0..*length {
-                    list.serialize_element(&Part { shape, values: &self.values[part * size..(part + 1) * size] })?;
+                    list.serialize_element(&Part {
+                        shape,
+                        values: &self.values[part * size..(part + 1) * size],
+                    })?;
                 }
                 list.end()
             }
@@ -447,7 +585,11 @@ where
     T: Deserialize<'de>,
     D: Deserializer<'de>,
 {
-    deserializer.deserialize_seq(LimitedList { most, check, entry: PhantomData })
+    deserializer.deserialize_seq(LimitedList {
+        most,
+        check,
+        entry: PhantomData,
+    })
 }
 
 /// Says that a list or an object goes on beyond its limit.
@@ -475,7 +617,9 @@ where
     fn visit_seq<A: SeqAccess<'de>>(mut self, mut entries: A) -> Result<Vec<T>, A::Error> {
         let mut list = Vec::new();
         while list.len() < self.most {
-            let Some(entry) = entries.next_element()? else { return Ok(list) };
+            let Some(entry) = entries.next_element()? else {
+                return Ok(list);
+            };
             (self.check)(&entry).map_err(A::Error::custom)?;
             list.push(entry);
         }
@@ -530,11 +674,17 @@ mod tests {
         let mut file = Vec::new();
         write_pretty(&[name], &mut file).unwrap();
         let text = String::from_utf8(file).unwrap();
-        let left: Vec<char> = text.trim_end().chars().filter(|letter| is_unprintable(*letter)).collect();
+        let left: Vec<char> = text
+            .trim_end()
+            .chars()
+            .filter(|letter| is_unprintable(*letter))
+            .collect();
         // Line ends of its own, and a code that is nothing on a terminal.
         assert_eq!(left, ['\n', '\u{7f}', '\n'], "{text:?}");
         assert!(
-            text.contains("\\u009b31m") && text.contains("\\udb40\\udc41") && text.contains("\u{e9}\u{3b1}\u{1f600}")
+            text.contains("\\u009b31m")
+                && text.contains("\\udb40\\udc41")
+                && text.contains("\u{e9}\u{3b1}\u{1f600}")
         );
         assert_eq!(serde_json::from_str::<Vec<String>>(&text).unwrap(), [name]);
     }
@@ -542,19 +692,32 @@ mod tests {
     #[test]
     fn what_is_written_is_what_was_read() {
         for text in ["[[1.0,2.0,3.0],[4.0,5.0,6.0]]", "[]", "[[],[]]"] {
-            assert_eq!(serde_json::to_string(&read::<2>(text).unwrap()).unwrap(), text);
+            assert_eq!(
+                serde_json::to_string(&read::<2>(text).unwrap()).unwrap(),
+                text
+            );
         }
         let text = "[[[1.0],[2.0]],[[3.0],[4.0]]]";
         let table = read::<3>(text).unwrap();
-        assert_eq!((table.shape, table.values.as_slice()), ([2, 2, 1], [1.0, 2.0, 3.0, 4.0].as_slice()));
+        assert_eq!(
+            (table.shape, table.values.as_slice()),
+            ([2, 2, 1], [1.0, 2.0, 3.0, 4.0].as_slice())
+        );
         assert_eq!(serde_json::to_string(&table).unwrap(), text);
     }
 
     #[test]
     fn a_ragged_list_is_refused_at_any_depth() {
         for text in ["[[1, 2], [3]]", "[[], [3]]", "[[1], []]"] {
-            assert!(read::<2>(text).unwrap_err().contains("as in the first"), "{text}");
+            assert!(
+                read::<2>(text).unwrap_err().contains("as in the first"),
+                "{text}"
+            );
         }
-        assert!(read::<3>("[[[1], [2]], [[3]]]").unwrap_err().contains("expected 2 entries"));
+        assert!(
+            read::<3>("[[[1], [2]], [[3]]]")
+                .unwrap_err()
+                .contains("expected 2 entries")
+        );
     }
 }

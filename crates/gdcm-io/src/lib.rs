@@ -27,13 +27,13 @@ pub mod variables;
 pub use beginning::check_beginning;
 pub use corrections_file::*;
 pub use dataset_file::{
-    DatasetOrigin, LoadedDataset, add_dataset, dataset_faults, embedded_example, load_dataset, load_dataset_bytes,
-    load_dataset_within, save_dataset, write_example,
+    DatasetOrigin, LoadedDataset, add_dataset, dataset_faults, embedded_example, load_dataset,
+    load_dataset_bytes, load_dataset_within, save_dataset, write_example,
 };
 pub use export_contents::{ExportContents, LeftOutPart, PartSource};
 pub use exports::{
-    EXPORTERS, ExportFault, ExportFormat, ExportRequest, ExportSource, ExportedRole, check_export, export_contents,
-    write_export,
+    EXPORTERS, ExportFault, ExportFormat, ExportRequest, ExportSource, ExportedRole, check_export,
+    export_contents, write_export,
 };
 pub use figure_file::{csv_text, figure_format, save_tables, write_as, write_figure};
 pub use file_error::{ContentFault, FileError, system_words};
@@ -48,17 +48,20 @@ pub use model_files::{EVERY_TABLE, FoundModels, models_of_bytes, read_models};
 pub use models_file::{IdentifiedModels, add_identified, add_models};
 pub use output_set::{Existing, OutputSet, make_directory, report_size_limit};
 pub use record_files::{
-    EXAMPLE_RECORD_CONDITIONS, FoundRecords, example_records, load_records, read_records, records_of_bytes,
-    relative_entry,
+    EXAMPLE_RECORD_CONDITIONS, FoundRecords, example_records, load_records, read_records,
+    records_of_bytes, relative_entry,
 };
 pub use report_file::{ReportSource, ReportSubject, assessment_sentence, report, save_report};
 pub use requirements_file::{
-    REQUIREMENT_FILES, add_tolerances, load_tolerances, read_levels, requirement_paths, write_requirements,
+    REQUIREMENT_FILES, add_tolerances, load_tolerances, read_levels, requirement_paths,
+    write_requirements,
 };
 pub use rules_file::{add_rules, load_rules, rules_path};
 pub use source::{FileStamp, at_home, file_exists, file_sha256};
 pub use study_file::{
-    Opened, OpenedStudy, STUDY_EXTENSION, holds_models, load_any, open_study, open_study_of, relative_folder,
-    save_study,
+    Opened, OpenedStudy, STUDY_EXTENSION, holds_models, load_any, open_study, open_study_of,
+    relative_folder, save_study,
 };
-pub use user_state::{LostStudy, RecoveryFile, add_recent_file, is_first_start, lost_studies, recent_files};
+pub use user_state::{
+    LostStudy, RecoveryFile, add_recent_file, is_first_start, lost_studies, recent_files,
+};

@@ -24,13 +24,20 @@ pub(super) fn location_of(steps: &[Step], outline: &Outline) -> Location {
     if let [Step::Key(key), Step::Entry(index), after @ ..] = rest
         && key == "conditions"
     {
-        place.condition = Some(ConditionPlace { position: index + 1, id: outline.id(*index) });
+        place.condition = Some(ConditionPlace {
+            position: index + 1,
+            id: outline.id(*index),
+        });
         rest = after;
         if let [Step::Key(key), Step::Entry(model), after @ ..] = rest
             && let Some(bundle) = bundle_of(key)
         {
             let name = outline.name(*index, key, *model);
-            place.model = Some(ModelPlace { bundle, position: model + 1, name });
+            place.model = Some(ModelPlace {
+                bundle,
+                position: model + 1,
+                name,
+            });
             rest = after;
         }
     }
@@ -55,14 +62,22 @@ fn entry_words(steps: &[Step]) -> String {
             Step::Key(key) => {
                 indices = match key.as_str() {
                     "A" | "B" | "C" | "D" => &["row", "column"],
-                    "re" | "im" | "coherence" | "valid_band_rad_s" | "sd_db" | "sd_deg" => &["output", "input"],
+                    "re" | "im" | "coherence" | "valid_band_rad_s" | "sd_db" | "sd_deg" => {
+                        &["output", "input"]
+                    }
                     _ => &[],
                 };
-                let matrix = if indices == ["row", "column"] { "matrix " } else { "" };
+                let matrix = if indices == ["row", "column"] {
+                    "matrix "
+                } else {
+                    ""
+                };
                 words.push(format!("{matrix}{}", shortened(&sanitized(key))));
             }
             Step::Entry(index) => {
-                let (name, after) = indices.split_first().map_or(("entry", indices), |(name, after)| (*name, after));
+                let (name, after) = indices
+                    .split_first()
+                    .map_or(("entry", indices), |(name, after)| (*name, after));
                 words.push(format!("{name} {}", index + 1));
                 indices = after;
             }
@@ -94,18 +109,28 @@ pub(super) struct Outline {
 impl Outline {
     /// Every label that can be read before the text ends or breaks.
     pub(super) fn of(text: &[u8]) -> Self {
-        Self::read(text, |outline| outline.ids.len() + outline.names.len() >= MOST_LABELS)
+        Self::read(text, |outline| {
+            outline.ids.len() + outline.names.len() >= MOST_LABELS
+        })
     }
 
     /// What the file calls its format; reads no further than that, nor on where the reader shall stop.
     pub(super) fn format_of(text: &[u8], budget: &ReadingBudget<'_>) -> Option<String> {
-        Self::read(text, |outline| outline.format.is_some() || budget.work(0, "").is_err()).format
+        Self::read(text, |outline| {
+            outline.format.is_some() || budget.work(0, "").is_err()
+        })
+        .format
     }
 
     /// What the file calls its format and its version; reads no further than those.
-    pub(super) fn format_and_version(text: &[u8], budget: &ReadingBudget<'_>) -> (Option<String>, Option<String>) {
+    pub(super) fn format_and_version(
+        text: &[u8],
+        budget: &ReadingBudget<'_>,
+    ) -> (Option<String>, Option<String>) {
         let is_read = |outline: &Self| outline.format.is_some() && outline.version.is_some();
-        let outline = Self::read(text, |outline| is_read(outline) || budget.work(0, "").is_err());
+        let outline = Self::read(text, |outline| {
+            is_read(outline) || budget.work(0, "").is_err()
+        });
         (outline.format, outline.version)
     }
 
@@ -116,7 +141,9 @@ impl Outline {
 
     /// The name of a model, by the index of its condition, the key of its bundle, and its index in it.
     pub(super) fn name(&self, condition: usize, bundle: &str, model: usize) -> Option<String> {
-        self.names.get(&(condition, bundle.to_owned(), model)).cloned()
+        self.names
+            .get(&(condition, bundle.to_owned(), model))
+            .cloned()
     }
 
     /// An error ends the outline; it is found again, and told, by the reader proper.
@@ -162,10 +189,17 @@ impl Outline {
                 self.ids.extend(id.parse().ok().map(|id| (*condition, id)));
             }
             (
-                [Step::Key(list), Step::Entry(condition), Step::Key(bundle), Step::Entry(model), Step::Key(key)],
+                [
+                    Step::Key(list),
+                    Step::Entry(condition),
+                    Step::Key(bundle),
+                    Step::Entry(model),
+                    Step::Key(key),
+                ],
                 JsonEvent::String(name),
             ) if list == "conditions" && key == "name" => {
-                self.names.insert((*condition, bundle.clone(), *model), name.to_string());
+                self.names
+                    .insert((*condition, bundle.clone(), *model), name.to_string());
             }
             _ => {}
         }
@@ -223,16 +257,27 @@ impl UnknownKeys {
         }
         let outline = Outline::of(text);
         let caution = |(steps, count): &(Vec<Step>, usize)| {
-            let more = if *count > 1 { format!(", and {} more like it", count - 1) } else { String::new() };
+            let more = if *count > 1 {
+                format!(", and {} more like it", count - 1)
+            } else {
+                String::new()
+            };
             match steps.split_last() {
                 Some((Step::Key(key), place)) => {
                     let place = location_of(place, &outline).before();
-                    format!("{place}the key {} is not known and not used{more}", quoted(key))
+                    format!(
+                        "{place}the key {} is not known and not used{more}",
+                        quoted(key)
+                    )
                 }
-                _ => format!("{}this entry is not known and not used{more}", location_of(steps, &outline).before()),
+                _ => format!(
+                    "{}this entry is not known and not used{more}",
+                    location_of(steps, &outline).before()
+                ),
             }
         };
-        let beyond = (self.beyond > 0).then(|| format!("{} other keys are not known and not used", self.beyond));
+        let beyond = (self.beyond > 0)
+            .then(|| format!("{} other keys are not known and not used", self.beyond));
         self.found.values().map(caution).chain(beyond).collect()
     }
 }
@@ -243,9 +288,9 @@ fn collect_steps(path: &serde_ignored::Path<'_>, steps: &mut Vec<Step>) {
         Ignored::Root => return,
         Ignored::Seq { parent, index } => (parent, Some(Step::Entry(*index))),
         Ignored::Map { parent, key } => (parent, Some(Step::Key(key.clone()))),
-        Ignored::Some { parent } | Ignored::NewtypeStruct { parent } | Ignored::NewtypeVariant { parent } => {
-            (parent, None)
-        }
+        Ignored::Some { parent }
+        | Ignored::NewtypeStruct { parent }
+        | Ignored::NewtypeVariant { parent } => (parent, None),
     };
     collect_steps(parent, steps);
     steps.extend(step);
@@ -256,21 +301,40 @@ mod place_tests {
     use super::*;
 
     fn steps(path: &[&str]) -> Vec<Step> {
-        path.iter().map(|step| step.parse().map_or(Step::Key((*step).to_owned()), Step::Entry)).collect()
+        path.iter()
+            .map(|step| {
+                step.parse()
+                    .map_or(Step::Key((*step).to_owned()), Step::Entry)
+            })
+            .collect()
     }
 
     #[test]
     fn a_place_is_named_by_id_name_matrix_row_and_column() {
-        let outline = Outline::of(br#"{"conditions": [{"id": 10, "physics_models": [{"name": "nominal"}]}]}"#);
-        let place = location_of(&steps(&["conditions", "0", "physics_models", "0", "A", "2", "4"]), &outline);
-        let expected =
-            "condition 10 (number 1 in the file), physics model \"nominal\" (number 1), matrix A, row 3, column 5";
+        let outline = Outline::of(
+            br#"{"conditions": [{"id": 10, "physics_models": [{"name": "nominal"}]}]}"#,
+        );
+        let place = location_of(
+            &steps(&["conditions", "0", "physics_models", "0", "A", "2", "4"]),
+            &outline,
+        );
+        let expected = "condition 10 (number 1 in the file), physics model \"nominal\" (number 1), matrix A, row 3, column 5";
         assert_eq!(place.to_string(), expected);
     }
 
     #[test]
     fn what_cannot_be_named_is_counted() {
-        let path = steps(&["conditions", "2", "identified_models", "1", "frequency_response", "re", "0", "1", "4"]);
+        let path = steps(&[
+            "conditions",
+            "2",
+            "identified_models",
+            "1",
+            "frequency_response",
+            "re",
+            "0",
+            "1",
+            "4",
+        ]);
         let place = location_of(&path, &Outline::default());
         let expected = "condition number 3 in the file, identified model number 2, frequency_response, re, output 1, input 2, entry 5";
         assert_eq!(place.to_string(), expected);
@@ -288,15 +352,27 @@ mod outline_tests {
         let outline = Outline::of(text);
         let name = |model| outline.name(1, "physics_models", model);
         assert_eq!((outline.id(0), outline.id(1)), (None, Some(7)));
-        assert_eq!((name(0).as_deref(), name(1).as_deref(), name(2)), (Some("nominal"), Some("V+5kt"), None));
-        assert_eq!((outline.format.as_deref(), outline.version.as_deref()), (Some("\"gdcm-dataset\""), Some("1")));
+        assert_eq!(
+            (name(0).as_deref(), name(1).as_deref(), name(2)),
+            (Some("nominal"), Some("V+5kt"), None)
+        );
+        assert_eq!(
+            (outline.format.as_deref(), outline.version.as_deref()),
+            (Some("\"gdcm-dataset\""), Some("1"))
+        );
     }
 
     #[test]
     fn the_format_is_read_without_reading_on() {
         let format_of = |text: &[u8]| Outline::format_of(text, &ReadingBudget::new(0));
-        assert_eq!(format_of(br#"{"name": [1], "format": "x", broken"#).as_deref(), Some("\"x\""));
-        assert_eq!(format_of(br#"{"format": [1, 2], broken"#).as_deref(), Some("a list"));
+        assert_eq!(
+            format_of(br#"{"name": [1], "format": "x", broken"#).as_deref(),
+            Some("\"x\"")
+        );
+        assert_eq!(
+            format_of(br#"{"format": [1, 2], broken"#).as_deref(),
+            Some("a list")
+        );
         assert_eq!(format_of(b"[1, 2]"), None);
     }
 }

@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 use gdcm_model::assembly::{ChannelLabel, Facts, FoundModel, Headings};
 use gdcm_model::dataset::{
-    BundleKind, Condition, ConditionRecord, Dataset, Estimate, Model, ModelDraft, Origin, Provenance, ResponseArray,
-    ResponseDraft,
+    BundleKind, Condition, ConditionRecord, Dataset, Estimate, Model, ModelDraft, Origin,
+    Provenance, ResponseArray, ResponseDraft,
 };
 
 use crate::file_error::FileError;
 use crate::formats::text::{
-    FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, Unrecognised, UnsaidUnit, read_matrices,
-    read_matrix, read_table, split_complex,
+    FrequencyColumns, RecognisedResponse, ResponsePoints, TextTable, Unrecognised, UnsaidUnit,
+    read_matrices, read_matrix, read_table, split_complex,
 };
 use crate::formats::{Contents, FolderProgress, ImportedFile, import, import_bytes, of_file};
 use crate::models_file::{bare_draft, labels};
@@ -63,7 +63,11 @@ pub fn read_models(
     headings: &Headings,
     progress: &dyn FolderProgress,
 ) -> Result<FoundModels, FileError> {
-    let mut reading = ModelReading { headings, found: FoundModels::default(), matrices: Vec::new() };
+    let mut reading = ModelReading {
+        headings,
+        found: FoundModels::default(),
+        matrices: Vec::new(),
+    };
     let (files, faults) = import(paths, progress, |file, budget| reading.take(file, budget))?;
     let mut found = reading.finish();
     found.faults = [faults, found.faults].concat();
@@ -71,11 +75,22 @@ pub fn read_models(
 }
 
 /// The models in the bytes of a file of this name, within a budget.
-pub fn models_of_bytes(bytes: &[u8], name: &str, budget: &ReadingBudget<'_>) -> Result<FoundModels, FileError> {
+pub fn models_of_bytes(
+    bytes: &[u8],
+    name: &str,
+    budget: &ReadingBudget<'_>,
+) -> Result<FoundModels, FileError> {
     let none = Headings::new();
-    let mut reading = ModelReading { headings: &none, found: FoundModels::default(), matrices: Vec::new() };
+    let mut reading = ModelReading {
+        headings: &none,
+        found: FoundModels::default(),
+        matrices: Vec::new(),
+    };
     reading.take(import_bytes(bytes, Path::new(name), name, budget)?, budget)?;
-    Ok(FoundModels { files: 1, ..reading.finish() })
+    Ok(FoundModels {
+        files: 1,
+        ..reading.finish()
+    })
 }
 
 /// Files of models while they are read.
@@ -87,54 +102,101 @@ struct ModelReading<'h> {
 }
 
 impl ModelReading<'_> {
-    fn take(&mut self, file: ImportedFile<'_>, budget: &ReadingBudget<'_>) -> Result<(), FileError> {
-        let ImportedFile { path, name, sha256, contents } = file;
+    fn take(
+        &mut self,
+        file: ImportedFile<'_>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<(), FileError> {
+        let ImportedFile {
+            path,
+            name,
+            sha256,
+            contents,
+        } = file;
         let wrong = |fault| FileError::variables(path, fault);
         let recognised = match contents {
-            Contents::Variables { variables, notes, pages_first } => {
-                self.of_variables(variables, notes, ((name, &sha256), pages_first), budget).map_err(wrong)?
-            }
+            Contents::Variables {
+                variables,
+                notes,
+                pages_first,
+            } => self
+                .of_variables(variables, notes, ((name, &sha256), pages_first), budget)
+                .map_err(wrong)?,
             Contents::Text(text) => match models_text(&text, path, budget).map_err(wrong)? {
-                TextContents::Variables { variables, notes } => {
-                    self.of_variables(variables, notes, ((name, &sha256), false), budget).map_err(wrong)?
-                }
+                TextContents::Variables { variables, notes } => self
+                    .of_variables(variables, notes, ((name, &sha256), false), budget)
+                    .map_err(wrong)?,
                 TextContents::Table(mut table) => {
-                    let of_all = self.headings.get(EVERY_TABLE).filter(|said| said.len() == table.columns.len());
+                    let of_all = self
+                        .headings
+                        .get(EVERY_TABLE)
+                        .filter(|said| said.len() == table.columns.len());
                     if let Some(said) = self.headings.get(name).or(of_all) {
                         table = table.with_headings(said).map_err(wrong)?;
                     }
                     let (found, unsaid) = models_of_table(&table, name).map_err(wrong)?;
-                    self.found.unsaid.extend((!unsaid.is_empty()).then(|| (name.to_owned(), unsaid)));
+                    self.found
+                        .unsaid
+                        .extend((!unsaid.is_empty()).then(|| (name.to_owned(), unsaid)));
                     self.found.tables.insert(name.to_owned(), table.headings());
                     found
                 }
             },
-            Contents::Dataset(dataset, unknown) => {
-                Found { items: models_of_dataset(&dataset, name), unused: unknown, ..Found::default() }
-            }
-            Contents::Logs(_) => Found {
-                ignored: vec![format!("{name}: a log of an aircraft: records, not a model")],
+            Contents::Dataset(dataset, unknown) => Found {
+                items: models_of_dataset(&dataset, name),
+                unused: unknown,
                 ..Found::default()
             },
-            Contents::Models(models, unknown) => Found { items: models, unused: unknown, ..Found::default() },
-            Contents::Archive { variables, files, ignored } => {
+            Contents::Logs(_) => Found {
+                ignored: vec![format!(
+                    "{name}: a log of an aircraft: records, not a model"
+                )],
+                ..Found::default()
+            },
+            Contents::Models(models, unknown) => Found {
+                items: models,
+                unused: unknown,
+                ..Found::default()
+            },
+            Contents::Archive {
+                variables,
+                files,
+                ignored,
+            } => {
                 for (inner, contents) in files {
                     let (inner_name, inner_path) = (format!("{name}/{inner}"), Path::new(&inner));
                     let taken = contents.and_then(|contents| {
                         let sha256 = sha256.clone();
-                        self.take(ImportedFile { path: inner_path, name: &inner_name, sha256, contents }, budget)
+                        self.take(
+                            ImportedFile {
+                                path: inner_path,
+                                name: &inner_name,
+                                sha256,
+                                contents,
+                            },
+                            budget,
+                        )
                     });
                     match taken {
                         Err(stopped) if stopped.is_stopped() => return Err(stopped),
-                        taken => self.found.faults.extend(taken.err().map(|error| format!("{name}: {error}"))),
+                        taken => self
+                            .found
+                            .faults
+                            .extend(taken.err().map(|error| format!("{name}: {error}"))),
                     }
                 }
                 self.found.ignored.extend(of_file(name, ignored));
                 // Its arrays are those of NumPy.
-                self.of_variables(variables, Vec::new(), ((name, &sha256), true), budget).map_err(wrong)?
+                self.of_variables(variables, Vec::new(), ((name, &sha256), true), budget)
+                    .map_err(wrong)?
             }
         };
-        let Found { mut items, faults, ignored, unused } = recognised;
+        let Found {
+            mut items,
+            faults,
+            ignored,
+            unused,
+        } = recognised;
         for (index, model) in items.iter_mut().enumerate() {
             let source = model.draft.source.get_or_insert_with(Provenance::default);
             if index == 0 {
@@ -146,7 +208,11 @@ impl ModelReading<'_> {
         }
         self.found.models.append(&mut items);
         if !unused.is_empty() {
-            self.found.unused.entry(name.to_owned()).or_default().extend(unused);
+            self.found
+                .unused
+                .entry(name.to_owned())
+                .or_default()
+                .extend(unused);
         }
         self.found.faults.extend(of_file(name, faults));
         self.found.ignored.extend(of_file(name, ignored));
@@ -161,7 +227,10 @@ impl ModelReading<'_> {
         budget: &ReadingBudget<'_>,
     ) -> Result<Found<FoundModel>, VariableFault> {
         if let Some(matrix) = LooseMatrix::of(&variables, name) {
-            self.matrices.push(LooseMatrix { sha256: sha256.to_owned(), ..matrix });
+            self.matrices.push(LooseMatrix {
+                sha256: sha256.to_owned(),
+                ..matrix
+            });
             return Ok(Found::default());
         }
         let mut found = recognise(&variables, pages_first, budget)?;
@@ -181,29 +250,44 @@ impl ModelReading<'_> {
 
 /// What a text holds, where models are looked for.
 enum TextContents {
-    Variables { variables: Vec<Variable>, notes: Vec<String> },
+    Variables {
+        variables: Vec<Variable>,
+        notes: Vec<String>,
+    },
     Table(TextTable),
 }
 
 /// A matrix where the file is named as one, matrices under names where there are some, else a table.
-fn models_text(text: &str, path: &Path, budget: &ReadingBudget<'_>) -> Result<TextContents, VariableFault> {
+fn models_text(
+    text: &str,
+    path: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<TextContents, VariableFault> {
     if let Some((letter, _)) = matrix_letter(stem(path)) {
         let variable = read_matrix(text, &letter.to_string(), budget)?;
-        return Ok(TextContents::Variables { variables: vec![variable], notes: Vec::new() });
+        return Ok(TextContents::Variables {
+            variables: vec![variable],
+            notes: Vec::new(),
+        });
     }
     let looks_named = text.lines().take(50).any(|line| {
         let line = line.trim().trim_end_matches(['=', ':', '[']).trim_end();
         matches!(line, "A" | "B" | "C" | "D")
     });
     if looks_named && let Ok(matrices) = read_matrices(text, budget) {
-        return Ok(TextContents::Variables { variables: matrices.variables, notes: matrices.notes });
+        return Ok(TextContents::Variables {
+            variables: matrices.variables,
+            notes: matrices.notes,
+        });
     }
     let split = split_complex(text, budget)?;
     read_table(split.as_deref().unwrap_or(text), budget).map(TextContents::Table)
 }
 
 fn stem(path: &Path) -> &str {
-    path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default()
+    path.file_stem()
+        .and_then(|stem| stem.to_str())
+        .unwrap_or_default()
 }
 
 /// Every model, with what the dataset says about it and its condition; `name` is the name of the dataset's file, relative to what was
@@ -225,10 +309,15 @@ fn facts(condition: &Condition, name: &str) -> Facts {
     let state = condition.flight_state();
     let beside = |record: &ConditionRecord| {
         let file = match name.rsplit_once('/') {
-            Some((folder, _)) if !Path::new(&record.file).is_absolute() => format!("{folder}/{}", record.file),
+            Some((folder, _)) if !Path::new(&record.file).is_absolute() => {
+                format!("{folder}/{}", record.file)
+            }
             _ => record.file.clone(),
         };
-        ConditionRecord { file, ..record.clone() }
+        ConditionRecord {
+            file,
+            ..record.clone()
+        }
     };
     Facts {
         condition: Some(state.id.0),
@@ -241,7 +330,12 @@ fn facts(condition: &Condition, name: &str) -> Facts {
     }
 }
 
-fn found(dataset: &Dataset, facts: Facts, (condition, kind): (&Condition, BundleKind), model: &Model) -> FoundModel {
+fn found(
+    dataset: &Dataset,
+    facts: Facts,
+    (condition, kind): (&Condition, BundleKind),
+    model: &Model,
+) -> FoundModel {
     let state = condition.flight_state();
     let source = Provenance {
         variable: Some(format!("{}/{kind}/{}", state.id, model.name)),
@@ -251,11 +345,18 @@ fn found(dataset: &Dataset, facts: Facts, (condition, kind): (&Condition, Bundle
         ..model.source.clone().unwrap_or_default()
     };
     FoundModel {
-        draft: ModelDraft { source: Some(source), ..ModelDraft::of(model) },
+        draft: ModelDraft {
+            source: Some(source),
+            ..ModelDraft::of(model)
+        },
         inputs: labels(dataset.inputs()),
         outputs: labels(dataset.outputs()),
         facts,
-        notes: model.source.iter().filter_map(|source| source.note.clone()).collect(),
+        notes: model
+            .source
+            .iter()
+            .filter_map(|source| source.note.clone())
+            .collect(),
     }
 }
 
@@ -275,7 +376,10 @@ struct LooseMatrix {
 
 /// The letter of a file that is named as a matrix, and what stands before it: "nominal_A" is A of "nominal".
 fn matrix_letter(stem: &str) -> Option<(char, &str)> {
-    let letter = stem.chars().last().filter(|letter| matches!(letter, 'A' | 'B' | 'C' | 'D' | 'E'))?;
+    let letter = stem
+        .chars()
+        .last()
+        .filter(|letter| matches!(letter, 'A' | 'B' | 'C' | 'D' | 'E'))?;
     let before = &stem[..stem.len() - 1];
     let is_apart = before.is_empty() || before.ends_with(['_', '-', '.', ' ']);
     is_apart.then(|| (letter, before.trim_end_matches(['_', '-', '.', ' '])))
@@ -292,10 +396,17 @@ impl LooseMatrix {
         let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
         let (letter, before) = matrix_letter(stem)?;
         Some(Self {
-            group: [folder, before].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("/"),
+            group: [folder, before]
+                .into_iter()
+                .filter(|part| !part.is_empty())
+                .collect::<Vec<_>>()
+                .join("/"),
             file: file.to_owned(),
             sha256: String::new(),
-            variable: Variable { name: letter.to_string(), value: variable.value.clone() },
+            variable: Variable {
+                name: letter.to_string(),
+                value: variable.value.clone(),
+            },
         })
     }
 }
@@ -308,22 +419,40 @@ fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     }
     let mut found = Found::default();
     for (group, matrices) in groups {
-        let variables: Vec<Variable> = matrices.iter().map(|matrix| matrix.variable.clone()).collect();
+        let variables: Vec<Variable> = matrices
+            .iter()
+            .map(|matrix| matrix.variable.clone())
+            .collect();
         // The files were within their budgets; their matrices are copied once.
         let mut of_group = recognise(&variables, true, &ReadingBudget::new(u64::MAX))
-            .unwrap_or_else(|fault| Found { faults: vec![fault.to_string()], ..Found::default() });
+            .unwrap_or_else(|fault| Found {
+                faults: vec![fault.to_string()],
+                ..Found::default()
+            });
         let is_model = !of_group.items.is_empty() || !of_group.faults.is_empty();
         for model in &mut of_group.items {
             let source = model.draft.source.get_or_insert_with(Provenance::default);
             source.file = Some(group.clone());
-            let hashes = matrices.iter().map(|matrix| format!("{} {}", matrix.file, matrix.sha256));
-            source.note = Some(format!("SHA-256 of its files: {}", hashes.collect::<Vec<_>>().join(", ")));
+            let hashes = matrices
+                .iter()
+                .map(|matrix| format!("{} {}", matrix.file, matrix.sha256));
+            source.note = Some(format!(
+                "SHA-256 of its files: {}",
+                hashes.collect::<Vec<_>>().join(", ")
+            ));
         }
         found.items.append(&mut of_group.items);
-        found.faults.extend(of_group.faults.into_iter().map(|fault| format!("{group}: {fault}")));
+        found.faults.extend(
+            of_group
+                .faults
+                .into_iter()
+                .map(|fault| format!("{group}: {fault}")),
+        );
         if !is_model {
             let names: Vec<&str> = matrices.iter().map(|matrix| matrix.file.as_str()).collect();
-            found.faults.push(format!("{}: a model needs A, B and C", names.join(", ")));
+            found
+                .faults
+                .push(format!("{}: a model needs A, B and C", names.join(", ")));
         }
     }
     found
@@ -333,29 +462,61 @@ fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
 
 /// The responses of a table, each a model of one input and one output; a table that holds none is passed over in words, with the
 /// units that would make it one.
-fn models_of_table(table: &TextTable, file: &str) -> Result<(Found<FoundModel>, Vec<UnsaidUnit>), VariableFault> {
+fn models_of_table(
+    table: &TextTable,
+    file: &str,
+) -> Result<(Found<FoundModel>, Vec<UnsaidUnit>), VariableFault> {
     let columns = match FrequencyColumns::recognise(table) {
         Ok(columns) => columns,
         Err(Unrecognised { fault, unsaid }) => {
-            let words = format!("{file}: {} columns of numbers; {fault}", table.columns.len());
-            return Ok((Found { ignored: vec![words], ..Found::default() }, unsaid));
+            let words = format!(
+                "{file}: {} columns of numbers; {fault}",
+                table.columns.len()
+            );
+            return Ok((
+                Found {
+                    ignored: vec![words],
+                    ..Found::default()
+                },
+                unsaid,
+            ));
         }
     };
     let values = columns.values(table)?;
     let several = columns.responses.len() > 1;
-    let models = columns.responses.iter().zip(values).map(|(response, points)| {
-        let mut notes: Vec<String> = columns.notes.iter().chain(&table.notes).cloned().collect();
-        if response.coherence.is_some() {
-            notes.push("coherence taken as γ²".to_owned());
-        }
-        model(response, points, several, notes)
-    });
-    Ok((Found { items: models.collect(), unused: columns.unused.clone(), ..Found::default() }, Vec::new()))
+    let models = columns
+        .responses
+        .iter()
+        .zip(values)
+        .map(|(response, points)| {
+            let mut notes: Vec<String> =
+                columns.notes.iter().chain(&table.notes).cloned().collect();
+            if response.coherence.is_some() {
+                notes.push("coherence taken as γ²".to_owned());
+            }
+            model(response, points, several, notes)
+        });
+    Ok((
+        Found {
+            items: models.collect(),
+            unused: columns.unused.clone(),
+            ..Found::default()
+        },
+        Vec::new(),
+    ))
 }
 
-fn model(response: &RecognisedResponse, points: ResponsePoints, several: bool, notes: Vec<String>) -> FoundModel {
+fn model(
+    response: &RecognisedResponse,
+    points: ResponsePoints,
+    several: bool,
+    notes: Vec<String>,
+) -> FoundModel {
     let count = points.omega.len();
-    let array = |values: Vec<f64>| ResponseArray { shape: [1, 1, count], values };
+    let array = |values: Vec<f64>| ResponseArray {
+        shape: [1, 1, count],
+        values,
+    };
     let (output, input) = (response.output.clone(), response.input.clone());
     let variable = match (several, &output, &input) {
         (true, Some(output), Some(input)) => Some(format!("{output}/{input}")),
@@ -369,17 +530,31 @@ fn model(response: &RecognisedResponse, points: ResponsePoints, several: bool, n
         re: array(points.re),
         im: array(points.im),
         // Missing coherence trusts nothing.
-        coherence: points
-            .coherence
-            .map(|values| array(values.iter().map(|of| if of.is_nan() { 0.0 } else { *of }).collect())),
+        coherence: points.coherence.map(|values| {
+            array(
+                values
+                    .iter()
+                    .map(|of| if of.is_nan() { 0.0 } else { *of })
+                    .collect(),
+            )
+        }),
         valid_bands: None,
         estimate: Estimate::default(),
     };
     FoundModel {
         draft: ModelDraft {
             response: Some(draft),
-            source: Some(Provenance { variable: variable.clone(), ..Provenance::default() }),
-            ..bare_draft(variable.unwrap_or_default(), Origin::Identified { method: None, order: None })
+            source: Some(Provenance {
+                variable: variable.clone(),
+                ..Provenance::default()
+            }),
+            ..bare_draft(
+                variable.unwrap_or_default(),
+                Origin::Identified {
+                    method: None,
+                    order: None,
+                },
+            )
         },
         inputs: vec![label(input)],
         outputs: vec![label(output)],
@@ -396,13 +571,27 @@ mod tests {
 
     fn matrix(file: &str, rows: usize, columns: usize) -> LooseMatrix {
         let value = Value::Array(Array::matrix(rows, columns, vec![-1.0; rows * columns]));
-        LooseMatrix::of(&[Variable { name: "x".into(), value }], file).unwrap()
+        LooseMatrix::of(
+            &[Variable {
+                name: "x".into(),
+                value,
+            }],
+            file,
+        )
+        .unwrap()
     }
 
     #[test]
     fn matrices_of_a_folder_or_of_one_beginning_are_a_model() {
-        let files =
-            ["c1/A.csv", "c1/B.csv", "c1/C.csv", "c1/nom_A.csv", "c1/nom_B.csv", "c1/nom_C.csv", "c1/lone_A.csv"];
+        let files = [
+            "c1/A.csv",
+            "c1/B.csv",
+            "c1/C.csv",
+            "c1/nom_A.csv",
+            "c1/nom_B.csv",
+            "c1/nom_C.csv",
+            "c1/lone_A.csv",
+        ];
         let found = models_of_matrices(files.iter().map(|file| matrix(file, 1, 1)).collect());
         let names: Vec<&str> = found.items.iter().map(|model| model.file()).collect();
         assert_eq!(names, ["c1", "c1/nom"]);

@@ -9,7 +9,9 @@ use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_MODELS_IN_ALL};
 use gdcm_model::dataset::{Channel, ConditionRecord, ModelDraft, Origin, Provenance, Timing};
 use gdcm_model::units::neper_to_db;
 use gdcm_model::whole_number::whole;
-use gdcm_sysid::identification::{CautionNote, EstimatePoint, Identification, PoleEstimate, ResponseEstimate};
+use gdcm_sysid::identification::{
+    CautionNote, EstimatePoint, Identification, PoleEstimate, ResponseEstimate,
+};
 use gdcm_sysid::records::RecordChannels;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -22,9 +24,15 @@ use crate::output_set::OutputSet;
 use crate::variables::ReadingBudget;
 
 /// What a file of models calls itself.
-pub(super) const MODELS: Format = Format { name: "gdcm-models", version: 1 };
+pub(super) const MODELS: Format = Format {
+    name: "gdcm-models",
+    version: 1,
+};
 /// What a file of identified models calls itself.
-pub(super) const IDENTIFIED: Format = Format { name: "gdcm-identified", version: 1 };
+pub(super) const IDENTIFIED: Format = Format {
+    name: "gdcm-identified",
+    version: 1,
+};
 
 #[derive(Deserialize, Serialize)]
 struct ModelsText {
@@ -36,14 +44,22 @@ struct ModelsText {
 }
 
 /// Adds the models as a file to `outputs`.
-pub fn add_models(models: &[FoundModel], path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
+pub fn add_models(
+    models: &[FoundModel],
+    path: &Path,
+    outputs: &mut OutputSet,
+) -> Result<(), FileError> {
     outputs.add(path, |file| write_models(models, file))
 }
 
 /// Writes the text of that file.
 fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
     let models = models.iter().map(model_text).collect();
-    let text = ModelsText { format: MODELS.name.to_owned(), version: MODELS.version, models };
+    let text = ModelsText {
+        format: MODELS.name.to_owned(),
+        version: MODELS.version,
+        models,
+    };
     write_compact(&text, file)
 }
 
@@ -69,12 +85,25 @@ struct ContainingModelsText {
 }
 
 /// Writes the text of a file of corrected models.
-pub(super) fn write_containing_models(models: &[ContainingModel], file: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write_containing_models(
+    models: &[ContainingModel],
+    file: &mut dyn Write,
+) -> io::Result<()> {
     let mut texts = Vec::new();
     for of in models {
-        texts.push(ContainingModelText { model: model_text(&of.model), contains: of.contains.clone() });
+        texts.push(ContainingModelText {
+            model: model_text(&of.model),
+            contains: of.contains.clone(),
+        });
     }
-    write_compact(&ContainingModelsText { format: MODELS.name, version: MODELS.version, models: texts }, file)
+    write_compact(
+        &ContainingModelsText {
+            format: MODELS.name,
+            version: MODELS.version,
+            models: texts,
+        },
+        file,
+    )
 }
 
 /// The text of a model outside a dataset.
@@ -87,7 +116,11 @@ pub(super) fn model_text(model: &FoundModel) -> ModelText {
         Origin::Nominal { .. } | Origin::Perturbed { .. } => text.role,
     };
     ModelText {
-        name: if text.name.is_empty() { model.file().to_owned() } else { text.name },
+        name: if text.name.is_empty() {
+            model.file().to_owned()
+        } else {
+            text.name
+        },
         role,
         condition: model.facts.condition,
         airspeed_kt: model.facts.airspeed_kt,
@@ -104,12 +137,19 @@ pub(super) fn model_text(model: &FoundModel) -> ModelText {
 }
 
 fn names_text(labels: &[ChannelLabel]) -> Option<Limited<LabelText, MOST_CHANNELS>> {
-    let names = labels.iter().map(|label| LabelText::Name(label.name.clone().unwrap_or_default()));
+    let names = labels
+        .iter()
+        .map(|label| LabelText::Name(label.name.clone().unwrap_or_default()));
     Some(Limited(names.collect()))
 }
 
 fn units_text(labels: &[ChannelLabel]) -> Option<Limited<String, MOST_CHANNELS>> {
-    Some(Limited(labels.iter().map(|label| label.unit.clone().unwrap_or_default()).collect()))
+    Some(Limited(
+        labels
+            .iter()
+            .map(|label| label.unit.clone().unwrap_or_default())
+            .collect(),
+    ))
 }
 
 /// The models of a text of this program, and what of it is not known; nothing where it is no such text, or where something unknown looks
@@ -127,19 +167,27 @@ pub(super) fn found_models(
     if unknown.iter().any(|words| names_delay(words)) {
         return None;
     }
-    let models = models.into_iter().enumerate().map(|(index, model)| found(model, index));
+    let models = models
+        .into_iter()
+        .enumerate()
+        .map(|(index, model)| found(model, index));
     Some((models.collect::<Option<_>>()?, unknown))
 }
 
 /// Whether words about a key that is not known name one that looks like a delay.
 fn names_delay(words: &str) -> bool {
     let words = words.to_lowercase();
-    ["delay", "\"tau", "\"td", "dead", "latency"].iter().any(|word| words.contains(word))
+    ["delay", "\"tau", "\"td", "dead", "latency"]
+        .iter()
+        .any(|word| words.contains(word))
 }
 
 /// The labels of a dataset's channels.
 pub(super) fn labels(channels: &[Channel]) -> Vec<ChannelLabel> {
-    let label = |channel: &Channel| ChannelLabel { name: Some(channel.name.clone()), unit: Some(channel.unit.clone()) };
+    let label = |channel: &Channel| ChannelLabel {
+        name: Some(channel.name.clone()),
+        unit: Some(channel.unit.clone()),
+    };
     channels.iter().map(label).collect()
 }
 
@@ -159,8 +207,9 @@ pub(super) fn bare_draft(name: String, origin: Origin) -> ModelDraft {
 
 /// The model of a text, under the name that a list of models has for it; nothing where it has no size.
 fn found(mut text: ModelText, index: usize) -> Option<FoundModel> {
-    let origin =
-        text.origin().or_else(|| (text.method.is_some() || text.order.is_some()).then(|| text.identified_origin()));
+    let origin = text.origin().or_else(|| {
+        (text.method.is_some() || text.order.is_some()).then(|| text.identified_origin())
+    });
     let (outputs, inputs) = match (&text.b, &text.c, &text.frequency_response) {
         (Some(b), Some(c), _) => (c.shape[0], b.shape[1]),
         (.., Some(response)) => (response.re.shape[0], response.re.shape[1]),
@@ -181,19 +230,42 @@ fn found(mut text: ModelText, index: usize) -> Option<FoundModel> {
     let mut draft = text.into_draft(origin.unwrap_or(Origin::Perturbed { perturbation: None }));
     let source = draft.source.get_or_insert_with(Provenance::default);
     source.variable = Some(format!("models{{{}}}", index + 1));
-    let notes = if notes.is_empty() { source.note.take().into_iter().collect() } else { notes };
-    Some(FoundModel { draft, inputs, outputs, facts, notes })
+    let notes = if notes.is_empty() {
+        source.note.take().into_iter().collect()
+    } else {
+        notes
+    };
+    Some(FoundModel {
+        draft,
+        inputs,
+        outputs,
+        facts,
+        notes,
+    })
 }
 
 /// The labels of channels out of their names and units, empty where there are none; nothing where there are more or fewer of them.
 fn labels_of(count: usize, names: Vec<LabelText>, units: Vec<String>) -> Option<Vec<ChannelLabel>> {
-    if [names.len(), units.len()].into_iter().any(|length| length != 0 && length != count) {
+    if [names.len(), units.len()]
+        .into_iter()
+        .any(|length| length != 0 && length != count)
+    {
         return None;
     }
     let label = |at: usize| {
-        let (name, unit) = names.get(at).map(|label| label.clone().into_parts()).unwrap_or_default();
-        let unit = units.get(at).cloned().filter(|unit| !unit.is_empty()).or(unit);
-        ChannelLabel { name: Some(name).filter(|name| !name.is_empty()), unit: unit.filter(|unit| !unit.is_empty()) }
+        let (name, unit) = names
+            .get(at)
+            .map(|label| label.clone().into_parts())
+            .unwrap_or_default();
+        let unit = units
+            .get(at)
+            .cloned()
+            .filter(|unit| !unit.is_empty())
+            .or(unit);
+        ChannelLabel {
+            name: Some(name).filter(|name| !name.is_empty()),
+            unit: unit.filter(|unit| !unit.is_empty()),
+        }
     };
     Some((0..count).map(label).collect())
 }
@@ -241,19 +313,26 @@ struct MeasuredText {
 
 /// Adds what identification found as a file to `outputs`: the recommended model first, then CT-PBSID without refinement, then the
 /// rest of the bundle; values that are not finite become `null`.
-pub fn add_identified(of: &IdentifiedModels, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
+pub fn add_identified(
+    of: &IdentifiedModels,
+    path: &Path,
+    outputs: &mut OutputSet,
+) -> Result<(), FileError> {
     let found = of.found;
     let label = |rule: &ChannelRule| ChannelLabel {
         name: Some(rule.name.clone()),
         unit: Some(rule.unit.clone()).filter(|unit| !unit.is_empty()),
     };
-    let models = once(&found.refined).chain(once(&found.unrefined)).chain(&found.bundle).map(|model| FoundModel {
-        draft: ModelDraft::of(model),
-        inputs: of.channels.inputs.iter().map(label).collect(),
-        outputs: of.channels.outputs.iter().map(label).collect(),
-        facts: Facts::default(),
-        notes: Vec::new(),
-    });
+    let models = once(&found.refined)
+        .chain(once(&found.unrefined))
+        .chain(&found.bundle)
+        .map(|model| FoundModel {
+            draft: ModelDraft::of(model),
+            inputs: of.channels.inputs.iter().map(label).collect(),
+            outputs: of.channels.outputs.iter().map(label).collect(),
+            facts: Facts::default(),
+            notes: Vec::new(),
+        });
     let models: Vec<FoundModel> = models.collect();
     let in_time = found.validation.as_ref();
     let text = IdentifiedText {
@@ -262,7 +341,10 @@ pub fn add_identified(of: &IdentifiedModels, path: &Path, outputs: &mut OutputSe
         models: models
             .iter()
             .enumerate()
-            .map(|(index, model)| ModelText { recommended: Some(index == 0), ..model_text(model) })
+            .map(|(index, model)| ModelText {
+                recommended: Some(index == 0),
+                ..model_text(model)
+            })
             .collect(),
         measured: measured_text(&found.measured),
         poles: found.poles.iter().map(pole_text).collect(),
@@ -275,7 +357,12 @@ pub fn add_identified(of: &IdentifiedModels, path: &Path, outputs: &mut OutputSe
             "fit_percent": in_time.map_or(&[][..], |of| &of.fit_percent),
             "theil": in_time.map_or(&[][..], |of| &of.theil),
         }),
-        records: of.records.iter().enumerate().map(|(index, record)| record_text(found, index, record)).collect(),
+        records: of
+            .records
+            .iter()
+            .enumerate()
+            .map(|(index, record)| record_text(found, index, record))
+            .collect(),
         cautions: of.cautions.iter().map(caution_text).collect(),
         reading: of.reading,
     };
@@ -284,18 +371,30 @@ pub fn add_identified(of: &IdentifiedModels, path: &Path, outputs: &mut OutputSe
 
 fn measured_text(measured: &ResponseEstimate) -> MeasuredText {
     let points = &measured.points;
-    let (outputs, inputs) = points.first().map_or((0, 0), |point| point.response.shape());
+    let (outputs, inputs) = points
+        .first()
+        .map_or((0, 0), |point| point.response.shape());
     let table = |value: &dyn Fn(&EstimatePoint, (usize, usize)) -> f64| {
         let pairs = (0..outputs).flat_map(|output| (0..inputs).map(move |input| (output, input)));
-        let values = pairs.flat_map(|pair| points.iter().map(move |point| value(point, pair))).collect();
-        Nested { shape: [outputs, inputs, points.len()], values }
+        let values = pairs
+            .flat_map(|pair| points.iter().map(move |point| value(point, pair)))
+            .collect();
+        Nested {
+            shape: [outputs, inputs, points.len()],
+            values,
+        }
     };
-    let coherence = (0..outputs).flat_map(|output| points.iter().map(move |point| point.coherence[output])).collect();
+    let coherence = (0..outputs)
+        .flat_map(|output| points.iter().map(move |point| point.coherence[output]))
+        .collect();
     MeasuredText {
         omega_rad_s: points.iter().map(|point| point.omega).collect(),
         re: table(&|point, pair| point.response[pair].re),
         im: table(&|point, pair| point.response[pair].im),
-        coherence: Nested { shape: [outputs, points.len()], values: coherence },
+        coherence: Nested {
+            shape: [outputs, points.len()],
+            values: coherence,
+        },
         partial_coherence: table(&|point, pair| point.partial_coherence[pair]),
         sd_db: table(&|point, pair| neper_to_db(point.sd(pair))),
         sd_deg: table(&|point, pair| point.sd(pair).to_degrees()),
@@ -321,7 +420,11 @@ fn pole_text(of: &PoleEstimate) -> Value {
 
 /// A record: first and last time of the part of the file that it is, and of each part of it that was used; why others were not.
 fn record_text(found: &Identification, index: usize, record: &ConditionRecord) -> Value {
-    let gaps = found.record_uses.get(index).into_iter().flat_map(|used| &used.gaps);
+    let gaps = found
+        .record_uses
+        .get(index)
+        .into_iter()
+        .flat_map(|used| &used.gaps);
     let gaps: Vec<String> = gaps.map(ToString::to_string).collect();
     let record = json!({
         "name": record.name,
@@ -373,27 +476,48 @@ mod tests {
         let text = written(&before.models);
         let json: serde_json::Value = serde_json::from_slice(&text).unwrap();
         let measured = &json["models"][2];
-        assert_eq!(measured["frequency_response"]["valid_band_rad_s"], serde_json::json!([[[0.5, 1.5]]]));
+        assert_eq!(
+            measured["frequency_response"]["valid_band_rad_s"],
+            serde_json::json!([[[0.5, 1.5]]])
+        );
         assert_eq!(measured["frequency_response"]["averages"], 12.0);
         assert_eq!(measured["frequency_response"]["window_s"], 20.0);
         assert_eq!(measured["source"]["note"], "flight 12");
-        assert_eq!(json["models"][1]["perturbation"], serde_json::json!({"roll_deg": 5.0}));
+        assert_eq!(
+            json["models"][1]["perturbation"],
+            serde_json::json!({"roll_deg": 5.0})
+        );
         let again = read(&text, "models.json");
         assert_eq!(again.faults, Vec::<String>::new());
         for (before, again) in before.models.iter().zip(&again.models) {
-            let without_source = |model: &FoundModel| ModelText { source: None, ..model_text(model) };
+            let without_source = |model: &FoundModel| ModelText {
+                source: None,
+                ..model_text(model)
+            };
             let text = |model| serde_json::to_string(&without_source(model)).unwrap();
             assert_eq!(text(before), text(again));
             assert_eq!(before.draft.origin, again.draft.origin);
         }
-        assert_eq!(again.models[2].draft.source.as_ref().unwrap().variable.as_deref(), Some("models{3}"));
+        assert_eq!(
+            again.models[2]
+                .draft
+                .source
+                .as_ref()
+                .unwrap()
+                .variable
+                .as_deref(),
+            Some("models{3}")
+        );
     }
 
     #[test]
     fn a_file_of_models_made_by_hand_is_read_as_far_as_it_goes() {
         let text = br#"{"format": "gdcm-models", "version": 1, "models": [{"A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]]}]}"#;
         let found = models_of_bytes(text, "models.json", &ReadingBudget::new(1 << 20)).unwrap();
-        assert_eq!(found.models[0].draft.matrices[0].as_ref().unwrap()[(0, 0)], -1.0);
+        assert_eq!(
+            found.models[0].draft.matrices[0].as_ref().unwrap()[(0, 0)],
+            -1.0
+        );
     }
 }
 
@@ -405,16 +529,27 @@ mod identified_tests {
 
     use super::*;
     use crate::{Existing, models_of_bytes};
-    use gdcm_model::dataset::{Dynamics, Model, ModelBands, Origin, PairTable, Provenance, StateSpace};
+    use gdcm_model::dataset::{
+        Dynamics, Model, ModelBands, Origin, PairTable, Provenance, StateSpace,
+    };
 
     fn model(name: &str, gain: f64) -> Model {
         let scalar = |value| DMatrix::from_element(1, 1, value);
-        let dynamics = StateSpace::new(scalar(-1.0), scalar(gain), scalar(1.0), scalar(0.0)).unwrap();
-        let origin = Origin::Identified { method: Some("CT-PBSID".into()), order: Some(1) };
+        let dynamics =
+            StateSpace::new(scalar(-1.0), scalar(gain), scalar(1.0), scalar(0.0)).unwrap();
+        let origin = Origin::Identified {
+            method: Some("CT-PBSID".into()),
+            order: Some(1),
+        };
         let table = |value: f64| PairTable::filled(1, 1, vec![value; 2]);
         Model {
-            source: Some(Provenance { records: vec!["LON 1".into()], ..Provenance::default() }),
-            bands: Some(Arc::new(ModelBands::new(vec![1.0, 2.0], table(0.5), table(3.0)).unwrap())),
+            source: Some(Provenance {
+                records: vec!["LON 1".into()],
+                ..Provenance::default()
+            }),
+            bands: Some(Arc::new(
+                ModelBands::new(vec![1.0, 2.0], table(0.5), table(3.0)).unwrap(),
+            )),
             ..Model::new(name, origin, Dynamics::StateSpace(dynamics))
         }
     }
@@ -436,12 +571,19 @@ mod identified_tests {
     }
 
     fn found() -> Identification {
-        let pole = PoleEstimate { pole: Complex::from(-1.0), sd_re: 0.1, sd_im: 0.0, determined: true };
+        let pole = PoleEstimate {
+            pole: Complex::from(-1.0),
+            sd_re: 0.1,
+            sd_im: 0.0,
+            determined: true,
+        };
         Identification {
             refined: model("CT-PBSID, refined", 2.0),
             unrefined: model("CT-PBSID", 3.0),
             bundle: Vec::new(),
-            measured: ResponseEstimate { points: vec![point(1.0, -2.0, 0.9), point(2.0, f64::NAN, 0.8)] },
+            measured: ResponseEstimate {
+                points: vec![point(1.0, -2.0, 0.9), point(2.0, f64::NAN, 0.8)],
+            },
             poles: vec![pole],
             stabilisation: Vec::new(),
             laguerre_pole: 1.0,
@@ -462,15 +604,30 @@ mod identified_tests {
     }
 
     fn written(cautions: &[CautionNote]) -> Vec<u8> {
-        let rule = |name: &str, unit: &str| ChannelRule { unit: unit.into(), ..ChannelRule::named(name) };
+        let rule = |name: &str, unit: &str| ChannelRule {
+            unit: unit.into(),
+            ..ChannelRule::named(name)
+        };
         let (inputs, outputs) = (vec![rule("LON", "%")], vec![rule("Q", "deg/s")]);
-        let channels = RecordChannels { inputs, outputs, ..RecordChannels::default() };
-        let record = ConditionRecord { used_s: vec![[0.0, 60.0]], ..ConditionRecord::new("LON 1", "lon_1.csv") };
+        let channels = RecordChannels {
+            inputs,
+            outputs,
+            ..RecordChannels::default()
+        };
+        let record = ConditionRecord {
+            used_s: vec![[0.0, 60.0]],
+            ..ConditionRecord::new("LON 1", "lon_1.csv")
+        };
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("identified.json");
         let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
-        let models =
-            IdentifiedModels { found: &found(), channels: &channels, records: &[record], cautions, reading: &[] };
+        let models = IdentifiedModels {
+            found: &found(),
+            channels: &channels,
+            records: &[record],
+            cautions,
+            reading: &[],
+        };
         add_identified(&models, &path, &mut outputs).unwrap();
         outputs.persist().unwrap();
         std::fs::read(path).unwrap()
@@ -479,25 +636,50 @@ mod identified_tests {
     #[test]
     fn every_key_of_the_format_is_written_and_the_recommended_model_comes_first() {
         let text = "PED was not swept: its column is not identified".to_owned();
-        let bytes =
-            written(&[CautionNote { code: "not-swept", channel: Some("PED".into()), text, ..CautionNote::default() }]);
+        let bytes = written(&[CautionNote {
+            code: "not-swept",
+            channel: Some("PED".into()),
+            text,
+            ..CautionNote::default()
+        }]);
         let text: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
-        assert_eq!((&text["format"], &text["version"]), (&"gdcm-identified".into(), &1.into()));
         assert_eq!(
-            (&text["models"][0]["recommended"], &text["models"][1]["recommended"]),
+            (&text["format"], &text["version"]),
+            (&"gdcm-identified".into(), &1.into())
+        );
+        assert_eq!(
+            (
+                &text["models"][0]["recommended"],
+                &text["models"][1]["recommended"]
+            ),
             (&true.into(), &false.into())
         );
-        assert_eq!(text["models"][0]["bands"]["sd_deg"], serde_json::json!([[[3.0, 3.0]]]));
-        assert_eq!(text["models"][0]["source"]["records"], serde_json::json!(["LON 1"]));
+        assert_eq!(
+            text["models"][0]["bands"]["sd_deg"],
+            serde_json::json!([[[3.0, 3.0]]])
+        );
+        assert_eq!(
+            text["models"][0]["source"]["records"],
+            serde_json::json!(["LON 1"])
+        );
         assert_eq!(text["models"][0]["order"], 1);
         assert_eq!(text["measured"]["im"], serde_json::json!([[[-2.0, null]]]));
-        assert_eq!(text["measured"]["coherence"], serde_json::json!([[0.9, 0.8]]));
         assert_eq!(
-            (&text["poles"][0]["sd"], &text["validation"]["held_out_per_dof"]),
+            text["measured"]["coherence"],
+            serde_json::json!([[0.9, 0.8]])
+        );
+        assert_eq!(
+            (
+                &text["poles"][0]["sd"],
+                &text["validation"]["held_out_per_dof"]
+            ),
             (&0.1.into(), &serde_json::Value::Null)
         );
         assert_eq!(text["validation"]["fit_percent"], serde_json::json!([]));
-        assert_eq!(text["records"][0]["used_s"], serde_json::json!([[0.0, 60.0]]));
+        assert_eq!(
+            text["records"][0]["used_s"],
+            serde_json::json!([[0.0, 60.0]])
+        );
         let caution = serde_json::json!({
             "code": "not-swept", "record": null, "records": [], "channel": "PED", "pair": null, "band_rad_s": null,
             "text": "PED was not swept: its column is not identified"
@@ -509,21 +691,53 @@ mod identified_tests {
     fn a_caution_of_one_record_names_it_and_one_of_a_pair_names_both() {
         let of = |names: &[&str]| {
             let records = names.iter().map(|name| (*name).to_owned()).collect();
-            let bytes = written(&[CautionNote { code: "record", records, ..CautionNote::default() }]);
+            let bytes = written(&[CautionNote {
+                code: "record",
+                records,
+                ..CautionNote::default()
+            }]);
             let text: serde_json::Value = serde_json::from_slice(&bytes).unwrap();
-            (text["cautions"][0]["record"].clone(), text["cautions"][0]["records"].clone())
+            (
+                text["cautions"][0]["record"].clone(),
+                text["cautions"][0]["records"].clone(),
+            )
         };
-        assert_eq!(of(&["lat_1"]), ("lat_1".into(), serde_json::json!(["lat_1"])));
-        assert_eq!(of(&["lat_1", "lat_2"]), (serde_json::Value::Null, serde_json::json!(["lat_1", "lat_2"])));
+        assert_eq!(
+            of(&["lat_1"]),
+            ("lat_1".into(), serde_json::json!(["lat_1"]))
+        );
+        assert_eq!(
+            of(&["lat_1", "lat_2"]),
+            (
+                serde_json::Value::Null,
+                serde_json::json!(["lat_1", "lat_2"])
+            )
+        );
     }
 
     #[test]
     fn the_models_are_found_again_in_the_file() {
-        let again =
-            models_of_bytes(&written(&[]), "identified.json", &crate::variables::ReadingBudget::new(1 << 24)).unwrap();
-        let gains: Vec<f64> =
-            again.models.iter().map(|model| model.draft.matrices[1].as_ref().unwrap()[(0, 0)]).collect();
-        assert_eq!((gains, again.faults), (vec![2.0, 3.0], Vec::<String>::new()));
-        assert_eq!(again.models[0].outputs[0], ChannelLabel { name: Some("Q".into()), unit: Some("deg/s".into()) });
+        let again = models_of_bytes(
+            &written(&[]),
+            "identified.json",
+            &crate::variables::ReadingBudget::new(1 << 24),
+        )
+        .unwrap();
+        let gains: Vec<f64> = again
+            .models
+            .iter()
+            .map(|model| model.draft.matrices[1].as_ref().unwrap()[(0, 0)])
+            .collect();
+        assert_eq!(
+            (gains, again.faults),
+            (vec![2.0, 3.0], Vec::<String>::new())
+        );
+        assert_eq!(
+            again.models[0].outputs[0],
+            ChannelLabel {
+                name: Some("Q".into()),
+                unit: Some("deg/s".into())
+            }
+        );
     }
 }

@@ -56,7 +56,11 @@ struct Staged {
 impl OutputSet {
     /// A set without files; `inputs`, what the program reads from, are never replaced.
     pub fn new(existing: Existing, inputs: Vec<PathBuf>) -> Self {
-        Self { existing, inputs, staged: Vec::new() }
+        Self {
+            existing,
+            inputs,
+            staged: Vec::new(),
+        }
     }
 
     /// The same set, which replaces none of these either.
@@ -70,17 +74,26 @@ impl OutputSet {
     pub fn check<P: AsRef<Path>>(&self, places: &[P]) -> Result<(), FileError> {
         let mut there = Vec::new();
         for path in places.iter().map(AsRef::as_ref) {
-            let Ok(found) = fs::metadata(path) else { continue };
+            let Ok(found) = fs::metadata(path) else {
+                continue;
+            };
             // Before the path is opened for any purpose: opening a pipe waits for its other end. Replacing a pipe or a device by a file
             // would break what others use it for.
             if let Some(kind) = kind_of(found.file_type()) {
-                return Err(FileError::OutputNotAFile { path: path.to_owned(), kind });
+                return Err(FileError::OutputNotAFile {
+                    path: path.to_owned(),
+                    kind,
+                });
             }
             if self.inputs.iter().any(|input| is_same_file(path, input)) {
-                return Err(FileError::Input { path: path.to_owned() });
+                return Err(FileError::Input {
+                    path: path.to_owned(),
+                });
             }
             if found.is_dir() {
-                return Err(FileError::Directory { path: path.to_owned() });
+                return Err(FileError::Directory {
+                    path: path.to_owned(),
+                });
             }
             if found.permissions().readonly() {
                 return Err(FileError::unwritable(path, "it is read-only"));
@@ -95,7 +108,11 @@ impl OutputSet {
     }
 
     /// Writes a file beside its place, down to the disk.
-    pub fn add(&mut self, path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+    pub fn add(
+        &mut self,
+        path: &Path,
+        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), FileError> {
         self.check(&[path])?;
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         let directory = directory_of(&target);
@@ -110,7 +127,11 @@ impl OutputSet {
             Ok(temporary)
         };
         let temporary = stage().map_err(|error| FileError::writing(path, &error))?;
-        self.staged.push(Staged { path: path.to_owned(), target, temporary });
+        self.staged.push(Staged {
+            path: path.to_owned(),
+            target,
+            temporary,
+        });
         Ok(())
     }
 
@@ -118,7 +139,11 @@ impl OutputSet {
     /// belong together.
     pub fn add_checksums(&mut self, path: &Path) -> Result<(), FileError> {
         let line = |staged: &Staged| {
-            let name = &staged.path.file_name().unwrap_or_default().to_string_lossy();
+            let name = &staged
+                .path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy();
             Ok(checksum(name, &fs::read(staged.temporary.path())?))
         };
         let lines: io::Result<String> = self.staged.iter().map(line).collect();
@@ -136,9 +161,18 @@ impl OutputSet {
         let directories: BTreeSet<PathBuf> = self.staged.iter().map(directory).collect();
         // Of one file the last to write is right.
         let is_set = self.staged.len() > 1;
-        let _locks: Vec<SetLock> = directories.iter().filter(|_| is_set).filter_map(|of| SetLock::of(of)).collect();
+        let _locks: Vec<SetLock> = directories
+            .iter()
+            .filter(|_| is_set)
+            .filter_map(|of| SetLock::of(of))
+            .collect();
         let mut placed: Vec<Placed> = Vec::new();
-        for Staged { path, target, temporary } in self.staged {
+        for Staged {
+            path,
+            target,
+            temporary,
+        } in self.staged
+        {
             #[cfg(test)]
             tests::end_here(&path);
             match Placed::at(target, temporary, self.existing) {
@@ -158,7 +192,9 @@ impl OutputSet {
 
 /// Whether an output is an input, through whatever links. An input that is a pipe or a device is none, and is not opened.
 fn is_same_file(path: &Path, input: &Path) -> bool {
-    let Ok(found) = fs::metadata(input) else { return false };
+    let Ok(found) = fs::metadata(input) else {
+        return false;
+    };
     kind_of(found.file_type()).is_none() && same_file::is_same_file(path, input).unwrap_or(false)
 }
 
@@ -179,7 +215,12 @@ impl SetLock {
     fn of(directory: &Path) -> Option<Self> {
         let path = directory.join(format!("{PREFIX}lock{SUFFIX}"));
         loop {
-            let file = File::options().create(true).truncate(false).write(true).open(&path).ok()?;
+            let file = File::options()
+                .create(true)
+                .truncate(false)
+                .write(true)
+                .open(&path)
+                .ok()?;
             file.lock().ok()?;
             let locked = same_file::Handle::from_file(file.try_clone().ok()?).ok()?;
             // Whoever had it before has removed the file that was waited for.
@@ -208,9 +249,16 @@ impl Placed {
     fn at(target: PathBuf, temporary: NamedTempFile, existing: Existing) -> io::Result<Self> {
         if existing == Existing::Keep {
             temporary.persist_noclobber(&target)?;
-            return Ok(Self { target, earlier: None });
+            return Ok(Self {
+                target,
+                earlier: None,
+            });
         }
-        let earlier = if target.exists() { Some(kept_aside(&target)?) } else { None };
+        let earlier = if target.exists() {
+            Some(kept_aside(&target)?)
+        } else {
+            None
+        };
         temporary.persist(&target)?;
         Ok(Self { target, earlier })
     }
@@ -233,15 +281,27 @@ fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
         }
         // Another process may take it for a leftover before the lock: then another name is taken.
         let removed = || io::Error::from(ErrorKind::AlreadyExists);
-        let file =
-            File::open(path).map_err(|error| if error.kind() == ErrorKind::NotFound { removed() } else { error })?;
+        let file = File::open(path).map_err(|error| {
+            if error.kind() == ErrorKind::NotFound {
+                removed()
+            } else {
+                error
+            }
+        })?;
         let _ = file.try_lock();
-        if path.exists() { Ok(file) } else { Err(removed()) }
+        if path.exists() {
+            Ok(file)
+        } else {
+            Err(removed())
+        }
     })
 }
 
 /// Writes one file, in place of what is there; on an error that is untouched. A link is followed: what it leads to is replaced.
-pub(super) fn write_whole(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
+pub(super) fn write_whole(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), FileError> {
     let mut set = OutputSet::new(Existing::Replace, Vec::new());
     set.add(path, write)?;
     set.persist()
@@ -250,7 +310,9 @@ pub(super) fn write_whole(path: &Path, write: impl FnOnce(&mut dyn Write) -> io:
 /// Makes a directory and those above it, where they are not there yet.
 pub fn make_directory(path: &Path) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|error| match error.kind() {
-        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => FileError::NotADirectory { path: path.to_owned() },
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => FileError::NotADirectory {
+            path: path.to_owned(),
+        },
         _ => FileError::writing(path, &error),
     })
 }
@@ -272,7 +334,9 @@ fn named() -> tempfile::Builder<'static, 'static> {
 }
 
 fn directory_of(file: &Path) -> &Path {
-    file.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    file.parent()
+        .filter(|parent| !parent.as_os_str().is_empty())
+        .unwrap_or(Path::new("."))
 }
 
 /// A temporary file, locked as long as it is open: the lock ends with its process, however that ends, and on whatever machine.
@@ -280,13 +344,19 @@ fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> 
     let mut builder = named();
     // That of the file it replaces, or what the process's mask leaves of reading and writing for all.
     #[cfg(unix)]
-    builder.permissions(fs::metadata(target).map(|found| found.permissions()).unwrap_or_else(|_| {
-        use std::os::unix::fs::PermissionsExt;
-        fs::Permissions::from_mode(0o666)
-    }));
+    builder.permissions(
+        fs::metadata(target)
+            .map(|found| found.permissions())
+            .unwrap_or_else(|_| {
+                use std::os::unix::fs::PermissionsExt;
+                fs::Permissions::from_mode(0o666)
+            }),
+    );
     loop {
         // Its own words would name the temporary file.
-        let temporary = builder.tempfile_in(directory).map_err(|error| io::Error::from(error.kind()))?;
+        let temporary = builder
+            .tempfile_in(directory)
+            .map_err(|error| io::Error::from(error.kind()))?;
         // A file system without locks has no leftovers removed, see below.
         let _ = temporary.as_file().lock();
         // Another process may have taken it for a leftover before the lock.
@@ -299,7 +369,10 @@ fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> 
 /// Removes the temporary files of runs that were killed: those that nobody has locked.
 fn remove_leftovers(directory: &Path) {
     for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
-        let is_ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
+        let is_ours = entry
+            .file_name()
+            .to_str()
+            .is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
         if is_ours
             && entry.file_type().is_ok_and(|kind| kind.is_file())
             && let Ok(file) = File::options().write(true).open(entry.path())
@@ -315,7 +388,9 @@ mod tests {
     use super::*;
 
     fn names(directory: &Path) -> Vec<String> {
-        let names = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let names = fs::read_dir(directory)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap());
         let mut names: Vec<String> = names.collect();
         names.sort();
         names
@@ -344,7 +419,10 @@ mod tests {
 
     fn write_set(directory: &Path, text: &str) -> Result<(), FileError> {
         let paths = SET.map(|name| directory.join(name));
-        let mut set = set_of(Existing::Replace, &paths.each_ref().map(|path| (path.as_path(), text)))?;
+        let mut set = set_of(
+            Existing::Replace,
+            &paths.each_ref().map(|path| (path.as_path(), text)),
+        )?;
         set.add_checksums(&directory.join(CHECKSUMS))?;
         set.persist()
     }
@@ -357,7 +435,8 @@ mod tests {
     }
 
     #[test]
-    fn a_set_whose_process_is_killed_on_the_way_is_not_whole_by_its_checksums_and_the_next_one_is() {
+    fn a_set_whose_process_is_killed_on_the_way_is_not_whole_by_its_checksums_and_the_next_one_is()
+    {
         // The process that is killed runs this very test.
         if let Some(directory) = std::env::var_os("GDCM_TEST_DIRECTORY") {
             write_set(Path::new(&directory), "after").unwrap();
@@ -366,17 +445,36 @@ mod tests {
         let name = format!(
             "{module}::a_set_whose_process_is_killed_on_the_way_is_not_whole_by_its_checksums_and_the_next_one_is"
         );
-        for (end, whole) in [(SET[0], Some("before")), (SET[1], None), (SET[2], None), (CHECKSUMS, None)] {
+        for (end, whole) in [
+            (SET[0], Some("before")),
+            (SET[1], None),
+            (SET[2], None),
+            (CHECKSUMS, None),
+        ] {
             let directory = tempfile::tempdir().unwrap();
             write_set(directory.path(), "before").unwrap();
             let mut process = std::process::Command::new(std::env::current_exe().unwrap());
-            process.args(["--exact", &name]).env(END, end).env("GDCM_TEST_DIRECTORY", directory.path());
+            process
+                .args(["--exact", &name])
+                .env(END, end)
+                .env("GDCM_TEST_DIRECTORY", directory.path());
             assert!(!process.output().unwrap().status.success());
-            assert!(names(directory.path()).len() > 4, "the process left temporary files: it ended before {end}");
-            assert_eq!(whole_set(directory.path()).as_deref(), whole, "killed before {end}");
+            assert!(
+                names(directory.path()).len() > 4,
+                "the process left temporary files: it ended before {end}"
+            );
+            assert_eq!(
+                whole_set(directory.path()).as_deref(),
+                whole,
+                "killed before {end}"
+            );
             write_set(directory.path(), "again").unwrap();
             assert_eq!(whole_set(directory.path()).as_deref(), Some("again"));
-            assert_eq!(names(directory.path()), [SET[0], CHECKSUMS, SET[1], SET[2]], "nothing is left behind");
+            assert_eq!(
+                names(directory.path()),
+                [SET[0], CHECKSUMS, SET[1], SET[2]],
+                "nothing is left behind"
+            );
         }
     }
 
@@ -419,7 +517,12 @@ mod tests {
             file.write_all(b"half of it")?;
             Err(io::Error::from(ErrorKind::StorageFull))
         });
-        assert!(result.unwrap_err().to_string().ends_with("corrections.json: cannot be written: the disk is full"));
+        assert!(
+            result
+                .unwrap_err()
+                .to_string()
+                .ends_with("corrections.json: cannot be written: the disk is full")
+        );
         assert_eq!(fs::read_to_string(&path).unwrap(), "before");
         assert_eq!(names(directory.path()), ["corrections.json"]);
     }
@@ -429,10 +532,17 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let [old, new, blocked] = ["old", "new", "blocked"].map(|name| directory.path().join(name));
         fs::write(&old, "before").unwrap();
-        let set = set_of(Existing::Replace, &[(&old, "after"), (&new, "after"), (&blocked, "after")]).unwrap();
+        let set = set_of(
+            Existing::Replace,
+            &[(&old, "after"), (&new, "after"), (&blocked, "after")],
+        )
+        .unwrap();
         fs::create_dir(&blocked).unwrap();
         let message = set.persist().unwrap_err().to_string();
-        assert!(message.contains("blocked: ") && !message.contains(PREFIX), "{message}");
+        assert!(
+            message.contains("blocked: ") && !message.contains(PREFIX),
+            "{message}"
+        );
         assert_eq!(fs::read_to_string(&old).unwrap(), "before");
         assert_eq!(names(directory.path()), ["blocked", "old"]);
     }
@@ -443,7 +553,9 @@ mod tests {
         let [first, second] = ["first", "second"].map(|name| directory.path().join(name));
         let set = set_of(Existing::Keep, &[(&first, "ours"), (&second, "ours")]).unwrap();
         fs::write(&second, "theirs").unwrap();
-        assert!(matches!(set.persist(), Err(FileError::Exists { paths }) if paths == [second.clone()]));
+        assert!(
+            matches!(set.persist(), Err(FileError::Exists { paths }) if paths == [second.clone()])
+        );
         assert_eq!(fs::read_to_string(&second).unwrap(), "theirs");
         assert_eq!(names(directory.path()), ["second"]);
     }
@@ -457,7 +569,11 @@ mod tests {
         let there = [paths[0].clone(), paths[2].clone()];
         let refused = OutputSet::new(Existing::Keep, Vec::new()).check(&paths);
         assert!(matches!(refused, Err(FileError::Exists { paths }) if paths == there));
-        assert!(OutputSet::new(Existing::Replace, Vec::new()).check(&paths).is_ok());
+        assert!(
+            OutputSet::new(Existing::Replace, Vec::new())
+                .check(&paths)
+                .is_ok()
+        );
     }
 
     #[cfg(unix)]
@@ -465,19 +581,34 @@ mod tests {
     fn a_pipe_or_a_device_is_refused_before_it_is_opened_as_output_and_as_input() {
         let directory = tempfile::tempdir().unwrap();
         let [pipe, file] = ["pipe", "file"].map(|name| directory.path().join(name));
-        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        assert!(
+            std::process::Command::new("mkfifo")
+                .arg(&pipe)
+                .status()
+                .unwrap()
+                .success()
+        );
         fs::write(&file, "before").unwrap();
         for existing in [Existing::Keep, Existing::Replace] {
             let mut set = OutputSet::new(existing, vec![file.clone()]);
-            for (path, expected) in [(pipe.as_path(), "a named pipe"), (Path::new("/dev/null"), "a device")] {
+            for (path, expected) in [
+                (pipe.as_path(), "a named pipe"),
+                (Path::new("/dev/null"), "a device"),
+            ] {
                 let error = set.check(&[path]).unwrap_err();
-                assert!(matches!(&error, FileError::OutputNotAFile { kind, .. } if *kind == expected), "{error}");
+                assert!(
+                    matches!(&error, FileError::OutputNotAFile { kind, .. } if *kind == expected),
+                    "{error}"
+                );
                 assert_eq!(error.code(), Some("output-not-a-file"));
                 assert_eq!(set.add(path, |_| Ok(())).unwrap_err().code(), error.code());
             }
         }
         let reading_pipe = OutputSet::new(Existing::Replace, vec![pipe]);
-        assert!(reading_pipe.check(&[&file]).is_ok(), "the pipe is not opened to see whether it is the file");
+        assert!(
+            reading_pipe.check(&[&file]).is_ok(),
+            "the pipe is not opened to see whether it is the file"
+        );
     }
 
     #[cfg(unix)]
@@ -488,10 +619,18 @@ mod tests {
         fs::write(&input, "data").unwrap();
         let link = directory.path().join("link");
         std::os::unix::fs::symlink(&input, &link).unwrap();
-        let around = directory.path().join("..").join(directory.path().file_name().unwrap()).join("data.json");
+        let around = directory
+            .path()
+            .join("..")
+            .join(directory.path().file_name().unwrap())
+            .join("data.json");
         for path in [&input, &link, &around] {
             let set = OutputSet::new(Existing::Replace, vec![input.clone()]);
-            assert!(matches!(set.check(&[path]), Err(FileError::Input { .. })), "{}", path.display());
+            assert!(
+                matches!(set.check(&[path]), Err(FileError::Input { .. })),
+                "{}",
+                path.display()
+            );
         }
     }
 
@@ -504,7 +643,10 @@ mod tests {
         let underway = set_of(Existing::Keep, &[(&at("underway"), "text")]).unwrap();
         write_whole(&at("next"), |_| Ok(())).unwrap();
         underway.persist().unwrap();
-        assert_eq!(names(directory.path()), [".gdcm-notes.txt", "next", "underway"]);
+        assert_eq!(
+            names(directory.path()),
+            [".gdcm-notes.txt", "next", "underway"]
+        );
     }
 
     #[cfg(unix)]
@@ -518,7 +660,10 @@ mod tests {
         symlink(&path, &link).unwrap();
         write_whole(&link, |file| file.write_all(b"after")).unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "after");
-        assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
+        assert_eq!(
+            fs::metadata(&path).unwrap().permissions().mode() & 0o777,
+            0o640
+        );
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
     }
 
@@ -526,6 +671,10 @@ mod tests {
     fn a_directory_that_is_not_there_is_told() {
         let directory = tempfile::tempdir().unwrap();
         let error = write_whole(&directory.path().join("no/such/file"), |_| Ok(())).unwrap_err();
-        assert!(error.to_string().ends_with("file: cannot be written: its directory does not exist"));
+        assert!(
+            error
+                .to_string()
+                .ends_with("file: cannot be written: its directory does not exist")
+        );
     }
 }

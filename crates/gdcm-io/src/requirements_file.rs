@@ -4,11 +4,13 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use gdcm_method::requirements::{BandwidthRule, LevelBoundaries, Tolerance, ToleranceError, ToleranceTable};
+use gdcm_method::requirements::{
+    BandwidthRule, LevelBoundaries, Tolerance, ToleranceError, ToleranceTable,
+};
 use gdcm_model::dataset::{ConditionId, Location};
 use gdcm_study::study::{
-    BandwidthFinding, HistoryFinding, ModeFinding, ModeNumbers, Requirements, SummaryFinding, TimeHistories,
-    ToleranceFinding,
+    BandwidthFinding, HistoryFinding, ModeFinding, ModeNumbers, Requirements, SummaryFinding,
+    TimeHistories, ToleranceFinding,
 };
 use serde::{Deserialize, Serialize};
 
@@ -69,22 +71,34 @@ pub fn write_requirements(
         time_histories,
     };
     outputs.add(&json, |file| write_pretty(&document, file))?;
-    outputs.add(&table, |file| write_rows(requirements, time_histories, file))?;
+    outputs.add(&table, |file| {
+        write_rows(requirements, time_histories, file)
+    })?;
     outputs.persist()
 }
 
 /// What stands in the columns.
-const HEADING: &str =
-    "question condition airspeed_kt role model output input mode record tolerance quantity value low high remark";
+const HEADING: &str = "question condition airspeed_kt role model output input mode record tolerance quantity value low high remark";
 
 /// A row for each number.
-fn write_rows(requirements: &Requirements, time_histories: &TimeHistories, file: &mut dyn Write) -> io::Result<()> {
+fn write_rows(
+    requirements: &Requirements,
+    time_histories: &TimeHistories,
+    file: &mut dyn Write,
+) -> io::Result<()> {
     let heading: Vec<String> = HEADING.split(' ').map(str::to_owned).collect();
     let bandwidth = requirements.bandwidth.iter().flat_map(bandwidth_rows);
     let modes = requirements.modes.iter().flat_map(mode_rows);
     let summary = requirements.summary.iter().flat_map(summary_rows);
     let histories = time_histories.records.iter().flat_map(history_rows);
-    write_records(file, std::iter::once(heading).chain(bandwidth).chain(modes).chain(summary).chain(histories))
+    write_records(
+        file,
+        std::iter::once(heading)
+            .chain(bandwidth)
+            .chain(modes)
+            .chain(summary)
+            .chain(histories),
+    )
 }
 
 /// What a number is of: the first ten cells of a row.
@@ -103,7 +117,13 @@ struct Subject<'a> {
 }
 
 impl Subject<'_> {
-    fn row(&self, name: &str, value: Option<f64>, interval: Option<[f64; 2]>, remark: String) -> Vec<String> {
+    fn row(
+        &self,
+        name: &str,
+        value: Option<f64>,
+        interval: Option<[f64; 2]>,
+        remark: String,
+    ) -> Vec<String> {
         let cell = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
         vec![
             self.question.to_owned(),
@@ -138,7 +158,12 @@ fn bandwidth_rows(finding: &BandwidthFinding) -> Vec<Vec<String>> {
     };
     let row = |(name, value)| {
         let interval = finding.interval.get(name).copied();
-        subject.row(name, value, interval, bandwidth_remark(finding, name, value.is_some()))
+        subject.row(
+            name,
+            value,
+            interval,
+            bandwidth_remark(finding, name, value.is_some()),
+        )
     };
     finding.quantities().into_iter().map(row).collect()
 }
@@ -171,7 +196,9 @@ fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bo
 }
 
 fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
-    let name = finding.name.map_or_else(String::new, |name| format!(" {name}"));
+    let name = finding
+        .name
+        .map_or_else(String::new, |name| format!(" {name}"));
     let mode = format!("{}{name}", finding.number);
     let rows = |role: &str, numbers: &ModeNumbers| -> Vec<Vec<String>> {
         let subject = Subject {
@@ -183,12 +210,33 @@ fn mode_rows(finding: &ModeFinding) -> Vec<Vec<String>> {
             mode: &mode,
             ..Subject::default()
         };
-        let why = |name: &str| numbers.absent.get(name).copied().unwrap_or_default().to_owned();
-        numbers.quantities().into_iter().map(|(name, value)| subject.row(name, value, None, why(name))).collect()
+        let why = |name: &str| {
+            numbers
+                .absent
+                .get(name)
+                .copied()
+                .unwrap_or_default()
+                .to_owned()
+        };
+        numbers
+            .quantities()
+            .into_iter()
+            .map(|(name, value)| subject.row(name, value, None, why(name)))
+            .collect()
     };
-    let physics = finding.physics.iter().flat_map(|numbers| rows("physics", numbers));
-    let corrected = finding.corrected.iter().flat_map(|numbers| rows("corrected", numbers));
-    rows("identified", &finding.identified).into_iter().chain(physics).chain(corrected).collect()
+    let physics = finding
+        .physics
+        .iter()
+        .flat_map(|numbers| rows("physics", numbers));
+    let corrected = finding
+        .corrected
+        .iter()
+        .flat_map(|numbers| rows("corrected", numbers));
+    rows("identified", &finding.identified)
+        .into_iter()
+        .chain(physics)
+        .chain(corrected)
+        .collect()
 }
 
 fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
@@ -202,7 +250,11 @@ fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
     };
     let absent: &BTreeMap<&'static str, String> = &finding.absent;
     let why = |name: &str| absent.get(name).cloned().unwrap_or_default();
-    finding.quantities().into_iter().map(|(name, value)| subject.row(name, value, None, why(name))).collect()
+    finding
+        .quantities()
+        .into_iter()
+        .map(|(name, value)| subject.row(name, value, None, why(name)))
+        .collect()
 }
 
 /// What has no tolerance first, then each tolerance.
@@ -223,13 +275,18 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
         (Some(_), left_out) => format!("without {}", left_out.join(", ")),
     };
     let rms = subject.row("j_rms", finding.j_rms, None, remark);
-    let theil = finding
-        .theil
-        .iter()
-        .map(|(output, theil)| Subject { output, ..subject }.row("theil", Some(*theil), None, String::new()));
+    let theil = finding.theil.iter().map(|(output, theil)| {
+        Subject { output, ..subject }.row("theil", Some(*theil), None, String::new())
+    });
     let against = finding.tolerances.iter().flat_map(|of| {
-        let subject = Subject { output: &of.output, tolerance: &of.quantity, ..subject };
-        let row = |(name, value): (&str, Option<f64>)| subject.row(name, value, None, tolerance_remark(of, name));
+        let subject = Subject {
+            output: &of.output,
+            tolerance: &of.quantity,
+            ..subject
+        };
+        let row = |(name, value): (&str, Option<f64>)| {
+            subject.row(name, value, None, tolerance_remark(of, name))
+        };
         of.quantities().map(row)
     });
     std::iter::once(rms).chain(theil).chain(against).collect()
@@ -248,7 +305,10 @@ fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
 // The engineer's own tables that requirements are asked with, each a file of its own, for any study (M17): levels of bandwidth and
 // phase delay, tolerances of time histories.
 
-const TOLERANCES: Format = Format { name: "gdcm-tolerances", version: 1 };
+const TOLERANCES: Format = Format {
+    name: "gdcm-tolerances",
+    version: 1,
+};
 
 #[derive(Serialize, Deserialize)]
 struct TolerancesText {
@@ -266,7 +326,8 @@ struct TolerancesText {
 pub fn read_levels(path: &Path) -> Result<LevelBoundaries, FileError> {
     let source = Source::read(path, &ReadingBudget::default())?;
     let text = source.text();
-    serde_json::from_slice(text).map_err(|error| json_error(text, path, Location::default(), &error))
+    serde_json::from_slice(text)
+        .map_err(|error| json_error(text, path, Location::default(), &error))
 }
 
 /// Reads a table of tolerances; whole, or not at all. Keys that are not known are cautions.
@@ -274,13 +335,21 @@ pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<String>), Fil
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
     let (text, cautions) = TOLERANCES.decode::<TolerancesText>(source.text(), path, &budget)?;
-    let refused = |error: ToleranceError| ContentError::new(Location::default(), ContentFault::from(error));
+    let refused =
+        |error: ToleranceError| ContentError::new(Location::default(), ContentFault::from(error));
     let table = ToleranceTable::new(text.source, text.tolerances);
-    Ok((table.map_err(|error| FileError::content(path, refused(error)))?, cautions))
+    Ok((
+        table.map_err(|error| FileError::content(path, refused(error)))?,
+        cautions,
+    ))
 }
 
 /// Writes a table of tolerances beside others of `outputs`.
-pub fn add_tolerances(table: &ToleranceTable, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
+pub fn add_tolerances(
+    table: &ToleranceTable,
+    path: &Path,
+    outputs: &mut OutputSet,
+) -> Result<(), FileError> {
     let text = TolerancesText {
         format: TOLERANCES.name.to_owned(),
         version: TOLERANCES.version,
@@ -303,17 +372,27 @@ mod table_tests {
             std::fs::write(&path, text).unwrap();
             read_levels(&path).map_err(|error| error.to_string())
         };
-        let levels = read(r#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#).unwrap();
-        assert_eq!(levels.of_axis("P").next().unwrap().points, [[2.0, 0.0], [2.5, 0.2]]);
+        let levels =
+            read(r#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#).unwrap();
+        assert_eq!(
+            levels.of_axis("P").next().unwrap().points,
+            [[2.0, 0.0], [2.5, 0.2]]
+        );
         let cases = [
-            (r#"[{"name": "L", "axis": "P", "points": [[2, 0]]}]"#, "expected at least 2 points, found 1"),
+            (
+                r#"[{"name": "L", "axis": "P", "points": [[2, 0]]}]"#,
+                "expected at least 2 points, found 1",
+            ),
             (r#"[{"name": "L", "points": [[2, 0], [1, 1]]}]"#, "axis"),
             (r#"{"levels": []}"#, "a list"),
             ("[{", "end"),
         ];
         for (text, words) in cases {
             let error = read(text).unwrap_err();
-            assert!(error.contains("levels.json") && error.contains(words), "{error}");
+            assert!(
+                error.contains("levels.json") && error.contains(words),
+                "{error}"
+            );
         }
     }
 
@@ -343,7 +422,11 @@ mod table_tests {
                 "\"absolute\": 0.0",
                 "tolerance 1, \"roll rate\": expected absolute above zero, found 0",
             ),
-            ("\"channel\": \"P\"", "\"channel\": \"\"", "tolerance 1, \"roll rate\": expected the name of an output"),
+            (
+                "\"channel\": \"P\"",
+                "\"channel\": \"\"",
+                "tolerance 1, \"roll rate\": expected the name of an output",
+            ),
             ("\"absolute\": 3.0,", "", "\"absolute\" is missing"),
             ("gdcm-tolerances", "gdcm-rules", "gdcm-tolerances"),
         ] {
@@ -353,6 +436,9 @@ mod table_tests {
         }
         std::fs::write(&path, right.replacen("\"source\"", "\"sauce\"", 1)).unwrap();
         let (table, cautions) = load_tolerances(&path).unwrap();
-        assert!(table.source().is_empty() && cautions.len() == 1 && cautions[0].contains("sauce"), "{cautions:?}");
+        assert!(
+            table.source().is_empty() && cautions.len() == 1 && cautions[0].contains("sauce"),
+            "{cautions:?}"
+        );
     }
 }

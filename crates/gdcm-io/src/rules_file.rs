@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use gdcm_model::assembly::{
-    ChannelRule, NamePattern, RowRule, Rules, ScopedDeclarations, Signs, UnitRule, standard_patterns,
+    ChannelRule, NamePattern, RowRule, Rules, ScopedDeclarations, Signs, UnitRule,
+    standard_patterns,
 };
 use gdcm_model::dataset::Location;
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
@@ -22,7 +23,10 @@ const RULES_EXTENSION: &str = "gdcm-rules.json";
 
 /// The place of the rules beside a dataset: "week.gdcm-rules.json" beside "week.json.gz".
 pub fn rules_path(dataset: &Path) -> PathBuf {
-    let name = dataset.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let name = dataset
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default();
     let stem = name.trim_end_matches(".gz").trim_end_matches(".json");
     dataset.with_file_name(format!("{stem}.{RULES_EXTENSION}"))
 }
@@ -45,24 +49,59 @@ pub fn add_rules(rules: &Rules, path: &Path, outputs: &mut OutputSet) -> Result<
 fn rules_of(text: RulesText) -> Result<Rules, ContentError> {
     let pattern = |(index, text): (usize, &String)| {
         NamePattern::new(text).map_err(|error| {
-            let fault = ContentFault::Word { expected: error.to_string(), found: text.clone() };
-            ContentError::new(Location::entry(format!("patterns, entry {}", index + 1)), fault)
+            let fault = ContentFault::Word {
+                expected: error.to_string(),
+                found: text.clone(),
+            };
+            ContentError::new(
+                Location::entry(format!("patterns, entry {}", index + 1)),
+                fault,
+            )
         })
     };
-    let patterns = text.patterns.iter().enumerate().map(pattern).collect::<Result<_, _>>()?;
+    let patterns = text
+        .patterns
+        .iter()
+        .enumerate()
+        .map(pattern)
+        .collect::<Result<_, _>>()?;
     check_declarations(&text)?;
-    let of_roles = text.role_signs.iter().map(|(role, signs)| (format!("role_signs, {role}"), signs));
-    let of_models =
-        text.models.iter().filter_map(|(key, row)| Some((format!("models, {key}, signs"), row.signs.as_ref()?)));
-    for (place, signs) in std::iter::once(("signs".to_owned(), &text.signs)).chain(of_roles).chain(of_models) {
+    let of_roles = text
+        .role_signs
+        .iter()
+        .map(|(role, signs)| (format!("role_signs, {role}"), signs));
+    let of_models = text
+        .models
+        .iter()
+        .filter_map(|(key, row)| Some((format!("models, {key}, signs"), row.signs.as_ref()?)));
+    for (place, signs) in std::iter::once(("signs".to_owned(), &text.signs))
+        .chain(of_roles)
+        .chain(of_models)
+    {
         if let Some((channel, sign)) = signs.iter().find(|(_, sign)| sign.abs() != 1.0) {
-            let fault = ContentFault::Word { expected: "1 or -1".to_owned(), found: sign.to_string() };
-            return Err(ContentError::new(Location::entry(format!("{place}, {channel}")), fault));
+            let fault = ContentFault::Word {
+                expected: "1 or -1".to_owned(),
+                found: sign.to_string(),
+            };
+            return Err(ContentError::new(
+                Location::entry(format!("{place}, {channel}")),
+                fault,
+            ));
         }
     }
-    if let Some(role) = text.role_signs.keys().find(|role| !matches!(role.as_str(), "identified" | "physics")) {
-        let fault = ContentFault::Word { expected: "\"identified\" or \"physics\"".to_owned(), found: role.clone() };
-        return Err(ContentError::new(Location::entry("role_signs".to_owned()), fault));
+    if let Some(role) = text
+        .role_signs
+        .keys()
+        .find(|role| !matches!(role.as_str(), "identified" | "physics"))
+    {
+        let fault = ContentFault::Word {
+            expected: "\"identified\" or \"physics\"".to_owned(),
+            found: role.clone(),
+        };
+        return Err(ContentError::new(
+            Location::entry("role_signs".to_owned()),
+            fault,
+        ));
     }
     let mut rules = Rules {
         name: text.name,
@@ -92,21 +131,44 @@ fn check_declarations(text: &RulesText) -> Result<(), ContentError> {
         let place = format!("declarations, {}", declared.of);
         (place, declared.channels.clone())
     });
-    let of_models = text.models.iter().map(|(key, row)| (format!("models, {key}"), row.declarations()));
+    let of_models = text
+        .models
+        .iter()
+        .map(|(key, row)| (format!("models, {key}"), row.declarations()));
     for (place, declared) in of_scopes.chain(of_models) {
         let wrong = |key: &str, channel: &str, expected: &str, found: String| {
-            let fault = ContentFault::Word { expected: expected.to_owned(), found };
-            Err(ContentError::new(Location::entry(format!("{place}, {key}, {channel}")), fault))
+            let fault = ContentFault::Word {
+                expected: expected.to_owned(),
+                found,
+            };
+            Err(ContentError::new(
+                Location::entry(format!("{place}, {key}, {channel}")),
+                fault,
+            ))
         };
         for (channel, factor) in &declared.factors {
             if !factor.is_finite() || *factor == 0.0 {
-                return wrong("factors", channel, "a number other than 0", factor.to_string());
+                return wrong(
+                    "factors",
+                    channel,
+                    "a number other than 0",
+                    factor.to_string(),
+                );
             }
             if let Some(unit) = declared.units.get(channel) {
-                return wrong("factors", channel, "a unit or a factor, not both", format!("{unit} and {factor}"));
+                return wrong(
+                    "factors",
+                    channel,
+                    "a unit or a factor, not both",
+                    format!("{unit} and {factor}"),
+                );
             }
         }
-        if let Some((channel, unit)) = declared.units.iter().find(|(_, unit)| unit.trim().is_empty()) {
+        if let Some((channel, unit)) = declared
+            .units
+            .iter()
+            .find(|(_, unit)| unit.trim().is_empty())
+        {
             return wrong("units", channel, "a unit", unit.clone());
         }
         if let Some((channel, sign)) = declared.signs.iter().find(|(_, sign)| sign.abs() != 1.0) {
@@ -127,7 +189,11 @@ fn text_of(rules: &Rules) -> RulesText {
         on_axis: rules.on_axis.clone(),
         band_rad_s: [rules.band.0, rules.band.1],
         conversions: rules.units.clone(),
-        patterns: rules.patterns.iter().map(|pattern| pattern.as_str().to_owned()).collect(),
+        patterns: rules
+            .patterns
+            .iter()
+            .map(|pattern| pattern.as_str().to_owned())
+            .collect(),
         signs: rules.signs.clone(),
         role_signs: rules.role_signs.clone(),
         declarations: rules.declarations.clone(),
@@ -140,7 +206,10 @@ fn text_of(rules: &Rules) -> RulesText {
 // A rules file, key by key.
 
 /// What a rules file calls itself.
-pub(super) const FORMAT: Format = Format { name: "gdcm-rules", version: 1 };
+pub(super) const FORMAT: Format = Format {
+    name: "gdcm-rules",
+    version: 1,
+};
 
 /// Most patterns, and conversions, of a rules file.
 const MOST_PATTERNS: usize = 200;
@@ -174,7 +243,11 @@ pub(super) struct RulesText {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(super) role_signs: BTreeMap<String, Signs>,
     /// Units, factors and signs of channels in the models of a role, of folders, or of a file.
-    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "list::<MOST_DECLARATIONS, _, _>")]
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_DECLARATIONS, _, _>"
+    )]
     pub(super) declarations: Vec<ScopedDeclarations>,
     /// Sample time of models without one \[s\], 0 of continuous-time models.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -189,7 +262,10 @@ pub(super) struct RulesText {
 
 /// The patterns of a file that names none.
 fn standard() -> Vec<String> {
-    standard_patterns().iter().map(|pattern| pattern.as_str().to_owned()).collect()
+    standard_patterns()
+        .iter()
+        .map(|pattern| pattern.as_str().to_owned())
+        .collect()
 }
 
 #[cfg(test)]
@@ -202,13 +278,20 @@ mod tests {
 
     #[test]
     fn rules_come_back_as_they_were_written() {
-        let mut rules = Rules { name: "week 12".into(), ..Rules::default() };
+        let mut rules = Rules {
+            name: "week 12".into(),
+            ..Rules::default()
+        };
         rules.inputs.push(ChannelRule {
             unit: "%".into(),
             unit_in_files: Some("in".into()),
             ..ChannelRule::named("LON")
         });
-        rules.units.push(UnitRule { channel: "LON".into(), from: "in".into(), factor: 8.5 });
+        rules.units.push(UnitRule {
+            channel: "LON".into(),
+            from: "in".into(),
+            factor: 8.5,
+        });
         let row = RowRule {
             role: Some(RowRole::Nominal),
             airspeed_kt: Some(45.0),
@@ -220,10 +303,18 @@ mod tests {
             ..RowRule::default()
         };
         rules.rows.insert("c03/nom.mat".into(), row);
-        rules.headings.insert("frf.csv".into(), vec!["omega [Hz]".into(), "re".into(), "im".into()]);
+        rules.headings.insert(
+            "frf.csv".into(),
+            vec!["omega [Hz]".into(), "re".into(), "im".into()],
+        );
         rules.signs.insert("NZ".into(), -1.0);
-        rules.role_signs.insert("identified".into(), [("NZ".to_owned(), 1.0)].into());
-        rules.declarations_mut(FileScope::Identified).units.insert("LON".into(), "in".into());
+        rules
+            .role_signs
+            .insert("identified".into(), [("NZ".to_owned(), 1.0)].into());
+        rules
+            .declarations_mut(FileScope::Identified)
+            .units
+            .insert("LON".into(), "in".into());
         let of_folder = rules.declarations_mut(FileScope::from("flight_*".to_owned()));
         of_folder.factors.insert("LON".into(), -8.0);
         of_folder.signs.insert("NZ".into(), -1.0);
@@ -239,16 +330,27 @@ mod tests {
     fn a_wrong_pattern_and_a_wrong_role_are_named() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("r.json");
-        let start =
-            r#"{"format": "gdcm-rules", "version": 1, "name": "", "inputs": [], "outputs": [], "band_rad_s": [1, 2], "#;
+        let start = r#"{"format": "gdcm-rules", "version": 1, "name": "", "inputs": [], "outputs": [], "band_rad_s": [1, 2], "#;
         for (rest, expected) in [
             (r#""patterns": ["("]}"#, "patterns, entry 1"),
             (r#""models": {"a.mat": {"role": "trim"}}}"#, "a.mat"),
             (r#""signs": {"NZ": -2}}"#, "signs, NZ"),
-            (r#""declarations": [{"of": "flight_*", "factors": {"LON": 0}}]}"#, "declarations, flight_*, factors, LON"),
-            (r#""declarations": [{"of": "all", "factors": {"LON": 2}, "units": {"LON": "in"}}]}"#, "factors, LON"),
-            (r#""declarations": [{"of": "physics", "units": {"LON": " "}}]}"#, "declarations, physics, units, LON"),
-            (r#""models": {"a.mat": {"factors": {"Q": 0}}}}"#, "models, a.mat, factors, Q"),
+            (
+                r#""declarations": [{"of": "flight_*", "factors": {"LON": 0}}]}"#,
+                "declarations, flight_*, factors, LON",
+            ),
+            (
+                r#""declarations": [{"of": "all", "factors": {"LON": 2}, "units": {"LON": "in"}}]}"#,
+                "factors, LON",
+            ),
+            (
+                r#""declarations": [{"of": "physics", "units": {"LON": " "}}]}"#,
+                "declarations, physics, units, LON",
+            ),
+            (
+                r#""models": {"a.mat": {"factors": {"Q": 0}}}}"#,
+                "models, a.mat, factors, Q",
+            ),
             (r#""role_signs": {"nominal": {"NZ": -1}}}"#, "role_signs"),
         ] {
             std::fs::write(&path, format!("{start}{rest}")).unwrap();

@@ -35,15 +35,29 @@ impl Source<'static> {
     pub(super) fn read(path: &Path, budget: &ReadingBudget<'_>) -> Result<Self, FileError> {
         let bytes = read_bytes(path, LARGEST_TEXT, budget)?;
         let Source { sha256, text } = Source::of(&bytes, path, budget)?;
-        let unpacked = if let Cow::Owned(unpacked) = text { Some(unpacked) } else { None };
-        Ok(Source { sha256, text: Cow::Owned(unpacked.unwrap_or(bytes)) })
+        let unpacked = if let Cow::Owned(unpacked) = text {
+            Some(unpacked)
+        } else {
+            None
+        };
+        Ok(Source {
+            sha256,
+            text: Cow::Owned(unpacked.unwrap_or(bytes)),
+        })
     }
 }
 
 impl<'b> Source<'b> {
     /// Takes bytes that are already at hand; `path` is what an error calls them.
-    pub(super) fn of(bytes: &'b [u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Self, FileError> {
-        Ok(Source { sha256: sha256(bytes, path, budget)?, text: text_of(bytes, path, budget)? })
+    pub(super) fn of(
+        bytes: &'b [u8],
+        path: &Path,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Self, FileError> {
+        Ok(Source {
+            sha256: sha256(bytes, path, budget)?,
+            text: text_of(bytes, path, budget)?,
+        })
     }
 
     /// The text, without a byte order mark.
@@ -66,10 +80,15 @@ fn open_file(path: &Path) -> Result<(File, u64), FileError> {
     let failed = |error: std::io::Error| FileError::reading(path, &error);
     let metadata = fs::metadata(path).map_err(failed)?;
     if metadata.is_dir() {
-        return Err(FileError::Directory { path: path.to_owned() });
+        return Err(FileError::Directory {
+            path: path.to_owned(),
+        });
     }
     if let Some(kind) = kind_of(metadata.file_type()) {
-        return Err(FileError::NotAFile { path: path.to_owned(), kind });
+        return Err(FileError::NotAFile {
+            path: path.to_owned(),
+            kind,
+        });
     }
     Ok((File::open(path).map_err(failed)?, metadata.len()))
 }
@@ -77,18 +96,36 @@ fn open_file(path: &Path) -> Result<(File, u64), FileError> {
 /// A file's text from its beginning on, unpacked where the file is packed.
 pub(super) fn text_reader(path: &Path) -> Result<Box<dyn Read>, FileError> {
     let mut file = BufReader::with_capacity(CHUNK, open_file(path)?.0);
-    let begin = file.fill_buf().map_err(|error| FileError::reading(path, &error))?;
-    if begin.starts_with(&GZIP_MAGIC) { Ok(Box::new(MultiGzDecoder::new(file))) } else { Ok(Box::new(file)) }
+    let begin = file
+        .fill_buf()
+        .map_err(|error| FileError::reading(path, &error))?;
+    if begin.starts_with(&GZIP_MAGIC) {
+        Ok(Box::new(MultiGzDecoder::new(file)))
+    } else {
+        Ok(Box::new(file))
+    }
 }
 
 /// The bytes of a file of at most `most`.
-pub(super) fn read_bytes(path: &Path, most: u64, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, FileError> {
+pub(super) fn read_bytes(
+    path: &Path,
+    most: u64,
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<u8>, FileError> {
     let failed = |error: std::io::Error| FileError::reading(path, &error);
     let (file, length) = open_file(path)?;
     let mut file = file.take(most + 1);
     let mut bytes = Vec::with_capacity(usize::try_from(length.min(most)).unwrap_or(0));
-    while file.by_ref().take(CHUNK as u64).read_to_end(&mut bytes).map_err(failed)? > 0 {
-        budget.work(CHUNK as u64, "").map_err(|fault| FileError::variables(path, fault))?;
+    while file
+        .by_ref()
+        .take(CHUNK as u64)
+        .read_to_end(&mut bytes)
+        .map_err(failed)?
+        > 0
+    {
+        budget
+            .work(CHUNK as u64, "")
+            .map_err(|fault| FileError::variables(path, fault))?;
     }
     check_length(bytes.len() as u64, most, path)?;
     Ok(bytes)
@@ -137,12 +174,18 @@ fn unpack(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Vec<u
         let mut member = GzDecoder::new(rest);
         loop {
             // A text that grows is copied into twice its memory.
-            budget.take(CHUNK as u64, 2, "").map_err(|fault| FileError::variables(path, fault))?;
+            budget
+                .take(CHUNK as u64, 2, "")
+                .map_err(|fault| FileError::variables(path, fault))?;
             let unpacked = member.by_ref().take(CHUNK as u64).read_to_end(&mut text);
             check_length(text.len() as u64, LARGEST_TEXT, path)?;
             let count = unpacked.map_err(|error| match error.kind() {
-                ErrorKind::UnexpectedEof => FileError::GzipCutOff { path: path.to_owned() },
-                _ => FileError::Gzip { path: path.to_owned() },
+                ErrorKind::UnexpectedEof => FileError::GzipCutOff {
+                    path: path.to_owned(),
+                },
+                _ => FileError::Gzip {
+                    path: path.to_owned(),
+                },
             })?;
             if count == 0 {
                 break;
@@ -155,19 +198,32 @@ fn unpack(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Vec<u
 
 fn check_length(length: u64, most: u64, path: &Path) -> Result<(), FileError> {
     if length > most {
-        return Err(FileError::TooLarge { path: path.to_owned(), most_mib: most >> 20 });
+        return Err(FileError::TooLarge {
+            path: path.to_owned(),
+            most_mib: most >> 20,
+        });
     }
     Ok(())
 }
 
 /// SHA-256 of bytes, in lower-case hexadecimal.
-pub(super) fn sha256(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<String, FileError> {
+pub(super) fn sha256(
+    bytes: &[u8],
+    path: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<String, FileError> {
     let mut hash = Sha256::new();
     for chunk in bytes.chunks(CHUNK) {
-        budget.work(0, "").map_err(|fault| FileError::variables(path, fault))?;
+        budget
+            .work(0, "")
+            .map_err(|fault| FileError::variables(path, fault))?;
         hash.update(chunk);
     }
-    Ok(hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(hash
+        .finalize()
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect())
 }
 
 // Whether a file is still what it was.
@@ -183,7 +239,10 @@ impl FileStamp {
     /// The stamp of a file; none while there is no such file.
     pub fn of(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
-        Some(Self { modified: metadata.modified().ok(), length: metadata.len() })
+        Some(Self {
+            modified: metadata.modified().ok(),
+            length: metadata.len(),
+        })
     }
 }
 
@@ -220,14 +279,18 @@ mod source_tests {
     fn the_hash_is_that_of_the_published_example() {
         // FIPS 180-2, appendix B.1.
         let hash = sha256(b"abc", Path::new("x"), &ReadingBudget::new(0)).unwrap();
-        assert_eq!(hash, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+        assert_eq!(
+            hash,
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+        );
     }
 
     #[test]
     fn members_follow_one_another_and_zeros_behind_the_last_are_passed_over() {
         use std::io::Write;
         let member = |text: &[u8]| {
-            let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+            let mut encoder =
+                flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
             encoder.write_all(text).unwrap();
             encoder.finish().unwrap()
         };
@@ -242,7 +305,8 @@ mod source_tests {
 
     #[test]
     fn a_byte_order_mark_is_no_part_of_the_text() {
-        let source = Source::of(b"\xef\xbb\xbf{}", Path::new("x"), &ReadingBudget::default()).unwrap();
+        let source =
+            Source::of(b"\xef\xbb\xbf{}", Path::new("x"), &ReadingBudget::default()).unwrap();
         assert_eq!(source.text(), b"{}");
     }
 }
@@ -262,7 +326,11 @@ mod home_tests {
             ("x/~/y", "x/~/y"),
             ("/data/x", "/data/x"),
         ] {
-            assert_eq!(at_home(Path::new(typed), Some(home)), Path::new(meant), "{typed}");
+            assert_eq!(
+                at_home(Path::new(typed), Some(home)),
+                Path::new(meant),
+                "{typed}"
+            );
             assert_eq!(at_home(Path::new(typed), None), Path::new(typed));
         }
     }

@@ -33,7 +33,13 @@ impl Places {
     }
 
     fn new(shape: &[usize], strides: Vec<usize>, left: usize) -> Self {
-        Self { shape: shape.to_vec(), strides, index: vec![0; shape.len()], place: 0, left }
+        Self {
+            shape: shape.to_vec(),
+            strides,
+            index: vec![0; shape.len()],
+            place: 0,
+            left,
+        }
     }
 }
 
@@ -41,7 +47,9 @@ impl Places {
 ///
 /// Lengths beside a zero are multiplied all the same: an array of nothing with sides that cannot be multiplied is refused too.
 pub(crate) fn count(shape: &[usize]) -> Option<usize> {
-    shape.iter().try_fold(1usize, |product, &side| product.checked_mul(side.max(1)))?;
+    shape
+        .iter()
+        .try_fold(1usize, |product, &side| product.checked_mul(side.max(1)))?;
     Some(shape.iter().product())
 }
 
@@ -74,7 +82,9 @@ impl ExactSizeIterator for Places {}
 pub(crate) fn first_index_fastest<T>(shape: &[usize], elements: Vec<T>) -> Vec<T> {
     let mut elements: Vec<Option<T>> = elements.into_iter().map(Some).collect();
     let places = Places::row_major(shape).into_iter().flatten();
-    places.filter_map(|place| elements.get_mut(place)?.take()).collect()
+    places
+        .filter_map(|place| elements.get_mut(place)?.take())
+        .collect()
 }
 
 /// A shape with at least two dimensions: numbers alone are 1 x 1, lists are rows.
@@ -115,14 +125,29 @@ impl Entries {
         (re, im): (Vec<f64>, Option<Vec<f64>>),
     ) -> Option<Self> {
         let stored = *starts.last()?;
-        let short = stored > rows.len() || stored > re.len() || im.as_ref().is_some_and(|im| stored > im.len());
-        if starts.len() != shape[1].checked_add(1)? || starts[0] != 0 || !starts.is_sorted() || short {
+        let short = stored > rows.len()
+            || stored > re.len()
+            || im.as_ref().is_some_and(|im| stored > im.len());
+        if starts.len() != shape[1].checked_add(1)?
+            || starts[0] != 0
+            || !starts.is_sorted()
+            || short
+        {
             return None;
         }
         rows.truncate(stored);
         let runs = starts.windows(2).enumerate();
-        let columns = runs.flat_map(|(column, ends)| std::iter::repeat_n(column, ends[1] - ends[0])).collect();
-        Some(Self { shape, kind, rows, columns, re, im })
+        let columns = runs
+            .flat_map(|(column, ends)| std::iter::repeat_n(column, ends[1] - ends[0]))
+            .collect();
+        Some(Self {
+            shape,
+            kind,
+            rows,
+            columns,
+            re,
+            im,
+        })
     }
 
     /// The whole matrix; what two entries say of the same place is added.
@@ -141,13 +166,22 @@ impl Entries {
             let mut filled = vec![0.0; height.saturating_mul(width)];
             for ((&row, &column), value) in self.rows.iter().zip(&self.columns).zip(values) {
                 let inside = row < height && column < width;
-                let place = if inside { filled.get_mut(column * height + row) } else { None };
+                let place = if inside {
+                    filled.get_mut(column * height + row)
+                } else {
+                    None
+                };
                 *place.ok_or_else(&outside)? += value;
             }
             Ok(filled)
         };
         let im = self.im.as_deref().map(fill).transpose()?;
-        Ok(Array { shape: self.shape.to_vec(), kind: self.kind, re: fill(&self.re)?, im })
+        Ok(Array {
+            shape: self.shape.to_vec(),
+            kind: self.kind,
+            re: fill(&self.re)?,
+            im,
+        })
     }
 }
 
@@ -181,12 +215,20 @@ impl StoredNumber {
             NumberClass::Float => &[2, 4, 8],
             _ => &[1, 2, 4, 8],
         };
-        sizes.contains(&size).then_some(Self { class, size, big_endian })
+        sizes.contains(&size).then_some(Self {
+            class,
+            size,
+            big_endian,
+        })
     }
 
     /// A number of one of these sizes, the lowest byte first.
     pub(crate) const fn little_endian(class: NumberClass, size: usize) -> Self {
-        Self { class, size, big_endian: false }
+        Self {
+            class,
+            size,
+            big_endian: false,
+        }
     }
 
     /// Number of bytes.
@@ -301,11 +343,26 @@ mod stored_number_tests {
     #[test]
     fn signs_and_byte_orders_are_kept() {
         let number = |class, size, big| StoredNumber::new(class, size, big).unwrap();
-        assert_eq!(number(NumberClass::Signed, 2, true).decode(&[0xff, 0xfe]), -2.0);
-        assert_eq!(number(NumberClass::Signed, 2, false).decode(&[0xfe, 0xff]), -2.0);
-        assert_eq!(number(NumberClass::Unsigned, 4, true).decode(&[0, 0, 1, 2]), 258.0);
-        assert_eq!(number(NumberClass::Float, 4, true).decode(&[0x3f, 0x80, 0, 0]), 1.0);
-        assert_eq!(number(NumberClass::Signed, 8, false).decode(&[255; 8]), -1.0);
+        assert_eq!(
+            number(NumberClass::Signed, 2, true).decode(&[0xff, 0xfe]),
+            -2.0
+        );
+        assert_eq!(
+            number(NumberClass::Signed, 2, false).decode(&[0xfe, 0xff]),
+            -2.0
+        );
+        assert_eq!(
+            number(NumberClass::Unsigned, 4, true).decode(&[0, 0, 1, 2]),
+            258.0
+        );
+        assert_eq!(
+            number(NumberClass::Float, 4, true).decode(&[0x3f, 0x80, 0, 0]),
+            1.0
+        );
+        assert_eq!(
+            number(NumberClass::Signed, 8, false).decode(&[255; 8]),
+            -1.0
+        );
         assert_eq!(StoredNumber::new(NumberClass::Float, 16, false), None);
     }
 }
@@ -316,20 +373,35 @@ mod sparse_tests {
 
     fn entries(shape: [usize; 2]) -> Entries {
         let (rows, columns) = (vec![0, 1], vec![1, 0]);
-        Entries { shape, kind: ElementKind::Float, rows, columns, re: vec![2.0, 3.0], im: Some(vec![0.0, 1.0]) }
+        Entries {
+            shape,
+            kind: ElementKind::Float,
+            rows,
+            columns,
+            re: vec![2.0, 3.0],
+            im: Some(vec![0.0, 1.0]),
+        }
     }
 
     #[test]
     fn what_is_not_stored_is_zero() {
         let budget = ReadingBudget::new(1000);
-        let array = entries([2, 2]).filled("", &budget, || VariableFault::Stopped).unwrap();
-        assert_eq!((array.re, array.im), (vec![0.0, 3.0, 2.0, 0.0], Some(vec![0.0, 1.0, 0.0, 0.0])));
+        let array = entries([2, 2])
+            .filled("", &budget, || VariableFault::Stopped)
+            .unwrap();
+        assert_eq!(
+            (array.re, array.im),
+            (vec![0.0, 3.0, 2.0, 0.0], Some(vec![0.0, 1.0, 0.0, 0.0]))
+        );
     }
 
     #[test]
     fn places_outside_and_sizes_beyond_the_limit_are_refused() {
         let budget = ReadingBudget::new(1000);
-        assert_eq!(entries([1, 2]).filled("", &budget, || VariableFault::Stopped), Err(VariableFault::Stopped));
+        assert_eq!(
+            entries([1, 2]).filled("", &budget, || VariableFault::Stopped),
+            Err(VariableFault::Stopped)
+        );
         let large = entries([usize::MAX, 1]).filled("", &budget, || VariableFault::Stopped);
         assert!(matches!(large, Err(VariableFault::TooLarge { .. })));
     }

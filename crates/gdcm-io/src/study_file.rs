@@ -10,12 +10,14 @@ use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, M
 use gdcm_model::dataset::{Condition, ConditionId, Dataset, Location};
 use gdcm_model::whole_number::whole;
 use gdcm_study::study::{
-    AdoptedModels, BundleChoice, ConditionChoice, Decisions, Difference, Inventory, RequirementSettings, ResponseNames,
-    Settings, Study, TurnedChannel,
+    AdoptedModels, BundleChoice, ConditionChoice, Decisions, Difference, Inventory,
+    RequirementSettings, ResponseNames, Settings, Study, TurnedChannel,
 };
 use serde::{Deserialize, Serialize};
 
-use crate::dataset_file::{DatasetOrigin, LoadedDataset, ModelText, RecordText, dataset_from, embedded_example};
+use crate::dataset_file::{
+    DatasetOrigin, LoadedDataset, ModelText, RecordText, dataset_from, embedded_example,
+};
 use crate::file_error::{ContentError, ContentFault, FileError};
 use crate::json_text::{Format, list, write_pretty};
 use crate::location::Outline;
@@ -27,7 +29,10 @@ use crate::variables::ReadingBudget;
 pub(crate) const MOST_VARIANTS: usize = 1000;
 
 /// What a study file calls itself.
-const FORMAT: Format = Format { name: "gdcm-study", version: 1 };
+const FORMAT: Format = Format {
+    name: "gdcm-study",
+    version: 1,
+};
 
 /// How the name of a study file ends.
 pub const STUDY_EXTENSION: &str = "gdcm-study.json";
@@ -59,16 +64,28 @@ struct StudyText {
     #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
     conditions: Vec<ConditionText>,
     /// Identified models taken in place of the dataset's own; absent where there are none.
-    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_CONDITIONS, _, _>"
+    )]
     taken: Vec<TakenText>,
     /// Channels whose models are turned; absent where there are none.
-    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "list::<MOST_CHANNELS, _, _>")]
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_CHANNELS, _, _>"
+    )]
     signs: Vec<TurnedChannel>,
     /// What requirements are asked with; absent where nothing of it was decided.
     #[serde(default, skip_serializing_if = "is_default")]
     requirements: RequirementSettings,
     /// Decisions kept under names; absent in studies of older programs.
-    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "list::<MOST_VARIANTS, _, _>")]
+    #[serde(
+        default,
+        skip_serializing_if = "Vec::is_empty",
+        deserialize_with = "list::<MOST_VARIANTS, _, _>"
+    )]
     variants: Vec<VariantText>,
 }
 
@@ -120,12 +137,28 @@ struct ConditionText {
 
 impl ConditionText {
     fn of(condition: &Condition, study: &Study) -> Self {
-        let ConditionChoice { physics, identified, scheduled, held_out } = study.choice(condition.id()).clone();
-        Self { id: condition.id().0, physics, identified, scheduled, held_out }
+        let ConditionChoice {
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        } = study.choice(condition.id()).clone();
+        Self {
+            id: condition.id().0,
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        }
     }
 
     fn all(study: &Study) -> Vec<Self> {
-        study.dataset.conditions().iter().map(|condition| Self::of(condition, study)).collect()
+        study
+            .dataset
+            .conditions()
+            .iter()
+            .map(|condition| Self::of(condition, study))
+            .collect()
     }
 }
 
@@ -134,7 +167,11 @@ impl StudyText {
         let variants = study.variants.iter().filter_map(|variant| {
             let of_variant = study.of_variant(&variant.name)?;
             let settings = variant.settings.named(&study.dataset);
-            Some(VariantText { name: variant.name.clone(), settings, conditions: ConditionText::all(&of_variant) })
+            Some(VariantText {
+                name: variant.name.clone(),
+                settings,
+                conditions: ConditionText::all(&of_variant),
+            })
         });
         let taken = study.taken_models().map(|(condition, taken)| TakenText {
             condition: condition.0,
@@ -170,11 +207,17 @@ fn decisions_of(
 ) -> Result<Decisions, ContentError> {
     let mut decisions = present_decisions(settings, conditions, dataset)?;
     decisions.taken = taken_of(taken, dataset)?;
-    for VariantText { name, settings, conditions } in variants {
-        let of_variant = present_decisions(settings, conditions, dataset).map_err(|mut error| {
-            error.place.entry = format!("variant \"{name}\", {}", error.place.entry);
-            error
-        })?;
+    for VariantText {
+        name,
+        settings,
+        conditions,
+    } in variants
+    {
+        let of_variant =
+            present_decisions(settings, conditions, dataset).map_err(|mut error| {
+                error.place.entry = format!("variant \"{name}\", {}", error.place.entry);
+                error
+            })?;
         decisions.variants.push((name, of_variant));
     }
     Ok(decisions)
@@ -188,15 +231,35 @@ fn present_decisions(
 ) -> Result<Decisions, ContentError> {
     settings.complete_delay_scheduling();
     let start = Settings::of(dataset);
-    settings.with_responses(|_, _| start.ignored.clone()).check().map_err(|(setting, refusal)| {
-        ContentError::new(Location::entry(format!("settings, {}", setting.key.replace('.', ", "))), refusal)
-    })?;
+    settings
+        .with_responses(|_, _| start.ignored.clone())
+        .check()
+        .map_err(|(setting, refusal)| {
+            ContentError::new(
+                Location::entry(format!("settings, {}", setting.key.replace('.', ", "))),
+                refusal,
+            )
+        })?;
     let mut choices = BTreeMap::new();
     for (index, condition) in conditions.into_iter().enumerate() {
-        let ConditionText { id, physics, identified, scheduled, held_out } = condition;
-        let choice = ConditionChoice { physics, identified, scheduled, held_out };
+        let ConditionText {
+            id,
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        } = condition;
+        let choice = ConditionChoice {
+            physics,
+            identified,
+            scheduled,
+            held_out,
+        };
         if choices.insert(ConditionId(id), choice).is_some() {
-            return Err(ContentError::new(Location::condition(index + 1, id), ContentFault::DuplicateCondition { id }));
+            return Err(ContentError::new(
+                Location::condition(index + 1, id),
+                ContentFault::DuplicateCondition { id },
+            ));
         }
     }
     Ok(Decisions {
@@ -210,15 +273,28 @@ fn present_decisions(
 }
 
 /// The models that a study has taken, for its dataset.
-fn taken_of(text: Vec<TakenText>, dataset: &Dataset) -> Result<Vec<(ConditionId, Arc<AdoptedModels>)>, ContentError> {
+fn taken_of(
+    text: Vec<TakenText>,
+    dataset: &Dataset,
+) -> Result<Vec<(ConditionId, Arc<AdoptedModels>)>, ContentError> {
     let of = |(index, text): (usize, TakenText)| {
         let mut place = Location::condition(index + 1, text.condition);
         place.entry = "taken".to_owned();
-        let drafts = text.identified_models.into_iter().map(ModelText::into_identified);
-        let models = drafts.map(|draft| Ok(dataset.identified_model(draft)?.0)).collect::<Result<_, ContentError>>()?;
+        let drafts = text
+            .identified_models
+            .into_iter()
+            .map(ModelText::into_identified);
+        let models = drafts
+            .map(|draft| Ok(dataset.identified_model(draft)?.0))
+            .collect::<Result<_, ContentError>>()?;
         let records = text.records.into_iter().enumerate();
-        let records = records.map(|(index, record)| record.into_record(&place, index + 1)).collect::<Result<_, _>>()?;
-        Ok((ConditionId(text.condition), Arc::new(AdoptedModels { models, records })))
+        let records = records
+            .map(|(index, record)| record.into_record(&place, index + 1))
+            .collect::<Result<_, _>>()?;
+        Ok((
+            ConditionId(text.condition),
+            Arc::new(AdoptedModels { models, records }),
+        ))
     };
     text.into_iter().enumerate().map(of).collect()
 }
@@ -229,11 +305,18 @@ pub fn save_study(study: &Study, loaded: &LoadedDataset, path: &Path) -> Result<
 }
 
 /// Saves a study with its dataset's absolute path: for a file that lies nowhere near it.
-pub(super) fn save_recovery(study: &Study, loaded: &LoadedDataset, path: &Path) -> Result<(), FileError> {
+pub(super) fn save_recovery(
+    study: &Study,
+    loaded: &LoadedDataset,
+    path: &Path,
+) -> Result<(), FileError> {
     // Its directory may be out of reach just now: the decisions are kept all the same.
-    let absolute =
-        |dataset: &Path| settled(dataset).or_else(|_| Ok(std::path::absolute(dataset).unwrap_or(dataset.into())));
-    save(study, loaded, path, |dataset| slashed(&absolute(dataset)?, path))
+    let absolute = |dataset: &Path| {
+        settled(dataset).or_else(|_| Ok(std::path::absolute(dataset).unwrap_or(dataset.into())))
+    };
+    save(study, loaded, path, |dataset| {
+        slashed(&absolute(dataset)?, path)
+    })
 }
 
 fn save(
@@ -242,15 +325,29 @@ fn save(
     path: &Path,
     path_text: impl FnOnce(&Path) -> Result<String, FileError>,
 ) -> Result<(), FileError> {
-    let (sha256, holds) = (loaded.sha256.clone(), Some(Inventory::of(study.file_dataset())));
+    let (sha256, holds) = (
+        loaded.sha256.clone(),
+        Some(Inventory::of(study.file_dataset())),
+    );
     let reference = match &loaded.origin {
-        DatasetOrigin::EmbeddedExample => DatasetReference { path: None, name: EMBEDDED.to_owned(), sha256, holds },
-        DatasetOrigin::File(dataset) => {
-            DatasetReference { path: Some(path_text(dataset)?), name: study.dataset.name().to_owned(), sha256, holds }
-        }
+        DatasetOrigin::EmbeddedExample => DatasetReference {
+            path: None,
+            name: EMBEDDED.to_owned(),
+            sha256,
+            holds,
+        },
+        DatasetOrigin::File(dataset) => DatasetReference {
+            path: Some(path_text(dataset)?),
+            name: study.dataset.name().to_owned(),
+            sha256,
+            holds,
+        },
     };
     let text = StudyText::of(study, reference);
-    let mut output = OutputSet::new(Existing::Replace, loaded.origin.file().into_iter().collect());
+    let mut output = OutputSet::new(
+        Existing::Replace,
+        loaded.origin.file().into_iter().collect(),
+    );
     output.add(path, |file| write_pretty(&text, file))?;
     output.persist()
 }
@@ -259,7 +356,9 @@ fn save(
 pub(super) fn dataset_of_study(path: &Path) -> Option<String> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget).ok()?;
-    let (text, _) = FORMAT.decode::<StudyText>(source.text(), path, &budget).ok()?;
+    let (text, _) = FORMAT
+        .decode::<StudyText>(source.text(), path, &budget)
+        .ok()?;
     Some(match text.dataset.path {
         None => format!("the {EMBEDDED}"),
         Some(path) => Path::new(&path).file_name()?.to_string_lossy().into_owned(),
@@ -273,12 +372,20 @@ pub fn open_study(path: &Path) -> Result<OpenedStudy, FileError> {
 }
 
 /// Opens a study whose dataset has moved to `dataset`, both within one budget.
-pub fn open_study_of(path: &Path, dataset: &Path, budget: &ReadingBudget<'_>) -> Result<OpenedStudy, FileError> {
+pub fn open_study_of(
+    path: &Path,
+    dataset: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<OpenedStudy, FileError> {
     study_from(&Source::read(path, budget)?, path, Some(dataset), budget)
 }
 
 /// Whether a text has the structure of a study, as far as it goes.
-pub(super) fn check_study_text(text: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<(), FileError> {
+pub(super) fn check_study_text(
+    text: &[u8],
+    path: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<(), FileError> {
     FORMAT.decode::<StudyText>(text, path, budget).map(drop)
 }
 
@@ -291,19 +398,33 @@ pub(super) fn study_from(
 ) -> Result<OpenedStudy, FileError> {
     let (text, unknown) = FORMAT.decode::<StudyText>(source.text(), path, budget)?;
     let mut loaded = load_referenced(&text.dataset, path, moved, budget)?;
-    let mut decisions = decisions_of(text.settings, text.conditions, text.taken, text.variants, &loaded.dataset)
-        .map_err(|error| FileError::content(path, error))?;
+    let mut decisions = decisions_of(
+        text.settings,
+        text.conditions,
+        text.taken,
+        text.variants,
+        &loaded.dataset,
+    )
+    .map_err(|error| FileError::content(path, error))?;
     decisions.signs = text.signs;
     decisions.requirements = Arc::new(text.requirements);
     let (study, not_applied) = decisions.applied_to(loaded.dataset.clone());
     let mut differences = match text.dataset.holds {
         _ if text.dataset.sha256 == loaded.sha256 => Vec::new(),
         Some(held) => held.differences(&loaded.dataset),
-        None => vec![Difference::AnotherFile { expected: text.dataset.sha256, found: loaded.sha256.clone() }],
+        None => vec![Difference::AnotherFile {
+            expected: text.dataset.sha256,
+            found: loaded.sha256.clone(),
+        }],
     };
     differences.extend(not_applied);
     loaded.cautions.extend(unknown);
-    Ok(OpenedStudy { study, loaded, path: path.to_owned(), differences })
+    Ok(OpenedStudy {
+        study,
+        loaded,
+        path: path.to_owned(),
+        differences,
+    })
 }
 
 fn load_referenced(
@@ -317,10 +438,25 @@ fn load_referenced(
         (None, None) => return embedded_example(),
         (None, Some(relative)) => referenced_path(study, relative),
     };
-    let load = |path: PathBuf| dataset_from(&Source::read(&path, budget)?, DatasetOrigin::File(path), budget);
-    let lost = |error: FileError| FileError::StudyDataset { path: study.to_owned(), dataset: Box::new(error) };
+    let load = |path: PathBuf| {
+        dataset_from(
+            &Source::read(&path, budget)?,
+            DatasetOrigin::File(path),
+            budget,
+        )
+    };
+    let lost = |error: FileError| FileError::StudyDataset {
+        path: study.to_owned(),
+        dataset: Box::new(error),
+    };
     // A dataset whose reading was stopped is not lost.
-    load(path).map_err(|error| if error.is_stopped() { error } else { lost(error) })
+    load(path).map_err(|error| {
+        if error.is_stopped() {
+            error
+        } else {
+            lost(error)
+        }
+    })
 }
 
 /// Where the study says that its dataset is, or beside the study if it is only there.
@@ -328,33 +464,50 @@ fn referenced_path(study: &Path, relative: &str) -> PathBuf {
     let directory = study.parent().unwrap_or(Path::new(""));
     let said = directory.join(relative);
     let beside = said.file_name().map(|name| directory.join(name));
-    beside.filter(|beside| !said.exists() && beside.exists()).unwrap_or(said)
+    beside
+        .filter(|beside| !said.exists() && beside.exists())
+        .unwrap_or(said)
 }
 
 /// The dataset's path as the study at `study` has to write it.
 fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
     let (dataset, directory) = (settled(dataset)?, settled(study)?);
     // No way leads to another drive: there the path is the dataset's own.
-    let relative =
-        directory.parent().and_then(|directory| pathdiff::diff_paths(&dataset, directory)).unwrap_or(dataset);
+    let relative = directory
+        .parent()
+        .and_then(|directory| pathdiff::diff_paths(&dataset, directory))
+        .unwrap_or(dataset);
     slashed(&relative, study)
 }
 
 /// The way from the folder of `file` to `folder`, the present one where that is empty, with `/` between its parts; the folder as it is
 /// where there is none.
 pub fn relative_folder(folder: &Path, file: &Path) -> String {
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
     let absolute = |path: &Path| std::path::absolute(path).ok();
     let base = absolute(file).and_then(|file| file.parent().map(Path::to_owned));
-    let way = absolute(folder).zip(base).and_then(|(folder, base)| pathdiff::diff_paths(folder, base));
-    way.as_deref().unwrap_or(folder).to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/")
+    let way = absolute(folder)
+        .zip(base)
+        .and_then(|(folder, base)| pathdiff::diff_paths(folder, base));
+    way.as_deref()
+        .unwrap_or(folder)
+        .to_string_lossy()
+        .replace(std::path::MAIN_SEPARATOR, "/")
 }
 
 /// A path with `/` between its parts.
 fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
     let unreadable = || FileError::unwritable(study, "the dataset's path is not valid Unicode");
     let text = path.to_str().ok_or_else(unreadable)?;
-    Ok(if std::path::MAIN_SEPARATOR == '/' { text.to_owned() } else { text.replace(std::path::MAIN_SEPARATOR, "/") })
+    Ok(if std::path::MAIN_SEPARATOR == '/' {
+        text.to_owned()
+    } else {
+        text.replace(std::path::MAIN_SEPARATOR, "/")
+    })
 }
 
 /// The absolute path of a file, its directory's links followed: `..` after a link would lead elsewhere.
@@ -362,8 +515,13 @@ fn settled(path: &Path) -> Result<PathBuf, FileError> {
     let failed = |error: std::io::Error| FileError::writing(path, &error);
     let absolute = std::path::absolute(path).map_err(failed)?;
     match (absolute.parent(), absolute.file_name()) {
-        (Some(directory), Some(name)) => Ok(fs::canonicalize(directory).map_err(failed)?.join(name)),
-        _ => Err(FileError::unwritable(path, "this is not the name of a file")),
+        (Some(directory), Some(name)) => {
+            Ok(fs::canonicalize(directory).map_err(failed)?.join(name))
+        }
+        _ => Err(FileError::unwritable(
+            path,
+            "this is not the name of a file",
+        )),
     }
 }
 
@@ -371,7 +529,10 @@ fn settled(path: &Path) -> Result<PathBuf, FileError> {
 
 /// What a file turned out to be.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "one is made when a file is opened, and taken apart at once")]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one is made when a file is opened, and taken apart at once"
+)]
 pub enum Opened {
     /// A dataset.
     Dataset(LoadedDataset),
@@ -384,7 +545,12 @@ impl Opened {
     pub fn into_study(self) -> (Study, LoadedDataset, Vec<Difference>) {
         match self {
             Opened::Dataset(loaded) => (Study::new(loaded.dataset.clone()), loaded, Vec::new()),
-            Opened::Study(OpenedStudy { study, loaded, differences, .. }) => (study, loaded, differences),
+            Opened::Study(OpenedStudy {
+                study,
+                loaded,
+                differences,
+                ..
+            }) => (study, loaded, differences),
         }
     }
 }
@@ -392,7 +558,9 @@ impl Opened {
 /// Whether a path is a folder, or a file that by its name and its first sign only models can be taken from: neither a dataset nor a
 /// study.
 pub fn holds_models(path: &Path) -> bool {
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    let extension = path
+        .extension()
+        .map(|extension| extension.to_string_lossy().to_lowercase());
     let by_name = !matches!(extension.as_deref(), Some("json" | "gz"));
     path.is_dir() || path.is_file() && by_name && !begins_an_object(path)
 }
@@ -409,9 +577,11 @@ pub fn load_any(path: &Path, budget: &ReadingBudget<'_>) -> Result<Opened, FileE
     let source = Source::read(path, budget)?;
     match Outline::format_of(source.text(), budget).as_deref() {
         Some("\"gdcm-study\"") => Ok(Opened::Study(study_from(&source, path, None, budget)?)),
-        Some("\"gdcm-dataset\"") | None => {
-            Ok(Opened::Dataset(dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?))
-        }
+        Some("\"gdcm-dataset\"") | None => Ok(Opened::Dataset(dataset_from(
+            &source,
+            DatasetOrigin::File(path.to_owned()),
+            budget,
+        )?)),
         Some(found) => Err(FileError::Format {
             path: path.to_owned(),
             expected: "gdcm-dataset\" or \"gdcm-study",

@@ -23,7 +23,10 @@ const MOST: usize = 10;
 /// Name of the list in the program's directory.
 const NAME: &str = "recent-files.json";
 /// What the list calls itself.
-const FORMAT: Format = Format { name: "gdcm-recent-files", version: 1 };
+const FORMAT: Format = Format {
+    name: "gdcm-recent-files",
+    version: 1,
+};
 
 #[derive(Deserialize, Serialize)]
 struct RecentText {
@@ -37,9 +40,14 @@ struct RecentText {
 pub fn recent_files(directory: &Path) -> Vec<PathBuf> {
     let path = directory.join(NAME);
     let budget = ReadingBudget::default();
-    let Ok(source) = Source::read(&path, &budget) else { return Vec::new() };
+    let Ok(source) = Source::read(&path, &budget) else {
+        return Vec::new();
+    };
     let decoded = FORMAT.decode::<RecentText>(source.text(), &path, &budget);
-    decoded.map_or_else(|_| Vec::new(), |(text, _)| text.files.into_iter().map(PathBuf::from).collect())
+    decoded.map_or_else(
+        |_| Vec::new(),
+        |(text, _)| text.files.into_iter().map(PathBuf::from).collect(),
+    )
 }
 
 /// Puts a file in front of the list, of which another window may have written in between.
@@ -47,14 +55,26 @@ pub fn recent_files(directory: &Path) -> Vec<PathBuf> {
 /// # Errors
 /// Where the list cannot be written.
 pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
-    let Some(file) = std::path::absolute(file).ok().and_then(|path| path.to_str().map(str::to_owned)) else {
+    let Some(file) = std::path::absolute(file)
+        .ok()
+        .and_then(|path| path.to_str().map(str::to_owned))
+    else {
         // A name that is not valid Unicode cannot be listed.
         return Ok(());
     };
-    let others = recent_files(directory).into_iter().filter_map(|path| path.to_str().map(str::to_owned));
+    let others = recent_files(directory)
+        .into_iter()
+        .filter_map(|path| path.to_str().map(str::to_owned));
     let others = others.filter(|other| *other != file);
-    let files = std::iter::once(file.clone()).chain(others).take(MOST).collect();
-    let text = RecentText { format: FORMAT.name.to_owned(), version: FORMAT.version, files };
+    let files = std::iter::once(file.clone())
+        .chain(others)
+        .take(MOST)
+        .collect();
+    let text = RecentText {
+        format: FORMAT.name.to_owned(),
+        version: FORMAT.version,
+        files,
+    };
     make_directory(directory)?;
     write_whole(&directory.join(NAME), |writer| write_pretty(&text, writer))
 }
@@ -65,8 +85,12 @@ const STARTED: &str = "started";
 /// Whether nothing in the program's directory says that it was started before; from now on something does. Where that cannot be
 /// kept, it is taken as started before: what the first start shows would come at every one.
 pub fn is_first_start(directory: &Path) -> bool {
-    let kept = create_dir_all(directory)
-        .and_then(|()| OpenOptions::new().write(true).create_new(true).open(directory.join(STARTED)));
+    let kept = create_dir_all(directory).and_then(|()| {
+        OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(directory.join(STARTED))
+    });
     kept.is_ok()
 }
 
@@ -96,16 +120,26 @@ impl RecoveryFile {
         static NUMBER: AtomicUsize = AtomicUsize::new(1);
         make_directory(directory)?;
         loop {
-            let name = format!("{}-{}", std::process::id(), NUMBER.fetch_add(1, Ordering::Relaxed));
+            let name = format!(
+                "{}-{}",
+                std::process::id(),
+                NUMBER.fetch_add(1, Ordering::Relaxed)
+            );
             let path = directory.join(format!("{name}.{STUDY_EXTENSION}"));
             let lock_path = directory.join(format!("{name}.{LOCK_EXTENSION}"));
             // One of an earlier process with this number may be waiting there for its restoration.
             if path.exists() || lock_path.exists() {
                 continue;
             }
-            let lock = File::create_new(&lock_path).map_err(|error| FileError::writing(&lock_path, &error))?;
-            lock.lock().map_err(|error| FileError::writing(&lock_path, &error))?;
-            return Ok(Self { path, lock_path, lock });
+            let lock = File::create_new(&lock_path)
+                .map_err(|error| FileError::writing(&lock_path, &error))?;
+            lock.lock()
+                .map_err(|error| FileError::writing(&lock_path, &error))?;
+            return Ok(Self {
+                path,
+                lock_path,
+                lock,
+            });
         }
     }
 
@@ -118,12 +152,24 @@ impl RecoveryFile {
     ///
     /// # Errors
     /// Where it cannot be written.
-    pub fn write(&mut self, study: &Study, loaded: &LoadedDataset, saved_as: Option<&Path>) -> Result<(), FileError> {
+    pub fn write(
+        &mut self,
+        study: &Study,
+        loaded: &LoadedDataset,
+        saved_as: Option<&Path>,
+    ) -> Result<(), FileError> {
         let failed = |error| FileError::writing(&self.lock_path, &error);
-        let name = saved_as.and_then(|path| std::path::absolute(path).ok()).unwrap_or_default();
-        self.lock.set_len(0).and_then(|()| self.lock.rewind()).map_err(failed)?;
+        let name = saved_as
+            .and_then(|path| std::path::absolute(path).ok())
+            .unwrap_or_default();
+        self.lock
+            .set_len(0)
+            .and_then(|()| self.lock.rewind())
+            .map_err(failed)?;
         // A name that is not valid Unicode is not kept: a letter put in its place would lead to another file.
-        self.lock.write_all(name.to_str().unwrap_or_default().as_bytes()).map_err(failed)?;
+        self.lock
+            .write_all(name.to_str().unwrap_or_default().as_bytes())
+            .map_err(failed)?;
         save_recovery(study, loaded, &self.path)
     }
 
@@ -178,7 +224,9 @@ impl LostStudy {
 
 /// The recovery files of `directory` whose processes are gone, the newest first. What has nothing to offer is cleaned up.
 pub fn lost_studies(directory: &Path) -> Vec<LostStudy> {
-    let Ok(entries) = fs::read_dir(directory) else { return Vec::new() };
+    let Ok(entries) = fs::read_dir(directory) else {
+        return Vec::new();
+    };
     let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
     let mut lost: Vec<LostStudy> = paths.filter_map(|path| lost_study(&path)).collect();
     lost.sort_by_key(|lost| std::cmp::Reverse(lost.kept_at));
@@ -191,7 +239,11 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
         return None;
     }
     let path = lock_path.with_extension(STUDY_EXTENSION);
-    let mut lock = File::options().read(true).write(true).open(lock_path).ok()?;
+    let mut lock = File::options()
+        .read(true)
+        .write(true)
+        .open(lock_path)
+        .ok()?;
     match lock.try_lock() {
         Ok(()) => {}
         Err(TryLockError::WouldBlock | TryLockError::Error(_)) => return None,
@@ -199,7 +251,10 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
     let Ok(kept_at) = fs::metadata(&path).and_then(|there| there.modified()) else {
         let made_at = lock.metadata().and_then(|there| there.modified()).ok();
         // Of a process that left nothing to offer; a young one may be another's, made and not locked yet.
-        if made_at.and_then(|at| at.elapsed().ok()).is_some_and(|age| age > YOUNG) {
+        if made_at
+            .and_then(|at| at.elapsed().ok())
+            .is_some_and(|age| age > YOUNG)
+        {
             let _ = remove(lock_path);
         }
         return None;
@@ -208,13 +263,23 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
     // A name that cannot be read is one that is not known.
     let _ = lock.read_to_string(&mut name);
     let saved_as = (!name.is_empty()).then(|| PathBuf::from(name));
-    let dataset = dataset_of_study(&path).unwrap_or_else(|| "a dataset that cannot be told".to_owned());
-    Some(LostStudy { path, lock_path: lock_path.to_owned(), _lock: lock, kept_at, dataset, saved_as })
+    let dataset =
+        dataset_of_study(&path).unwrap_or_else(|| "a dataset that cannot be told".to_owned());
+    Some(LostStudy {
+        path,
+        lock_path: lock_path.to_owned(),
+        _lock: lock,
+        kept_at,
+        dataset,
+        saved_as,
+    })
 }
 
 fn remove(path: &Path) -> Result<(), FileError> {
     match fs::remove_file(path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(FileError::writing(path, &error)),
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(FileError::writing(path, &error))
+        }
         _ => Ok(()),
     }
 }
@@ -270,7 +335,12 @@ mod recovery_tests {
     fn written(directory: &Path) -> RecoveryFile {
         let (study, loaded) = example();
         let mut file = RecoveryFile::claim(directory).unwrap();
-        file.write(&study, &loaded, Some(Path::new("/somewhere/mine.gdcm-study.json"))).unwrap();
+        file.write(
+            &study,
+            &loaded,
+            Some(Path::new("/somewhere/mine.gdcm-study.json")),
+        )
+        .unwrap();
         file
     }
 
@@ -283,8 +353,15 @@ mod recovery_tests {
         let lost = lost_studies(directory.path());
         assert_eq!(lost.len(), 1);
         assert_eq!(lost[0].dataset, "the embedded example");
-        assert_eq!(lost[0].saved_as.as_deref(), Some(Path::new("/somewhere/mine.gdcm-study.json")));
-        assert_eq!(open_study(lost[0].path()).unwrap().study, example().0, "it opens by hand too");
+        assert_eq!(
+            lost[0].saved_as.as_deref(),
+            Some(Path::new("/somewhere/mine.gdcm-study.json"))
+        );
+        assert_eq!(
+            open_study(lost[0].path()).unwrap().study,
+            example().0,
+            "it opens by hand too"
+        );
         drop(mine);
     }
 
@@ -293,7 +370,10 @@ mod recovery_tests {
         let directory = tempfile::tempdir().unwrap();
         drop(written(directory.path()));
         let offered = lost_studies(directory.path());
-        assert!(lost_studies(directory.path()).is_empty(), "held by the first");
+        assert!(
+            lost_studies(directory.path()).is_empty(),
+            "held by the first"
+        );
         drop(offered);
         assert_eq!(lost_studies(directory.path()).len(), 1);
     }

@@ -40,7 +40,12 @@ impl Array {
     /// A real matrix, given column by column.
     pub fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Self {
         debug_assert_eq!(rows * columns, values.len());
-        Self { shape: vec![rows, columns], kind: ElementKind::Float, re: values, im: None }
+        Self {
+            shape: vec![rows, columns],
+            kind: ElementKind::Float,
+            re: values,
+            im: None,
+        }
     }
 
     /// Number of elements.
@@ -129,7 +134,10 @@ pub struct Object {
 impl TextArray {
     /// One text.
     pub fn one(text: impl Into<String>) -> Self {
-        Self { shape: vec![1, 1], texts: vec![text.into()] }
+        Self {
+            shape: vec![1, 1],
+            texts: vec![text.into()],
+        }
     }
 }
 
@@ -147,7 +155,10 @@ impl Value {
     /// True or false.
     pub fn truth(truth: bool) -> Self {
         let number = f64::from(u8::from(truth));
-        Self::Array(Array { kind: ElementKind::Logical, ..Array::matrix(1, 1, vec![number]) })
+        Self::Array(Array {
+            kind: ElementKind::Logical,
+            ..Array::matrix(1, 1, vec![number])
+        })
     }
 
     /// An array without elements.
@@ -157,7 +168,10 @@ impl Value {
 
     /// What is there but cannot be read, and why.
     pub fn opaque(class: impl Into<String>, why: impl Into<String>) -> Self {
-        Self::Opaque { class: class.into(), why: why.into() }
+        Self::Opaque {
+            class: class.into(),
+            why: why.into(),
+        }
     }
 
     /// The values that lie in this one.
@@ -167,7 +181,9 @@ impl Value {
             Self::Struct(records) | Self::Object(Object { records, .. }) => (&[], &records.fields),
             Self::Array(_) | Self::Text(_) | Self::Opaque { .. } => (&[], &[]),
         };
-        values.iter().chain(fields.iter().flat_map(|(_, values)| values))
+        values
+            .iter()
+            .chain(fields.iter().flat_map(|(_, values)| values))
     }
 
     /// Bytes that it takes without the values in it, rounded up.
@@ -175,11 +191,18 @@ impl Value {
         let text = |text: &String| size_of::<String>() + text.len();
         let shape = |shape: &[usize]| size_of_val(shape);
         let bytes = match self {
-            Self::Array(array) => shape(&array.shape) + array.len() * if array.im.is_some() { 16 } else { 8 },
+            Self::Array(array) => {
+                shape(&array.shape) + array.len() * if array.im.is_some() { 16 } else { 8 }
+            }
             Self::Text(texts) => shape(&texts.shape) + texts.texts.iter().map(text).sum::<usize>(),
             Self::Cell(cell) => shape(&cell.shape),
             Self::Struct(records) => {
-                shape(&records.shape) + records.fields.iter().map(|(name, _)| 48 + text(name)).sum::<usize>()
+                shape(&records.shape)
+                    + records
+                        .fields
+                        .iter()
+                        .map(|(name, _)| 48 + text(name))
+                        .sum::<usize>()
             }
             Self::Object(object) => shape(&object.records.shape) + text(&object.class),
             Self::Opaque { class, why } => text(class) + text(why),
@@ -189,15 +212,27 @@ impl Value {
 
     /// What this is, in words fit for a message: "a 3 x 4 array of numbers".
     pub fn words(&self) -> String {
-        let by = |shape: &[usize]| shape.iter().map(usize::to_string).collect::<Vec<_>>().join(" x ");
+        let by = |shape: &[usize]| {
+            shape
+                .iter()
+                .map(usize::to_string)
+                .collect::<Vec<_>>()
+                .join(" x ")
+        };
         match self {
-            Value::Array(array) if array.im.is_some() => format!("a {} array of complex numbers", by(&array.shape)),
+            Value::Array(array) if array.im.is_some() => {
+                format!("a {} array of complex numbers", by(&array.shape))
+            }
             Value::Array(array) => format!("a {} array of numbers", by(&array.shape)),
             Value::Text(text) if text.texts.len() == 1 => "a text".to_owned(),
             Value::Text(text) => format!("{} texts", text.texts.len()),
             Value::Cell(cell) => format!("a {} cell array", by(&cell.shape)),
             Value::Struct(records) => format!("a {} struct array", by(&records.shape)),
-            Value::Object(object) => format!("a {} array of {} objects", by(&object.records.shape), object.class),
+            Value::Object(object) => format!(
+                "a {} array of {} objects",
+                by(&object.records.shape),
+                object.class
+            ),
             Value::Opaque { class, .. } => format!("{class}, which cannot be read"),
         }
     }
@@ -206,12 +241,18 @@ impl Value {
 impl StructArray {
     /// One record.
     pub fn one(fields: Vec<(String, Vec<Value>)>) -> Self {
-        Self { shape: vec![1, 1], fields }
+        Self {
+            shape: vec![1, 1],
+            fields,
+        }
     }
 
     /// The values of a field, one for each record.
     pub fn field(&self, name: &str) -> Option<&[Value]> {
-        self.fields.iter().find(|(field, _)| field == name).map(|(_, values)| values.as_slice())
+        self.fields
+            .iter()
+            .find(|(field, _)| field == name)
+            .map(|(_, values)| values.as_slice())
     }
 }
 
@@ -237,7 +278,10 @@ pub enum VariableFault {
         offset: u64,
     },
     /// The bytes contradict the format.
-    #[error("{}{what} (byte {offset}): the file is damaged; write it again", at(variable))]
+    #[error(
+        "{}{what} (byte {offset}): the file is damaged; write it again",
+        at(variable)
+    )]
     Damaged {
         /// The variable.
         variable: String,
@@ -308,37 +352,68 @@ pub enum VariableFault {
 impl VariableFault {
     /// The file is of another kind.
     pub(crate) fn format(expected: &'static str, found: impl Into<String>) -> Self {
-        Self::Format { expected, found: found.into() }
+        Self::Format {
+            expected,
+            found: found.into(),
+        }
     }
 
     /// The file, of which these are the bytes, is of another kind.
     pub(crate) fn other_bytes(expected: &'static str, bytes: &[u8]) -> Self {
-        Self::format(expected, if bytes.is_empty() { "nothing" } else { "other bytes" })
+        Self::format(
+            expected,
+            if bytes.is_empty() {
+                "nothing"
+            } else {
+                "other bytes"
+            },
+        )
     }
 
     /// The file ends in the middle of something.
     pub(crate) fn cut_off(variable: &str, offset: usize) -> Self {
-        Self::CutOff { variable: variable.to_owned(), offset: offset as u64 }
+        Self::CutOff {
+            variable: variable.to_owned(),
+            offset: offset as u64,
+        }
     }
 
     /// The bytes contradict the format.
     pub(crate) fn damaged(variable: &str, what: impl Into<String>, offset: u64) -> Self {
-        Self::Damaged { variable: variable.to_owned(), what: what.into(), offset }
+        Self::Damaged {
+            variable: variable.to_owned(),
+            what: what.into(),
+            offset,
+        }
     }
 
     /// A line of a text says what cannot be taken.
     pub(crate) fn line(variable: &str, line: usize, what: impl Into<String>) -> Self {
-        Self::Line { variable: variable.to_owned(), line, what: what.into() }
+        Self::Line {
+            variable: variable.to_owned(),
+            line,
+            what: what.into(),
+        }
     }
 
     /// The format allows it, this program does not read it.
-    pub(crate) fn unsupported(variable: &str, what: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self::Unsupported { variable: variable.to_owned(), what: what.into(), remedy: remedy.into() }
+    pub(crate) fn unsupported(
+        variable: &str,
+        what: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self::Unsupported {
+            variable: variable.to_owned(),
+            what: what.into(),
+            remedy: remedy.into(),
+        }
     }
 
     /// Values lie in values, deeper than anything that is read.
     pub(crate) fn too_deep(variable: &str) -> Self {
-        Self::TooDeep { variable: variable.to_owned() }
+        Self::TooDeep {
+            variable: variable.to_owned(),
+        }
     }
 
     /// The same with the value that it concerns, unless it says so already.
@@ -363,12 +438,19 @@ impl VariableFault {
 
     /// Whether the budget ends the reading: nothing else of the file is to be tried.
     pub fn is_of_the_budget(&self) -> bool {
-        matches!(self, Self::TooLarge { .. } | Self::TooMuchWork { .. } | Self::Stopped)
+        matches!(
+            self,
+            Self::TooLarge { .. } | Self::TooMuchWork { .. } | Self::Stopped
+        )
     }
 }
 
 fn at(variable: &str) -> String {
-    if variable.is_empty() { String::new() } else { format!("variable {}: ", shortened_name(variable)) }
+    if variable.is_empty() {
+        String::new()
+    } else {
+        format!("variable {}: ", shortened_name(variable))
+    }
 }
 
 // How much a reader may take, and whether it shall go on.
@@ -392,7 +474,14 @@ impl ReadingBudget<'static> {
     pub fn new(most: u64) -> Self {
         let zero = || Cell::new(0);
         let stop = Arc::default();
-        Self { most_memory: most, most_work: MOST_WORK, memory: zero(), work: zero(), stop, tell: &|_| () }
+        Self {
+            most_memory: most,
+            most_work: MOST_WORK,
+            memory: zero(),
+            work: zero(),
+            stop,
+            tell: &|_| (),
+        }
     }
 }
 
@@ -406,7 +495,10 @@ impl Default for ReadingBudget<'static> {
 impl<'p> ReadingBudget<'p> {
     /// With another limit of work \[steps\].
     pub fn with_work(self, most: u64) -> Self {
-        Self { most_work: most, ..self }
+        Self {
+            most_work: most,
+            ..self
+        }
     }
 
     /// Ended by whoever sets this.
@@ -416,8 +508,22 @@ impl<'p> ReadingBudget<'p> {
 
     /// With somebody who is told, whenever memory is taken, how many bytes are.
     pub fn telling<'q>(self, tell: &'q dyn Fn(u64)) -> ReadingBudget<'q> {
-        let Self { most_memory, most_work, memory, work, stop, .. } = self;
-        ReadingBudget { most_memory, most_work, memory, work, stop, tell }
+        let Self {
+            most_memory,
+            most_work,
+            memory,
+            work,
+            stop,
+            ..
+        } = self;
+        ReadingBudget {
+            most_memory,
+            most_work,
+            memory,
+            work,
+            stop,
+            tell,
+        }
     }
 
     /// What ends the reader when it is set.
@@ -430,7 +536,10 @@ impl<'p> ReadingBudget<'p> {
         let memory = self.memory.get().saturating_add(count.saturating_mul(size));
         if memory > self.most_memory {
             self.work(0, variable)?;
-            return Err(VariableFault::TooLarge { variable: variable.to_owned(), most_mib: self.most_memory >> 20 });
+            return Err(VariableFault::TooLarge {
+                variable: variable.to_owned(),
+                most_mib: self.most_memory >> 20,
+            });
         }
         self.work(count, variable)?;
         self.memory.set(memory);
@@ -443,7 +552,11 @@ impl<'p> ReadingBudget<'p> {
         /// Elements that take less than a hundredth of a second.
         const BETWEEN: usize = 1 << 14;
         let stops = element.is_multiple_of(BETWEEN) && self.stop.load(Ordering::Relaxed);
-        if stops { Err(VariableFault::Stopped) } else { Ok(()) }
+        if stops {
+            Err(VariableFault::Stopped)
+        } else {
+            Ok(())
+        }
     }
 
     /// Counts steps of work that `variable` is about to take.
@@ -455,7 +568,10 @@ impl<'p> ReadingBudget<'p> {
         let work = self.work.get().saturating_add(steps.max(1));
         if work > self.most_work {
             let most_millions = self.most_work / 1_000_000;
-            return Err(VariableFault::TooMuchWork { variable: variable.to_owned(), most_millions });
+            return Err(VariableFault::TooMuchWork {
+                variable: variable.to_owned(),
+                most_millions,
+            });
         }
         self.work.set(work);
         Ok(())
@@ -471,8 +587,7 @@ mod budget_tests {
         let budget = ReadingBudget::new(2 << 20).with_work(5_000_000);
         assert_eq!(budget.take(1 << 20, 2, "x"), Ok(()));
         let memory = budget.take(1, 1, "x").unwrap_err();
-        let words =
-            "variable x: this would take more than 2 MiB of memory, which is the most that is read; split the file";
+        let words = "variable x: this would take more than 2 MiB of memory, which is the most that is read; split the file";
         assert_eq!(memory.to_string(), words);
         assert_eq!(budget.work(3_000_000, ""), Ok(()));
         let work = budget.work(1_000_000, "").unwrap_err();
@@ -484,15 +599,23 @@ mod budget_tests {
     #[test]
     fn a_number_beyond_what_can_be_counted_is_beyond_the_limit() {
         let budget = ReadingBudget::new(1 << 20);
-        assert!(matches!(budget.take(u64::MAX, 8, ""), Err(VariableFault::TooLarge { .. })));
-        assert!(matches!(budget.take(u64::MAX, 0, ""), Err(VariableFault::TooMuchWork { .. })));
+        assert!(matches!(
+            budget.take(u64::MAX, 8, ""),
+            Err(VariableFault::TooLarge { .. })
+        ));
+        assert!(matches!(
+            budget.take(u64::MAX, 0, ""),
+            Err(VariableFault::TooMuchWork { .. })
+        ));
     }
 
     #[test]
     fn whoever_holds_the_flag_stops_the_reader_and_the_listener_hears_what_is_taken() {
         let (stop, heard) = (Arc::new(AtomicBool::new(false)), Cell::new(0));
         let tell = |taken| heard.set(taken);
-        let budget = ReadingBudget::new(1 << 20).stopped_by(Arc::clone(&stop)).telling(&tell);
+        let budget = ReadingBudget::new(1 << 20)
+            .stopped_by(Arc::clone(&stop))
+            .telling(&tell);
         assert_eq!((budget.take(3, 8, ""), heard.get()), (Ok(()), 24));
         stop.store(true, Ordering::Relaxed);
         assert_eq!(budget.take(u64::MAX, 1, ""), Err(VariableFault::Stopped));
@@ -503,8 +626,8 @@ mod budget_tests {
 #[cfg(test)]
 mod limits_tests {
     use gdcm_model::dataset::limits::{
-        LARGEST_TEXT, MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS,
-        MOST_MODELS_IN_ALL, MOST_STATES,
+        LARGEST_TEXT, MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES,
+        MOST_MODELS, MOST_MODELS_IN_ALL, MOST_STATES,
     };
     use gdcm_model::dataset::{GREATEST_CHANNEL_DELAY_S, limits};
     use gdcm_model::units::number;
@@ -521,12 +644,18 @@ mod limits_tests {
         let rows = [
             ("a file of other programs", mib(LARGEST_FILE)),
             ("text of a file, unpacked", mib(LARGEST_TEXT)),
-            ("memory for what a file holds, beside a copy of the models or records found in it", mib(MOST_MEMORY)),
+            (
+                "memory for what a file holds, beside a copy of the models or records found in it",
+                mib(MOST_MEMORY),
+            ),
             (
                 "work on a file: bytes of text, elements of arrays, values, names compared",
                 format!("{} million steps", MOST_WORK / 1_000_000),
             ),
-            ("files of the folders that are given", MOST_FILES.to_string()),
+            (
+                "files of the folders that are given",
+                MOST_FILES.to_string(),
+            ),
             ("folders inside one another", DEEPEST.to_string()),
             (
                 "models among the variables of a file; values inside one another",
@@ -535,15 +664,28 @@ mod limits_tests {
             ("records of an archive", MOST_RECORDS.to_string()),
             ("inputs, outputs", format!("{MOST_CHANNELS} each")),
             ("conditions", MOST_CONDITIONS.to_string()),
-            ("models of a bundle; of a file", format!("{MOST_MODELS}; {MOST_MODELS_IN_ALL}")),
+            (
+                "models of a bundle; of a file",
+                format!("{MOST_MODELS}; {MOST_MODELS_IN_ALL}"),
+            ),
             ("records of a condition", limits::MOST_RECORDS.to_string()),
             ("states of a model", MOST_STATES.to_string()),
-            ("frequencies of a measured response", MOST_FREQUENCIES.to_string()),
-            ("coordinates of a perturbation", MOST_COORDINATES.to_string()),
+            (
+                "frequencies of a measured response",
+                MOST_FREQUENCIES.to_string(),
+            ),
+            (
+                "coordinates of a perturbation",
+                MOST_COORDINATES.to_string(),
+            ),
             ("variants of a study", MOST_VARIANTS.to_string()),
-            ("delay of a model's channel", format!("{} s", number(GREATEST_CHANNEL_DELAY_S))),
+            (
+                "delay of a model's channel",
+                format!("{} s", number(GREATEST_CHANNEL_DELAY_S)),
+            ),
         ];
-        rows.map(|(what, most)| format!("| {what} | {most} |\n")).concat()
+        rows.map(|(what, most)| format!("| {what} | {most} |\n"))
+            .concat()
     }
 
     fn of_settings() -> String {
@@ -554,9 +696,17 @@ mod limits_tests {
                 _ => return None,
             };
             let kind = if whole { ", a whole number" } else { "" };
-            let unit = if setting.unit.file.is_empty() { String::new() } else { format!(" {}", setting.unit.file) };
+            let unit = if setting.unit.file.is_empty() {
+                String::new()
+            } else {
+                format!(" {}", setting.unit.file)
+            };
             let (option, name) = (setting.option, setting.name);
-            Some(format!("| {name}{kind} | `{option}` | {}{unit} | {}{unit} |\n", number(least), number(greatest)))
+            Some(format!(
+                "| {name}{kind} | `{option}` | {}{unit} | {}{unit} |\n",
+                number(least),
+                number(greatest)
+            ))
         };
         SETTINGS.iter().filter_map(row).collect()
     }
@@ -566,13 +716,23 @@ mod limits_tests {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/limits.md");
         let text = std::fs::read_to_string(path).unwrap();
         let mut parts: Vec<&str> = text.split_inclusive("|---|\n").collect();
-        let [_, files, settings] = parts.as_mut_slice() else { panic!("two tables") };
+        let [_, files, settings] = parts.as_mut_slice() else {
+            panic!("two tables")
+        };
         let end = |part: &str| {
-            part.lines().take_while(|line| line.starts_with('|')).map(|line| line.len() + 1).sum::<usize>()
+            part.lines()
+                .take_while(|line| line.starts_with('|'))
+                .map(|line| line.len() + 1)
+                .sum::<usize>()
         };
         let (files, settings) = (&files[..end(files)], &settings[..end(settings)]);
         if std::env::var_os("GDCM_WRITE_FILES").is_some() {
-            std::fs::write(path, text.replace(files, &of_files()).replace(settings, &of_settings())).unwrap();
+            std::fs::write(
+                path,
+                text.replace(files, &of_files())
+                    .replace(settings, &of_settings()),
+            )
+            .unwrap();
             return;
         }
         assert_eq!(files, of_files());

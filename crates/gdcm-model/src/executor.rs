@@ -26,11 +26,22 @@ pub fn each<S: Send, T: Send>(
     things: impl IntoIterator<Item = S>,
     of: impl Fn(S) -> T + Sync,
 ) -> Vec<T> {
-    let mut pieces: Vec<(Option<S>, Option<T>)> = things.into_iter().map(|thing| (Some(thing), None)).collect();
+    let mut pieces: Vec<(Option<S>, Option<T>)> = things
+        .into_iter()
+        .map(|thing| (Some(thing), None))
+        .collect();
     let of = &of;
     let task = |(thing, result): &'_ mut (Option<S>, Option<T>)| *result = thing.take().map(of);
-    executor.carry_out(pieces.iter_mut().map(|piece| Box::new(move || task(piece)) as Task<'_>).collect());
-    pieces.into_iter().filter_map(|(thing, result)| result.or_else(|| thing.map(of))).collect()
+    executor.carry_out(
+        pieces
+            .iter_mut()
+            .map(|piece| Box::new(move || task(piece)) as Task<'_>)
+            .collect(),
+    );
+    pieces
+        .into_iter()
+        .filter_map(|(thing, result)| result.or_else(|| thing.map(of)))
+        .collect()
 }
 
 #[cfg(test)]

@@ -41,7 +41,10 @@ pub fn quoted(text: &str) -> String {
 pub fn shortened_message(text: &str) -> String {
     /// Longer than every sentence of the program with the names of sixty columns in it, and what is kept of each end.
     const MESSAGE: [usize; 2] = [2000, 900];
-    let words: Vec<String> = text.split(' ').map(|word| without_middle(word, WORD)).collect();
+    let words: Vec<String> = text
+        .split(' ')
+        .map(|word| without_middle(word, WORD))
+        .collect();
     without_middle(&words.join(" "), MESSAGE)
 }
 
@@ -79,8 +82,14 @@ mod tests {
     #[test]
     fn control_characters_and_invisible_ones_are_spelt_out_and_letters_are_not() {
         assert_eq!(sanitized("a\u{1b}[31m\nΔ → °"), "a\\u{1b}[31m\\nΔ → °");
-        for invisible in "\u{200b}\u{200f}\u{202e}\u{2028}\u{2029}\u{2066}\u{2069}\u{feff}\u{61c}\u{7f}\u{9b}".chars() {
-            assert_eq!(sanitized(&format!("a{invisible}b")), format!("a{}b", invisible.escape_default()));
+        for invisible in
+            "\u{200b}\u{200f}\u{202e}\u{2028}\u{2029}\u{2066}\u{2069}\u{feff}\u{61c}\u{7f}\u{9b}"
+                .chars()
+        {
+            assert_eq!(
+                sanitized(&format!("a{invisible}b")),
+                format!("a{}b", invisible.escape_default())
+            );
         }
         // A letter and its accent as two characters, as some systems write file names.
         assert_eq!(sanitized("e\u{301}"), "e\u{301}");
@@ -89,14 +98,25 @@ mod tests {
     #[test]
     fn a_word_of_seventy_thousand_letters_is_shortened_and_the_others_stay() {
         let shown = shortened_message(&format!("condition {} is odd", "x".repeat(70_000)));
-        assert!(shown.starts_with("condition xxx") && shown.ends_with("xxx is odd") && shown.len() < 200, "{shown}");
+        assert!(
+            shown.starts_with("condition xxx")
+                && shown.ends_with("xxx is odd")
+                && shown.len() < 200,
+            "{shown}"
+        );
         assert_eq!(shortened_message("a  b"), "a  b");
     }
 
     #[test]
     fn a_name_of_many_short_words_is_shortened_too() {
-        let shown = shortened_message(&format!("condition {} is odd", "hover at low altitude ".repeat(4000)));
-        assert!(shown.starts_with("condition hover at") && shown.ends_with("altitude  is odd"), "{shown}");
+        let shown = shortened_message(&format!(
+            "condition {} is odd",
+            "hover at low altitude ".repeat(4000)
+        ));
+        assert!(
+            shown.starts_with("condition hover at") && shown.ends_with("altitude  is odd"),
+            "{shown}"
+        );
         assert_eq!(shown.chars().count(), 1801);
     }
 

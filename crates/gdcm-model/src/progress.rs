@@ -45,7 +45,12 @@ pub struct Portion<'a> {
 impl<'a> Portion<'a> {
     /// A part that is `share` of the whole, reported as the step `what`.
     pub fn new(shares: &'a Shares<'a>, share: f64, what: &'static str) -> Self {
-        Self { shares, share, what, reported: Mutex::new(0.0) }
+        Self {
+            shares,
+            share,
+            what,
+            reported: Mutex::new(0.0),
+        }
     }
 
     /// Reports the rest of the part.
@@ -91,7 +96,10 @@ pub struct Shares<'a> {
 impl<'a> Shares<'a> {
     /// Nothing is done yet.
     pub fn new(progress: &'a dyn Progress) -> Self {
-        Self { progress, done: Mutex::new(0.0) }
+        Self {
+            progress,
+            done: Mutex::new(0.0),
+        }
     }
 
     /// Who is told.
@@ -119,7 +127,8 @@ impl<'a> Shares<'a> {
         let mut last = self.done.lock().unwrap_or_else(PoisonError::into_inner);
         *last = last.max(done(*last).min(1.0));
         self.progress.step(what);
-        self.progress.advanced((*last * PARTS) as usize, PARTS as usize);
+        self.progress
+            .advanced((*last * PARTS) as usize, PARTS as usize);
         Ok(())
     }
 }
@@ -151,6 +160,10 @@ mod tests {
             portion.advanced(done, total);
         }
         portion.finish().unwrap();
-        assert_eq!(*heard.0.lock().unwrap(), [125, 250, 250, 500], "of a thousand, never backwards");
+        assert_eq!(
+            *heard.0.lock().unwrap(),
+            [125, 250, 250, 500],
+            "of a thousand, never backwards"
+        );
     }
 }

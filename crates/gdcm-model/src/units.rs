@@ -37,7 +37,11 @@ pub fn number(value: f64) -> String {
     /// Longest text without an exponent, where one with it would be shorter.
     const LONGEST: usize = 10;
     let (plain, exponent) = (value.to_string(), format!("{value:e}"));
-    if plain.len() > LONGEST && exponent.len() < plain.len() { exponent } else { plain }
+    if plain.len() > LONGEST && exponent.len() < plain.len() {
+        exponent
+    } else {
+        plain
+    }
 }
 
 /// A setting or another figure for people, with at most six significant digits: "0.530279", "12", "1e300".
@@ -48,7 +52,9 @@ pub fn six_digits(value: f64) -> String {
 
 /// The text of a number, a zero without its sign: "0.0" of "-0.0"; any other text as it is.
 pub fn without_sign_of_zero(text: &str) -> &str {
-    let Some(digits) = text.strip_prefix(['-', '\u{2212}']) else { return text };
+    let Some(digits) = text.strip_prefix(['-', '\u{2212}']) else {
+        return text;
+    };
     let is_zero = digits.contains('0') && digits.chars().all(|digit| matches!(digit, '0' | '.'));
     if is_zero { digits } else { text }
 }
@@ -61,7 +67,11 @@ pub fn telling(value: f64, decimals: usize) -> String {
         return format!("{value:.decimals$}");
     }
     let needed = 1 - value.abs().log10().floor() as i32;
-    if needed > MOST { format!("{value:.1e}") } else { format!("{value:.*}", needed as usize) }
+    if needed > MOST {
+        format!("{value:.1e}")
+    } else {
+        format!("{value:.*}", needed as usize)
+    }
 }
 
 /// Two figures in so many decimals, and in as many more as it takes to tell one from the other.
@@ -77,7 +87,11 @@ pub fn told_apart(a: f64, b: f64, decimals: usize) -> (String, String) {
 pub fn signed(change: f64, decimals: usize) -> String {
     let text = format!("{change:+.decimals$}");
     let is_nothing = text.chars().all(|c| matches!(c, '+' | '-' | '0' | '.'));
-    if is_nothing { text[1..].to_owned() } else { text.replace('-', "−") }
+    if is_nothing {
+        text[1..].to_owned()
+    } else {
+        text.replace('-', "−")
+    }
 }
 
 #[cfg(test)]
@@ -89,16 +103,36 @@ mod tests {
         let figures = [12.34, 0.1, 0.06, 0.0123, -0.000_04, 0.0, 3e-9];
         assert_eq!(
             figures.map(|value| telling(value, 1)),
-            ["12.3", "0.1", "0.060", "0.012", "-0.000040", "0.0", "3.0e-9"]
+            [
+                "12.3",
+                "0.1",
+                "0.060",
+                "0.012",
+                "-0.000040",
+                "0.0",
+                "3.0e-9"
+            ]
         );
-        assert_eq!(told_apart(1.2, 1.4, 3), ("1.200".to_owned(), "1.400".to_owned()));
-        assert_eq!(told_apart(1.000_04, 1.0, 3), ("1.00004".to_owned(), "1.00000".to_owned()));
-        assert_eq!(told_apart(2.0, 2.0, 1), ("2.0".to_owned(), "2.0".to_owned()));
+        assert_eq!(
+            told_apart(1.2, 1.4, 3),
+            ("1.200".to_owned(), "1.400".to_owned())
+        );
+        assert_eq!(
+            told_apart(1.000_04, 1.0, 3),
+            ("1.00004".to_owned(), "1.00000".to_owned())
+        );
+        assert_eq!(
+            told_apart(2.0, 2.0, 1),
+            ("2.0".to_owned(), "2.0".to_owned())
+        );
     }
 
     #[test]
     fn a_change_has_its_sign_unless_it_rounds_to_nothing() {
-        assert_eq!([12.34, -0.44, -0.04, 0.0].map(|change| signed(change, 1)), ["+12.3", "−0.4", "0.0", "0.0"]);
+        assert_eq!(
+            [12.34, -0.44, -0.04, 0.0].map(|change| signed(change, 1)),
+            ["+12.3", "−0.4", "0.0", "0.0"]
+        );
     }
 
     #[test]
@@ -119,9 +153,24 @@ mod tests {
     #[test]
     fn figures_for_people_have_six_digits_and_zeros_no_sign() {
         let figures = [0.530_278_677_112_3, 12.0, 1e300, -1e-12, 0.0, 1e3 * 0.0123];
-        assert_eq!(figures.map(six_digits), ["0.530279", "12", "1e300", "-1e-12", "0", "12.3"]);
-        let texts = ["-0.0", "\u{2212}0.00", "-0", "-0.01", "-", "-.", "0.0", "-0.0 dB", "-x"];
-        let expected = ["0.0", "0.00", "0", "-0.01", "-", "-.", "0.0", "-0.0 dB", "-x"];
+        assert_eq!(
+            figures.map(six_digits),
+            ["0.530279", "12", "1e300", "-1e-12", "0", "12.3"]
+        );
+        let texts = [
+            "-0.0",
+            "\u{2212}0.00",
+            "-0",
+            "-0.01",
+            "-",
+            "-.",
+            "0.0",
+            "-0.0 dB",
+            "-x",
+        ];
+        let expected = [
+            "0.0", "0.00", "0", "-0.01", "-", "-.", "0.0", "-0.0 dB", "-x",
+        ];
         assert_eq!(texts.map(without_sign_of_zero), expected);
     }
 

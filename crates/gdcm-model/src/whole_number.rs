@@ -30,7 +30,9 @@ pub fn whole<'de, T: WholeNumber, D: Deserializer<'de>>(deserializer: D) -> Resu
 }
 
 /// The same, or null; for a key that may be absent, with `#[serde(default)]`.
-pub fn whole_or_none<'de, T: WholeNumber, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+pub fn whole_or_none<'de, T: WholeNumber, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error> {
     /// A whole number, as an option takes it.
     #[derive(Deserialize)]
     #[serde(bound = "T: WholeNumber", transparent)]
@@ -52,7 +54,9 @@ impl<T: WholeNumber> Visitor<'_> for Whole<T> {
     }
 
     fn visit_u64<E: Error>(self, number: u64) -> Result<T, E> {
-        let value = i64::try_from(number).ok().and_then(|number| T::try_from(number).ok());
+        let value = i64::try_from(number)
+            .ok()
+            .and_then(|number| T::try_from(number).ok());
         value.ok_or_else(|| E::invalid_value(Unexpected::Unsigned(number), &self))
     }
 
@@ -94,11 +98,20 @@ mod tests {
     #[test]
     fn what_is_no_whole_number_is_refused() {
         for (text, words) in [
-            (r#"{"id": 7.5}"#, "floating point `7.5`, expected a whole number"),
+            (
+                r#"{"id": 7.5}"#,
+                "floating point `7.5`, expected a whole number",
+            ),
             (r#"{"id": "7"}"#, "string \"7\", expected a whole number"),
             (r#"{"id": 1e300}"#, "expected a whole number"),
-            (r#"{"id": 1, "order": -2.0}"#, "integer `-2`, expected a whole number not below 0"),
-            (r#"{"id": 1, "order": true}"#, "boolean `true`, expected a whole number not below 0"),
+            (
+                r#"{"id": 1, "order": -2.0}"#,
+                "integer `-2`, expected a whole number not below 0",
+            ),
+            (
+                r#"{"id": 1, "order": true}"#,
+                "boolean `true`, expected a whole number not below 0",
+            ),
         ] {
             let error = read(text).unwrap_err();
             assert!(error.contains(words), "{error}");

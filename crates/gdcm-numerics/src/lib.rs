@@ -47,8 +47,8 @@ pub fn convex_program(
     b: &[f64],
     settings: DefaultSettings<f64>,
 ) -> Result<Vec<f64>, String> {
-    let mut solver =
-        DefaultSolver::new(p, q, a, b, &[NonnegativeConeT(b.len())], settings).map_err(|error| error.to_string())?;
+    let mut solver = DefaultSolver::new(p, q, a, b, &[NonnegativeConeT(b.len())], settings)
+        .map_err(|error| error.to_string())?;
     solver.solve();
     match solver.solution.status {
         SolverStatus::Solved => Ok(solver.solution.x),
@@ -62,7 +62,9 @@ mod tests {
 
     #[test]
     fn a_cosine_of_two_periods_is_its_second_line() {
-        let mut samples: Vec<f64> = (0..12).map(|n| (std::f64::consts::TAU * f64::from(n) / 6.0).cos()).collect();
+        let mut samples: Vec<f64> = (0..12)
+            .map(|n| (std::f64::consts::TAU * f64::from(n) / 6.0).cos())
+            .collect();
         let transform = FourierPlanner::default().plan(12);
         let lines = transform.of(&mut samples).unwrap();
         for (k, line) in lines.iter().enumerate() {
@@ -76,7 +78,10 @@ mod tests {
     fn a_program_ends_at_its_bound_or_says_why_not() {
         // (x - 3)^2 / 2 over x <= 1; then over x <= 1 and x >= 2.
         let one = CscMatrix::new(1, 1, vec![0, 1], vec![0], vec![1.0]);
-        let settings = || DefaultSettings { verbose: false, ..DefaultSettings::default() };
+        let settings = || DefaultSettings {
+            verbose: false,
+            ..DefaultSettings::default()
+        };
         let x = convex_program(&one, &[-3.0], &one, &[1.0], settings()).unwrap();
         assert!((x[0] - 1.0).abs() < 1e-6);
         let both = CscMatrix::new(2, 1, vec![0, 2], vec![0, 1], vec![1.0, -1.0]);

@@ -103,7 +103,12 @@ impl AssemblyState {
 
     /// Takes more models; rules that nothing was said in yet are proposed anew. A model that was found before takes its place again.
     pub fn add(&mut self, name: &str, found: Vec<FoundModel>) {
-        let mut models: Vec<FoundModel> = self.assembly.parts().iter().map(|part| part.found.clone()).collect();
+        let mut models: Vec<FoundModel> = self
+            .assembly
+            .parts()
+            .iter()
+            .map(|part| part.found.clone())
+            .collect();
         models.retain(|model| !found.iter().any(|new| new.key() == model.key()));
         models.extend(found);
         let rules = match self.are_said {
@@ -111,7 +116,9 @@ impl AssemblyState {
             false => proposed_rules(name, &models),
         };
         self.assembly = Assembly::new(models, rules);
-        self.selected = self.selected.min(self.assembly.parts().len().saturating_sub(1));
+        self.selected = self
+            .selected
+            .min(self.assembly.parts().len().saturating_sub(1));
     }
 
     /// Forgets all models and what was told of their files; what was said of them stays.
@@ -182,8 +189,13 @@ impl AssemblyState {
     /// The command that gives a column of a table another heading; the file's own headings stand where nothing else is said.
     pub fn with_heading(&self, file: &str, column: usize, heading: &str) -> Command {
         self.changed(|rules| {
-            let Some(headings) = self.tables.get(file) else { return };
-            let said = rules.headings.entry(file.to_owned()).or_insert_with(|| headings.clone());
+            let Some(headings) = self.tables.get(file) else {
+                return;
+            };
+            let said = rules
+                .headings
+                .entry(file.to_owned())
+                .or_insert_with(|| headings.clone());
             if let Some(place) = said.get_mut(column) {
                 heading.trim().clone_into(place);
             }
@@ -194,7 +206,10 @@ impl AssemblyState {
     pub fn with_unit(&self, file: &str, column: usize, unit: &str) -> Command {
         self.changed(|rules| {
             for file in self.tables_alike(file) {
-                let said = rules.headings.entry(file.clone()).or_insert_with(|| self.tables[file].clone());
+                let said = rules
+                    .headings
+                    .entry(file.clone())
+                    .or_insert_with(|| self.tables[file].clone());
                 if let Some(heading) = said.get_mut(column) {
                     *heading = format!("{heading} [{unit}]");
                 }
@@ -205,14 +220,22 @@ impl AssemblyState {
     /// The tables that ask for the same units under the same headings, this one among them.
     pub fn tables_alike(&self, file: &str) -> Vec<&String> {
         let of = |file: &str| (self.tables.get(file), self.unsaid.get(file));
-        self.tables.keys().filter(|other| of(other.as_str()) == of(file)).collect()
+        self.tables
+            .keys()
+            .filter(|other| of(other.as_str()) == of(file))
+            .collect()
     }
 
     /// The command that says the same about every model below `part`, in the order of the table, of its folder.
     pub fn filled_down(&self, part: usize, say: impl Fn(&mut RowRule)) -> Command {
         let parts = self.assembly.parts();
         let folder = |part: usize| {
-            parts.get(part).map(|part| part.found.file().rsplit_once('/').map_or("", |(folder, _)| folder))
+            parts.get(part).map(|part| {
+                part.found
+                    .file()
+                    .rsplit_once('/')
+                    .map_or("", |(folder, _)| folder)
+            })
         };
         let order = self.order();
         let below = order.iter().skip_while(|index| **index != part);
@@ -226,6 +249,7 @@ impl AssemblyState {
     /// Indices of the models in the order of the table.
     pub fn order(&self) -> Vec<usize> {
         let parts = self.assembly.parts();
-        self.sorting.order_of(parts.len(), |row, column| COLUMNS[column].text(&parts[row]))
+        self.sorting
+            .order_of(parts.len(), |row, column| COLUMNS[column].text(&parts[row]))
     }
 }

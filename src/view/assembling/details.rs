@@ -8,13 +8,16 @@ use nalgebra::Complex;
 
 use gdcm_io::UnsaidUnit;
 use gdcm_model::assembly::{ChannelLabel, FoundModel, Part, RowRole, RowRule, Signs};
-use gdcm_model::dataset::{Band, BundleKind, ChannelSide, ConditionId, Dynamics, ModelId, Pair, StateSpace};
+use gdcm_model::dataset::{
+    Band, BundleKind, ChannelSide, ConditionId, Dynamics, ModelId, Pair, StateSpace,
+};
 use gdcm_model::response::{FrequencyGrid, PreparedModel, ResponseShape};
 use gdcm_model::units::number;
 
 use super::{AssemblingCommand, AssemblyState};
 use crate::view::plot::{
-    BodeCurve, BodeQuantity, BodeScene, BodeView, CurveId, FrequencyUnit, Role as CurveRole, bode_ui,
+    BodeCurve, BodeQuantity, BodeScene, BodeView, CurveId, FrequencyUnit, Role as CurveRole,
+    bode_ui,
 };
 use crate::view::{Command, Palette, check_ui, choice_ui, entry_ui, named, typed_number};
 
@@ -49,7 +52,12 @@ impl Field {
 }
 
 /// The fields of the model shown.
-pub(super) fn details_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+pub(super) fn details_ui(
+    ui: &mut Ui,
+    assembly: &AssemblyState,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let selected = assembly.selected;
     let Some(part) = assembly.assembly().parts().get(selected) else {
         ui.label(palette.dim("No model yet: add a folder or files above"));
@@ -61,22 +69,38 @@ pub(super) fn details_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palett
     if let Some(included) = check_ui(ui, !part.row.left_out, "Include this model", hint) {
         commands.push(assembly.said_of(selected, |row| row.left_out = Some(!included)));
     }
-    Grid::new("details of a model").num_columns(3).spacing([6.0, 3.0]).show(ui, |ui| {
-        role_ui(ui, assembly, part, commands);
-        for field in fields(part, assembly.assembly().rules().rows.get(&part.found.key())) {
-            field_ui(ui, assembly, &field, commands);
-        }
-    });
+    Grid::new("details of a model")
+        .num_columns(3)
+        .spacing([6.0, 3.0])
+        .show(ui, |ui| {
+            role_ui(ui, assembly, part, commands);
+            for field in fields(
+                part,
+                assembly.assembly().rules().rows.get(&part.found.key()),
+            ) {
+                field_ui(ui, assembly, &field, commands);
+            }
+        });
     if assembly.tables.contains_key(part.found.file()) {
         columns_ui(ui, assembly, part.found.file(), palette, commands);
     }
     for side in part.sides_by_position() {
-        let words = format!("caution: {side}s have no names in the file: taken in the order of the dataset");
+        let words = format!(
+            "caution: {side}s have no names in the file: taken in the order of the dataset"
+        );
         ui.label(palette.small_warning(words));
     }
-    let notes = part.found.notes.iter().chain(&part.inputs.notes).chain(&part.outputs.notes);
+    let notes = part
+        .found
+        .notes
+        .iter()
+        .chain(&part.inputs.notes)
+        .chain(&part.outputs.notes);
     let uses = part.inputs.uses.iter().chain(&part.outputs.uses).flatten();
-    for note in notes.cloned().chain(uses.filter_map(|used| used.words.clone())) {
+    for note in notes
+        .cloned()
+        .chain(uses.filter_map(|used| used.words.clone()))
+    {
         ui.label(palette.small(note));
     }
 }
@@ -84,7 +108,13 @@ pub(super) fn details_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palett
 fn role_ui(ui: &mut Ui, assembly: &AssemblyState, part: &Part, commands: &mut Vec<Command>) {
     ui.label("role");
     let mut role = part.row.role;
-    let roles = RowRole::ALL.map(|role| (Some(role), role.word(), "What the model is in its condition"));
+    let roles = RowRole::ALL.map(|role| {
+        (
+            Some(role),
+            role.word(),
+            "What the model is in its condition",
+        )
+    });
     choice_ui(ui, "Role of the model", &mut role, &roles);
     if role != part.row.role {
         commands.push(assembly.said_of(assembly.selected, |row| row.role = role));
@@ -99,7 +129,9 @@ fn role_ui(ui: &mut Ui, assembly: &AssemblyState, part: &Part, commands: &mut Ve
 fn fill_ui(ui: &mut Ui, name: &str) -> bool {
     let name = format!("Fill down {name}");
     let hint = format!("{name}: the same for every model below it in the same folder");
-    named(ui.small_button("↓"), Role::Button, name).on_hover_text(hint).clicked()
+    named(ui.small_button("↓"), Role::Button, name)
+        .on_hover_text(hint)
+        .clicked()
 }
 
 fn field_ui(ui: &mut Ui, assembly: &AssemblyState, field: &Field, commands: &mut Vec<Command>) {
@@ -107,19 +139,30 @@ fn field_ui(ui: &mut Ui, assembly: &AssemblyState, field: &Field, commands: &mut
     let name = format!("Model {}", field.name);
     if let Some(text) = entry_ui(ui, &name, &field.value, field.hint, FIELD_WIDTH) {
         let mut refusal = None;
-        let command = assembly.said_of(assembly.selected, |row| refusal = field.say(&text, row).err());
-        commands.push(refusal.map_or(command, |why| Command::Refuse(format!("{}: {why}", field.name))));
+        let command = assembly.said_of(assembly.selected, |row| {
+            refusal = field.say(&text, row).err()
+        });
+        commands.push(refusal.map_or(command, |why| {
+            Command::Refuse(format!("{}: {why}", field.name))
+        }));
     }
     if fill_ui(ui, field.name) {
         // What stands in a field was accepted before.
-        commands.push(assembly.filled_down(assembly.selected, |row| drop(field.say(&field.value, row))));
+        commands.push(
+            assembly.filled_down(assembly.selected, |row| drop(field.say(&field.value, row))),
+        );
     }
     ui.end_row();
 }
 
 fn fields(part: &Part, rule: Option<&RowRule>) -> Vec<Field> {
     let (row, found) = (&part.row, &part.found);
-    let field = |name, value: Option<String>, hint, says| Field { name, value: value.unwrap_or_default(), hint, says };
+    let field = |name, value: Option<String>, hint, says| Field {
+        name,
+        value: value.unwrap_or_default(),
+        hint,
+        says,
+    };
     let [inputs, outputs] = [ChannelSide::Input, ChannelSide::Output].map(|side| {
         let [of_inputs, of_outputs] = &part.labels;
         let said = rule.and_then(|rule| side.of(rule.inputs.as_ref(), rule.outputs.as_ref()));
@@ -130,33 +173,114 @@ fn fields(part: &Part, rule: Option<&RowRule>) -> Vec<Field> {
     let signs = rule.and_then(|rule| rule.signs.as_ref()).map(trim_words);
     let units = rule.and_then(|rule| rule.units.as_ref()).map(unit_words);
     let factors = rule.and_then(|rule| rule.factors.as_ref()).map(trim_words);
-    let sample_time = part.sample_time_s.or(found.draft.timing.sample_time_s).map(number);
+    let sample_time = part
+        .sample_time_s
+        .or(found.draft.timing.sample_time_s)
+        .map(number);
     vec![
-        field("condition", condition, "a number", Says::Other(say_condition)),
-        field("name", Some(row.name.clone()), "in its bundle", Says::Text(|row| &mut row.name)),
-        field("airspeed", row.airspeed_kt.map(number), "kt", Says::Number(|row| &mut row.airspeed_kt)),
-        field("altitude", row.altitude.clone(), "low, high", Says::Text(|row| &mut row.altitude)),
-        field("altitude [ft]", row.altitude_ft.map(number), "ft", Says::Number(|row| &mut row.altitude_ft)),
-        field("weight", row.weight.clone(), "low, high", Says::Text(|row| &mut row.weight)),
-        field("mass [kg]", row.mass_kg.map(number), "kg", Says::Number(|row| &mut row.mass_kg)),
-        field("inputs", Some(inputs), "in the file's order: LON, LAT", Says::Names(|row| &mut row.inputs)),
-        field("outputs", Some(outputs), "in the file's order: P, Q", Says::Names(|row| &mut row.outputs)),
-        field("signs", signs, "of channels with the other sign: NZ -1", Says::Other(say_signs)),
-        field("units", units, "whatever the file says: LON in", Says::Other(say_units)),
-        field("factors", factors, "to the dataset's unit: LON 8", Says::Other(say_factors)),
-        field("sample time", sample_time, "s; 0 continuous", Says::Number(|row| &mut row.sample_time_s)),
+        field(
+            "condition",
+            condition,
+            "a number",
+            Says::Other(say_condition),
+        ),
+        field(
+            "name",
+            Some(row.name.clone()),
+            "in its bundle",
+            Says::Text(|row| &mut row.name),
+        ),
+        field(
+            "airspeed",
+            row.airspeed_kt.map(number),
+            "kt",
+            Says::Number(|row| &mut row.airspeed_kt),
+        ),
+        field(
+            "altitude",
+            row.altitude.clone(),
+            "low, high",
+            Says::Text(|row| &mut row.altitude),
+        ),
+        field(
+            "altitude [ft]",
+            row.altitude_ft.map(number),
+            "ft",
+            Says::Number(|row| &mut row.altitude_ft),
+        ),
+        field(
+            "weight",
+            row.weight.clone(),
+            "low, high",
+            Says::Text(|row| &mut row.weight),
+        ),
+        field(
+            "mass [kg]",
+            row.mass_kg.map(number),
+            "kg",
+            Says::Number(|row| &mut row.mass_kg),
+        ),
+        field(
+            "inputs",
+            Some(inputs),
+            "in the file's order: LON, LAT",
+            Says::Names(|row| &mut row.inputs),
+        ),
+        field(
+            "outputs",
+            Some(outputs),
+            "in the file's order: P, Q",
+            Says::Names(|row| &mut row.outputs),
+        ),
+        field(
+            "signs",
+            signs,
+            "of channels with the other sign: NZ -1",
+            Says::Other(say_signs),
+        ),
+        field(
+            "units",
+            units,
+            "whatever the file says: LON in",
+            Says::Other(say_units),
+        ),
+        field(
+            "factors",
+            factors,
+            "to the dataset's unit: LON 8",
+            Says::Other(say_factors),
+        ),
+        field(
+            "sample time",
+            sample_time,
+            "s; 0 continuous",
+            Says::Number(|row| &mut row.sample_time_s),
+        ),
         match row.role {
-            Some(RowRole::Identified) => {
-                field("method", row.method.clone(), "CT-PBSID", Says::Text(|row| &mut row.method))
-            }
-            _ => field("trim", trim, "roll_deg 5, airspeed_kt -10", Says::Other(say_trim)),
+            Some(RowRole::Identified) => field(
+                "method",
+                row.method.clone(),
+                "CT-PBSID",
+                Says::Text(|row| &mut row.method),
+            ),
+            _ => field(
+                "trim",
+                trim,
+                "roll_deg 5, airspeed_kt -10",
+                Says::Other(say_trim),
+            ),
         },
     ]
 }
 
 /// The channels of a file in its own order, as they are said to be or as the file calls them; "?" where it does not.
 fn channel_names(labels: &[ChannelLabel], said: Option<&Vec<String>>) -> String {
-    let of_file = || labels.iter().map(|label| label.name.clone().unwrap_or_else(|| "?".to_owned())).collect();
+    let of_file = || {
+        labels
+            .iter()
+            .map(|label| label.name.clone().unwrap_or_else(|| "?".to_owned()))
+            .collect()
+    };
     said.cloned().unwrap_or_else(of_file).join(", ")
 }
 
@@ -173,18 +297,28 @@ fn say_condition(text: &str, row: &mut RowRule) -> Result<(), String> {
     let text = text.trim();
     row.condition = match text.is_empty() {
         true => None,
-        false => Some(text.parse().map_err(|_| format!("expected a whole number, found \"{text}\""))?),
+        false => Some(
+            text.parse()
+                .map_err(|_| format!("expected a whole number, found \"{text}\""))?,
+        ),
     };
     Ok(())
 }
 
 pub(super) fn trim_words(perturbation: &BTreeMap<String, f64>) -> String {
-    perturbation.iter().map(|(coordinate, by)| format!("{coordinate} {}", number(*by))).collect::<Vec<_>>().join(", ")
+    perturbation
+        .iter()
+        .map(|(coordinate, by)| format!("{coordinate} {}", number(*by)))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// "roll_deg 5, airspeed_kt -10": a coordinate and its offset, separated by commas.
 fn say_trim(text: &str, row: &mut RowRule) -> Result<(), String> {
-    row.perturbation = Some(numbers_by_name(text, "a coordinate and a number as in \"roll_deg 5\"")?);
+    row.perturbation = Some(numbers_by_name(
+        text,
+        "a coordinate and a number as in \"roll_deg 5\"",
+    )?);
     Ok(())
 }
 
@@ -197,7 +331,10 @@ fn say_signs(text: &str, row: &mut RowRule) -> Result<(), String> {
 pub(super) fn signs_of(text: &str) -> Result<Signs, String> {
     let signs = numbers_by_name(text, "a channel and 1 or -1 as in \"NZ -1\"")?;
     match signs.iter().find(|(_, sign)| sign.abs() != 1.0) {
-        Some((channel, sign)) => Err(format!("the sign of {channel}: expected 1 or -1, found {}", number(*sign))),
+        Some((channel, sign)) => Err(format!(
+            "the sign of {channel}: expected 1 or -1, found {}",
+            number(*sign)
+        )),
         None => Ok(signs),
     }
 }
@@ -226,16 +363,24 @@ fn say_factors(text: &str, row: &mut RowRule) -> Result<(), String> {
 pub(super) fn factors_of(text: &str) -> Result<BTreeMap<String, f64>, String> {
     let factors = numbers_by_name(text, "a channel and a number other than 0 as in \"LON 8\"")?;
     match factors.iter().find(|(_, factor)| **factor == 0.0) {
-        Some((channel, _)) => Err(format!("the factor of {channel}: expected a number other than 0")),
+        Some((channel, _)) => Err(format!(
+            "the factor of {channel}: expected a number other than 0"
+        )),
         None => Ok(factors),
     }
 }
 
 pub(super) fn units_of(text: &str) -> Result<BTreeMap<String, String>, String> {
     let mut units = BTreeMap::new();
-    for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+    for part in text
+        .split(',')
+        .map(str::trim)
+        .filter(|part| !part.is_empty())
+    {
         let Some((channel, unit)) = part.rsplit_once(' ') else {
-            return Err(format!("expected a channel and its unit as in \"LON in\", found \"{part}\""));
+            return Err(format!(
+                "expected a channel and its unit as in \"LON in\", found \"{part}\""
+            ));
         };
         units.insert(channel.trim().to_owned(), unit.to_owned());
     }
@@ -243,13 +388,21 @@ pub(super) fn units_of(text: &str) -> Result<BTreeMap<String, String>, String> {
 }
 
 pub(super) fn unit_words(units: &BTreeMap<String, String>) -> String {
-    units.iter().map(|(channel, unit)| format!("{channel} {unit}")).collect::<Vec<_>>().join(", ")
+    units
+        .iter()
+        .map(|(channel, unit)| format!("{channel} {unit}"))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// Names and numbers, separated by commas.
 fn numbers_by_name(text: &str, expected: &str) -> Result<BTreeMap<String, f64>, String> {
     let mut offsets = BTreeMap::new();
-    for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+    for part in text
+        .split(',')
+        .map(str::trim)
+        .filter(|part| !part.is_empty())
+    {
         let wrong = || format!("expected {expected}, found \"{part}\"");
         let (coordinate, by) = part.rsplit_once(' ').ok_or_else(wrong)?;
         let by = typed_number(by)?.ok_or_else(wrong)?;
@@ -270,21 +423,26 @@ pub(super) fn columns_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let Some(headings) = assembly.tables.get(file) else { return };
+    let Some(headings) = assembly.tables.get(file) else {
+        return;
+    };
     ui.label(RichText::new(format!("Columns of {file}")).strong());
     let hint = "What each holds, and its unit: omega [rad/s], f [Hz], mag P/LAT [dB], phase [deg], re, im, coherence";
     ui.label(palette.small(hint));
-    Grid::new(("columns", file)).num_columns(3).spacing([6.0, 3.0]).show(ui, |ui| {
-        for (column, heading) in headings.iter().enumerate().take(MOST_COLUMNS) {
-            ui.label(format!("column {}", column + 1));
-            let name = format!("Heading of column {} of {file}", column + 1);
-            if let Some(said) = entry_ui(ui, &name, heading, "not used", HEADING_WIDTH) {
-                commands.push(assembly.with_heading(file, column, &said));
+    Grid::new(("columns", file))
+        .num_columns(3)
+        .spacing([6.0, 3.0])
+        .show(ui, |ui| {
+            for (column, heading) in headings.iter().enumerate().take(MOST_COLUMNS) {
+                ui.label(format!("column {}", column + 1));
+                let name = format!("Heading of column {} of {file}", column + 1);
+                if let Some(said) = entry_ui(ui, &name, heading, "not used", HEADING_WIDTH) {
+                    commands.push(assembly.with_heading(file, column, &said));
+                }
+                units_ui(ui, assembly, (file, column), commands);
+                ui.end_row();
             }
-            units_ui(ui, assembly, (file, column), commands);
-            ui.end_row();
-        }
-    });
+        });
     if headings.len() > MOST_COLUMNS {
         let more = headings.len() - MOST_COLUMNS;
         ui.label(palette.small(format!("and {more} more, which the rules file can name")));
@@ -292,9 +450,19 @@ pub(super) fn columns_ui(
 }
 
 /// Buttons for the units that a column may be in, where neither its heading nor its numbers say.
-fn units_ui(ui: &mut Ui, assembly: &AssemblyState, (file, column): (&str, usize), commands: &mut Vec<Command>) {
-    let asked = assembly.unsaid.get(file).and_then(|asked| asked.iter().find(|of| of.column == column));
-    let Some(UnsaidUnit { units, .. }) = asked else { return };
+fn units_ui(
+    ui: &mut Ui,
+    assembly: &AssemblyState,
+    (file, column): (&str, usize),
+    commands: &mut Vec<Command>,
+) {
+    let asked = assembly
+        .unsaid
+        .get(file)
+        .and_then(|asked| asked.iter().find(|of| of.column == column));
+    let Some(UnsaidUnit { units, .. }) = asked else {
+        return;
+    };
     let files = assembly.tables_alike(file).len();
     ui.horizontal(|ui| {
         for unit in units {
@@ -328,25 +496,50 @@ pub struct Preview {
 }
 
 /// The response of the model shown, and which one.
-pub(super) fn preview_ui(ui: &mut Ui, assembly: &mut AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
+pub(super) fn preview_ui(
+    ui: &mut Ui,
+    assembly: &mut AssemblyState,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     // A panel without content would shrink.
     ui.set_min_size(ui.available_size());
     let (selected, band) = (assembly.selected, assembly.assembly().rules().band);
-    let Some(found) = assembly.assembly().parts().get(selected).map(|part| part.found.clone()) else { return };
+    let Some(found) = assembly
+        .assembly()
+        .parts()
+        .get(selected)
+        .map(|part| part.found.clone())
+    else {
+        return;
+    };
     let count = (found.inputs.len() * found.outputs.len()).max(1);
     let place = assembly.preview.response.min(count - 1);
     let names: Vec<String> = (0..count).map(|place| pair_name(&found, place)).collect();
-    let choices: Vec<(usize, &str, &str)> =
-        names.iter().enumerate().map(|(place, name)| (place, name.as_str(), "Response shown")).collect();
+    let choices: Vec<(usize, &str, &str)> = names
+        .iter()
+        .enumerate()
+        .map(|(place, name)| (place, name.as_str(), "Response shown"))
+        .collect();
     let mut chosen = place;
     choice_ui(ui, "Response of the preview", &mut chosen, &choices);
     if chosen != place {
         commands.push(AssemblingCommand::ShowResponse(chosen).into());
     }
     let key = found.key();
-    if assembly.preview.drawn.as_ref().is_none_or(|(of, at, _)| (of, *at) != (&key, place)) {
-        let is_other_model = assembly.preview.drawn.as_ref().is_none_or(|(of, ..)| *of != key);
-        assembly.preview.drawn = Some((key, place, curve(&found, place, band).into_iter().collect()));
+    if assembly
+        .preview
+        .drawn
+        .as_ref()
+        .is_none_or(|(of, at, _)| (of, *at) != (&key, place))
+    {
+        let is_other_model = assembly
+            .preview
+            .drawn
+            .as_ref()
+            .is_none_or(|(of, ..)| *of != key);
+        assembly.preview.drawn =
+            Some((key, place, curve(&found, place, band).into_iter().collect()));
         // A measured response may be at other frequencies than the model shown before.
         if is_other_model {
             assembly.preview.view.request_fit();
@@ -354,7 +547,9 @@ pub(super) fn preview_ui(ui: &mut Ui, assembly: &mut AssemblyState, palette: &Pa
             assembly.preview.view.request_refit();
         }
     }
-    let Some((_, _, curves)) = &assembly.preview.drawn else { return };
+    let Some((_, _, curves)) = &assembly.preview.drawn else {
+        return;
+    };
     let scene = BodeScene {
         quantity: BodeQuantity::RESPONSE_OF_FOUND_MODEL,
         unit: FrequencyUnit::default(),
@@ -368,23 +563,46 @@ pub(super) fn preview_ui(ui: &mut Ui, assembly: &mut AssemblyState, palette: &Pa
 fn pair_name(found: &FoundModel, place: usize) -> String {
     let inputs = found.inputs.len().max(1);
     let name = |labels: &[ChannelLabel], index: usize, side: &str| {
-        labels.get(index).and_then(|label| label.name.clone()).unwrap_or_else(|| format!("{side} {}", index + 1))
+        labels
+            .get(index)
+            .and_then(|label| label.name.clone())
+            .unwrap_or_else(|| format!("{side} {}", index + 1))
     };
-    format!("{} → {}", name(&found.inputs, place % inputs, "input"), name(&found.outputs, place / inputs, "output"))
+    format!(
+        "{} → {}",
+        name(&found.inputs, place % inputs, "input"),
+        name(&found.outputs, place / inputs, "output")
+    )
 }
 
 fn curve(found: &FoundModel, place: usize, band: (f64, f64)) -> Option<BodeCurve> {
-    let pair = Pair::new(place / found.inputs.len().max(1), place % found.inputs.len().max(1));
+    let pair = Pair::new(
+        place / found.inputs.len().max(1),
+        place % found.inputs.len().max(1),
+    );
     let (omega, values) = match found.response() {
         Some(response) => {
             let count = response.omega.len();
             let range = place * count..(place + 1) * count;
-            let parts = response.re.values.get(range.clone())?.iter().zip(response.im.values.get(range)?);
-            (response.omega.clone(), parts.map(|(re, im)| Complex::new(*re, *im)).collect::<Vec<_>>())
+            let parts = response
+                .re
+                .values
+                .get(range.clone())?
+                .iter()
+                .zip(response.im.values.get(range)?);
+            (
+                response.omega.clone(),
+                parts
+                    .map(|(re, im)| Complex::new(*re, *im))
+                    .collect::<Vec<_>>(),
+            )
         }
         None => {
             let [a, b, c, d] = found.draft.matrices.clone();
-            let model = StateSpace::new(a?, b?, c?, d?).ok()?.timed(found.draft.timing.clone()).ok()?;
+            let model = StateSpace::new(a?, b?, c?, d?)
+                .ok()?
+                .timed(found.draft.timing.clone())
+                .ok()?;
             let wide = Band::new(band.0 / BEYOND, band.1 * BEYOND).ok()?;
             let grid = FrequencyGrid::logarithmic(wide, POINTS);
             let response = PreparedModel::of(&Dynamics::StateSpace(model)).response(&grid);
@@ -393,7 +611,11 @@ fn curve(found: &FoundModel, place: usize, band: (f64, f64)) -> Option<BodeCurve
     };
     let shape = ResponseShape::of(&values);
     Some(BodeCurve {
-        id: CurveId::Model(ModelId::new(ConditionId(0), BundleKind::Physics, found.key())),
+        id: CurveId::Model(ModelId::new(
+            ConditionId(0),
+            BundleKind::Physics,
+            found.key(),
+        )),
         label: found.key(),
         detail: found.words(),
         role: CurveRole::Representative,
@@ -414,16 +636,40 @@ mod tests {
     fn a_trim_is_said_in_words_and_comes_back_in_the_same_words() {
         let mut row = RowRule::default();
         say_trim("roll_deg 5, airspeed_kt -10", &mut row).unwrap();
-        assert_eq!(trim_words(&row.perturbation.clone().unwrap()), "airspeed_kt -10, roll_deg 5");
-        assert!(say_trim("roll", &mut row).unwrap_err().contains("roll_deg 5"));
+        assert_eq!(
+            trim_words(&row.perturbation.clone().unwrap()),
+            "airspeed_kt -10, roll_deg 5"
+        );
+        assert!(
+            say_trim("roll", &mut row)
+                .unwrap_err()
+                .contains("roll_deg 5")
+        );
         say_signs("NZ -1", &mut row).unwrap();
-        assert_eq!(row.signs.as_ref().and_then(|signs| signs.get("NZ")), Some(&-1.0));
-        assert!(say_signs("NZ -2", &mut row).unwrap_err().contains("1 or -1"));
+        assert_eq!(
+            row.signs.as_ref().and_then(|signs| signs.get("NZ")),
+            Some(&-1.0)
+        );
+        assert!(
+            say_signs("NZ -2", &mut row)
+                .unwrap_err()
+                .contains("1 or -1")
+        );
         say_units("LON in, roll rate rad/s", &mut row).unwrap();
-        assert_eq!(unit_words(&row.units.clone().unwrap()), "LON in, roll rate rad/s");
+        assert_eq!(
+            unit_words(&row.units.clone().unwrap()),
+            "LON in, roll rate rad/s"
+        );
         say_factors("LON 8", &mut row).unwrap();
-        assert_eq!(unit_words(&row.units.clone().unwrap()), "roll rate rad/s", "a unit or a factor");
-        assert_eq!(row.factors.as_ref().map(trim_words).as_deref(), Some("LON 8"));
+        assert_eq!(
+            unit_words(&row.units.clone().unwrap()),
+            "roll rate rad/s",
+            "a unit or a factor"
+        );
+        assert_eq!(
+            row.factors.as_ref().map(trim_words).as_deref(),
+            Some("LON 8")
+        );
         assert!(say_units("in", &mut row).is_err() && say_factors("LON 0", &mut row).is_err());
         say_condition("3", &mut row).unwrap();
         assert_eq!(row.condition, Some(3));

@@ -53,14 +53,28 @@ pub(super) fn keep_ground(ui: &mut Ui) {
 }
 
 /// The look of one axis, told by `ticks`, with `label` beside it (none where empty), `thickness` points in all.
-pub fn axis_hints<'a>(axis: Axis, label: &str, thickness: f32, palette: &Palette, ticks: Ticks) -> AxisHints<'a> {
+pub fn axis_hints<'a>(
+    axis: Axis,
+    label: &str,
+    thickness: f32,
+    palette: &Palette,
+    ticks: Ticks,
+) -> AxisHints<'a> {
     let hints = AxisHints::new(axis)
         .formatter(move |mark, _: &RangeInclusive<f64>| ticks.text(mark))
         .min_thickness(thickness)
         .label_spacing(LABEL_SPACING)
         .tick_label_color(palette.text)
         .tick_label_font(tick_font());
-    if label.is_empty() { hints } else { hints.label(RichText::new(label).size(SMALL_SIZE).color(palette.dim_text)) }
+    if label.is_empty() {
+        hints
+    } else {
+        hints.label(
+            RichText::new(label)
+                .size(SMALL_SIZE)
+                .color(palette.dim_text),
+        )
+    }
 }
 
 /// Makes the frame of the plots drawn in `ui` that of the palette, whatever the style around says.
@@ -76,13 +90,22 @@ const LABELLED: f64 = 100.0;
 const MINOR: f64 = 25.0;
 
 /// The `grid_spacing` under which the pretended distances mean full strength and half of it.
-pub const GRID_SPACING: Rangef = Rangef { min: 1.0, max: 100.0 };
+pub const GRID_SPACING: Rangef = Rangef {
+    min: 1.0,
+    max: 100.0,
+};
 /// The `label_spacing` under which labelled marks are labelled in full strength, and minor ones not at all.
-pub const LABEL_SPACING: Rangef = Rangef { min: 50.0, max: 51.0 };
+pub const LABEL_SPACING: Rangef = Rangef {
+    min: 50.0,
+    max: 51.0,
+};
 
 /// A mark with a label at `value`, on an axis of `units_per_point`.
 pub fn labelled_mark(value: f64, units_per_point: f64) -> GridMark {
-    GridMark { value, step_size: LABELLED * units_per_point }
+    GridMark {
+        value,
+        step_size: LABELLED * units_per_point,
+    }
 }
 
 /// Least distance between two labels of a decade, and between two of its lines \[pt\].
@@ -122,7 +145,9 @@ impl Ticks {
 
     /// Ticks and grid lines between two places on an axis of `units_per_point`.
     pub fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
-        let is_finite = [bounds.0, bounds.1, units_per_point].into_iter().all(f64::is_finite);
+        let is_finite = [bounds.0, bounds.1, units_per_point]
+            .into_iter()
+            .all(f64::is_finite);
         if !(is_finite && units_per_point > 0.0 && bounds.0 < bounds.1) {
             return Vec::new();
         }
@@ -134,7 +159,16 @@ impl Ticks {
         let range = Range::new(self.number(bounds.0), self.number(bounds.1));
         let length = (bounds.1 - bounds.0) / units_per_point;
         let ticks = |labels: f64| {
-            ticks_of(scale, range, length, TickGaps { labels, equal_steps: 1.5 * labels, lines: DECADE_GAPS[1] })
+            ticks_of(
+                scale,
+                range,
+                length,
+                TickGaps {
+                    labels,
+                    equal_steps: 1.5 * labels,
+                    lines: DECADE_GAPS[1],
+                },
+            )
         };
         // One number says nothing of the scale: in a low plot the numbers stand closer.
         let (mut gap, mut found) = (labels, ticks(labels));
@@ -144,18 +178,33 @@ impl Ticks {
         }
         let mark = |tick: Tick| GridMark {
             value: self.place(tick.value),
-            step_size: if tick.label.is_some() { LABELLED } else { MINOR } * units_per_point,
+            step_size: if tick.label.is_some() {
+                LABELLED
+            } else {
+                MINOR
+            } * units_per_point,
         };
         found.into_iter().map(mark).collect()
     }
 
     /// [`Self::marks`] whose numbers stand beside one another, `digit` points a letter: so far apart that the widest has room.
-    pub fn marks_beside(self, bounds: (f64, f64), units_per_point: f64, digit: f64) -> Vec<GridMark> {
+    pub fn marks_beside(
+        self,
+        bounds: (f64, f64),
+        units_per_point: f64,
+        digit: f64,
+    ) -> Vec<GridMark> {
         let found = self.marks(bounds, units_per_point);
-        let letters = found.iter().map(|mark| self.text(*mark).chars().count()).max().unwrap_or(0);
+        let letters = found
+            .iter()
+            .map(|mark| self.text(*mark).chars().count())
+            .max()
+            .unwrap_or(0);
         let needed = (letters as f64 + 0.6) * digit;
         match self {
-            Self::Decimal(gap) if gap < needed => Self::Decimal(needed).marks(bounds, units_per_point),
+            Self::Decimal(gap) if gap < needed => {
+                Self::Decimal(needed).marks(bounds, units_per_point)
+            }
             _ => found,
         }
     }
@@ -179,7 +228,12 @@ pub(super) fn message_ui(ui: &mut Ui, rect: Rect, message: &str, palette: &Palet
     let response = ui.allocate_rect(rect, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, message));
     let font = egui::FontId::proportional(BODY_SIZE);
-    let galley = ui.painter().layout(message.to_owned(), font, palette.dim_text, (rect.width() - 32.0).max(40.0));
+    let galley = ui.painter().layout(
+        message.to_owned(),
+        font,
+        palette.dim_text,
+        (rect.width() - 32.0).max(40.0),
+    );
     let place = Align2::CENTER_CENTER.align_size_within_rect(galley.size(), rect);
     ui.painter().galley(place.min, galley, palette.dim_text);
 }
@@ -206,33 +260,54 @@ mod tests {
         );
         assert_eq!(
             values(Ticks::Decimal(28.0), (-80.0, 20.0), 290.0),
-            [-80.0, -70.0, -60.0, -50.0, -40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0]
+            [
+                -80.0, -70.0, -60.0, -50.0, -40.0, -30.0, -20.0, -10.0, 0.0, 10.0, 20.0
+            ]
         );
     }
 
     #[test]
     fn phases_are_labelled_at_parts_of_a_turn() {
-        assert_eq!(values(Ticks::Degrees, (-330.0, 60.0), 200.0), [-300.0, -240.0, -180.0, -120.0, -60.0, 0.0, 60.0]);
-        assert_eq!(values(Ticks::Degrees, (-200.0, 10.0), 250.0), [-180.0, -150.0, -120.0, -90.0, -60.0, -30.0, 0.0]);
-        assert_eq!(values(Ticks::Degrees, (-900.0, 0.0), 200.0), [-900.0, -720.0, -540.0, -360.0, -180.0, 0.0]);
+        assert_eq!(
+            values(Ticks::Degrees, (-330.0, 60.0), 200.0),
+            [-300.0, -240.0, -180.0, -120.0, -60.0, 0.0, 60.0]
+        );
+        assert_eq!(
+            values(Ticks::Degrees, (-200.0, 10.0), 250.0),
+            [-180.0, -150.0, -120.0, -90.0, -60.0, -30.0, 0.0]
+        );
+        assert_eq!(
+            values(Ticks::Degrees, (-900.0, 0.0), 200.0),
+            [-900.0, -720.0, -540.0, -360.0, -180.0, 0.0]
+        );
     }
 
     #[test]
     fn numbers_beside_one_another_have_the_room_of_the_widest() {
         let values = |bounds: (f64, f64), points: f64| -> Vec<f64> {
-            let marks = Ticks::Decimal(26.0).marks_beside(bounds, (bounds.1 - bounds.0) / points, 6.5);
+            let marks =
+                Ticks::Decimal(26.0).marks_beside(bounds, (bounds.1 - bounds.0) / points, 6.5);
             marks.into_iter().map(|mark| mark.value).collect()
         };
         // "−120" and "−110" took 29 points of 27.
-        assert_eq!(values((-130.0, 8.0), 360.0), [-120.0, -100.0, -80.0, -60.0, -40.0, -20.0, 0.0]);
-        assert_eq!(values((40.0, 145.0), 150.0), [40.0, 60.0, 80.0, 100.0, 120.0, 140.0]);
+        assert_eq!(
+            values((-130.0, 8.0), 360.0),
+            [-120.0, -100.0, -80.0, -60.0, -40.0, -20.0, 0.0]
+        );
+        assert_eq!(
+            values((40.0, 145.0), 150.0),
+            [40.0, 60.0, 80.0, 100.0, 120.0, 140.0]
+        );
     }
 
     #[test]
     fn bounds_that_are_no_range_give_no_ticks() {
         assert!(Ticks::Decimal(28.0).marks((1.0, 1.0), 0.0).is_empty());
         // A chart of a record 58 points high.
-        assert_eq!(values(Ticks::Decimal(28.0), (-8.0, 8.0), 58.0), [-5.0, 0.0, 5.0]);
+        assert_eq!(
+            values(Ticks::Decimal(28.0), (-8.0, 8.0), 58.0),
+            [-5.0, 0.0, 5.0]
+        );
         assert!(Ticks::Degrees.marks((0.0, f64::NAN), f64::NAN).is_empty());
     }
 
@@ -249,18 +324,32 @@ mod tests {
 
     #[test]
     fn a_usual_plot_is_labelled_at_one_two_five() {
-        assert_eq!(labels(FrequencyUnit::RadPerSecond, (0.3, 20.0), 800.0), ["0.5", "1", "2", "5", "10", "20"]);
+        assert_eq!(
+            labels(FrequencyUnit::RadPerSecond, (0.3, 20.0), 800.0),
+            ["0.5", "1", "2", "5", "10", "20"]
+        );
     }
 
     #[test]
     fn a_narrow_plot_is_labelled_at_decades_only() {
-        assert_eq!(labels(FrequencyUnit::RadPerSecond, (0.05, 200.0), 300.0), ["0.1", "1", "10", "100"]);
-        assert_eq!(labels(FrequencyUnit::RadPerSecond, (1e-6, 1e6), 200.0).len(), 5);
+        assert_eq!(
+            labels(FrequencyUnit::RadPerSecond, (0.05, 200.0), 300.0),
+            ["0.1", "1", "10", "100"]
+        );
+        assert_eq!(
+            labels(FrequencyUnit::RadPerSecond, (1e-6, 1e6), 200.0).len(),
+            5
+        );
     }
 
     #[test]
     fn a_close_view_is_labelled_in_equal_steps() {
-        assert_eq!(labels(FrequencyUnit::RadPerSecond, (1.98, 2.32), 800.0).first().map(String::as_str), Some("2"));
+        assert_eq!(
+            labels(FrequencyUnit::RadPerSecond, (1.98, 2.32), 800.0)
+                .first()
+                .map(String::as_str),
+            Some("2")
+        );
         assert!(labels(FrequencyUnit::RadPerSecond, (2.0001, 2.0009), 800.0).len() > 3);
         let texts = labels(FrequencyUnit::RadPerSecond, (1.2, 4.2), 900.0);
         assert_eq!(texts, ["1.5", "2", "2.5", "3", "3.5", "4"]);
@@ -268,7 +357,10 @@ mod tests {
 
     #[test]
     fn ticks_in_hertz_are_round_in_hertz() {
-        assert_eq!(labels(FrequencyUnit::Hertz, (0.3, 20.0), 800.0), ["0.05", "0.1", "0.2", "0.5", "1", "2"]);
+        assert_eq!(
+            labels(FrequencyUnit::Hertz, (0.3, 20.0), 800.0),
+            ["0.05", "0.1", "0.2", "0.5", "1", "2"]
+        );
     }
 
     #[test]
@@ -276,8 +368,12 @@ mod tests {
         for width in [1e-4, 0.01, 0.1, 0.4, 0.8, 1.3, 1.8, 3.0, 7.0, 12.0] {
             for points in [150.0, 400.0, 900.0, 2500.0] {
                 let per_point = width / points;
-                let marks = Ticks::Frequency(FrequencyUnit::RadPerSecond).marks((-0.52, -0.52 + width), per_point);
-                let labelled: Vec<_> = marks.iter().filter(|m| is_labelled(**m, per_point)).collect();
+                let marks = Ticks::Frequency(FrequencyUnit::RadPerSecond)
+                    .marks((-0.52, -0.52 + width), per_point);
+                let labelled: Vec<_> = marks
+                    .iter()
+                    .filter(|m| is_labelled(**m, per_point))
+                    .collect();
                 assert!(labelled.len() < 80, "{width} {points}: {}", labelled.len());
                 for pair in labelled.windows(2) {
                     let gap = (pair[1].value - pair[0].value) / per_point;
@@ -289,13 +385,22 @@ mod tests {
 
     #[test]
     fn a_decade_has_nine_lines_where_there_is_room() {
-        let marks = Ticks::Frequency(FrequencyUnit::RadPerSecond).marks((0.0, 1.0 - 1e-6), 1.0 / 400.0);
+        let marks =
+            Ticks::Frequency(FrequencyUnit::RadPerSecond).marks((0.0, 1.0 - 1e-6), 1.0 / 400.0);
         assert_eq!(marks.len(), 9);
     }
 
     #[test]
     fn bounds_that_are_no_range_give_no_marks() {
-        assert!(Ticks::Frequency(FrequencyUnit::RadPerSecond).marks((1.0, 1.0), 0.1).is_empty());
-        assert!(Ticks::Frequency(FrequencyUnit::RadPerSecond).marks((f64::NAN, 1.0), 0.1).is_empty());
+        assert!(
+            Ticks::Frequency(FrequencyUnit::RadPerSecond)
+                .marks((1.0, 1.0), 0.1)
+                .is_empty()
+        );
+        assert!(
+            Ticks::Frequency(FrequencyUnit::RadPerSecond)
+                .marks((f64::NAN, 1.0), 0.1)
+                .is_empty()
+        );
     }
 }

@@ -1,7 +1,8 @@
 //! An axis taken hold of: the wheel over it zooms it, dragging it pans it, a double click or a secondary click asks for its limits.
 
 use egui::{
-    CursorIcon, Popup, PopupCloseBehavior, Rect, Response, RichText, Role, Sense, TextEdit, Ui, Vec2, WidgetInfo, vec2,
+    CursorIcon, Popup, PopupCloseBehavior, Rect, Response, RichText, Role, Sense, TextEdit, Ui,
+    Vec2, WidgetInfo, vec2,
 };
 use gdcm_plot::figure::{Range, compact};
 
@@ -32,7 +33,9 @@ pub(super) fn axis_strips_ui(
     view: &mut BodeView,
     palette: &Palette,
 ) {
-    let Some(frame) = view.transform(pane).map(|transform| *transform.frame()) else { return };
+    let Some(frame) = view.transform(pane).map(|transform| *transform.frame()) else {
+        return;
+    };
     let below = Rect::from_x_y_ranges(frame.x_range(), frame.bottom()..=rect.bottom());
     let beside = Rect::from_x_y_ranges(rect.left()..=frame.left(), frame.y_range());
     for (axis, strip, icon) in [
@@ -47,7 +50,13 @@ pub(super) fn axis_strips_ui(
         take_hold(ui, (axis, pane), &response, view);
         if response.double_clicked() || response.secondary_clicked() {
             let texts = axis.texts(scene, view.axis_mut(axis).range());
-            view.limits = Some(LimitsForm { axis, pane, texts, trouble: None, is_new: true });
+            view.limits = Some(LimitsForm {
+                axis,
+                pane,
+                texts,
+                trouble: None,
+                is_new: true,
+            });
         }
         limits_ui(ui, (axis, pane), &response, scene, view, palette);
     }
@@ -57,12 +66,23 @@ fn take_hold(ui: &Ui, (axis, pane): (PlotAxis, Pane), response: &Response, view:
     let is_across = axis == PlotAxis::Frequency;
     let drag = response.drag_delta();
     if drag != Vec2::ZERO {
-        view.pan(pane, if is_across { vec2(drag.x, 0.0) } else { vec2(0.0, drag.y) });
+        view.pan(
+            pane,
+            if is_across {
+                vec2(drag.x, 0.0)
+            } else {
+                vec2(0.0, drag.y)
+            },
+        );
         ui.ctx().request_repaint();
     }
     if let Some((turn, pointer)) = turned(ui.ctx(), response) {
         let factor = f64::from(turn.along_one_axis());
-        let (frequencies, values) = if is_across { (factor, 1.0) } else { (1.0, factor) };
+        let (frequencies, values) = if is_across {
+            (factor, 1.0)
+        } else {
+            (1.0, factor)
+        };
         view.zoom(pane, pointer, frequencies, values);
         ui.ctx().request_repaint();
     }
@@ -77,13 +97,21 @@ fn limits_ui(
     view: &mut BodeView,
     palette: &Palette,
 ) {
-    let Some(mut form) = view.limits.take_if(|form| (form.axis, form.pane) == (axis, pane)) else { return };
+    let Some(mut form) = view
+        .limits
+        .take_if(|form| (form.axis, form.pane) == (axis, pane))
+    else {
+        return;
+    };
     let mut is_open = true;
     let popup = Popup::from_response(strip)
         .open_bool(&mut is_open)
         .close_behavior(PopupCloseBehavior::CloseOnClickOutside)
         .accessible_name("Limits of the axis");
-    let answer = popup.show(|ui| form_ui(ui, &mut form, scene, palette)).map(|shown| shown.inner).unwrap_or_default();
+    let answer = popup
+        .show(|ui| form_ui(ui, &mut form, scene, palette))
+        .map(|shown| shown.inner)
+        .unwrap_or_default();
     if answer != FormAnswer::Waiting {
         ui.ctx().request_repaint();
     }
@@ -115,7 +143,12 @@ enum FormAnswer {
     Fit,
 }
 
-fn form_ui(ui: &mut Ui, form: &mut LimitsForm, scene: &BodeScene<'_>, palette: &Palette) -> FormAnswer {
+fn form_ui(
+    ui: &mut Ui,
+    form: &mut LimitsForm,
+    scene: &BodeScene<'_>,
+    palette: &Palette,
+) -> FormAnswer {
     let mut answer = FormAnswer::Waiting;
     let unit = form.axis.unit(scene);
     ui.set_max_width(190.0);
@@ -131,17 +164,32 @@ fn form_ui(ui: &mut Ui, form: &mut LimitsForm, scene: &BodeScene<'_>, palette: &
             if field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
                 answer = FormAnswer::Show;
             }
-            field.on_hover_text(format!("The {} of what is in view{unit}; Enter shows it", name.to_lowercase()));
+            field.on_hover_text(format!(
+                "The {} of what is in view{unit}; Enter shows it",
+                name.to_lowercase()
+            ));
         });
     }
     if let Some(trouble) = &form.trouble {
-        ui.label(RichText::new(trouble).size(SMALL_SIZE).color(palette.warning));
+        ui.label(
+            RichText::new(trouble)
+                .size(SMALL_SIZE)
+                .color(palette.warning),
+        );
     }
     ui.horizontal(|ui| {
-        if ui.button("Show limits").on_hover_text("Show what lies between the limits").clicked() {
+        if ui
+            .button("Show limits")
+            .on_hover_text("Show what lies between the limits")
+            .clicked()
+        {
             answer = FormAnswer::Show;
         }
-        if ui.button("Fit axis").on_hover_text("Show all of the curves on this axis").clicked() {
+        if ui
+            .button("Fit axis")
+            .on_hover_text("Show all of the curves on this axis")
+            .clicked()
+        {
             answer = FormAnswer::Fit;
         }
     });
@@ -173,7 +221,11 @@ impl PlotAxis {
             Self::Frequency => scene.unit.symbol(),
             Self::Values(pane) => scene.quantity.unit(pane).suffix().trim(),
         };
-        if symbol.is_empty() { String::new() } else { format!(" [{symbol}]") }
+        if symbol.is_empty() {
+            String::new()
+        } else {
+            format!(" [{symbol}]")
+        }
     }
 
     /// How its places are told.
@@ -199,9 +251,15 @@ impl PlotAxis {
     /// The place on the axis of a number as it is typed, with either minus sign.
     fn place(self, scene: &BodeScene<'_>, text: &str) -> Result<f64, String> {
         let number = text.trim().replace('\u{2212}', "-").parse::<f64>().ok();
-        let what = if self == Self::Frequency { "frequency" } else { "value" };
+        let what = if self == Self::Frequency {
+            "frequency"
+        } else {
+            "value"
+        };
         let place = number.map(|number| self.ticks(scene).place(number));
-        place.filter(|place| place.is_finite()).ok_or_else(|| format!("\"{}\" is no {what}", text.trim()))
+        place
+            .filter(|place| place.is_finite())
+            .ok_or_else(|| format!("\"{}\" is no {what}", text.trim()))
     }
 }
 
@@ -218,10 +276,24 @@ mod tests {
     #[test]
     fn typed_frequencies_are_places_on_the_logarithmic_axis() {
         let scene = BodeScene::of("", &[], (0.5, 12.0));
-        let range = PlotAxis::Frequency.range(&scene, &texts("0.1", " 100 ")).unwrap();
-        assert_eq!(range, Range { min: -1.0, max: 2.0 });
-        assert_eq!(PlotAxis::Frequency.texts(&scene, range), texts("0.1", "100"));
-        let hertz = BodeScene { unit: FrequencyUnit::Hertz, ..scene };
+        let range = PlotAxis::Frequency
+            .range(&scene, &texts("0.1", " 100 "))
+            .unwrap();
+        assert_eq!(
+            range,
+            Range {
+                min: -1.0,
+                max: 2.0
+            }
+        );
+        assert_eq!(
+            PlotAxis::Frequency.texts(&scene, range),
+            texts("0.1", "100")
+        );
+        let hertz = BodeScene {
+            unit: FrequencyUnit::Hertz,
+            ..scene
+        };
         let range = PlotAxis::Frequency.range(&hertz, &texts("1", "2")).unwrap();
         assert!((10f64.powf(range.min) - std::f64::consts::TAU).abs() < 1e-12);
     }
@@ -229,13 +301,30 @@ mod tests {
     #[test]
     fn limits_that_are_none_are_refused_with_a_word() {
         let scene = BodeScene::of("", &[], (0.5, 12.0));
-        let frequencies = |min, max| PlotAxis::Frequency.range(&scene, &texts(min, max)).unwrap_err().to_string();
-        assert_eq!(frequencies("3", "2"), "the lower limit has to be below the upper one");
-        assert_eq!(frequencies("2", "2"), "the lower limit has to be below the upper one");
+        let frequencies = |min, max| {
+            PlotAxis::Frequency
+                .range(&scene, &texts(min, max))
+                .unwrap_err()
+                .to_string()
+        };
+        assert_eq!(
+            frequencies("3", "2"),
+            "the lower limit has to be below the upper one"
+        );
+        assert_eq!(
+            frequencies("2", "2"),
+            "the lower limit has to be below the upper one"
+        );
         assert_eq!(frequencies("0", "2"), "\"0\" is no frequency");
         assert_eq!(frequencies("1", "two"), "\"two\" is no frequency");
         let values = PlotAxis::Values(Pane::Magnitude);
-        assert_eq!(values.range(&scene, &texts("\u{2212}20", "5")), Ok(Range { min: -20.0, max: 5.0 }));
+        assert_eq!(
+            values.range(&scene, &texts("\u{2212}20", "5")),
+            Ok(Range {
+                min: -20.0,
+                max: 5.0
+            })
+        );
         assert!(values.range(&scene, &texts("NaN", "5")).is_err());
     }
 }

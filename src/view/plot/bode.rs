@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use egui::{
-    Align2, Color32, CursorIcon, Id, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
+    Align2, Color32, CursorIcon, Id, Pos2, Rect, Response, Sense, Shape, Stroke, StrokeKind, Ui,
+    UiBuilder, pos2, vec2,
 };
 use egui_plot::{PlotPoint, PlotTransform};
 use gdcm_model::units::signed;
@@ -11,7 +12,8 @@ use gdcm_plot::figure::CoherenceCurve;
 
 use super::axes::{FrequencyUnit, TICKS_HEIGHT, caption_font, message_ui, use_frame_colors};
 use super::bode_pane::{
-    BodeBand, Emphasis, ReferenceLine, VALUE_AXIS_WIDTH, band_handles_ui, distance_to_rules, pane_ui, rule_ends,
+    BodeBand, Emphasis, ReferenceLine, VALUE_AXIS_WIDTH, band_handles_ui, distance_to_rules,
+    pane_ui, rule_ends,
 };
 use super::bode_view::BodeView;
 use super::curve_menu::{CurveWish, MenuSubject, menu_ui};
@@ -129,7 +131,12 @@ impl<'a> BodeScene<'a> {
 
     /// Responses of a pair in decibels, degrees and rad/s, and nothing else.
     pub fn of(pair_title: &'a str, curves: &'a [BodeCurve], band: (f64, f64)) -> Self {
-        Self { pair_title, curves, band, ..Self::default() }
+        Self {
+            pair_title,
+            curves,
+            band,
+            ..Self::default()
+        }
     }
 }
 
@@ -166,14 +173,24 @@ pub enum BodeEvent {
 }
 
 /// Draws a Bode plot into the space that is left in `ui`.
-pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette: &Palette) -> Vec<BodeEvent> {
+pub fn bode_ui(
+    ui: &mut Ui,
+    scene: &BodeScene<'_>,
+    view: &mut BodeView,
+    palette: &Palette,
+) -> Vec<BodeEvent> {
     let rect = ui.available_rect_before_wrap();
     let mut events = Vec::new();
     if rect.width() < LEAST_SIZE.x || rect.height() < LEAST_SIZE.y {
         return events;
     }
     if !has_data(scene.curves) {
-        message_ui(ui, rect, scene.message.unwrap_or("Nothing to draw"), palette);
+        message_ui(
+            ui,
+            rect,
+            scene.message.unwrap_or("Nothing to draw"),
+            palette,
+        );
         set_hovered(view, None, &mut events);
         view.pointed_omega = None;
         return events;
@@ -181,7 +198,12 @@ pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette:
     let drawn: Vec<BodeCurve>;
     let mut visible = *scene;
     if scene.curves.iter().any(|curve| curve.hidden) {
-        drawn = scene.curves.iter().filter(|curve| !curve.hidden).cloned().collect();
+        drawn = scene
+            .curves
+            .iter()
+            .filter(|curve| !curve.hidden)
+            .cloned()
+            .collect();
         visible.curves = &drawn;
     }
     // While an end of the band is dragged, nothing moves under the pointer.
@@ -189,17 +211,30 @@ pub fn bode_ui(ui: &mut Ui, scene: &BodeScene<'_>, view: &mut BodeView, palette:
         view.follow_curves(scene.curves);
     }
     view.fit_if_requested(&visible);
-    ui.scope_builder(UiBuilder::new().id_salt(scene.quantity.salt()).max_rect(rect), |ui| {
-        use_frame_colors(ui, palette);
-        let height = chips_ui(ui, rect, (scene, view.hovered.as_ref()), palette, &mut events);
-        let places = Places::of(rect.with_min_y(rect.top() + height), scene);
-        if panes_ui(ui, &places, &visible, view, palette, &mut events) {
-            let roles = role_chips(scene.curves, scene.hidden_roles, palette);
-            let pressed = pressed_digit(ui).and_then(|digit| roles.get(digit.checked_sub(1)?));
-            events.extend(pressed.map(|chip| BodeEvent::Display(CurveCommand::ToggleRole(chip.role))));
-        }
-        headings_ui(ui, &places, &visible, view, palette);
-    });
+    ui.scope_builder(
+        UiBuilder::new()
+            .id_salt(scene.quantity.salt())
+            .max_rect(rect),
+        |ui| {
+            use_frame_colors(ui, palette);
+            let height = chips_ui(
+                ui,
+                rect,
+                (scene, view.hovered.as_ref()),
+                palette,
+                &mut events,
+            );
+            let places = Places::of(rect.with_min_y(rect.top() + height), scene);
+            if panes_ui(ui, &places, &visible, view, palette, &mut events) {
+                let roles = role_chips(scene.curves, scene.hidden_roles, palette);
+                let pressed = pressed_digit(ui).and_then(|digit| roles.get(digit.checked_sub(1)?));
+                events.extend(
+                    pressed.map(|chip| BodeEvent::Display(CurveCommand::ToggleRole(chip.role))),
+                );
+            }
+            headings_ui(ui, &places, &visible, view, palette);
+        },
+    );
     ui.advance_cursor_after_rect(rect);
     events
 }
@@ -215,10 +250,19 @@ fn chips_ui(
     let mut roles = role_chips(scene.curves, scene.hidden_roles, palette);
     if let Some(curve) = scene.curves.iter().find(|curve| Some(&curve.id) == hovered) {
         let of = curve.role.shown(curve.rejected);
-        roles.iter_mut().filter(|chip| chip.role == of).for_each(|chip| chip.lit = true);
+        roles
+            .iter_mut()
+            .filter(|chip| chip.role == of)
+            .for_each(|chip| chip.lit = true);
     }
     let plot = scene.quantity.label_suffix();
-    let mut chips = Chips { plot, roles, bands: scene.shows_bands, states: scene.chips, is_tight: false };
+    let mut chips = Chips {
+        plot,
+        roles,
+        bands: scene.shows_bands,
+        states: scene.chips,
+        is_tight: false,
+    };
     if chips.width(ui) > rect.width() {
         chips.tighten();
     }
@@ -228,7 +272,11 @@ fn chips_ui(
 }
 
 fn has_data(curves: &[BodeCurve]) -> bool {
-    let is_finite = |curve: &BodeCurve| curve.points(Pane::Magnitude).any(|point| point.iter().all(|c| c.is_finite()));
+    let is_finite = |curve: &BodeCurve| {
+        curve
+            .points(Pane::Magnitude)
+            .any(|point| point.iter().all(|c| c.is_finite()))
+    };
     curves.iter().any(is_finite)
 }
 
@@ -247,8 +295,13 @@ fn panes_ui(
     let meant = hit.map(|hit| scene.curves[hit.curve].id.clone());
     set_hovered(view, meant.clone(), events);
     view.pointed_omega = pointing.map(|pointing| 10f64.powf(pointing.log_omega));
-    let cursor = pointing.map(|pointing| pointing.log_omega).or(scene.cursor.map(f64::log10));
-    let emphasis = Emphasis { curve: meant, cursor };
+    let cursor = pointing
+        .map(|pointing| pointing.log_omega)
+        .or(scene.cursor.map(f64::log10));
+    let emphasis = Emphasis {
+        curve: meant,
+        cursor,
+    };
     for (pane, rect) in PANES.into_iter().zip(places.panes) {
         let response = pane_ui(ui, (pane, rect), scene, view, &emphasis, palette);
         click(pane, scene, &response, view, events);
@@ -257,23 +310,41 @@ fn panes_ui(
         has_focus |= response.has_focus();
         menu_ui(&response, scene, view, events, palette);
         let takes_click = hit.is_some_and(|hit| takes_clicks(scene, hit));
-        response.on_hover_cursor(if takes_click { CursorIcon::PointingHand } else { CursorIcon::Crosshair });
+        response.on_hover_cursor(if takes_click {
+            CursorIcon::PointingHand
+        } else {
+            CursorIcon::Crosshair
+        });
     }
     if let Some((pane, area)) = view.selection.take()
         && let Some(transform) = view.transform(pane)
     {
-        events.push(BodeEvent::Boxed(touched(scene.curves, pane, area, transform)));
+        events.push(BodeEvent::Boxed(touched(
+            scene.curves,
+            pane,
+            area,
+            transform,
+        )));
     }
     has_focus
 }
 
 /// A secondary click asks what can be done with the curve there, or with the ground.
-fn ask_for_menu(response: &Response, scene: &BodeScene<'_>, pointing: Option<Pointing>, view: &mut BodeView) {
+fn ask_for_menu(
+    response: &Response,
+    scene: &BodeScene<'_>,
+    pointing: Option<Pointing>,
+    view: &mut BodeView,
+) {
     if response.secondary_clicked()
         && let Some(pointing) = pointing
     {
         let curve = pointing.hit.map(|hit| scene.curves[hit.curve].id.clone());
-        view.menu_subject = Some(MenuSubject { curve, omega: 10f64.powf(pointing.log_omega), reason: String::new() });
+        view.menu_subject = Some(MenuSubject {
+            curve,
+            omega: 10f64.powf(pointing.log_omega),
+            reason: String::new(),
+        });
     }
 }
 
@@ -297,16 +368,24 @@ impl Places {
         let inner = coherence.map_or(inner, |strip| inner.with_max_y(strip.top() - GAP));
         // Its room is kept while there is nothing to read out: nothing moves when the pointer comes.
         let has_strip = scene.readout.is_some() && inner.height() >= LEAST_WITH_STRIP;
-        let between = if has_strip { STRIP_HEIGHT + 2.0 * GAP } else { GAP };
+        let between = if has_strip {
+            STRIP_HEIGHT + 2.0 * GAP
+        } else {
+            GAP
+        };
         let plots = inner.height() - 2.0 * HEADING - between - TICKS_HEIGHT;
-        let magnitude =
-            Rect::from_min_size(pos2(inner.left(), inner.top() + HEADING), vec2(inner.width(), MAGNITUDE_PART * plots));
+        let magnitude = Rect::from_min_size(
+            pos2(inner.left(), inner.top() + HEADING),
+            vec2(inner.width(), MAGNITUDE_PART * plots),
+        );
         let strip = Rect::from_min_max(
             pos2(inner.left() + VALUE_AXIS_WIDTH, magnitude.bottom() + GAP),
             pos2(inner.right(), magnitude.bottom() + GAP + STRIP_HEIGHT),
         );
         let phase = inner.with_min_y(magnitude.bottom() + between + HEADING);
-        let heading = |pane: Rect| Rect::from_min_max(pos2(pane.left(), pane.top() - HEADING), pane.right_top());
+        let heading = |pane: Rect| {
+            Rect::from_min_max(pos2(pane.left(), pane.top() - HEADING), pane.right_top())
+        };
         Self {
             headings: [heading(magnitude), heading(phase)],
             panes: [magnitude, phase],
@@ -329,19 +408,31 @@ impl Pointing {
         let is_inside = |rect: Rect| rect.contains(pointer) && ui.rect_contains_pointer(rect);
         let is_dragging = ui.input(|input| input.pointer.is_decidedly_dragging());
         PANES.into_iter().find_map(|pane| {
-            let transform = view.transform(pane).filter(|transform| is_inside(*transform.frame()))?;
+            let transform = view
+                .transform(pane)
+                .filter(|transform| is_inside(*transform.frame()))?;
             let log_omega = transform.value_from_position(pointer).x;
             // While something is dragged, curves passing under the pointer are not meant.
-            let hit = if is_dragging { None } else { meant(scene, pane, pointer, transform) };
+            let hit = if is_dragging {
+                None
+            } else {
+                meant(scene, pane, pointer, transform)
+            };
             Some(Self { log_omega, hit })
         })
     }
 }
 
 /// The curve that the pointer means: the nearest one, unless a line that curves are read against, which is drawn over them, is as near.
-fn meant(scene: &BodeScene<'_>, pane: Pane, pointer: Pos2, transform: &PlotTransform) -> Option<Hit> {
+fn meant(
+    scene: &BodeScene<'_>,
+    pane: Pane,
+    pointer: Pos2,
+    transform: &PlotTransform,
+) -> Option<Hit> {
     let hit = nearest(scene.curves, pane, pointer, transform)?;
-    let is_on_rule = distance_to_rules(scene.rules, pane, pointer, transform).is_some_and(|rule| rule <= hit.distance);
+    let is_on_rule = distance_to_rules(scene.rules, pane, pointer, transform)
+        .is_some_and(|rule| rule <= hit.distance);
     if is_on_rule { None } else { Some(hit) }
 }
 
@@ -361,13 +452,23 @@ fn set_hovered(view: &mut BodeView, hovered: Option<CurveId>, events: &mut Vec<B
 
 /// A click means the nearest curve, and nothing where that is the reference. The second of a double click takes the first one back
 /// where that meant a curve, and fits the plot on empty ground.
-fn click(pane: Pane, scene: &BodeScene<'_>, response: &Response, view: &mut BodeView, events: &mut Vec<BodeEvent>) {
+fn click(
+    pane: Pane,
+    scene: &BodeScene<'_>,
+    response: &Response,
+    view: &mut BodeView,
+    events: &mut Vec<BodeEvent>,
+) {
     if !response.clicked() {
         return;
     }
     let pointer = response.interact_pointer_pos();
-    let hit = pointer.zip(view.transform(pane)).and_then(|(at, transform)| meant(scene, pane, at, transform));
-    let id = hit.filter(|hit| takes_clicks(scene, *hit)).map(|hit| scene.curves[hit.curve].id.clone());
+    let hit = pointer
+        .zip(view.transform(pane))
+        .and_then(|(at, transform)| meant(scene, pane, at, transform));
+    let id = hit
+        .filter(|hit| takes_clicks(scene, *hit))
+        .map(|hit| scene.curves[hit.curve].id.clone());
     let before = view.last_clicked.take();
     match (response.double_clicked(), before, id) {
         (true, Some(before), _) => events.push(BodeEvent::TakenBack(before)),
@@ -376,7 +477,9 @@ fn click(pane: Pane, scene: &BodeScene<'_>, response: &Response, view: &mut Bode
             response.ctx.request_repaint();
         }
         (true, None, Some(_)) | (false, _, None) => {}
-        (false, _, Some(id)) if response.ctx.input(|input| input.modifiers.alt) => events.push(BodeEvent::Isolated(id)),
+        (false, _, Some(id)) if response.ctx.input(|input| input.modifiers.alt) => {
+            events.push(BodeEvent::Isolated(id))
+        }
         (false, _, Some(id)) => {
             view.last_clicked = Some(id.clone());
             events.push(BodeEvent::Clicked(id));
@@ -386,7 +489,13 @@ fn click(pane: Pane, scene: &BodeScene<'_>, response: &Response, view: &mut Bode
 
 /// What stands around the panes: what each shows, what the correction did there, the values at the cursor, the names of the heavy
 /// curves at their ends, and whether newer curves are on their way.
-fn headings_ui(ui: &Ui, places: &Places, scene: &BodeScene<'_>, view: &BodeView, palette: &Palette) {
+fn headings_ui(
+    ui: &Ui,
+    places: &Places,
+    scene: &BodeScene<'_>,
+    view: &BodeView,
+    palette: &Palette,
+) {
     for ((pane, line), note) in PANES.into_iter().zip(places.headings).zip(scene.notes) {
         let label = scene.quantity.axis_label(pane);
         let (name, unit) = label.split_once(" [").unwrap_or((&label, ""));
@@ -394,11 +503,18 @@ fn headings_ui(ui: &Ui, places: &Places, scene: &BodeScene<'_>, view: &BodeView,
         let (unit, beside) = (unit.trim_end_matches(']'), name.right() - line.left() + 4.0);
         let unit = row_text(ui, line, beside, unit, BODY_SIZE, palette.dim_text);
         if let Some(note) = note {
-            let color = if note.warns { palette.warning } else { palette.dim_text };
+            let color = if note.warns {
+                palette.warning
+            } else {
+                palette.dim_text
+            };
             let verdict = row_text(ui, line, -0.01, &note.verdict, BODY_SIZE, color);
             let mut rest = line.with_max_x(verdict.left() - 12.0);
             // Beside the bracket where there is a margin, else here.
-            if let Some(price) = scene.price_words().filter(|_| pane == Pane::Magnitude && !scene.names_curves) {
+            if let Some(price) = scene
+                .price_words()
+                .filter(|_| pane == Pane::Magnitude && !scene.names_curves)
+            {
                 let words = format!("leads {price}");
                 let place = row_text(ui, rest, -0.01, &words, BODY_SIZE, palette.warning);
                 rest = rest.with_max_x(place.left() - 12.0);
@@ -406,16 +522,32 @@ fn headings_ui(ui: &Ui, places: &Places, scene: &BodeScene<'_>, view: &BodeView,
             let shown = elided(ui, &note.cost, rest.right() - unit.right() - 8.0, BODY_SIZE);
             row_text(ui, rest, -0.01, &shown, BODY_SIZE, palette.dim_text);
         } else if scene.stale && pane == Pane::Magnitude {
-            row_text(ui, line, -0.01, scene.message.unwrap_or("updating…"), SMALL_SIZE, palette.dim_text);
+            row_text(
+                ui,
+                line,
+                -0.01,
+                scene.message.unwrap_or("updating…"),
+                SMALL_SIZE,
+                palette.dim_text,
+            );
         }
         if scene.names_curves || !scene.rules.is_empty() {
             names_ui(ui, pane, scene, view, palette);
         }
     }
-    if let Some(frame) = view.transform(Pane::Phase).map(|transform| *transform.frame()) {
+    if let Some(frame) = view
+        .transform(Pane::Phase)
+        .map(|transform| *transform.frame())
+    {
         let at = pos2(frame.right() + 14.0, frame.bottom() + 0.5 * TICKS_HEIGHT);
         let unit = scene.unit.symbol();
-        ui.painter().text(at, Align2::LEFT_CENTER, unit, caption_font(), palette.dim_text);
+        ui.painter().text(
+            at,
+            Align2::LEFT_CENTER,
+            unit,
+            caption_font(),
+            palette.dim_text,
+        );
     }
     if let (Some(strip), Some(readout)) = (places.strip, scene.readout) {
         readout_strip_ui(ui, strip, readout, palette);
@@ -426,36 +558,85 @@ fn headings_ui(ui: &Ui, places: &Places, scene: &BodeScene<'_>, view: &BodeView,
 }
 
 /// Coherence of the measured responses over the frequencies of the panes, with the least that counts.
-fn coherence_ui(ui: &Ui, strip: Rect, scene: &BodeScene<'_>, transform: &PlotTransform, palette: &Palette) {
-    let strip = strip.with_min_x(transform.frame().left()).with_max_x(transform.frame().right());
+fn coherence_ui(
+    ui: &Ui,
+    strip: Rect,
+    scene: &BodeScene<'_>,
+    transform: &PlotTransform,
+    palette: &Palette,
+) {
+    let strip = strip
+        .with_min_x(transform.frame().left())
+        .with_max_x(transform.frame().right());
     let y = |value: f64| strip.bottom() - strip.height() * (value / 1.05) as f32;
     let painter = ui.painter();
-    painter.rect_stroke(strip, 0.0, Stroke::new(1.0, palette.line), StrokeKind::Inside);
+    painter.rect_stroke(
+        strip,
+        0.0,
+        Stroke::new(1.0, palette.line),
+        StrokeKind::Inside,
+    );
     for value in [0.0, 1.0] {
-        let at = pos2(strip.left() - 6.0, y(value).clamp(strip.top() + 5.0, strip.bottom() - 5.0));
-        painter.text(at, Align2::RIGHT_CENTER, format!("{value}"), caption_font(), palette.dim_text);
+        let at = pos2(
+            strip.left() - 6.0,
+            y(value).clamp(strip.top() + 5.0, strip.bottom() - 5.0),
+        );
+        painter.text(
+            at,
+            Align2::RIGHT_CENTER,
+            format!("{value}"),
+            caption_font(),
+            palette.dim_text,
+        );
     }
-    painter.text(pos2(strip.left() - 6.0, y(0.5)), Align2::RIGHT_CENTER, "γ²", caption_font(), palette.text);
+    painter.text(
+        pos2(strip.left() - 6.0, y(0.5)),
+        Align2::RIGHT_CENTER,
+        "γ²",
+        caption_font(),
+        palette.text,
+    );
     let least = [strip.left(), strip.right()].map(|x| pos2(x, y(scene.least_coherence)));
-    painter.extend(Shape::dashed_line(&least, Stroke::new(1.0, palette.dim_text), 4.0, 3.0));
+    painter.extend(Shape::dashed_line(
+        &least,
+        Stroke::new(1.0, palette.dim_text),
+        4.0,
+        3.0,
+    ));
     let painter = painter.with_clip_rect(strip.intersect(ui.clip_rect()));
     for curve in scene.coherence {
         let place = |[omega, value]: &[f64; 2]| {
-            pos2(transform.position_from_point(&PlotPoint::new(omega.log10(), 0.0)).x, y(*value))
+            pos2(
+                transform
+                    .position_from_point(&PlotPoint::new(omega.log10(), 0.0))
+                    .x,
+                y(*value),
+            )
         };
-        let style = palette.role_style(curve.role, curve.rejected).in_miniature();
+        let style = palette
+            .role_style(curve.role, curve.rejected)
+            .in_miniature();
         let mut shapes = Vec::new();
         style.add_shapes(curve.points.iter().map(place).collect(), &mut shapes);
         painter.extend(shapes);
     }
-    let name = format!("Coherence of {}{}", scene.pair_title, scene.quantity.label_suffix());
+    let name = format!(
+        "Coherence of {}{}",
+        scene.pair_title,
+        scene.quantity.label_suffix()
+    );
     named(ui.interact(strip, Id::unique(&name), Sense::hover()), egui::Role::Label, name)
         .on_hover_text("γ² of the measured responses; below the dashed line a frequency does not count, or is a guess");
 }
 
 /// The roles that are named where they end.
-const NAMED: [Role; 5] =
-    [Role::IdentifiedRepresentative, Role::Corrected, Role::WithoutLeads, Role::Variant, Role::Nominal];
+const NAMED: [Role; 5] = [
+    Role::IdentifiedRepresentative,
+    Role::Corrected,
+    Role::WithoutLeads,
+    Role::Variant,
+    Role::Nominal,
+];
 /// Least distance between two names \[pt\].
 const NAME_GAP: f32 = 14.0;
 
@@ -470,22 +651,33 @@ fn margin(scene: &BodeScene<'_>) -> f32 {
 
 /// The names of the heavy curves at their ends, and of the lines that curves are read against.
 fn names_ui(ui: &Ui, pane: Pane, scene: &BodeScene<'_>, view: &BodeView, palette: &Palette) {
-    let Some(transform) = view.transform(pane) else { return };
+    let Some(transform) = view.transform(pane) else {
+        return;
+    };
     let frame = *transform.frame();
     let last = view.omega_range().1;
     let end = |role: Role| {
         let curve = scene.curves.iter().find(|curve| curve.role == role)?;
         let omega = curve.omega.last()?.min(last);
-        let at = transform.position_from_point(&PlotPoint::new(omega.log10(), curve.value_at(pane, omega)?));
+        let at = transform
+            .position_from_point(&PlotPoint::new(omega.log10(), curve.value_at(pane, omega)?));
         Some((role, at.y.clamp(frame.top() + 5.0, frame.bottom() - 5.0)))
     };
     let named = |(role, y): (Role, f32)| {
         let color = palette.name_of(palette.role_style(role, false).color.to_opaque());
         (y, role.name().to_owned(), color)
     };
-    let heavy = NAMED.into_iter().filter(|_| scene.names_curves).filter_map(end).map(named);
-    let mut ends: Vec<(f32, String, Color32)> = heavy.chain(rule_ends(scene.rules, pane, transform, palette)).collect();
-    if let (Pane::Magnitude, Some([with, without])) = (pane, scene.invalid.and_then(|invalid| invalid.ends_db)) {
+    let heavy = NAMED
+        .into_iter()
+        .filter(|_| scene.names_curves)
+        .filter_map(end)
+        .map(named);
+    let mut ends: Vec<(f32, String, Color32)> = heavy
+        .chain(rule_ends(scene.rules, pane, transform, palette))
+        .collect();
+    if let (Pane::Magnitude, Some([with, without])) =
+        (pane, scene.invalid.and_then(|invalid| invalid.ends_db))
+    {
         let at = transform.position_from_point(&PlotPoint::new(0.0, 0.5 * (with + without)));
         let y = at.y.clamp(frame.top() + 5.0, frame.bottom() - 5.0);
         ends.extend(scene.price_words().map(|words| (y, words, palette.warning)));
@@ -493,7 +685,13 @@ fn names_ui(ui: &Ui, pane: Pane, scene: &BodeScene<'_>, view: &BodeView, palette
     ends.sort_by(|a, b| a.0.total_cmp(&b.0));
     spread(&mut ends, frame.bottom() - 5.0);
     for (y, name, color) in ends {
-        ui.painter().text(pos2(frame.right() + 6.0, y), Align2::LEFT_CENTER, name, caption_font(), color);
+        ui.painter().text(
+            pos2(frame.right() + 6.0, y),
+            Align2::LEFT_CENTER,
+            name,
+            caption_font(),
+            color,
+        );
     }
 }
 

@@ -1,19 +1,25 @@
 //! One of the two stacked plots: axes, band, curves, labelled lines across and cursor.
 
 use egui::{
-    Align2, Color32, Context, CursorIcon, FontId, Id, PointerButton, Rect, Response, Sense, Shape, Stroke, StrokeKind,
-    Ui, UiBuilder, WidgetInfo, pos2, vec2,
+    Align2, Color32, Context, CursorIcon, FontId, Id, PointerButton, Rect, Response, Sense, Shape,
+    Stroke, StrokeKind, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
-use egui_plot::{Axis, FilledArea, LineStyle, PlotBounds, PlotPoint, PlotTransform, PlotUi, Span, VLine};
+use egui_plot::{
+    Axis, FilledArea, LineStyle, PlotBounds, PlotPoint, PlotTransform, PlotUi, Span, VLine,
+};
 pub use gdcm_plot::figure::{BodeBand, Level, ReferenceKind, ReferenceLine};
 
-use super::axes::{FrequencyUnit, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot};
+use super::axes::{
+    FrequencyUnit, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot,
+};
 use super::axis_strip::axis_strips_ui;
 use super::bode::{BodeEvent, BodeScene, InvalidRegion};
 use super::bode_view::{BodeView, DrawnPane};
 use super::cached_raster::{CachedRaster, MANY, StillImage, StillScene};
 use super::curve_style::Role;
-use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves, DrawnItem, Pane, curve_lines, pixel_of};
+use super::drawn_curves::{
+    BodeCurve, CurveId, DrawnCurves, DrawnItem, Pane, curve_lines, pixel_of,
+};
 use super::navigation::{Turn, distance_to, drawn_box_ui, plot_keys, turned};
 use crate::view::controls::elided;
 use crate::view::palette::{Palette, SMALL_SIZE};
@@ -47,7 +53,11 @@ pub(super) fn pane_ui(
     let id = ui.make_persistent_id(&name);
     let builder = UiBuilder::new().id_salt(&name).max_rect(rect);
     let mut kept = std::mem::take(&mut view.drawn[pane as usize]);
-    let DrawnPane { curves: drawn, image, .. } = &mut kept;
+    let DrawnPane {
+        curves: drawn,
+        image,
+        ..
+    } = &mut kept;
     let shown = ui.scope_builder(builder, |ui| {
         keep_ground(ui);
         let bounds = view.bounds(pane);
@@ -58,17 +68,28 @@ pub(super) fn pane_ui(
             let transform = PlotTransform::new(*plot.transform().frame(), bounds, false);
             let pixel = pixel_of(&transform, plot.ctx().pixels_per_point(), TOLERANCE);
             drawn.update(scene.curves, pane, (bounds, pixel), palette);
-            let bands = scene.bands.iter().filter(|_| scene.shows_bands != Some(false));
-            bands.chain(scene.missing).for_each(|band| draw_band(plot, band, pane, &bounds, palette));
+            let bands = scene
+                .bands
+                .iter()
+                .filter(|_| scene.shows_bands != Some(false));
+            bands
+                .chain(scene.missing)
+                .for_each(|band| draw_band(plot, band, pane, &bounds, palette));
             let image = image_of_many(plot.ctx(), scene, drawn, image, &transform, palette);
             draw_curves(plot, scene, drawn, image, emphasis, palette);
             outside_shade(plot, scene.band, palette);
-            let marked = scene.pinned.iter().chain(scene.crossings.iter().map(|(_, omega)| omega));
+            let marked = scene
+                .pinned
+                .iter()
+                .chain(scene.crossings.iter().map(|(_, omega)| omega));
             draw_cursors(plot, marked, emphasis.cursor, palette);
         })
     });
     let shown = shown.inner;
-    view.drawn[pane as usize] = DrawnPane { transform: Some(shown.transform), ..kept };
+    view.drawn[pane as usize] = DrawnPane {
+        transform: Some(shown.transform),
+        ..kept
+    };
     drag(ui, pane, &shown.response, view, palette);
     zoom_by_scrolling(ui, pane, &shown.response, view);
     plot_keys(ui, pane, &shown.response, view);
@@ -78,14 +99,22 @@ pub(super) fn pane_ui(
     if let (Pane::Magnitude, Some(invalid)) = (pane, scene.invalid) {
         invalid_strip_ui(ui, (scene.band.1, invalid), &shown.transform, palette);
     }
-    let description = format!("{name} of {}, {} curves", scene.pair_title, scene.curves.len());
-    shown.response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
+    let description = format!(
+        "{name} of {}, {} curves",
+        scene.pair_title,
+        scene.curves.len()
+    );
+    shown
+        .response
+        .widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, description.clone()));
     shown.response
 }
 
 /// The primary button pans, with Shift it draws a box over curves; the secondary one draws a box to zoom into.
 fn drag(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView, palette: &Palette) {
-    let Some(frame) = view.transform(pane).map(|transform| *transform.frame()) else { return };
+    let Some(frame) = view.transform(pane).map(|transform| *transform.frame()) else {
+        return;
+    };
     if response.drag_started_by(PointerButton::Primary) {
         view.is_selecting = ui.input(|input| input.modifiers.shift);
     }
@@ -102,7 +131,13 @@ fn drag(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView, palette: 
     }
 }
 
-fn pane_plot<'a>(id: Id, pane: Pane, rect: Rect, scene: &BodeScene<'_>, palette: &Palette) -> egui_plot::Plot<'a> {
+fn pane_plot<'a>(
+    id: Id,
+    pane: Pane,
+    rect: Rect,
+    scene: &BodeScene<'_>,
+    palette: &Palette,
+) -> egui_plot::Plot<'a> {
     let unit = scene.unit;
     let frequencies = Ticks::Frequency(unit);
     // One axis of frequencies, below both panes.
@@ -117,12 +152,24 @@ fn pane_plot<'a>(id: Id, pane: Pane, rect: Rect, scene: &BodeScene<'_>, palette:
         .x_grid_spacer(frequencies.spacer())
         .y_grid_spacer(values.spacer())
         .custom_x_axes(below)
-        .custom_y_axes(vec![axis_hints(Axis::Y, "", VALUE_AXIS_WIDTH, palette, values)])
+        .custom_y_axes(vec![axis_hints(
+            Axis::Y,
+            "",
+            VALUE_AXIS_WIDTH,
+            palette,
+            values,
+        )])
 }
 
 fn band_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palette) {
-    let fill = palette.accent.gamma_multiply(if palette.is_dark { 0.055 } else { 0.075 });
-    plot.span(Span::new("", min.log10()..=max.log10()).fill(fill).border_width(0.0));
+    let fill = palette
+        .accent
+        .gamma_multiply(if palette.is_dark { 0.055 } else { 0.075 });
+    plot.span(
+        Span::new("", min.log10()..=max.log10())
+            .fill(fill)
+            .border_width(0.0),
+    );
 }
 
 /// Hatches the frequencies where the model is not valid.
@@ -132,10 +179,16 @@ fn hatch(plot: &mut PlotUi<'_>, scene: &BodeScene<'_>, palette: &Palette) {
     if scene.invalid.is_none() {
         return;
     }
-    let (from, stroke) = (scene.band.1.log10(), Stroke::new(1.0, palette.warning.gamma_multiply(0.14)));
+    let (from, stroke) = (
+        scene.band.1.log10(),
+        Stroke::new(1.0, palette.warning.gamma_multiply(0.14)),
+    );
     plot.add(DrawnItem::new(move |transform, shapes| {
         let frame = *transform.frame();
-        let left = transform.position_from_point(&PlotPoint::new(from, 0.0)).x.max(frame.left());
+        let left = transform
+            .position_from_point(&PlotPoint::new(from, 0.0))
+            .x
+            .max(frame.left());
         let (width, height) = (frame.right() - left, frame.height());
         if width <= 0.0 {
             return;
@@ -151,19 +204,37 @@ fn hatch(plot: &mut PlotUi<'_>, scene: &BodeScene<'_>, palette: &Palette) {
 }
 
 /// A strip over the upper edge that says above which frequency nothing is valid, and how far the leads raise what is drawn.
-fn invalid_strip_ui(ui: &Ui, (top, invalid): (f64, &InvalidRegion), transform: &PlotTransform, palette: &Palette) {
+fn invalid_strip_ui(
+    ui: &Ui,
+    (top, invalid): (f64, &InvalidRegion),
+    transform: &PlotTransform,
+    palette: &Palette,
+) {
     let frame = *transform.frame();
-    let at = |omega: f64, value: f64| transform.position_from_point(&PlotPoint::new(omega.log10(), value));
+    let at = |omega: f64, value: f64| {
+        transform.position_from_point(&PlotPoint::new(omega.log10(), value))
+    };
     let left = at(top, 0.0).x.max(frame.left());
-    let strip = Rect::from_min_max(pos2(left, frame.top() + 1.0), pos2(frame.right() - 1.0, frame.top() + 17.0));
+    let strip = Rect::from_min_max(
+        pos2(left, frame.top() + 1.0),
+        pos2(frame.right() - 1.0, frame.top() + 17.0),
+    );
     if strip.width() < 40.0 {
         return;
     }
     ui.painter().rect_filled(strip, 0.0, palette.warning_ground);
     let words = elided(ui, &invalid.words, strip.width() - 8.0, SMALL_SIZE);
     let font = FontId::proportional(SMALL_SIZE);
-    ui.painter().text(strip.center(), Align2::CENTER_CENTER, words, font, palette.warning);
-    let Some([with, without]) = invalid.ends_db else { return };
+    ui.painter().text(
+        strip.center(),
+        Align2::CENTER_CENTER,
+        words,
+        font,
+        palette.warning,
+    );
+    let Some([with, without]) = invalid.ends_db else {
+        return;
+    };
     let (upper, lower) = (at(invalid.up_to, with), at(invalid.up_to, without));
     if !frame.contains(upper - vec2(6.0, 0.0)) || !frame.contains(lower - vec2(6.0, 0.0)) {
         return;
@@ -193,15 +264,24 @@ fn draw_curves<'a>(
     emphasis: &Emphasis,
     palette: &Palette,
 ) {
-    let is_emphasized = |curve: &BodeCurve| curve.highlighted || emphasis.curve.as_ref() == Some(&curve.id);
+    let is_emphasized =
+        |curve: &BodeCurve| curve.highlighted || emphasis.curve.as_ref() == Some(&curve.id);
     let mut curves: Vec<(usize, &BodeCurve)> = scene.curves.iter().enumerate().collect();
     if let Some(image) = image {
         let strength = if scene.stale { STALE } else { 1.0 };
-        plot.add(DrawnItem::new(move |_, shapes| shapes.push(image.shape(strength))));
+        plot.add(DrawnItem::new(move |_, shapes| {
+            shapes.push(image.shape(strength))
+        }));
         curves.retain(|(_, curve)| !lies_at_the_bottom(curve) || is_emphasized(curve));
     }
     let is_raised = |curve: &BodeCurve| scene.raised == Some(curve.role.shown(curve.rejected));
-    curves.sort_by_key(|(_, curve)| (is_emphasized(curve), is_raised(curve), curve.role.layer(curve.rejected)));
+    curves.sort_by_key(|(_, curve)| {
+        (
+            is_emphasized(curve),
+            is_raised(curve),
+            curve.role.layer(curve.rejected),
+        )
+    });
     for (index, curve) in curves {
         let mut look = palette.role_style(curve.role, curve.rejected);
         if is_emphasized(curve) {
@@ -209,7 +289,9 @@ fn draw_curves<'a>(
         } else if scene.stale {
             look.color = look.color.gamma_multiply(STALE);
         }
-        plot.add(DrawnItem::new(move |transform, shapes| curve_lines(drawn.runs(index), look, transform, shapes)));
+        plot.add(DrawnItem::new(move |transform, shapes| {
+            curve_lines(drawn.runs(index), look, transform, shapes)
+        }));
     }
 }
 
@@ -222,7 +304,12 @@ fn image_of_many(
     transform: &PlotTransform,
     palette: &Palette,
 ) -> Option<StillImage> {
-    let mut curves: Vec<_> = scene.curves.iter().enumerate().filter(|(_, curve)| lies_at_the_bottom(curve)).collect();
+    let mut curves: Vec<_> = scene
+        .curves
+        .iter()
+        .enumerate()
+        .filter(|(_, curve)| lies_at_the_bottom(curve))
+        .collect();
     if curves.len() < MANY {
         return None;
     }
@@ -231,11 +318,16 @@ fn image_of_many(
     let still = StillScene {
         frame: *transform.frame(),
         pixels_per_point: ctx.pixels_per_point(),
-        curves: curves.iter().map(|(index, curve)| (drawn.serial(*index), look(curve))).collect(),
+        curves: curves
+            .iter()
+            .map(|(index, curve)| (drawn.serial(*index), look(curve)))
+            .collect(),
     };
     image.of(ctx, still, || {
         let mut shapes = Vec::new();
-        curves.iter().for_each(|(index, curve)| curve_lines(drawn.runs(*index), look(curve), transform, &mut shapes));
+        curves.iter().for_each(|(index, curve)| {
+            curve_lines(drawn.runs(*index), look(curve), transform, &mut shapes)
+        });
         shapes
     })
 }
@@ -252,18 +344,32 @@ fn draw_cursors<'a>(
     palette: &Palette,
 ) {
     for omega in pinned {
-        plot.vline(VLine::new("", omega.log10()).color(palette.text.gamma_multiply(0.7)).width(1.0));
+        plot.vline(
+            VLine::new("", omega.log10())
+                .color(palette.text.gamma_multiply(0.7))
+                .width(1.0),
+        );
     }
     if let Some(log_omega) = cursor {
         let color = palette.text.gamma_multiply(0.55);
-        plot.vline(VLine::new("", log_omega).color(color).width(0.8).style(LineStyle::Dotted { spacing: 4.0 }));
+        plot.vline(
+            VLine::new("", log_omega)
+                .color(color)
+                .width(0.8)
+                .style(LineStyle::Dotted { spacing: 4.0 }),
+        );
     }
 }
 
 /// The wheel zooms about the pointer, and so do two fingers; the sideways wheel only along the frequency axis.
 fn zoom_by_scrolling(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView) {
     if let Some((Turn { both, sideways }, pointer)) = turned(ui.ctx(), response) {
-        view.zoom(pane, pointer, f64::from(both.x * sideways), f64::from(both.y));
+        view.zoom(
+            pane,
+            pointer,
+            f64::from(both.x * sideways),
+            f64::from(both.y),
+        );
         ui.ctx().request_repaint();
     }
 }
@@ -320,11 +426,21 @@ pub(super) fn band_handles_ui(
         if !x.is_finite() || !frame.x_range().contains(x) {
             continue;
         }
-        let strip = Rect::from_x_y_ranges(x - GRAB_RADIUS..=x + GRAB_RADIUS, frame.y_range()).intersect(frame);
-        let response = ui.interact(strip, ui.scope_id().with((place.as_str(), end.name())), Sense::drag());
+        let strip = Rect::from_x_y_ranges(x - GRAB_RADIUS..=x + GRAB_RADIUS, frame.y_range())
+            .intersect(frame);
+        let response = ui.interact(
+            strip,
+            ui.scope_id().with((place.as_str(), end.name())),
+            Sense::drag(),
+        );
         let response = response.on_hover_and_drag_cursor(CursorIcon::ResizeHorizontal);
-        response
-            .widget_info(|| WidgetInfo::slider(true, unit.of_omega(end.of(band)), format!("{}, {place}", end.name())));
+        response.widget_info(|| {
+            WidgetInfo::slider(
+                true,
+                unit.of_omega(end.of(band)),
+                format!("{}, {place}", end.name()),
+            )
+        });
         paint(ui, x, end, band, &response, (frame, unit, palette));
         if response.dragged()
             && let Some(pointer) = response.interact_pointer_pos()
@@ -350,8 +466,11 @@ fn paint(
 ) {
     let is_held = response.hovered() || response.dragged();
     let painter = ui.painter().with_clip_rect(frame);
-    let stroke =
-        if is_held { Stroke::new(2.0, palette.accent) } else { Stroke::new(1.0, palette.accent.gamma_multiply(0.65)) };
+    let stroke = if is_held {
+        Stroke::new(2.0, palette.accent)
+    } else {
+        Stroke::new(1.0, palette.accent.gamma_multiply(0.65))
+    };
     painter.vline(x, frame.y_range(), stroke);
     if !is_held {
         return;
@@ -363,16 +482,30 @@ fn paint(
     let left = (x - 0.5 * size.x).clamp(frame.left(), (frame.right() - size.x).max(frame.left()));
     let place = Rect::from_min_size(pos2(left, frame.top() - size.y - 2.0), size);
     let painter = ui.painter();
-    painter.rect(place, 3.0, palette.raised, Stroke::new(1.0, palette.line), StrokeKind::Inside);
+    painter.rect(
+        place,
+        3.0,
+        palette.raised,
+        Stroke::new(1.0, palette.line),
+        StrokeKind::Inside,
+    );
     painter.galley(place.min + vec2(5.0, 1.0), galley, palette.text);
 }
 
 /// Draws the rules of a pane into the plot that was drawn as `transform` says.
-pub(super) fn rules_ui(ui: &Ui, rules: &[ReferenceLine], pane: Pane, transform: &PlotTransform, palette: &Palette) {
+pub(super) fn rules_ui(
+    ui: &Ui,
+    rules: &[ReferenceLine],
+    pane: Pane,
+    transform: &PlotTransform,
+    palette: &Palette,
+) {
     let painter = ui.painter().with_clip_rect(transform.frame().shrink(1.0));
     let mut shapes = Vec::new();
     for rule in rules.iter().filter(|rule| rule.pane == pane) {
-        palette.curve_style(rule.kind.line()).add_shapes(path(&rule.level, transform), &mut shapes);
+        palette
+            .curve_style(rule.kind.line())
+            .add_shapes(path(&rule.level, transform), &mut shapes);
     }
     painter.extend(shapes);
 }
@@ -386,7 +519,9 @@ pub(super) fn distance_to_rules(
 ) -> Option<f32> {
     let mut least: Option<f32> = None;
     for rule in rules.iter().filter(|rule| rule.pane == pane) {
-        let points = rule.level.points(transform.bounds().min()[0], transform.bounds().max()[0]);
+        let points = rule
+            .level
+            .points(transform.bounds().min()[0], transform.bounds().max()[0]);
         if let Some((distance, _)) = distance_to(points.into_iter(), pointer, transform) {
             least = Some(least.map_or(distance, |known| known.min(distance)));
         }
@@ -405,7 +540,9 @@ pub(super) fn rule_ends(
     let mut ends = Vec::new();
     for rule in rules.iter().filter(|rule| rule.pane == pane) {
         let path = path(&rule.level, transform);
-        let Some(end) = path.iter().rev().find(|at| frame.contains(**at)) else { continue };
+        let Some(end) = path.iter().rev().find(|at| frame.contains(**at)) else {
+            continue;
+        };
         let color = palette.name_of(palette.curve_style(rule.kind.line()).color.to_opaque());
         ends.push((end.y, rule.label.clone(), color));
         let note = rule.note.trim_start_matches([',', ':', ' ']);
@@ -424,12 +561,24 @@ fn path(level: &Level, transform: &PlotTransform) -> Vec<egui::Pos2> {
 }
 
 /// Draws the frequencies of `ranges` \[rad/s\] as strips along the lower edge of a plot.
-pub(super) fn strips_ui(ui: &Ui, ranges: &[(f64, f64)], transform: &PlotTransform, palette: &Palette) {
+pub(super) fn strips_ui(
+    ui: &Ui,
+    ranges: &[(f64, f64)],
+    transform: &PlotTransform,
+    palette: &Palette,
+) {
     let frame = *transform.frame();
     let x = |omega: f64| transform.position_from_point_x(omega.log10());
     for (from, to) in ranges {
-        let strip = Rect::from_x_y_ranges(x(*from)..=x(*to), frame.bottom() - STRIP_HEIGHT..=frame.bottom());
-        ui.painter().with_clip_rect(frame).rect_filled(strip.shrink2(vec2(0.0, 1.0)), 0.0, palette.warning);
+        let strip = Rect::from_x_y_ranges(
+            x(*from)..=x(*to),
+            frame.bottom() - STRIP_HEIGHT..=frame.bottom(),
+        );
+        ui.painter().with_clip_rect(frame).rect_filled(
+            strip.shrink2(vec2(0.0, 1.0)),
+            0.0,
+            palette.warning,
+        );
     }
 }
 
@@ -438,17 +587,34 @@ const STRIP_HEIGHT: f32 = 5.0;
 
 /// Draws what is in `view` of the band in a pane, stretch by stretch: where a value is not finite, or a wrapped phase jumps, it has
 /// a gap.
-pub(super) fn draw_band(plot: &mut PlotUi<'_>, band: &BodeBand, pane: Pane, view: &PlotBounds, palette: &Palette) {
+pub(super) fn draw_band(
+    plot: &mut PlotUi<'_>,
+    band: &BodeBand,
+    pane: Pane,
+    view: &PlotBounds,
+    palette: &Palette,
+) {
     let values = match pane {
         Pane::Magnitude => &band.magnitude_db,
         Pane::Phase => &band.phase_deg,
     };
-    let points: Vec<[f64; 3]> =
-        band.omega.iter().zip(values).map(|(omega, [lower, upper])| [omega.log10(), *lower, *upper]).collect();
-    for run in points.chunk_by(|from, to| is_in_view(from, to, view)).filter(|run| run.len() > 1) {
+    let points: Vec<[f64; 3]> = band
+        .omega
+        .iter()
+        .zip(values)
+        .map(|(omega, [lower, upper])| [omega.log10(), *lower, *upper])
+        .collect();
+    for run in points
+        .chunk_by(|from, to| is_in_view(from, to, view))
+        .filter(|run| run.len() > 1)
+    {
         let column = |index: usize| run.iter().map(|point| point[index]).collect::<Vec<f64>>();
         let fill = palette.identified.gamma_multiply(0.22);
-        plot.add(FilledArea::new("", &column(0), &column(1), &column(2)).fill_color(fill).allow_hover(false));
+        plot.add(
+            FilledArea::new("", &column(0), &column(1), &column(2))
+                .fill_color(fill)
+                .allow_hover(false),
+        );
     }
 }
 
@@ -456,7 +622,11 @@ pub(super) fn draw_band(plot: &mut PlotUi<'_>, band: &BodeBand, pane: Pane, view
 fn is_in_view(from: &[f64; 3], to: &[f64; 3], view: &PlotBounds) -> bool {
     let ([min_x, min_y], [max_x, max_y]) = (view.min(), view.max());
     let is_finite = from.iter().chain(to).all(|value| value.is_finite());
-    is_finite && to[0] >= min_x && from[0] <= max_x && from[2].max(to[2]) >= min_y && from[1].min(to[1]) <= max_y
+    is_finite
+        && to[0] >= min_x
+        && from[0] <= max_x
+        && from[2].max(to[2]) >= min_y
+        && from[1].min(to[1]) <= max_y
 }
 
 #[cfg(test)]
@@ -478,9 +648,21 @@ mod tests {
         let view = PlotBounds::from_min_max([0.0, 0.0], [1.0, 10.0]);
         let is_seen = |from, to| is_in_view(&from, &to, &view);
         assert!(is_seen([0.2, 1.0, 2.0], [0.3, 1.0, 2.0]));
-        assert!(is_seen([-1.0, -5.0, -3.0], [2.0, 12.0, 15.0]), "it may pass through");
-        assert!(!is_seen([-2.0, 1.0, 2.0], [-1.0, 1.0, 2.0]) && !is_seen([2.0, 1.0, 2.0], [3.0, 1.0, 2.0]));
-        assert!(!is_seen([0.2, 11.0, 12.0], [0.3, 11.0, 12.0]) && !is_seen([0.2, -2.0, -1.0], [0.3, -2.0, -1.0]));
-        assert!(!is_seen([0.2, f64::NAN, 2.0], [0.3, 1.0, 2.0]), "there is a gap");
+        assert!(
+            is_seen([-1.0, -5.0, -3.0], [2.0, 12.0, 15.0]),
+            "it may pass through"
+        );
+        assert!(
+            !is_seen([-2.0, 1.0, 2.0], [-1.0, 1.0, 2.0])
+                && !is_seen([2.0, 1.0, 2.0], [3.0, 1.0, 2.0])
+        );
+        assert!(
+            !is_seen([0.2, 11.0, 12.0], [0.3, 11.0, 12.0])
+                && !is_seen([0.2, -2.0, -1.0], [0.3, -2.0, -1.0])
+        );
+        assert!(
+            !is_seen([0.2, f64::NAN, 2.0], [0.3, 1.0, 2.0]),
+            "there is a gap"
+        );
     }
 }

@@ -13,9 +13,15 @@ use super::navigation::ViewedRange;
 use super::quantity::ValueUnit;
 
 /// Decades that can be in view.
-const DECADES: Range = Range { min: 1e-3, max: 12.0 };
+const DECADES: Range = Range {
+    min: 1e-3,
+    max: 12.0,
+};
 /// Values of `log10 omega` that can be in view: far inside what a float holds.
-const LOG_OMEGA: Range = Range { min: -30.0, max: 30.0 };
+const LOG_OMEGA: Range = Range {
+    min: -30.0,
+    max: 30.0,
+};
 /// Space above and below the curves after fitting, as a part of their height.
 const FIT_MARGIN: f64 = 0.04;
 
@@ -59,16 +65,42 @@ pub(super) struct DrawnPane {
 
 /// From the first to the last frequency of all curves, as `log10 omega`.
 fn log_omega_of(curves: &[BodeCurve]) -> Option<Range> {
-    Range::of(curves.iter().flat_map(|curve| curve.omega.iter()).map(|omega| omega.log10()))
+    Range::of(
+        curves
+            .iter()
+            .flat_map(|curve| curve.omega.iter())
+            .map(|omega| omega.log10()),
+    )
 }
 
 impl Default for BodeView {
     fn default() -> Self {
         Self {
-            log_omega: ViewedRange::new(Range { min: -1.0, max: 2.0 }, DECADES, LOG_OMEGA),
+            log_omega: ViewedRange::new(
+                Range {
+                    min: -1.0,
+                    max: 2.0,
+                },
+                DECADES,
+                LOG_OMEGA,
+            ),
             values: [
-                ViewedRange::new(Range { min: -40.0, max: 20.0 }, ValueUnit::Decibel.widths(), Range::ALL),
-                ViewedRange::new(Range { min: -360.0, max: 90.0 }, ValueUnit::Degree.widths(), Range::ALL),
+                ViewedRange::new(
+                    Range {
+                        min: -40.0,
+                        max: 20.0,
+                    },
+                    ValueUnit::Decibel.widths(),
+                    Range::ALL,
+                ),
+                ViewedRange::new(
+                    Range {
+                        min: -360.0,
+                        max: 90.0,
+                    },
+                    ValueUnit::Degree.widths(),
+                    Range::ALL,
+                ),
             ],
             hovered: None,
             pointed_omega: None,
@@ -165,16 +197,27 @@ impl BodeView {
 
     /// Moves what a pane shows by so much on the screen.
     pub(super) fn pan(&mut self, pane: Pane, by: Vec2) {
-        let Some(transform) = self.transform(pane) else { return };
+        let Some(transform) = self.transform(pane) else {
+            return;
+        };
         let [x_per_point, y_per_point] = transform.dvalue_dpos();
-        self.log_omega.choose(self.log_omega.range().moved(-x_per_point * f64::from(by.x)));
+        self.log_omega
+            .choose(self.log_omega.range().moved(-x_per_point * f64::from(by.x)));
         let values = self.value_range(pane).moved(-y_per_point * f64::from(by.y));
         self.values[pane as usize].choose(values);
     }
 
     /// Looks `factor` times closer at a pane, with the point under `pointer` staying where it is.
-    pub(super) fn zoom(&mut self, pane: Pane, pointer: Pos2, frequency_factor: f64, value_factor: f64) {
-        let Some(transform) = self.transform(pane) else { return };
+    pub(super) fn zoom(
+        &mut self,
+        pane: Pane,
+        pointer: Pos2,
+        frequency_factor: f64,
+        value_factor: f64,
+    ) {
+        let Some(transform) = self.transform(pane) else {
+            return;
+        };
         let fixed = transform.value_from_position(pointer);
         self.log_omega.zoom(frequency_factor, fixed.x);
         self.values[pane as usize].zoom(value_factor, fixed.y);
@@ -199,15 +242,22 @@ impl BodeView {
 
     /// Shows what lies in `area` of the screen.
     pub(super) fn zoom_to(&mut self, pane: Pane, area: Rect) {
-        let Some(transform) = self.transform(pane) else { return };
-        let (a, b) = (transform.value_from_position(area.min), transform.value_from_position(area.max));
+        let Some(transform) = self.transform(pane) else {
+            return;
+        };
+        let (a, b) = (
+            transform.value_from_position(area.min),
+            transform.value_from_position(area.max),
+        );
         self.log_omega.choose(Range::new(a.x, b.x));
         self.values[pane as usize].choose(Range::new(a.y, b.y));
     }
 
     /// Shows all curves of `scene`, rejected ones included, where that was asked for. Without data the request stays.
     pub(super) fn fit_if_requested(&mut self, scene: &BodeScene<'_>) {
-        let ends = scene.omega_range.map(|(min, max)| Range::new(min.log10(), max.log10()));
+        let ends = scene
+            .omega_range
+            .map(|(min, max)| Range::new(min.log10(), max.log10()));
         ends.into_iter().for_each(|ends| self.log_omega.reach(ends));
         if !(self.must_fit_frequencies || self.must_fit_values) {
             return;
@@ -220,10 +270,14 @@ impl BodeView {
             self.log_omega.fit(log_omega);
         }
         if std::mem::take(&mut self.must_fit_values) {
-            let within = (scene.band.0, scene.invalid.map_or(scene.band.1, |invalid| invalid.up_to));
+            let within = (
+                scene.band.0,
+                scene.invalid.map_or(scene.band.1, |invalid| invalid.up_to),
+            );
             for pane in PANES {
                 if let Some(values) = fitted_values(scene.curves, pane, within) {
-                    self.values[pane as usize].fit(values.with_margin(FIT_MARGIN, scene.quantity.least_height(pane)));
+                    self.values[pane as usize]
+                        .fit(values.with_margin(FIT_MARGIN, scene.quantity.least_height(pane)));
                 }
             }
         }

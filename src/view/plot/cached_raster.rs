@@ -1,6 +1,8 @@
 //! Many curves that stand still, as one image.
 
-use egui::{Color32, ColorImage, Context, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions, pos2};
+use egui::{
+    Color32, ColorImage, Context, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions, pos2,
+};
 use vello_cpu::color::AlphaColor;
 use vello_cpu::kurbo::{Affine, BezPath, Circle, Join, Shape as _, Stroke as PathStroke};
 use vello_cpu::{Pixmap, RenderContext, RenderSettings, Resources};
@@ -39,7 +41,10 @@ pub(super) struct CachedRaster {
 
 impl std::fmt::Debug for CachedRaster {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.debug_struct("CachedRaster").field("scene", &self.scene).finish_non_exhaustive()
+        formatter
+            .debug_struct("CachedRaster")
+            .field("scene", &self.scene)
+            .finish_non_exhaustive()
     }
 }
 
@@ -52,7 +57,10 @@ impl CachedRaster {
         shapes: impl FnOnce() -> Vec<Shape>,
     ) -> Option<StillImage> {
         if self.scene.as_ref() != Some(&scene) {
-            *self = Self { scene: Some(scene), image: None };
+            *self = Self {
+                scene: Some(scene),
+                image: None,
+            };
             // Whatever moves is drawn as lines; the frame after it tells whether it has come to rest.
             ctx.request_repaint();
             return None;
@@ -64,31 +72,64 @@ impl CachedRaster {
                 return None;
             }
             let image = filled(&shapes(), (area.min, scene.pixels_per_point), pixels);
-            self.image = Some((ctx.load_texture("curves at rest", image, TextureOptions::NEAREST), area));
+            self.image = Some((
+                ctx.load_texture("curves at rest", image, TextureOptions::NEAREST),
+                area,
+            ));
         }
         let (texture, area) = self.image.as_ref()?;
-        Some(StillImage { texture: texture.clone(), area: *area })
+        Some(StillImage {
+            texture: texture.clone(),
+            area: *area,
+        })
     }
 }
 
 /// The least rectangle of whole pixels around `frame`, and its width and height in pixels.
 fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<(Rect, [u16; 2])> {
-    let (min, max) = ((frame.min * pixels_per_point).floor(), (frame.max * pixels_per_point).ceil());
-    let side = |length: f32| (1.0..=f32::from(u16::MAX)).contains(&length).then_some(length as u16);
+    let (min, max) = (
+        (frame.min * pixels_per_point).floor(),
+        (frame.max * pixels_per_point).ceil(),
+    );
+    let side = |length: f32| {
+        (1.0..=f32::from(u16::MAX))
+            .contains(&length)
+            .then_some(length as u16)
+    };
     let pixels = [side(max.x - min.x)?, side(max.y - min.y)?];
-    Some((Rect::from_min_max(min / pixels_per_point, max / pixels_per_point), pixels))
+    Some((
+        Rect::from_min_max(min / pixels_per_point, max / pixels_per_point),
+        pixels,
+    ))
 }
 
 /// The shapes on a transparent ground, where `origin` \[pt\] is the upper left corner.
-fn filled(shapes: &[Shape], (origin, pixels_per_point): (Pos2, f32), [width, height]: [u16; 2]) -> ColorImage {
-    let mut context = RenderContext::new_with(width, height, RenderSettings { num_threads: 0, ..Default::default() });
-    let (scale, shift) = (f64::from(pixels_per_point), (-f64::from(origin.x), -f64::from(origin.y)));
+fn filled(
+    shapes: &[Shape],
+    (origin, pixels_per_point): (Pos2, f32),
+    [width, height]: [u16; 2],
+) -> ColorImage {
+    let mut context = RenderContext::new_with(
+        width,
+        height,
+        RenderSettings {
+            num_threads: 0,
+            ..Default::default()
+        },
+    );
+    let (scale, shift) = (
+        f64::from(pixels_per_point),
+        (-f64::from(origin.x), -f64::from(origin.y)),
+    );
     context.set_transform(Affine::scale(scale) * Affine::translate(shift));
     shapes.iter().for_each(|shape| fill(&mut context, shape));
     context.flush();
     let mut pixmap = Pixmap::new(width, height);
     context.render(&mut pixmap, &mut Resources::new());
-    ColorImage::from_rgba_premultiplied([usize::from(width), usize::from(height)], pixmap.data_as_u8_slice())
+    ColorImage::from_rgba_premultiplied(
+        [usize::from(width), usize::from(height)],
+        pixmap.data_as_u8_slice(),
+    )
 }
 
 /// What lines are made of: strokes, and discs for dots.
@@ -103,7 +144,10 @@ fn fill(context: &mut RenderContext, shape: &Shape) {
         }
         Shape::Circle(circle) => {
             take_color(context, circle.fill);
-            let disc = Circle::new((f64::from(circle.center.x), f64::from(circle.center.y)), f64::from(circle.radius));
+            let disc = Circle::new(
+                (f64::from(circle.center.x), f64::from(circle.center.y)),
+                f64::from(circle.radius),
+            );
             context.fill_path(&disc.to_path(TOLERANCE));
         }
         _ => debug_assert!(false, "a line is made of strokes and dots"),
@@ -114,7 +158,11 @@ fn stroke_along(context: &mut RenderContext, points: &[Pos2], Stroke { width, co
     let mut path = BezPath::new();
     for (index, point) in points.iter().enumerate() {
         let at = (f64::from(point.x), f64::from(point.y));
-        if index == 0 { path.move_to(at) } else { path.line_to(at) }
+        if index == 0 {
+            path.move_to(at)
+        } else {
+            path.line_to(at)
+        }
     }
     take_color(context, color);
     context.set_stroke(PathStroke::new(f64::from(width)).with_join(Join::Bevel));
@@ -136,7 +184,12 @@ impl StillImage {
     /// The image with so much of its strength.
     pub(super) fn shape(&self, strength: f32) -> Shape {
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-        Shape::image(self.texture.id(), self.area, whole, Color32::WHITE.gamma_multiply(strength))
+        Shape::image(
+            self.texture.id(),
+            self.area,
+            whole,
+            Color32::WHITE.gamma_multiply(strength),
+        )
     }
 }
 
@@ -148,9 +201,18 @@ mod tests {
     use super::*;
 
     fn scene(curves: &[u64], left: f32) -> StillScene {
-        let look = CurveStyle { color: Color32::RED, width: 2.0, dash: Dash::Solid, length: 0.0 };
+        let look = CurveStyle {
+            color: Color32::RED,
+            width: 2.0,
+            dash: Dash::Solid,
+            length: 0.0,
+        };
         let frame = Rect::from_min_size(pos2(left, 20.3), vec2(50.0, 30.0));
-        StillScene { frame, pixels_per_point: 1.5, curves: curves.iter().map(|serial| (*serial, look)).collect() }
+        StillScene {
+            frame,
+            pixels_per_point: 1.5,
+            curves: curves.iter().map(|serial| (*serial, look)).collect(),
+        }
     }
 
     /// Where the image is drawn.
@@ -161,15 +223,31 @@ mod tests {
     #[test]
     fn what_stands_still_for_a_frame_becomes_an_image_until_it_moves() {
         let ctx = Context::default();
-        ctx.run_ui(RawInput::default(), |_| {}).drop_without_applying_deltas();
+        ctx.run_ui(RawInput::default(), |_| {})
+            .drop_without_applying_deltas();
         let mut still = CachedRaster::default();
-        assert_eq!(image(&mut still, &ctx, scene(&[1, 2], 10.2)), None, "it may be moving");
+        assert_eq!(
+            image(&mut still, &ctx, scene(&[1, 2], 10.2)),
+            None,
+            "it may be moving"
+        );
         let area = image(&mut still, &ctx, scene(&[1, 2], 10.2)).expect("it stands still");
         assert!(area.contains_rect(scene(&[], 10.2).frame));
         let pixels = area.scale_from_center(1.0).min * 1.5;
-        assert!((pixels - pixels.round()).length() < 1e-4, "on whole pixels: {pixels:?}");
-        assert_eq!(image(&mut still, &ctx, scene(&[1, 2], 11.2)), None, "the frame moved");
-        assert_eq!(image(&mut still, &ctx, scene(&[1, 3], 11.2)), None, "a curve has other points");
+        assert!(
+            (pixels - pixels.round()).length() < 1e-4,
+            "on whole pixels: {pixels:?}"
+        );
+        assert_eq!(
+            image(&mut still, &ctx, scene(&[1, 2], 11.2)),
+            None,
+            "the frame moved"
+        );
+        assert_eq!(
+            image(&mut still, &ctx, scene(&[1, 3], 11.2)),
+            None,
+            "a curve has other points"
+        );
         assert!(image(&mut still, &ctx, scene(&[1, 3], 11.2)).is_some());
     }
 
@@ -177,15 +255,26 @@ mod tests {
     fn lines_and_dots_are_filled_where_they_are() {
         let red = Color32::from_rgba_unmultiplied(200, 0, 0, 204);
         let shapes = [
-            Shape::line(vec![pos2(10.0, 25.0), pos2(60.0, 25.0)], Stroke::new(2.0, red)),
+            Shape::line(
+                vec![pos2(10.0, 25.0), pos2(60.0, 25.0)],
+                Stroke::new(2.0, red),
+            ),
             Shape::circle_filled(pos2(40.0, 40.0), 3.0, Color32::BLUE),
         ];
         let image = filled(&shapes, (pos2(10.0, 20.0), 2.0), [100, 60]);
         // One rounding of a premultiplied colour either way.
         let near = |[x, y]: [usize; 2], color: Color32| {
-            image[(x, y)].to_array().iter().zip(color.to_array()).all(|(a, b)| a.abs_diff(b) <= 1)
+            image[(x, y)]
+                .to_array()
+                .iter()
+                .zip(color.to_array())
+                .all(|(a, b)| a.abs_diff(b) <= 1)
         };
-        assert!(near([50, 9], red) && near([50, 10], red), "{:?}", image[(50, 9)]);
+        assert!(
+            near([50, 9], red) && near([50, 10], red),
+            "{:?}",
+            image[(50, 9)]
+        );
         assert!(near([60, 40], Color32::BLUE));
         assert!(near([50, 6], Color32::TRANSPARENT) && near([50, 14], Color32::TRANSPARENT));
     }

@@ -24,7 +24,12 @@ pub(super) struct Canvas<'a> {
 
 /// A rectangle of the screen as an area of paper whose origin is its corner.
 pub(super) fn area(rect: Rect) -> Area {
-    Area::new(0.0, 0.0, (rect.width() / SCALE).into(), (rect.height() / SCALE).into())
+    Area::new(
+        0.0,
+        0.0,
+        (rect.width() / SCALE).into(),
+        (rect.height() / SCALE).into(),
+    )
 }
 
 impl Canvas<'_> {
@@ -43,35 +48,60 @@ impl Canvas<'_> {
     pub(super) fn paint(&self, shapes: &[Drawn]) {
         for shape in shapes {
             match shape {
-                Drawn::Path { points, closed, fill, stroke } => {
+                Drawn::Path {
+                    points,
+                    closed,
+                    fill,
+                    stroke,
+                } => {
                     let points: Vec<Pos2> = points.iter().map(|point| self.at(*point)).collect();
                     match (fill, stroke) {
-                        (Some(color), _) if points.len() > 4 => self.fill_between(&points, self.palette.color(*color)),
+                        (Some(color), _) if points.len() > 4 => {
+                            self.fill_between(&points, self.palette.color(*color))
+                        }
                         (Some(color), stroke) if *closed => {
                             let stroke = stroke.map_or(Stroke::NONE, |line| self.stroke(line));
                             let bounds = Rect::from_points(&points);
                             // An outline that comes back on itself has no direction at its ends: it is the line that it looks like.
                             match bounds.is_positive() {
-                                true => {
-                                    self.painter.add(Shape::convex_polygon(points, self.palette.color(*color), stroke))
+                                true => self.painter.add(Shape::convex_polygon(
+                                    points,
+                                    self.palette.color(*color),
+                                    stroke,
+                                )),
+                                false => {
+                                    self.painter.line_segment([bounds.min, bounds.max], stroke)
                                 }
-                                false => self.painter.line_segment([bounds.min, bounds.max], stroke),
                             };
                         }
                         (_, Some(line)) => self.line(points, *line),
                         _ => {}
                     }
                 }
-                Drawn::Circle { center, radius, fill, stroke } => {
-                    let fill = fill.map_or(egui::Color32::TRANSPARENT, |color| self.palette.color(color));
+                Drawn::Circle {
+                    center,
+                    radius,
+                    fill,
+                    stroke,
+                } => {
+                    let fill = fill.map_or(egui::Color32::TRANSPARENT, |color| {
+                        self.palette.color(color)
+                    });
                     let stroke = stroke.map_or(Stroke::NONE, |line| self.stroke(line));
-                    self.painter.circle(self.at(*center), SCALE * *radius as f32, fill, stroke);
+                    self.painter
+                        .circle(self.at(*center), SCALE * *radius as f32, fill, stroke);
                 }
                 Drawn::Text(text) => self.text(text),
                 Drawn::Clipped { area, shapes } => {
-                    let [upper_left, _, lower_right, _] = area.corners().map(|corner| self.at(corner));
-                    let seen = Rect::from_min_max(upper_left, lower_right).intersect(self.painter.clip_rect());
-                    Canvas { painter: &self.painter.with_clip_rect(seen), ..*self }.paint(shapes);
+                    let [upper_left, _, lower_right, _] =
+                        area.corners().map(|corner| self.at(corner));
+                    let seen = Rect::from_min_max(upper_left, lower_right)
+                        .intersect(self.painter.clip_rect());
+                    Canvas {
+                        painter: &self.painter.with_clip_rect(seen),
+                        ..*self
+                    }
+                    .paint(shapes);
                 }
             }
         }
@@ -83,15 +113,25 @@ impl Canvas<'_> {
 
     fn line(&self, points: Vec<Pos2>, line: Line) {
         let mut shapes = Vec::new();
-        let line = Line { width_pt: f64::from(SCALE) * line.width_pt, ..line };
-        self.palette.curve_style(line).add_shapes(points, &mut shapes);
+        let line = Line {
+            width_pt: f64::from(SCALE) * line.width_pt,
+            ..line
+        };
+        self.palette
+            .curve_style(line)
+            .add_shapes(points, &mut shapes);
         self.painter.extend(shapes);
     }
 
     /// Fills the area between two lines over the same places, the second of which comes back from the end of the first.
     fn fill_between(&self, outline: &[Pos2], color: egui::Color32) {
         let mut mesh = Mesh::default();
-        for (place, (lower, upper)) in outline.iter().zip(outline.iter().rev()).take(outline.len() / 2).enumerate() {
+        for (place, (lower, upper)) in outline
+            .iter()
+            .zip(outline.iter().rev())
+            .take(outline.len() / 2)
+            .enumerate()
+        {
             mesh.colored_vertex(*lower, color);
             mesh.colored_vertex(*upper, color);
             if place > 0 {
@@ -103,15 +143,34 @@ impl Canvas<'_> {
         self.painter.add(Shape::mesh(mesh));
     }
 
-    fn text(&self, Text { at, words, size_pt, anchor, upright, color }: &Text) {
+    fn text(
+        &self,
+        Text {
+            at,
+            words,
+            size_pt,
+            anchor,
+            upright,
+            color,
+        }: &Text,
+    ) {
         let color = self.palette.color(*color);
-        let galley = self.painter.layout_no_wrap(words.clone(), FontId::proportional(SCALE * *size_pt as f32), color);
-        let base = galley.rows.first().and_then(|row| row.glyphs.first()).map_or(0.0, |glyph| glyph.pos.y);
+        let galley = self.painter.layout_no_wrap(
+            words.clone(),
+            FontId::proportional(SCALE * *size_pt as f32),
+            color,
+        );
+        let base = galley
+            .rows
+            .first()
+            .and_then(|row| row.glyphs.first())
+            .map_or(0.0, |glyph| glyph.pos.y);
         let before = anchor.before() as f32 * galley.size().x;
         let at = self.at(*at);
         if *upright {
             let text = TextShape::new(pos2(at.x - base, at.y + before), galley, color);
-            self.painter.add(text.with_angle(-std::f32::consts::FRAC_PI_2));
+            self.painter
+                .add(text.with_angle(-std::f32::consts::FRAC_PI_2));
         } else {
             self.painter.galley(at - vec2(before, base), galley, color);
         }
@@ -128,17 +187,32 @@ pub fn figure_legend_ui(ui: &mut Ui, figure: &Figure, palette: &Palette) {
         for entry in figure.legend() {
             let (rect, _) = ui.allocate_exact_size(SAMPLE, Sense::hover());
             match entry.sample {
-                Sample::Dot { shape, color, filled } => {
-                    let canvas = Canvas { painter: ui.painter(), origin: rect.center(), palette };
+                Sample::Dot {
+                    shape,
+                    color,
+                    filled,
+                } => {
+                    let canvas = Canvas {
+                        painter: ui.painter(),
+                        origin: rect.center(),
+                        palette,
+                    };
                     canvas.paint(&dot_shapes([0.0, 0.0], (shape, 1.0), color, filled));
                 }
                 Sample::Line(stroke) => {
                     let ends = [rect.left(), rect.right()].map(|x| pos2(x, rect.center().y));
                     let mut shapes = Vec::new();
-                    palette.curve_style(stroke).in_miniature().add_shapes(ends.to_vec(), &mut shapes);
+                    palette
+                        .curve_style(stroke)
+                        .in_miniature()
+                        .add_shapes(ends.to_vec(), &mut shapes);
                     ui.painter().extend(shapes);
                 }
-                Sample::Ground(color) => drop(ui.painter().rect_filled(rect.shrink(2.0), 2.0, palette.color(color))),
+                Sample::Ground(color) => drop(ui.painter().rect_filled(
+                    rect.shrink(2.0),
+                    2.0,
+                    palette.color(color),
+                )),
             }
             ui.label(palette.small(entry.text));
             ui.add_space(10.0);

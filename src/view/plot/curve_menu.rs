@@ -1,7 +1,8 @@
 //! What can be done with a curve, and with the ground between the curves, on a secondary click.
 
 use egui::{
-    Button, Id, Key, Popup, PopupCloseBehavior, Response, RichText, Role as WidgetRole, TextEdit, Ui, WidgetInfo,
+    Button, Id, Key, Popup, PopupCloseBehavior, Response, RichText, Role as WidgetRole, TextEdit,
+    Ui, WidgetInfo,
 };
 use gdcm_study::study::ExplainTarget;
 
@@ -48,10 +49,16 @@ pub(super) fn menu_ui(
     events: &mut Vec<BodeEvent>,
     palette: &Palette,
 ) {
-    let Some(mut subject) = view.menu_subject.take() else { return };
-    let curve = subject.curve.as_ref().and_then(|id| scene.curves.iter().find(|curve| curve.id == *id));
+    let Some(mut subject) = view.menu_subject.take() else {
+        return;
+    };
+    let curve = subject
+        .curve
+        .as_ref()
+        .and_then(|id| scene.curves.iter().find(|curve| curve.id == *id));
     // A click into the field for the reason must not close the menu.
-    let menu = Popup::context_menu(response).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+    let menu =
+        Popup::context_menu(response).close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     menu.show(|ui| match curve {
         Some(curve) => curve_menu_ui(ui, scene, (curve, &mut subject.reason), events, palette),
         None => ground_menu_ui(ui, scene, &subject, view, events),
@@ -69,11 +76,19 @@ fn entry(ui: &mut Ui, text: &str, hint: &str) -> bool {
 
 /// A field for the reason of a rejection; gives whether the model is to be rejected for it.
 fn reason_ui(ui: &mut Ui, reason: &mut String) -> bool {
-    let field = ui.add(TextEdit::singleline(reason).hint_text("reason").desired_width(150.0));
-    field.widget_info(|| WidgetInfo::labeled(WidgetRole::TextInput, true, "Reason of the rejection"));
+    let field = ui.add(
+        TextEdit::singleline(reason)
+            .hint_text("reason")
+            .desired_width(150.0),
+    );
+    field.widget_info(|| {
+        WidgetInfo::labeled(WidgetRole::TextInput, true, "Reason of the rejection")
+    });
     let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     field.on_hover_text("Why the model is rejected, in words: kept in the study; Enter rejects it");
-    let is_clicked = ui.add_enabled(!reason.trim().is_empty(), Button::new("Reject with reason")).clicked();
+    let is_clicked = ui
+        .add_enabled(!reason.trim().is_empty(), Button::new("Reject with reason"))
+        .clicked();
     let is_wanted = (is_entered || is_clicked) && !reason.trim().is_empty();
     if is_wanted {
         ui.close();
@@ -90,7 +105,11 @@ fn curve_menu_ui(
 ) {
     ui.label(RichText::new(&curve.label).strong());
     if !curve.detail.is_empty() {
-        ui.label(RichText::new(&curve.detail).size(SMALL_SIZE).color(palette.dim_text));
+        ui.label(
+            RichText::new(&curve.detail)
+                .size(SMALL_SIZE)
+                .color(palette.dim_text),
+        );
     }
     ui.separator();
     if matches!(curve.id, CurveId::Model(_)) && !curve.rejected && reason_ui(ui, reason) {
@@ -103,11 +122,30 @@ fn curve_menu_ui(
             events.push(BodeEvent::Wished(curve.id.clone(), wish));
         }
     };
-    wish(ui, "Copy values", "Frequencies and values as text, with their units", CurveWish::CopyValues);
-    if let BodeQuantity::Response { phase: PhaseUnit::Unwrapped, .. } = scene.quantity {
+    wish(
+        ui,
+        "Copy values",
+        "Frequencies and values as text, with their units",
+        CurveWish::CopyValues,
+    );
+    if let BodeQuantity::Response {
+        phase: PhaseUnit::Unwrapped,
+        ..
+    } = scene.quantity
+    {
         ui.separator();
-        wish(ui, "Phase +360°", "Draw this curve's phase 360° higher", CurveWish::Turn(1));
-        wish(ui, "Phase −360°", "Draw this curve's phase 360° lower", CurveWish::Turn(-1));
+        wish(
+            ui,
+            "Phase +360°",
+            "Draw this curve's phase 360° higher",
+            CurveWish::Turn(1),
+        );
+        wish(
+            ui,
+            "Phase −360°",
+            "Draw this curve's phase 360° lower",
+            CurveWish::Turn(-1),
+        );
     }
 }
 
@@ -116,14 +154,26 @@ pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWis
     if !matches!(curve.id, CurveId::Model(_)) {
         return None;
     }
-    let represents = matches!(curve.role, Role::Representative | Role::IdentifiedRepresentative);
+    let represents = matches!(
+        curve.role,
+        Role::Representative | Role::IdentifiedRepresentative
+    );
     let reject = match curve.rejected {
         true => ("Restore model", "Put the model back into its bundle"),
         false => ("Reject model", "Take the model out of its bundle"),
     };
-    let pin = ("Use as representative", "Use this model as the representative of its bundle, whatever the medoid is");
-    let isolate = ("Isolate model", "Only this model beside the representatives, or all again");
-    let hide = ("Hide curve", "Do not draw this model; it counts all the same");
+    let pin = (
+        "Use as representative",
+        "Use this model as the representative of its bundle, whatever the medoid is",
+    );
+    let isolate = (
+        "Isolate model",
+        "Only this model beside the representatives, or all again",
+    );
+    let hide = (
+        "Hide curve",
+        "Do not draw this model; it counts all the same",
+    );
     let wishes = [
         (reject, CurveWish::RejectOrRestore, true),
         (pin, CurveWish::Pin, !curve.rejected && !represents),
@@ -149,7 +199,11 @@ fn ground_menu_ui(
     if entry(ui, "Fit plot", "Bring every curve into view") {
         view.request_fit();
     }
-    if entry(ui, "Mark frequency", "Leave a cursor at this frequency; two show what changes between them") {
+    if entry(
+        ui,
+        "Mark frequency",
+        "Leave a cursor at this frequency; two show what changes between them",
+    ) {
         events.push(BodeEvent::Display(CurveCommand::PinCursor(subject.omega)));
     }
     if !(scene.pinned.is_empty() && scene.crossings.is_empty())
@@ -171,11 +225,18 @@ pub(super) struct Questions {
 
 impl Questions {
     /// Opens the menu of a plot on a secondary click on `pointed`, and gives the figure that was chosen in it.
-    pub(super) fn ui(&mut self, response: &Response, pointed: &[NamedFigure]) -> Option<ExplainTarget> {
+    pub(super) fn ui(
+        &mut self,
+        response: &Response,
+        pointed: &[NamedFigure],
+    ) -> Option<ExplainTarget> {
         if response.secondary_clicked() {
             self.asked_of = (!pointed.is_empty()).then(|| (response.id, pointed.to_vec()));
         }
-        let (_, figures) = self.asked_of.as_ref().filter(|(plot, _)| *plot == response.id)?;
+        let (_, figures) = self
+            .asked_of
+            .as_ref()
+            .filter(|(plot, _)| *plot == response.id)?;
         let mut chosen = None;
         response.context_menu(|ui| {
             ui.label(QUESTION);

@@ -29,8 +29,17 @@ impl CurveStyle {
     pub fn emphasized(self) -> Self {
         let color = self.color.to_opaque();
         // Dots need room to stay dots.
-        let (wider, longer) = if self.dash == Dash::Dotted { (0.7, 1.5) } else { (1.6, 1.0) };
-        Self { color, width: self.width + wider, length: longer * self.length, ..self }
+        let (wider, longer) = if self.dash == Dash::Dotted {
+            (0.7, 1.5)
+        } else {
+            (1.6, 1.0)
+        };
+        Self {
+            color,
+            width: self.width + wider,
+            length: longer * self.length,
+            ..self
+        }
     }
 
     /// This line in a small plot: narrower, with a shorter pattern.
@@ -43,7 +52,11 @@ impl CurveStyle {
             Dash::DashDot | Dash::ShortDashDot => 6.0,
             Dash::Dotted => 3.5,
         };
-        Self { width: WIDTH_PART * self.width, length, ..self }
+        Self {
+            width: WIDTH_PART * self.width,
+            length,
+            ..self
+        }
     }
 
     /// Whether the line is made of many pieces, which begin where it does.
@@ -62,9 +75,18 @@ impl CurveStyle {
             }
             Dash::DashDot | Dash::ShortDashDot => {
                 let gap = GAP_OF_DASH * 0.6 * length;
-                Shape::dashed_line_many_with_offset(&path, stroke, &[length, DOT_LENGTH], &[gap, gap], 0.0, shapes);
+                Shape::dashed_line_many_with_offset(
+                    &path,
+                    stroke,
+                    &[length, DOT_LENGTH],
+                    &[gap, gap],
+                    0.0,
+                    shapes,
+                );
             }
-            Dash::Dotted => shapes.extend(Shape::dotted_line(&path, self.color, length, self.width)),
+            Dash::Dotted => {
+                shapes.extend(Shape::dotted_line(&path, self.color, length, self.width))
+            }
         }
     }
 }
@@ -85,11 +107,15 @@ impl Palette {
             Hue::Accent => self.accent,
             Hue::Warning => self.warning,
             Hue::Good => self.good,
-            Hue::OfAirspeed(step) => {
-                self.perturbed.lerp_to_gamma(self.identified, f32::from(step) / f32::from(u8::MAX))
-            }
+            Hue::OfAirspeed(step) => self
+                .perturbed
+                .lerp_to_gamma(self.identified, f32::from(step) / f32::from(u8::MAX)),
         };
-        if color.percent == 100 { of_hue } else { of_hue.gamma_multiply(f32::from(color.percent) / 100.0) }
+        if color.percent == 100 {
+            of_hue
+        } else {
+            of_hue.gamma_multiply(f32::from(color.percent) / 100.0)
+        }
     }
 
     /// A line as this theme draws it, as wide as the engineer wants it.
@@ -101,8 +127,16 @@ impl Palette {
             Dash::Dotted => 4.5,
             Dash::DashDot => 11.0,
         };
-        let (color, width) = (self.color(line.color), line.width_pt as f32 * self.line_width);
-        CurveStyle { color, width, dash: line.dash, length }
+        let (color, width) = (
+            self.color(line.color),
+            line.width_pt as f32 * self.line_width,
+        );
+        CurveStyle {
+            color,
+            width,
+            dash: line.dash,
+            length,
+        }
     }
 
     /// How a curve of a role is drawn.
@@ -119,7 +153,12 @@ mod tests {
 
     fn shapes(dash: Dash, length: f32) -> usize {
         let mut shapes = Vec::new();
-        let look = CurveStyle { color: Color32::WHITE, width: 2.0, dash, length };
+        let look = CurveStyle {
+            color: Color32::WHITE,
+            width: 2.0,
+            dash,
+            length,
+        };
         look.add_shapes(vec![pos2(0.0, 0.0), pos2(100.0, 0.0)], &mut shapes);
         shapes.len()
     }
@@ -136,8 +175,20 @@ mod tests {
     #[test]
     fn paper_has_the_colours_of_the_light_theme() {
         let light = Palette::light();
-        let roles = [Hue::Nominal, Hue::Perturbed, Hue::Identified, Hue::Corrected, Hue::Rejected];
-        for hue in roles.into_iter().chain([Hue::Text, Hue::DimText, Hue::Accent, Hue::Warning, Hue::Good]) {
+        let roles = [
+            Hue::Nominal,
+            Hue::Perturbed,
+            Hue::Identified,
+            Hue::Corrected,
+            Hue::Rejected,
+        ];
+        for hue in roles.into_iter().chain([
+            Hue::Text,
+            Hue::DimText,
+            Hue::Accent,
+            Hue::Warning,
+            Hue::Good,
+        ]) {
             let [red, green, blue, _] = light.color(Color::of(hue)).to_array();
             assert_eq!([red, green, blue], hue.on_paper(), "{hue:?}");
         }
@@ -147,7 +198,11 @@ mod tests {
     fn what_is_solid_or_broken_in_the_window_is_so_on_paper() {
         for role in Role::ALL {
             let (window, paper) = (Palette::light().role_style(role, false), role.stroke(false));
-            assert_eq!(window.is_broken(), !paper.dash.pattern_pt().is_empty(), "{role:?}");
+            assert_eq!(
+                window.is_broken(),
+                !paper.dash.pattern_pt().is_empty(),
+                "{role:?}"
+            );
         }
         assert_eq!(Role::Corrected.stroke(false).dash, Dash::Solid);
         assert_eq!(Role::Scheduled.stroke(false).dash, Dash::Long);
@@ -164,18 +219,40 @@ mod tests {
     #[test]
     fn before_and_after_and_the_reference_differ_in_pattern_or_clearly_in_width() {
         let palette = Palette::light();
-        for other in [Role::Nominal, Role::Identified, Role::IdentifiedRepresentative] {
-            let (corrected, other) = (palette.role_style(Role::Corrected, false), palette.role_style(other, false));
-            assert!(corrected.dash != other.dash || (corrected.width - other.width).abs() > 1.5, "{other:?}");
+        for other in [
+            Role::Nominal,
+            Role::Identified,
+            Role::IdentifiedRepresentative,
+        ] {
+            let (corrected, other) = (
+                palette.role_style(Role::Corrected, false),
+                palette.role_style(other, false),
+            );
+            assert!(
+                corrected.dash != other.dash || (corrected.width - other.width).abs() > 1.5,
+                "{other:?}"
+            );
         }
     }
 
     #[test]
     fn widths_follow_the_engineer() {
-        let palette = Palette { line_width: 2.0, ..Palette::dark() };
+        let palette = Palette {
+            line_width: 2.0,
+            ..Palette::dark()
+        };
         for role in Role::ALL {
-            let (wide, usual) = (palette.role_style(role, false), Palette::dark().role_style(role, false));
-            assert_eq!(wide, CurveStyle { width: 2.0 * usual.width, ..usual });
+            let (wide, usual) = (
+                palette.role_style(role, false),
+                Palette::dark().role_style(role, false),
+            );
+            assert_eq!(
+                wide,
+                CurveStyle {
+                    width: 2.0 * usual.width,
+                    ..usual
+                }
+            );
         }
     }
 
@@ -185,7 +262,10 @@ mod tests {
             for a in Role::ALL {
                 for b in Role::ALL.into_iter().filter(|b| *b != a) {
                     let (a, b) = (palette.role_style(a, false), palette.role_style(b, false));
-                    assert!((a.dash, a.length) != (b.dash, b.length) || (a.width - b.width).abs() > 0.5, "{a:?} {b:?}");
+                    assert!(
+                        (a.dash, a.length) != (b.dash, b.length) || (a.width - b.width).abs() > 0.5,
+                        "{a:?} {b:?}"
+                    );
                 }
             }
         }

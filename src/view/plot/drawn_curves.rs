@@ -47,14 +47,19 @@ impl DrawnCurves {
         (bounds, pixel): (PlotBounds, Pixel),
         palette: &Palette,
     ) {
-        let is_same = |(drawn, curve): (&DrawnCurve, &BodeCurve)| drawn.is_of(curve, pane, margin(curve, palette));
+        let is_same = |(drawn, curve): (&DrawnCurve, &BodeCurve)| {
+            drawn.is_of(curve, pane, margin(curve, palette))
+        };
         if self.drawn == Some((bounds, pixel))
             && self.curves.len() == curves.len()
             && self.curves.iter().zip(curves).all(is_same)
         {
             return;
         }
-        let mut kept = std::mem::take(&mut self.curves).into_iter().map(Some).collect::<Vec<_>>();
+        let mut kept = std::mem::take(&mut self.curves)
+            .into_iter()
+            .map(Some)
+            .collect::<Vec<_>>();
         if self.drawn != Some((bounds, pixel)) {
             kept.clear();
         }
@@ -63,17 +68,35 @@ impl DrawnCurves {
         let made = &mut self.made;
         let drawn = |(index, curve): (usize, &BodeCurve)| {
             let margin = margin(curve, palette);
-            let is_same = |kept: &Option<DrawnCurve>| kept.as_ref().is_some_and(|kept| kept.is_of(curve, pane, margin));
+            let is_same = |kept: &Option<DrawnCurve>| {
+                kept.as_ref()
+                    .is_some_and(|kept| kept.is_of(curve, pane, margin))
+            };
             // Mostly the curves are those of the last frame, in the same order.
             let here = kept.get(index).is_some_and(is_same).then_some(index);
             let place = here.or_else(|| kept.iter().position(is_same));
-            place.and_then(|place| kept[place].take()).unwrap_or_else(|| {
-                let runs = runs_in_view(curve.points_on(&mut axis, pane), &bounds, margin);
-                let points = |run: &Vec<[f64; 2]>| thinned(run, pixel).into_iter().map(PlotPoint::from).collect();
-                *made += 1;
-                let (numbers, runs) = (CurveNumbers::of(curve, pane), runs.iter().map(points).collect());
-                DrawnCurve { numbers, margin, runs, serial: *made }
-            })
+            place
+                .and_then(|place| kept[place].take())
+                .unwrap_or_else(|| {
+                    let runs = runs_in_view(curve.points_on(&mut axis, pane), &bounds, margin);
+                    let points = |run: &Vec<[f64; 2]>| {
+                        thinned(run, pixel)
+                            .into_iter()
+                            .map(PlotPoint::from)
+                            .collect()
+                    };
+                    *made += 1;
+                    let (numbers, runs) = (
+                        CurveNumbers::of(curve, pane),
+                        runs.iter().map(points).collect(),
+                    );
+                    DrawnCurve {
+                        numbers,
+                        margin,
+                        runs,
+                        serial: *made,
+                    }
+                })
         };
         self.curves = curves.iter().enumerate().map(drawn).collect();
     }
@@ -96,20 +119,35 @@ impl DrawnCurve {
 }
 
 fn margin(curve: &BodeCurve, palette: &Palette) -> f64 {
-    if palette.role_style(curve.role, curve.rejected).is_broken() { PATTERN_MARGIN } else { LINE_MARGIN }
+    if palette.role_style(curve.role, curve.rejected).is_broken() {
+        PATTERN_MARGIN
+    } else {
+        LINE_MARGIN
+    }
 }
 
 /// The pixel of a plot drawn as `transform` says, where lines may be `tolerance_pt` points away from their curves.
-pub(super) fn pixel_of(transform: &PlotTransform, pixels_per_point: f32, tolerance_pt: f64) -> Pixel {
+pub(super) fn pixel_of(
+    transform: &PlotTransform,
+    pixels_per_point: f32,
+    tolerance_pt: f64,
+) -> Pixel {
     let [x_per_point, y_per_point] = transform.dvalue_dpos().map(f64::abs);
-    Pixel { width: x_per_point / f64::from(pixels_per_point), tolerance: tolerance_pt * y_per_point }
+    Pixel {
+        width: x_per_point / f64::from(pixels_per_point),
+        tolerance: tolerance_pt * y_per_point,
+    }
 }
 
 /// Splits points into runs that are finite throughout and come within `margin` of `view`, a part of its size.
 ///
 /// A point that is not finite makes debug builds of egui_plot panic, and a curve that runs far outside the view costs time in
 /// proportion to its points, and where it is dashed, to its length on the screen.
-pub fn runs_in_view(points: impl Iterator<Item = [f64; 2]>, view: &PlotBounds, margin: f64) -> Vec<Vec<[f64; 2]>> {
+pub fn runs_in_view(
+    points: impl Iterator<Item = [f64; 2]>,
+    view: &PlotBounds,
+    margin: f64,
+) -> Vec<Vec<[f64; 2]>> {
     let near = enlarged(view, margin);
     let mut runs: Vec<Vec<[f64; 2]>> = Vec::new();
     let mut run: Vec<[f64; 2]> = Vec::new();
@@ -138,12 +176,17 @@ fn take_filled(run: &mut Vec<[f64; 2]>) -> Option<Vec<[f64; 2]>> {
 fn enlarged(view: &PlotBounds, margin: f64) -> PlotBounds {
     let (min, max) = (view.min(), view.max());
     let (width, height) = (margin * view.width(), margin * view.height());
-    PlotBounds::from_min_max([min[0] - width, min[1] - height], [max[0] + width, max[1] + height])
+    PlotBounds::from_min_max(
+        [min[0] - width, min[1] - height],
+        [max[0] + width, max[1] + height],
+    )
 }
 
 /// Whether the rectangle spanned by two points meets `bounds`.
 fn touches(a: [f64; 2], b: [f64; 2], bounds: &PlotBounds) -> bool {
-    (0..2).all(|axis| a[axis].max(b[axis]) >= bounds.min()[axis] && a[axis].min(b[axis]) <= bounds.max()[axis])
+    (0..2).all(|axis| {
+        a[axis].max(b[axis]) >= bounds.min()[axis] && a[axis].min(b[axis]) <= bounds.max()[axis]
+    })
 }
 
 /// The numbers that a pane showed of a curve.
@@ -156,7 +199,10 @@ pub(super) struct CurveNumbers {
 impl CurveNumbers {
     /// Those of a curve.
     pub(super) fn of(curve: &BodeCurve, pane: Pane) -> Self {
-        Self { omega: Arc::clone(&curve.omega), values: Arc::clone(curve.shared_values(pane)) }
+        Self {
+            omega: Arc::clone(&curve.omega),
+            values: Arc::clone(curve.shared_values(pane)),
+        }
     }
 
     /// Whether `curve` still has them: mostly they are in the same place in memory.
@@ -164,7 +210,10 @@ impl CurveNumbers {
         let same = |one: &Arc<[f64]>, other: &Arc<[f64]>| {
             // Gaps are not numbers: they are the same by their bits.
             let bits = |values: &Arc<[f64]>| {
-                values.iter().map(|value| value.to_bits()).eq(other.iter().map(|value| value.to_bits()))
+                values
+                    .iter()
+                    .map(|value| value.to_bits())
+                    .eq(other.iter().map(|value| value.to_bits()))
             };
             Arc::ptr_eq(one, other) || bits(one)
         };
@@ -180,7 +229,10 @@ pub(super) fn curve_lines(
     shapes: &mut Vec<Shape>,
 ) {
     for run in runs {
-        let path: Vec<Pos2> = run.iter().map(|point| transform.position_from_point(point)).collect();
+        let path: Vec<Pos2> = run
+            .iter()
+            .map(|point| transform.position_from_point(point))
+            .collect();
         look.add_shapes(path, shapes);
     }
 }
@@ -197,7 +249,10 @@ pub(super) struct DrawnItem<'a> {
 impl<'a> DrawnItem<'a> {
     /// What `draw` adds to the shapes of the plot.
     pub(super) fn new(draw: impl Fn(&PlotTransform, &mut Vec<Shape>) + 'a) -> Self {
-        Self { base: PlotItemBase::new(String::new()), draw: Box::new(draw) }
+        Self {
+            base: PlotItemBase::new(String::new()),
+            draw: Box::new(draw),
+        }
     }
 }
 
@@ -240,7 +295,10 @@ mod tests {
     use super::*;
     use crate::view::plot::tests::sample_curve as curve;
 
-    const PIXEL: Pixel = Pixel { width: 0.01, tolerance: 0.01 };
+    const PIXEL: Pixel = Pixel {
+        width: 0.01,
+        tolerance: 0.01,
+    };
 
     fn view(height: f64) -> (PlotBounds, Pixel) {
         (PlotBounds::from_min_max([0.0, 0.0], [1.0, height]), PIXEL)
@@ -252,12 +310,19 @@ mod tests {
 
     /// Where the points are in memory: elsewhere once they are made anew.
     fn places(drawn: &DrawnCurves) -> Vec<*const PlotPoint> {
-        drawn.curves.iter().map(|curve| curve.runs[0].as_ptr()).collect()
+        drawn
+            .curves
+            .iter()
+            .map(|curve| curve.runs[0].as_ptr())
+            .collect()
     }
 
     #[test]
     fn points_are_kept_until_their_curve_or_the_view_changes() {
-        let (mut drawn, mut curves) = (DrawnCurves::default(), vec![curve(0, &[1.0, 9.0, 5.0]), curve(1, &[1.0; 3])]);
+        let (mut drawn, mut curves) = (
+            DrawnCurves::default(),
+            vec![curve(0, &[1.0, 9.0, 5.0]), curve(1, &[1.0; 3])],
+        );
         update(&mut drawn, &curves, 10.0);
         let first = places(&drawn);
         curves[0].highlighted = true;
@@ -270,7 +335,11 @@ mod tests {
         update(&mut drawn, &curves, 10.0);
         assert_eq!(places(&drawn)[1], first[0]);
         assert_eq!(drawn.runs(0)[0][0].y, 2.0);
-        assert_eq!([drawn.serial(0), drawn.serial(1)], [3, 1], "what is made anew has a number of its own");
+        assert_eq!(
+            [drawn.serial(0), drawn.serial(1)],
+            [3, 1],
+            "what is made anew has a number of its own"
+        );
         // Of the curve that goes up to 9 and back to 5, the steps up to 6 and farther are out of sight.
         update(&mut drawn, &curves[1..], 0.5);
         assert!(drawn.runs(0).is_empty());
@@ -304,7 +373,10 @@ mod tests {
     fn a_gap_splits_a_curve_into_two() {
         let points = [0.1, 0.2, f64::NAN, 0.3, 0.4, f64::INFINITY].map(|x| [x, 0.5]);
         let runs = runs_in_view(points.into_iter(), &unit_view(), 0.0);
-        assert_eq!(runs, [vec![[0.1, 0.5], [0.2, 0.5]], vec![[0.3, 0.5], [0.4, 0.5]]]);
+        assert_eq!(
+            runs,
+            [vec![[0.1, 0.5], [0.2, 0.5]], vec![[0.3, 0.5], [0.4, 0.5]]]
+        );
     }
 
     #[test]
@@ -313,7 +385,11 @@ mod tests {
         for (margin, count) in [(0.0, 4), (1.0, 6)] {
             let runs = runs_in_view(points.clone(), &unit_view(), margin);
             assert_eq!(runs.len(), 1);
-            assert_eq!(runs[0].len(), count, "those within, and one on either side to lead there");
+            assert_eq!(
+                runs[0].len(),
+                count,
+                "those within, and one on either side to lead there"
+            );
         }
     }
 }

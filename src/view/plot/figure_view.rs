@@ -3,18 +3,21 @@
 use std::ops::RangeInclusive;
 
 use egui::{
-    Align2, CursorIcon, FontId, Id, Modifiers, Pos2, Rect, Response, Sense, Stroke, Ui, UiBuilder, Vec2, WidgetInfo,
-    pos2, vec2,
+    Align2, CursorIcon, FontId, Id, Modifiers, Pos2, Rect, Response, Sense, Stroke, Ui, UiBuilder,
+    Vec2, WidgetInfo, pos2, vec2,
 };
-use egui_plot::{Axis as Side, GridInput, GridMark, Plot as Frame, PlotBounds, PlotPoint, PlotTransform};
+use egui_plot::{
+    Axis as Side, GridInput, GridMark, Plot as Frame, PlotBounds, PlotPoint, PlotTransform,
+};
 use gdcm_plot::figure::{
-    Along, Area, Dots, Figure, FrequencyUnit, Mark, MarkId, Panel, Plot, Range, Scale, Shape, dot_shapes,
+    Along, Area, Dots, Figure, FrequencyUnit, Mark, MarkId, Panel, Plot, Range, Scale, Shape,
+    dot_shapes,
 };
 use gdcm_study::study::ExplainTarget;
 
 use super::axes::{
-    LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, axis_hints, caption_font, labelled_mark, message_ui, quiet_plot, tick_font,
-    use_frame_colors,
+    LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, axis_hints, caption_font, labelled_mark, message_ui,
+    quiet_plot, tick_font, use_frame_colors,
 };
 use super::canvas::{Canvas, LETTERS_PT, area};
 use super::curve_menu::{NamedFigure, Questions};
@@ -110,7 +113,19 @@ impl<'a> FigureScene<'a> {
     ) -> Self {
         let (selected, highlighted, columns, accented) = (None, None, &[][..], None);
         let (zooms, is_compact, words) = (false, false, (words, 0));
-        Self { name, figure, selected, highlighted, columns, zooms, least, message, is_compact, accented, words }
+        Self {
+            name,
+            figure,
+            selected,
+            highlighted,
+            columns,
+            zooms,
+            least,
+            message,
+            is_compact,
+            accented,
+            words,
+        }
     }
 }
 
@@ -183,7 +198,10 @@ impl FigureView {
 
     /// Where a place of the axes of a plot is on the screen.
     pub fn position(&self, plot: usize, [x, y]: [f64; 2]) -> Option<Pos2> {
-        Some(self.transform(plot)?.position_from_point(&PlotPoint::new(x, y)))
+        Some(
+            self.transform(plot)?
+                .position_from_point(&PlotPoint::new(x, y)),
+        )
     }
 
     /// Where the dot of a mark was drawn last in a plot.
@@ -195,7 +213,12 @@ impl FigureView {
 }
 
 /// Draws a figure into the space that is left in `ui`.
-pub fn figure_ui(ui: &mut Ui, scene: &FigureScene<'_>, view: &mut FigureView, palette: &Palette) -> Vec<FigureEvent> {
+pub fn figure_ui(
+    ui: &mut Ui,
+    scene: &FigureScene<'_>,
+    view: &mut FigureView,
+    palette: &Palette,
+) -> Vec<FigureEvent> {
     let rect = ui.available_rect_before_wrap();
     let events = figure_within_ui(ui, rect, scene, view, palette);
     ui.advance_cursor_after_rect(rect);
@@ -238,23 +261,41 @@ pub fn figure_within_ui(
         let hovered = view.hovered.take();
         view.pointed_at = None;
         let emphasized = hovered.as_ref().or(scene.highlighted.as_ref());
-        tiles_ui(ui, "panels", inner, plots.len(), scene.least, |ui, index, rect| {
-            let id = ui.make_persistent_id((scene.name, index));
-            let kept = (&mut view.plots[index], emphasized);
-            let (response, pointed) = panels_ui(ui, (id, rect), scene, index, kept, palette);
-            let (words, index) = (scene.words.0, scene.words.1 + index);
-            let questions = pointed.as_ref().map(|(id, _)| words.questions(index, id)).unwrap_or_default();
-            events.extend(view.questions.ui(&response, &questions).map(FigureEvent::Asked));
-            let Some((id, at)) = pointed else { return };
-            view.hovered = Some(id.clone());
-            view.pointed_at = Some(at);
-            events.push(FigureEvent::Pointed(id.clone()));
-            events.extend(words.pointed(index, &id, at).map(FigureEvent::Told));
-            if response.clicked() {
-                events.push(FigureEvent::Clicked(index, id, ui.input(|input| input.modifiers)));
-            }
-            response.on_hover_cursor(CursorIcon::PointingHand);
-        });
+        tiles_ui(
+            ui,
+            "panels",
+            inner,
+            plots.len(),
+            scene.least,
+            |ui, index, rect| {
+                let id = ui.make_persistent_id((scene.name, index));
+                let kept = (&mut view.plots[index], emphasized);
+                let (response, pointed) = panels_ui(ui, (id, rect), scene, index, kept, palette);
+                let (words, index) = (scene.words.0, scene.words.1 + index);
+                let questions = pointed
+                    .as_ref()
+                    .map(|(id, _)| words.questions(index, id))
+                    .unwrap_or_default();
+                events.extend(
+                    view.questions
+                        .ui(&response, &questions)
+                        .map(FigureEvent::Asked),
+                );
+                let Some((id, at)) = pointed else { return };
+                view.hovered = Some(id.clone());
+                view.pointed_at = Some(at);
+                events.push(FigureEvent::Pointed(id.clone()));
+                events.extend(words.pointed(index, &id, at).map(FigureEvent::Told));
+                if response.clicked() {
+                    events.push(FigureEvent::Clicked(
+                        index,
+                        id,
+                        ui.input(|input| input.modifiers),
+                    ));
+                }
+                response.on_hover_cursor(CursorIcon::PointingHand);
+            },
+        );
         if view.hovered != hovered {
             ui.ctx().request_repaint();
         }
@@ -270,10 +311,15 @@ fn common_label(figure: &Figure) -> Option<&str> {
 
 /// The label of all the vertical axes, upright at the left edge.
 fn upright_label_ui(ui: &Ui, rect: Rect, label: &str, palette: &Palette) {
-    let galley = ui.painter().layout_no_wrap(label.to_owned(), FontId::proportional(SMALL_SIZE), palette.dim_text);
+    let galley = ui.painter().layout_no_wrap(
+        label.to_owned(),
+        FontId::proportional(SMALL_SIZE),
+        palette.dim_text,
+    );
     let place = pos2(rect.left() + 1.0, rect.center().y + 0.5 * galley.size().x);
     let text = egui::epaint::TextShape::new(place, galley, palette.dim_text);
-    ui.painter().add(text.with_angle(-std::f32::consts::FRAC_PI_2));
+    ui.painter()
+        .add(text.with_angle(-std::f32::consts::FRAC_PI_2));
 }
 
 /// Draws the panels of a plot above one another into `rect`, over the same part of their horizontal axis; what the pointer means in the first,
@@ -290,14 +336,34 @@ fn panels_ui(
     let all: f64 = panels.iter().map(|panel| panel.weight).sum();
     let height = |panel: &Panel| (rect.height() - TITLE_HEIGHT) * (panel.weight / all) as f32;
     let mut place = rect.with_max_y(rect.top() + TITLE_HEIGHT + height(&panels[0]));
-    let shown = plot_ui(ui, (id, place), scene, (index, 0), (kept, emphasized), palette);
+    let shown = plot_ui(
+        ui,
+        (id, place),
+        scene,
+        (index, 0),
+        (kept, emphasized),
+        palette,
+    );
     let mut lower = std::mem::take(&mut kept.lower);
     lower.resize_with(panels.len() - 1, PlotView::default);
-    let of_y = |view: &PlotView, panel: &Panel| view.ranges.map_or_else(|| panel.shown(Along::Y), |[_, y]| y);
+    let of_y = |view: &PlotView, panel: &Panel| {
+        view.ranges
+            .map_or_else(|| panel.shown(Along::Y), |[_, y]| y)
+    };
     for (number, (panel, below)) in (1..).zip(panels[1..].iter().zip(&mut lower)) {
         below.ranges = kept.ranges.map(|[x, _]| [x, of_y(below, panel)]);
-        place = Rect::from_x_y_ranges(place.x_range(), place.bottom()..=place.bottom() + height(panel));
-        plot_ui(ui, (id.with(number), place), scene, (index, number), (below, emphasized), palette);
+        place = Rect::from_x_y_ranges(
+            place.x_range(),
+            place.bottom()..=place.bottom() + height(panel),
+        );
+        plot_ui(
+            ui,
+            (id.with(number), place),
+            scene,
+            (index, number),
+            (below, emphasized),
+            palette,
+        );
         kept.ranges = below.ranges.map(|[x, _]| [x, of_y(kept, &panels[0])]);
     }
     kept.lower = lower;
@@ -317,7 +383,10 @@ fn plot_ui(
     let (panel, words, number) = (&panels[panel_number], scene.words.0, scene.words.1 + index);
     let is_first = panel_number == 0;
     let above = if is_first { TITLE_HEIGHT } else { PANEL_GAP };
-    let mut plot_rect = Rect::from_min_max(rect.min + vec2(0.0, above), rect.max - vec2(RIGHT_MARGIN, 0.0));
+    let mut plot_rect = Rect::from_min_max(
+        rect.min + vec2(0.0, above),
+        rect.max - vec2(RIGHT_MARGIN, 0.0),
+    );
     let has_values = !scene.is_compact || rect.left() - ui.max_rect().left() < 0.5 * rect.width();
     if scene.is_compact && has_values {
         plot_rect.min.x -= VALUE_AXIS_WIDTH;
@@ -325,28 +394,60 @@ fn plot_ui(
     let [x, y] = kept.ranges.unwrap_or_else(|| whole(panel));
     let shown = ui.scope_builder(UiBuilder::new().id_salt(id).max_rect(plot_rect), |ui| {
         let is_last = panel_number + 1 == panels.len();
-        frame(ui, (id, plot_rect.size()), (panel, is_last), (scene, has_values), palette).show(ui, |plot| {
+        frame(
+            ui,
+            (id, plot_rect.size()),
+            (panel, is_last),
+            (scene, has_values),
+            palette,
+        )
+        .show(ui, |plot| {
             plot.set_plot_bounds(PlotBounds::from_min_max([x.min, y.min], [x.max, y.max]));
         })
     });
     let (response, transform) = (shown.inner.response, shown.inner.transform);
-    let told = if is_first { words.plot(number) } else { format!("{}: {}", words.plot(number), panel.y.label) };
+    let told = if is_first {
+        words.plot(number)
+    } else {
+        format!("{}: {}", words.plot(number), panel.y.label)
+    };
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, &told));
     if is_first {
-        title_ui(ui, (title, panel), *transform.frame(), scene, index, palette);
+        title_ui(
+            ui,
+            (title, panel),
+            *transform.frame(),
+            scene,
+            index,
+            palette,
+        );
     }
     kept.transform = Some(transform);
-    let pointer = response.hover_pos().or(response.interact_pointer_pos().filter(|_| response.clicked()));
+    let pointer = response.hover_pos().or(response
+        .interact_pointer_pos()
+        .filter(|_| response.clicked()));
     let pointed = pointer.and_then(|pointer| match scene.columns {
         [] => nearest_dot(panel, &transform, pointer),
         columns => {
             let x = transform.value_from_position(pointer).x.round();
-            Some((columns.get(x as usize).filter(|_| x >= 0.0)?.clone(), [x, 0.0]))
+            Some((
+                columns.get(x as usize).filter(|_| x >= 0.0)?.clone(),
+                [x, 0.0],
+            ))
         }
     });
-    kept.paint(ui, scene, panel, (emphasized, pointed.as_ref().map(|(_, at)| *at)), palette);
+    kept.paint(
+        ui,
+        scene,
+        panel,
+        (emphasized, pointed.as_ref().map(|(_, at)| *at)),
+        palette,
+    );
     for dot in panel.dots() {
-        let told = dot.id.as_ref().and_then(|id| words.dot(number, id, [dot.x, dot.y]));
+        let told = dot
+            .id
+            .as_ref()
+            .and_then(|id| words.dot(number, id, [dot.x, dot.y]));
         if let Some(told) = told {
             // For screen readers; pointing and clicking are the plot's, which takes the nearest dot.
             let at = transform.position_from_point(&PlotPoint::new(dot.x, dot.y));
@@ -372,17 +473,36 @@ fn title_ui(
     palette: &Palette,
 ) {
     let is_accented = scene.accented == Some(index);
-    let quiet = if scene.is_compact { palette.dim_text } else { palette.text };
-    let (font, color) = if is_accented { (medium(SMALL_SIZE), palette.text) } else { (caption_font(), quiet) };
+    let quiet = if scene.is_compact {
+        palette.dim_text
+    } else {
+        palette.text
+    };
+    let (font, color) = if is_accented {
+        (medium(SMALL_SIZE), palette.text)
+    } else {
+        (caption_font(), quiet)
+    };
     let place = pos2(frame.center().x, frame.top() - 0.5 * TITLE_HEIGHT);
-    ui.painter().text(place, Align2::CENTER_CENTER, title, font, color);
+    ui.painter()
+        .text(place, Align2::CENTER_CENTER, title, font, color);
     if is_accented {
-        ui.painter().hline(frame.x_range(), frame.top() - 1.0, Stroke::new(2.0, palette.accent));
+        ui.painter().hline(
+            frame.x_range(),
+            frame.top() - 1.0,
+            Stroke::new(2.0, palette.accent),
+        );
     }
     if scene.is_compact && index + 1 == scene.figure.plots.len() {
         let unit = panel.x.label.split(['[', ']']).nth(1).unwrap_or_default();
         let at = pos2(frame.right() + 6.0, frame.bottom() + 0.5 * TICKS_HEIGHT);
-        ui.painter().text(at, Align2::LEFT_CENTER, unit, caption_font(), palette.dim_text);
+        ui.painter().text(
+            at,
+            Align2::LEFT_CENTER,
+            unit,
+            caption_font(),
+            palette.dim_text,
+        );
     }
 }
 
@@ -396,17 +516,26 @@ impl PlotView {
         (emphasized, pointed): (Option<&MarkId>, Option<[f64; 2]>),
         palette: &Palette,
     ) {
-        let Some(transform) = self.transform else { return };
+        let Some(transform) = self.transform else {
+            return;
+        };
         let frame = *transform.frame();
         let (min, max) = (transform.bounds().min(), transform.bounds().max());
-        let (area, ranges) = (area(frame), [0, 1].map(|axis| Range::new(min[axis], max[axis])));
+        let (area, ranges) = (
+            area(frame),
+            [0, 1].map(|axis| Range::new(min[axis], max[axis])),
+        );
         let ranges = [values(panel, ranges[0]), ranges[1]];
-        let is_same = |(of, at, shown): &(Panel, Area, [Range; 2])| (of, at, shown) == (panel, &area, &ranges);
+        let is_same = |(of, at, shown): &(Panel, Area, [Range; 2])| {
+            (of, at, shown) == (panel, &area, &ranges)
+        };
         if !self.drawn_for.as_ref().is_some_and(is_same) {
             (self.shapes, _) = panel.shapes(area, ranges, LETTERS_PT);
             self.drawn_for = Some((panel.clone(), area, ranges));
         }
-        let painter = ui.painter().with_clip_rect(frame.expand(RING).intersect(ui.clip_rect()));
+        let painter = ui
+            .painter()
+            .with_clip_rect(frame.expand(RING).intersect(ui.clip_rect()));
         for (column, id) in scene.columns.iter().enumerate() {
             let is_pointed = pointed.is_some_and(|at| at[0] == column as f64);
             let strength = match (scene.selected.as_ref() == Some(id), is_pointed) {
@@ -414,22 +543,42 @@ impl PlotView {
                 (false, true) => 0.35,
                 (false, false) => continue,
             };
-            let ends = [-0.5, 0.5].map(|beside| transform.position_from_point_x(column as f64 + beside));
+            let ends =
+                [-0.5, 0.5].map(|beside| transform.position_from_point_x(column as f64 + beside));
             let ground = Rect::from_x_y_ranges(ends[0]..=ends[1], frame.y_range());
             painter.rect_filled(ground, 0.0, palette.selected.gamma_multiply(strength));
         }
-        let canvas = Canvas { painter: &painter, origin: frame.min, palette };
+        let canvas = Canvas {
+            painter: &painter,
+            origin: frame.min,
+            palette,
+        };
         canvas.paint(&self.shapes);
         let ring = |at: [f64; 2], color| {
             let at = transform.position_from_point(&PlotPoint::new(at[0], at[1]));
             painter.circle_stroke(at, RING, Stroke::new(1.4, color));
         };
         for mark in &panel.marks {
-            let Mark::Dots(Dots { shape, color, filled, size, dots, .. }) = mark else { continue };
+            let Mark::Dots(Dots {
+                shape,
+                color,
+                filled,
+                size,
+                dots,
+                ..
+            }) = mark
+            else {
+                continue;
+            };
             for dot in dots.iter().filter(|dot| dot.id.is_some()) {
                 let at = transform.position_from_point(&PlotPoint::new(dot.x, dot.y));
                 if dot.id.as_ref() == emphasized {
-                    canvas.paint(&dot_shapes(canvas.from(at), (*shape, EMPHASIZED * size.max(0.8)), *color, *filled));
+                    canvas.paint(&dot_shapes(
+                        canvas.from(at),
+                        (*shape, EMPHASIZED * size.max(0.8)),
+                        *color,
+                        *filled,
+                    ));
                 }
                 if dot.id == scene.selected {
                     ring([dot.x, dot.y], palette.text);
@@ -442,22 +591,43 @@ impl PlotView {
     }
 
     /// The wheel zooms about the pointer, dragging pans, a double click beside the dots shows all.
-    fn navigate(&mut self, response: &Response, is_pointed: bool, (whole, ends): ([Range; 2], [Range; 2])) {
-        let Some(transform) = self.transform else { return };
+    fn navigate(
+        &mut self,
+        response: &Response,
+        is_pointed: bool,
+        (whole, ends): ([Range; 2], [Range; 2]),
+    ) {
+        let Some(transform) = self.transform else {
+            return;
+        };
         let (min, max) = (transform.bounds().min(), transform.bounds().max());
         let mut shown = [0, 1].map(|axis| Range::new(min[axis], max[axis]));
         if let Some((turn, pointer)) = turned(&response.ctx, response) {
-            let (factor, fixed) = (f64::from(turn.along_one_axis()), transform.value_from_position(pointer));
-            let zoomed = [shown[0].zoomed(factor, fixed.x), shown[1].zoomed(factor, fixed.y)];
+            let (factor, fixed) = (
+                f64::from(turn.along_one_axis()),
+                transform.value_from_position(pointer),
+            );
+            let zoomed = [
+                shown[0].zoomed(factor, fixed.x),
+                shown[1].zoomed(factor, fixed.y),
+            ];
             let within = [0, 1].map(|axis| Range {
                 min: zoomed[axis].min.max(ends[axis].min),
                 max: zoomed[axis].max.min(ends[axis].max),
             });
             // Where all of it was dragged beyond the ends, it stays.
-            shown = [0, 1].map(|axis| if within[axis].width() > 0.0 { within[axis] } else { shown[axis] });
+            shown = [0, 1].map(|axis| {
+                if within[axis].width() > 0.0 {
+                    within[axis]
+                } else {
+                    shown[axis]
+                }
+            });
             response.ctx.request_repaint();
         }
-        let limited = |axis: usize| shown[axis].limited(Range::new(LEAST_WIDTH, FARTHEST * whole[axis].width()));
+        let limited = |axis: usize| {
+            shown[axis].limited(Range::new(LEAST_WIDTH, FARTHEST * whole[axis].width()))
+        };
         if let [Some(x), Some(y)] = [limited(0), limited(1)] {
             self.ranges = Some([x, y]);
         }
@@ -506,10 +676,22 @@ fn frame<'a>(
 ) -> Frame<'a> {
     let names: Vec<(f64, String)> = panel.x.names.clone().unwrap_or_default();
     // Low plots have as many numbers as have room.
-    let gap = if scene.is_compact { COMPACT_TICK_GAP } else { TICK_GAP };
+    let gap = if scene.is_compact {
+        COMPACT_TICK_GAP
+    } else {
+        TICK_GAP
+    };
     let (is_named, values) = (!names.is_empty(), Ticks::Decimal(gap));
-    let width = |text: &str| ui.painter().layout_no_wrap(text.to_owned(), tick_font(), palette.text).size().x;
-    let widest = names.iter().map(|(_, name)| width(name)).fold(0.0, f32::max);
+    let width = |text: &str| {
+        ui.painter()
+            .layout_no_wrap(text.to_owned(), tick_font(), palette.text)
+            .size()
+            .x
+    };
+    let widest = names
+        .iter()
+        .map(|(_, name)| width(name))
+        .fold(0.0, f32::max);
     let (count, digit) = (names.len(), f64::from(width("0")));
     let along = match panel.x.scale {
         Scale::Logarithmic => Ticks::Frequency(FrequencyUnit::RadPerSecond),
@@ -520,20 +702,38 @@ fn frame<'a>(
         false => along.marks_beside(input.bounds, input.base_step_size, digit),
     };
     let is_labelled = is_last && !scene.is_compact;
-    let (words, height) = if is_labelled { (panel.x.label.as_str(), LABELLED_HEIGHT) } else { ("", TICKS_HEIGHT) };
+    let (words, height) = if is_labelled {
+        (panel.x.label.as_str(), LABELLED_HEIGHT)
+    } else {
+        ("", TICKS_HEIGHT)
+    };
     let across = axis_hints(Side::X, words, height, palette, along);
     let across = match is_named {
         true => across.formatter(move |mark, _: &RangeInclusive<f64>| {
-            names.get(mark.value.round() as usize).map(|(_, name)| name.clone()).unwrap_or_default()
+            names
+                .get(mark.value.round() as usize)
+                .map(|(_, name)| name.clone())
+                .unwrap_or_default()
         }),
         false => across,
     };
-    let label = if scene.figure.shared.y { "" } else { panel.y.label.as_str() };
+    let label = if scene.figure.shared.y {
+        ""
+    } else {
+        panel.y.label.as_str()
+    };
     // No label is longer than its axis: beside a low panel its unit stands alone.
     let is_too_long = width(label) > size.y - height;
-    let label = label.rfind('[').filter(|_| is_too_long).map_or(label, |unit| &label[unit..]);
+    let label = label
+        .rfind('[')
+        .filter(|_| is_too_long)
+        .map_or(label, |unit| &label[unit..]);
     let plot = quiet_plot(id, palette)
-        .sense(if scene.zooms { Sense::click_and_drag() } else { Sense::click() })
+        .sense(if scene.zooms {
+            Sense::click_and_drag()
+        } else {
+            Sense::click()
+        })
         .width(size.x)
         .height(size.y)
         .show_grid([!is_named, true])
@@ -541,16 +741,33 @@ fn frame<'a>(
         .y_grid_spacer(values.spacer())
         .custom_x_axes(vec![across])
         .custom_y_axes(match has_values {
-            true => vec![axis_hints(Side::Y, label, VALUE_AXIS_WIDTH, palette, values)],
+            true => vec![axis_hints(
+                Side::Y,
+                label,
+                VALUE_AXIS_WIDTH,
+                palette,
+                values,
+            )],
             false => Vec::new(),
         });
-    if scene.zooms { plot.allow_drag(true).allow_zoom(true).allow_axis_zoom_drag(true) } else { plot }
+    if scene.zooms {
+        plot.allow_drag(true)
+            .allow_zoom(true)
+            .allow_axis_zoom_drag(true)
+    } else {
+        plot
+    }
 }
 
 /// One mark for each name; where they are too wide, for every second, third … one.
 fn named_marks(input: &GridInput, count: usize, widest: f32) -> Vec<GridMark> {
     /// Least space between two names \[pt\].
     const SPACE: f64 = 6.0;
-    let every = ((f64::from(widest) + SPACE) * input.base_step_size).ceil().max(1.0);
-    (0..count).step_by(every as usize).map(|index| labelled_mark(index as f64, input.base_step_size)).collect()
+    let every = ((f64::from(widest) + SPACE) * input.base_step_size)
+        .ceil()
+        .max(1.0);
+    (0..count)
+        .step_by(every as usize)
+        .map(|index| labelled_mark(index as f64, input.base_step_size))
+        .collect()
 }

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Color32, CursorIcon, FontId, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use egui::{
+    Color32, CursorIcon, FontId, Rect, Response, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2,
+    vec2,
+};
 
 use gdcm_plot::figure::Dash;
 
@@ -49,9 +52,16 @@ impl RoleChip {
 }
 
 /// One chip for each role among `curves`, drawn or `hidden`, in the order of [`Role::ALL`].
-pub(super) fn role_chips(curves: &[BodeCurve], hidden: Option<&BTreeSet<Role>>, palette: &Palette) -> Vec<RoleChip> {
+pub(super) fn role_chips(
+    curves: &[BodeCurve],
+    hidden: Option<&BTreeSet<Role>>,
+    palette: &Palette,
+) -> Vec<RoleChip> {
     let of_role = |role: Role| {
-        let members: Vec<&BodeCurve> = curves.iter().filter(|curve| curve.role.shown(curve.rejected) == role).collect();
+        let members: Vec<&BodeCurve> = curves
+            .iter()
+            .filter(|curve| curve.role.shown(curve.rejected) == role)
+            .collect();
         let first = members.first()?;
         // One chip for kept and rejected nominal models: dotted only where none is kept.
         let rejected = members.iter().all(|curve| curve.rejected);
@@ -75,7 +85,9 @@ fn text(role: Role, members: &[&BodeCurve]) -> String {
         format!("{start}{ellipsis}")
     };
     match (role, members) {
-        (Role::Representative, [only]) if !only.label.is_empty() => format!("{name} {}", short(&only.label)),
+        (Role::Representative, [only]) if !only.label.is_empty() => {
+            format!("{name} {}", short(&only.label))
+        }
         (Role::Variant, [only]) => short(&only.label),
         (Role::Identified, _) => "others".to_owned(),
         _ => name.to_owned(),
@@ -114,23 +126,47 @@ impl Chips<'_> {
     pub(super) fn width(&self, ui: &Ui) -> f32 {
         let text = |text: &str| {
             let font = FontId::proportional(SMALL_SIZE);
-            ui.painter().layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER).size().x + 2.0 * PAD + GAP
+            ui.painter()
+                .layout_no_wrap(text.to_owned(), font, Color32::PLACEHOLDER)
+                .size()
+                .x
+                + 2.0 * PAD
+                + GAP
         };
-        let (bands, sample) = (self.bands.map(|_| self.bands_text()), SAMPLES[usize::from(self.is_tight)]);
-        let names = self.roles.iter().map(|chip| chip.text.as_str()).chain(bands);
+        let (bands, sample) = (
+            self.bands.map(|_| self.bands_text()),
+            SAMPLES[usize::from(self.is_tight)],
+        );
+        let names = self
+            .roles
+            .iter()
+            .map(|chip| chip.text.as_str())
+            .chain(bands);
         let roles = names.map(|name| text(name) + sample + SAMPLE_GAP);
-        roles.chain(self.states.iter().map(|chip| text(&chip.text))).sum::<f32>() - GAP
+        roles
+            .chain(self.states.iter().map(|chip| text(&chip.text)))
+            .sum::<f32>()
+            - GAP
     }
 
     /// Draws them in lines from the upper left corner of `area`; gives the height that they take, and what was clicked.
     pub(super) fn ui(&self, ui: &Ui, area: Rect, palette: &Palette) -> (f32, Option<BodeEvent>) {
         let sample = SAMPLES[usize::from(self.is_tight)];
-        let mut row = Row { area, corner: area.min, sample, event: None };
+        let mut row = Row {
+            area,
+            corner: area.min,
+            sample,
+            event: None,
+        };
         for chip in &self.roles {
             let name = format!("Show {}{}", chip.role.name(), self.plot);
             let sample = Some((chip.look, chip.shown));
             let response = row.chip_ui(ui, (&chip.text, &name), (sample, chip.lit), palette);
-            let hint = if chip.shown { "Click: hide" } else { "Click: show" };
+            let hint = if chip.shown {
+                "Click: hide"
+            } else {
+                "Click: show"
+            };
             let hint = format!("{hint} · Alt+click: alone · Shift+click: in front");
             if response.on_hover_text(hint).clicked() {
                 let modifiers = ui.input(|input| input.modifiers);
@@ -149,25 +185,45 @@ impl Chips<'_> {
                 length: 0.0,
             };
             let name = format!("Show the band of 95 %{}", self.plot);
-            let response = row.chip_ui(ui, (self.bands_text(), &name), (Some((style, shown)), false), palette);
-            if response.on_hover_text("How far each identified response may lie from its curve").clicked() {
+            let response = row.chip_ui(
+                ui,
+                (self.bands_text(), &name),
+                (Some((style, shown)), false),
+                palette,
+            );
+            if response
+                .on_hover_text("How far each identified response may lie from its curve")
+                .clicked()
+            {
                 row.event = Some(BodeEvent::Display(CurveCommand::ShowBands(!shown)));
             }
         }
         for (index, chip) in self.states.iter().enumerate() {
             let name = format!("{}{}", chip.text, self.plot);
-            if row.chip_ui(ui, (&chip.text, &name), (None, false), palette).on_hover_text(&chip.hint).clicked() {
+            if row
+                .chip_ui(ui, (&chip.text, &name), (None, false), palette)
+                .on_hover_text(&chip.hint)
+                .clicked()
+            {
                 row.event = Some(BodeEvent::ChipClicked(index));
             }
         }
         let is_empty = self.roles.is_empty() && self.states.is_empty();
-        let height = if is_empty { 0.0 } else { row.corner.y - area.top() + HEIGHTS[1] };
+        let height = if is_empty {
+            0.0
+        } else {
+            row.corner.y - area.top() + HEIGHTS[1]
+        };
         (height, row.event)
     }
 
     /// What the chip of the bands says.
     fn bands_text(&self) -> &'static str {
-        if self.is_tight { "95 %" } else { "band of 95 %" }
+        if self.is_tight {
+            "95 %"
+        } else {
+            "band of 95 %"
+        }
     }
 }
 
@@ -190,9 +246,19 @@ impl Row {
         palette: &Palette,
     ) -> Response {
         let is_shown = sample.is_none_or(|(_, shown)| shown);
-        let color = if is_shown { palette.text } else { palette.dim_text };
-        let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::proportional(SMALL_SIZE), color);
-        let before = if sample.is_some() { self.sample + SAMPLE_GAP } else { 0.0 };
+        let color = if is_shown {
+            palette.text
+        } else {
+            palette.dim_text
+        };
+        let galley =
+            ui.painter()
+                .layout_no_wrap(text.to_owned(), FontId::proportional(SMALL_SIZE), color);
+        let before = if sample.is_some() {
+            self.sample + SAMPLE_GAP
+        } else {
+            0.0
+        };
         let size = vec2(galley.size().x + before + 2.0 * PAD, HEIGHTS[0]);
         if self.corner.x + size.x > self.area.right() && self.corner.x > self.area.left() {
             self.corner = pos2(self.area.left(), self.corner.y + HEIGHTS[1]);
@@ -202,21 +268,38 @@ impl Row {
         let response = ui.interact(place, ui.scope_id().with(("chip", name)), Sense::click());
         match sample {
             Some((_, shown)) => {
-                response.widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, true, shown, name));
+                response
+                    .widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, true, shown, name));
             }
             None => response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, name)),
         }
         let is_meant = is_lit || response.hovered() || response.has_focus();
         self.paint(ui, place, (sample, is_meant), palette);
-        let at = pos2(place.left() + PAD + before, place.center().y - 0.5 * galley.size().y);
+        let at = pos2(
+            place.left() + PAD + before,
+            place.center().y - 0.5 * galley.size().y,
+        );
         ui.painter().galley(at, galley, color);
         response.on_hover_cursor(CursorIcon::PointingHand)
     }
 
-    fn paint(&self, ui: &Ui, place: Rect, (sample, is_meant): (Option<(CurveStyle, bool)>, bool), palette: &Palette) {
+    fn paint(
+        &self,
+        ui: &Ui,
+        place: Rect,
+        (sample, is_meant): (Option<(CurveStyle, bool)>, bool),
+        palette: &Palette,
+    ) {
         let radius = 0.5 * place.height();
         let is_hidden = sample.is_some_and(|(_, shown)| !shown);
-        let line = Stroke::new(1.0, if is_meant { palette.accent } else { palette.line });
+        let line = Stroke::new(
+            1.0,
+            if is_meant {
+                palette.accent
+            } else {
+                palette.line
+            },
+        );
         let fill = match sample {
             _ if is_hidden => Color32::TRANSPARENT,
             Some(_) => palette.panel,
@@ -224,22 +307,37 @@ impl Row {
         };
         if is_hidden {
             let path = rounded(place.shrink(0.5), radius);
-            ui.painter().extend(egui::Shape::dashed_line(&path, line, 3.0, 3.0));
+            ui.painter()
+                .extend(egui::Shape::dashed_line(&path, line, 3.0, 3.0));
         } else {
-            ui.painter().rect(place, radius, fill, line, StrokeKind::Inside);
+            ui.painter()
+                .rect(place, radius, fill, line, StrokeKind::Inside);
         }
         let Some((look, _)) = sample else { return };
-        let look = if is_hidden { CurveStyle { color: look.color.gamma_multiply(0.5), ..look } } else { look };
+        let look = if is_hidden {
+            CurveStyle {
+                color: look.color.gamma_multiply(0.5),
+                ..look
+            }
+        } else {
+            look
+        };
         let (left, middle) = (place.left() + PAD, place.center().y);
         let mut shapes = Vec::new();
-        look.add_shapes(vec![pos2(left, middle), pos2(left + self.sample, middle)], &mut shapes);
+        look.add_shapes(
+            vec![pos2(left, middle), pos2(left + self.sample, middle)],
+            &mut shapes,
+        );
         ui.painter().extend(shapes);
     }
 }
 
 /// The outline of a rectangle whose ends are half circles, as one path.
 fn rounded(place: Rect, radius: f32) -> Vec<egui::Pos2> {
-    let centers = [pos2(place.right() - radius, place.center().y), pos2(place.left() + radius, place.center().y)];
+    let centers = [
+        pos2(place.right() - radius, place.center().y),
+        pos2(place.left() + radius, place.center().y),
+    ];
     let quarter = std::f32::consts::FRAC_PI_2;
     let turn = |center: egui::Pos2, from: f32| {
         (0..=8).map(move |step| {
@@ -247,7 +345,9 @@ fn rounded(place: Rect, radius: f32) -> Vec<egui::Pos2> {
             center + radius * vec2(angle.cos(), angle.sin())
         })
     };
-    let mut path: Vec<_> = turn(centers[0], -quarter).chain(turn(centers[1], quarter)).collect();
+    let mut path: Vec<_> = turn(centers[0], -quarter)
+        .chain(turn(centers[1], quarter))
+        .collect();
     path.push(path[0]);
     path
 }

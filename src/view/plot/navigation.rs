@@ -1,7 +1,8 @@
 //! What mouse and keyboard ask of a plot: to pan and to zoom it, and which curve the pointer means, the nearest one and not the topmost.
 
 use egui::{
-    Context, EventFilter, Key, Modifiers, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui, Vec2, pos2, vec2,
+    Context, EventFilter, Key, Modifiers, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind,
+    Ui, Vec2, pos2, vec2,
 };
 use egui_plot::{PlotPoint, PlotTransform};
 use gdcm_plot::figure::{MarkId, Panel, Range};
@@ -20,22 +21,37 @@ pub(super) fn plot_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut Bod
     if !response.has_focus() {
         return;
     }
-    let arrows = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
+    let arrows = EventFilter {
+        horizontal_arrows: true,
+        vertical_arrows: true,
+        ..EventFilter::default()
+    };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
-    let Some(frame) = view.transform(pane).map(|transform| *transform.frame()) else { return };
+    let Some(frame) = view.transform(pane).map(|transform| *transform.frame()) else {
+        return;
+    };
     let shift = ui.input(|input| input.modifiers.shift);
-    let pressed = |key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as f32;
+    let pressed =
+        |key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as f32;
     // The view moves where the arrow points: what is drawn moves the other way.
     let along = pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
     let up = pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
     let closer = pressed(Key::Plus) + pressed(Key::Equals) - pressed(Key::Minus);
     let is_fitted = pressed(Key::Home) > 0.0;
     if along != 0.0 || up != 0.0 {
-        view.pan(pane, STEP * vec2(-along * frame.width(), up * frame.height()));
+        view.pan(
+            pane,
+            STEP * vec2(-along * frame.width(), up * frame.height()),
+        );
     }
     if closer != 0.0 {
         let factor = CLOSER.powf(f64::from(closer));
-        view.zoom(pane, frame.center(), factor, if shift { 1.0 } else { factor });
+        view.zoom(
+            pane,
+            frame.center(),
+            factor,
+            if shift { 1.0 } else { factor },
+        );
     }
     if is_fitted {
         view.request_fit();
@@ -47,7 +63,17 @@ pub(super) fn plot_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut Bod
 
 /// The digit from 1 to 9 that is pressed, taken from the keys.
 pub(super) fn pressed_digit(ui: &Ui) -> Option<usize> {
-    let digits = [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+    let digits = [
+        Key::Num1,
+        Key::Num2,
+        Key::Num3,
+        Key::Num4,
+        Key::Num5,
+        Key::Num6,
+        Key::Num7,
+        Key::Num8,
+        Key::Num9,
+    ];
     let pressed = |key: &Key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, *key));
     digits.iter().position(pressed).map(|place| place + 1)
 }
@@ -79,13 +105,20 @@ impl Turn {
 /// What the wheel and two fingers ask of the widget under the pointer, and where; nothing where they rest.
 pub(super) fn turned(ctx: &Context, response: &Response) -> Option<(Turn, Pos2)> {
     let pointer = response.hover_pos()?;
-    let (scrolled, pinched) = ctx.input(|input| (input.smooth_scroll_delta(), input.zoom_delta_2d()));
+    let (scrolled, pinched) =
+        ctx.input(|input| (input.smooth_scroll_delta(), input.zoom_delta_2d()));
     if scrolled == Vec2::ZERO && pinched == Vec2::splat(1.0) {
         return None;
     }
     // Two fingers scroll by parts of a notch.
     let closer = |points: f32| NOTCH.powf(points / NOTCH_PT);
-    Some((Turn { both: closer(scrolled.y) * pinched, sideways: closer(scrolled.x) }, pointer))
+    Some((
+        Turn {
+            both: closer(scrolled.y) * pinched,
+            sideways: closer(scrolled.x),
+        },
+        pointer,
+    ))
 }
 
 /// The part of an axis in view. What the engineer chose stays until a fit of everything is asked for.
@@ -102,7 +135,12 @@ pub(super) struct ViewedRange {
 impl ViewedRange {
     /// Shows `range` until something is fitted, later always a part of `ends` with a width in `widths`.
     pub(super) fn new(range: Range, widths: Range, ends: Range) -> Self {
-        Self { range, is_chosen: false, widths, ends }
+        Self {
+            range,
+            is_chosen: false,
+            widths,
+            ends,
+        }
     }
 
     /// From now on no farther than a decade beyond what is computed, which is `computed` in decades.
@@ -169,21 +207,35 @@ pub struct Hit {
 }
 
 /// The curve nearest to `pointer`, if one is within [`PICK_RADIUS`]. Of equally near ones, the one drawn on top.
-pub fn nearest(curves: &[BodeCurve], pane: Pane, pointer: Pos2, transform: &PlotTransform) -> Option<Hit> {
+pub fn nearest(
+    curves: &[BodeCurve],
+    pane: Pane,
+    pointer: Pos2,
+    transform: &PlotTransform,
+) -> Option<Hit> {
     let mut best: Option<(Hit, usize)> = None;
     let mut axis = LogFrequencies::default();
-    let [low, high] = [-PICK_RADIUS, PICK_RADIUS].map(|dx| transform.value_from_position(pointer + vec2(dx, 0.0)).x);
+    let [low, high] = [-PICK_RADIUS, PICK_RADIUS]
+        .map(|dx| transform.value_from_position(pointer + vec2(dx, 0.0)).x);
     for (index, curve) in curves.iter().enumerate() {
         let points = curve.points_between(&mut axis, pane, (low, high));
         let Some((distance, at)) = distance_to(points, pointer, transform) else {
             continue;
         };
         let layer = curve.role.layer(curve.rejected);
-        let is_better =
-            best.is_none_or(|(hit, top)| distance < hit.distance || (distance == hit.distance && layer > top));
+        let is_better = best.is_none_or(|(hit, top)| {
+            distance < hit.distance || (distance == hit.distance && layer > top)
+        });
         if distance <= PICK_RADIUS && is_better {
             let omega = 10f64.powf(transform.value_from_position(at).x);
-            best = Some((Hit { curve: index, omega, distance }, layer));
+            best = Some((
+                Hit {
+                    curve: index,
+                    omega,
+                    distance,
+                },
+                layer,
+            ));
         }
     }
     best.map(|(hit, _)| hit)
@@ -193,10 +245,16 @@ pub fn nearest(curves: &[BodeCurve], pane: Pane, pointer: Pos2, transform: &Plot
 const DOT_RADIUS: f32 = 10.0;
 
 /// The nearest dot that is one of something; of equally near ones the one on top, which is drawn last.
-pub(super) fn nearest_dot(panel: &Panel, transform: &PlotTransform, pointer: Pos2) -> Option<(MarkId, [f64; 2])> {
+pub(super) fn nearest_dot(
+    panel: &Panel,
+    transform: &PlotTransform,
+    pointer: Pos2,
+) -> Option<(MarkId, [f64; 2])> {
     let mut near: Option<(f32, (&MarkId, [f64; 2]))> = None;
     for (dot, id) in panel.dots().filter_map(|dot| Some((dot, dot.id.as_ref()?))) {
-        let distance = transform.position_from_point(&PlotPoint::new(dot.x, dot.y)).distance(pointer);
+        let distance = transform
+            .position_from_point(&PlotPoint::new(dot.x, dot.y))
+            .distance(pointer);
         if distance <= DOT_RADIUS && near.is_none_or(|(least, _)| distance <= least) {
             near = Some((distance, (id, [dot.x, dot.y])));
         }
@@ -205,19 +263,33 @@ pub(super) fn nearest_dot(panel: &Panel, transform: &PlotTransform, pointer: Pos
 }
 
 /// The curves that run through `area` of the screen.
-pub(super) fn touched(curves: &[BodeCurve], pane: Pane, area: Rect, transform: &PlotTransform) -> Vec<CurveId> {
+pub(super) fn touched(
+    curves: &[BodeCurve],
+    pane: Pane,
+    area: Rect,
+    transform: &PlotTransform,
+) -> Vec<CurveId> {
     let mut axis = LogFrequencies::default();
-    let [low, high] = [area.left(), area.right()].map(|x| transform.value_from_position(pos2(x, area.top())).x);
+    let [low, high] =
+        [area.left(), area.right()].map(|x| transform.value_from_position(pos2(x, area.top())).x);
     let runs_through = |curve: &&BodeCurve| {
         let mut previous: Option<Pos2> = None;
-        curve.points_between(&mut axis, pane, (low, high)).any(|[x, y]| {
-            let is_point = x.is_finite() && y.is_finite();
-            let here = is_point.then(|| transform.position_from_point(&PlotPoint::new(x, y)));
-            let before = std::mem::replace(&mut previous, here);
-            before.zip(here).is_some_and(|(from, to)| meets(from, to, area))
-        })
+        curve
+            .points_between(&mut axis, pane, (low, high))
+            .any(|[x, y]| {
+                let is_point = x.is_finite() && y.is_finite();
+                let here = is_point.then(|| transform.position_from_point(&PlotPoint::new(x, y)));
+                let before = std::mem::replace(&mut previous, here);
+                before
+                    .zip(here)
+                    .is_some_and(|(from, to)| meets(from, to, area))
+            })
     };
-    curves.iter().filter(runs_through).map(|curve| curve.id.clone()).collect()
+    curves
+        .iter()
+        .filter(runs_through)
+        .map(|curve| curve.id.clone())
+        .collect()
 }
 
 /// Whether the segment between two points has a part in `area`.
@@ -227,9 +299,10 @@ pub(super) fn touched(curves: &[BodeCurve], pane: Pane, area: Rect, transform: &
 fn meets(from: Pos2, to: Pos2, area: Rect) -> bool {
     let along = to - from;
     let (mut first, mut last) = (0.0f32, 1.0f32);
-    for (start, step, low, high) in
-        [(from.x, along.x, area.left(), area.right()), (from.y, along.y, area.top(), area.bottom())]
-    {
+    for (start, step, low, high) in [
+        (from.x, along.x, area.left(), area.right()),
+        (from.y, along.y, area.top(), area.bottom()),
+    ] {
         if step == 0.0 {
             if !(low..=high).contains(&start) {
                 return false;
@@ -250,8 +323,10 @@ pub(super) fn distance_to(
     transform: &PlotTransform,
 ) -> Option<(f32, Pos2)> {
     let near = pointer.x - PICK_RADIUS..=pointer.x + PICK_RADIUS;
-    let positions = points
-        .map(|[x, y]| (x.is_finite() && y.is_finite()).then(|| transform.position_from_point(&PlotPoint::new(x, y))));
+    let positions = points.map(|[x, y]| {
+        (x.is_finite() && y.is_finite())
+            .then(|| transform.position_from_point(&PlotPoint::new(x, y)))
+    });
     let mut previous: Option<Pos2> = None;
     let mut best: Option<(f32, Pos2)> = None;
     for position in positions {
@@ -294,7 +369,8 @@ pub(super) fn drawn_box_ui(
     if !(is_done || plot.dragged_by(button)) {
         return None;
     }
-    let (origin, now) = ui.input(|input| (input.pointer.press_origin(), input.pointer.latest_pos()));
+    let (origin, now) =
+        ui.input(|input| (input.pointer.press_origin(), input.pointer.latest_pos()));
     // By the time the button is let go, there is no origin any more: the last frame's is kept.
     let memory = plot.id.with("box origin");
     let origin = origin.or_else(|| ui.data(|data| data.get_temp(memory)))?;
@@ -304,8 +380,13 @@ pub(super) fn drawn_box_ui(
     if is_done {
         return is_wanted.then_some(area);
     }
-    let (fill, stroke) = (palette.accent.gamma_multiply(0.12), Stroke::new(1.0, palette.accent));
-    ui.painter().with_clip_rect(frame).rect(area, 0.0, fill, stroke, StrokeKind::Inside);
+    let (fill, stroke) = (
+        palette.accent.gamma_multiply(0.12),
+        Stroke::new(1.0, palette.accent),
+    );
+    ui.painter()
+        .with_clip_rect(frame)
+        .rect(area, 0.0, fill, stroke, StrokeKind::Inside);
     None
 }
 
@@ -318,17 +399,27 @@ mod tests {
     use crate::view::plot::tests::numbered;
 
     fn viewed() -> ViewedRange {
-        ViewedRange::new(Range::new(0.0, 1.0), Range::new(0.1, 50.0), Range::new(-100.0, 100.0))
+        ViewedRange::new(
+            Range::new(0.0, 1.0),
+            Range::new(0.1, 50.0),
+            Range::new(-100.0, 100.0),
+        )
     }
 
     #[test]
     fn what_was_chosen_stays_until_it_is_released() {
         let mut viewed = viewed();
         viewed.fit(Range::new(2.0, 3.0));
-        assert_eq!((viewed.range(), viewed.is_chosen()), (Range::new(2.0, 3.0), false));
+        assert_eq!(
+            (viewed.range(), viewed.is_chosen()),
+            (Range::new(2.0, 3.0), false)
+        );
         viewed.choose(Range::new(4.0, 5.0));
         viewed.fit(Range::new(2.0, 3.0));
-        assert_eq!((viewed.range(), viewed.is_chosen()), (Range::new(4.0, 5.0), true));
+        assert_eq!(
+            (viewed.range(), viewed.is_chosen()),
+            (Range::new(4.0, 5.0), true)
+        );
         viewed.release();
         viewed.fit(Range::new(2.0, 3.0));
         assert_eq!(viewed.range(), Range::new(2.0, 3.0));
@@ -355,7 +446,10 @@ mod tests {
     fn a_range_beyond_the_ends_is_not_shown() {
         let mut viewed = viewed();
         viewed.choose(Range::new(99.0, 101.0));
-        viewed.choose(Range { min: f64::NAN, max: 1.0 });
+        viewed.choose(Range {
+            min: f64::NAN,
+            max: 1.0,
+        });
         assert_eq!(viewed, self::viewed());
     }
 
@@ -377,13 +471,22 @@ mod tests {
     /// One decade and 100 dB on 100 by 100 points: a decibel is a point.
     fn transform() -> PlotTransform {
         let frame = Rect::from_min_max(pos2(0.0, 0.0), pos2(100.0, 100.0));
-        PlotTransform::new(frame, PlotBounds::from_min_max([0.0, 0.0], [1.0, 100.0]), false)
+        PlotTransform::new(
+            frame,
+            PlotBounds::from_min_max([0.0, 0.0], [1.0, 100.0]),
+            false,
+        )
     }
 
     #[test]
     fn the_nearest_curve_is_meant_wherever_it_stands_in_the_list() {
-        let curves = [flat(1, 50.0, Role::Perturbed), flat(2, 54.0, Role::Corrected), flat(3, 60.0, Role::Nominal)];
-        let hit = |y| nearest(&curves, Pane::Magnitude, pos2(50.0, y), &transform()).map(|hit| hit.curve);
+        let curves = [
+            flat(1, 50.0, Role::Perturbed),
+            flat(2, 54.0, Role::Corrected),
+            flat(3, 60.0, Role::Nominal),
+        ];
+        let hit =
+            |y| nearest(&curves, Pane::Magnitude, pos2(50.0, y), &transform()).map(|hit| hit.curve);
         assert_eq!(hit(49.0), Some(0));
         assert_eq!(hit(47.0), Some(1));
         assert_eq!(hit(42.0), Some(2));
@@ -392,7 +495,10 @@ mod tests {
 
     #[test]
     fn of_equally_near_curves_the_one_on_top_is_meant() {
-        let curves = [flat(1, 50.0, Role::Corrected), flat(2, 50.0, Role::Perturbed)];
+        let curves = [
+            flat(1, 50.0, Role::Corrected),
+            flat(2, 50.0, Role::Perturbed),
+        ];
         let hit = nearest(&curves, Pane::Magnitude, pos2(50.0, 50.0), &transform());
         assert_eq!(hit.map(|hit| hit.curve), Some(0));
     }
@@ -406,11 +512,21 @@ mod tests {
 
     #[test]
     fn a_box_touches_the_curves_that_run_through_it_without_a_point_in_it_too() {
-        let curves = [flat(1, 50.0, Role::Perturbed), flat(2, 54.0, Role::Corrected), flat(3, 60.0, Role::Nominal)];
+        let curves = [
+            flat(1, 50.0, Role::Perturbed),
+            flat(2, 54.0, Role::Corrected),
+            flat(3, 60.0, Role::Nominal),
+        ];
         // Between the points at 3 and 10 rad/s.
         let area = Rect::from_min_max(pos2(70.0, 44.0), pos2(75.0, 52.0));
-        assert_eq!(touched(&curves, Pane::Magnitude, area, &transform()), [numbered(1), numbered(2)]);
-        assert!(touched(&curves, Pane::Phase, area, &transform()).is_empty(), "a lone point is no curve");
+        assert_eq!(
+            touched(&curves, Pane::Magnitude, area, &transform()),
+            [numbered(1), numbered(2)]
+        );
+        assert!(
+            touched(&curves, Pane::Phase, area, &transform()).is_empty(),
+            "a lone point is no curve"
+        );
     }
 
     #[test]
@@ -419,12 +535,18 @@ mod tests {
         assert!(meets(pos2(-5.0, 2.0), pos2(4.0, -1.0), area));
         assert!(!meets(pos2(-5.0, 2.0), pos2(2.0, -5.0), area));
         assert!(meets(pos2(2.0, 2.0), pos2(3.0, 3.0), area), "inside");
-        assert!(!meets(pos2(11.0, -5.0), pos2(11.0, 20.0), area), "upright, beside it");
+        assert!(
+            !meets(pos2(11.0, -5.0), pos2(11.0, 20.0), area),
+            "upright, beside it"
+        );
     }
 
     #[test]
     fn gaps_cannot_be_meant() {
         let curves = [flat(1, 50.0, Role::Nominal)];
-        assert_eq!(nearest(&curves, Pane::Phase, pos2(50.0, 100.0), &transform()), None);
+        assert_eq!(
+            nearest(&curves, Pane::Phase, pos2(50.0, 100.0), &transform()),
+            None
+        );
     }
 }

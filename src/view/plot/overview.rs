@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use egui::{
-    Align2, Button, CursorIcon, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, StrokeKind, Ui, UiBuilder,
-    Vec2, WidgetInfo, pos2, vec2,
+    Align2, Button, CursorIcon, Painter, Pos2, Rect, Response, RichText, Sense, Stroke, StrokeKind,
+    Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
 use gdcm_model::dataset::Pair;
@@ -103,7 +103,13 @@ impl OverviewView {
 
     /// The middle of the magnitude of a response on the screen.
     pub fn screen_position(&self, pair: Pair) -> Option<Pos2> {
-        Some(self.sketches.get(&(pair, Pane::Magnitude))?.transform?.frame().center())
+        Some(
+            self.sketches
+                .get(&(pair, Pane::Magnitude))?
+                .transform?
+                .frame()
+                .center(),
+        )
     }
 }
 
@@ -117,20 +123,40 @@ pub fn overview_ui(
     let rect = ui.available_rect_before_wrap();
     let curves = scene.cells.iter().flat_map(|cell| cell.curves);
     // Frequencies ascend: the ends are enough.
-    let ends = curves.flat_map(|curve| [curve.omega.first(), curve.omega.last()]).flatten();
+    let ends = curves
+        .flat_map(|curve| [curve.omega.first(), curve.omega.last()])
+        .flatten();
     let log_omega = Range::of(ends.map(|omega| omega.log10()));
-    let (Some(log_omega), false, false) = (log_omega, scene.inputs.is_empty(), scene.outputs.is_empty()) else {
-        message_ui(ui, rect, scene.message.unwrap_or("Nothing to draw"), palette);
+    let (Some(log_omega), false, false) =
+        (log_omega, scene.inputs.is_empty(), scene.outputs.is_empty())
+    else {
+        message_ui(
+            ui,
+            rect,
+            scene.message.unwrap_or("Nothing to draw"),
+            palette,
+        );
         return Vec::new();
     };
-    let table = Table { rect, columns: scene.inputs.len(), rows: scene.outputs.len() };
+    let table = Table {
+        rect,
+        columns: scene.inputs.len(),
+        rows: scene.outputs.len(),
+    };
     let mut events = Vec::new();
     ui.scope_builder(UiBuilder::new().id_salt("overview").max_rect(rect), |ui| {
         headers_ui(ui, scene, view, &table, palette);
         for cell in scene.cells {
             let place = table.cell(cell.pair);
-            let title = format!("{} → {}", scene.inputs[cell.pair.input], scene.outputs[cell.pair.output]);
-            let name = if cell.note.is_empty() { title } else { format!("{title}: {}", cell.note) };
+            let title = format!(
+                "{} → {}",
+                scene.inputs[cell.pair.input], scene.outputs[cell.pair.output]
+            );
+            let name = if cell.note.is_empty() {
+                title
+            } else {
+                format!("{title}: {}", cell.note)
+            };
             let response = cell_ui(ui, scene, (cell, place, &name), view, log_omega, palette);
             events.extend(cell_events((&response, &name), cell, view));
         }
@@ -149,27 +175,61 @@ struct Table {
 impl Table {
     fn cell(&self, pair: Pair) -> Rect {
         let area = Rect::from_min_max(self.rect.min + HEADER, self.rect.max);
-        let size = vec2(area.width() / self.columns as f32, area.height() / self.rows as f32);
+        let size = vec2(
+            area.width() / self.columns as f32,
+            area.height() / self.rows as f32,
+        );
         let offset = vec2(pair.input as f32 * size.x, pair.output as f32 * size.y);
-        Rect::from_min_size(area.min + offset, (size - vec2(GAP, GAP)).max(vec2(1.0, 1.0)))
+        Rect::from_min_size(
+            area.min + offset,
+            (size - vec2(GAP, GAP)).max(vec2(1.0, 1.0)),
+        )
     }
 }
 
-fn headers_ui(ui: &mut Ui, scene: &OverviewScene<'_>, view: &mut OverviewView, table: &Table, palette: &Palette) {
+fn headers_ui(
+    ui: &mut Ui,
+    scene: &OverviewScene<'_>,
+    view: &mut OverviewView,
+    table: &Table,
+    palette: &Palette,
+) {
     let toggle_place = Rect::from_min_size(table.rect.min, HEADER - vec2(4.0, 4.0));
     let toggle = Button::selectable(view.show_phase, RichText::new("phase").size(SMALL_SIZE))
         .wrap_mode(egui::TextWrapMode::Extend);
-    if ui.put(toggle_place, toggle).on_hover_text("Show phases below magnitudes").clicked() {
+    if ui
+        .put(toggle_place, toggle)
+        .on_hover_text("Show phases below magnitudes")
+        .clicked()
+    {
         view.show_phase = !view.show_phase;
     }
     let painter = ui.painter();
     for (input, name) in scene.inputs.iter().enumerate() {
-        let place = pos2(table.cell(Pair::new(0, input)).center().x, table.rect.top() + 0.5 * HEADER.y - 1.0);
-        painter.text(place, Align2::CENTER_CENTER, name, caption_font(), palette.dim_text);
+        let place = pos2(
+            table.cell(Pair::new(0, input)).center().x,
+            table.rect.top() + 0.5 * HEADER.y - 1.0,
+        );
+        painter.text(
+            place,
+            Align2::CENTER_CENTER,
+            name,
+            caption_font(),
+            palette.dim_text,
+        );
     }
     for (output, name) in scene.outputs.iter().enumerate() {
-        let place = pos2(table.rect.left() + 0.5 * HEADER.x - 2.0, table.cell(Pair::new(output, 0)).center().y);
-        painter.text(place, Align2::CENTER_CENTER, name, caption_font(), palette.dim_text);
+        let place = pos2(
+            table.rect.left() + 0.5 * HEADER.x - 2.0,
+            table.cell(Pair::new(output, 0)).center().y,
+        );
+        painter.text(
+            place,
+            Align2::CENTER_CENTER,
+            name,
+            caption_font(),
+            palette.dim_text,
+        );
     }
 }
 
@@ -185,8 +245,16 @@ fn cell_ui(
     let response = ui.interact(place, ui.scope_id().with(cell.pair), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, name));
     if ui.is_rect_visible(place) {
-        paint_frame(ui, cell, place, response.hovered() || response.has_focus(), palette);
-        let painter = ui.painter().with_clip_rect(place.shrink(1.5).intersect(ui.clip_rect()));
+        paint_frame(
+            ui,
+            cell,
+            place,
+            response.hovered() || response.has_focus(),
+            palette,
+        );
+        let painter = ui
+            .painter()
+            .with_clip_rect(place.shrink(1.5).intersect(ui.clip_rect()));
         let inner = place.shrink(2.0);
         let has_texts = place.width() >= LEAST_WITH_TEXT.x && place.height() >= LEAST_WITH_TEXT.y;
         let head = inner.with_max_y(inner.top() + if has_texts { CELL_HEAD } else { 0.0 });
@@ -201,7 +269,12 @@ fn cell_ui(
             // What the heights of the cell are, for want of an axis, and its note: over its curves, not on them.
             let head = head.shrink2(vec2(3.0, 0.0));
             let note = row_text(ui, head, -0.01, &cell.note, SMALL_SIZE, palette.text);
-            let ranges = elided(ui, &ranges.join(" · "), note.left() - head.left() - 6.0, SMALL_SIZE);
+            let ranges = elided(
+                ui,
+                &ranges.join(" · "),
+                note.left() - head.left() - 6.0,
+                SMALL_SIZE,
+            );
             row_text(ui, head, 0.0, &ranges, SMALL_SIZE, palette.dim_text);
         }
     }
@@ -217,7 +290,11 @@ fn cell_events(
     let pointer = response.hover_pos().or(response.interact_pointer_pos());
     let curve = pointer.and_then(|pointer| view.curve_at(cell, pointer));
     let meant = curve.map(|curve| curve.id.clone());
-    let mut events: Vec<OverviewEvent> = meant.clone().map(OverviewEvent::Hovered).into_iter().collect();
+    let mut events: Vec<OverviewEvent> = meant
+        .clone()
+        .map(OverviewEvent::Hovered)
+        .into_iter()
+        .collect();
     if response.hovered() {
         let curve = curve.map_or_else(String::new, |curve| format!(" · {}", curve.label));
         events.push(OverviewEvent::Told(format!("{name}{curve}")));
@@ -233,16 +310,27 @@ fn cell_events(
         view.menu_of = meant.map(|curve| (cell.pair, curve));
     }
     let subject = view.menu_of.as_ref().filter(|(pair, _)| *pair == cell.pair);
-    if let Some(curve) = subject.and_then(|(_, id)| cell.curves.iter().find(|curve| curve.id == *id)) {
+    if let Some(curve) =
+        subject.and_then(|(_, id)| cell.curves.iter().find(|curve| curve.id == *id))
+    {
         response.context_menu(|ui| {
             ui.label(RichText::new(&curve.label).strong());
-            events.extend(model_wishes_ui(ui, curve).map(|wish| OverviewEvent::Wished(curve.id.clone(), wish)));
+            events.extend(
+                model_wishes_ui(ui, curve)
+                    .map(|wish| OverviewEvent::Wished(curve.id.clone(), wish)),
+            );
         });
     }
     events
 }
 
-fn paint_frame(ui: &Ui, cell: &OverviewCell<'_>, place: Rect, is_pointed_at: bool, palette: &Palette) {
+fn paint_frame(
+    ui: &Ui,
+    cell: &OverviewCell<'_>,
+    place: Rect,
+    is_pointed_at: bool,
+    palette: &Palette,
+) {
     let fill = match cell.constrained {
         true => palette.background.lerp_to_gamma(palette.selected, 0.55),
         false => palette.background,
@@ -252,7 +340,8 @@ fn paint_frame(ui: &Ui, cell: &OverviewCell<'_>, place: Rect, is_pointed_at: boo
         (false, true) => Stroke::new(1.0, palette.accent),
         (false, false) => Stroke::new(1.0, palette.line),
     };
-    ui.painter().rect(place, 2.0, fill, outline, StrokeKind::Inside);
+    ui.painter()
+        .rect(place, 2.0, fill, outline, StrokeKind::Inside);
 }
 
 fn pane_rects(rect: Rect, show_phase: bool) -> Vec<(Pane, Rect)> {
@@ -264,14 +353,24 @@ fn pane_rects(rect: Rect, show_phase: bool) -> Vec<(Pane, Rect)> {
     vec![(Pane::Magnitude, upper), (Pane::Phase, lower)]
 }
 
-fn paint_band(painter: &Painter, rect: Rect, (min, max): (f64, f64), log_omega: Range, palette: &Palette) {
+fn paint_band(
+    painter: &Painter,
+    rect: Rect,
+    (min, max): (f64, f64),
+    log_omega: Range,
+    palette: &Palette,
+) {
     let x = |omega: f64| {
         let fraction = (omega.log10() - log_omega.min) / log_omega.width();
         rect.left() + fraction.clamp(0.0, 1.0) as f32 * rect.width()
     };
     let band = Rect::from_x_y_ranges(x(min)..=x(max), rect.y_range());
     painter.rect_filled(band, 0.0, palette.accent.gamma_multiply(0.06));
-    painter.hline(rect.x_range(), rect.bottom(), Stroke::new(1.0, palette.grid));
+    painter.hline(
+        rect.x_range(),
+        rect.bottom(),
+        Stroke::new(1.0, palette.grid),
+    );
 }
 
 /// How far from the curve a drawn line may be \[pt\].
@@ -295,20 +394,38 @@ impl Sketch {
         log_omega: Range,
         palette: &Palette,
     ) {
-        let values = Range::of(curves.iter().flat_map(|curve| curve.values(pane).iter().copied()));
-        self.transform = values.map(|values| values.with_margin(0.06, 1.0)).map(|values| {
-            let bounds = PlotBounds::from_min_max([log_omega.min, values.min], [log_omega.max, values.max]);
-            PlotTransform::new(rect, bounds, false)
-        });
-        let Some(transform) = &self.transform else { return };
+        let values = Range::of(
+            curves
+                .iter()
+                .flat_map(|curve| curve.values(pane).iter().copied()),
+        );
+        self.transform = values
+            .map(|values| values.with_margin(0.06, 1.0))
+            .map(|values| {
+                let bounds = PlotBounds::from_min_max(
+                    [log_omega.min, values.min],
+                    [log_omega.max, values.max],
+                );
+                PlotTransform::new(rect, bounds, false)
+            });
+        let Some(transform) = &self.transform else {
+            return;
+        };
         let pixel = pixel_of(transform, painter.pixels_per_point(), TOLERANCE);
-        self.drawn.update(curves, pane, (*transform.bounds(), pixel), palette);
+        self.drawn
+            .update(curves, pane, (*transform.bounds(), pixel), palette);
         let mut order: Vec<(usize, &BodeCurve)> = curves.iter().enumerate().collect();
         order.sort_by_key(|(_, curve)| (curve.highlighted, curve.role.layer(curve.rejected)));
         let mut shapes = Vec::new();
         for (index, curve) in order {
-            let look = palette.role_style(curve.role, curve.rejected).in_miniature();
-            let look = if curve.highlighted { look.emphasized() } else { look };
+            let look = palette
+                .role_style(curve.role, curve.rejected)
+                .in_miniature();
+            let look = if curve.highlighted {
+                look.emphasized()
+            } else {
+                look
+            };
             curve_lines(self.drawn.runs(index), look, transform, &mut shapes);
         }
         painter.extend(shapes);
@@ -318,7 +435,8 @@ impl Sketch {
     pub(super) fn range_text(&self, pane: Pane) -> String {
         let unit = if pane == Pane::Magnitude { " dB" } else { "°" };
         self.transform.map_or_else(String::new, |transform| {
-            let [min, max] = [transform.bounds().min(), transform.bounds().max()].map(|end| decimals(end[1], 0));
+            let [min, max] =
+                [transform.bounds().min(), transform.bounds().max()].map(|end| decimals(end[1], 0));
             format!("{min} … {max}{unit}")
         })
     }
@@ -335,18 +453,29 @@ mod tests {
         let rect = Rect::from_min_max(pos2(0.0, 0.0), pos2(100.0, 60.0));
         let painter = Painter::new(Context::default(), LayerId::background(), rect);
         let log_omega = Range::new(0.0, 0.7);
-        sketch.paint(&painter, curves, (Pane::Magnitude, rect), log_omega, &Palette::dark());
+        sketch.paint(
+            &painter,
+            curves,
+            (Pane::Magnitude, rect),
+            log_omega,
+            &Palette::dark(),
+        );
     }
 
     #[test]
     fn a_curve_that_reaches_farther_widens_what_is_in_view() {
-        let (mut sketch, mut curves) =
-            (Sketch::default(), vec![curve(0, &[0.0, 9.0, 5.0]), curve(1, &[1.0, 2.0, 3.0])]);
+        let (mut sketch, mut curves) = (
+            Sketch::default(),
+            vec![curve(0, &[0.0, 9.0, 5.0]), curve(1, &[1.0, 2.0, 3.0])],
+        );
         paint(&mut sketch, &curves);
         let before = sketch.transform;
         curves[1] = curve(1, &[1.0, 20.0, 3.0]);
         paint(&mut sketch, &curves);
-        assert_ne!(sketch.transform.map(|of| *of.bounds()), before.map(|of| *of.bounds()));
+        assert_ne!(
+            sketch.transform.map(|of| *of.bounds()),
+            before.map(|of| *of.bounds())
+        );
         assert_eq!(sketch.range_text(Pane::Magnitude), "\u{2212}1 … 21 dB");
     }
 

@@ -50,24 +50,46 @@ impl BodeQuantity<'_> {
     /// Responses in decibels and degrees.
     pub const RESPONSE: BodeQuantity<'static> = Self::in_place(ResponsePlace::Condition);
     /// The same of every condition.
-    pub const RESPONSE_OF_EVERY_CONDITION: BodeQuantity<'static> = Self::in_place(ResponsePlace::EveryCondition);
+    pub const RESPONSE_OF_EVERY_CONDITION: BodeQuantity<'static> =
+        Self::in_place(ResponsePlace::EveryCondition);
     /// The same of a model that was found in a file.
-    pub const RESPONSE_OF_FOUND_MODEL: BodeQuantity<'static> = Self::in_place(ResponsePlace::FoundModel);
+    pub const RESPONSE_OF_FOUND_MODEL: BodeQuantity<'static> =
+        Self::in_place(ResponsePlace::FoundModel);
 
     const fn in_place(place: ResponsePlace) -> BodeQuantity<'static> {
-        BodeQuantity::Response { magnitude: MagnitudeUnit::Decibel, phase: PhaseUnit::Unwrapped, ratio_unit: "", place }
+        BodeQuantity::Response {
+            magnitude: MagnitudeUnit::Decibel,
+            phase: PhaseUnit::Unwrapped,
+            ratio_unit: "",
+            place,
+        }
     }
 
     /// What tells this plot from the others: its widgets, its labels, and what stands behind the name of a pane and behind its place.
     fn words(self) -> [&'static str; 4] {
         match self {
-            Self::Response { place: ResponsePlace::Condition, .. } => ["bode", "", "", " plot"],
-            Self::Response { place: ResponsePlace::EveryCondition, .. } => {
-                ["airspeeds", ", plot of airspeeds", " in every condition", " plot of every condition"]
-            }
-            Self::Response { place: ResponsePlace::FoundModel, .. } => {
-                ["found model", ", plot of a found model", " of a found model", " plot of a found model"]
-            }
+            Self::Response {
+                place: ResponsePlace::Condition,
+                ..
+            } => ["bode", "", "", " plot"],
+            Self::Response {
+                place: ResponsePlace::EveryCondition,
+                ..
+            } => [
+                "airspeeds",
+                ", plot of airspeeds",
+                " in every condition",
+                " plot of every condition",
+            ],
+            Self::Response {
+                place: ResponsePlace::FoundModel,
+                ..
+            } => [
+                "found model",
+                ", plot of a found model",
+                " of a found model",
+                " plot of a found model",
+            ],
             Self::Error { .. } => ["error", ", error plot", " error", " error plot"],
         }
     }
@@ -84,7 +106,14 @@ impl BodeQuantity<'_> {
 
     /// Whether it is of the condition shown, and not of others beside it or of a file.
     pub(crate) fn is_of_condition(self) -> bool {
-        matches!(self, Self::Error { .. } | Self::Response { place: ResponsePlace::Condition, .. })
+        matches!(
+            self,
+            Self::Error { .. }
+                | Self::Response {
+                    place: ResponsePlace::Condition,
+                    ..
+                }
+        )
     }
 
     /// What a pane shows: "Magnitude".
@@ -100,9 +129,20 @@ impl BodeQuantity<'_> {
     /// The unit that a pane is read in.
     pub(crate) fn unit(self, pane: Pane) -> ValueUnit {
         match (self, pane) {
-            (Self::Response { magnitude: MagnitudeUnit::Ratio, .. }, Pane::Magnitude) => ValueUnit::Ratio,
+            (
+                Self::Response {
+                    magnitude: MagnitudeUnit::Ratio,
+                    ..
+                },
+                Pane::Magnitude,
+            ) => ValueUnit::Ratio,
             (_, Pane::Magnitude) => ValueUnit::Decibel,
-            (Self::Error { phase: PhaseErrorUnit::Millisecond }, Pane::Phase) => ValueUnit::Millisecond,
+            (
+                Self::Error {
+                    phase: PhaseErrorUnit::Millisecond,
+                },
+                Pane::Phase,
+            ) => ValueUnit::Millisecond,
             (_, Pane::Phase) => ValueUnit::Degree,
         }
     }
@@ -118,14 +158,31 @@ impl BodeQuantity<'_> {
     /// What stands beside a pane's axis.
     pub(super) fn axis_label(self, pane: Pane) -> String {
         match (self, pane) {
-            (Self::Response { magnitude: MagnitudeUnit::Ratio, ratio_unit, .. }, Pane::Magnitude) => {
+            (
+                Self::Response {
+                    magnitude: MagnitudeUnit::Ratio,
+                    ratio_unit,
+                    ..
+                },
+                Pane::Magnitude,
+            ) => {
                 format!("Magnitude [{ratio_unit}]")
             }
             (Self::Response { .. }, Pane::Magnitude) => "Magnitude [dB]".to_owned(),
             (Self::Response { .. }, Pane::Phase) => "Phase [deg]".to_owned(),
             (Self::Error { .. }, Pane::Magnitude) => "|ident.| / |model| [dB]".to_owned(),
-            (Self::Error { phase: PhaseErrorUnit::Degree }, Pane::Phase) => "Δφ [deg]".to_owned(),
-            (Self::Error { phase: PhaseErrorUnit::Millisecond }, Pane::Phase) => "Δφ/ω [ms]".to_owned(),
+            (
+                Self::Error {
+                    phase: PhaseErrorUnit::Degree,
+                },
+                Pane::Phase,
+            ) => "Δφ [deg]".to_owned(),
+            (
+                Self::Error {
+                    phase: PhaseErrorUnit::Millisecond,
+                },
+                Pane::Phase,
+            ) => "Δφ/ω [ms]".to_owned(),
         }
     }
 
@@ -176,8 +233,14 @@ impl ValueUnit {
     /// Values that can be in view, by their width.
     pub(super) fn widths(self) -> Range {
         match self {
-            Self::Decibel | Self::Ratio => Range { min: 1e-3, max: 5e3 },
-            Self::Degree | Self::Millisecond => Range { min: 1e-2, max: 1e5 },
+            Self::Decibel | Self::Ratio => Range {
+                min: 1e-3,
+                max: 5e3,
+            },
+            Self::Degree | Self::Millisecond => Range {
+                min: 1e-2,
+                max: 1e5,
+            },
         }
     }
 
@@ -225,11 +288,20 @@ mod tests {
 
     #[test]
     fn ticks_of_ratios_are_round_ratios() {
-        let input = egui_plot::GridInput { bounds: (-20.0, 20.0), base_step_size: 40.0 / 300.0 };
+        let input = egui_plot::GridInput {
+            bounds: (-20.0, 20.0),
+            base_step_size: 40.0 / 300.0,
+        };
         let marks = ValueUnit::Ratio.ticks().spacer()(input);
-        let labels: Vec<String> = marks.into_iter().map(|mark| ValueUnit::Ratio.ticks().text(mark)).collect();
+        let labels: Vec<String> = marks
+            .into_iter()
+            .map(|mark| ValueUnit::Ratio.ticks().text(mark))
+            .collect();
         for wanted in ["0.1", "0.2", "0.5", "1", "2", "5", "10"] {
-            assert!(labels.iter().any(|label| label == wanted), "{wanted}: {labels:?}");
+            assert!(
+                labels.iter().any(|label| label == wanted),
+                "{wanted}: {labels:?}"
+            );
         }
     }
 }

@@ -19,10 +19,18 @@ pub(super) fn value_text(quantity: BodeQuantity<'_>, curve: &BodeCurve, omega: f
         None => "–".to_owned(),
     };
     let branch = match quantity {
-        BodeQuantity::Response { .. } => curve.value_at(Pane::Phase, omega).and_then(branch_text).unwrap_or_default(),
+        BodeQuantity::Response { .. } => curve
+            .value_at(Pane::Phase, omega)
+            .and_then(branch_text)
+            .unwrap_or_default(),
         BodeQuantity::Error { .. } => String::new(),
     };
-    format!("{} · {} · {}{branch}", curve.label, value(Pane::Magnitude), value(Pane::Phase))
+    format!(
+        "{} · {} · {}{branch}",
+        curve.label,
+        value(Pane::Magnitude),
+        value(Pane::Phase)
+    )
 }
 
 /// " (−99° less 1 turn)": where a phase \[deg\] lies on another branch than that of its principal value.
@@ -40,10 +48,20 @@ pub fn pointed_words(
     curves: &[BodeCurve],
     (quantity, unit): (BodeQuantity<'_>, FrequencyUnit),
 ) -> Option<String> {
-    let curve = curves.iter().find(|curve| Some(&curve.id) == view.hovered.as_ref())?;
+    let curve = curves
+        .iter()
+        .find(|curve| Some(&curve.id) == view.hovered.as_ref())?;
     let omega = view.pointed_omega?;
-    let detail = if curve.detail.is_empty() { String::new() } else { format!(" · {}", curve.detail) };
-    Some(format!("{} · {}{detail}", unit.readout(omega), value_text(quantity, curve, omega)))
+    let detail = if curve.detail.is_empty() {
+        String::new()
+    } else {
+        format!(" · {}", curve.detail)
+    };
+    Some(format!(
+        "{} · {}{detail}",
+        unit.readout(omega),
+        value_text(quantity, curve, omega)
+    ))
 }
 
 /// The values of one role, or the difference of two.
@@ -73,8 +91,11 @@ pub struct Readout {
 impl Readout {
     /// All of it as one sentence.
     fn words(&self) -> String {
-        let cells: Vec<String> =
-            self.cells.iter().map(|cell| format!("{}: {}, {}", cell.name, cell.values[0], cell.values[1])).collect();
+        let cells: Vec<String> = self
+            .cells
+            .iter()
+            .map(|cell| format!("{}: {}, {}", cell.name, cell.values[0], cell.values[1]))
+            .collect();
         format!("{} {}: {}", self.heading, self.frequency, cells.join("; "))
     }
 }
@@ -91,40 +112,91 @@ pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette:
     let left_out = readout.cells.len().saturating_sub(most);
     let cells = &readout.cells[left_out..];
     // Frequency and difference have longer names than the roles.
-    let weight = |place: usize| if place == 0 || place == cells.len() { 1.25 } else { 1.0 };
-    let upto = |place: usize| (0..place).map(weight).sum::<f32>() / (0..=cells.len()).map(weight).sum::<f32>();
-    let column = |place: usize| {
-        let [left, right] = [place, place + 1].map(|place| strip.left() + upto(place) * strip.width());
-        strip.with_min_x(left).with_max_x(right).shrink2(vec2(8.0, 3.0))
+    let weight = |place: usize| {
+        if place == 0 || place == cells.len() {
+            1.25
+        } else {
+            1.0
+        }
     };
-    let lines = |rect: Rect| [rect.with_max_y(rect.center().y), rect.with_min_y(rect.center().y)];
+    let upto = |place: usize| {
+        (0..place).map(weight).sum::<f32>() / (0..=cells.len()).map(weight).sum::<f32>()
+    };
+    let column = |place: usize| {
+        let [left, right] =
+            [place, place + 1].map(|place| strip.left() + upto(place) * strip.width());
+        strip
+            .with_min_x(left)
+            .with_max_x(right)
+            .shrink2(vec2(8.0, 3.0))
+    };
+    let lines = |rect: Rect| {
+        [
+            rect.with_max_y(rect.center().y),
+            rect.with_min_y(rect.center().y),
+        ]
+    };
     let [upper, lower] = lines(column(0));
     let heading = elided(ui, &readout.heading, upper.width(), SMALL_SIZE);
     row_text(ui, upper, 0.0, &heading, SMALL_SIZE, palette.dim_text);
-    painted_text(ui, lower, 0.0, &readout.frequency, medium(BODY_SIZE), palette.text);
+    painted_text(
+        ui,
+        lower,
+        0.0,
+        &readout.frequency,
+        medium(BODY_SIZE),
+        palette.text,
+    );
     for (place, cell) in cells.iter().enumerate() {
         let [upper, lower] = lines(column(place + 1));
         let left = column(place + 1).left() - 8.0;
-        ui.painter().vline(left, strip.shrink(8.0).y_range(), Stroke::new(1.0, palette.line));
+        ui.painter().vline(
+            left,
+            strip.shrink(8.0).y_range(),
+            Stroke::new(1.0, palette.line),
+        );
         let mut from = 0.0;
         if let Some(role) = cell.role {
             let mut shapes = Vec::new();
             let [start, end] = [upper.left_center(), upper.left_center() + vec2(14.0, 0.0)];
-            palette.role_style(role, false).in_miniature().add_shapes(vec![start, end], &mut shapes);
+            palette
+                .role_style(role, false)
+                .in_miniature()
+                .add_shapes(vec![start, end], &mut shapes);
             ui.painter().extend(shapes);
             from = 20.0;
         }
         // "nominal" where there is no room for "nominal, rejected".
         let shown = elided(ui, &cell.name, upper.width() - from, SMALL_SIZE);
         let name = match cell.name.split_once(", ") {
-            Some((first, _)) if shown != cell.name => elided(ui, first, upper.width() - from, SMALL_SIZE),
+            Some((first, _)) if shown != cell.name => {
+                elided(ui, first, upper.width() - from, SMALL_SIZE)
+            }
             _ => shown,
         };
         row_text(ui, upper, from, &name, SMALL_SIZE, palette.dim_text);
         let color = |warns| if warns { palette.warning } else { palette.text };
-        let font = if cell.role.is_none() { medium(BODY_SIZE) } else { FontId::proportional(BODY_SIZE) };
-        painted_text(ui, lower, 0.0, &cell.values[0], font.clone(), color(cell.warns[0]));
-        painted_text(ui, lower, -0.01, &cell.values[1], font, color(cell.warns[1]));
+        let font = if cell.role.is_none() {
+            medium(BODY_SIZE)
+        } else {
+            FontId::proportional(BODY_SIZE)
+        };
+        painted_text(
+            ui,
+            lower,
+            0.0,
+            &cell.values[0],
+            font.clone(),
+            color(cell.warns[0]),
+        );
+        painted_text(
+            ui,
+            lower,
+            -0.01,
+            &cell.values[1],
+            font,
+            color(cell.warns[1]),
+        );
     }
     let response = ui.interact(strip, ui.scope_id().with("read-out"), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(WidgetRole::Label, true, readout.words()));
@@ -150,13 +222,22 @@ mod tests {
             magnitude_db: vec![2.94, 3.0].into(),
             phase_deg: vec![-99.2, f64::NAN].into(),
         };
-        assert_eq!(value_text(BodeQuantity::RESPONSE, &curve, 1.0), "nominal · 2.9 dB · \u{2212}99°");
-        assert_eq!(value_text(BodeQuantity::RESPONSE, &curve, 2.0), "nominal · 3.0 dB · –");
+        assert_eq!(
+            value_text(BodeQuantity::RESPONSE, &curve, 1.0),
+            "nominal · 2.9 dB · \u{2212}99°"
+        );
+        assert_eq!(
+            value_text(BodeQuantity::RESPONSE, &curve, 2.0),
+            "nominal · 3.0 dB · –"
+        );
     }
 
     #[test]
     fn another_branch_than_the_principal_one_is_told() {
-        assert_eq!(branch_text(-459.0).as_deref(), Some(" (\u{2212}99° less 1 turn)"));
+        assert_eq!(
+            branch_text(-459.0).as_deref(),
+            Some(" (\u{2212}99° less 1 turn)")
+        );
         assert_eq!(branch_text(730.0).as_deref(), Some(" (10° and 2 turns)"));
         assert_eq!(branch_text(-170.0), None);
     }

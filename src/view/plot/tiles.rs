@@ -23,14 +23,23 @@ impl Tiles {
         let count = count.max(1);
         let candidates = (1..=count).map(|columns| {
             let rows = count.div_ceil(columns);
-            Self { columns, rows, size: vec2(available.x / columns as f32, available.y / rows as f32) }
+            Self {
+                columns,
+                rows,
+                size: vec2(available.x / columns as f32, available.y / rows as f32),
+            }
         });
         let fitting = candidates.filter(|tiles| tiles.size.x >= least.x && tiles.size.y >= least.y);
-        fitting.max_by(|a, b| a.usefulness(count).total_cmp(&b.usefulness(count))).unwrap_or(Self {
-            columns: count,
-            rows: 1,
-            size: vec2(least.x.max(available.x / count as f32), available.y.max(least.y)),
-        })
+        fitting
+            .max_by(|a, b| a.usefulness(count).total_cmp(&b.usefulness(count)))
+            .unwrap_or(Self {
+                columns: count,
+                rows: 1,
+                size: vec2(
+                    least.x.max(available.x / count as f32),
+                    available.y.max(least.y),
+                ),
+            })
     }
 
     /// Size of the largest plot of good proportions in a tile; full rows look better than a last one with gaps.
@@ -41,7 +50,10 @@ impl Tiles {
 
     /// Size of all tiles together.
     fn all(self) -> Vec2 {
-        vec2(self.columns as f32 * self.size.x, self.rows as f32 * self.size.y)
+        vec2(
+            self.columns as f32 * self.size.x,
+            self.rows as f32 * self.size.y,
+        )
     }
 
     /// The place of a tile in an area that begins at `origin`.
@@ -78,7 +90,10 @@ pub(super) fn tiles_ui(
         if fits {
             draw(ui);
         } else {
-            ScrollArea::both().id_salt(name).auto_shrink(false).show(ui, draw);
+            ScrollArea::both()
+                .id_salt(name)
+                .auto_shrink(false)
+                .show(ui, draw);
         }
     });
 }
@@ -106,7 +121,9 @@ mod tests {
     #[test]
     fn no_tile_lies_on_another() {
         let tiles = Tiles::arrange(7, vec2(800.0, 500.0), LEAST);
-        let rects: Vec<Rect> = (0..7).map(|index| tiles.rect(index, pos2(10.0, 20.0))).collect();
+        let rects: Vec<Rect> = (0..7)
+            .map(|index| tiles.rect(index, pos2(10.0, 20.0)))
+            .collect();
         for (k, a) in rects.iter().enumerate() {
             for b in &rects[k + 1..] {
                 let common = a.intersect(*b);

@@ -4,9 +4,14 @@ use std::any::Any;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
-use egui::{ColorImage, Id, Label, Rect, RichText, ScrollArea, Sense, TextureHandle, TextureOptions, Ui, vec2};
+use egui::{
+    ColorImage, Id, Label, Rect, RichText, ScrollArea, Sense, TextureHandle, TextureOptions, Ui,
+    vec2,
+};
 
-use crate::view::plot::{Chart, ChartAxis, ChartImage, ChartLine, ChartSpan, chart_ui, chosen_stretch};
+use crate::view::plot::{
+    Chart, ChartAxis, ChartImage, ChartLine, ChartSpan, chart_ui, chosen_stretch,
+};
 use crate::view::{Command, Palette, check_ui, choice_ui, entry_ui};
 use gdcm_model::dataset::Band;
 use gdcm_model::executor::Sequential;
@@ -21,15 +26,27 @@ const LEAST_HEIGHT: f32 = 84.0;
 
 /// A chart for each input and output, with the responses of models to the same inputs where those are asked for.
 pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
-    let Page { state, records, palette } = page;
-    let Some(row) = records.rows.get(records.chosen) else { return };
+    let Page {
+        state,
+        records,
+        palette,
+    } = page;
+    let Some(row) = records.rows.get(records.chosen) else {
+        return;
+    };
     let Some(flight) = &row.flight else {
-        ui.label(RichText::new("Choose first which columns are its channels: page Columns").color(palette.warning));
+        ui.label(
+            RichText::new("Choose first which columns are its channels: page Columns")
+                .color(palette.warning),
+        );
         return;
     };
     let dataset = state.dataset();
-    let names =
-        dataset.inputs().iter().chain(dataset.outputs()).map(|channel| format!("{} [{}]", channel.name, channel.unit));
+    let names = dataset
+        .inputs()
+        .iter()
+        .chain(dataset.outputs())
+        .map(|channel| format!("{} [{}]", channel.name, channel.unit));
     let names: Vec<String> = names.collect();
     let mut gaps = modes_ui(ui, &row.table.modes, palette);
     gaps.extend(spans(records, palette));
@@ -40,13 +57,18 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
         span_ui(ui, records, palette);
     });
     if let Some((part_s, has_ended)) = chosen_stretch(ui, charts()) {
-        gaps.push(ChartSpan { ends: part_s, color: palette.accent.gamma_multiply(0.35) });
+        gaps.push(ChartSpan {
+            ends: part_s,
+            color: palette.accent.gamma_multiply(0.35),
+        });
         if has_ended {
             commands.push(RecordsCommand::AddPart(records.chosen, part_s).into());
         }
     }
     let found = records.identification().filter(|_| !records.changed);
-    let uses = found.into_iter().flat_map(|found| found.record_uses.iter().enumerate());
+    let uses = found
+        .into_iter()
+        .flat_map(|found| found.record_uses.iter().enumerate());
     let uses = uses.filter(|(record, _)| records.row_of_record(*record) == Some(records.chosen));
     for fact in uses.flat_map(|(_, used)| used.facts()) {
         ui.label(palette.small(fact));
@@ -56,40 +78,85 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
         model.absence_ui(ui, state, palette);
     }
     spectrogram_ui(ui, page, flight);
-    ScrollArea::vertical().id_salt("histories").auto_shrink(false).show(ui, |ui| {
-        let rows = names.len().div_ceil(2).max(1);
-        let height = ((ui.available_height() - 6.0) / rows as f32).max(LEAST_HEIGHT);
-        let width = 0.5 * ui.available_width();
-        let area = ui.allocate_exact_size(vec2(2.0 * width, height * rows as f32), Sense::hover()).0;
-        for (place, name) in names.iter().enumerate() {
-            // Down the first column, then down the second: inputs stand before outputs.
-            let (column, line) = (place / rows, place % rows);
-            let corner = area.min + vec2(column as f32 * width, line as f32 * height);
-            let is_last = line + 1 == rows || place + 1 == names.len();
-            let mut chart = Chart::new(name, ChartAxis::Linear, if is_last { "time [s]" } else { "" }, "");
-            chart.group = Some(charts());
-            chart.fits_values = true;
-            chart.chooses = state.records.chooses_parts;
-            chart.spans.clone_from(&gaps);
-            let color = if place < dataset.inputs().len() { palette.text } else { palette.identified };
-            let points =
-                kept(ui, &format!("channel {place}"), &[Arc::clone(flight) as _], (), || points_of(flight, place));
-            let line =
-                |points: &Arc<[[f64; 2]]>| ChartLine { points: Arc::clone(points), color, width: 1.0, dashed: false };
-            chart.lines.extend(points.iter().map(line));
-            if let Some(output) = place.checked_sub(dataset.inputs().len()) {
-                chart.lines.extend(models.iter().flat_map(|model| model.lines(ui, output)));
-                chart.notes.extend(models.iter().filter_map(|model| Some((model.fit_words(output)?, model.color))));
+    ScrollArea::vertical()
+        .id_salt("histories")
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            let rows = names.len().div_ceil(2).max(1);
+            let height = ((ui.available_height() - 6.0) / rows as f32).max(LEAST_HEIGHT);
+            let width = 0.5 * ui.available_width();
+            let area = ui
+                .allocate_exact_size(vec2(2.0 * width, height * rows as f32), Sense::hover())
+                .0;
+            for (place, name) in names.iter().enumerate() {
+                // Down the first column, then down the second: inputs stand before outputs.
+                let (column, line) = (place / rows, place % rows);
+                let corner = area.min + vec2(column as f32 * width, line as f32 * height);
+                let is_last = line + 1 == rows || place + 1 == names.len();
+                let mut chart = Chart::new(
+                    name,
+                    ChartAxis::Linear,
+                    if is_last { "time [s]" } else { "" },
+                    "",
+                );
+                chart.group = Some(charts());
+                chart.fits_values = true;
+                chart.chooses = state.records.chooses_parts;
+                chart.spans.clone_from(&gaps);
+                let color = if place < dataset.inputs().len() {
+                    palette.text
+                } else {
+                    palette.identified
+                };
+                let points = kept(
+                    ui,
+                    &format!("channel {place}"),
+                    &[Arc::clone(flight) as _],
+                    (),
+                    || points_of(flight, place),
+                );
+                let line = |points: &Arc<[[f64; 2]]>| ChartLine {
+                    points: Arc::clone(points),
+                    color,
+                    width: 1.0,
+                    dashed: false,
+                };
+                chart.lines.extend(points.iter().map(line));
+                if let Some(output) = place.checked_sub(dataset.inputs().len()) {
+                    chart
+                        .lines
+                        .extend(models.iter().flat_map(|model| model.lines(ui, output)));
+                    chart.notes.extend(
+                        models
+                            .iter()
+                            .filter_map(|model| Some((model.fit_words(output)?, model.color))),
+                    );
+                }
+                let channel = dataset
+                    .inputs()
+                    .iter()
+                    .chain(dataset.outputs())
+                    .nth(place)
+                    .map(|of| of.name.as_str());
+                let of_channel = |(rows, note): &(Vec<usize>, CautionNote)| {
+                    (rows.is_empty() || rows.contains(&records.chosen))
+                        && note.channel.as_deref() == channel
+                };
+                let marks = records
+                    .cautions()
+                    .filter(of_channel)
+                    .map(|(_, note)| note.mark());
+                chart
+                    .notes
+                    .extend(marks.map(|mark| (format!("⚠ {mark}"), palette.warning)));
+                chart_ui(
+                    ui,
+                    Rect::from_min_size(corner, vec2(width, height)),
+                    &chart,
+                    palette,
+                );
             }
-            let channel = dataset.inputs().iter().chain(dataset.outputs()).nth(place).map(|of| of.name.as_str());
-            let of_channel = |(rows, note): &(Vec<usize>, CautionNote)| {
-                (rows.is_empty() || rows.contains(&records.chosen)) && note.channel.as_deref() == channel
-            };
-            let marks = records.cautions().filter(of_channel).map(|(_, note)| note.mark());
-            chart.notes.extend(marks.map(|mark| (format!("⚠ {mark}"), palette.warning)));
-            chart_ui(ui, Rect::from_min_size(corner, vec2(width, height)), &chart, palette);
-        }
-    });
+        });
 }
 
 /// Height of the spectrogram \[pt\].
@@ -101,10 +168,21 @@ fn charts() -> Id {
 }
 
 /// Parts of a record, dragged in the charts or typed, become records of their own.
-fn part_ui(ui: &mut Ui, Page { state, records, palette }: Page<'_>, commands: &mut Vec<Command>) {
+fn part_ui(
+    ui: &mut Ui,
+    Page {
+        state,
+        records,
+        palette,
+    }: Page<'_>,
+    commands: &mut Vec<Command>,
+) {
     ui.label(palette.small("part [s]"));
     let text = entry_ui(ui, "Part of the record", "", "from to", 70.0);
-    let span_s = records.rows.get(records.chosen).and_then(LaidOutRecord::span_s);
+    let span_s = records
+        .rows
+        .get(records.chosen)
+        .and_then(LaidOutRecord::span_s);
     if let Some(text) = text.filter(|text| !text.trim().is_empty()) {
         commands.push(match part_of(&text, span_s) {
             Some(part_s) => RecordsCommand::AddPart(records.chosen, part_s).into(),
@@ -114,8 +192,7 @@ fn part_ui(ui: &mut Ui, Page { state, records, palette }: Page<'_>, commands: &m
             )),
         });
     }
-    let hint =
-        "Dragging in a chart makes that stretch a record of its own, to be fitted or held out, in place of the whole";
+    let hint = "Dragging in a chart makes that stretch a record of its own, to be fitted or held out, in place of the whole";
     if let Some(chooses) = check_ui(ui, state.records.chooses_parts, "drag parts", hint) {
         commands.push(RecordsCommand::ChooseParts(chooses).into());
     }
@@ -123,8 +200,13 @@ fn part_ui(ui: &mut Ui, Page { state, records, palette }: Page<'_>, commands: &m
 
 /// The part that is typed: two times on the clock of the record, or with `+` before both from its start.
 fn part_of(text: &str, span_s: Option<[f64; 2]>) -> Option<[f64; 2]> {
-    let [from, to] = numbers(text).ok()?[..] else { return None };
-    let signs = text.split_whitespace().filter(|time| time.starts_with('+')).count();
+    let [from, to] = numbers(text).ok()?[..] else {
+        return None;
+    };
+    let signs = text
+        .split_whitespace()
+        .filter(|time| time.starts_with('+'))
+        .count();
     let start_s = match signs {
         0 => 0.0,
         2 => span_s?[0],
@@ -136,24 +218,40 @@ fn part_of(text: &str, span_s: Option<[f64; 2]>) -> Option<[f64; 2]> {
 
 /// From when to when the record shown runs, on its own clock and from the start of the whole record.
 fn span_ui(ui: &mut Ui, records: &ConditionRecords, palette: &Palette) {
-    let Some(row) = records.rows.get(records.chosen) else { return };
+    let Some(row) = records.rows.get(records.chosen) else {
+        return;
+    };
     let Some(span_s) = row.span_s() else { return };
-    let is_whole = |other: &&LaidOutRecord| other.table.part_s.is_none() && other.table.source == row.table.source;
-    let whole_s = records.rows.iter().find(is_whole).and_then(LaidOutRecord::span_s);
+    let is_whole = |other: &&LaidOutRecord| {
+        other.table.part_s.is_none() && other.table.source == row.table.source
+    };
+    let whole_s = records
+        .rows
+        .iter()
+        .find(is_whole)
+        .and_then(LaidOutRecord::span_s);
     let start_s = whole_s.unwrap_or(span_s)[0];
     let [from, to] = span_s.map(|time_s| telling(time_s, 2));
     let [first, last] = span_s.map(|time_s| telling(time_s - start_s, 2));
-    let words = format!("runs from {from} s to {to} s on its clock, +{first} s to +{last} s from its start");
+    let words = format!(
+        "runs from {from} s to {to} s on its clock, +{first} s to +{last} s from its start"
+    );
     ui.add(Label::new(palette.small(words)).truncate());
 }
 
 /// Whether a spectrogram is shown, and of which input.
-fn spectrogram_choice_ui(ui: &mut Ui, Page { state, palette, .. }: Page<'_>, commands: &mut Vec<Command>) {
+fn spectrogram_choice_ui(
+    ui: &mut Ui,
+    Page { state, palette, .. }: Page<'_>,
+    commands: &mut Vec<Command>,
+) {
     ui.label(palette.small("spectrogram of"));
     let hint = "Power over time and frequency: a sweep is a ridge that rises";
     let of_inputs = state.dataset().inputs().iter().enumerate();
     let of_inputs = of_inputs.map(|(index, channel)| (Some(index), channel.name.as_str(), hint));
-    let choices: Vec<_> = std::iter::once((None, "none", "Only the channels over time")).chain(of_inputs).collect();
+    let choices: Vec<_> = std::iter::once((None, "none", "Only the channels over time"))
+        .chain(of_inputs)
+        .collect();
     let mut wanted = state.records.spectrogram;
     choice_ui(ui, "Input of the spectrogram", &mut wanted, &choices);
     if wanted != state.records.spectrogram {
@@ -163,10 +261,18 @@ fn spectrogram_choice_ui(ui: &mut Ui, Page { state, palette, .. }: Page<'_>, com
 
 /// The spectrogram of the input that is chosen for it, above the charts and over the same time.
 fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
-    let Page { state, records, palette } = page;
+    let Page {
+        state,
+        records,
+        palette,
+    } = page;
     let (inputs, chosen) = (state.dataset().inputs(), state.records.spectrogram);
-    let Some((index, channel)) = chosen.and_then(|index| Some((index, inputs.get(index)?))) else { return };
-    let band = records.band.map_or(state.study.settings.band.max(), |band| band[1]);
+    let Some((index, channel)) = chosen.and_then(|index| Some((index, inputs.get(index)?))) else {
+        return;
+    };
+    let band = records
+        .band
+        .map_or(state.study.settings.band.max(), |band| band[1]);
     let (highest, is_dark) = (2.0 * band, ui.visuals().dark_mode);
     let key = (index, highest.to_bits(), is_dark);
     let source: Source = Arc::clone(flight) as _;
@@ -174,30 +280,55 @@ fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
         let samples: Vec<f64> = flight.inputs.column(index).iter().copied().collect();
         let found = Spectrogram::of(&flight.time_s, &samples, highest)?;
         let picture = picture_of(&found, palette);
-        Some((ui.ctx().load_texture("spectrogram", picture, TextureOptions::LINEAR), found))
+        Some((
+            ui.ctx()
+                .load_texture("spectrogram", picture, TextureOptions::LINEAR),
+            found,
+        ))
     });
     let Some((texture, found)): &Option<(TextureHandle, Spectrogram)> = &found else {
-        ui.label(palette.small("The record is too short, or sampled too slowly, for a spectrogram"));
+        ui.label(
+            palette.small("The record is too short, or sampled too slowly, for a spectrogram"),
+        );
         return;
     };
-    let (title, unit) = (format!("{}: power over time, dB below the greatest", channel.name), state.display.unit);
+    let (title, unit) = (
+        format!("{}: power over time, dB below the greatest", channel.name),
+        state.display.unit,
+    );
     let label = unit.axis_label();
     let mut chart = Chart::new(&title, ChartAxis::Linear, "", &label);
     chart.group = Some(charts());
     chart.fits_values = true;
     chart.chooses = state.records.chooses_parts;
     let (across, omega) = (found.time_s, found.omega);
-    chart.image = Some(ChartImage { texture: texture.id(), across, omega, unit });
-    let area = ui.allocate_exact_size(vec2(ui.available_width(), SPECTROGRAM_HEIGHT), Sense::hover()).0;
+    chart.image = Some(ChartImage {
+        texture: texture.id(),
+        across,
+        omega,
+        unit,
+    });
+    let area = ui
+        .allocate_exact_size(
+            vec2(ui.available_width(), SPECTROGRAM_HEIGHT),
+            Sense::hover(),
+        )
+        .0;
     chart_ui(ui, area, &chart, palette);
 }
 
 /// A pixel for each window and row, from the background to the colour of identified models.
 fn picture_of(found: &Spectrogram, palette: &Palette) -> ColorImage {
-    let shade =
-        |level: f64| palette.background.lerp_to_gamma(palette.identified, (1.0 - level / Spectrogram::FLOOR) as f32);
+    let shade = |level: f64| {
+        palette.background.lerp_to_gamma(
+            palette.identified,
+            (1.0 - level / Spectrogram::FLOOR) as f32,
+        )
+    };
     let rows = (0..Spectrogram::ROWS).rev();
-    let pixels = rows.flat_map(|row| found.levels.iter().map(move |levels| shade(levels[row]))).collect();
+    let pixels = rows
+        .flat_map(|row| found.levels.iter().map(move |levels| shade(levels[row])))
+        .collect();
     ColorImage::new([found.levels.len(), Spectrogram::ROWS], pixels)
 }
 
@@ -208,39 +339,74 @@ fn points_of(flight: &FlightRecord, place: usize) -> Vec<Arc<[[f64; 2]]>> {
         None => flight.inputs[(sample, place)],
         Some(output) => flight.outputs[(sample, output)],
     };
-    let points: Vec<[f64; 2]> = flight.time_s.iter().enumerate().map(|(at, time)| [*time, value(at)]).collect();
+    let points: Vec<[f64; 2]> = flight
+        .time_s
+        .iter()
+        .enumerate()
+        .map(|(at, time)| [*time, value(at)])
+        .collect();
     let runs = points.split(|point| point.iter().any(|value| !value.is_finite()));
     runs.filter(|run| !run.is_empty()).map(Arc::from).collect()
 }
 
 /// The modes of the system that logged the record, every other one shaded, named above the charts.
 fn modes_ui(ui: &mut Ui, modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan> {
-    let named = modes.iter().map(|of| format!("{} {:.1} to {:.1} s", of.name, of.ends_s[0], of.ends_s[1]));
+    let named = modes
+        .iter()
+        .map(|of| format!("{} {:.1} to {:.1} s", of.name, of.ends_s[0], of.ends_s[1]));
     let words = named.collect::<Vec<_>>().join(" · ");
     if !words.is_empty() {
-        ui.add(Label::new(palette.small(&words)).truncate()).on_hover_text(words);
+        ui.add(Label::new(palette.small(&words)).truncate())
+            .on_hover_text(words);
     }
-    let shade = |at: usize| palette.dim_text.gamma_multiply(if at.is_multiple_of(2) { 0.06 } else { 0.14 });
-    modes.iter().enumerate().map(|(at, of)| ChartSpan { ends: of.ends_s, color: shade(at) }).collect()
+    let shade = |at: usize| {
+        palette
+            .dim_text
+            .gamma_multiply(if at.is_multiple_of(2) { 0.06 } else { 0.14 })
+    };
+    modes
+        .iter()
+        .enumerate()
+        .map(|(at, of)| ChartSpan {
+            ends: of.ends_s,
+            color: shade(at),
+        })
+        .collect()
 }
 
 /// The parts of the record shown that are records of their own; what was bridged and what was cut out of it.
 fn spans(records: &ConditionRecords, palette: &Palette) -> Vec<ChartSpan> {
-    let source = records.rows.get(records.chosen).map(|row| &row.table.source);
-    let of_it =
-        records.rows.iter().enumerate().filter(|(at, row)| *at != records.chosen && Some(&row.table.source) == source);
+    let source = records
+        .rows
+        .get(records.chosen)
+        .map(|row| &row.table.source);
+    let of_it = records
+        .rows
+        .iter()
+        .enumerate()
+        .filter(|(at, row)| *at != records.chosen && Some(&row.table.source) == source);
     let parts = of_it.filter_map(|(_, row)| row.table.part_s);
-    let parts: Vec<ChartSpan> =
-        parts.map(|ends| ChartSpan { ends, color: palette.identified.gamma_multiply(0.15) }).collect();
-    let Some(found) = records.identification().filter(|_| !records.changed) else { return parts };
-    let record = (0..found.record_uses.len()).find(|record| records.row_of_record(*record) == Some(records.chosen));
+    let parts: Vec<ChartSpan> = parts
+        .map(|ends| ChartSpan {
+            ends,
+            color: palette.identified.gamma_multiply(0.15),
+        })
+        .collect();
+    let Some(found) = records.identification().filter(|_| !records.changed) else {
+        return parts;
+    };
+    let record = (0..found.record_uses.len())
+        .find(|record| records.row_of_record(*record) == Some(records.chosen));
     let gaps = record.map_or(&[][..], |record| &found.record_uses[record].gaps);
     let span = |gap: &gdcm_sysid::identification::Gap| {
         let color = match gap.treatment {
             Treatment::Bridged => palette.accent.gamma_multiply(0.25),
             Treatment::CutOut => palette.warning.gamma_multiply(0.35),
         };
-        ChartSpan { ends: [gap.start_s, gap.end_s], color }
+        ChartSpan {
+            ends: [gap.start_s, gap.end_s],
+            color,
+        }
     };
     parts.into_iter().chain(gaps.iter().map(span)).collect()
 }
@@ -255,12 +421,16 @@ type Autospectra = Vec<Arc<[[f64; 2]]>>;
 
 /// A chart for each input: its spectrum in every record, the chosen one on top.
 pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
-    let Page { state, records, palette } = page;
+    let Page {
+        state,
+        records,
+        palette,
+    } = page;
     let dataset = state.dataset();
     let unit = state.display.unit;
-    let band = records
-        .band
-        .map_or(state.study.settings.band, |band| Band::new(band[0], band[1]).unwrap_or(state.study.settings.band));
+    let band = records.band.map_or(state.study.settings.band, |band| {
+        Band::new(band[0], band[1]).unwrap_or(state.study.settings.band)
+    });
     let of_rows: Vec<(bool, Arc<Autospectra>)> = records
         .rows
         .iter()
@@ -268,52 +438,100 @@ pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
         .filter_map(|(index, row)| {
             let flight = row.flight.as_ref()?;
             let (name, source) = (format!("autospectrum {index}"), Arc::clone(flight));
-            let spectra = kept(ui, &name, &[source], band.max().to_bits(), || autospectra(flight, band.max()));
+            let spectra = kept(ui, &name, &[source], band.max().to_bits(), || {
+                autospectra(flight, band.max())
+            });
             Some((index == records.chosen, spectra))
         })
         .collect();
-    ScrollArea::vertical().id_salt("inputs").auto_shrink(false).show(ui, |ui| {
-        let count = dataset.inputs().len();
-        let columns = if count > 1 { 2 } else { 1 };
-        let rows = count.div_ceil(columns);
-        let height = ((ui.available_height() - 6.0) / rows.max(1) as f32).max(LEAST_SPECTRUM);
-        let width = ui.available_width() / columns as f32;
-        let area = ui.allocate_exact_size(vec2(width * columns as f32, height * rows as f32), Sense::hover()).0;
-        for (input, channel) in dataset.inputs().iter().enumerate() {
-            let corner = area.min + vec2((input % columns) as f32 * width, (input / columns) as f32 * height);
-            let title = format!("{}: autospectrum of each record", channel.name);
-            let label = format!("dB of ({})²/Hz", channel.unit);
-            let across = unit.axis_label();
-            let mut chart = Chart::new(&title, ChartAxis::Frequency(unit), &across, &label);
-            let color = palette.accent.gamma_multiply(0.12);
-            chart.spans.push(ChartSpan { ends: [band.min(), band.max()], color });
-            for is_chosen in [false, true] {
-                let lines = of_rows.iter().filter(|(chosen, _)| *chosen == is_chosen);
-                chart.lines.extend(lines.filter_map(|(_, spectra)| spectra.get(input)).map(|points| ChartLine {
-                    points: Arc::clone(points),
-                    color: if is_chosen { palette.identified } else { palette.perturbed.gamma_multiply(0.6) },
-                    width: if is_chosen { 1.8 } else { 1.0 },
-                    dashed: false,
-                }));
+    ScrollArea::vertical()
+        .id_salt("inputs")
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            let count = dataset.inputs().len();
+            let columns = if count > 1 { 2 } else { 1 };
+            let rows = count.div_ceil(columns);
+            let height = ((ui.available_height() - 6.0) / rows.max(1) as f32).max(LEAST_SPECTRUM);
+            let width = ui.available_width() / columns as f32;
+            let area = ui
+                .allocate_exact_size(
+                    vec2(width * columns as f32, height * rows as f32),
+                    Sense::hover(),
+                )
+                .0;
+            for (input, channel) in dataset.inputs().iter().enumerate() {
+                let corner = area.min
+                    + vec2(
+                        (input % columns) as f32 * width,
+                        (input / columns) as f32 * height,
+                    );
+                let title = format!("{}: autospectrum of each record", channel.name);
+                let label = format!("dB of ({})²/Hz", channel.unit);
+                let across = unit.axis_label();
+                let mut chart = Chart::new(&title, ChartAxis::Frequency(unit), &across, &label);
+                let color = palette.accent.gamma_multiply(0.12);
+                chart.spans.push(ChartSpan {
+                    ends: [band.min(), band.max()],
+                    color,
+                });
+                for is_chosen in [false, true] {
+                    let lines = of_rows.iter().filter(|(chosen, _)| *chosen == is_chosen);
+                    chart
+                        .lines
+                        .extend(lines.filter_map(|(_, spectra)| spectra.get(input)).map(
+                            |points| ChartLine {
+                                points: Arc::clone(points),
+                                color: if is_chosen {
+                                    palette.identified
+                                } else {
+                                    palette.perturbed.gamma_multiply(0.6)
+                                },
+                                width: if is_chosen { 1.8 } else { 1.0 },
+                                dashed: false,
+                            },
+                        ));
+                }
+                chart_ui(
+                    ui,
+                    Rect::from_min_size(corner, vec2(width, height)),
+                    &chart,
+                    palette,
+                );
             }
-            chart_ui(ui, Rect::from_min_size(corner, vec2(width, height)), &chart, palette);
-        }
-    });
+        });
 }
 
 /// Power of each input by frequency, `2 dt² / T |sum u e^(-j omega t)|²` about its mean, averaged over a few lines: one-sided, so that its
 /// integral over frequency \[Hz\] is the variance (Bendat and Piersol, Random Data, 5.2.2).
 fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
     let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
-    let steps: Vec<f64> = flight.time_s.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.0).collect();
-    let Some(step) = steps.get(steps.len() / 2).copied() else { return Vec::new() };
+    let steps: Vec<f64> = flight
+        .time_s
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .filter(|step| *step > 0.0)
+        .collect();
+    let Some(step) = steps.get(steps.len() / 2).copied() else {
+        return Vec::new();
+    };
     let mut inputs = flight.inputs.map(finite);
     for mut column in inputs.column_iter_mut() {
         let mean = column.mean();
         column.add_scalar_mut(-mean);
     }
-    let segment = Segment { record: 0, start_s: 0.0, sample_time_s: step, inputs, outputs: flight.outputs.map(finite) };
-    let Some(spectrum) = spectra(&[segment], 2.0 * highest, &Sequential).into_iter().next() else { return Vec::new() };
+    let segment = Segment {
+        record: 0,
+        start_s: 0.0,
+        sample_time_s: step,
+        inputs,
+        outputs: flight.outputs.map(finite),
+    };
+    let Some(spectrum) = spectra(&[segment], 2.0 * highest, &Sequential)
+        .into_iter()
+        .next()
+    else {
+        return Vec::new();
+    };
     (0..flight.inputs.ncols())
         .map(|input| {
             let lines: Vec<[f64; 2]> = spectrum
@@ -324,8 +542,13 @@ fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
                 .collect();
             let smooth = |part: &[[f64; 2]]| {
                 let count = part.len() as f64;
-                let (omega, power) = part.iter().fold((0.0, 0.0), |sum, at| (sum.0 + at[0].ln(), sum.1 + at[1]));
-                [(omega / count).exp(), 10.0 * (power / count).max(f64::MIN_POSITIVE).log10()]
+                let (omega, power) = part
+                    .iter()
+                    .fold((0.0, 0.0), |sum, at| (sum.0 + at[0].ln(), sum.1 + at[1]));
+                [
+                    (omega / count).exp(),
+                    10.0 * (power / count).max(f64::MIN_POSITIVE).log10(),
+                ]
             };
             lines.chunks(SMOOTHED).map(smooth).collect()
         })
@@ -353,14 +576,22 @@ pub(super) fn kept<T: Send + Sync + 'static>(
     key.hash(&mut hasher);
     let (place, key) = (Id::unique(("records page", name)), hasher.finish());
     let are_same = |known: &[Source]| {
-        known.len() == sources.len() && known.iter().zip(sources).all(|(known, source)| Arc::ptr_eq(known, source))
+        known.len() == sources.len()
+            && known
+                .iter()
+                .zip(sources)
+                .all(|(known, source)| Arc::ptr_eq(known, source))
     };
     let known = ui.data(|data| data.get_temp::<Arc<Kept<T>>>(place));
     if let Some(known) = known.filter(|known| known.key == key && are_same(&known.sources)) {
         return Arc::clone(&known.value);
     }
     let value = Arc::new(compute());
-    let kept = Arc::new(Kept { sources: sources.to_vec(), key, value: Arc::clone(&value) });
+    let kept = Arc::new(Kept {
+        sources: sources.to_vec(),
+        key,
+        value: Arc::clone(&value),
+    });
     ui.data_mut(|data| data.insert_temp(place, kept));
     value
 }
@@ -373,17 +604,33 @@ mod tests {
     fn the_integral_of_an_autospectrum_is_the_variance() {
         // 500 lines below half the sampling frequency, averaged by fives: none is left over.
         let samples = 1001;
-        let input: Vec<f64> = (0..samples).map(|n| (0.7 * (n * n) as f64).sin() + 3.0).collect();
+        let input: Vec<f64> = (0..samples)
+            .map(|n| (0.7 * (n * n) as f64).sin() + 3.0)
+            .collect();
         let column = |values: &[f64]| nalgebra::DMatrix::from_column_slice(values.len(), 1, values);
         let time_s: Vec<f64> = (0..samples).map(|n| 0.02 * n as f64).collect();
         let (inputs, outputs) = (column(&input), column(&input));
-        let flight = FlightRecord { name: "record".to_owned(), time_s, inputs, outputs };
+        let flight = FlightRecord {
+            name: "record".to_owned(),
+            time_s,
+            inputs,
+            outputs,
+        };
         let autospectrum = autospectra(&flight, 1e6)[0].clone();
-        let (step_hz, mean) = (SMOOTHED as f64 / (0.02 * samples as f64), input.iter().sum::<f64>() / samples as f64);
-        let integral: f64 = autospectrum.iter().map(|[_, db]| 10f64.powf(0.1 * db) * step_hz).sum();
+        let (step_hz, mean) = (
+            SMOOTHED as f64 / (0.02 * samples as f64),
+            input.iter().sum::<f64>() / samples as f64,
+        );
+        let integral: f64 = autospectrum
+            .iter()
+            .map(|[_, db]| 10f64.powf(0.1 * db) * step_hz)
+            .sum();
         let variance = input.iter().map(|u| (u - mean).powi(2)).sum::<f64>() / samples as f64;
         // Parseval; rounding of a thousand terms.
-        assert!((integral / variance - 1.0).abs() < 1e-9, "{integral} {variance}");
+        assert!(
+            (integral / variance - 1.0).abs() < 1e-9,
+            "{integral} {variance}"
+        );
     }
 
     #[test]

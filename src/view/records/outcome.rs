@@ -15,27 +15,39 @@ use gdcm_sysid::identification::{
 use gdcm_sysid::records::LaidOutRecord;
 
 use super::{
-    BAD, CHI_SQUARED, ConditionRecords, ORDERS, Page, REFERENCES, RecordsCommand, RecordsPage, Source, kept,
-    possible_references,
+    BAD, CHI_SQUARED, ConditionRecords, ORDERS, Page, REFERENCES, RecordsCommand, RecordsPage,
+    Source, kept, possible_references,
 };
 
 /// How far the identification is, or what came of it.
 pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
-    let Page { state, records, palette } = page;
+    let Page {
+        state,
+        records,
+        palette,
+    } = page;
     ui.add_space(6.0);
     if let Some([low, high]) = records.band {
-        ui.label(palette.small(format!("Band from {low:.2} to {high:.1} rad/s, not the study's")));
-        actions_ui(ui, vec![("Use the study's band".to_owned(), RecordsCommand::SetBand(None).into())], commands);
+        ui.label(palette.small(format!(
+            "Band from {low:.2} to {high:.1} rad/s, not the study's"
+        )));
+        actions_ui(
+            ui,
+            vec![(
+                "Use the study's band".to_owned(),
+                RecordsCommand::SetBand(None).into(),
+            )],
+            commands,
+        );
     }
     if let Some(job) = state.records.running(state.condition().id()) {
         let told = job.told();
         let (part, step) = if told.step.is_empty() {
             (
                 0.0,
-                state
-                    .records
-                    .under_way()
-                    .map_or_else(String::new, |of| format!("Waits for condition {}", of.condition)),
+                state.records.under_way().map_or_else(String::new, |of| {
+                    format!("Waits for condition {}", of.condition)
+                }),
             )
         } else {
             let (done, total) = state.results.background.identification.unwrap_or((0, 0));
@@ -52,7 +64,13 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
         None => {}
         Some((job, Err(why))) => {
             ui.add(Label::new(RichText::new(why.to_string()).color(palette.warning)).wrap());
-            actions_ui(ui, band_action(why, job.request.options.band).into_iter().collect(), commands);
+            actions_ui(
+                ui,
+                band_action(why, job.request.options.band)
+                    .into_iter()
+                    .collect(),
+                commands,
+            );
         }
         Some((_, Ok(found))) => {
             if records.changed {
@@ -69,14 +87,23 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
 }
 
 /// A button that asks which of the models are taken.
-pub(super) fn offered_menu_ui(ui: &mut Ui, (text, hint): (&str, &str), take: impl FnOnce(OfferedModels)) {
+pub(super) fn offered_menu_ui(
+    ui: &mut Ui,
+    (text, hint): (&str, &str),
+    take: impl FnOnce(OfferedModels),
+) {
     let menu = ui.menu_button(text, |ui| {
         let choices = [
             ("The refined models", OfferedModels::REFINED),
-            ("The refined models, and CT-PBSID (unrefined)", OfferedModels::WITH_UNREFINED),
+            (
+                "The refined models, and CT-PBSID (unrefined)",
+                OfferedModels::WITH_UNREFINED,
+            ),
             ("The measured response", OfferedModels::MEASURED),
         ];
-        let chosen = choices.into_iter().find(|(words, _)| ui.button(*words).clicked())?;
+        let chosen = choices
+            .into_iter()
+            .find(|(words, _)| ui.button(*words).clicked())?;
         ui.close();
         Some(chosen.1)
     });
@@ -89,7 +116,13 @@ pub(super) fn offered_menu_ui(ui: &mut Ui, (text, hint): (&str, &str), take: imp
 fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
     let order = found.refined.order().unwrap_or_default();
     ui.label(RichText::new(format!("CT-PBSID, refined: order {order}")).strong());
-    let color = |is_good: bool| if is_good { palette.text } else { palette.warning };
+    let color = |is_good: bool| {
+        if is_good {
+            palette.text
+        } else {
+            palette.warning
+        }
+    };
     ui.horizontal_wrapped(|ui| {
         ui.label("χ²/dof");
         ui.label(RichText::new(format!("{:.2}", found.cost)).color(color(found.cost <= BAD)))
@@ -112,37 +145,80 @@ fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
 }
 
 /// A caution in its words, and what can be done about it.
-fn caution_ui(ui: &mut Ui, (words, actions): (&str, Vec<Action>), palette: &Palette, commands: &mut Vec<Command>) {
+fn caution_ui(
+    ui: &mut Ui,
+    (words, actions): (&str, Vec<Action>),
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     ui.add_space(3.0);
-    ui.add(Label::new(RichText::new(format!("⚠ {words}")).size(SMALL_SIZE).color(palette.text)).wrap());
+    ui.add(
+        Label::new(
+            RichText::new(format!("⚠ {words}"))
+                .size(SMALL_SIZE)
+                .color(palette.text),
+        )
+        .wrap(),
+    );
     actions_ui(ui, actions, commands);
 }
 
 /// A channel that is late in all records alike, which only a physics model can tell.
 fn late_channel_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
-    let Page { state, records, palette } = page;
-    let Some((job, Ok(found))) = &records.found else { return };
+    let Page {
+        state,
+        records,
+        palette,
+    } = page;
+    let Some((job, Ok(found))) = &records.found else {
+        return;
+    };
     let (dataset, condition) = (state.dataset(), state.condition());
-    let Some(physics) = condition.bundle(BundleKind::Physics).get(condition.nominal()) else { return };
+    let Some(physics) = condition
+        .bundle(BundleKind::Physics)
+        .get(condition.nominal())
+    else {
+        return;
+    };
     let sources: [Source; 2] = [Arc::clone(found) as _, Arc::clone(condition) as _];
-    let of_condition = || ChannelTimeSkew::of_condition(&found.measured, job.request.options.band, condition);
-    let Some(late) = *kept(ui, "late channel", &sources, (), of_condition) else { return };
-    let Some(signal) = late.signal(dataset) else { return };
+    let of_condition =
+        || ChannelTimeSkew::of_condition(&found.measured, job.request.options.band, condition);
+    let Some(late) = *kept(ui, "late channel", &sources, (), of_condition) else {
+        return;
+    };
+    let Some(signal) = late.signal(dataset) else {
+        return;
+    };
     let words = late.words(&signal.name, &physics.name);
-    caution_ui(ui, (&words, vec![taken_out(records, &signal, late.delay_s)]), palette, commands);
+    caution_ui(
+        ui,
+        (&words, vec![taken_out(records, &signal, late.delay_s)]),
+        palette,
+        commands,
+    );
 }
 
 /// Takes a delay out of a channel, beside what had been taken out of it when that was found.
 fn taken_out(records: &ConditionRecords, signal: &Signal, delay_s: f64) -> Action {
-    let known = records.found.as_ref().and_then(|(job, _)| job.request.options.preparation.channel(signal));
+    let known = records
+        .found
+        .as_ref()
+        .and_then(|(job, _)| job.request.options.preparation.channel(signal));
     let delay_s = known.map_or(0.0, |channel| channel.delay_s) + delay_s;
     let text = format!("Remove {:.0} ms from {}", s_to_ms(delay_s), signal.name);
-    (text, RecordsCommand::SetDelay(signal.clone(), delay_s).into())
+    (
+        text,
+        RecordsCommand::SetDelay(signal.clone(), delay_s).into(),
+    )
 }
 
 /// Takes what is wrong with a record out of it, besides what had been taken out.
 fn put_right(records: &ConditionRecords, of: &ContradictingRecord) -> Option<Action> {
-    let ContradictingRecord { record, name, fault } = of;
+    let ContradictingRecord {
+        record,
+        name,
+        fault,
+    } = of;
     let (row, fault) = (records.row_of_record(*record)?, fault.as_ref()?);
     let mut layout = records.rows[row].layout.clone();
     let signal = |(index, channel): (usize, &ChannelPreparation)| {
@@ -154,10 +230,19 @@ fn put_right(records: &ConditionRecords, of: &ContradictingRecord) -> Option<Act
         let used = layout.channel_mut(signal.role, signal.index)?;
         Some((signal, used.remedy.then(remedy)))
     };
-    let remedies: Vec<(Signal, ChannelRemedy)> = fault.remedies(&outputs).into_iter().filter_map(&mut after).collect();
+    let remedies: Vec<(Signal, ChannelRemedy)> = fault
+        .remedies(&outputs)
+        .into_iter()
+        .filter_map(&mut after)
+        .collect();
     let words = match fault {
-        RecordFault::OutputsLate(delay_s) => format!("Remove {:.0} ms from the outputs of {name}", s_to_ms(*delay_s)),
-        RecordFault::Late(signal, delay_s) => format!("Remove {:.0} ms from {signal} of {name}", s_to_ms(*delay_s)),
+        RecordFault::OutputsLate(delay_s) => format!(
+            "Remove {:.0} ms from the outputs of {name}",
+            s_to_ms(*delay_s)
+        ),
+        RecordFault::Late(signal, delay_s) => {
+            format!("Remove {:.0} ms from {signal} of {name}", s_to_ms(*delay_s))
+        }
         RecordFault::Gain(signal, factor) if *factor < 0.0 => format!("Turn {signal} of {name}"),
         RecordFault::Gain(signal, factor) => format!("Multiply {signal} of {name} by {factor:.2}"),
     };
@@ -178,8 +263,12 @@ fn actions_ui(ui: &mut Ui, actions: Vec<Action>, commands: &mut Vec<Command>) {
 /// Another band, where that is what an identification without a model needs.
 fn band_action(why: &IdentificationError, [lowest, highest]: [f64; 2]) -> Option<Action> {
     match why {
-        IdentificationError::TooShort { enough, .. } if *enough < highest => Some(narrower([*enough, highest])),
-        IdentificationError::SampledTooSlowly { limit, .. } if *limit > lowest => Some(narrower([lowest, *limit])),
+        IdentificationError::TooShort { enough, .. } if *enough < highest => {
+            Some(narrower([*enough, highest]))
+        }
+        IdentificationError::SampledTooSlowly { limit, .. } if *limit > lowest => {
+            Some(narrower([lowest, *limit]))
+        }
         _ => None,
     }
 }
@@ -192,17 +281,27 @@ fn narrower(band: [f64; 2]) -> Action {
 /// What can be done about a caution; nothing where only another flight helps.
 fn actions(ui: &Ui, records: &ConditionRecords, caution: &IdentificationCaution) -> Vec<Action> {
     let show = |text: &str, page| (text.to_owned(), RecordsCommand::Show(page).into());
-    let order = || ("Say an order…".to_owned(), RecordsCommand::ShowAdvanced(ORDERS).into());
+    let order = || {
+        (
+            "Say an order…".to_owned(),
+            RecordsCommand::ShowAdvanced(ORDERS).into(),
+        )
+    };
     match caution {
         IdentificationCaution::Records(caution) => actions_on_records(records, caution),
-        IdentificationCaution::UnlikeRecord { name, .. } | IdentificationCaution::Inadequate { record: name, .. } => {
+        IdentificationCaution::UnlikeRecord { name, .. }
+        | IdentificationCaution::Inadequate { record: name, .. } => {
             leave_out(records, name).into_iter().collect()
         }
         IdentificationCaution::Contradiction { records: of, .. } => {
             let mended = of.iter().filter_map(|of| put_right(records, of));
-            mended.chain(of.iter().filter_map(|of| leave_out(records, &of.name))).collect()
+            mended
+                .chain(of.iter().filter_map(|of| leave_out(records, &of.name)))
+                .collect()
         }
-        IdentificationCaution::Short { lowest, periods, .. } => longer(records, lowest / periods).into_iter().collect(),
+        IdentificationCaution::Short {
+            lowest, periods, ..
+        } => longer(records, lowest / periods).into_iter().collect(),
         IdentificationCaution::BandNotShown { shown: band, .. }
         | IdentificationCaution::OrderLimit { narrower: band, .. } => vec![narrower(*band)],
         IdentificationCaution::NotSwept { .. } | IdentificationCaution::MovedTogether { .. } => {
@@ -210,30 +309,66 @@ fn actions(ui: &Ui, records: &ConditionRecords, caution: &IdentificationCaution)
         }
         IdentificationCaution::Feedback { .. } => by_reference(ui, records),
         IdentificationCaution::LeavesPoints { output, input, .. } => {
-            let pair = Pair { output: output.index, input: input.index };
-            vec![(format!("Show {output}/{input}"), Command::FocusPair(pair)), order()]
+            let pair = Pair {
+                output: output.index,
+                input: input.index,
+            };
+            vec![
+                (format!("Show {output}/{input}"), Command::FocusPair(pair)),
+                order(),
+            ]
         }
-        IdentificationCaution::HeldOut { records: held_out, .. } => held_out
+        IdentificationCaution::HeldOut {
+            records: held_out, ..
+        } => held_out
             .iter()
-            .flat_map(|name| fit_too(records, name).into_iter().chain(leave_out(records, name)))
+            .flat_map(|name| {
+                fit_too(records, name)
+                    .into_iter()
+                    .chain(leave_out(records, name))
+            })
             .collect(),
-        IdentificationCaution::Unstable { .. } => vec![show("Show its poles", RecordsPage::Poles), order()],
+        IdentificationCaution::Unstable { .. } => {
+            vec![show("Show its poles", RecordsPage::Poles), order()]
+        }
         _ => Vec::new(),
     }
 }
 
 /// The same of what stands in the records themselves.
 fn actions_on_records(records: &ConditionRecords, caution: &RecordCaution) -> Vec<Action> {
-    let inputs = || ("Show the inputs".to_owned(), RecordsCommand::Show(RecordsPage::Inputs).into());
-    let columns = || ("Say its column and factor…".to_owned(), RecordsCommand::Show(RecordsPage::Columns).into());
+    let inputs = || {
+        (
+            "Show the inputs".to_owned(),
+            RecordsCommand::Show(RecordsPage::Inputs).into(),
+        )
+    };
+    let columns = || {
+        (
+            "Say its column and factor…".to_owned(),
+            RecordsCommand::Show(RecordsPage::Columns).into(),
+        )
+    };
     match caution {
         RecordCaution::SampleHold { signal, hold_s, .. } => {
             let hold_s = *hold_s;
-            let set = |text: &str, hold| (text.to_owned(), RecordsCommand::SetHold(signal.clone(), hold).into());
-            let command = (signal.role == ChannelSide::Input)
-                .then(|| set(&format!("{} is a held command", signal.name), Hold::Command { hold_s }));
+            let set = |text: &str, hold| {
+                (
+                    text.to_owned(),
+                    RecordsCommand::SetHold(signal.clone(), hold).into(),
+                )
+            };
+            let command = (signal.role == ChannelSide::Input).then(|| {
+                set(
+                    &format!("{} is a held command", signal.name),
+                    Hold::Command { hold_s },
+                )
+            });
             let others = [
-                set(&format!("{} is a slow sensor", signal.name), Hold::FreshSamples),
+                set(
+                    &format!("{} is a slow sensor", signal.name),
+                    Hold::FreshSamples,
+                ),
                 set(&format!("{} is right as it is", signal.name), Hold::Acts),
             ];
             command.into_iter().chain(others).collect()
@@ -249,16 +384,26 @@ fn actions_on_records(records: &ConditionRecords, caution: &RecordCaution) -> Ve
 
 /// Leaves a record out, where others are left to fit a model to.
 fn leave_out(records: &ConditionRecords, name: &str) -> Option<Action> {
-    let (index, _) = records.used_rows().find(|(_, row)| row.table.name == name)?;
+    let (index, _) = records
+        .used_rows()
+        .find(|(_, row)| row.table.name == name)?;
     let is_other = |(at, row): (usize, &LaidOutRecord)| at != index && !row.guess.held_out;
     let text = || format!("Leave {name} out");
-    records.used_rows().any(is_other).then(|| (text(), RecordsCommand::SetUsed(index, false).into()))
+    records
+        .used_rows()
+        .any(is_other)
+        .then(|| (text(), RecordsCommand::SetUsed(index, false).into()))
 }
 
 /// Fits a model to a record that was held out, too.
 fn fit_too(records: &ConditionRecords, name: &str) -> Option<Action> {
-    let (index, _) = records.used_rows().find(|(_, row)| row.table.name == name)?;
-    Some((format!("Fit {name} too"), RecordsCommand::SetHeldOut(index, false).into()))
+    let (index, _) = records
+        .used_rows()
+        .find(|(_, row)| row.table.name == name)?;
+    Some((
+        format!("Fit {name} too"),
+        RecordsCommand::SetHeldOut(index, false).into(),
+    ))
 }
 
 /// The band from the frequency on of which the longest record has five periods; it has one of `once` \[rad/s\].
@@ -276,10 +421,22 @@ const MOST_REFERENCES: usize = 3;
 /// The references that the names of columns propose, and the list of all columns.
 fn by_reference(ui: &Ui, records: &ConditionRecords) -> Vec<Action> {
     let possible = possible_references(ui, records);
-    let named = possible.iter().filter(|(_, is_named)| *is_named).take(MOST_REFERENCES);
+    let named = possible
+        .iter()
+        .filter(|(_, is_named)| *is_named)
+        .take(MOST_REFERENCES);
     let take = |(name, _): &(String, bool)| {
-        (format!("By way of {name}"), RecordsCommand::SetReferences(vec![name.clone()]).into())
+        (
+            format!("By way of {name}"),
+            RecordsCommand::SetReferences(vec![name.clone()]).into(),
+        )
     };
-    let other = ("Say a reference…".to_owned(), RecordsCommand::ShowAdvanced(REFERENCES).into());
-    named.map(take).chain([other].into_iter().filter(|_| !possible.is_empty())).collect()
+    let other = (
+        "Say a reference…".to_owned(),
+        RecordsCommand::ShowAdvanced(REFERENCES).into(),
+    );
+    named
+        .map(take)
+        .chain([other].into_iter().filter(|_| !possible.is_empty()))
+        .collect()
 }

@@ -11,11 +11,12 @@ use gdcm_model::dataset::{Band, ChannelRemedy, ChannelSide, ConditionId, Dataset
 use gdcm_model::units::{number, telling};
 use gdcm_study::study::{AdoptedModels, IdentificationRequest, IdentifyJob, OfferedModels};
 use gdcm_sysid::identification::{
-    CautionNote, ChannelPreparation, Hold, Identification, IdentificationError, Preparation, SearchSpace, Signal,
+    CautionNote, ChannelPreparation, Hold, Identification, IdentificationError, Preparation,
+    SearchSpace, Signal,
 };
 use gdcm_sysid::records::{
-    ChannelList, ColumnUse, LaidOutRecord, LayoutProblem, RecordChannels, RecordColumn, RecordLayout, RecordSource,
-    RecordTable, ResamplingWish, SaidChannel,
+    ChannelList, ColumnUse, LaidOutRecord, LayoutProblem, RecordChannels, RecordColumn,
+    RecordLayout, RecordSource, RecordTable, ResamplingWish, SaidChannel,
 };
 
 use super::TimeModel;
@@ -59,26 +60,46 @@ impl RecordsPage {
     /// Its name; its name where there is little room, for all of them stand in one line; and what it shows, in a sentence.
     pub fn words(self) -> (&'static str, &'static str, &'static str) {
         match self {
-            Self::Histories => {
-                ("Time", "Time", "Every channel of the chosen record over time; what was bridged or cut is marked")
-            }
-            Self::Inputs => ("Inputs", "Inputs", "Which input was moved in which record, and up to which frequency"),
-            Self::Response => {
-                ("Response", "Response", "The measured response with its error bars, under the models and their bands")
-            }
-            Self::Stabilisation => {
-                ("Stabilisation", "Orders", "Poles of the models of every order: those that stay are the aircraft's")
-            }
+            Self::Histories => (
+                "Time",
+                "Time",
+                "Every channel of the chosen record over time; what was bridged or cut is marked",
+            ),
+            Self::Inputs => (
+                "Inputs",
+                "Inputs",
+                "Which input was moved in which record, and up to which frequency",
+            ),
+            Self::Response => (
+                "Response",
+                "Response",
+                "The measured response with its error bars, under the models and their bands",
+            ),
+            Self::Stabilisation => (
+                "Stabilisation",
+                "Orders",
+                "Poles of the models of every order: those that stay are the aircraft's",
+            ),
             Self::Poles => (
                 "Identified poles",
                 "Poles",
                 "Poles of the recommended model with their standard deviations; grey: not determined",
             ),
-            Self::Fit => ("Fit", "Fit", "How well the model fits each record and output, in frequency and in time"),
-            Self::Columns => ("Columns", "Columns", "Which columns of the chosen record are its time and its channels"),
-            Self::Conditions => {
-                ("Conditions", "Conditions", "What was identified in every condition; a click goes there")
-            }
+            Self::Fit => (
+                "Fit",
+                "Fit",
+                "How well the model fits each record and output, in frequency and in time",
+            ),
+            Self::Columns => (
+                "Columns",
+                "Columns",
+                "Which columns of the chosen record are its time and its channels",
+            ),
+            Self::Conditions => (
+                "Conditions",
+                "Conditions",
+                "What was identified in every condition; a click goes there",
+            ),
         }
     }
 }
@@ -177,7 +198,10 @@ pub struct ConditionRecords {
     /// What is tried in place of the defaults.
     pub search: SearchSpace,
     /// What was identified last, and from what.
-    pub found: Option<(IdentifyJob, Result<Arc<Identification>, IdentificationError>)>,
+    pub found: Option<(
+        IdentifyJob,
+        Result<Arc<Identification>, IdentificationError>,
+    )>,
     /// Whether something else was said since.
     pub changed: bool,
     /// End of the band \[rad/s\] that topics were brought to a clock for; none where that is not known of all.
@@ -190,13 +214,21 @@ impl ConditionRecords {
     /// Records of a condition of `dataset`.
     pub fn new(rows: Vec<LaidOutRecord>, dataset: &Dataset) -> Self {
         let (inputs, outputs) = dataset.names_of_channels();
-        let [inputs, outputs] = [inputs, outputs].map(|of| of.into_iter().map(ChannelPreparation::named).collect());
-        Self { rows, inputs, outputs, ..Self::default() }
+        let [inputs, outputs] =
+            [inputs, outputs].map(|of| of.into_iter().map(ChannelPreparation::named).collect());
+        Self {
+            rows,
+            inputs,
+            outputs,
+            ..Self::default()
+        }
     }
 
     /// Uses a record, or leaves it out.
     pub fn set_used(&mut self, index: usize, used: bool) -> bool {
-        let Some(row) = self.rows.get_mut(index) else { return false };
+        let Some(row) = self.rows.get_mut(index) else {
+            return false;
+        };
         row.used = used;
         self.left_out.retain(|source| *source != row.table.source);
         if !used && row.table.part_s.is_none() {
@@ -209,18 +241,34 @@ impl ConditionRecords {
     ///
     /// # Errors
     /// In words: the record has no samples then.
-    pub fn add_part(&mut self, index: usize, part_s: [f64; 2], channels: &RecordChannels) -> Result<(), String> {
-        let Some(whole) = self.rows.get_mut(index) else { return Err("there is no such record".to_owned()) };
+    pub fn add_part(
+        &mut self,
+        index: usize,
+        part_s: [f64; 2],
+        channels: &RecordChannels,
+    ) -> Result<(), String> {
+        let Some(whole) = self.rows.get_mut(index) else {
+            return Err("there is no such record".to_owned());
+        };
         let part_s = part_s.map(|time_s| (100.0 * time_s).round() / 100.0);
         let table = Arc::new(whole.table.part_of_time(part_s));
         let part = LaidOutRecord::new(table, whole.layout.clone(), whole.guess.clone(), channels);
-        if part.flight.as_ref().is_some_and(|flight| flight.time_s.len() < 2) {
+        if part
+            .flight
+            .as_ref()
+            .is_some_and(|flight| flight.time_s.len() < 2)
+        {
             let [from, to] = part_s.map(number);
             let span = whole.span_s().map_or_else(String::new, |span_s| {
                 let [first, last] = span_s.map(|time_s| telling(time_s, 2));
-                format!("; it runs from {first} s to {last} s (+{from} +{to} counts from its start)")
+                format!(
+                    "; it runs from {first} s to {last} s (+{from} +{to} counts from its start)"
+                )
             });
-            return Err(format!("{}: no samples from {from} to {to} s{span}", whole.table.name));
+            return Err(format!(
+                "{}: no samples from {from} to {to} s{span}",
+                whole.table.name
+            ));
         }
         let source = whole.table.source.clone();
         let was_used = whole.used;
@@ -230,27 +278,42 @@ impl ConditionRecords {
                 self.left_out.push(source);
             }
         }
-        let parts = self.rows[index + 1..].iter().take_while(|row| row.table.part_s.is_some()).count();
+        let parts = self.rows[index + 1..]
+            .iter()
+            .take_while(|row| row.table.part_s.is_some())
+            .count();
         self.rows.insert(index + 1 + parts, part);
         Ok(())
     }
 
     /// Whether parts of a record are records of their own.
     fn has_parts(&self, source: &RecordSource) -> bool {
-        self.rows.iter().any(|row| row.table.part_s.is_some() && row.table.source == *source)
+        self.rows
+            .iter()
+            .any(|row| row.table.part_s.is_some() && row.table.source == *source)
     }
 
     /// Adds a record that was read, unless it is there already. A record of a file that has changed since takes the place of the one
     /// that was read before; `read_from` says where files lie. Another one of the same name gets a number behind it.
-    pub fn add_row(&mut self, mut row: LaidOutRecord, read_from: &BTreeMap<String, PathBuf>) -> AddedRecord {
-        if self.rows.iter().any(|old| old.table.is_same_record(&row.table)) {
+    pub fn add_row(
+        &mut self,
+        mut row: LaidOutRecord,
+        read_from: &BTreeMap<String, PathBuf>,
+    ) -> AddedRecord {
+        if self
+            .rows
+            .iter()
+            .any(|old| old.table.is_same_record(&row.table))
+        {
             return AddedRecord::KnownAlready;
         }
         let path = |of: &LaidOutRecord| read_from.get(&of.table.source.sha256);
         let is_read_again = |old: &LaidOutRecord| {
             let [old_source, new_source] = [&old.table.source, &row.table.source];
             let is_same_place = path(old).is_some() && path(old) == path(&row);
-            is_same_place && old.table.part_s.is_none() && old_source.variable == new_source.variable
+            is_same_place
+                && old.table.part_s.is_none()
+                && old_source.variable == new_source.variable
         };
         if let Some(index) = self.rows.iter().position(is_read_again) {
             let old = &self.rows[index];
@@ -261,7 +324,11 @@ impl ConditionRecords {
         }
         let plain = row.table.name.clone();
         let mut number = 1;
-        while self.rows.iter().any(|other| other.table.name == row.table.name) {
+        while self
+            .rows
+            .iter()
+            .any(|other| other.table.name == row.table.name)
+        {
             number += 1;
             let name = format!("{plain} ({number})");
             if let Some(flight) = &mut row.flight {
@@ -275,12 +342,20 @@ impl ConditionRecords {
 
     /// Forgets a part of a record; the record that it was the last part of is used again, where the engineer did not leave it out.
     pub fn remove_part(&mut self, index: usize) -> bool {
-        if self.rows.get(index).is_none_or(|row| row.table.part_s.is_none()) {
+        if self
+            .rows
+            .get(index)
+            .is_none_or(|row| row.table.part_s.is_none())
+        {
             return false;
         }
         let source = self.rows.remove(index).table.source.clone();
         if !self.has_parts(&source) && !self.left_out.contains(&source) {
-            for whole in self.rows.iter_mut().filter(|row| row.table.source == source) {
+            for whole in self
+                .rows
+                .iter_mut()
+                .filter(|row| row.table.source == source)
+            {
                 whole.used = true;
             }
         }
@@ -295,22 +370,31 @@ impl ConditionRecords {
 
     /// The rows that are used, with their indices.
     pub fn used_rows(&self) -> impl Iterator<Item = (usize, &LaidOutRecord)> {
-        self.rows.iter().enumerate().filter(|(_, row)| row.used_flight().is_some())
+        self.rows
+            .iter()
+            .enumerate()
+            .filter(|(_, row)| row.used_flight().is_some())
     }
 
     /// What speaks against what was identified, and of which rows where it is of some; nothing once something else was said.
     pub fn cautions(&self) -> impl Iterator<Item = (Vec<usize>, CautionNote)> {
         let found = self.identification().filter(|_| !self.changed);
-        found.into_iter().flat_map(|found| &found.cautions).map(|caution| {
-            let note = caution.note();
-            let named = |name: &String| self.rows.iter().position(|row| row.table.name == *name);
-            (note.records.iter().filter_map(named).collect(), note)
-        })
+        found
+            .into_iter()
+            .flat_map(|found| &found.cautions)
+            .map(|caution| {
+                let note = caution.note();
+                let named =
+                    |name: &String| self.rows.iter().position(|row| row.table.name == *name);
+                (note.records.iter().filter_map(named).collect(), note)
+            })
     }
 
     /// What cautions of a code say, with the sign of a caution and in a few words.
     pub(super) fn marks(&self, code: &'static str) -> impl Iterator<Item = String> {
-        self.cautions().filter(move |(_, note)| note.code == code).map(|(_, note)| format!("⚠ {}", note.mark()))
+        self.cautions()
+            .filter(move |(_, note)| note.code == code)
+            .map(|(_, note)| format!("⚠ {}", note.mark()))
     }
 
     /// Brings topics to the clock that the band takes which is identified over.
@@ -344,7 +428,11 @@ impl ConditionRecords {
 
     /// How the channels are prepared.
     pub fn preparation(&self) -> Preparation {
-        Preparation { inputs: self.inputs.clone(), outputs: self.outputs.clone(), ..Preparation::of(&[], &[]) }
+        Preparation {
+            inputs: self.inputs.clone(),
+            outputs: self.outputs.clone(),
+            ..Preparation::of(&[], &[])
+        }
     }
 
     /// The job of what is said now, over a band \[rad/s\]; `channels` are those that the records give.
@@ -358,9 +446,13 @@ impl ConditionRecords {
         channels: &RecordChannels,
     ) -> Result<IdentifyJob, String> {
         let mut preparation = self.preparation();
-        preparation.inputs.extend(self.references.iter().map(ChannelPreparation::named));
-        let rows: Vec<LaidOutRecord> =
-            self.used_rows().map(|(_, row)| self.with_references(row, channels)).collect::<Result<_, _>>()?;
+        preparation
+            .inputs
+            .extend(self.references.iter().map(ChannelPreparation::named));
+        let rows: Vec<LaidOutRecord> = self
+            .used_rows()
+            .map(|(_, row)| self.with_references(row, channels))
+            .collect::<Result<_, _>>()?;
         let request = IdentificationRequest::of(rows.iter(), preparation, band);
         let mut request = request.map_err(|why| why.to_string())?;
         request.options.references = self.references.len();
@@ -369,14 +461,19 @@ impl ConditionRecords {
     }
 
     /// A record with the references behind its inputs.
-    fn with_references(&self, row: &LaidOutRecord, channels: &RecordChannels) -> Result<LaidOutRecord, String> {
+    fn with_references(
+        &self,
+        row: &LaidOutRecord,
+        channels: &RecordChannels,
+    ) -> Result<LaidOutRecord, String> {
         if self.references.is_empty() {
             return Ok(row.clone());
         }
         let (mut layout, mut channels) = (row.layout.clone(), channels.clone());
         for reference in &self.references {
             let column = row.table.find(reference);
-            let column = column.ok_or_else(|| format!("{}: there is no column \"{reference}\"", row.table.name))?;
+            let column = column
+                .ok_or_else(|| format!("{}: there is no column \"{reference}\"", row.table.name))?;
             layout.inputs.push(Some(ColumnUse::as_it_is(column)));
             channels.inputs.push(ChannelRule::named(reference));
         }
@@ -388,10 +485,21 @@ impl ConditionRecords {
     }
 
     /// What is taken into the condition, where something was identified.
-    pub fn taken(&self, offered: OfferedModels, channels: &RecordChannels) -> Option<Arc<AdoptedModels>> {
+    pub fn taken(
+        &self,
+        offered: OfferedModels,
+        channels: &RecordChannels,
+    ) -> Option<Arc<AdoptedModels>> {
         let found = self.identification()?;
-        let entries = self.used_rows().zip(&found.record_uses).map(|((_, row), used)| row.entry(used, channels));
-        Some(Arc::new(AdoptedModels::of(found, offered, entries.collect())))
+        let entries = self
+            .used_rows()
+            .zip(&found.record_uses)
+            .map(|((_, row), used)| row.entry(used, channels));
+        Some(Arc::new(AdoptedModels::of(
+            found,
+            offered,
+            entries.collect(),
+        )))
     }
 }
 
@@ -436,7 +544,10 @@ impl Page<'_> {
     pub(super) fn identification_ui(&self, ui: &mut Ui) -> Option<&Identification> {
         let found = self.records.identification();
         if found.is_none() {
-            ui.label(self.palette.dim("Nothing was identified yet: choose Identify above."));
+            ui.label(
+                self.palette
+                    .dim("Nothing was identified yet: choose Identify above."),
+            );
         }
         found.map(AsRef::as_ref)
     }
@@ -482,8 +593,14 @@ pub struct RecordsState {
 impl RecordsState {
     /// The records of these conditions as they are.
     pub fn before(&self, conditions: impl IntoIterator<Item = ConditionId>) -> RecordsBefore {
-        let conditions = conditions.into_iter().map(|id| (id, self.conditions.get(&id).cloned())).collect();
-        RecordsBefore { conditions, sources: None }
+        let conditions = conditions
+            .into_iter()
+            .map(|id| (id, self.conditions.get(&id).cloned()))
+            .collect();
+        RecordsBefore {
+            conditions,
+            sources: None,
+        }
     }
 
     /// Takes up the records on the other side of an edit, and gives those of this side.
@@ -492,11 +609,14 @@ impl RecordsState {
         for (id, records) in before.conditions {
             let present = self.conditions.remove(&id);
             if let Some(records) = records {
-                self.conditions.insert(id, records.taken_up(present.clone()));
+                self.conditions
+                    .insert(id, records.taken_up(present.clone()));
             }
             now.conditions.insert(id, present);
         }
-        now.sources = before.sources.map(|sources| std::mem::replace(&mut self.sources, sources));
+        now.sources = before
+            .sources
+            .map(|sources| std::mem::replace(&mut self.sources, sources));
         now
     }
 
@@ -584,23 +704,37 @@ impl WantedDataset {
         let known = |inputs: bool| {
             let of_side = |column: &&RecordColumn| match (column.side, column.meaning) {
                 (Some(side), _) => (side == ChannelSide::Input) == inputs,
-                (None, Some(meaning)) => ["LON", "LAT", "PED", "COL"].contains(&meaning) == inputs && meaning != "TARG",
+                (None, Some(meaning)) => {
+                    ["LON", "LAT", "PED", "COL"].contains(&meaning) == inputs && meaning != "TARG"
+                }
                 (None, None) => false,
             };
             let name = |column: &RecordColumn| column.meaning.unwrap_or(&column.name).to_owned();
-            let mut names: Vec<String> = tables().flat_map(|table| &table.columns).filter(of_side).map(name).collect();
+            let mut names: Vec<String> = tables()
+                .flat_map(|table| &table.columns)
+                .filter(of_side)
+                .map(name)
+                .collect();
             let mut seen = BTreeSet::new();
             names.retain(|name| seen.insert(name.clone()));
             names.join(", ")
         };
         // Topics that no channel has joined yet are records of their own, under the names of their variables.
         let words = |table: &RecordTable, column: &RecordColumn| {
-            let topic = table.source.variable.as_ref().map_or(String::new(), |variable| format!("{variable}."));
-            let unit = column.unit.as_ref().map_or(String::new(), |unit| format!(" [{unit}]"));
+            let topic = table
+                .source
+                .variable
+                .as_ref()
+                .map_or(String::new(), |variable| format!("{variable}."));
+            let unit = column
+                .unit
+                .as_ref()
+                .map_or(String::new(), |unit| format!(" [{unit}]"));
             format!("{topic}{}{unit}", column.name)
         };
-        let columns: BTreeSet<String> =
-            tables().flat_map(|table| table.columns.iter().map(move |column| words(table, column))).collect();
+        let columns: BTreeSet<String> = tables()
+            .flat_map(|table| table.columns.iter().map(move |column| words(table, column)))
+            .collect();
         Self {
             inputs: known(true),
             outputs: known(false),
@@ -620,10 +754,25 @@ impl WantedDataset {
             let list: ChannelList = text.parse().map_err(|error| format!("{side}: {error}"))?;
             Ok::<_, String>(list.channels.iter().map(SaidChannel::rule).collect())
         };
-        let (inputs, outputs) = (rules("inputs", &self.inputs)?, rules("outputs", &self.outputs)?);
+        let (inputs, outputs) = (
+            rules("inputs", &self.inputs)?,
+            rules("outputs", &self.outputs)?,
+        );
         let end = |text: &String| typed_number(text).ok().flatten().unwrap_or(f64::NAN);
-        let band = Band::new(end(&self.band[0]), end(&self.band[1])).map_err(|error| error.to_string())?;
-        let resampling = ResamplingWish { band_end: Some(band.max()), ..ResamplingWish::default() };
-        Ok((RecordChannels { inputs, outputs, resampling, ..RecordChannels::default() }, band))
+        let band =
+            Band::new(end(&self.band[0]), end(&self.band[1])).map_err(|error| error.to_string())?;
+        let resampling = ResamplingWish {
+            band_end: Some(band.max()),
+            ..ResamplingWish::default()
+        };
+        Ok((
+            RecordChannels {
+                inputs,
+                outputs,
+                resampling,
+                ..RecordChannels::default()
+            },
+            band,
+        ))
     }
 }

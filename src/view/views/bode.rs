@@ -4,25 +4,34 @@
 use egui::{Align2, Pos2, Rect, Ui, vec2};
 use gdcm_model::dataset::Pair;
 use gdcm_model::units::{number, ratio_to_db, s_to_ms};
-use gdcm_plot::figure::{ConditionSource, airspeed_curves, decimals, muad_about, noticed, uncertainty_bands};
+use gdcm_plot::figure::{
+    ConditionSource, airspeed_curves, decimals, muad_about, noticed, uncertainty_bands,
+};
 use gdcm_study::study::{AcrossJob, AcrossRole, Undefined, display_band};
 
 use super::View;
 use super::frequency::{
-    bode_curves, bode_options, condition_source, error_curves, error_reference, frequency_plot_ui, wished,
+    bode_curves, bode_options, condition_source, error_curves, error_reference, frequency_plot_ui,
+    wished,
 };
 use crate::view::command::Command;
 use crate::view::curve_display::CurveCommand;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{
-    BodeBand, BodeCurve, BodeEvent, BodeQuantity, BodeScene, CurveId, InvalidRegion, OverviewCell, OverviewEvent,
-    OverviewScene, Pane, PaneNote, PhaseErrorUnit, ResponsePlace, Role, bode_ui, overview_ui, pointed_words,
+    BodeBand, BodeCurve, BodeEvent, BodeQuantity, BodeScene, CurveId, InvalidRegion, OverviewCell,
+    OverviewEvent, OverviewScene, Pane, PaneNote, PhaseErrorUnit, ResponsePlace, Role, bode_ui,
+    overview_ui, pointed_words,
 };
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
 /// Magnitude and phase of the response in focus, of every model of the condition shown.
-pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn bode_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let pair = state.display.pair;
     let mut view = std::mem::take(&mut state.display.bode);
     let curves = bode_curves(state, pair);
@@ -41,12 +50,19 @@ pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
     let options = bode_options(state);
     let unnoticed = muad_about(&curves, &options);
     let source = condition_source(state);
-    let coherence = source.as_ref().map(|source| source.coherence_curves(pair, &options)).unwrap_or_default();
-    let least_coherence = source.as_ref().map_or(0.0, ConditionSource::least_coherence);
+    let coherence = source
+        .as_ref()
+        .map(|source| source.coherence_curves(pair, &options))
+        .unwrap_or_default();
+    let least_coherence = source
+        .as_ref()
+        .map_or(0.0, ConditionSource::least_coherence);
     let missing = missing_phase(&curves, (band.min(), band.max()));
     let invalid = invalid_region(state, &curves);
     let notes = notes(state, pair);
-    let notes = notes.as_ref().map_or([None; 2], |notes| [Some(&notes[0]), Some(&notes[1])]);
+    let notes = notes
+        .as_ref()
+        .map_or([None; 2], |notes| [Some(&notes[0]), Some(&notes[1])]);
     let (band, message) = ((band.min(), band.max()), state.curves_message());
     let scene = BodeScene {
         quantity,
@@ -71,26 +87,60 @@ pub fn bode_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
 fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> {
     let leads = &state.shown()?.compensated.as_ref()?.leads;
     leads.filters().iter().find_map(|(_, filter)| *filter)?;
-    let last = |role: Role| curves.iter().find(|curve| !curve.hidden && curve.role == role).map(|curve| &curve.omega);
+    let last = |role: Role| {
+        curves
+            .iter()
+            .find(|curve| !curve.hidden && curve.role == role)
+            .map(|curve| &curve.omega)
+    };
     let up_to = *last(Role::Corrected)?.last()?;
     let end = |role: Role| {
-        let curve = curves.iter().find(|curve| !curve.hidden && curve.role == role)?;
+        let curve = curves
+            .iter()
+            .find(|curve| !curve.hidden && curve.role == role)?;
         curve.value_at(Pane::Magnitude, up_to)
     };
-    let ends_db = end(Role::Corrected).zip(end(Role::WithoutLeads)).map(|(with, without)| [with, without]);
-    let words = format!("not valid above {}", unit_words(state, state.study.settings.band.max()));
-    Some(InvalidRegion { up_to, words, ends_db })
+    let ends_db = end(Role::Corrected)
+        .zip(end(Role::WithoutLeads))
+        .map(|(with, without)| [with, without]);
+    let words = format!(
+        "not valid above {}",
+        unit_words(state, state.study.settings.band.max())
+    );
+    Some(InvalidRegion {
+        up_to,
+        words,
+        ends_db,
+    })
 }
 
 /// The phase between the corrected and the identified model, within the band \[rad/s\].
 fn missing_phase(curves: &[BodeCurve], (min, max): (f64, f64)) -> Option<BodeBand> {
-    let of_role = |role: Role| curves.iter().find(|curve| !curve.hidden && curve.role == role);
-    let (corrected, identified) = (of_role(Role::Corrected)?, of_role(Role::IdentifiedRepresentative)?);
-    let within = corrected.omega.iter().copied().filter(|omega| (min..=max).contains(omega));
+    let of_role = |role: Role| {
+        curves
+            .iter()
+            .find(|curve| !curve.hidden && curve.role == role)
+    };
+    let (corrected, identified) = (
+        of_role(Role::Corrected)?,
+        of_role(Role::IdentifiedRepresentative)?,
+    );
+    let within = corrected
+        .omega
+        .iter()
+        .copied()
+        .filter(|omega| (min..=max).contains(omega));
     let omega: Vec<f64> = [min].into_iter().chain(within).chain([max]).collect();
     let value = |curve: &BodeCurve, omega| curve.value_at(Pane::Phase, omega).unwrap_or(f64::NAN);
-    let phase_deg = omega.iter().map(|omega| [value(corrected, *omega), value(identified, *omega)]).collect();
-    Some(BodeBand { magnitude_db: vec![[f64::NAN; 2]; omega.len()], omega, phase_deg })
+    let phase_deg = omega
+        .iter()
+        .map(|omega| [value(corrected, *omega), value(identified, *omega)])
+        .collect();
+    Some(BodeBand {
+        magnitude_db: vec![[f64::NAN; 2]; omega.len()],
+        omega,
+        phase_deg,
+    })
 }
 
 /// J of magnitude and of phase before and after the correction, and what is left in words.
@@ -98,7 +148,8 @@ fn notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
     let shown = state.shown()?;
     let change = shown.cost[pair]?;
     let is_held = shown.held()[pair];
-    let cost = |before: f64, after: f64| format!("J {} → {}", decimals(before, 1), decimals(after, 1));
+    let cost =
+        |before: f64, after: f64| format!("J {} → {}", decimals(before, 1), decimals(after, 1));
     let left_db = ratio_to_db(shown.wanted_gain(pair)? / shown.correction.net_gain(pair));
     let magnitude = PaneNote {
         cost: cost(change.uncorrected.magnitude, change.corrected.magnitude),
@@ -115,7 +166,11 @@ fn notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
     } else {
         let verb = if left_s < 0.0 { "lags" } else { "leads" };
         let at_top = decimals((left_s * top).to_degrees().abs(), 0);
-        format!("{verb} by {} ms, {at_top}° at {}", decimals(s_to_ms(left_s.abs()), 0), unit_words(state, top))
+        format!(
+            "{verb} by {} ms, {at_top}° at {}",
+            decimals(s_to_ms(left_s.abs()), 0),
+            unit_words(state, top)
+        )
     };
     let phase = PaneNote {
         cost: cost(change.uncorrected.phase, change.corrected.phase),
@@ -131,17 +186,25 @@ fn unit_words(state: &State, omega: f64) -> String {
 }
 
 /// The errors of the response in focus, of every physics model kept, beside those that the correction leaves.
-pub fn error_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn error_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let pair = state.display.pair;
     let mut view = std::mem::take(&mut state.display.error);
     let options = bode_options(state);
     let curves = error_curves(state, pair, &options);
-    let rules =
-        condition_source(state).map(|source| source.error_references(pair, &options, &curves)).unwrap_or_default();
+    let rules = condition_source(state)
+        .map(|source| source.error_references(pair, &options, &curves))
+        .unwrap_or_default();
     let reference = error_reference(&curves);
     let strips = noticed(&curves, &options);
     let (title, message) = (state.dataset().pair_name(pair), error_message(state, pair));
-    let quantity = BodeQuantity::Error { phase: options.phase_error };
+    let quantity = BodeQuantity::Error {
+        phase: options.phase_error,
+    };
     let band = state.study.settings.band;
     let grid = state.curves().map(|curves| curves.grid.omega());
     let scene = BodeScene {
@@ -164,7 +227,11 @@ pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
     let mut unit = state.display.curves.phase_error;
     let units = [
         (PhaseErrorUnit::Degree, "Δφ", "Phase differences in degrees"),
-        (PhaseErrorUnit::Millisecond, "Δφ/ω", "The delay [ms] that would make up for each phase difference"),
+        (
+            PhaseErrorUnit::Millisecond,
+            "Δφ/ω",
+            "The delay [ms] that would make up for each phase difference",
+        ),
     ];
     choice_ui(ui, "Phase error", &mut unit, &units);
     if unit != state.display.curves.phase_error {
@@ -176,13 +243,22 @@ pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
 pub fn error_message(state: &State, pair: Pair) -> String {
     match state.shown() {
         Some(shown) if shown.comparison.undefined[pair] == Some(Undefined::NotCoherent) => {
-            format!("{} is not compared: {}", state.dataset().pair_name(pair), Undefined::NotCoherent)
+            format!(
+                "{} is not compared: {}",
+                state.dataset().pair_name(pair),
+                Undefined::NotCoherent
+            )
         }
         Some(shown) if shown.comparison.undefined[pair].is_some() => {
             let name = state.dataset().pair_name(pair);
-            format!("{name} is not compared: one of the representatives has no such response in the band")
+            format!(
+                "{name} is not compared: one of the representatives has no such response in the band"
+            )
         }
-        _ => state.curves_message().unwrap_or("Nothing to compare in the band").to_owned(),
+        _ => state
+            .curves_message()
+            .unwrap_or("Nothing to compare in the band")
+            .to_owned(),
     }
 }
 
@@ -191,9 +267,20 @@ const KEY_STEPS: u8 = 24;
 const KEY_SIZE: egui::Vec2 = vec2(96.0, 8.0);
 
 /// Which model of each condition, and what the colours mean. Laid out from right to left.
-pub fn across_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn across_header_ui(
+    ui: &mut Ui,
+    state: &State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let mut role = state.display.across_role;
-    let roles = AcrossRole::ALL.map(|role| (role, role.name(), "The model of each condition that is drawn"));
+    let roles = AcrossRole::ALL.map(|role| {
+        (
+            role,
+            role.name(),
+            "The model of each condition that is drawn",
+        )
+    });
     choice_ui(ui, "Model of each condition", &mut role, &roles);
     if role != state.display.across_role {
         commands.push(Command::ShowAcross(role));
@@ -212,17 +299,29 @@ fn paint_key(ui: &Ui, rect: Rect, palette: &Palette) {
         let corner = Pos2::new(rect.left() + width * f32::from(step), rect.top());
         let role = Role::OfAirspeed(step.saturating_mul(u8::MAX / (KEY_STEPS - 1)));
         let color = palette.role_style(role, false).color;
-        ui.painter().rect_filled(Rect::from_min_size(corner, vec2(width + 0.5, rect.height())), 0.0, color);
+        ui.painter().rect_filled(
+            Rect::from_min_size(corner, vec2(width + 0.5, rect.height())),
+            0.0,
+            color,
+        );
     }
 }
 
 /// Magnitude and phase of the response in focus, of one model of every condition; a click shows a condition.
-pub fn across_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn across_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let curves = across_curves(state);
     fit_across(state);
     let band = state.study.settings.band;
     let title = state.dataset().pair_name(state.display.pair);
-    let (quantity, unit) = (BodeQuantity::RESPONSE_OF_EVERY_CONDITION, state.display.unit);
+    let (quantity, unit) = (
+        BodeQuantity::RESPONSE_OF_EVERY_CONDITION,
+        state.display.unit,
+    );
     let scene = BodeScene {
         quantity,
         unit,
@@ -235,10 +334,22 @@ pub fn across_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, command
             commands.push(Command::SelectCondition(id.condition));
         }
     }
-    commands.extend(pointed_words(&state.display.across, &curves, (quantity, unit)).map(Command::Tell));
-    if let Some(transform) = state.display.across.transform(Pane::Magnitude).filter(|_| !curves.is_empty()) {
+    commands
+        .extend(pointed_words(&state.display.across, &curves, (quantity, unit)).map(Command::Tell));
+    if let Some(transform) = state
+        .display
+        .across
+        .transform(Pane::Magnitude)
+        .filter(|_| !curves.is_empty())
+    {
         let place = transform.frame().right_top() + vec2(-8.0, 6.0);
-        ui.painter().text(place, Align2::RIGHT_TOP, title, egui::FontId::proportional(SMALL_SIZE), palette.text);
+        ui.painter().text(
+            place,
+            Align2::RIGHT_TOP,
+            title,
+            egui::FontId::proportional(SMALL_SIZE),
+            palette.text,
+        );
     }
 }
 
@@ -251,7 +362,12 @@ fn fit_across(state: &mut State) {
     state.display.across.request_refit();
     // Until then the curves of the models that were shown before are drawn.
     let models = across_job(state).models;
-    if state.results.across.as_ref().is_some_and(|(job, _)| job.models == models) {
+    if state
+        .results
+        .across
+        .as_ref()
+        .is_some_and(|(job, _)| job.models == models)
+    {
         state.display.across_fitted = Some(asked);
     }
 }
@@ -262,7 +378,12 @@ const POINTS: usize = 300;
 /// The responses that the view needs: one model of each condition.
 pub fn across_job(state: &State) -> AcrossJob {
     let grid = (display_band(state.study.settings.band), POINTS);
-    AcrossJob::of(&state.study.dataset, state.analysis(), state.display.across_role, grid)
+    AcrossJob::of(
+        &state.study.dataset,
+        state.analysis(),
+        state.display.across_role,
+        grid,
+    )
 }
 
 /// The response in focus of one model of each condition; none until their responses are there.
@@ -272,10 +393,14 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     };
     let pair = state.display.pair;
     let mut cached = std::mem::take(&mut state.display.across_shapes);
-    let (made_of, role) = ((state.dataset(), state.analysis()), state.display.across_role);
+    let (made_of, role) = (
+        (state.dataset(), state.analysis()),
+        state.display.across_role,
+    );
     let mut drawn = airspeed_curves(made_of, role, pair, &curves, &mut cached);
     for curve in &mut drawn {
-        curve.highlighted = matches!(&curve.id, CurveId::Model(id) if id.condition == state.condition().id());
+        curve.highlighted =
+            matches!(&curve.id, CurveId::Model(id) if id.condition == state.condition().id());
         curve.detail.push_str(" · click to show the condition");
     }
     state.display.across_shapes = cached;
@@ -283,11 +408,21 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
 }
 
 /// Every response of the condition shown; a click brings it into focus.
-pub fn overview_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn overview_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let pairs: Vec<Pair> = state.dataset().on_axis().pairs().collect();
     let curves: Vec<Vec<BodeCurve>> = pairs
         .iter()
-        .map(|&pair| bode_curves(state, pair).into_iter().filter(|curve| !curve.hidden).collect())
+        .map(|&pair| {
+            bode_curves(state, pair)
+                .into_iter()
+                .filter(|curve| !curve.hidden)
+                .collect()
+        })
         .collect();
     let cells: Vec<OverviewCell<'_>> = pairs
         .iter()
@@ -327,7 +462,10 @@ pub fn overview_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
 /// "J 75→61": of the physics representative as it is, and of the corrected one with all that is done to it.
 fn cost_note(state: &State, pair: Pair) -> String {
     let cost = state.shown().and_then(|shown| {
-        shown.before_couplings().representative.cost[pair].zip(shown.cost[pair].map(|change| change.corrected))
+        shown.before_couplings().representative.cost[pair]
+            .zip(shown.cost[pair].map(|change| change.corrected))
     });
-    cost.map_or(String::new(), |(before, after)| format!("J {:.0}→{:.0}", before.total(), after.total()))
+    cost.map_or(String::new(), |(before, after)| {
+        format!("J {:.0}→{:.0}", before.total(), after.total())
+    })
 }

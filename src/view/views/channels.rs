@@ -3,14 +3,17 @@
 use egui::{Align2, FontId, Rect, Ui, Vec2, pos2, vec2};
 use gdcm_method::uncertainty::{Bar, Scalar};
 use gdcm_model::units::s_to_ms;
-use gdcm_plot::figure::{Across, Figure, GainQuantity, MarkId, Measure, all_channels, channels_figure, quieten};
+use gdcm_plot::figure::{
+    Across, Figure, GainQuantity, MarkId, Measure, all_channels, channels_figure, quieten,
+};
 use gdcm_study::study::{Edit, ExplainTarget, Uncertainty};
 
 use super::net_gain::bars_switch_ui;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::plot::{
-    FigureEvent, FigureScene, FigureView, FigureWords, NamedFigure, figure_ui, figure_within_ui, rows,
+    FigureEvent, FigureScene, FigureView, FigureWords, NamedFigure, figure_ui, figure_within_ui,
+    rows,
 };
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
@@ -21,12 +24,24 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
     let (mut measure, mut across) = shown;
     let axes = [
         (Across::Airspeed, "over airspeed", "With the schedule"),
-        (Across::Conditions, "over conditions", "Conditions side by side, in file order"),
+        (
+            Across::Conditions,
+            "over conditions",
+            "Conditions side by side, in file order",
+        ),
     ];
     choice_ui(ui, "Horizontal axis of the channels", &mut across, &axes);
     let figures = [
-        (Measure::Gain, "gains", "Gain k of every channel, its bounds, and 1: no correction"),
-        (Measure::Delay, "delays", "Delay τ of every channel [ms], its bounds, and 0: no correction"),
+        (
+            Measure::Gain,
+            "gains",
+            "Gain k of every channel, its bounds, and 1: no correction",
+        ),
+        (
+            Measure::Delay,
+            "delays",
+            "Delay τ of every channel [ms], its bounds, and 0: no correction",
+        ),
     ];
     choice_ui(ui, "Figure of the channels", &mut measure, &figures);
     bars_switch_ui(ui, state, ("bars", "bars of the channels"), commands);
@@ -50,7 +65,12 @@ pub struct ChannelsView {
 }
 
 /// Gain or delay of every channel against airspeed (Figures 3 and 4): inputs above, outputs below, on the same axes.
-pub fn channels_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn channels_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let mut view = std::mem::take(&mut state.display.channels);
     let plots = channel_plots(state);
     let (mut inputs, mut outputs) = (plots.figure.clone(), plots.figure.clone());
@@ -59,7 +79,9 @@ pub fn channels_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
     let is_compact = plots.across == Across::Airspeed;
     if is_compact {
         let selected = MarkId::Condition(state.condition().id());
-        [&mut inputs, &mut outputs].into_iter().for_each(|figure| quieten(figure, &selected, false));
+        [&mut inputs, &mut outputs]
+            .into_iter()
+            .for_each(|figure| quieten(figure, &selected, false));
     }
     if plots.figure.plots.is_empty() {
         let scene = plots.scene("channels", &plots.figure, state.results.absence());
@@ -69,21 +91,45 @@ pub fn channels_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
     // As much height as their rows need.
     let half = vec2(rect.width(), 0.5 * rect.height());
     let [above, below] = [&inputs, &outputs].map(|figure| rows(figure, half, LEAST_PLOT) as f32);
-    let (upper, lower) = rect.split_top_bottom_at_y(rect.top() + rect.height() * above / (above + below).max(1.0));
+    let (upper, lower) =
+        rect.split_top_bottom_at_y(rect.top() + rect.height() * above / (above + below).max(1.0));
     for (name, rect, figure, first, view) in [
         ("Input channels", upper, &inputs, 0, &mut view.inputs),
-        ("Output channels", lower, &outputs, inputs.plots.len(), &mut view.outputs),
+        (
+            "Output channels",
+            lower,
+            &outputs,
+            inputs.plots.len(),
+            &mut view.outputs,
+        ),
     ] {
         if figure.plots.is_empty() {
             continue;
         }
         let place = pos2(rect.left() + 2.0, rect.top() + 0.5 * HEADING_HEIGHT);
-        ui.painter().text(place, Align2::LEFT_CENTER, name, FontId::proportional(SMALL_SIZE), palette.dim_text);
-        let inner = Rect::from_min_max(rect.min + vec2(0.0, HEADING_HEIGHT), rect.max - vec2(0.0, GAP));
+        ui.painter().text(
+            place,
+            Align2::LEFT_CENTER,
+            name,
+            FontId::proportional(SMALL_SIZE),
+            palette.dim_text,
+        );
+        let inner = Rect::from_min_max(
+            rect.min + vec2(0.0, HEADING_HEIGHT),
+            rect.max - vec2(0.0, GAP),
+        );
         let scene = plots.scene(name, figure, state.results.absence());
-        let scene = FigureScene { is_compact, words: (&plots, first), ..scene };
+        let scene = FigureScene {
+            is_compact,
+            words: (&plots, first),
+            ..scene
+        };
         let events = figure_within_ui(ui, inner, &scene, view, palette);
-        commands.extend(events.into_iter().filter_map(|event| gain_command(state, event)));
+        commands.extend(
+            events
+                .into_iter()
+                .filter_map(|event| gain_command(state, event)),
+        );
     }
     ui.advance_cursor_after_rect(rect);
     state.display.channels = view;
@@ -92,18 +138,40 @@ pub fn channels_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
 /// One plot for each channel, inputs first: its gain or delay in each condition's optimum, and the schedule.
 pub fn channel_plots(state: &State) -> GainPlots<'_> {
     let (measure, across) = state.display.channel_values;
-    let channels = if state.analysis().is_some() { all_channels(state.dataset()) } else { Vec::new() };
+    let channels = if state.analysis().is_some() {
+        all_channels(state.dataset())
+    } else {
+        Vec::new()
+    };
     let figure = state
         .analysis()
-        .map(|analysis| channels_figure(analysis, shown_uncertainty(state), &channels, (measure, across)))
+        .map(|analysis| {
+            channels_figure(
+                analysis,
+                shown_uncertainty(state),
+                &channels,
+                (measure, across),
+            )
+        })
         .unwrap_or_default();
-    let quantities = channels.into_iter().map(|channel| GainQuantity::of_channel(channel, measure)).collect();
-    GainPlots { state, figure: figure.with_ranges(), quantities, across }
+    let quantities = channels
+        .into_iter()
+        .map(|channel| GainQuantity::of_channel(channel, measure))
+        .collect();
+    GainPlots {
+        state,
+        figure: figure.with_ranges(),
+        quantities,
+        across,
+    }
 }
 
 /// How sure gains and delays are, where that is shown.
 pub(super) fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
-    state.uncertainty().filter(|_| !state.display.hide_bars).map(AsRef::as_ref)
+    state
+        .uncertainty()
+        .filter(|_| !state.display.hide_bars)
+        .map(AsRef::as_ref)
 }
 
 /// Plots of gains or delays, and what they are of.
@@ -116,7 +184,12 @@ pub struct GainPlots<'a> {
 }
 
 impl GainPlots<'_> {
-    pub(super) fn scene<'b>(&'b self, name: &'static str, figure: &'b Figure, message: &'b str) -> FigureScene<'b> {
+    pub(super) fn scene<'b>(
+        &'b self,
+        name: &'static str,
+        figure: &'b Figure,
+        message: &'b str,
+    ) -> FigureScene<'b> {
         FigureScene {
             selected: Some(MarkId::Condition(self.state.condition().id())),
             highlighted: self.state.display.hovered_condition.map(MarkId::Condition),
@@ -133,19 +206,32 @@ impl FigureWords for GainPlots<'_> {
     }
 
     fn dot(&self, plot: usize, id: &MarkId, [_, value]: [f64; 2]) -> Option<String> {
-        let MarkId::Condition(id) = id else { return None };
-        let airspeed_kt = self.state.dataset().condition(*id)?.flight_state().airspeed_kt;
+        let MarkId::Condition(id) = id else {
+            return None;
+        };
+        let airspeed_kt = self
+            .state
+            .dataset()
+            .condition(*id)?
+            .flight_state()
+            .airspeed_kt;
         let value = self.quantities[plot].measure().text(value);
-        Some(format!("{}, condition {id}: {value} at {airspeed_kt:.0} kt", self.figure.plots[plot].title))
+        Some(format!(
+            "{}, condition {id}: {value} at {airspeed_kt:.0} kt",
+            self.figure.plots[plot].title
+        ))
     }
 
     fn pointed(&self, plot: usize, id: &MarkId, [_, value]: [f64; 2]) -> Option<String> {
-        let MarkId::Condition(id) = id else { return None };
+        let MarkId::Condition(id) = id else {
+            return None;
+        };
         let (condition, analysis) = (self.state.dataset().condition(*id)?, self.state.analysis()?);
         let (of, airspeed_kt) = (self.quantities[plot], condition.flight_state().airspeed_kt);
         let text = |value: f64| of.measure().text(value);
         let schedule = of.measure().schedule_of(analysis, self.across);
-        let scheduled = schedule.map(|schedule| format!("scheduled {}", text(of.of(&schedule.at(airspeed_kt)))));
+        let scheduled = schedule
+            .map(|schedule| format!("scheduled {}", text(of.of(&schedule.at(airspeed_kt)))));
         let bounds = analysis.condition(*id).and_then(|result| of.bounds(result));
         let choice = analysis.study.choice(*id);
         let state = match (choice.held_out, choice.is_in_schedule()) {
@@ -154,7 +240,8 @@ impl FigureWords for GainPlots<'_> {
             (false, true) => None,
         };
         let uncertainty = shown_uncertainty(self.state);
-        let bar = uncertainty.and_then(|of_all| Some((of_all.bar(*id, of.scalar())?, of_all.level)));
+        let bar =
+            uncertainty.and_then(|of_all| Some((of_all.bar(*id, of.scalar())?, of_all.level)));
         let words = [
             Some(format!("condition {id}, {airspeed_kt:.0} kt")),
             Some(format!("{} {}", self.figure.plots[plot].title, text(value))),
@@ -168,23 +255,42 @@ impl FigureWords for GainPlots<'_> {
     }
 
     fn questions(&self, plot: usize, id: &MarkId) -> Vec<NamedFigure> {
-        let MarkId::Condition(id) = *id else { return Vec::new() };
+        let MarkId::Condition(id) = *id else {
+            return Vec::new();
+        };
         match self.quantities[plot] {
             GainQuantity::NetGain(pair) => {
-                vec![(format!("Net gain, condition {id}"), ExplainTarget::NetGain(id, pair))]
+                vec![(
+                    format!("Net gain, condition {id}"),
+                    ExplainTarget::NetGain(id, pair),
+                )]
             }
             GainQuantity::Delay(channel) => vec![
                 ("Delay".to_owned(), ExplainTarget::Delay(id, channel)),
-                ("Bound of the delays".to_owned(), ExplainTarget::DelayBound(id)),
+                (
+                    "Bound of the delays".to_owned(),
+                    ExplainTarget::DelayBound(id),
+                ),
             ],
             GainQuantity::Gain(channel) => {
-                let airspeed_kt = self.state.dataset().condition(id).map(|of| of.flight_state().airspeed_kt);
+                let airspeed_kt = self
+                    .state
+                    .dataset()
+                    .condition(id)
+                    .map(|of| of.flight_state().airspeed_kt);
                 let gain = [
                     ("Gain".to_owned(), ExplainTarget::Gain(id, channel)),
-                    ("Bounds of the gains".to_owned(), ExplainTarget::GainBounds(id)),
+                    (
+                        "Bounds of the gains".to_owned(),
+                        ExplainTarget::GainBounds(id),
+                    ),
                 ];
-                let scheduled =
-                    airspeed_kt.map(|at| ("Scheduled gain".to_owned(), ExplainTarget::ScheduledGain(channel, at)));
+                let scheduled = airspeed_kt.map(|at| {
+                    (
+                        "Scheduled gain".to_owned(),
+                        ExplainTarget::ScheduledGain(channel, at),
+                    )
+                });
                 gain.into_iter().chain(scheduled).collect()
             }
         }
@@ -196,12 +302,22 @@ pub(super) fn gain_command(state: &State, event: FigureEvent) -> Option<Command>
     match event {
         FigureEvent::Clicked(_, MarkId::Condition(condition), keys) if keys.command => {
             let scheduled = !state.study.choice(condition).scheduled;
-            Some(Edit::SetScheduled { condition, scheduled }.into())
+            Some(
+                Edit::SetScheduled {
+                    condition,
+                    scheduled,
+                }
+                .into(),
+            )
         }
-        FigureEvent::Clicked(_, MarkId::Condition(condition), _) => Some(Command::SelectCondition(condition)),
+        FigureEvent::Clicked(_, MarkId::Condition(condition), _) => {
+            Some(Command::SelectCondition(condition))
+        }
         FigureEvent::Asked(figure) => Some(Command::Explain(Some(figure))),
         FigureEvent::Told(words) => Some(Command::Tell(words)),
-        FigureEvent::Pointed(MarkId::Condition(condition)) => Some(Command::HoverCondition(condition)),
+        FigureEvent::Pointed(MarkId::Condition(condition)) => {
+            Some(Command::HoverCondition(condition))
+        }
         FigureEvent::Clicked(..) | FigureEvent::Pointed(_) => None,
     }
 }
@@ -209,9 +325,14 @@ pub(super) fn gain_command(state: &State, event: FigureEvent) -> Option<Command>
 /// How sure a figure is, in words: "± 3.3 % (90 %): trim 78 %, identification 22 % of the variance".
 pub fn bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
     let remarks = bar.remarks().join(", ");
-    let Some(half) = bar.half_width(level) else { return format!("no bar: {remarks}") };
-    let half =
-        if scalar.is_delay() { format!("± {:.1} ms", s_to_ms(half)) } else { format!("± {:.1} %", 100.0 * half) };
+    let Some(half) = bar.half_width(level) else {
+        return format!("no bar: {remarks}");
+    };
+    let half = if scalar.is_delay() {
+        format!("± {:.1} ms", s_to_ms(half))
+    } else {
+        format!("± {:.1} %", 100.0 * half)
+    };
     let trim = 100.0 * bar.trim_share().unwrap_or_default();
     let mut words = format!(
         "{half} ({:.0} %): trim {trim:.0} %, identification {:.0} % of the variance",

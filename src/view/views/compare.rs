@@ -13,7 +13,12 @@ use crate::view::state::State;
 use crate::view::tables::{TableLook, table_ui};
 
 /// The variants of the study, what differs between them and the present decisions, and what it does.
-pub fn compare_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn compare_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     keep_ui(ui, state, commands);
     if state.study.variants.is_empty() {
         let words = "A variant is a set of decisions under a name. Keep the present ones, go on deciding, and both stand here \
@@ -30,10 +35,21 @@ pub fn compare_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
     let half = 0.5 * ui.available_height();
     for (index, table) in tables.iter().enumerate() {
         ui.label(RichText::new(&table.title).size(SMALL_SIZE).strong());
-        let room = if index == 0 { half } else { ui.available_height() };
+        let room = if index == 0 {
+            half
+        } else {
+            ui.available_height()
+        };
         ui.allocate_ui(egui::vec2(ui.available_width(), room), |ui| {
             let mut sorting = state.display.compare_sorting[index];
-            table_ui(ui, table, &mut sorting, &TableLook::PLAIN, palette, commands);
+            table_ui(
+                ui,
+                table,
+                &mut sorting,
+                &TableLook::PLAIN,
+                palette,
+                commands,
+            );
             state.display.compare_sorting[index] = sorting;
         });
     }
@@ -43,11 +59,26 @@ pub fn compare_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comman
 fn keep_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let name = &mut state.display.variant_name;
-        let field = text_field_ui(ui, "Name of the variant", name, "name of the variant", 200.0);
+        let field = text_field_ui(
+            ui,
+            "Name of the variant",
+            name,
+            "name of the variant",
+            200.0,
+        );
         let entered = is_entered(ui, &field);
         let keep = ui.add_enabled(!name.trim().is_empty(), Button::new("Keep as variant"));
-        if keep.on_hover_text("Keep the present decisions under this name").clicked() || entered {
-            commands.push(Edit::KeepVariant { name: std::mem::take(name) }.into());
+        if keep
+            .on_hover_text("Keep the present decisions under this name")
+            .clicked()
+            || entered
+        {
+            commands.push(
+                Edit::KeepVariant {
+                    name: std::mem::take(name),
+                }
+                .into(),
+            );
         }
     });
 }
@@ -58,7 +89,11 @@ fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut 
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let name = || variant.name.clone();
             let mut button = |verb: &str, hint: &str, edit: Edit| {
-                let button = named(ui.small_button(verb), Role::Button, format!("{verb} variant {}", variant.name));
+                let button = named(
+                    ui.small_button(verb),
+                    Role::Button,
+                    format!("{verb} variant {}", variant.name),
+                );
                 if button.on_hover_text(hint).clicked() {
                     commands.push(edit.into());
                 }
@@ -68,7 +103,8 @@ fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut 
             let hint = "Its decisions become the present ones; undo brings those back";
             button("Take", hint, Edit::TakeVariant { name: name() });
             let label = format!("Overlay variant {}", variant.name);
-            let hint = "Its corrected model in Bode, and its net gains, dotted beside the present ones";
+            let hint =
+                "Its corrected model in Bode, and its net gains, dotted beside the present ones";
             if toggle_ui(ui, ("Overlay", &label), is_overlaid, hint) {
                 commands.push(Command::Overlay((!is_overlaid).then(name)));
             }
@@ -78,14 +114,25 @@ fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut 
 
 /// The analyses that the comparison needs.
 pub fn variant_jobs(state: &State) -> Vec<VariantJob> {
-    let studies = state.study.variants.iter().filter_map(|variant| state.study.of_variant(&variant.name));
+    let studies = state
+        .study
+        .variants
+        .iter()
+        .filter_map(|variant| state.study.of_variant(&variant.name));
     studies.map(|study| VariantJob { study }).collect()
 }
 
 /// The analysis of a variant, where it is there.
 pub fn variant_analysis<'a>(state: &'a State, variant: &Variant) -> Option<&'a Analysis> {
-    let job = VariantJob { study: state.study.of_variant(&variant.name)? };
-    state.results.variants.iter().find(|(known, _)| *known == job).map(|(_, analysis)| analysis.as_ref())
+    let job = VariantJob {
+        study: state.study.of_variant(&variant.name)?,
+    };
+    state
+        .results
+        .variants
+        .iter()
+        .find(|(known, _)| *known == job)
+        .map(|(_, analysis)| analysis.as_ref())
 }
 
 /// The variant that is laid over the present decisions, and its analysis, where that is there.
@@ -96,20 +143,32 @@ pub fn overlaid_analysis(state: &State) -> Option<(&str, &Analysis)> {
 
 /// The analysis that is laid over what is shown.
 pub fn overlay_job(state: &State) -> Option<VariantJob> {
-    Some(VariantJob { study: state.study.of_variant(state.display.overlaid.as_deref()?)? })
+    Some(VariantJob {
+        study: state.study.of_variant(state.display.overlaid.as_deref()?)?,
+    })
 }
 
 /// Every decision in which a variant differs from the present ones.
 pub fn difference_table(state: &State) -> Table {
-    let mut table = Table::new("What differs", ["variant", "decision", "in the variant", "now"]);
+    let mut table = Table::new(
+        "What differs",
+        ["variant", "decision", "in the variant", "now"],
+    );
     for variant in &state.study.variants {
-        let Some(study) = state.study.of_variant(&variant.name) else { continue };
+        let Some(study) = state.study.of_variant(&variant.name) else {
+            continue;
+        };
         let differences = decision_differences(&study, &state.study);
         if differences.is_empty() {
             table.row([variant.name.as_str(), "nothing: the same decisions"]);
         }
         for difference in differences {
-            table.row([variant.name.clone(), difference.what, difference.before, difference.after]);
+            table.row([
+                variant.name.clone(),
+                difference.what,
+                difference.before,
+                difference.after,
+            ]);
         }
     }
     table
@@ -119,11 +178,27 @@ pub fn difference_table(state: &State) -> Table {
 /// of the scheduled correction over all conditions, now and in each variant.
 pub fn figure_table(state: &State) -> Table {
     let condition = state.condition().id();
-    let title = format!("What it does: condition {condition}, and the schedule over all conditions");
-    let names = state.study.variants.iter().map(|variant| variant.name.clone());
-    let mut table = Table::new(title, ["value".to_owned(), "now".to_owned()].into_iter().chain(names));
+    let title =
+        format!("What it does: condition {condition}, and the schedule over all conditions");
+    let names = state
+        .study
+        .variants
+        .iter()
+        .map(|variant| variant.name.clone());
+    let mut table = Table::new(
+        title,
+        ["value".to_owned(), "now".to_owned()]
+            .into_iter()
+            .chain(names),
+    );
     let analyses: Vec<Option<&Analysis>> = std::iter::once(state.analysis())
-        .chain(state.study.variants.iter().map(|variant| variant_analysis(state, variant)))
+        .chain(
+            state
+                .study
+                .variants
+                .iter()
+                .map(|variant| variant_analysis(state, variant)),
+        )
         .collect();
     let mut row = |name: String, figure: &dyn Fn(&Analysis) -> Option<String>| {
         let cell = |analysis: &Option<&Analysis>| match analysis {
@@ -135,20 +210,33 @@ pub fn figure_table(state: &State) -> Table {
     for pair in net_gain_pairs(state) {
         let name = state.dataset().pair_name(pair);
         row(format!("net gain {name}"), &|analysis| {
-            Some(format!("{:.4}", analysis.condition(condition)?.correction.net_gain(pair)))
+            Some(format!(
+                "{:.4}",
+                analysis.condition(condition)?.correction.net_gain(pair)
+            ))
         });
-        row(format!("J {name}"), &|analysis| cost(analysis, condition, pair));
+        row(format!("J {name}"), &|analysis| {
+            cost(analysis, condition, pair)
+        });
     }
     row("objective of the gains".to_owned(), &|analysis| {
-        analysis.condition(condition).map(|result| format!("{:.4}", result.gains.objective))
+        analysis
+            .condition(condition)
+            .map(|result| format!("{:.4}", result.gains.objective))
     });
-    row("mean ΔJ on-axis, scheduled".to_owned(), &|analysis| mean_change(state, analysis));
+    row("mean ΔJ on-axis, scheduled".to_owned(), &|analysis| {
+        mean_change(state, analysis)
+    });
     table
 }
 
 fn cost(analysis: &Analysis, condition: ConditionId, pair: Pair) -> Option<String> {
     let cost = analysis.condition(condition)?.cost[pair]?;
-    Some(format!("{:.1} → {:.1}", cost.uncorrected.total(), cost.corrected.total()))
+    Some(format!(
+        "{:.1} → {:.1}",
+        cost.uncorrected.total(),
+        cost.corrected.total()
+    ))
 }
 
 /// Mean change of J of the on-axis responses of the nominal models under the schedule, over the conditions assessed.
@@ -158,7 +246,11 @@ fn mean_change(state: &State, analysis: &Analysis) -> Option<String> {
         .assessment
         .values()
         .flatten()
-        .flat_map(|changes| measuring.marked().filter_map(|pair| Some(changes[pair]?.total())))
+        .flat_map(|changes| {
+            measuring
+                .marked()
+                .filter_map(|pair| Some(changes[pair]?.total()))
+        })
         .collect();
     let mean = changes.iter().sum::<f64>() / changes.len() as f64;
     mean.is_finite().then(|| signed(mean, 2))

@@ -7,7 +7,8 @@ use gdcm_method::couplings::LEAST_CONDITIONS;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::units::telling;
 use gdcm_study::study::{
-    CouplingCorrection, CouplingCost, CouplingsAssessment, CouplingsJob, PhaseCorrection, RemarkKind, Table, setting,
+    CouplingCorrection, CouplingCost, CouplingsAssessment, CouplingsJob, PhaseCorrection,
+    RemarkKind, Table, setting,
 };
 
 use super::View;
@@ -29,8 +30,16 @@ pub fn couplings_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Comman
     let shown = state.study.settings.couplings;
     let mut chosen = shown;
     let choices = [
-        (CouplingCorrection::None, "none", "Gains, delays and leads of the channels alone (the paper)"),
-        (CouplingCorrection::Mixing, "mixing", "Each input takes constant shares of the others (M16)"),
+        (
+            CouplingCorrection::None,
+            "none",
+            "Gains, delays and leads of the channels alone (the paper)",
+        ),
+        (
+            CouplingCorrection::Mixing,
+            "mixing",
+            "Each input takes constant shares of the others (M16)",
+        ),
         (
             CouplingCorrection::MixingAndFeedback,
             "mixing and feedback",
@@ -53,28 +62,44 @@ pub fn assessed_correction(state: &State) -> CouplingCorrection {
 
 /// The job that finds out what they do, or would do.
 pub fn couplings_job(state: &State) -> CouplingsJob {
-    CouplingsJob { study: state.study.clone(), couplings: assessed_correction(state) }
+    CouplingsJob {
+        study: state.study.clone(),
+        couplings: assessed_correction(state),
+    }
 }
 
 /// Whether couplings are assessed whatever view is shown: where they are used, for what they cost; where they are not, once delays or leads
 /// do what a channel can, of three conditions or more, for they may be worth an offer.
 pub fn are_couplings_judged(state: &State) -> bool {
     let settings = &state.study.settings;
-    let Some(analysis) = state.analysis().filter(|_| !state.results.is_behind()) else { return false };
+    let Some(analysis) = state.analysis().filter(|_| !state.results.is_behind()) else {
+        return false;
+    };
     let results = || analysis.conditions.values().flatten();
     let is_left = match settings.phase {
         PhaseCorrection::None => false,
         PhaseCorrection::Delay => results().all(|result| result.delays.matched),
         PhaseCorrection::Lead => true,
     };
-    settings.couplings != CouplingCorrection::None || is_left && results().count() >= LEAST_CONDITIONS
+    settings.couplings != CouplingCorrection::None
+        || is_left && results().count() >= LEAST_CONDITIONS
 }
 
 /// What couplings would bring off the axis, where they are not used and that is worth it by J of conditions left out.
 pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, CouplingCost)> {
     let is_used = state.study.settings.couplings != CouplingCorrection::None;
-    let assessment = state.couplings().filter(|_| !is_used && are_couplings_judged(state))?.as_ref().ok()?;
-    Some((assessment, assessment.costs.left_out.filter(CouplingCost::is_worth_it)?))
+    let assessment = state
+        .couplings()
+        .filter(|_| !is_used && are_couplings_judged(state))?
+        .as_ref()
+        .ok()?;
+    Some((
+        assessment,
+        assessment
+            .costs
+            .left_out
+            .filter(CouplingCost::is_worth_it)?,
+    ))
 }
 
 /// What the couplings that are used are worth and cost, once it is known.
@@ -84,7 +109,12 @@ pub fn used_couplings(state: &State) -> Option<&Arc<CouplingsAssessment>> {
 }
 
 /// Words and tables at the left, the loop and the poles at the right.
-pub fn couplings_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn couplings_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let found = state.couplings().cloned();
     let assessment = match found {
         Some(Ok(assessment)) => assessment,
@@ -96,22 +126,46 @@ pub fn couplings_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comm
     };
     restore_panel_size(ui, "couplings");
     let width = WORDS_PART * ui.available_width();
-    let panel = Panel::left("couplings").resizable(true).default_size(width).min_size(260.0);
+    let panel = Panel::left("couplings")
+        .resizable(true)
+        .default_size(width)
+        .min_size(260.0);
     panel.show(ui, |ui| {
-        ScrollArea::vertical().id_salt("couplings in words").auto_shrink(false).show(ui, |ui| {
-            use_ui(ui, state, &assessment, palette, commands);
-            // What decides comes first.
-            let costs = Table { title: "J, mean over the conditions".to_owned(), ..assessment.cost_table() };
-            table_part_ui(ui, &costs, TableLook::PLAIN.color, palette, commands);
-            words_ui(ui, state, &assessment, palette);
-            tables_ui(ui, state, &assessment, palette, commands);
-        });
+        ScrollArea::vertical()
+            .id_salt("couplings in words")
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                use_ui(ui, state, &assessment, palette, commands);
+                // What decides comes first.
+                let costs = Table {
+                    title: "J, mean over the conditions".to_owned(),
+                    ..assessment.cost_table()
+                };
+                table_part_ui(ui, &costs, TableLook::PLAIN.color, palette, commands);
+                words_ui(ui, state, &assessment, palette);
+                tables_ui(ui, state, &assessment, palette, commands);
+            });
     });
     let request = request(state, View::Couplings);
-    let figure = request.and_then(|request| request.figure(None, condition_source(state).as_ref())).unwrap_or_default();
-    let mut view = state.display.figures.remove(&View::Couplings).unwrap_or_default();
-    let scene = FigureScene::new("couplings", &figure, vec2(220.0, 150.0), state.results.absence(), &figure);
-    let scene = FigureScene { zooms: true, ..scene };
+    let figure = request
+        .and_then(|request| request.figure(None, condition_source(state).as_ref()))
+        .unwrap_or_default();
+    let mut view = state
+        .display
+        .figures
+        .remove(&View::Couplings)
+        .unwrap_or_default();
+    let scene = FigureScene::new(
+        "couplings",
+        &figure,
+        vec2(220.0, 150.0),
+        state.results.absence(),
+        &figure,
+    );
+    let scene = FigureScene {
+        zooms: true,
+        ..scene
+    };
     figure_legend_ui(ui, &figure, palette);
     figure_ui(ui, &scene, &mut view, palette);
     state.display.figures.insert(View::Couplings, view);
@@ -132,7 +186,10 @@ fn use_ui(
 ) {
     let is_used = state.study.settings.couplings != CouplingCorrection::None;
     let (label, couplings) = if is_used {
-        ("Switch the couplings off".to_owned(), CouplingCorrection::None)
+        (
+            "Switch the couplings off".to_owned(),
+            CouplingCorrection::None,
+        )
     } else {
         let name = assessment.couplings.name();
         ui.label(palette.dim(format!("None are used. What {name} would do:")));
@@ -141,7 +198,11 @@ fn use_ui(
     if is_used && assessment.deciding_cost().is_worth_it() {
         return;
     }
-    if ui.button(label).on_hover_text("In every condition; undo takes it back").clicked() {
+    if ui
+        .button(label)
+        .on_hover_text("In every condition; undo takes it back")
+        .clicked()
+    {
         commands.push(setting::COUPLINGS.to(couplings).into());
     }
 }
@@ -153,12 +214,18 @@ fn words_ui(ui: &mut Ui, state: &State, assessment: &CouplingsAssessment, palett
             RemarkKind::Good => RichText::new(&remark.text).color(palette.text),
             _ => RichText::new(format!("⚠ {}", remark.text)).color(palette.warning),
         };
-        let words = if remark.kind == RemarkKind::Trouble { words.font(medium(BODY_SIZE)) } else { words };
+        let words = if remark.kind == RemarkKind::Trouble {
+            words.font(medium(BODY_SIZE))
+        } else {
+            words
+        };
         ui.add_space(2.0);
         ui.add(Label::new(words).wrap());
     }
-    if let Err(why) =
-        assessment.conditions.get(&state.condition().id()).map_or(Ok(()), |of| of.poles.as_ref().map(drop))
+    if let Err(why) = assessment
+        .conditions
+        .get(&state.condition().id())
+        .map_or(Ok(()), |of| of.poles.as_ref().map(drop))
     {
         ui.add(Label::new(palette.dim(format!("Poles of this condition: {why}"))).wrap());
     }
@@ -173,10 +240,17 @@ fn tables_ui(
 ) {
     for table in assessment.matrix_tables(state.dataset()) {
         // What is within its bar is not told from nothing.
-        let dim = |row: usize, column: usize| table.rows[row][column].starts_with('(').then_some(palette.dim_text);
+        let dim = |row: usize, column: usize| {
+            table.rows[row][column]
+                .starts_with('(')
+                .then_some(palette.dim_text)
+        };
         table_part_ui(ui, &table, &dim, palette, commands);
     }
-    let others = [above_band_table(state.dataset(), assessment), poles_of_condition(state, assessment)];
+    let others = [
+        above_band_table(state.dataset(), assessment),
+        poles_of_condition(state, assessment),
+    ];
     for table in others.iter().filter(|table| !table.rows.is_empty()) {
         table_part_ui(ui, table, TableLook::PLAIN.color, palette, commands);
     }
@@ -191,23 +265,39 @@ fn table_part_ui(
 ) {
     ui.add_space(10.0);
     ui.add(Label::new(RichText::new(&table.title).font(medium(BODY_SIZE))).wrap());
-    let look = TableLook { color, ..TableLook::PLAIN };
-    ScrollArea::horizontal().id_salt(("couplings", &table.title)).show(ui, |ui| {
-        ui.spacing_mut().interact_size.y = 16.0;
-        table_grid_ui(ui, table, &mut Sorting::default(), &look, palette, commands);
-    });
+    let look = TableLook {
+        color,
+        ..TableLook::PLAIN
+    };
+    ScrollArea::horizontal()
+        .id_salt(("couplings", &table.title))
+        .show(ui, |ui| {
+            ui.spacing_mut().interact_size.y = 16.0;
+            table_grid_ui(ui, table, &mut Sorting::default(), &look, palette, commands);
+        });
 }
 
 /// What couplings do at ten times the band to the held responses of each condition, and how near its loop is to ringing.
 fn above_band_table(dataset: &Dataset, assessment: &CouplingsAssessment) -> Table {
-    let columns = ["condition", "least singular value", "at [rad/s]", "above the band [dB]", "of"];
+    let columns = [
+        "condition",
+        "least singular value",
+        "at [rad/s]",
+        "above the band [dB]",
+        "of",
+    ];
     let mut table = Table::new("The loop of each condition", columns);
     for (id, of) in &assessment.conditions {
-        let margin = of.margin.map(|margin| [telling(margin.least, 2), telling(margin.omega_rad_s, 1)]);
+        let margin = of
+            .margin
+            .map(|margin| [telling(margin.least, 2), telling(margin.omega_rad_s, 1)]);
         let [least, at] = margin.unwrap_or_default();
         let most = of.most_changed_above_band(dataset.on_axis());
         let (change, pair) = most.map_or((String::new(), String::new()), |(pair, change_db)| {
-            (telling(change_db, 1).replace('-', "\u{2212}"), dataset.pair_name(pair))
+            (
+                telling(change_db, 1).replace('-', "\u{2212}"),
+                dataset.pair_name(pair),
+            )
         });
         table.row([id.to_string(), least, at, change, pair]);
     }
@@ -221,5 +311,8 @@ fn poles_of_condition(state: &State, assessment: &CouplingsAssessment) -> Table 
     table.rows.retain(|row| row[0] == id);
     table.rows.iter_mut().for_each(|row| drop(row.remove(0)));
     table.columns.remove(0);
-    Table { title: format!("Poles of the physics representative of condition {id}"), ..table }
+    Table {
+        title: format!("Poles of the physics representative of condition {id}"),
+        ..table
+    }
 }

@@ -16,8 +16,8 @@ use crate::view::command::Command;
 use crate::view::curve_display::CurveCommand;
 use crate::view::palette::Palette;
 use crate::view::plot::{
-    BodeCurve, BodeEvent, BodeQuantity, BodeScene, BodeView, Chip, CurveId, CurveWish, FrequencyUnit, PANES, Pane,
-    Readout, ReadoutCell, Role, ValueUnit, bode_ui, pointed_words,
+    BodeCurve, BodeEvent, BodeQuantity, BodeScene, BodeView, Chip, CurveId, CurveWish,
+    FrequencyUnit, PANES, Pane, Readout, ReadoutCell, Role, ValueUnit, bode_ui, pointed_words,
 };
 use crate::view::state::State;
 
@@ -33,7 +33,10 @@ pub(super) fn frequency_plot_ui(
     let display = &state.display.curves;
     let (quantity, curves, unit) = (scene.quantity, scene.curves, state.display.unit);
     let at = (display.cursor, display.pinned.as_slice());
-    let readout = display.lists_values.then(|| cursor_readout(curves, (quantity, unit), at, scene.band)).flatten();
+    let readout = display
+        .lists_values
+        .then(|| cursor_readout(curves, (quantity, unit), at, scene.band))
+        .flatten();
     let (chips, of_chips): (Vec<Chip>, Vec<Command>) = chips(state).into_iter().unzip();
     let scene = BodeScene {
         cursor: display.cursor,
@@ -50,9 +53,10 @@ pub(super) fn frequency_plot_ui(
     };
     for event in bode_ui(ui, &scene, view, palette) {
         commands.extend(match event {
-            BodeEvent::Wished(id, CurveWish::CopyValues) => {
-                curves.iter().find(|curve| curve.id == id).map(|curve| Command::CopyText(values(quantity, curve)))
-            }
+            BodeEvent::Wished(id, CurveWish::CopyValues) => curves
+                .iter()
+                .find(|curve| curve.id == id)
+                .map(|curve| Command::CopyText(values(quantity, curve))),
             BodeEvent::ChipClicked(index) => of_chips.get(index).cloned(),
             event => command_of(state, event),
         });
@@ -61,7 +65,10 @@ pub(super) fn frequency_plot_ui(
         commands.push(Command::Hover(id.clone()));
     }
     commands.extend(pointed_words(view, curves, (quantity, unit)).map(Command::Tell));
-    commands.extend(view.pointed_omega.map(|omega| CurveCommand::PointAt(omega).into()));
+    commands.extend(
+        view.pointed_omega
+            .map(|omega| CurveCommand::PointAt(omega).into()),
+    );
 }
 
 fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
@@ -69,16 +76,30 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
         BodeEvent::Clicked(CurveId::Model(id)) => Some(reject_or_restore(state, id)),
         BodeEvent::TakenBack(CurveId::Model(id)) => {
             let rejected = state.study.is_rejected(&id);
-            Some(Command::Forget(if rejected { Edit::Reject(id) } else { Edit::Restore(id) }))
+            Some(Command::Forget(if rejected {
+                Edit::Reject(id)
+            } else {
+                Edit::Restore(id)
+            }))
         }
         BodeEvent::Isolated(CurveId::Model(id)) => Some(Command::Isolate(id)),
-        BodeEvent::BandDragged { min, max } => Band::new(min, max).ok().map(|band| setting::BAND.to(band).into()),
+        BodeEvent::BandDragged { min, max } => Band::new(min, max)
+            .ok()
+            .map(|band| setting::BAND.to(band).into()),
         BodeEvent::BandReleased => Some(Command::EndEdit),
         BodeEvent::Display(command) => Some(command.into()),
-        BodeEvent::RejectedBecause(CurveId::Model(model), reason) => Some(Edit::RejectBecause { model, reason }.into()),
+        BodeEvent::RejectedBecause(CurveId::Model(model), reason) => {
+            Some(Edit::RejectBecause { model, reason }.into())
+        }
         BodeEvent::Wished(id, wish) => wished(state, id, wish),
         BodeEvent::Boxed(curves) => {
-            let model = |curve| if let CurveId::Model(id) = curve { Some(id) } else { None };
+            let model = |curve| {
+                if let CurveId::Model(id) = curve {
+                    Some(id)
+                } else {
+                    None
+                }
+            };
             Some(CurveCommand::Select(curves.into_iter().filter_map(model).collect()).into())
         }
         BodeEvent::Hovered(_)
@@ -91,7 +112,12 @@ fn command_of(state: &State, event: BodeEvent) -> Option<Command> {
 }
 
 fn reject_or_restore(state: &State, id: ModelId) -> Command {
-    if state.study.is_rejected(&id) { Edit::Restore(id) } else { Edit::Reject(id) }.into()
+    if state.study.is_rejected(&id) {
+        Edit::Restore(id)
+    } else {
+        Edit::Reject(id)
+    }
+    .into()
 }
 
 /// What a wish about a curve asks for.
@@ -112,7 +138,10 @@ pub(super) fn wished(state: &State, id: CurveId, wish: CurveWish) -> Option<Comm
 fn values(quantity: BodeQuantity<'_>, curve: &BodeCurve) -> String {
     let [magnitude, phase] = PANES.map(|pane| quantity.drawn_label(pane));
     let mut text = format!("{}\nω [rad/s]\t{magnitude}\t{phase}\n", curve.label);
-    let numbers = curve.omega.iter().zip(curve.magnitude_db.iter().zip(curve.phase_deg.iter()));
+    let numbers = curve
+        .omega
+        .iter()
+        .zip(curve.magnitude_db.iter().zip(curve.phase_deg.iter()));
     for (omega, (magnitude, phase)) in numbers {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{omega}\t{magnitude}\t{phase}");
@@ -122,56 +151,110 @@ fn values(quantity: BodeQuantity<'_>, curve: &BodeCurve) -> String {
 
 /// What holds for the plots over frequency now, with the command that ends it or acts on it.
 fn chips(state: &State) -> Vec<(Chip, Command)> {
-    let chip = |text: String, hint: &str, command: Command| (Chip { text, hint: hint.to_owned() }, command);
+    let chip = |text: String, hint: &str, command: Command| {
+        (
+            Chip {
+                text,
+                hint: hint.to_owned(),
+            },
+            command,
+        )
+    };
     let mut chips = Vec::new();
     if let Some(id) = &state.display.isolated {
-        let hint = "Only this model is shown beside the representatives. Click, or Escape: show all";
-        chips.push(chip(format!("Only {} ×", id.name), hint, Command::EndIsolation));
+        let hint =
+            "Only this model is shown beside the representatives. Click, or Escape: show all";
+        chips.push(chip(
+            format!("Only {} ×", id.name),
+            hint,
+            Command::EndIsolation,
+        ));
     }
     let curves = &state.display.curves;
     let of_condition = |id: &&ModelId| id.condition == state.condition().id();
-    let selected: Vec<ModelId> = curves.selected.iter().filter(of_condition).cloned().collect();
-    let (rejected, kept): (Vec<ModelId>, Vec<ModelId>) =
-        selected.into_iter().partition(|id| state.study.is_rejected(id));
+    let selected: Vec<ModelId> = curves
+        .selected
+        .iter()
+        .filter(of_condition)
+        .cloned()
+        .collect();
+    let (rejected, kept): (Vec<ModelId>, Vec<ModelId>) = selected
+        .into_iter()
+        .partition(|id| state.study.is_rejected(id));
     let any_selected = !(rejected.is_empty() && kept.is_empty());
     if !kept.is_empty() {
         let hint = "Take the models that the box was drawn over out of their bundles";
-        chips.push(chip(format!("Reject {}", counted(kept.len())), hint, Edit::RejectEach(kept).into()));
+        chips.push(chip(
+            format!("Reject {}", counted(kept.len())),
+            hint,
+            Edit::RejectEach(kept).into(),
+        ));
     }
     if !rejected.is_empty() {
         let hint = "Put the rejected models that the box was drawn over back";
-        chips.push(chip(format!("Restore {}", counted(rejected.len())), hint, Edit::RestoreEach(rejected).into()));
+        chips.push(chip(
+            format!("Restore {}", counted(rejected.len())),
+            hint,
+            Edit::RestoreEach(rejected).into(),
+        ));
     }
     if any_selected {
         let hint = "Leave them as they are (Escape)";
-        chips.push(chip("Select none ×".to_owned(), hint, CurveCommand::Select(BTreeSet::new()).into()));
+        chips.push(chip(
+            "Select none ×".to_owned(),
+            hint,
+            CurveCommand::Select(BTreeSet::new()).into(),
+        ));
     }
     if !curves.crossings.is_empty() {
         let unit = state.display.unit;
-        let names =
-            curves.crossings.iter().map(|(name, omega)| format!("{name} {}", telling(unit.of_omega(*omega), 2)));
-        let text = format!("{} {} ×", names.collect::<Vec<_>>().join(" · "), unit.symbol());
+        let names = curves
+            .crossings
+            .iter()
+            .map(|(name, omega)| format!("{name} {}", telling(unit.of_omega(*omega), 2)));
+        let text = format!(
+            "{} {} ×",
+            names.collect::<Vec<_>>().join(" · "),
+            unit.symbol()
+        );
         let hint = "The frequencies marked. Click: take the marks away";
         chips.push(chip(text, hint, CurveCommand::UnpinCursors.into()));
     }
     let hidden = curves.hidden_models.iter().filter(of_condition).count();
     if hidden > 0 {
         let hint = "Draw every model again";
-        chips.push(chip(format!("{} hidden ×", counted(hidden)), hint, CurveCommand::ShowHidden.into()));
+        chips.push(chip(
+            format!("{} hidden ×", counted(hidden)),
+            hint,
+            CurveCommand::ShowHidden.into(),
+        ));
     }
     chips
 }
 
 fn counted(models: usize) -> String {
-    if models == 1 { "1 model".to_owned() } else { format!("{models} models") }
+    if models == 1 {
+        "1 model".to_owned()
+    } else {
+        format!("{models} models")
+    }
 }
 
 /// What the curves of the condition shown are made of; none until its responses are there.
 pub(in crate::view) fn condition_source(state: &State) -> Option<ConditionSource<'_>> {
-    let schedule = state.analysis().and_then(|analysis| analysis.schedule.as_ref().ok());
+    let schedule = state
+        .analysis()
+        .and_then(|analysis| analysis.schedule.as_ref().ok());
     let condition = state.condition().id();
-    let variant = overlaid_analysis(state).and_then(|(name, analysis)| Some((name, analysis.condition(condition)?)));
-    Some(ConditionSource { study: &state.study, analysis: state.shown(), schedule, curves: state.curves()?, variant })
+    let variant = overlaid_analysis(state)
+        .and_then(|(name, analysis)| Some((name, analysis.condition(condition)?)));
+    Some(ConditionSource {
+        study: &state.study,
+        analysis: state.shown(),
+        schedule,
+        curves: state.curves()?,
+        variant,
+    })
 }
 
 /// What of the responses is shown, and how: the same on paper.
@@ -188,7 +271,10 @@ pub(in crate::view) fn bode_options(state: &State) -> BodeOptions {
         zeros_of: display.show_zeros.then_some(display.pair),
         hidden: curves.hidden_roles.clone(),
         hidden_models: curves.hidden_models.clone(),
-        isolated: display.isolated.clone().filter(|model| model.condition == state.condition().id()),
+        isolated: display
+            .isolated
+            .clone()
+            .filter(|model| model.condition == state.condition().id()),
         ..BodeOptions::default()
     }
 }
@@ -197,7 +283,8 @@ pub(in crate::view) fn bode_options(state: &State) -> BodeOptions {
 pub(in crate::view) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     let mut cache = state.display.shapes.remove(&pair).unwrap_or_default();
     let options = bode_options(state);
-    let curves = condition_source(state).map(|source| source.response_curves(pair, &options, &mut cache));
+    let curves =
+        condition_source(state).map(|source| source.response_curves(pair, &options, &mut cache));
     let drawn = pointed_out(state, curves.unwrap_or_default(), None);
     state.display.shapes.insert(pair, cache);
     drawn
@@ -206,7 +293,8 @@ pub(in crate::view) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCur
 /// What the fit sees of one response in the condition shown; none until its responses are there.
 pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
     let mut cache = std::mem::take(&mut state.display.errors);
-    let curves = condition_source(state).map(|source| source.error_curves(pair, options, &mut cache));
+    let curves =
+        condition_source(state).map(|source| source.error_curves(pair, options, &mut cache));
     let curves = curves.unwrap_or_default();
     let reference = error_reference(&curves);
     let drawn = pointed_out(state, curves, reference.as_ref());
@@ -216,29 +304,43 @@ pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions)
 
 /// Among errors the curve of the identified model: it is zero everywhere, and the others are read against it.
 pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
-    let is_identified =
-        |curve: &&BodeCurve| matches!(&curve.id, CurveId::Model(id) if id.bundle == BundleKind::Identified);
-    curves.iter().find(is_identified).map(|curve| curve.id.clone())
+    let is_identified = |curve: &&BodeCurve| matches!(&curve.id, CurveId::Model(id) if id.bundle == BundleKind::Identified);
+    curves
+        .iter()
+        .find(is_identified)
+        .map(|curve| curve.id.clone())
 }
 
 /// The curves with what they are in the window: those pointed at stand out, and what a click does is said, which does nothing on the
 /// reference.
-fn pointed_out(state: &State, mut curves: Vec<BodeCurve>, reference: Option<&CurveId>) -> Vec<BodeCurve> {
+fn pointed_out(
+    state: &State,
+    mut curves: Vec<BodeCurve>,
+    reference: Option<&CurveId>,
+) -> Vec<BodeCurve> {
     for curve in &mut curves {
         match &curve.id {
             CurveId::Model(id) if reference == Some(&curve.id) => {
                 curve.highlighted = state.display.hovered.as_ref() == Some(id);
                 let separator = if curve.detail.is_empty() { "" } else { " · " };
-                curve.detail.push_str(&format!("{separator}the reference of the errors"));
+                curve
+                    .detail
+                    .push_str(&format!("{separator}the reference of the errors"));
             }
             CurveId::Model(id) => {
                 let is_selected = state.display.curves.selected.contains(id);
                 curve.highlighted = is_selected || state.display.hovered.as_ref() == Some(id);
-                let action = if curve.rejected { "click to restore" } else { "click to reject" };
+                let action = if curve.rejected {
+                    "click to restore"
+                } else {
+                    "click to reject"
+                };
                 let separator = if curve.detail.is_empty() { "" } else { " · " };
                 curve.detail = format!("{}{separator}{action}", curve.detail);
             }
-            CurveId::Scheduled if state.others_are_older() => curve.label.push_str(" of older settings"),
+            CurveId::Scheduled if state.others_are_older() => {
+                curve.label.push_str(" of older settings")
+            }
             _ => {}
         }
     }
@@ -246,7 +348,12 @@ fn pointed_out(state: &State, mut curves: Vec<BodeCurve>, reference: Option<&Cur
 }
 
 /// The roles whose values are told.
-const TOLD: [Role; 4] = [Role::Nominal, Role::IdentifiedRepresentative, Role::Corrected, Role::Scheduled];
+const TOLD: [Role; 4] = [
+    Role::Nominal,
+    Role::IdentifiedRepresentative,
+    Role::Corrected,
+    Role::Scheduled,
+];
 
 /// The values of the heavy curves at the pointer or at a marked frequency \[rad/s\]; without either, at the frequency of the largest
 /// error within the band. Of two marked frequencies, what changes from one to the other.
@@ -256,20 +363,35 @@ pub fn cursor_readout(
     (cursor, pinned): (Option<f64>, &[f64]),
     band: (f64, f64),
 ) -> Option<Readout> {
-    let of_role = |role: Role| curves.iter().find(|curve| !curve.hidden && curve.role == role);
-    let told = TOLD.into_iter().filter_map(|role| Some((role, of_role(role)?)));
+    let of_role = |role: Role| {
+        curves
+            .iter()
+            .find(|curve| !curve.hidden && curve.role == role)
+    };
+    let told = TOLD
+        .into_iter()
+        .filter_map(|role| Some((role, of_role(role)?)));
     let frequency = |omega: f64| unit.readout(omega).trim_start_matches("ω ").to_owned();
     if let [from, to] = *pinned {
-        let change = |curve: &BodeCurve, pane| Some(curve.value_at(pane, to)? - curve.value_at(pane, from)?);
+        let change =
+            |curve: &BodeCurve, pane| Some(curve.value_at(pane, to)? - curve.value_at(pane, from)?);
         let cell = |(role, curve): (Role, &BodeCurve)| ReadoutCell {
             role: Some(role),
             name: format!("Δ {}", role.name()),
             values: PANES.map(|pane| change_text(quantity, pane, change(curve, pane))),
             warns: [false; 2],
         };
-        let frequency = format!("{} → {}", unit.readout(from).trim_start_matches("ω "), frequency(to));
+        let frequency = format!(
+            "{} → {}",
+            unit.readout(from).trim_start_matches("ω "),
+            frequency(to)
+        );
         let (heading, cells) = ("change between marks".to_owned(), told.map(cell).collect());
-        return Some(Readout { heading, frequency, cells });
+        return Some(Readout {
+            heading,
+            frequency,
+            cells,
+        });
     }
     let pair = of_role(Role::Corrected).zip(of_role(Role::IdentifiedRepresentative));
     let (heading, omega) = match (cursor, pinned) {
@@ -279,9 +401,15 @@ pub fn cursor_readout(
     };
     let cell = |(role, curve): (Role, &BodeCurve)| ReadoutCell {
         role: Some(role),
-        name: if curve.rejected { format!("{}, rejected", role.name()) } else { role.name().to_owned() },
+        name: if curve.rejected {
+            format!("{}, rejected", role.name())
+        } else {
+            role.name().to_owned()
+        },
         values: PANES.map(|pane| {
-            curve.value_at(pane, omega).map_or("–".to_owned(), |value| quantity.unit(pane).readout(value))
+            curve
+                .value_at(pane, omega)
+                .map_or("–".to_owned(), |value| quantity.unit(pane).readout(value))
         }),
         warns: [false; 2],
     };
@@ -289,7 +417,11 @@ pub fn cursor_readout(
     if let (BodeQuantity::Response { .. }, Some((corrected, identified))) = (quantity, pair) {
         cells.push(difference_cell(quantity, (corrected, identified), omega));
     }
-    Some(Readout { heading: heading.to_owned(), frequency: frequency(omega), cells })
+    Some(Readout {
+        heading: heading.to_owned(),
+        frequency: frequency(omega),
+        cells,
+    })
 }
 
 fn change_text(quantity: BodeQuantity<'_>, pane: Pane, change: Option<f64>) -> String {
@@ -308,28 +440,42 @@ fn difference_cell(
     (corrected, identified): (&BodeCurve, &BodeCurve),
     omega: f64,
 ) -> ReadoutCell {
-    let difference = |pane| Some(corrected.value_at(pane, omega)? - identified.value_at(pane, omega)?);
+    let difference =
+        |pane| Some(corrected.value_at(pane, omega)? - identified.value_at(pane, omega)?);
     let magnitude = difference(Pane::Magnitude);
     let phase = difference(Pane::Phase).map(|degrees| wrap(degrees.to_radians()).to_degrees());
     let above = |value: Option<f64>, limit: f64| value.is_some_and(|value| value.abs() >= limit);
     ReadoutCell {
         role: None,
         name: "corrected − identified".to_owned(),
-        values: [change_text(quantity, Pane::Magnitude, magnitude), change_text(quantity, Pane::Phase, phase)],
+        values: [
+            change_text(quantity, Pane::Magnitude, magnitude),
+            change_text(quantity, Pane::Phase, phase),
+        ],
         warns: [above(magnitude, 1.0), above(phase, 10.0)],
     }
 }
 
 /// The frequency within the band at which what J is made of is greatest (M4).
-fn largest_error((corrected, identified): (&BodeCurve, &BodeCurve), (min, max): (f64, f64)) -> Option<f64> {
+fn largest_error(
+    (corrected, identified): (&BodeCurve, &BodeCurve),
+    (min, max): (f64, f64),
+) -> Option<f64> {
     let error = |omega: f64| {
-        let [db, deg] = PANES.map(|pane| Some(corrected.value_at(pane, omega)? - identified.value_at(pane, omega)?));
+        let [db, deg] = PANES
+            .map(|pane| Some(corrected.value_at(pane, omega)? - identified.value_at(pane, omega)?));
         let deg = wrap(deg?.to_radians()).to_degrees();
         Some(summand(db?, deg))
     };
-    let within = corrected.omega.iter().copied().filter(|omega| (min..=max).contains(omega));
+    let within = corrected
+        .omega
+        .iter()
+        .copied()
+        .filter(|omega| (min..=max).contains(omega));
     let errors = within.filter_map(|omega| Some((omega, error(omega)?)));
-    errors.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(omega, _)| omega)
+    errors
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(omega, _)| omega)
 }
 
 #[cfg(test)]
@@ -371,17 +517,29 @@ mod tests {
     }
 
     fn values(readout: &Readout, name: &str) -> [String; 2] {
-        readout.cells.iter().find(|cell| cell.name == name).unwrap().values.clone()
+        readout
+            .cells
+            .iter()
+            .find(|cell| cell.name == name)
+            .unwrap()
+            .values
+            .clone()
     }
 
     #[test]
     fn the_heavy_curves_are_told_and_what_the_correction_leaves() {
         let readout = readout(Some(1.0), &[]);
-        assert_eq!((readout.heading.as_str(), readout.frequency.as_str()), ("ω at the pointer", "1.00 rad/s"));
+        assert_eq!(
+            (readout.heading.as_str(), readout.frequency.as_str()),
+            ("ω at the pointer", "1.00 rad/s")
+        );
         assert_eq!(values(&readout, "nominal"), ["2.0 dB", "400°"]);
         assert_eq!(values(&readout, "identified"), ["1.0 dB", "10°"]);
         // 400° is a turn and 30° ahead of 10°.
-        assert_eq!(values(&readout, "corrected − identified"), ["1.5 dB", "30°"]);
+        assert_eq!(
+            values(&readout, "corrected − identified"),
+            ["1.5 dB", "30°"]
+        );
         assert_eq!(readout.cells.last().unwrap().warns, [true, true]);
     }
 
@@ -396,10 +554,20 @@ mod tests {
     fn without_a_pointer_the_largest_error_in_the_band_is_told() {
         let mut curves = curves();
         let shown = (BodeQuantity::RESPONSE, FrequencyUnit::RadPerSecond);
-        let corrected = curves.iter_mut().find(|curve| curve.role == Role::Corrected).unwrap();
+        let corrected = curves
+            .iter_mut()
+            .find(|curve| curve.role == Role::Corrected)
+            .unwrap();
         corrected.magnitude_db = vec![1.0, 9.0].into();
         let readout = cursor_readout(&curves, shown, (None, &[]), BAND).unwrap();
-        assert_eq!((readout.heading.as_str(), readout.frequency.as_str()), ("ω of the largest error", "4.00 rad/s"));
-        assert_eq!(cursor_readout(&curves, shown, (None, &[]), (5.0, 12.0)), None, "nothing is within the band");
+        assert_eq!(
+            (readout.heading.as_str(), readout.frequency.as_str()),
+            ("ω of the largest error", "4.00 rad/s")
+        );
+        assert_eq!(
+            cursor_readout(&curves, shown, (None, &[]), (5.0, 12.0)),
+            None,
+            "nothing is within the band"
+        );
     }
 }

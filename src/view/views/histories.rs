@@ -7,7 +7,9 @@ use egui::{CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
 use gdcm_method::requirements::{TestInput, TestInputShape};
 use gdcm_model::units::number;
 use gdcm_plot::figure::{Figure, FigureKind, OverTime};
-use gdcm_study::study::{Analysis, HistoryRecord, RecordHistory, RecordHistoryJob, TestAnswersJob, Trend};
+use gdcm_study::study::{
+    Analysis, HistoryRecord, RecordHistory, RecordHistoryJob, TestAnswersJob, Trend,
+};
 
 use super::{Need, RequirementsPage, View, decided, tolerances_ui};
 use crate::view::command::Command;
@@ -31,9 +33,16 @@ const TABLE_PART: f32 = 0.32;
 fn record_job(state: &State) -> Option<RecordHistoryJob> {
     let analysis = current(state)?;
     let condition = state.condition().id();
-    let records = state.records.conditions.get(&condition).filter(|_| !state.display.shows_test)?;
+    let records = state
+        .records
+        .conditions
+        .get(&condition)
+        .filter(|_| !state.display.shows_test)?;
     let row = records.rows.get(records.chosen)?;
-    let record = HistoryRecord { flight: Arc::clone(row.used_flight()?).into(), held_out: row.guess.held_out };
+    let record = HistoryRecord {
+        flight: Arc::clone(row.used_flight()?).into(),
+        held_out: row.guess.held_out,
+    };
     let tolerances = state.study.requirements.tolerances.clone();
     Some(RecordHistoryJob {
         analysis: analysis.into(),
@@ -46,17 +55,28 @@ fn record_job(state: &State) -> Option<RecordHistoryJob> {
 
 fn test_job(state: &State) -> Option<TestAnswersJob> {
     let (condition, input) = (state.condition().id(), state.display.pair.input);
-    Some(TestAnswersJob { analysis: current(state)?.into(), condition, input, test: state.study.requirements.test })
+    Some(TestAnswersJob {
+        analysis: current(state)?.into(),
+        condition,
+        input,
+        test: state.study.requirements.test,
+    })
 }
 
 /// The analysis of the present settings, where it is there.
 pub(super) fn current(state: &State) -> Option<Arc<Analysis>> {
-    state.results.analysis.clone().filter(|_| state.analysis().is_some())
+    state
+        .results
+        .analysis
+        .clone()
+        .filter(|_| state.analysis().is_some())
 }
 
 /// What is to be computed over time.
 pub fn over_time_need(state: &State) -> Option<Need> {
-    record_job(state).map(Need::RecordHistory).or_else(|| test_job(state).map(Need::TestAnswers))
+    record_job(state)
+        .map(Need::RecordHistory)
+        .or_else(|| test_job(state).map(Need::TestAnswers))
 }
 
 /// What models answer over time, in words why there is nothing; none until it is computed.
@@ -72,12 +92,18 @@ pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
 
 /// The same for a figure, where it is shown.
 pub fn shown_over_time(state: &State, kind: FigureKind) -> Option<OverTime> {
-    let is_shown = kind == FigureKind::Requirements && state.display.requirements_page == RequirementsPage::Histories;
+    let is_shown = kind == FigureKind::Requirements
+        && state.display.requirements_page == RequirementsPage::Histories;
     over_time(state).filter(|_| is_shown)?.ok()
 }
 
 /// What is flown, or the test, and the answers of the models.
-pub fn histories_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn histories_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     subject_ui(ui, state, palette, commands);
     let title = CollapsingHeader::new("Tolerances").id_salt("edited tolerances");
     title.show(ui, |ui| tolerances_ui(ui, state, palette, commands));
@@ -89,21 +115,45 @@ pub fn histories_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
     if let OverTime::Record(history, _) = &found {
         restore_panel_size(ui, "tolerances");
         let size = TABLE_PART * ui.available_height();
-        let panel = Panel::bottom("tolerances").resizable(true).default_size(size).min_size(60.0);
+        let panel = Panel::bottom("tolerances")
+            .resizable(true)
+            .default_size(size)
+            .min_size(60.0);
         panel.show(ui, |ui| shares_ui(ui, state, history, palette, commands));
     }
     let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
     ui.add(Label::new(palette.small(&figure.caption)).wrap());
     figure_legend_ui(ui, &figure, palette);
-    let mut view = state.display.figures.remove(&View::Requirements).unwrap_or_default();
+    let mut view = state
+        .display
+        .figures
+        .remove(&View::Requirements)
+        .unwrap_or_default();
     view.is_of(&figure.title);
     let accented = match &found {
         OverTime::Test(_) => Some(1 + state.display.pair.output),
         OverTime::Record(..) => None,
     };
-    let (least, words) = (if accented.is_some() { LEAST_PLOT } else { LEAST_RECORD }, HistoryWords(&figure));
-    let scene = FigureScene::new("requirements in time", &figure, least, "There is nothing to show", &words);
-    let scene = FigureScene { zooms: true, accented, ..scene };
+    let (least, words) = (
+        if accented.is_some() {
+            LEAST_PLOT
+        } else {
+            LEAST_RECORD
+        },
+        HistoryWords(&figure),
+    );
+    let scene = FigureScene::new(
+        "requirements in time",
+        &figure,
+        least,
+        "There is nothing to show",
+        &words,
+    );
+    let scene = FigureScene {
+        zooms: true,
+        accented,
+        ..scene
+    };
     figure_ui(ui, &scene, &mut view, palette);
     state.display.figures.insert(View::Requirements, view);
 }
@@ -112,8 +162,15 @@ pub fn histories_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands:
 fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let records = state.records.conditions.get(&state.condition().id());
     let rows = records.into_iter().flat_map(|records| records.used_rows());
-    let mut choices: Vec<(Option<usize>, &str, &str)> =
-        rows.map(|(index, row)| (Some(index), row.table.name.as_str(), "A flight record of this condition")).collect();
+    let mut choices: Vec<(Option<usize>, &str, &str)> = rows
+        .map(|(index, row)| {
+            (
+                Some(index),
+                row.table.name.as_str(),
+                "A flight record of this condition",
+            )
+        })
+        .collect();
     if choices.is_empty() {
         let words = match &state.records.reading {
             Some(reading) => format!("reading {} …", reading),
@@ -121,8 +178,14 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
         };
         ui.label(palette.small(words));
     } else {
-        choices.push((None, "test input", "A step or a doublet of the input in focus, from rest"));
-        let shown = records.map(|records| records.chosen).filter(|_| !state.display.shows_test);
+        choices.push((
+            None,
+            "test input",
+            "A step or a doublet of the input in focus, from rest",
+        ));
+        let shown = records
+            .map(|records| records.chosen)
+            .filter(|_| !state.display.shows_test);
         let mut chosen = shown;
         choice_ui(ui, "What models answer to", &mut chosen, &choices);
         if chosen != shown {
@@ -136,50 +199,101 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
 }
 
 /// Share of time inside and largest excess of every quantity and model.
-fn shares_ui(ui: &mut Ui, state: &mut State, history: &RecordHistory, palette: &Palette, commands: &mut Vec<Command>) {
+fn shares_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    history: &RecordHistory,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let table = history.table();
     let is_outside = |row: usize| table.rows[row][5] != "none";
     let color = |row: usize, column: usize| match column {
-        4 | 5 => Some(if is_outside(row) { palette.warning } else { palette.good }),
+        4 | 5 => Some(if is_outside(row) {
+            palette.warning
+        } else {
+            palette.good
+        }),
         7 if table.rows[row][7] == Trend::Opposite.name() => Some(palette.warning),
         _ => None,
     };
-    let look = TableLook { color: &color, ..TableLook::PLAIN };
-    ScrollArea::vertical().id_salt("tolerances").auto_shrink(false).show(ui, |ui| {
-        ui.label(palette.small(&table.title));
-        let mut sorting = state.display.requirements_sorting;
-        table_grid_ui(ui, &table, &mut sorting[0], &look, palette, commands);
-        state.display.requirements_sorting = sorting;
-    });
+    let look = TableLook {
+        color: &color,
+        ..TableLook::PLAIN
+    };
+    ScrollArea::vertical()
+        .id_salt("tolerances")
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            ui.label(palette.small(&table.title));
+            let mut sorting = state.display.requirements_sorting;
+            table_grid_ui(ui, &table, &mut sorting[0], &look, palette, commands);
+            state.display.requirements_sorting = sorting;
+        });
 }
 
 /// Course, size and duration of the test input.
 fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let test = state.study.requirements.test;
     let input = &state.dataset().inputs()[state.display.pair.input];
-    let decide = |what: &'static str, test: TestInput, commands: &mut Vec<Command>| match test.checked() {
-        Ok(test) => commands.push(decided(state, what, |settings| settings.test = test)),
-        Err(why) => commands.push(Command::Refuse(why.to_string())),
-    };
+    let decide =
+        |what: &'static str, test: TestInput, commands: &mut Vec<Command>| match test.checked() {
+            Ok(test) => commands.push(decided(state, what, |settings| settings.test = test)),
+            Err(why) => commands.push(Command::Refuse(why.to_string())),
+        };
     ui.horizontal_wrapped(|ui| {
         let mut shape = test.shape;
         let choices = [
-            (TestInputShape::Step, "step", "Held for the whole of its duration, then back to trim"),
-            (TestInputShape::Doublet, "doublet", "The first half of its duration to one side, the second to the other"),
+            (
+                TestInputShape::Step,
+                "step",
+                "Held for the whole of its duration, then back to trim",
+            ),
+            (
+                TestInputShape::Doublet,
+                "doublet",
+                "The first half of its duration to one side, the second to the other",
+            ),
         ];
         choice_ui(ui, "Course of the test input", &mut shape, &choices);
         if shape != test.shape {
-            decide("course of the test input", TestInput { shape, ..test }, commands);
+            decide(
+                "course of the test input",
+                TestInput { shape, ..test },
+                commands,
+            );
         }
         ui.label(palette.small(format!("of {}, the input in focus, by", input.name)));
-        let size = number_entry_ui(ui, "Size of the test input", &number(test.size), "", 56.0, commands);
+        let size = number_entry_ui(
+            ui,
+            "Size of the test input",
+            &number(test.size),
+            "",
+            56.0,
+            commands,
+        );
         if let Some(size) = size.flatten() {
-            decide("size of the test input", TestInput { size, ..test }, commands);
+            decide(
+                "size of the test input",
+                TestInput { size, ..test },
+                commands,
+            );
         }
         ui.label(palette.small(format!("{} for", input.unit)));
-        let duration = number_entry_ui(ui, "Duration of the test input", &number(test.duration_s), "", 56.0, commands);
+        let duration = number_entry_ui(
+            ui,
+            "Duration of the test input",
+            &number(test.duration_s),
+            "",
+            56.0,
+            commands,
+        );
         if let Some(duration_s) = duration.flatten() {
-            decide("duration of the test input", TestInput { duration_s, ..test }, commands);
+            decide(
+                "duration of the test input",
+                TestInput { duration_s, ..test },
+                commands,
+            );
         }
         ui.label(palette.small("s"));
     });

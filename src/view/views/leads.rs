@@ -19,27 +19,55 @@ use crate::view::tables::{Sorting, TableLook, table_ui};
 const TABLE_PART: f32 = 0.5;
 
 /// Gain and phase of the leads to ten times the band, and the table of the channels.
-pub fn leads_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn leads_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     if let Some(table) = leads_table(state) {
         let width = ui.available_width();
         restore_panel_size(ui, "leads");
-        let panel = Panel::right("leads").resizable(true).default_size(TABLE_PART * width).min_size(160.0);
+        let panel = Panel::right("leads")
+            .resizable(true)
+            .default_size(TABLE_PART * width)
+            .min_size(160.0);
         panel.show(ui, |ui| {
             let pair = Channel::of(state.display.pair);
             let channels = all_channels(state.dataset());
-            let selected = |row: usize| channels.get(row).is_some_and(|channel| pair.contains(channel));
-            let look = TableLook { selected: &selected, ..TableLook::PLAIN };
+            let selected = |row: usize| {
+                channels
+                    .get(row)
+                    .is_some_and(|channel| pair.contains(channel))
+            };
+            let look = TableLook {
+                selected: &selected,
+                ..TableLook::PLAIN
+            };
             ui.label(palette.small_warning(&table.title));
             ui.spacing_mut().interact_size.y = 16.0;
-            table_ui(ui, &table, &mut Sorting::default(), &look, palette, commands);
+            table_ui(
+                ui,
+                &table,
+                &mut Sorting::default(),
+                &look,
+                palette,
+                commands,
+            );
         });
     }
     let figure = figure(state);
     let message = match state.study.settings.phase {
         PhaseCorrection::Lead => state.results.absence(),
-        _ => "No leads: the phase is corrected by delays, or not at all. Settings, phase, \"delay or lead\"",
+        _ => {
+            "No leads: the phase is corrected by delays, or not at all. Settings, phase, \"delay or lead\""
+        }
     };
-    let mut view = state.display.figures.remove(&View::Leads).unwrap_or_default();
+    let mut view = state
+        .display
+        .figures
+        .remove(&View::Leads)
+        .unwrap_or_default();
     let scene = FigureScene::new("leads", &figure, vec2(180.0, 110.0), message, &figure);
     figure_ui(ui, &scene, &mut view, palette);
     state.display.figures.insert(View::Leads, view);
@@ -47,10 +75,14 @@ pub fn leads_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
 
 /// The figure of the response in focus; without plots where there are no leads.
 fn figure(state: &State) -> Figure {
-    let has_leads = state.shown().is_some_and(|shown| shown.correction.leads.is_some());
+    let has_leads = state
+        .shown()
+        .is_some_and(|shown| shown.correction.leads.is_some());
     let source = condition_source(state).filter(|_| has_leads);
     let pairs = vec![state.display.pair];
-    FigureRequest::new(FigureKind::Leads, pairs, Vec::new()).figure(None, source.as_ref()).unwrap_or_default()
+    FigureRequest::new(FigureKind::Leads, pairs, Vec::new())
+        .figure(None, source.as_ref())
+        .unwrap_or_default()
 }
 
 /// Every channel: delay or lead, the lag at the band's end that its lead takes out, which servo it replaces, and its price; in its title
@@ -60,7 +92,10 @@ pub fn leads_table(state: &State) -> Option<Table> {
     let price = LeadPrice::of(leads);
     let (inputs, outputs) = state.dataset().names_of_channels();
     let top = leads.design.band_top_rad_s();
-    let title = price.as_ref().map_or_else(|| "No channel has a lead filter".to_owned(), LeadPrice::limit_words);
+    let title = price.as_ref().map_or_else(
+        || "No channel has a lead filter".to_owned(),
+        LeadPrice::limit_words,
+    );
     let above = price.as_ref().map_or(top, LeadPrice::above_rad_s);
     let columns = [
         "channel".to_owned(),
@@ -75,7 +110,13 @@ pub fn leads_table(state: &State) -> Option<Table> {
         let phase = filter.map_or(-top * tau_s.max(0.0), |filter| filter.phase(top));
         let servo = filter.map_or_else(
             || "–".to_owned(),
-            |filter| format!("{} → {}", telling(filter.zero_rad_s(), 0), telling(filter.lag_rad_s(), 0)),
+            |filter| {
+                format!(
+                    "{} → {}",
+                    telling(filter.zero_rad_s(), 0),
+                    telling(filter.lag_rad_s(), 0)
+                )
+            },
         );
         let gain_db = price.as_ref().map_or(0.0, |price| price.gains_db[channel]);
         table.row([

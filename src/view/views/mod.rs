@@ -7,8 +7,8 @@ use egui::Ui;
 use gdcm_model::dataset::Pair;
 use gdcm_plot::figure::FigureKind;
 use gdcm_study::study::{
-    AcrossJob, AssessmentJob, CouplingsJob, ModesJob, PhaseCorrection, RecordHistoryJob, RequirementsJob,
-    SimulationJob, TestAnswersJob, TimeHistoriesJob, VariantJob,
+    AcrossJob, AssessmentJob, CouplingsJob, ModesJob, PhaseCorrection, RecordHistoryJob,
+    RequirementsJob, SimulationJob, TestAnswersJob, TimeHistoriesJob, VariantJob,
 };
 use serde::{Deserialize, Serialize};
 
@@ -97,7 +97,9 @@ impl View {
     /// Those that the dock may show: that of leads where these are asked for.
     pub fn docked(state: &State) -> impl Iterator<Item = Self> {
         let has_leads = state.study.settings.phase == PhaseCorrection::Lead;
-        Self::ALL.into_iter().filter(move |view| view.kind().is_docked && (*view != Self::Leads || has_leads))
+        Self::ALL
+            .into_iter()
+            .filter(move |view| view.kind().is_docked && (*view != Self::Leads || has_leads))
     }
 
     /// What its tab says.
@@ -160,7 +162,14 @@ impl View {
                 tools_width: 180.0,
                 needs: |state| {
                     let condition = state.dataset().condition(state.condition().id());
-                    condition.map(|of| Need::Modes(ModesJob { condition: Arc::clone(of).into() })).into_iter().collect()
+                    condition
+                        .map(|of| {
+                            Need::Modes(ModesJob {
+                                condition: Arc::clone(of).into(),
+                            })
+                        })
+                        .into_iter()
+                        .collect()
                 },
                 figure: Some(ViewFigure::of_all(FigureKind::Poles)),
                 ..ViewKind::PLAIN
@@ -186,9 +195,16 @@ impl View {
                 group: ViewGroup::Models,
                 takes_dock: true,
                 title: ViewTitle::Condition,
-                tools: |ui, state, _, commands| super::records::records_header_ui(ui, state, commands),
+                tools: |ui, state, _, commands| {
+                    super::records::records_header_ui(ui, state, commands)
+                },
                 tools_width: 380.0,
-                needs: |state| super::records::simulation_jobs(state).into_iter().map(Need::Simulation).collect(),
+                needs: |state| {
+                    super::records::simulation_jobs(state)
+                        .into_iter()
+                        .map(Need::Simulation)
+                        .collect()
+                },
                 ..ViewKind::PLAIN
             },
             Self::Channels => ViewKind {
@@ -212,10 +228,16 @@ impl View {
                 is_of_all_conditions: true,
                 needs: |state| {
                     let choice = assessment_choice(state);
-                    let job = current(state).map(|analysis| AssessmentJob { analysis: analysis.into(), choice });
+                    let job = current(state).map(|analysis| AssessmentJob {
+                        analysis: analysis.into(),
+                        choice,
+                    });
                     job.map(Need::Assessment).into_iter().collect()
                 },
-                figure: Some(ViewFigure { kind: FigureKind::Assessment, pairs: assessed_pairs }),
+                figure: Some(ViewFigure {
+                    kind: FigureKind::Assessment,
+                    pairs: assessed_pairs,
+                }),
                 ..ViewKind::PLAIN
             },
             // The button of its figure stands in its first line: it has no tools.
@@ -275,7 +297,10 @@ impl View {
                 tools: net_gain_header_ui,
                 tools_width: NET_GAIN_CONTROLS,
                 is_of_all_conditions: true,
-                figure: Some(ViewFigure { kind: FigureKind::NetGain, pairs: net_gain_pairs }),
+                figure: Some(ViewFigure {
+                    kind: FigureKind::NetGain,
+                    pairs: net_gain_pairs,
+                }),
                 ..ViewKind::PLAIN
             },
         }
@@ -344,12 +369,18 @@ pub struct ViewFigure {
 impl ViewFigure {
     /// Of the response in focus.
     fn of_focus(kind: FigureKind) -> Self {
-        Self { kind, pairs: |state| vec![state.display.pair] }
+        Self {
+            kind,
+            pairs: |state| vec![state.display.pair],
+        }
     }
 
     /// Of all responses, or of none.
     fn of_all(kind: FigureKind) -> Self {
-        Self { kind, pairs: |_| Vec::new() }
+        Self {
+            kind,
+            pairs: |_| Vec::new(),
+        }
     }
 }
 

@@ -3,7 +3,9 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
 use gdcm_model::dataset::Pair;
-use gdcm_plot::figure::{Across, GainQuantity, MarkId, add_variant, net_gain_figure, quieten, schedule_words};
+use gdcm_plot::figure::{
+    Across, GainQuantity, MarkId, add_variant, net_gain_figure, quieten, schedule_words,
+};
 use gdcm_study::study::setting;
 use serde::{Deserialize, Serialize};
 
@@ -25,12 +27,24 @@ pub const NET_GAIN_CONTROLS: f32 = 410.0;
 /// What the plots show, in words.
 pub fn net_gain_words(state: &State) -> String {
     let level = 100.0 * state.study.settings.uncertainty.level;
-    let bars = if state.display.hide_bars { String::new() } else { format!(", bars of {level:.0} %") };
-    format!("k of output times k of input, {} responses{bars}", state.display.net_gain_pairs.name())
+    let bars = if state.display.hide_bars {
+        String::new()
+    } else {
+        format!(", bars of {level:.0} %")
+    };
+    format!(
+        "k of output times k of input, {} responses{bars}",
+        state.display.net_gain_pairs.name()
+    )
 }
 
 /// What the plots show, and the form of the schedule, laid out from right to left.
-pub fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn net_gain_header_ui(
+    ui: &mut Ui,
+    state: &State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let shown = state.display.show_evidence;
     let hint = "Which pairs at one airspeed differ significantly, and what each form of the schedule misses, so that a degree is \
                 chosen on evidence";
@@ -39,24 +53,38 @@ pub fn net_gain_header_ui(ui: &mut Ui, state: &State, palette: &Palette, command
     }
     bars_switch_ui(ui, state, ("bars", "error bars"), commands);
     if let Some((variant, _)) = overlaid_analysis(state) {
-        let button = ui.small_button(RichText::new(format!("□ {variant} ×")).color(palette.name_of(palette.corrected)));
+        let button = ui.small_button(
+            RichText::new(format!("□ {variant} ×")).color(palette.name_of(palette.corrected)),
+        );
         let name = format!("Variant {variant} laid over");
         let hint = "Hollow squares: the net gains of this variant. Click: take them away";
-        if named(button, Role::Button, &name).on_hover_text(hint).clicked() {
+        if named(button, Role::Button, &name)
+            .on_hover_text(hint)
+            .clicked()
+        {
             commands.push(Command::Overlay(None));
         }
     }
     let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
     let form = schedule_words(&state.study.settings.schedule);
-    let text = format!("{} \u{25be}", form.strip_prefix("polynomial of ").unwrap_or(&form));
+    let text = format!(
+        "{} \u{25be}",
+        form.strip_prefix("polynomial of ").unwrap_or(&form)
+    );
     let button = MenuButton::from_button(Button::new(text).frame(false)).config(config);
     let (button, _) = button.ui(ui, |ui| schedule_ui(ui, state, palette, commands));
-    named(button, Role::Button, "Form of the schedule").on_hover_text("The form of the schedule over airspeed");
+    named(button, Role::Button, "Form of the schedule")
+        .on_hover_text("The form of the schedule over airspeed");
     pair_set_ui(ui, state, commands);
 }
 
 /// The switch of error bars and bands, by this text and name.
-pub(super) fn bars_switch_ui(ui: &mut Ui, state: &State, names: (&str, &str), commands: &mut Vec<Command>) {
+pub(super) fn bars_switch_ui(
+    ui: &mut Ui,
+    state: &State,
+    names: (&str, &str),
+    commands: &mut Vec<Command>,
+) {
     let shown = !state.display.hide_bars;
     let level = 100.0 * state.study.settings.uncertainty.level;
     let hint = format!(
@@ -73,11 +101,18 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let pair = state.display.pair;
     if state.display.net_gain_pairs == PairSet::Picked {
         let picked = state.display.picked_pairs.contains(&pair);
-        let (text, verb) = if picked { ("−", "Let go") } else { ("+", "Pick") };
+        let (text, verb) = if picked {
+            ("−", "Let go")
+        } else {
+            ("+", "Pick")
+        };
         let name = format!("{verb} {}", state.dataset().pair_name(pair));
         let button = ui.small_button(text);
         button.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
-        if button.on_hover_text(format!("{name}, the response in focus")).clicked() {
+        if button
+            .on_hover_text(format!("{name}, the response in focus"))
+            .clicked()
+        {
             commands.push(Command::PickPair(pair));
         }
     }
@@ -90,7 +125,12 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 }
 
 /// Net gain of the responses chosen against airspeed.
-pub fn net_gain_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn net_gain_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let message = if state.analysis().is_none() {
         state.results.absence()
     } else {
@@ -102,17 +142,34 @@ pub fn net_gain_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, comma
     if state.display.show_evidence {
         let width = ui.available_width();
         restore_panel_size(ui, "evidence");
-        let panel = Panel::right("evidence").resizable(true).default_size(0.36 * width).min_size(120.0);
+        let panel = Panel::right("evidence")
+            .resizable(true)
+            .default_size(0.36 * width)
+            .min_size(120.0);
         panel.show(ui, |ui| evidence_ui(ui, state, palette, commands));
     }
-    let mut view = state.display.figures.remove(&View::NetGain).unwrap_or_default();
+    let mut view = state
+        .display
+        .figures
+        .remove(&View::NetGain)
+        .unwrap_or_default();
     let mut plots = net_gain_plots(state);
     let selected = MarkId::Condition(state.condition().id());
     quieten(&mut plots.figure, &selected, state.display.show_evidence);
-    let accented = net_gain_pairs(state).iter().position(|pair| *pair == state.display.pair);
-    let scene = FigureScene { is_compact: true, accented, ..plots.scene("net gain", &plots.figure, message) };
+    let accented = net_gain_pairs(state)
+        .iter()
+        .position(|pair| *pair == state.display.pair);
+    let scene = FigureScene {
+        is_compact: true,
+        accented,
+        ..plots.scene("net gain", &plots.figure, message)
+    };
     let events = figure_ui(ui, &scene, &mut view, palette);
-    commands.extend(events.into_iter().filter_map(|event| gain_command(state, event)));
+    commands.extend(
+        events
+            .into_iter()
+            .filter_map(|event| gain_command(state, event)),
+    );
     state.display.figures.insert(View::NetGain, view);
 }
 
@@ -152,13 +209,19 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         &setting::TAU_DEGREE,
         &setting::AIRSPEED_TOLERANCE,
     ];
-    Grid::new("form of the schedule").num_columns(2).spacing([12.0, 6.0]).show(ui, |ui| {
-        for setting in rows.into_iter().filter(|setting| (setting.control.applies)(&state.study)) {
-            ui.label(palette.dim(setting.control.label));
-            setting_ui(ui, state, setting, palette, commands);
-            ui.end_row();
-        }
-    });
+    Grid::new("form of the schedule")
+        .num_columns(2)
+        .spacing([12.0, 6.0])
+        .show(ui, |ui| {
+            for setting in rows
+                .into_iter()
+                .filter(|setting| (setting.control.applies)(&state.study))
+            {
+                ui.label(palette.dim(setting.control.label));
+                setting_ui(ui, state, setting, palette, commands);
+                ui.end_row();
+            }
+        });
 }
 
 /// Which responses the plots of net gain show.
@@ -179,7 +242,13 @@ pub enum PairSet {
 
 impl PairSet {
     /// Every set, in the order of its list.
-    pub const ALL: [Self; 5] = [Self::Held, Self::Focused, Self::OnAxis, Self::All, Self::Picked];
+    pub const ALL: [Self; 5] = [
+        Self::Held,
+        Self::Focused,
+        Self::OnAxis,
+        Self::All,
+        Self::Picked,
+    ];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -219,17 +288,31 @@ pub fn net_gain_pairs(state: &State) -> Vec<Pair> {
 
 /// One plot for each response of the set shown: the net gain of each condition's optimum, and the schedule.
 pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
-    let pairs = if state.analysis().is_some() { net_gain_pairs(state) } else { Vec::new() };
-    let figure = state.analysis().map(|analysis| net_gain_figure(analysis, shown_uncertainty(state), &pairs));
+    let pairs = if state.analysis().is_some() {
+        net_gain_pairs(state)
+    } else {
+        Vec::new()
+    };
+    let figure = state
+        .analysis()
+        .map(|analysis| net_gain_figure(analysis, shown_uncertainty(state), &pairs));
     let mut figure = figure.unwrap_or_default();
     let quantities: Vec<GainQuantity> = pairs.iter().copied().map(GainQuantity::NetGain).collect();
     if let Some((name, analysis)) = overlaid_analysis(state) {
         add_variant(&mut figure, &quantities, analysis, name);
     }
-    for (plot, pair) in
-        figure.plots.iter_mut().zip(&pairs).filter(|(_, pair)| !state.study.settings.constrained[**pair])
+    for (plot, pair) in figure
+        .plots
+        .iter_mut()
+        .zip(&pairs)
+        .filter(|(_, pair)| !state.study.settings.constrained[**pair])
     {
         plot.title = format!("{} (free)", state.dataset().pair_name(*pair));
     }
-    GainPlots { state, figure: figure.with_ranges(), quantities, across: Across::Airspeed }
+    GainPlots {
+        state,
+        figure: figure.with_ranges(),
+        quantities,
+        across: Across::Airspeed,
+    }
 }

@@ -17,12 +17,23 @@ use super::frequency::{bode_options, condition_source};
 use crate::view::command::Command;
 use crate::view::controls::restore_panel_size;
 use crate::view::palette::Palette;
-use crate::view::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_legend_ui, figure_ui};
+use crate::view::plot::{
+    FigureEvent, FigureScene, FigureView, FigureWords, figure_legend_ui, figure_ui,
+};
 use crate::view::state::State;
 use crate::view::tables::{TableLook, table_ui};
 
 /// Real and imaginary parts in the window of the slow modes \[rad/s\]: the rigid-body modes of a helicopter lie there.
-const SLOW: [Range; 2] = [Range { min: -2.0, max: 0.6 }, Range { min: -3.2, max: 3.2 }];
+const SLOW: [Range; 2] = [
+    Range {
+        min: -2.0,
+        max: 0.6,
+    },
+    Range {
+        min: -3.2,
+        max: 3.2,
+    },
+];
 /// A plot is never smaller \[pt\].
 const LEAST_PLOT: Vec2 = vec2(140.0, 130.0);
 /// Part of the height that the table has at first.
@@ -39,24 +50,44 @@ pub fn poles_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
 }
 
 /// Poles of every model of the condition shown; a click rejects or restores a model.
-pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn poles_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     let mut modes = std::mem::take(&mut state.display.modes);
     modes.refresh(state);
     state.display.modes = modes;
     let height = ui.available_height();
     if !state.display.modes.table().0.rows.is_empty() {
         restore_panel_size(ui, "modes");
-        let panel = Panel::bottom("modes").resizable(true).default_size(TABLE_PART * height).min_size(60.0);
+        let panel = Panel::bottom("modes")
+            .resizable(true)
+            .default_size(TABLE_PART * height)
+            .min_size(60.0);
         panel.show(ui, |ui| modes_ui(ui, state, palette, commands));
     }
     let message = match state.modes() {
         Some(_) => "No model of this condition has poles: they are known by measured responses",
         None => state.results.absence(),
     };
-    let mut view = state.display.figures.remove(&View::Poles).unwrap_or_default();
-    let figure = poles(state).map(|figure| dressed(figure, &view)).unwrap_or_default();
+    let mut view = state
+        .display
+        .figures
+        .remove(&View::Poles)
+        .unwrap_or_default();
+    let figure = poles(state)
+        .map(|figure| dressed(figure, &view))
+        .unwrap_or_default();
     figure_legend_ui(ui, &figure, palette);
-    let words = PoleWords { state, dots: figure.plots.first().map_or(0, |plot| plot.panels[0].dots().count()) };
+    let words = PoleWords {
+        state,
+        dots: figure
+            .plots
+            .first()
+            .map_or(0, |plot| plot.panels[0].dots().count()),
+    };
     let scene = FigureScene {
         highlighted: state.display.hovered.clone().map(MarkId::Model),
         zooms: true,
@@ -67,7 +98,9 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
             FigureEvent::Pointed(MarkId::Model(id)) => Command::Hover(id),
             FigureEvent::Told(words) => Command::Tell(words),
             FigureEvent::Clicked(_, MarkId::Model(id), keys) if keys.alt => Command::Isolate(id),
-            FigureEvent::Clicked(_, MarkId::Model(id), _) if state.study.is_rejected(&id) => Edit::Restore(id).into(),
+            FigureEvent::Clicked(_, MarkId::Model(id), _) if state.study.is_rejected(&id) => {
+                Edit::Restore(id).into()
+            }
             FigureEvent::Clicked(_, MarkId::Model(id), _) => Edit::Reject(id).into(),
             FigureEvent::Clicked(..) | FigureEvent::Pointed(_) | FigureEvent::Asked(_) => continue,
         });
@@ -78,9 +111,19 @@ pub fn poles_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands
 /// Poles of every model of the condition shown, and zeros of the response in focus where they are wanted; none until they are known.
 pub fn poles(state: &State) -> Option<Figure> {
     let CachedModes { zeros, shifts, .. } = &state.display.modes;
-    let found =
-        |id: &ModelId| zeros.iter().find(|(of, _)| of == id).map(|(_, zeros)| zeros.clone()).unwrap_or_default();
-    let figure = poles_figure(&condition_source(state)?, state.modes()?, &bode_options(state), (&found, shifts));
+    let found = |id: &ModelId| {
+        zeros
+            .iter()
+            .find(|(of, _)| of == id)
+            .map(|(_, zeros)| zeros.clone())
+            .unwrap_or_default()
+    };
+    let figure = poles_figure(
+        &condition_source(state)?,
+        state.modes()?,
+        &bode_options(state),
+        (&found, shifts),
+    );
     Some(figure).filter(|figure| figure.plots[0].panels[0].dots().next().is_some())
 }
 
@@ -92,14 +135,25 @@ fn dressed(mut figure: Figure, view: &FigureView) -> Figure {
     }
     for (index, plot) in figure.plots.iter_mut().enumerate() {
         let panel = &mut plot.panels[0];
-        let ranges = view.ranges(index).unwrap_or_else(|| [Along::X, Along::Y].map(|along| panel.shown(along)));
+        let ranges = view
+            .ranges(index)
+            .unwrap_or_else(|| [Along::X, Along::Y].map(|along| panel.shown(along)));
         panel.marks.retain(|mark| !matches!(mark, Mark::Guide(_)));
-        panel.marks.splice(0..0, damping_grid(ranges).map(Mark::from));
+        panel
+            .marks
+            .splice(0..0, damping_grid(ranges).map(Mark::from));
         for mark in &mut panel.marks {
             if let Mark::Dots(dots) = mark {
-                let of = [Role::Nominal, Role::Representative, Role::IdentifiedRepresentative];
-                let matters =
-                    of.into_iter().any(|role| dots.key.as_deref().is_some_and(|key| key.ends_with(role.key(false))));
+                let of = [
+                    Role::Nominal,
+                    Role::Representative,
+                    Role::IdentifiedRepresentative,
+                ];
+                let matters = of.into_iter().any(|role| {
+                    dots.key
+                        .as_deref()
+                        .is_some_and(|key| key.ends_with(role.key(false)))
+                });
                 dots.size = if matters { 1.0 } else { 0.7 };
             }
         }
@@ -120,19 +174,37 @@ impl FigureWords for PoleWords<'_> {
     }
 
     fn pointed(&self, _: usize, id: &MarkId, [re, im]: [f64; 2]) -> Option<String> {
-        let (MarkId::Model(id), modes) = (id, self.state.modes()?) else { return None };
+        let (MarkId::Model(id), modes) = (id, self.state.modes()?) else {
+            return None;
+        };
         let index = modes.condition.position(id.bundle, &id.name)?;
         let model = &modes.condition.bundle(id.bundle)[index];
-        let found = modes.bundle(id.bundle)[index].as_deref().unwrap_or_default();
-        let words: Vec<String> = match found.iter().find(|mode| [mode.pole.re, mode.pole.im] == [re, im]) {
-            Some(mode) => [Some(mode_words(mode)), name_words(mode, model), participation_words(mode, model, 3)]
-                .into_iter()
-                .flatten()
-                .chain(sampled_words(model))
-                .collect(),
-            None => vec![format!("transmission zero of {}", self.state.dataset().pair_name(self.state.display.pair))],
+        let found = modes.bundle(id.bundle)[index]
+            .as_deref()
+            .unwrap_or_default();
+        let words: Vec<String> = match found
+            .iter()
+            .find(|mode| [mode.pole.re, mode.pole.im] == [re, im])
+        {
+            Some(mode) => [
+                Some(mode_words(mode)),
+                name_words(mode, model),
+                participation_words(mode, model, 3),
+            ]
+            .into_iter()
+            .flatten()
+            .chain(sampled_words(model))
+            .collect(),
+            None => vec![format!(
+                "transmission zero of {}",
+                self.state.dataset().pair_name(self.state.display.pair)
+            )],
         };
-        let click = if self.state.study.is_rejected(id) { "click to restore" } else { "click to reject" };
+        let click = if self.state.study.is_rejected(id) {
+            "click to restore"
+        } else {
+            "click to reject"
+        };
         Some(format!("{} · {} · {click}", id.name, words.join(" · ")))
     }
 }
@@ -141,8 +213,17 @@ impl FigureWords for PoleWords<'_> {
 fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let (table, jumping) = state.display.modes.table();
     let look = TableLook {
-        color: &|row, _| jumping.get(row).and_then(Option::as_ref).map(|_| palette.warning),
-        selected: &|row| jumping.get(row).is_some_and(|id| id.is_some() && *id == state.display.hovered),
+        color: &|row, _| {
+            jumping
+                .get(row)
+                .and_then(Option::as_ref)
+                .map(|_| palette.warning)
+        },
+        selected: &|row| {
+            jumping
+                .get(row)
+                .is_some_and(|id| id.is_some() && *id == state.display.hovered)
+        },
     };
     let mut sorting = state.display.modes_sorting;
     let clicked = table_ui(ui, table, &mut sorting, &look, palette, commands);
@@ -179,8 +260,16 @@ impl MadeOf {
     fn of(state: &State, modes: &Arc<ConditionModes>) -> Self {
         let coupled = state.shown().and_then(|shown| shown.coupled.as_ref());
         let couplings = coupled.map(|coupled| Arc::clone(&coupled.fitted));
-        let zeros_of = state.display.show_zeros.then(|| (state.display.pair, models_with_zeros(state, modes)));
-        Self { modes: Arc::clone(modes), reference: reference(state, modes), couplings, zeros_of }
+        let zeros_of = state
+            .display
+            .show_zeros
+            .then(|| (state.display.pair, models_with_zeros(state, modes)));
+        Self {
+            modes: Arc::clone(modes),
+            reference: reference(state, modes),
+            couplings,
+            zeros_of,
+        }
     }
 
     fn is_same(&self, other: &Self) -> bool {
@@ -204,17 +293,31 @@ impl CachedModes {
             return;
         };
         let made_of = MadeOf::of(state, modes);
-        if self.made_of.as_ref().is_some_and(|known| known.is_same(&made_of)) {
+        if self
+            .made_of
+            .as_ref()
+            .is_some_and(|known| known.is_same(&made_of))
+        {
             return;
         }
         (self.table, self.jumping) = modes_table(state, modes, made_of.reference);
-        self.shifts = state.shown().map(ConditionAnalysis::pole_shifts).unwrap_or_default();
+        self.shifts = state
+            .shown()
+            .map(ConditionAnalysis::pole_shifts)
+            .unwrap_or_default();
         let zeros = |pair: Pair, id: &ModelId| {
             let model = modes.condition.model(id.bundle, &id.name);
-            model.map(|model| finite_zeros(&model.dynamics, pair)).unwrap_or_default()
+            model
+                .map(|model| finite_zeros(&model.dynamics, pair))
+                .unwrap_or_default()
         };
-        let zeros_of = made_of.zeros_of.iter().flat_map(|(pair, ids)| ids.iter().map(|id| (*pair, id)));
-        self.zeros = zeros_of.map(|(pair, id)| (id.clone(), zeros(pair, id))).collect();
+        let zeros_of = made_of
+            .zeros_of
+            .iter()
+            .flat_map(|(pair, ids)| ids.iter().map(|id| (*pair, id)));
+        self.zeros = zeros_of
+            .map(|(pair, id)| (id.clone(), zeros(pair, id)))
+            .collect();
         self.made_of = Some(made_of);
     }
 }
@@ -234,7 +337,9 @@ fn models_with_zeros(state: &State, modes: &ConditionModes) -> Vec<ModelId> {
 
 /// Index of the physics model whose modes the others' are matched to: the representative, the nominal one until it is known.
 fn reference(state: &State, modes: &ConditionModes) -> usize {
-    let name = state.shown().map(|shown| shown.representative_name(BundleKind::Physics));
+    let name = state
+        .shown()
+        .map(|shown| shown.representative_name(BundleKind::Physics));
     let found = name.and_then(|name| modes.condition.position(BundleKind::Physics, name));
     found.unwrap_or_else(|| modes.condition.nominal())
 }
@@ -242,22 +347,35 @@ fn reference(state: &State, modes: &ConditionModes) -> usize {
 /// "1.52 rad/s, ζ 0.31, T 2.1 s".
 fn mode_words(mode: &Mode) -> String {
     let mut words = vec![format!("|λ| {:.3} rad/s", mode.frequency_rad_s)];
-    words.extend(mode.damping_ratio.filter(|_| mode.oscillates()).map(|ratio| format!("ζ {ratio:.3}")));
-    words.extend(mode.time_constant_s.map(|constant| format!("T {constant:.2} s")));
+    words.extend(
+        mode.damping_ratio
+            .filter(|_| mode.oscillates())
+            .map(|ratio| format!("ζ {ratio:.3}")),
+    );
+    words.extend(
+        mode.time_constant_s
+            .map(|constant| format!("T {constant:.2} s")),
+    );
     words.join(", ")
 }
 
 /// What a mode is called, where the states of its model are named (M17.3).
 fn name_words(mode: &Mode, model: &Model) -> Option<String> {
     let (name, by) = ModeName::of(mode, &model.states);
-    name.filter(|_| by == NamedBy::States).map(|name| name.to_string())
+    name.filter(|_| by == NamedBy::States)
+        .map(|name| name.to_string())
 }
 
 /// What a pole of a model of discrete time stands for.
 fn sampled_words(model: &Model) -> Option<String> {
-    let Dynamics::StateSpace(system) = &model.dynamics else { return None };
+    let Dynamics::StateSpace(system) = &model.dynamics else {
+        return None;
+    };
     let sample_time_s = system.timing().sample_time_s?;
-    Some(format!("s = ln z / T, T = {} s; poles at z = 0 have no s and are not drawn", number(sample_time_s)))
+    Some(format!(
+        "s = ln z / T, T = {} s; poles at z = 0 have no s and are not drawn",
+        number(sample_time_s)
+    ))
 }
 
 /// The states that take part most, so many at most: "w 62 %, q 21 %".
@@ -270,27 +388,53 @@ fn participation_words(mode: &Mode, model: &Model, most: usize) -> Option<String
         Some(name) => name.clone(),
         None => format!("state {}", state + 1),
     };
-    let words = shares.iter().take(most).map(|(state, share)| format!("{} {:.0} %", name(*state), 100.0 * share));
+    let words = shares
+        .iter()
+        .take(most)
+        .map(|(state, share)| format!("{} {:.0} %", name(*state), 100.0 * share));
     Some(words.collect::<Vec<_>>().join(", ")).filter(|words| !words.is_empty())
 }
 
 /// The modes of the physics bundle, followed from model to model: one row a mode of the reference model.
-fn modes_table(state: &State, modes: &ConditionModes, reference: usize) -> (Table, Vec<Option<ModelId>>) {
+fn modes_table(
+    state: &State,
+    modes: &ConditionModes,
+    reference: usize,
+) -> (Table, Vec<Option<ModelId>>) {
     let kind = BundleKind::Physics;
     let models = modes.condition.bundle(kind);
     let title = format!("Modes of condition {}", modes.condition.id());
-    let columns = ["mode", "|λ| [rad/s]", "ζ [-]", "T [s]", "Re λ", "Im λ", "spread [rad/s]", "states", "outlying at"];
+    let columns = [
+        "mode",
+        "|λ| [rad/s]",
+        "ζ [-]",
+        "T [s]",
+        "Re λ",
+        "Im λ",
+        "spread [rad/s]",
+        "states",
+        "outlying at",
+    ];
     let mut table = Table::new(title, columns);
     let mut jumping = Vec::new();
     let own = modes.bundle(kind)[reference].as_deref().unwrap_or_default();
     for track in modes.tracks(kind, reference) {
-        let Some(mode) = own.get(track.reference) else { continue };
-        let jumps: Vec<&str> = track.jumps.iter().map(|&model| models[model].name.as_str()).collect();
+        let Some(mode) = own.get(track.reference) else {
+            continue;
+        };
+        let jumps: Vec<&str> = track
+            .jumps
+            .iter()
+            .map(|&model| models[model].name.as_str())
+            .collect();
         let figure = |value: f64| format!("{value:.3}").replace('-', "\u{2212}");
         table.row([
             name_words(mode, &models[reference]).unwrap_or_default(),
             figure(mode.frequency_rad_s),
-            mode.damping_ratio.filter(|_| mode.oscillates()).map(figure).unwrap_or_default(),
+            mode.damping_ratio
+                .filter(|_| mode.oscillates())
+                .map(figure)
+                .unwrap_or_default(),
             mode.time_constant_s.map(figure).unwrap_or_default(),
             figure(mode.pole.re),
             figure(mode.pole.im),
@@ -298,7 +442,12 @@ fn modes_table(state: &State, modes: &ConditionModes, reference: usize) -> (Tabl
             participation_words(mode, &models[reference], 2).unwrap_or_default(),
             jumps.join(", "),
         ]);
-        jumping.push(track.jumps.first().map(|&model| state.model_id(kind, &models[model].name)));
+        jumping.push(
+            track
+                .jumps
+                .first()
+                .map(|&model| state.model_id(kind, &models[model].name)),
+        );
     }
     (table, jumping)
 }

@@ -10,11 +10,13 @@ use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::{s_to_ms, telling};
 use gdcm_plot::figure::{Color, Figure, FigureKind, Hue, MarkId, bandwidth_pairs, bandwidth_place};
 use gdcm_study::study::{
-    Edit, HistoryRecords, KnownPoles, RequirementRole, RequirementSettings, Requirements, RequirementsJob, Table,
-    TimeHistoriesJob, mode_verdict_words,
+    Edit, HistoryRecords, KnownPoles, RequirementRole, RequirementSettings, Requirements,
+    RequirementsJob, Table, TimeHistoriesJob, mode_verdict_words,
 };
 
-use super::{Need, View, current, histories_ui, mode_tolerances_ui, over_time_need, overview_limits_ui};
+use super::{
+    Need, View, current, histories_ui, mode_tolerances_ui, over_time_need, overview_limits_ui,
+};
 use crate::view::CurveCommand;
 use crate::view::command::{Command, RequirementTable};
 use crate::view::controls::{button_ui, check_ui, page_tab_ui, restore_panel_size};
@@ -26,8 +28,7 @@ use crate::view::state::State;
 use crate::view::tables::{TableClick, TableLook, table_grid_ui};
 
 /// What stands over every page.
-pub(super) const NO_QUALIFICATION: &str =
-    "Of the models, not of the aircraft: these numbers are no qualification. Sources in docs/requirements.md.";
+pub(super) const NO_QUALIFICATION: &str = "Of the models, not of the aircraft: these numbers are no qualification. Sources in docs/requirements.md.";
 /// A plot is never smaller \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
 /// Part of the height that the table has at first.
@@ -56,9 +57,21 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
             "summary",
             "Corrected against identified in every condition; mean J, shares inside the MUAD envelopes, errors over time",
         ),
-        (RequirementsPage::Modes, "modes", "Modes of the condition, against their tolerances"),
-        (RequirementsPage::Histories, "in time", "Flight records within tolerances, or answers to a step or a doublet"),
-        (RequirementsPage::Bandwidth, "bandwidth", "Bandwidth and phase delay of the attitudes (ADS-33E-PRF)"),
+        (
+            RequirementsPage::Modes,
+            "modes",
+            "Modes of the condition, against their tolerances",
+        ),
+        (
+            RequirementsPage::Histories,
+            "in time",
+            "Flight records within tolerances, or answers to a step or a doublet",
+        ),
+        (
+            RequirementsPage::Bandwidth,
+            "bandwidth",
+            "Bandwidth and phase delay of the attitudes (ADS-33E-PRF)",
+        ),
     ];
     for (page, name, purpose) in pages {
         let (_, is_clicked) = page_tab_ui(ui, page == shown, name, (name, purpose));
@@ -79,7 +92,9 @@ pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
 
 /// The poles of what was identified in this session, condition by condition.
 pub fn known_poles(state: &State) -> KnownPoles {
-    let found = |(id, records): (&ConditionId, &ConditionRecords)| Some((*id, records.identification()?.poles.clone()));
+    let found = |(id, records): (&ConditionId, &ConditionRecords)| {
+        Some((*id, records.identification()?.poles.clone()))
+    };
     state.records.conditions.iter().filter_map(found).collect()
 }
 
@@ -88,9 +103,13 @@ pub fn requirements_needs(state: &State) -> Vec<Need> {
     match state.display.requirements_page {
         RequirementsPage::Histories => over_time_need(state).into_iter().collect(),
         page => {
-            let of_records = time_histories_job(state).filter(|_| page == RequirementsPage::Summary);
+            let of_records =
+                time_histories_job(state).filter(|_| page == RequirementsPage::Summary);
             let asked = requirements_job(state).map(Need::Requirements);
-            asked.into_iter().chain(of_records.map(Need::TimeHistories)).collect()
+            asked
+                .into_iter()
+                .chain(of_records.map(Need::TimeHistories))
+                .collect()
         }
     }
 }
@@ -109,11 +128,20 @@ fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
     let analysis = current(state)?;
     let records = all_records(state);
     let tolerances = state.study.requirements.tolerances.clone();
-    (!records.is_empty()).then_some(TimeHistoriesJob { analysis: analysis.into(), records, tolerances })
+    (!records.is_empty()).then_some(TimeHistoriesJob {
+        analysis: analysis.into(),
+        records,
+        tolerances,
+    })
 }
 
 /// The page that is chosen, below what has to be known of all of them.
-pub fn requirements_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
+pub fn requirements_view_ui(
+    ui: &mut Ui,
+    state: &mut State,
+    palette: &Palette,
+    commands: &mut Vec<Command>,
+) {
     if state.display.requirements_page == RequirementsPage::Histories {
         return histories_ui(ui, state, palette, commands);
     }
@@ -124,37 +152,54 @@ pub fn requirements_view_ui(ui: &mut Ui, state: &mut State, palette: &Palette, c
     match state.display.requirements_page {
         RequirementsPage::Bandwidth => asked_ui(ui, state, palette, commands),
         RequirementsPage::Modes => {
-            let title = CollapsingHeader::new("Tolerances of modes").id_salt("edited tolerances of modes");
+            let title =
+                CollapsingHeader::new("Tolerances of modes").id_salt("edited tolerances of modes");
             title.show(ui, |ui| mode_tolerances_ui(ui, state, palette, commands));
             return requirements_tables_ui(ui, state, &requirements, palette, commands);
         }
         RequirementsPage::Histories | RequirementsPage::Summary => {
-            let title = CollapsingHeader::new("Limits of the overview").id_salt("edited limits of the overview");
+            let title = CollapsingHeader::new("Limits of the overview")
+                .id_salt("edited limits of the overview");
             title.show(ui, |ui| overview_limits_ui(ui, state, palette, commands));
             return requirements_tables_ui(ui, state, &requirements, palette, commands);
         }
     }
     restore_panel_size(ui, "requirements");
     let size = TABLE_PART * ui.available_height();
-    let panel = Panel::bottom("requirements").resizable(true).default_size(size).min_size(60.0);
-    panel.show(ui, |ui| requirements_tables_ui(ui, state, &requirements, palette, commands));
+    let panel = Panel::bottom("requirements")
+        .resizable(true)
+        .default_size(size)
+        .min_size(60.0);
+    panel.show(ui, |ui| {
+        requirements_tables_ui(ui, state, &requirements, palette, commands)
+    });
     plots_ui(ui, state, &requirements, palette, commands);
 }
 
 /// What has no answer, and what has to be known of the answers.
 fn known_ui(ui: &mut Ui, requirements: &Requirements, palette: &Palette) {
     let missing = requirements.missing.iter().map(|missing| {
-        let condition = missing.condition.map_or_else(String::new, |id| format!("Condition {id}: "));
+        let condition = missing
+            .condition
+            .map_or_else(String::new, |id| format!("Condition {id}: "));
         format!("{condition}no {}: {}", missing.what, missing.why)
     });
-    let cautions = requirements.cautions.iter().map(|of| format!("⚠ Condition {}: {}", of.condition, of.text));
+    let cautions = requirements
+        .cautions
+        .iter()
+        .map(|of| format!("⚠ Condition {}: {}", of.condition, of.text));
     for words in missing.chain(cautions) {
-        ui.add(Label::new(palette.small_warning(&words)).truncate()).on_hover_text(words);
+        ui.add(Label::new(palette.small_warning(&words)).truncate())
+            .on_hover_text(words);
     }
 }
 
 /// The command that changes what requirements are asked with.
-pub(super) fn decided(state: &State, what: &'static str, change: impl FnOnce(&mut RequirementSettings)) -> Command {
+pub(super) fn decided(
+    state: &State,
+    what: &'static str,
+    change: impl FnOnce(&mut RequirementSettings),
+) -> Command {
     let mut settings = RequirementSettings::clone(&state.study.requirements);
     change(&mut settings);
     Edit::SetRequirements(what, Arc::new(settings)).into()
@@ -207,9 +252,17 @@ fn plots_ui(
     let figure: Figure = figure_of(state, View::Requirements).unwrap_or_default();
     let pairs = bandwidth_pairs(requirements);
     figure_legend_ui(ui, &figure, palette);
-    let mut view = state.display.figures.remove(&View::Requirements).unwrap_or_default();
+    let mut view = state
+        .display
+        .figures
+        .remove(&View::Requirements)
+        .unwrap_or_default();
     let message = "No on-axis response is of an angle or its rate, or none crosses −135° and −180°: the table says why";
-    let words = BandwidthWords { state, requirements, pairs: &pairs };
+    let words = BandwidthWords {
+        state,
+        requirements,
+        pairs: &pairs,
+    };
     let scene = FigureScene {
         selected: Some(MarkId::Condition(state.condition().id())),
         zooms: true,
@@ -220,29 +273,55 @@ fn plots_ui(
         if let FigureEvent::Clicked(plot, MarkId::Condition(id), _) = event
             && let Some(pair) = pairs.get(plot)
         {
-            let role = view.pointed_at().and_then(|at| role_at(requirements, (*pair, id), at));
-            commands.extend(marked_in_bode(requirements, (*pair, id), role.unwrap_or(RequirementRole::Corrected)));
+            let role = view
+                .pointed_at()
+                .and_then(|at| role_at(requirements, (*pair, id), at));
+            commands.extend(marked_in_bode(
+                requirements,
+                (*pair, id),
+                role.unwrap_or(RequirementRole::Corrected),
+            ));
         }
     }
     state.display.figures.insert(View::Requirements, view);
 }
 
 /// The model whose mark stands at a place of a plot.
-fn role_at(requirements: &Requirements, (pair, id): (Pair, ConditionId), at: [f64; 2]) -> Option<RequirementRole> {
+fn role_at(
+    requirements: &Requirements,
+    (pair, id): (Pair, ConditionId),
+    at: [f64; 2],
+) -> Option<RequirementRole> {
     let is_at = |role: &RequirementRole| {
-        requirements.bandwidth_of(id, pair, *role).and_then(bandwidth_place).is_some_and(|place| place == at)
+        requirements
+            .bandwidth_of(id, pair, *role)
+            .and_then(bandwidth_place)
+            .is_some_and(|place| place == at)
     };
     // Of marks at the same place the one on top.
     RequirementRole::ALL.into_iter().rev().find(is_at)
 }
 
 /// The response in focus in Bode, with the frequencies marked that bandwidth and phase delay of a model are read at.
-fn marked_in_bode(requirements: &Requirements, (pair, id): (Pair, ConditionId), role: RequirementRole) -> Vec<Command> {
-    let mut commands = vec![Command::SelectCondition(id), Command::FocusPair(pair), CurveCommand::UnpinCursors.into()];
+fn marked_in_bode(
+    requirements: &Requirements,
+    (pair, id): (Pair, ConditionId),
+    role: RequirementRole,
+) -> Vec<Command> {
+    let mut commands = vec![
+        Command::SelectCondition(id),
+        Command::FocusPair(pair),
+        CurveCommand::UnpinCursors.into(),
+    ];
     if let Some(of) = requirements.bandwidth_of(id, pair, role) {
-        let crossings =
-            [("ω_phase", of.omega_phase_rad_s), ("ω_gain", of.omega_gain_rad_s), ("ω180", of.omega_180_rad_s)];
-        let known = crossings.into_iter().filter_map(|(name, omega)| Some((name, omega?)));
+        let crossings = [
+            ("ω_phase", of.omega_phase_rad_s),
+            ("ω_gain", of.omega_gain_rad_s),
+            ("ω180", of.omega_180_rad_s),
+        ];
+        let known = crossings
+            .into_iter()
+            .filter_map(|(name, omega)| Some((name, omega?)));
         commands.push(CurveCommand::MarkCrossings(known.collect()).into());
     }
     commands.push(Command::ShowView(View::Bode));
@@ -261,26 +340,43 @@ fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<ShownTa
     match state.display.requirements_page {
         RequirementsPage::Bandwidth => {
             let table = requirements.bandwidth_table(dataset);
-            vec![ShownTable { table, color: Box::new(|row, column| bandwidth_look(requirements, (row, column))) }]
+            vec![ShownTable {
+                table,
+                color: Box::new(|row, column| bandwidth_look(requirements, (row, column))),
+            }]
         }
         RequirementsPage::Modes => {
             let table = requirements.mode_table(state.condition().id());
             let of_table = table.clone();
-            vec![ShownTable { table, color: Box::new(move |row, column| mode_look(&of_table, (row, column))) }]
+            vec![ShownTable {
+                table,
+                color: Box::new(move |row, column| mode_look(&of_table, (row, column))),
+            }]
         }
         RequirementsPage::Histories | RequirementsPage::Summary => {
-            let histories = state.time_histories().filter(|_| time_histories_job(state).is_some()).map(Arc::as_ref);
-            let overview = requirements.overview(dataset, histories, &state.study.requirements.overview);
+            let histories = state
+                .time_histories()
+                .filter(|_| time_histories_job(state).is_some())
+                .map(Arc::as_ref);
+            let overview =
+                requirements.overview(dataset, histories, &state.study.requirements.overview);
             let is_outside = {
                 let overview = overview.clone();
                 move |row, column| overview.is_outside(row, column).then_some(Hue::Warning)
             };
             let table = requirements.summary_table(histories);
             let of_table = table.clone();
-            let of_summary = move |row, column| summary_look(requirements, &of_table, (row, column));
+            let of_summary =
+                move |row, column| summary_look(requirements, &of_table, (row, column));
             vec![
-                ShownTable { table: overview.table, color: Box::new(is_outside) },
-                ShownTable { table, color: Box::new(of_summary) },
+                ShownTable {
+                    table: overview.table,
+                    color: Box::new(is_outside),
+                },
+                ShownTable {
+                    table,
+                    color: Box::new(of_summary),
+                },
             ]
         }
     }
@@ -288,9 +384,17 @@ fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<ShownTa
 
 /// The tables of the page that is shown where it has no figure; none where it has one, or nothing is known yet.
 pub fn requirement_tables(state: &State) -> Option<Vec<Table>> {
-    let is_table = matches!(state.display.requirements_page, RequirementsPage::Modes | RequirementsPage::Summary);
+    let is_table = matches!(
+        state.display.requirements_page,
+        RequirementsPage::Modes | RequirementsPage::Summary
+    );
     let requirements = state.requirements().filter(|_| is_table)?;
-    Some(page_tables(state, requirements).into_iter().map(|shown| shown.table).collect())
+    Some(
+        page_tables(state, requirements)
+            .into_iter()
+            .map(|shown| shown.table)
+            .collect(),
+    )
 }
 
 fn requirements_tables_ui(
@@ -302,40 +406,62 @@ fn requirements_tables_ui(
 ) {
     let id = state.condition().id();
     let mut sorting = state.display.requirements_sorting;
-    ScrollArea::both().id_salt("requirement tables").auto_shrink(false).show(ui, |ui| {
-        for (ShownTable { table, color }, sorting) in page_tables(state, requirements).into_iter().zip(&mut sorting) {
-            ui.add(Label::new(palette.small(&table.title)).extend());
-            if table.rows.is_empty() {
-                let page = state.display.requirements_page;
-                let why = requirements.no_modes(id).filter(|_| page == RequirementsPage::Modes);
-                ui.label(palette.dim(why.unwrap_or("Nothing: no condition has a result.")));
-                continue;
+    ScrollArea::both()
+        .id_salt("requirement tables")
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            for (ShownTable { table, color }, sorting) in page_tables(state, requirements)
+                .into_iter()
+                .zip(&mut sorting)
+            {
+                ui.add(Label::new(palette.small(&table.title)).extend());
+                if table.rows.is_empty() {
+                    let page = state.display.requirements_page;
+                    let why = requirements
+                        .no_modes(id)
+                        .filter(|_| page == RequirementsPage::Modes);
+                    ui.label(palette.dim(why.unwrap_or("Nothing: no condition has a result.")));
+                    continue;
+                }
+                let color = |row: usize, column: usize| {
+                    color(row, column).map(|hue| palette.color(Color::of(hue)))
+                };
+                let selected = |row: usize| {
+                    table.columns[0] == "condition" && table.rows[row][0] == id.to_string()
+                };
+                let look = TableLook {
+                    color: &color,
+                    selected: &selected,
+                };
+                if let Some(click) = table_grid_ui(ui, &table, sorting, &look, palette, commands) {
+                    commands.extend(went_to(state, requirements, (&table, click)));
+                }
+                ui.add_space(8.0);
             }
-            let color = |row: usize, column: usize| color(row, column).map(|hue| palette.color(Color::of(hue)));
-            let selected = |row: usize| table.columns[0] == "condition" && table.rows[row][0] == id.to_string();
-            let look = TableLook { color: &color, selected: &selected };
-            if let Some(click) = table_grid_ui(ui, &table, sorting, &look, palette, commands) {
-                commands.extend(went_to(state, requirements, (&table, click)));
-            }
-            ui.add_space(8.0);
-        }
-    });
+        });
     state.display.requirements_sorting = sorting;
 }
 
 /// Where a click on a row goes.
-fn went_to(state: &State, requirements: &Requirements, (table, click): (&Table, TableClick)) -> Vec<Command> {
+fn went_to(
+    state: &State,
+    requirements: &Requirements,
+    (table, click): (&Table, TableClick),
+) -> Vec<Command> {
     let TableClick { row, column } = click;
     match state.display.requirements_page {
         RequirementsPage::Bandwidth => {
             let of = requirements.bandwidth.get(row);
-            of.map(|of| marked_in_bode(requirements, (of.pair, of.condition), of.role)).unwrap_or_default()
+            of.map(|of| marked_in_bode(requirements, (of.pair, of.condition), of.role))
+                .unwrap_or_default()
         }
         RequirementsPage::Histories | RequirementsPage::Summary => {
             // Conditions are columns of the overview and rows of the other table.
             let of_row = table.rows.get(row).and_then(|cells| cells[0].parse().ok());
             let id = of_row.or_else(|| table.columns[column].parse().ok());
-            id.map(|id| Command::SelectCondition(ConditionId(id))).into_iter().collect()
+            id.map(|id| Command::SelectCondition(ConditionId(id)))
+                .into_iter()
+                .collect()
         }
         RequirementsPage::Modes => vec![Command::ShowView(View::Poles)],
     }
@@ -343,7 +469,13 @@ fn went_to(state: &State, requirements: &Requirements, (table, click): (&Table, 
 
 /// What rests on the model above the band is grey.
 fn bandwidth_look(requirements: &Requirements, (row, column): (usize, usize)) -> Option<Hue> {
-    let names = ["omega_bw_rad_s", "omega_phase_rad_s", "omega_gain_rad_s", "omega_180_rad_s", "phase_delay_s"];
+    let names = [
+        "omega_bw_rad_s",
+        "omega_phase_rad_s",
+        "omega_gain_rad_s",
+        "omega_180_rad_s",
+        "phase_delay_s",
+    ];
     let name = column.checked_sub(4).and_then(|at| names.get(at));
     let (name, of) = name.zip(requirements.bandwidth.get(row))?;
     of.rests_above(name).then_some(Hue::DimText)
@@ -354,7 +486,8 @@ fn mode_look(table: &Table, (row, column): (usize, usize)) -> Option<Hue> {
     if !table.columns[column].ends_with(": tolerance") {
         return None;
     }
-    let is = |verdict: ModeVerdict| table.rows[row][column].starts_with(mode_verdict_words(verdict));
+    let is =
+        |verdict: ModeVerdict| table.rows[row][column].starts_with(mode_verdict_words(verdict));
     Some(match (is(ModeVerdict::Within), is(ModeVerdict::Outside)) {
         (true, _) => Hue::Good,
         (_, true) => Hue::Warning,
@@ -363,14 +496,24 @@ fn mode_look(table: &Table, (row, column): (usize, usize)) -> Option<Hue> {
 }
 
 /// Mean J beyond what is acceptable; of the rms error nothing says what is.
-fn summary_look(requirements: &Requirements, table: &Table, (row, column): (usize, usize)) -> Option<Hue> {
+fn summary_look(
+    requirements: &Requirements,
+    table: &Table,
+    (row, column): (usize, usize),
+) -> Option<Hue> {
     let of = requirements.summary_of(&table.rows[row]);
     let cost = match table.columns[column].as_str() {
         "J on-axis" => of.and_then(|of| of.mean_j_on_axis),
         "J of all" => of.and_then(|of| of.mean_j_all),
         _ => None,
     };
-    cost.map(|cost| if cost > ACCEPTABLE { Hue::Warning } else { Hue::Good })
+    cost.map(|cost| {
+        if cost > ACCEPTABLE {
+            Hue::Warning
+        } else {
+            Hue::Good
+        }
+    })
 }
 
 /// What the plots of bandwidth say.
@@ -382,23 +525,42 @@ struct BandwidthWords<'a> {
 
 impl FigureWords for BandwidthWords<'_> {
     fn plot(&self, plot: usize) -> String {
-        let name = self.pairs.get(plot).map_or_else(String::new, |pair| self.state.dataset().pair_name(*pair));
+        let name = self
+            .pairs
+            .get(plot)
+            .map_or_else(String::new, |pair| self.state.dataset().pair_name(*pair));
         format!("Phase delay over bandwidth of {name}")
     }
 
     fn pointed(&self, plot: usize, id: &MarkId, _: [f64; 2]) -> Option<String> {
-        let (MarkId::Condition(id), pair) = (id, self.pairs.get(plot)?) else { return None };
+        let (MarkId::Condition(id), pair) = (id, self.pairs.get(plot)?) else {
+            return None;
+        };
         let of_role = |role: RequirementRole| {
             let of = self.requirements.bandwidth_of(*id, *pair, role)?;
             let (bandwidth, delay_s) = of.omega_bw_rad_s.zip(of.phase_delay_s)?;
-            Some(format!("{} {} rad/s, {} ms", role.name(), telling(bandwidth, 2), telling(s_to_ms(delay_s), 0)))
+            Some(format!(
+                "{} {} rad/s, {} ms",
+                role.name(),
+                telling(bandwidth, 2),
+                telling(s_to_ms(delay_s), 0)
+            ))
         };
-        let roles: Vec<String> = RequirementRole::ALL.into_iter().filter_map(of_role).collect();
-        Some(format!("condition {id} · {} · click: marked in Bode", roles.join(" · ")))
+        let roles: Vec<String> = RequirementRole::ALL
+            .into_iter()
+            .filter_map(of_role)
+            .collect();
+        Some(format!(
+            "condition {id} · {} · click: marked in Bode",
+            roles.join(" · ")
+        ))
     }
 }
 
 /// The requirements for a figure.
 pub fn shown_requirements(state: &State, kind: FigureKind) -> Option<Arc<Requirements>> {
-    state.requirements().filter(|_| kind == FigureKind::Requirements).cloned()
+    state
+        .requirements()
+        .filter(|_| kind == FigureKind::Requirements)
+        .cloned()
 }

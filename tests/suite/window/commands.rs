@@ -37,8 +37,11 @@ fn names_and_keys_of_commands_are_one_of_a_kind() {
     names.sort_unstable();
     assert_eq!(names.windows(2).find(|pair| pair[0] == pair[1]), None);
     let table = command_table(state(&window));
-    let mut keys: Vec<String> =
-        table.iter().flat_map(|entry| &entry.shortcuts).map(|keys| window.ctx.format_shortcut(keys)).collect();
+    let mut keys: Vec<String> = table
+        .iter()
+        .flat_map(|entry| &entry.shortcuts)
+        .map(|keys| window.ctx.format_shortcut(keys))
+        .collect();
     keys.sort_unstable();
     assert_eq!(keys.windows(2).find(|pair| pair[0] == pair[1]), None);
 }
@@ -49,9 +52,25 @@ fn the_palette_finds_commands_by_some_letters() {
     ask(&mut window, "cond 10");
     assert_eq!(state(&window).condition().id(), ConditionId(10));
     ask(&mut window, "use physics V+10kt");
-    assert_eq!(state(&window).study.choice(ConditionId(10)).physics.pinned.as_deref(), Some("V+10kt"));
+    assert_eq!(
+        state(&window)
+            .study
+            .choice(ConditionId(10))
+            .physics
+            .pinned
+            .as_deref(),
+        Some("V+10kt")
+    );
     ask(&mut window, "rej sug");
-    assert_eq!(state(&window).study.choice(ConditionId(10)).physics.rejected.len(), 3);
+    assert_eq!(
+        state(&window)
+            .study
+            .choice(ConditionId(10))
+            .physics
+            .rejected
+            .len(),
+        3
+    );
     ask(&mut window, "show ped ny");
     let target = pair(&window, "NY", "PED");
     assert_eq!(state(&window).display.pair, target);
@@ -71,14 +90,22 @@ fn the_palette_is_worked_with_arrows_and_escape() {
     let place = field(&window);
     window.event(Event::Text("theme".to_owned()));
     window.run_steps(4);
-    assert_eq!(field(&window), place, "the field stays in its place while letters are typed");
+    assert_eq!(
+        field(&window),
+        place,
+        "the field stays in its place while letters are typed"
+    );
     press(&mut window, Modifiers::NONE, Key::ArrowDown);
     press(&mut window, Modifiers::NONE, Key::ArrowDown);
     press(&mut window, Modifiers::NONE, Key::ArrowUp);
     assert_eq!(state(&window).forms.palette.chosen, 1);
     press(&mut window, Modifiers::NONE, Key::Escape);
     assert_eq!(state(&window).forms.shown, None);
-    assert_eq!(state(&window).condition().id(), ConditionId(1), "the arrows stayed in the palette");
+    assert_eq!(
+        state(&window).condition().id(),
+        ConditionId(1),
+        "the arrows stayed in the palette"
+    );
     assert_eq!(state(&window).study, before);
 }
 
@@ -87,7 +114,11 @@ fn the_palette_goes_to_a_field_and_what_is_typed_replaces_its_number() {
     let mut window = window();
     ask(&mut window, "alpha gains");
     window.run_steps(3);
-    assert!(window.get_by_role_and_label(Role::SpinButton, "α gains").is_focused());
+    assert!(
+        window
+            .get_by_role_and_label(Role::SpinButton, "α gains")
+            .is_focused()
+    );
     window.event(Event::Text("12.5".to_owned()));
     press(&mut window, Modifiers::NONE, Key::Enter);
     settle(&mut window);
@@ -100,11 +131,14 @@ fn menus_show_what_the_table_says() {
     for menu in ["File", "Edit", "View", "Help"] {
         click(&mut window, menu);
         let entries = command_table(state(&window));
-        let of_menu = entries.iter().filter(|entry| entry.menu.is_some_and(|(of, _)| format!("{of:?}") == menu));
+        let of_menu = entries
+            .iter()
+            .filter(|entry| entry.menu.is_some_and(|(of, _)| format!("{of:?}") == menu));
         let mut count = 0;
         for entry in of_menu {
             let found = window.query_all_by_label_contains(&entry.name).any(|node| {
-                node.accesskit_node().is_disabled() != entry.enabled || entry.name == "Export corrections…"
+                node.accesskit_node().is_disabled() != entry.enabled
+                    || entry.name == "Export corrections…"
             });
             assert!(found, "{menu}: {}", entry.name);
             count += 1;
@@ -117,13 +151,26 @@ fn menus_show_what_the_table_says() {
 #[test]
 fn the_page_of_keys_is_made_from_the_table_and_fits_the_least_window() {
     let build = |creation: &mut eframe::CreationContext<'static>| {
-        GdcmApp::with(&creation.egui_ctx, example(), Setup::default()).expect("a thread can be started")
+        GdcmApp::with(&creation.egui_ctx, example(), Setup::default())
+            .expect("a thread can be started")
     };
-    let mut window = Harness::builder().with_size(vec2(900.0, 560.0)).build_eframe(build);
+    let mut window = Harness::builder()
+        .with_size(vec2(900.0, 560.0))
+        .build_eframe(build);
     settle(&mut window);
     press(&mut window, Modifiers::NONE, Key::F1);
-    for entry in command_table(state(&window)).iter().filter(|entry| !entry.shortcuts.is_empty()) {
-        assert!(window.query_all_by_label_contains(&entry.name).next().is_some(), "{}", entry.name);
+    for entry in command_table(state(&window))
+        .iter()
+        .filter(|entry| !entry.shortcuts.is_empty())
+    {
+        assert!(
+            window
+                .query_all_by_label_contains(&entry.name)
+                .next()
+                .is_some(),
+            "{}",
+            entry.name
+        );
     }
     let close = window.get_by_role_and_label(Role::Button, "Close").rect();
     assert!(close.max.y < 560.0, "{close}");
@@ -180,14 +227,20 @@ fn a_table_is_saved_as_csv_and_an_existing_file_is_asked_about() {
         window.run_steps(2);
         press(&mut window, Modifiers::NONE, Key::Enter);
         settle(&mut window);
-        assert_eq!(window.query_by_label("This file exists already").is_some(), is_second);
+        assert_eq!(
+            window.query_by_label("This file exists already").is_some(),
+            is_second
+        );
     }
     click(&mut window, "Overwrite");
     let text = std::fs::read_to_string(&path).unwrap();
     assert_eq!(text.lines().count(), 25, "a heading and 6 × 4 responses");
     let shown = state(&window).shown().unwrap();
     let gain = shown.comparison.delta.gain[pair(&window, "Q", "LON")].unwrap();
-    let line = text.lines().find(|line| line.starts_with("Q,LON,yes,yes,yes,")).expect("the response has its line");
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("Q,LON,yes,yes,yes,"))
+        .expect("the response has its line");
     assert!(line.contains(&format!(",{gain:?},")), "{line}");
 }
 
@@ -202,19 +255,44 @@ fn tables_of_the_matrix_and_the_result_have_the_bars_of_their_figures() {
     let matrix = table_of(state(&window), TableKind::Matrix);
     assert!(matrix.title.ends_with(", ± of 90 %"), "{}", matrix.title);
     let cell = |table: &Table, row: &[String], column: &str| {
-        row[table.columns.iter().position(|name| name == column).unwrap()].clone()
+        row[table
+            .columns
+            .iter()
+            .position(|name| name == column)
+            .unwrap()]
+        .clone()
     };
-    let row = matrix.rows.iter().find(|row| row[..2] == ["Q", "LON"]).unwrap();
-    assert_eq!(cell(&matrix, row, "G ± [%]"), percent(bar(Scalar::Gain(pair)).half_width(0.9)));
+    let row = matrix
+        .rows
+        .iter()
+        .find(|row| row[..2] == ["Q", "LON"])
+        .unwrap();
+    assert_eq!(
+        cell(&matrix, row, "G ± [%]"),
+        percent(bar(Scalar::Gain(pair)).half_width(0.9))
+    );
     let inner = bar(Scalar::NetGain(pair)).inner_half_width(0.9);
-    assert_eq!(cell(&matrix, row, "net gain ± of identification [%]"), percent(inner));
+    assert_eq!(
+        cell(&matrix, row, "net gain ± of identification [%]"),
+        percent(inner)
+    );
     let delay = bar(Scalar::Delay(pair)).half_width(0.9).unwrap();
     assert_eq!(cell(&matrix, row, "D ± [ms]"), format!("{:?}", 1e3 * delay));
     let channels = table_of(state(&window), TableKind::Channels);
-    let row = channels.rows.iter().find(|row| row[..2] == ["output", "Q"]).unwrap();
+    let row = channels
+        .rows
+        .iter()
+        .find(|row| row[..2] == ["output", "Q"])
+        .unwrap();
     let gain = bar(Scalar::ChannelGain(Channel::Output(pair.output)));
-    assert_eq!(cell(&channels, row, "k ± [%]"), percent(gain.half_width(0.9)));
-    assert_eq!(cell(&channels, row, "k ± of identification [%]"), percent(gain.inner_half_width(0.9)));
+    assert_eq!(
+        cell(&channels, row, "k ± [%]"),
+        percent(gain.half_width(0.9))
+    );
+    assert_eq!(
+        cell(&channels, row, "k ± of identification [%]"),
+        percent(gain.inner_half_width(0.9))
+    );
 }
 
 /// Opens a form by the palette.
@@ -224,16 +302,31 @@ fn ask_for_form(window: &mut Window, query: &str) {
     window.run_steps(2);
     press(window, Modifiers::NONE, Key::Enter);
     window.run_steps(2);
-    assert!(state(window).forms.shown.is_some_and(|form| form != FormKind::Palette), "{query}");
+    assert!(
+        state(window)
+            .forms
+            .shown
+            .is_some_and(|form| form != FormKind::Palette),
+        "{query}"
+    );
 }
 
 #[test]
 fn the_first_start_shows_the_tour_once_and_it_can_be_skipped() {
     let directory = tempfile::tempdir().unwrap();
-    let setup = || Setup { directory: Some(directory.path().to_owned()), offers_tour: true, ..Setup::default() };
+    let setup = || Setup {
+        directory: Some(directory.path().to_owned()),
+        offers_tour: true,
+        ..Setup::default()
+    };
     let mut window = window_with(example(), setup());
     window.get_by_label("Flight conditions");
-    for title in ["The bundle of models", "The curves", "What is held", "The verdict"] {
+    for title in [
+        "The bundle of models",
+        "The curves",
+        "What is held",
+        "The verdict",
+    ] {
         click(&mut window, "Next step");
         window.get_by_label(title);
     }
@@ -245,7 +338,10 @@ fn the_first_start_shows_the_tour_once_and_it_can_be_skipped() {
     ask(&mut window, "guided tour");
     window.get_by_label("Flight conditions");
     give(&mut window, AssemblingCommand::Open);
-    assert!(window.query_by_label("Flight conditions").is_none(), "its notes are about panels that are not there");
+    assert!(
+        window.query_by_label("Flight conditions").is_none(),
+        "its notes are about panels that are not there"
+    );
     give(&mut window, AssemblingCommand::Close);
     click(&mut window, "Skip the tour");
     assert_eq!(state(&window).tour, None);

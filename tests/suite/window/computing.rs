@@ -23,13 +23,19 @@ struct Trap {
 impl Trap {
     fn setup(&self) -> Setup {
         let trap = self.clone();
-        Setup { engine: Arc::new(move || Engine::with_executor(Box::new(trap.clone()))), ..Setup::default() }
+        Setup {
+            engine: Arc::new(move || Engine::with_executor(Box::new(trap.clone()))),
+            ..Setup::default()
+        }
     }
 
     /// As [`Trap::setup`], with nothing left to compute beside the first results, which could run into the trap before them.
     fn warm_setup(&self) -> Setup {
         let trap = self.clone();
-        Setup { engine: Arc::new(move || WARM.fork(Box::new(trap.clone()))), ..Setup::default() }
+        Setup {
+            engine: Arc::new(move || WARM.fork(Box::new(trap.clone()))),
+            ..Setup::default()
+        }
     }
 
     fn close(&self) -> Closed<'_> {
@@ -50,7 +56,11 @@ impl Drop for Closed<'_> {
 
 impl Executor for Trap {
     fn carry_out(&self, mut tasks: Vec<Task<'_>>) {
-        drop(self.closed.1.wait_while(self.closed.0.lock().unwrap(), |closed| *closed));
+        drop(
+            self.closed
+                .1
+                .wait_while(self.closed.0.lock().unwrap(), |closed| *closed),
+        );
         if self.panics.swap(false, Ordering::Relaxed) {
             tasks.push(Box::new(|| panic!("a pivot that cannot be")));
         }
@@ -85,9 +95,15 @@ fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
     trap.panics.store(true, Ordering::Relaxed);
     set_alpha(&mut window, 12.5);
     wait_until(&mut window, "the fault is told", |window| {
-        window.query_by_label_contains("A fault in the program ended the computation").is_some()
+        window
+            .query_by_label_contains("A fault in the program ended the computation")
+            .is_some()
     });
-    for part in ["a pivot that cannot be at tests/suite/window/computing.rs:", "gdcm 0.", "(embedded example)"] {
+    for part in [
+        "a pivot that cannot be at tests/suite/window/computing.rs:",
+        "gdcm 0.",
+        "(embedded example)",
+    ] {
         window.get_by_label_contains(part);
     }
     assert!(!state(&window).results.is_waiting() && state(&window).results.received == before);
@@ -96,12 +112,24 @@ fn a_panic_while_computing_is_told_with_what_to_send_and_the_study_stays() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mine.gdcm-study.json");
     save_as(&mut window, &path);
-    assert_eq!(open_study(&path).unwrap().study.settings.alpha_gain, 12.5, "the study can be saved");
+    assert_eq!(
+        open_study(&path).unwrap().study.settings.alpha_gain,
+        12.5,
+        "the study can be saved"
+    );
     set_alpha(&mut window, 3.0);
     settle(&mut window);
-    assert_eq!(state(&window).analysis().unwrap().study.settings.alpha_gain, 3.0, "and edited, with a new engine");
+    assert_eq!(
+        state(&window).analysis().unwrap().study.settings.alpha_gain,
+        3.0,
+        "and edited, with a new engine"
+    );
     click(&mut window, "Put away");
-    assert!(window.query_by_label_contains("A fault in the program").is_none());
+    assert!(
+        window
+            .query_by_label_contains("A fault in the program")
+            .is_none()
+    );
 }
 
 #[test]
@@ -111,10 +139,19 @@ fn after_a_panic_the_same_can_be_computed_again() {
     wait_for_background(&mut window);
     trap.panics.store(true, Ordering::Relaxed);
     set_alpha(&mut window, 12.5);
-    wait_until(&mut window, "the fault is told", |window| window.query_by_label("Compute again").is_some());
+    wait_until(&mut window, "the fault is told", |window| {
+        window.query_by_label("Compute again").is_some()
+    });
     click(&mut window, "Compute again");
-    assert_eq!(state(&window).analysis().unwrap().study.settings.alpha_gain, 12.5);
-    assert!(window.query_by_label_contains("A fault in the program").is_none());
+    assert_eq!(
+        state(&window).analysis().unwrap().study.settings.alpha_gain,
+        12.5
+    );
+    assert!(
+        window
+            .query_by_label_contains("A fault in the program")
+            .is_none()
+    );
 }
 
 #[test]
@@ -124,9 +161,16 @@ fn a_panic_over_the_first_results_leaves_a_window_that_can_open_another_file() {
     let build = |creation: &mut eframe::CreationContext<'static>| {
         GdcmApp::with(&creation.egui_ctx, example(), trap.setup()).expect("a thread can be started")
     };
-    let mut window = Harness::builder().with_size(vec2(1600.0, 1000.0)).build_eframe(build);
-    wait_until(&mut window, "the fault is told", |window| window.query_by_label("Compute again").is_some());
-    window.input_mut().dropped_files.push(Arc::new(files::Dropped(files::small_dataset())));
+    let mut window = Harness::builder()
+        .with_size(vec2(1600.0, 1000.0))
+        .build_eframe(build);
+    wait_until(&mut window, "the fault is told", |window| {
+        window.query_by_label("Compute again").is_some()
+    });
+    window
+        .input_mut()
+        .dropped_files
+        .push(Arc::new(files::Dropped(files::small_dataset())));
     window.run_steps(2);
     settle(&mut window);
     assert_eq!(state(&window).dataset().conditions().len(), 2);
@@ -140,15 +184,25 @@ fn results_of_two_generations_of_settings_are_told_apart() {
     assert!(window.query_by_label("of older settings").is_none());
     let closed = trap.close();
     set_alpha(&mut window, 12.5);
-    wait_until(&mut window, "the condition shown is ahead", |window| state(window).results.first_is_ahead());
+    wait_until(&mut window, "the condition shown is ahead", |window| {
+        state(window).results.first_is_ahead()
+    });
     window.get_by_label("of older settings");
     window.get_by_label_contains("11 · of older settings");
     let scheduled = drawn(&window, CurveRole::Scheduled);
-    assert!(scheduled.label.ends_with("scheduled of older settings"), "{}", scheduled.label);
+    assert!(
+        scheduled.label.ends_with("scheduled of older settings"),
+        "{}",
+        scheduled.label
+    );
     drop(closed);
     settle(&mut window);
     assert!(window.query_by_label("of older settings").is_none());
-    assert!(drawn(&window, CurveRole::Scheduled).label.ends_with("scheduled"));
+    assert!(
+        drawn(&window, CurveRole::Scheduled)
+            .label
+            .ends_with("scheduled")
+    );
 }
 
 #[test]
@@ -157,7 +211,9 @@ fn quitting_does_not_wait_for_what_is_being_computed() {
     let mut window = window_with(example(), trap.setup());
     let closed = trap.close();
     set_alpha(&mut window, 12.5);
-    wait_until(&mut window, "it computes", |window| state(window).results.first_is_ahead());
+    wait_until(&mut window, "it computes", |window| {
+        state(window).results.first_is_ahead()
+    });
     let start = Instant::now();
     drop(window);
     // What is being computed would never end.
@@ -169,17 +225,28 @@ fn quitting_does_not_wait_for_what_is_being_computed() {
 fn the_costs_of_toggles_stay_where_nothing_that_they_depend_on_changes() {
     let mut window = window();
     wait_for_toggles(&mut window);
-    let costs =
-        |window: &Window| state(window).results.toggles.as_ref().map(|(_, toggles)| Arc::clone(toggles)).unwrap();
+    let costs = |window: &Window| {
+        state(window)
+            .results
+            .toggles
+            .as_ref()
+            .map(|(_, toggles)| Arc::clone(toggles))
+            .unwrap()
+    };
     let before = costs(&window);
     click(&mut window, "Edit");
-    window.get_by_label_contains("Leave this condition out of the schedule").click();
+    window
+        .get_by_label_contains("Leave this condition out of the schedule")
+        .click();
     settle(&mut window);
     assert!(state(&window).toggles().is_some() && Arc::ptr_eq(&costs(&window), &before));
     set_alpha(&mut window, 12.5);
     settle(&mut window);
     wait_for_toggles(&mut window);
-    assert!(!Arc::ptr_eq(&costs(&window), &before), "those of other problems are others");
+    assert!(
+        !Arc::ptr_eq(&costs(&window), &before),
+        "those of other problems are others"
+    );
 }
 
 #[test]
@@ -190,17 +257,27 @@ fn a_long_computation_can_be_stopped_and_taken_up_again() {
     unfold_settings(&mut window, true);
     // However fast the machine is, nothing is computed before the click.
     let closed = trap.close();
-    window.get_by_role_and_label(Role::SpinButton, "Frequencies in the band").set_value_accesskit(2000.0);
+    window
+        .get_by_role_and_label(Role::SpinButton, "Frequencies in the band")
+        .set_value_accesskit(2000.0);
     window.run_steps(3);
     window.get_by_label("Stop").click();
     window.run_steps(3);
     assert!(state(&window).results.stopped && state(&window).results.received == before);
     window.get_by_label("stopped: the results are older than the settings");
-    assert!(state(&window).analysis().is_some(), "the results there were are still shown");
+    assert!(
+        state(&window).analysis().is_some(),
+        "the results there were are still shown"
+    );
     drop(closed);
     click(&mut window, "Compute");
     assert!(!state(&window).results.is_behind());
-    assert_eq!(state(&window).analysis().map(|analysis| analysis.omega.len()), Some(2000));
+    assert_eq!(
+        state(&window)
+            .analysis()
+            .map(|analysis| analysis.omega.len()),
+        Some(2000)
+    );
 }
 
 #[test]
@@ -210,34 +287,59 @@ fn error_bars_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     show(&mut window, View::Evidence);
     unfold_settings(&mut window, true);
     // Five times the points: far more work than the frames until the first part is seen give it time for.
-    window.get_by_role_and_label(Role::SpinButton, "Frequencies in the band").set_value_accesskit(1000.0);
+    window
+        .get_by_role_and_label(Role::SpinButton, "Frequencies in the band")
+        .set_value_accesskit(1000.0);
     settle(&mut window);
     let counts = |window: &Window| state(window).results.background.bars;
-    let bundles = |of: &Condition| of.bundle(BundleKind::Physics).len() + of.bundle(BundleKind::Identified).len();
-    let models: usize = state(&window).dataset().conditions().iter().map(|of| bundles(of)).sum();
+    let bundles = |of: &Condition| {
+        of.bundle(BundleKind::Physics).len() + of.bundle(BundleKind::Identified).len()
+    };
+    let models: usize = state(&window)
+        .dataset()
+        .conditions()
+        .iter()
+        .map(|of| bundles(of))
+        .sum();
     wait_until(&mut window, "a part of the error bars", |window| {
         counts(window).is_some_and(|(done, total)| done > 0 && total == 2 * models)
     });
     // However fast the machine is, no more than what has begun is computed before the click.
     let closed = trap.close();
-    wait_until(&mut window, "the button", |window| window.query_by_label("Stop").is_some());
-    let told = window.query_all_by_label_contains(&format!(" of {} steps …", 2 * models)).count();
+    wait_until(&mut window, "the button", |window| {
+        window.query_by_label("Stop").is_some()
+    });
+    let told = window
+        .query_all_by_label_contains(&format!(" of {} steps …", 2 * models))
+        .count();
     assert_eq!(told, 2, "in the view that waits for them, and below");
     let copied = |window: &mut Window| {
-        window.state_mut().dispatch(Command::CopyFigure(View::NetGain));
+        window
+            .state_mut()
+            .dispatch(Command::CopyFigure(View::NetGain));
         state(window).notice.clone().unwrap().text
     };
     let done = "copied the numbers of Net gain";
-    assert_eq!(copied(&mut window), format!("{done}; without error bars, which are still being computed"));
+    assert_eq!(
+        copied(&mut window),
+        format!("{done}; without error bars, which are still being computed")
+    );
     window.get_by_label("Stop").click();
     window.run_steps(3);
     assert!(state(&window).uncertainty().is_none() && counts(&window).is_none());
-    assert_eq!(copied(&mut window), format!("{done}; without error bars, for computing them was stopped"));
+    assert_eq!(
+        copied(&mut window),
+        format!("{done}; without error bars, for computing them was stopped")
+    );
     drop(closed);
     window.get_by_label("Error bars: stopped; Compute, below, goes on with them");
     click(&mut window, "Compute");
     wait_for_bars(&mut window);
-    assert!(window.query_by_label_contains("Error bars: stopped").is_none());
+    assert!(
+        window
+            .query_by_label_contains("Error bars: stopped")
+            .is_none()
+    );
     assert_eq!(copied(&mut window), done);
 }
 
@@ -248,50 +350,94 @@ fn couplings_tell_how_far_they_are_and_can_be_stopped_and_taken_up_again() {
     settle(&mut window);
     show(&mut window, View::Couplings);
     let steps = |window: &Window| state(window).results.background.couplings;
-    wait_until(&mut window, "a part of the assessment", |window| steps(window).is_some_and(|(done, _)| done > 0));
+    wait_until(&mut window, "a part of the assessment", |window| {
+        steps(window).is_some_and(|(done, _)| done > 0)
+    });
     // However fast the machine is, what follows the fits without each condition is not computed before the click.
     let closed = trap.close();
-    wait_until(&mut window, "the button", |window| window.query_by_label("Stop").is_some());
-    assert!(state(&window).couplings().is_none() && steps(&window).is_some_and(|(done, total)| done < total));
+    wait_until(&mut window, "the button", |window| {
+        window.query_by_label("Stop").is_some()
+    });
+    assert!(
+        state(&window).couplings().is_none()
+            && steps(&window).is_some_and(|(done, total)| done < total)
+    );
     window.get_by_label("Stop").click();
     window.run_steps(3);
     assert!(steps(&window).is_none() && state(&window).results.background.stopped);
     drop(closed);
     click(&mut window, "Compute");
-    wait_until(&mut window, "what couplings do", |window| state(window).couplings().is_some());
+    wait_until(&mut window, "what couplings do", |window| {
+        state(window).couplings().is_some()
+    });
 }
 
 #[test]
 fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
-    let hasty = ProofBudget { work: 0, listing: 0, ..ProofBudget::default() };
+    let hasty = ProofBudget {
+        work: 0,
+        listing: 0,
+        ..ProofBudget::default()
+    };
     let engine = move || Engine::default().with_proofs_within(hasty);
     let study = Study::new(crate::EXAMPLE.dataset.clone());
     let open = engine().analyze(&study, &Unobserved).unwrap();
     let is_open = |outcome: Outcome| matches!(outcome, Outcome::NotProven { .. });
     assert!(
-        open.conditions.values().flatten().any(|condition| is_open(condition.gains.proof.outcome)),
+        open.conditions
+            .values()
+            .flatten()
+            .any(|condition| is_open(condition.gains.proof.outcome)),
         "nothing to prove"
     );
 
-    let mut window = window_with(example(), Setup { engine: Arc::new(engine), ..Setup::default() });
-    wait_until(&mut window, "every proof", |window| !state(window).results.background.is_busy());
+    let mut window = window_with(
+        example(),
+        Setup {
+            engine: Arc::new(engine),
+            ..Setup::default()
+        },
+    );
+    wait_until(&mut window, "every proof", |window| {
+        !state(window).results.background.is_busy()
+    });
     settle(&mut window);
     window.get_by_label("global optimum ✓");
     let proven = Engine::default().analyze(&study, &Unobserved).unwrap();
     let shown = state(&window).analysis().unwrap();
-    for (condition, (beside, alone)) in shown.conditions.values().zip(proven.conditions.values()).enumerate() {
+    for (condition, (beside, alone)) in shown
+        .conditions
+        .values()
+        .zip(proven.conditions.values())
+        .enumerate()
+    {
         let (beside, alone) = (beside.as_ref().unwrap(), alone.as_ref().unwrap());
-        assert!(!is_open(beside.gains.proof.outcome), "condition {condition}");
-        assert!(!is_open(alone.gains.proof.outcome) && beside.correction == alone.correction, "condition {condition}");
+        assert!(
+            !is_open(beside.gains.proof.outcome),
+            "condition {condition}"
+        );
+        assert!(
+            !is_open(alone.gains.proof.outcome) && beside.correction == alone.correction,
+            "condition {condition}"
+        );
     }
-    assert_eq!(shown.schedule, proven.schedule, "what is made from the gains follows them");
+    assert_eq!(
+        shown.schedule, proven.schedule,
+        "what is made from the gains follows them"
+    );
 }
 
 #[test]
 fn the_example_needs_no_proof_beside_the_answer() {
     let study = Study::new(crate::EXAMPLE.dataset.clone());
-    let analysis = Engine::default().with_proofs_within(LIVE_PROOF).analyze(&study, &Unobserved).unwrap();
-    let proven =
-        analysis.conditions.values().flatten().filter(|of| matches!(of.gains.proof.outcome, Outcome::Proven { .. }));
+    let analysis = Engine::default()
+        .with_proofs_within(LIVE_PROOF)
+        .analyze(&study, &Unobserved)
+        .unwrap();
+    let proven = analysis
+        .conditions
+        .values()
+        .flatten()
+        .filter(|of| matches!(of.gains.proof.outcome, Outcome::Proven { .. }));
     assert_eq!(proven.count(), 11);
 }

@@ -6,7 +6,14 @@ use super::*;
 fn every_control_has_a_label_of_its_own() {
     let window = window();
     let mut labels: Vec<(Role, String)> = Vec::new();
-    let controls = [Role::Button, Role::CheckBox, Role::Slider, Role::SpinButton, Role::ComboBox, Role::TextInput];
+    let controls = [
+        Role::Button,
+        Role::CheckBox,
+        Role::Slider,
+        Role::SpinButton,
+        Role::ComboBox,
+        Role::TextInput,
+    ];
     for node in window.root().children_recursive() {
         let role = node.accesskit_node().role();
         if controls.contains(&role) {
@@ -15,9 +22,17 @@ fn every_control_has_a_label_of_its_own() {
             labels.push((role, label));
         }
     }
-    assert!(labels.len() > 80, "the controls were found: {}", labels.len());
+    assert!(
+        labels.len() > 80,
+        "the controls were found: {}",
+        labels.len()
+    );
     labels.sort_by(|a, b| a.1.cmp(&b.1));
-    let twice: Vec<_> = labels.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| &pair[0]).collect();
+    let twice: Vec<_> = labels
+        .windows(2)
+        .filter(|pair| pair[0] == pair[1])
+        .map(|pair| &pair[0])
+        .collect();
     assert!(twice.is_empty(), "{twice:?}");
 }
 
@@ -31,7 +46,10 @@ fn without_a_display(arguments: &[&Path]) -> (Option<i32>, String) {
         .args(arguments)
         .output()
         .unwrap();
-    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+    (
+        output.status.code(),
+        String::from_utf8_lossy(&output.stderr).into_owned(),
+    )
 }
 
 #[test]
@@ -40,7 +58,10 @@ fn without_a_display_one_line_names_the_headless_command() {
     let (status, words) = without_a_display(&[]);
     assert_eq!(status, Some(1));
     assert_eq!(words.trim_end().lines().count(), 1, "{words}");
-    assert!(words.contains("no display") && words.contains("gdcm analyze"), "{words}");
+    assert!(
+        words.contains("no display") && words.contains("gdcm analyze"),
+        "{words}"
+    );
 }
 
 #[test]

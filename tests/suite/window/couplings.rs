@@ -21,7 +21,11 @@ fn assessed(window: &mut Window) {
 }
 
 fn texts(window: &Window) -> String {
-    texts_in(window, egui::Rect::EVERYTHING).into_iter().map(|(text, _)| text).collect::<Vec<_>>().join("\n")
+    texts_in(window, egui::Rect::EVERYTHING)
+        .into_iter()
+        .map(|(text, _)| text)
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 #[test]
@@ -31,32 +35,49 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
     show(&mut window, View::Couplings);
     assessed(&mut window);
     let said = texts(&window);
-    assert!(said.contains("None are used. What mixing and feedback would do:"), "{said}");
-    assert!(said.contains("own correction") && said.contains("Loop at the sticks"), "{said}");
+    assert!(
+        said.contains("None are used. What mixing and feedback would do:"),
+        "{said}"
+    );
+    assert!(
+        said.contains("own correction") && said.contains("Loop at the sticks"),
+        "{said}"
+    );
     assert_eq!(state(&window).study, before, "looking decides nothing");
     give(&mut window, Action::MapCost(MappedCost::Before));
-    let as_it_is = |window: &Window| cost_of(state(window), ConditionId(3), pair(window, "P", "LON"));
+    let as_it_is =
+        |window: &Window| cost_of(state(window), ConditionId(3), pair(window, "P", "LON"));
     let uncoupled = as_it_is(&window);
     click(&mut window, "Use mixing and feedback");
     settle(&mut window);
-    assert!(uncoupled.is_some() && as_it_is(&window) == uncoupled, "J before any correction is without couplings too");
-    assert_eq!(state(&window).study.settings.couplings, CouplingCorrection::MixingAndFeedback);
+    assert!(
+        uncoupled.is_some() && as_it_is(&window) == uncoupled,
+        "J before any correction is without couplings too"
+    );
+    assert_eq!(
+        state(&window).study.settings.couplings,
+        CouplingCorrection::MixingAndFeedback
+    );
     assert!(!texts(&window).contains("None are used"));
     // The map beside the conditions has what they did off the axis.
     window.get_by_label_contains("19 responses not held, condition 3: mean J of magnitude");
     // The poles that move are drawn among those of the models.
     show(&mut window, View::Poles);
-    wait_until(&mut window, "the poles", |window| gdcm::view::views::poles(state(window)).is_some());
+    wait_until(&mut window, "the poles", |window| {
+        gdcm::view::views::poles(state(window)).is_some()
+    });
     let figure = gdcm::view::views::poles(state(&window)).unwrap();
-    let is_after =
-        |mark: &Mark| matches!(mark, Mark::Dots(dots) if dots.name == "with couplings" && !dots.dots.is_empty());
+    let is_after = |mark: &Mark| matches!(mark, Mark::Dots(dots) if dots.name == "with couplings" && !dots.dots.is_empty());
     assert!(figure.plots[0].panels[0].marks.iter().any(is_after));
     // In Bode the corrected curve is the whole; couplings alone are there on wish.
     show(&mut window, View::Bode);
     settle(&mut window);
     let has_alone = |window: &Window| {
         let display = &state(window).display;
-        let is_there = display.drawn.iter().any(|curve| curve.role == CurveRole::Coupled);
+        let is_there = display
+            .drawn
+            .iter()
+            .any(|curve| curve.role == CurveRole::Coupled);
         is_there && !display.curves.hidden_roles.contains(&CurveRole::Coupled)
     };
     assert!(!has_alone(&window));
@@ -69,31 +90,68 @@ fn couplings_are_looked_at_used_drawn_and_undone() {
 #[test]
 fn couplings_are_offered_once_leads_do_what_a_channel_can() {
     let mut window = window();
-    assert!(offered_couplings(state(&window)).is_none(), "nothing is computed before leads are used");
+    assert!(
+        offered_couplings(state(&window)).is_none(),
+        "nothing is computed before leads are used"
+    );
     give(&mut window, setting::PHASE.to(PhaseCorrection::Lead));
     assessed(&mut window);
-    let (offered, cost) = offered_couplings(state(&window)).expect("worth it on the example (M16.5)");
+    let (offered, cost) =
+        offered_couplings(state(&window)).expect("worth it on the example (M16.5)");
     let [with, without] = [cost.with, cost.without].map(|of| of.others.unwrap());
-    assert!(offered.couplings == CouplingCorrection::MixingAndFeedback && with < 0.6 * without, "{without} {with}");
+    assert!(
+        offered.couplings == CouplingCorrection::MixingAndFeedback && with < 0.6 * without,
+        "{without} {with}"
+    );
     click(&mut window, "Use couplings");
     settle(&mut window);
-    assert_eq!(state(&window).study.settings.couplings, CouplingCorrection::MixingAndFeedback);
+    assert_eq!(
+        state(&window).study.settings.couplings,
+        CouplingCorrection::MixingAndFeedback
+    );
     assert!(offered_couplings(state(&window)).is_none());
     // What they cost is among the reasons, whatever view is shown.
     assessed(&mut window);
     give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
     let said = texts(&window);
-    assert!(said.contains("Above the band, at 120 rad/s") && said.contains("newly unstable"), "{said}");
+    assert!(
+        said.contains("Above the band, at 120 rad/s") && said.contains("newly unstable"),
+        "{said}"
+    );
 }
 
 #[test]
 fn couplings_that_cannot_be_found_are_told_beside_the_verdict() {
     let mut window = few_window();
-    let ids: Vec<ConditionId> = state(&window).dataset().conditions().iter().map(|of| of.id()).collect();
-    ids.iter().for_each(|&condition| give(&mut window, Edit::SetHeldOut { condition, held_out: true }));
-    give(&mut window, setting::COUPLINGS.to(CouplingCorrection::Mixing));
+    let ids: Vec<ConditionId> = state(&window)
+        .dataset()
+        .conditions()
+        .iter()
+        .map(|of| of.id())
+        .collect();
+    ids.iter().for_each(|&condition| {
+        give(
+            &mut window,
+            Edit::SetHeldOut {
+                condition,
+                held_out: true,
+            },
+        )
+    });
+    give(
+        &mut window,
+        setting::COUPLINGS.to(CouplingCorrection::Mixing),
+    );
     settle(&mut window);
-    assert!(texts(&window).contains("No couplings could be found"), "{}", texts(&window));
+    assert!(
+        texts(&window).contains("No couplings could be found"),
+        "{}",
+        texts(&window)
+    );
     give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
-    assert!(texts(&window).contains("Everything here is without them."), "{}", texts(&window));
+    assert!(
+        texts(&window).contains("Everything here is without them."),
+        "{}",
+        texts(&window)
+    );
 }

@@ -10,7 +10,10 @@ use gdcm_plot::figure::{BodeOptions, ConditionSource};
 /// The curve of a role in the plot of errors.
 fn error(window: &Window, role: CurveRole) -> BodeCurve {
     let mut curves = state(window).display.drawn_errors.iter();
-    curves.find(|curve| curve.role == role).expect("an error of this role is drawn").clone()
+    curves
+        .find(|curve| curve.role == role)
+        .expect("an error of this role is drawn")
+        .clone()
 }
 
 fn middle(values: impl Iterator<Item = f64>) -> f64 {
@@ -27,16 +30,27 @@ fn the_plot_of_errors_shows_what_the_fit_sees() {
     show(&mut window, View::Error);
     let pair = pair(&window, "Q", "LON");
     let shown = state(&window).shown().unwrap().clone();
-    let (gain, delay_s) = (shown.comparison.delta.gain[pair].unwrap(), shown.comparison.delta.delay_s[pair].unwrap());
+    let (gain, delay_s) = (
+        shown.comparison.delta.gain[pair].unwrap(),
+        shown.comparison.delta.delay_s[pair].unwrap(),
+    );
     let before = error(&window, CurveRole::Representative);
     // The medians of M6 on the grid for drawing: it has other points than that of the comparison.
-    let (ratio_db, phase) =
-        (middle(before.magnitude_db.iter().copied()), before.omega.iter().zip(&before.phase_deg[..]));
-    assert!((ratio_db - 20.0 * gain.log10()).abs() < 0.02, "{ratio_db} {gain}");
+    let (ratio_db, phase) = (
+        middle(before.magnitude_db.iter().copied()),
+        before.omega.iter().zip(&before.phase_deg[..]),
+    );
+    assert!(
+        (ratio_db - 20.0 * gain.log10()).abs() < 0.02,
+        "{ratio_db} {gain}"
+    );
     let delay = middle(phase.map(|(omega, phase)| phase.to_radians() / omega));
     assert!((delay - delay_s).abs() < 5e-4, "{delay} {delay_s}");
     let after = error(&window, CurveRole::Corrected);
-    let (net_db, net_delay_s) = (20.0 * shown.correction.net_gain(pair).log10(), shown.correction.net_delay_s(pair));
+    let (net_db, net_delay_s) = (
+        20.0 * shown.correction.net_gain(pair).log10(),
+        shown.correction.net_delay_s(pair),
+    );
     for k in [0, before.omega.len() / 2, before.omega.len() - 1] {
         // A handful of roundings of numbers up to 360.
         assert!((before.magnitude_db[k] - net_db - after.magnitude_db[k]).abs() < 1e-10);
@@ -44,9 +58,17 @@ fn the_plot_of_errors_shows_what_the_fit_sees() {
         assert!((before.phase_deg[k] - taken - after.phase_deg[k]).abs() < 1e-10);
     }
     let zero = error(&window, CurveRole::IdentifiedRepresentative);
-    assert!(zero.magnitude_db.iter().chain(&zero.phase_deg[..]).all(|value| *value == 0.0));
+    assert!(
+        zero.magnitude_db
+            .iter()
+            .chain(&zero.phase_deg[..])
+            .all(|value| *value == 0.0)
+    );
     let drawn = &state(&window).display.drawn_errors;
-    assert!(drawn.iter().all(|curve| !curve.rejected), "of models that are kept");
+    assert!(
+        drawn.iter().all(|curve| !curve.rejected),
+        "of models that are kept"
+    );
     let ends = (before.omega[0], before.omega[before.omega.len() - 1]);
     assert!(ends.0 >= 0.5 && ends.1 <= 12.0, "within the band: {ends:?}");
 }
@@ -63,7 +85,11 @@ fn phase_errors_can_be_read_as_delays() {
         assert!((delays.phase_deg[k] - expected).abs() < 1e-9);
     }
     let view = &state(&window).display.error;
-    assert!(view.value_range(Pane::Phase).contains(delays.phase_deg[100]), "the new numbers are fitted");
+    assert!(
+        view.value_range(Pane::Phase)
+            .contains(delays.phase_deg[100]),
+        "the new numbers are fitted"
+    );
 }
 
 /// Chooses an entry of the menu of curves.
@@ -82,11 +108,20 @@ fn a_click_in_the_plot_of_errors_rejects_a_model_and_its_zoom_is_that_of_the_bod
     // Where the step of the physics model takes it farthest from the others.
     let at = nominal.omega.iter().position(|&omega| omega > 2.0).unwrap();
     let view = &state(&window).display.error;
-    let place = view.screen_position(Pane::Magnitude, nominal.omega[at], nominal.magnitude_db[at]).unwrap();
+    let place = view
+        .screen_position(Pane::Magnitude, nominal.omega[at], nominal.magnitude_db[at])
+        .unwrap();
     window.hover_at(place);
     window.run_steps(2);
-    let id = state(&window).display.hovered.clone().expect("a model is pointed at");
-    assert!(state(&window).display.curves.cursor.is_some(), "and a frequency");
+    let id = state(&window)
+        .display
+        .hovered
+        .clone()
+        .expect("a model is pointed at");
+    assert!(
+        state(&window).display.curves.cursor.is_some(),
+        "and a frequency"
+    );
     window.drag_at(place);
     window.run_steps(1);
     window.drop_at(place);
@@ -126,10 +161,21 @@ fn a_click_on_a_reference_line_of_the_errors_rejects_nothing() {
     let before = state(&window).study.clone();
     let (panes, omegas) = ([Pane::Magnitude, Pane::Phase], [0.8, 1.5, 3.0, 7.0]);
     // Zero: the identified model that the others are compared with.
-    for (pane, omega) in panes.into_iter().flat_map(|pane| omegas.map(|omega| (pane, omega))) {
-        let place = state(&window).display.error.screen_position(pane, omega, 0.0).unwrap();
+    for (pane, omega) in panes
+        .into_iter()
+        .flat_map(|pane| omegas.map(|omega| (pane, omega)))
+    {
+        let place = state(&window)
+            .display
+            .error
+            .screen_position(pane, omega, 0.0)
+            .unwrap();
         click_once(&mut window, place);
-        assert_eq!(state(&window).study, before, "zero at {omega} rad/s, {pane:?}");
+        assert_eq!(
+            state(&window).study,
+            before,
+            "zero at {omega} rad/s, {pane:?}"
+        );
     }
     let zero = error(&window, CurveRole::IdentifiedRepresentative);
     assert!(!zero.detail.contains("click"), "{}", zero.detail);
@@ -142,13 +188,25 @@ fn a_click_on_a_reference_line_of_the_errors_rejects_nothing() {
         curves: state(&window).curves().unwrap(),
         variant: None,
     };
-    let rules = source.error_references(pair, &BodeOptions::default(), &state(&window).display.drawn_errors);
+    let rules = source.error_references(
+        pair,
+        &BodeOptions::default(),
+        &state(&window).display.drawn_errors,
+    );
     let mut near_curves = 0;
     for rule in &rules {
         for omega in omegas {
             let view = &state(&window).display.error;
-            let place = view.screen_position(rule.pane, omega, rule.level.at(omega)).unwrap();
-            if !view.transform(rule.pane).unwrap().frame().shrink(2.0).contains(place) {
+            let place = view
+                .screen_position(rule.pane, omega, rule.level.at(omega))
+                .unwrap();
+            if !view
+                .transform(rule.pane)
+                .unwrap()
+                .frame()
+                .shrink(2.0)
+                .contains(place)
+            {
                 continue;
             }
             let is_near = |curve: &BodeCurve| {
@@ -158,10 +216,19 @@ fn a_click_on_a_reference_line_of_the_errors_rejects_nothing() {
             };
             near_curves += usize::from(state(&window).display.drawn_errors.iter().any(is_near));
             click_once(&mut window, place);
-            assert_eq!(state(&window).study, before, "{} at {omega} rad/s", rule.label);
+            assert_eq!(
+                state(&window).study,
+                before,
+                "{} at {omega} rad/s",
+                rule.label
+            );
         }
     }
-    assert!(near_curves > 2, "curves are within reach of the pointer there: {near_curves} of {} lines", rules.len());
+    assert!(
+        near_curves > 2,
+        "curves are within reach of the pointer there: {near_curves} of {} lines",
+        rules.len()
+    );
 }
 
 #[test]
@@ -173,10 +240,20 @@ fn phases_are_wrapped_and_a_curve_is_moved_by_a_turn_on_wish() {
     let moved = drawn(&window, CurveRole::Nominal);
     assert_eq!(moved.phase_deg[200], before.phase_deg[200] + 360.0);
     assert!(moved.detail.contains("phase +360°"), "{}", moved.detail);
-    assert_eq!(state(&window).history.undo_label(), None, "it changes no decision");
+    assert_eq!(
+        state(&window).history.undo_label(),
+        None,
+        "it changes no decision"
+    );
     choose_of_curves(&mut window, "Phases wrapped");
     for curve in &state(&window).display.drawn {
-        assert!(curve.phase_deg.iter().filter(|phase| phase.is_finite()).all(|phase| phase.abs() <= 180.0));
+        assert!(
+            curve
+                .phase_deg
+                .iter()
+                .filter(|phase| phase.is_finite())
+                .all(|phase| phase.abs() <= 180.0)
+        );
     }
 }
 
@@ -187,7 +264,12 @@ fn choose_from_menu_of_nominal(window: &mut Window, entry: &str) {
     window.run_steps(2);
     for pressed in [true, false] {
         let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
-        window.event(Event::PointerButton { pos: place, button, pressed, modifiers });
+        window.event(Event::PointerButton {
+            pos: place,
+            button,
+            pressed,
+            modifiers,
+        });
         window.run_steps(1);
     }
     window.run_steps(2);
@@ -211,7 +293,11 @@ fn a_curve_can_be_hidden_isolated_and_taken_away_from_its_menu() {
     assert_eq!(state(&window).display.isolated, None, "Escape ends it");
     choose_from_menu_of_nominal(&mut window, "Isolate model");
     click(&mut window, "Only nominal ×");
-    assert_eq!(state(&window).display.isolated, None, "and so does the chip that says so");
+    assert_eq!(
+        state(&window).display.isolated,
+        None,
+        "and so does the chip that says so"
+    );
     choose_from_menu_of_nominal(&mut window, "Copy values");
     choose_from_menu_of_nominal(&mut window, "Reject model");
     assert!(state(&window).study.is_rejected(&id));
@@ -229,11 +315,26 @@ fn what_a_box_was_drawn_over_is_rejected_and_restored_in_one_step() {
     window.event(Event::ModifiersChanged(Modifiers::NONE));
     settle(&mut window);
     let selected = state(&window).display.curves.selected.clone();
-    assert!(selected.contains(&ModelId::new(ConditionId(10), BundleKind::Physics, "nominal")), "{selected:?}");
+    assert!(
+        selected.contains(&ModelId::new(
+            ConditionId(10),
+            BundleKind::Physics,
+            "nominal"
+        )),
+        "{selected:?}"
+    );
     let (one, count) = (selected.len() == 1, selected.len());
-    let models = if one { "1 model".to_owned() } else { format!("{count} models") };
+    let models = if one {
+        "1 model".to_owned()
+    } else {
+        format!("{count} models")
+    };
     click(&mut window, &format!("Reject {models}"));
-    assert!(selected.iter().all(|id| state(&window).study.is_rejected(id)));
+    assert!(
+        selected
+            .iter()
+            .all(|id| state(&window).study.is_rejected(id))
+    );
     click(&mut window, &format!("Restore {models}"));
     assert_eq!(state(&window).study, start);
     for _ in 0..2 {
@@ -249,15 +350,28 @@ fn what_a_box_was_drawn_over_is_rejected_and_restored_in_one_step() {
 fn the_values_of_every_role_at_the_cursor_are_listed_and_two_marks_show_what_changes() {
     let mut window = window();
     choose_condition_10(&mut window);
-    let frame = *state(&window).display.bode.transform(Pane::Phase).unwrap().frame();
+    let frame = *state(&window)
+        .display
+        .bode
+        .transform(Pane::Phase)
+        .unwrap()
+        .frame();
     for part in [0.4, 0.6] {
         let at = frame.lerp_inside(vec2(part, 0.98));
         window.hover_at(at);
         window.run_steps(3);
-        assert!(window.query_by_label_contains("; corrected: ").is_some(), "listed at the cursor");
+        assert!(
+            window.query_by_label_contains("; corrected: ").is_some(),
+            "listed at the cursor"
+        );
         for pressed in [true, false] {
             let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
-            window.event(Event::PointerButton { pos: at, button, pressed, modifiers });
+            window.event(Event::PointerButton {
+                pos: at,
+                button,
+                pressed,
+                modifiers,
+            });
             window.run_steps(1);
         }
         window.run_steps(2);
@@ -265,14 +379,24 @@ fn the_values_of_every_role_at_the_cursor_are_listed_and_two_marks_show_what_cha
     }
     assert_eq!(state(&window).display.curves.pinned.len(), 2);
     window.run_steps(2);
-    assert!(window.query_by_label_contains("Δ corrected: ").is_some(), "the changes between the marks");
+    assert!(
+        window.query_by_label_contains("Δ corrected: ").is_some(),
+        "the changes between the marks"
+    );
     window.hover_at(frame.lerp_inside(vec2(0.5, 0.98)));
     window.run_steps(2);
-    let middle = state(&window).display.curves.cursor.expect("the pointer is in the plot");
+    let middle = state(&window)
+        .display
+        .curves
+        .cursor
+        .expect("the pointer is in the plot");
     window.key_press(Key::M);
     window.run_steps(2);
     let pinned = state(&window).display.curves.pinned.clone();
-    assert!(pinned.len() == 2 && (pinned[1] / middle - 1.0).abs() < 1e-9, "{pinned:?} {middle}");
+    assert!(
+        pinned.len() == 2 && (pinned[1] / middle - 1.0).abs() < 1e-9,
+        "{pinned:?} {middle}"
+    );
     choose_of_curves(&mut window, "List no values at the cursor");
     assert!(window.query_by_label_contains("Δ corrected: ").is_none());
 }
@@ -282,8 +406,15 @@ fn magnitudes_are_read_as_ratios_in_the_units_of_the_channels() {
     let mut window = window();
     let before = drawn(&window, CurveRole::Nominal).magnitude_db;
     choose_of_curves(&mut window, "Magnitudes as ratios");
-    assert_eq!(drawn(&window, CurveRole::Nominal).magnitude_db, before, "drawn where they were");
-    assert_eq!(state(&window).display.curves.magnitude, gdcm::view::plot::MagnitudeUnit::Ratio);
+    assert_eq!(
+        drawn(&window, CurveRole::Nominal).magnitude_db,
+        before,
+        "drawn where they were"
+    );
+    assert_eq!(
+        state(&window).display.curves.magnitude,
+        gdcm::view::plot::MagnitudeUnit::Ratio
+    );
 }
 
 #[test]
@@ -306,17 +437,27 @@ fn a_model_is_rejected_for_a_reason_in_words() {
     window.run_steps(2);
     for pressed in [true, false] {
         let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
-        window.event(Event::PointerButton { pos: place, button, pressed, modifiers });
+        window.event(Event::PointerButton {
+            pos: place,
+            button,
+            pressed,
+            modifiers,
+        });
         window.run_steps(1);
     }
     window.run_steps(2);
     window.get_by_label("Reason of the rejection").focus();
     window.run_steps(2);
-    window.get_by_label("Reason of the rejection").type_text("a step near this trim");
+    window
+        .get_by_label("Reason of the rejection")
+        .type_text("a step near this trim");
     window.run_steps(2);
     click(&mut window, "Reject with reason");
     let id = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
     assert!(state(&window).study.is_rejected(&id));
     let reasons = &state(&window).study.choice(ConditionId(10)).physics.reasons;
-    assert_eq!(reasons.get("nominal").map(String::as_str), Some("a step near this trim"));
+    assert_eq!(
+        reasons.get("nominal").map(String::as_str),
+        Some("a step near this trim")
+    );
 }

@@ -14,8 +14,17 @@ fn from_the_example_to_exported_corrections() {
     let corrected_before = drawn(&window, CurveRole::Corrected);
 
     click(&mut window, "Reject 3 suggested");
-    assert_eq!(state(&window).shown().unwrap().representative_name(BundleKind::Physics), "ROLL-5deg");
-    assert!(drawn(&window, CurveRole::Nominal).rejected, "the nominal model is one of the outliers");
+    assert_eq!(
+        state(&window)
+            .shown()
+            .unwrap()
+            .representative_name(BundleKind::Physics),
+        "ROLL-5deg"
+    );
+    assert!(
+        drawn(&window, CurveRole::Nominal).rejected,
+        "the nominal model is one of the outliers"
+    );
     let corrected = drawn(&window, CurveRole::Corrected);
     assert_ne!(
         corrected.magnitude_db, corrected_before.magnitude_db,
@@ -28,16 +37,28 @@ fn from_the_example_to_exported_corrections() {
     assert!((net_gain(&window, "Q", "LON") / wanted - 1.0).abs() < 1e-9);
     click(&mut window, "Hold LON → Q");
     assert!(!state(&window).study.settings.constrained[on_axis]);
-    assert!((net_gain(&window, "Q", "LON") / wanted - 1.0).abs() > 1e-4, "free, it goes where the others pull it");
+    assert!(
+        (net_gain(&window, "Q", "LON") / wanted - 1.0).abs() > 1e-4,
+        "free, it goes where the others pull it"
+    );
 
     // LAT → P is held and stays; LON → Q is free: hold it again, free PED → R, and let alpha move that one's dots.
     click(&mut window, "Hold LON → Q");
-    let first = |window: &Window| channel_plots(state(window)).figure.plots[0].panels[0].dots().next().unwrap().y;
+    let first = |window: &Window| {
+        channel_plots(state(window)).figure.plots[0].panels[0]
+            .dots()
+            .next()
+            .unwrap()
+            .y
+    };
     let before = first(&window);
     slide(&mut window, "α gains", 12.5);
     settle(&mut window);
     assert_eq!(state(&window).study.settings.alpha_gain, 12.5);
-    assert!((before - first(&window)).abs() > 1e-4, "the dots of the channel gains moved");
+    assert!(
+        (before - first(&window)).abs() > 1e-4,
+        "the dots of the channel gains moved"
+    );
 
     let folder = tempfile::tempdir().unwrap();
     export_to(&mut window, folder.path());
@@ -45,10 +66,19 @@ fn from_the_example_to_exported_corrections() {
     assert_eq!(crate::entries(&written["conditions"]).len(), 11);
     assert_eq!(written["settings"]["alpha_gain"], 12.5);
     let tenth = &written["conditions"][9];
-    assert_eq!((&tenth["id"], &tenth["physics_representative"]), (&10.into(), &"ROLL-5deg".into()));
+    assert_eq!(
+        (&tenth["id"], &tenth["physics_representative"]),
+        (&10.into(), &"ROLL-5deg".into())
+    );
     let shown = state(&window).shown().unwrap();
-    assert_eq!(tenth["gains"]["outputs"]["Q"], shown.correction.output_gains[1], "read back to the last digit");
-    assert!(folder.path().join("corrections.csv").exists() && folder.path().join("assessment.csv").exists());
+    assert_eq!(
+        tenth["gains"]["outputs"]["Q"], shown.correction.output_gains[1],
+        "read back to the last digit"
+    );
+    assert!(
+        folder.path().join("corrections.csv").exists()
+            && folder.path().join("assessment.csv").exists()
+    );
 }
 
 #[test]
@@ -89,24 +119,45 @@ fn every_choice_can_be_undone_and_done_again() {
 fn at_least_one_model_stays_in_each_bundle() {
     // Its three identified models are all in sight.
     let mut window = window_with(Opened::Dataset(crate::REFERENCE_DATASET.clone()), warm());
-    let models: Vec<String> =
-        state(&window).condition().bundle(BundleKind::Identified).iter().map(|model| model.name.clone()).collect();
+    let models: Vec<String> = state(&window)
+        .condition()
+        .bundle(BundleKind::Identified)
+        .iter()
+        .map(|model| model.name.clone())
+        .collect();
     give(&mut window, Action::ShowIdentified(true));
     for model in &models {
         click(&mut window, &format!("Keep identified model {model}"));
     }
     let notice = state(&window).notice.clone().expect("the refusal is shown");
     assert_eq!(notice.kind, NoticeKind::Trouble);
-    assert!(notice.text.contains("at least one must stay"), "{}", notice.text);
-    assert_eq!(state(&window).study.choice(ConditionId(1)).identified.rejected.len(), models.len() - 1);
+    assert!(
+        notice.text.contains("at least one must stay"),
+        "{}",
+        notice.text
+    );
+    assert_eq!(
+        state(&window)
+            .study
+            .choice(ConditionId(1))
+            .identified
+            .rejected
+            .len(),
+        models.len() - 1
+    );
 }
 
 #[test]
 fn a_pinned_model_represents_its_bundle() {
     let mut window = window();
     click(&mut window, "Use physics model V+10kt as representative");
-    let representative =
-        |window: &Window| state(window).shown().unwrap().representative_name(BundleKind::Physics).to_owned();
+    let representative = |window: &Window| {
+        state(window)
+            .shown()
+            .unwrap()
+            .representative_name(BundleKind::Physics)
+            .to_owned()
+    };
     assert_eq!(representative(&window), "V+10kt");
     click(&mut window, "Use physics model V+10kt as representative");
     assert_eq!(representative(&window), "nominal", "the medoid again");
@@ -117,7 +168,10 @@ fn the_badge_says_proven_and_every_cell_says_what_holding_or_freeing_it_costs() 
     let mut window = window();
     window.get_by_label("global optimum ✓");
     wait_for_toggles(&mut window);
-    for (output, input, word) in [("Q", "LON", "holding LON → Q costs"), ("Q", "PED", "holding PED → Q would")] {
+    for (output, input, word) in [
+        ("Q", "LON", "holding LON → Q costs"),
+        ("Q", "PED", "holding PED → Q would"),
+    ] {
         let costs = toggle_costs(state(&window), pair(&window, output, input));
         assert!(costs.iter().any(|cost| cost.contains(word)), "{costs:?}");
     }
@@ -127,13 +181,23 @@ fn the_badge_says_proven_and_every_cell_says_what_holding_or_freeing_it_costs() 
 fn held_gains_out_of_reach_are_explained_and_the_explanation_is_exported() {
     let mut window = window();
     unfold_settings(&mut window, true);
-    window.get_by_label("Upper gain bound").set_value_accesskit(1.0);
+    window
+        .get_by_label("Upper gain bound")
+        .set_value_accesskit(1.0);
     settle(&mut window);
     unfold_settings(&mut window, false);
     window.get_by_label_contains("stops at a bound");
     let shown = state(&window).shown().unwrap();
-    let texts: Vec<String> = remarks_shown(state(&window), shown).into_iter().map(|remark| remark.text).collect();
-    assert!(texts.iter().any(|text| text.contains("LON → Q cannot be held")), "{texts:?}");
+    let texts: Vec<String> = remarks_shown(state(&window), shown)
+        .into_iter()
+        .map(|remark| remark.text)
+        .collect();
+    assert!(
+        texts
+            .iter()
+            .any(|text| text.contains("LON → Q cannot be held")),
+        "{texts:?}"
+    );
     let (marked, _) = gain_conflict_marks(shown);
     assert!(marked.contains(&pair(&window, "Q", "LON")));
 
@@ -141,12 +205,19 @@ fn held_gains_out_of_reach_are_explained_and_the_explanation_is_exported() {
     export_to(&mut window, folder.path());
     let written = crate::read_json(&folder.path().join("corrections.json"));
     let solution = &written["conditions"][0]["gain_solution"];
-    assert_eq!((&solution["matched"], &solution["proven"]), (&false.into(), &true.into()));
+    assert_eq!(
+        (&solution["matched"], &solution["proven"]),
+        (&false.into(), &true.into())
+    );
     let mut conflicts = crate::entries(&solution["explanation"]["conflicts"]).iter();
-    let conflict = conflicts.find(|conflict| conflict["entries"] == serde_json::json!([["Q", "LON"]]));
-    let upper = conflict.and_then(|conflict| conflict["upper"].as_f64()).expect("the bound that would do is written");
+    let conflict =
+        conflicts.find(|conflict| conflict["entries"] == serde_json::json!([["Q", "LON"]]));
+    let upper = conflict
+        .and_then(|conflict| conflict["upper"].as_f64())
+        .expect("the bound that would do is written");
     // k_Q k_LON = G needs a bound of at least its square root, rounded up to three digits.
-    let gain = state(&window).shown().unwrap().comparison.delta.gain[pair(&window, "Q", "LON")].unwrap();
+    let gain =
+        state(&window).shown().unwrap().comparison.delta.gain[pair(&window, "Q", "LON")].unwrap();
     assert_eq!(upper, (100.0 * gain.sqrt()).ceil() / 100.0);
 }
 
@@ -169,7 +240,11 @@ fn control_and_r_reject_the_suggested_outliers() {
     assert_eq!(suggested.len(), 3);
     window.key_press_modifiers(Modifiers::COMMAND, Key::R);
     settle(&mut window);
-    let rejected = &state(&window).study.choice(ConditionId(10)).physics.rejected;
+    let rejected = &state(&window)
+        .study
+        .choice(ConditionId(10))
+        .physics
+        .rejected;
     assert_eq!(*rejected, suggested.into_iter().collect());
 }
 
@@ -178,7 +253,9 @@ fn a_rejection_keeps_the_reason_given_for_it_and_undo_takes_both_back() {
     let mut window = window();
     let before = state(&window).study.clone();
     let model = ModelId::new(ConditionId(1), BundleKind::Physics, "V+10kt");
-    window.get_by_label("physics model V+10kt").click_secondary();
+    window
+        .get_by_label("physics model V+10kt")
+        .click_secondary();
     window.run_steps(2);
     window.get_by_label("Reject with a reason…").click();
     window.run_steps(3);
@@ -187,7 +264,10 @@ fn a_rejection_keeps_the_reason_given_for_it_and_undo_takes_both_back() {
     window.key_press(Key::Enter);
     settle(&mut window);
     assert!(state(&window).study.is_rejected(&model));
-    assert_eq!(state(&window).study.reason(&model), Some("trim not converged"));
+    assert_eq!(
+        state(&window).study.reason(&model),
+        Some("trim not converged")
+    );
     assert_eq!(state(&window).forms.shown, None);
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut window);
@@ -199,12 +279,19 @@ fn how_a_figure_of_a_cell_was_computed_is_told_with_its_numbers() {
     let mut window = window();
     window.get_by_label("Response LON → Q").click_secondary();
     window.run_steps(2);
-    window.get_by_label_contains("How was this computed?").click();
+    window
+        .get_by_label_contains("How was this computed?")
+        .click();
     window.run_steps(3);
     window.get_by_role_and_label(Role::Button, "G").click();
     window.run_steps(3);
-    let gain = state(&window).shown().unwrap().comparison.delta.gain[pair(&window, "Q", "LON")].unwrap();
-    let asked = state(&window).display.asked.clone().expect("the figure is explained");
+    let gain =
+        state(&window).shown().unwrap().comparison.delta.gain[pair(&window, "Q", "LON")].unwrap();
+    let asked = state(&window)
+        .display
+        .asked
+        .clone()
+        .expect("the figure is explained");
     let told = derivation(state(&window).analysis().unwrap(), &asked).unwrap();
     assert_eq!(told.value, gain);
     window.get_by_label(&told.equation);

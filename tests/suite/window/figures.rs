@@ -37,7 +37,9 @@ fn every_view_is_saved_from_its_header() {
     wait_for_bars(&mut window);
     for view in views_with_figure() {
         show(&mut window, view);
-        wait_until(&mut window, "what it shows", |window| !state(window).results.background.is_busy());
+        wait_until(&mut window, "what it shows", |window| {
+            !state(window).results.background.is_busy()
+        });
         assert_saved(&mut window, view, FigureFormat::Svg, folder.path());
     }
 }
@@ -45,15 +47,31 @@ fn every_view_is_saved_from_its_header() {
 #[test]
 fn coherence_of_measured_responses_stands_below_their_bode_plot() {
     let mut window = window();
-    assert_eq!(figure_of(state(&window), View::Bode).unwrap().plots[0].panels.len(), 2, "the example has none");
+    assert_eq!(
+        figure_of(state(&window), View::Bode).unwrap().plots[0]
+            .panels
+            .len(),
+        2,
+        "the example has none"
+    );
     open_by_path(&mut window, &files::small_dataset());
     settle(&mut window);
     show(&mut window, View::Bode);
-    let title = state(&window).dataset().pair_name(state(&window).display.pair);
+    let title = state(&window)
+        .dataset()
+        .pair_name(state(&window).display.pair);
     window.get_by_label_contains(&format!("Coherence of {title}"));
     let figure = figure_of(state(&window), View::Bode).unwrap();
-    let strip = figure.plots[0].panels.get(2).expect("magnitude, phase, coherence");
-    assert!(strip.marks.iter().any(|mark| matches!(mark, gdcm_plot::figure::Mark::Curve(of) if !of.x.is_empty())));
+    let strip = figure.plots[0]
+        .panels
+        .get(2)
+        .expect("magnitude, phase, coherence");
+    assert!(
+        strip
+            .marks
+            .iter()
+            .any(|mark| matches!(mark, gdcm_plot::figure::Mark::Curve(of) if !of.x.is_empty()))
+    );
 }
 
 #[test]
@@ -72,13 +90,28 @@ fn a_figure_of_the_window_is_that_of_the_command() {
     choose_condition_10(&mut window);
     wait_for_bars(&mut window);
     let folder = tempfile::tempdir().unwrap();
-    let (ours, theirs) = (folder.path().join("window.svg"), folder.path().join("command.svg"));
+    let (ours, theirs) = (
+        folder.path().join("window.svg"),
+        folder.path().join("command.svg"),
+    );
     save_figure(&mut window, View::Bode, "SVG", &ours);
     let desk = crate::commands::Desk::new();
-    let command =
-        ["figure", "--view", "bode", "--condition", "10", "--pair", "Q/LON", "--out", theirs.to_str().unwrap()];
+    let command = [
+        "figure",
+        "--view",
+        "bode",
+        "--condition",
+        "10",
+        "--pair",
+        "Q/LON",
+        "--out",
+        theirs.to_str().unwrap(),
+    ];
     desk.gdcm(&command).assert_done();
-    assert_eq!(fs::read_to_string(ours).unwrap(), fs::read_to_string(theirs).unwrap());
+    assert_eq!(
+        fs::read_to_string(ours).unwrap(),
+        fs::read_to_string(theirs).unwrap()
+    );
 }
 
 #[test]
@@ -92,10 +125,19 @@ fn a_file_that_is_there_is_asked_about_and_a_name_without_a_format_is_refused() 
     assert_eq!(fs::read_to_string(&path).unwrap(), "mine");
     click(&mut window, "Overwrite");
     assert!(fs::read_to_string(&path).unwrap().starts_with("<svg"));
-    save_figure(&mut window, View::Bode, "SVG", &folder.path().join("bode.docx"));
+    save_figure(
+        &mut window,
+        View::Bode,
+        "SVG",
+        &folder.path().join("bode.docx"),
+    );
     let notice = state(&window).notice.clone().unwrap();
     assert_eq!(notice.kind, NoticeKind::Trouble);
-    assert!(notice.text.contains(".svg, .png, .pdf or .csv"), "{}", notice.text);
+    assert!(
+        notice.text.contains(".svg, .png, .pdf or .csv"),
+        "{}",
+        notice.text
+    );
     assert!(!folder.path().join("bode.docx").exists());
 }
 
@@ -106,10 +148,15 @@ fn the_numbers_of_a_view_are_copied_as_csv() {
     click(&mut window, "Save or copy Net gain");
     window.get_by_label("Copy the numbers").click();
     let copied = |window: &Window| {
-        window.output().platform_output.commands.iter().find_map(|command| match command {
-            egui::OutputCommand::CopyText(text) => Some(text.clone()),
-            _ => None,
-        })
+        window
+            .output()
+            .platform_output
+            .commands
+            .iter()
+            .find_map(|command| match command {
+                egui::OutputCommand::CopyText(text) => Some(text.clone()),
+                _ => None,
+            })
     };
     let mut text = None;
     for _ in 0..4 {

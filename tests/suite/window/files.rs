@@ -15,7 +15,10 @@ fn a_file_that_cannot_be_read_leaves_what_is_open_and_says_what_is_wrong() {
     let path = folder.path().join("broken.json");
     std::fs::write(&path, "{\"format\": \"gdcm-dataset\", ").unwrap();
     open_by_path(&mut window, &path);
-    assert!(window.query_by_label("Don't save").is_none(), "nothing is asked for a file that cannot be shown");
+    assert!(
+        window.query_by_label("Don't save").is_none(),
+        "nothing is asked for a file that cannot be shown"
+    );
     let notice = state(&window).notice.clone().expect("the trouble is shown");
     assert_eq!(notice.kind, NoticeKind::Trouble);
     assert!(notice.text.contains("broken.json"), "{}", notice.text);
@@ -31,7 +34,11 @@ fn models_of_another_program_that_are_opened_by_path_are_sent_to_their_import() 
     open_by_path(&mut window, &folder.path().join("c1_60kt/V+5kt.mat"));
     let notice = state(&window).notice.clone().expect("the trouble is shown");
     assert_eq!(notice.kind, NoticeKind::Trouble);
-    assert!(notice.text.contains("V+5kt.mat") && notice.text.contains("Import models"), "{}", notice.text);
+    assert!(
+        notice.text.contains("V+5kt.mat") && notice.text.contains("Import models"),
+        "{}",
+        notice.text
+    );
 }
 
 #[test]
@@ -40,13 +47,26 @@ fn whether_to_lose_decisions_is_asked_once_the_file_is_found_good() {
     click(&mut window, "Keep physics model V+10kt");
     let before = state(&window).study.clone();
     for answer in ["Cancel", "Don't save"] {
-        window.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(small_dataset())));
-        wait_until(&mut window, "the question", |window| window.query_by_label(answer).is_some());
-        assert_eq!(state(&window).study, before, "what is open stays until the answer");
+        window
+            .input_mut()
+            .dropped_files
+            .push(std::sync::Arc::new(Dropped(small_dataset())));
+        wait_until(&mut window, "the question", |window| {
+            window.query_by_label(answer).is_some()
+        });
+        assert_eq!(
+            state(&window).study,
+            before,
+            "what is open stays until the answer"
+        );
         assert!(state(&window).unsaved);
         click(&mut window, answer);
         let opened = answer == "Don't save";
-        assert_eq!(state(&window).dataset().conditions().len() == 2, opened, "{answer}");
+        assert_eq!(
+            state(&window).dataset().conditions().len() == 2,
+            opened,
+            "{answer}"
+        );
         assert_eq!(state(&window).unsaved, !opened, "{answer}");
     }
 }
@@ -61,7 +81,11 @@ fn decisions_are_saved_first_and_what_they_kept_waiting_is_opened_then() {
     let decided = state(&window).study.choices.clone();
     open_by_path(&mut window, &small_dataset());
     click(&mut window, "Save study first");
-    assert_eq!(state(&window).dataset().conditions().len(), 2, "and it is open");
+    assert_eq!(
+        state(&window).dataset().conditions().len(),
+        2,
+        "and it is open"
+    );
     assert_eq!(open_study(&path).unwrap().study.choices, decided);
     // What waited is done once.
     click(&mut window, "Keep physics model V+5kt");
@@ -72,9 +96,15 @@ fn decisions_are_saved_first_and_what_they_kept_waiting_is_opened_then() {
 #[test]
 fn a_study_whose_dataset_is_gone_loses_no_decision_before_the_dataset_is_found() {
     let folder = tempfile::tempdir().unwrap();
-    let (dataset, study) = (folder.path().join("data.json"), folder.path().join("theirs.gdcm-study.json"));
+    let (dataset, study) = (
+        folder.path().join("data.json"),
+        folder.path().join("theirs.gdcm-study.json"),
+    );
     std::fs::copy(small_dataset(), &dataset).unwrap();
-    let mut theirs = window_with(load_any(&dataset, &Default::default()).unwrap(), Setup::default());
+    let mut theirs = window_with(
+        load_any(&dataset, &Default::default()).unwrap(),
+        Setup::default(),
+    );
     save_as(&mut theirs, &study);
     drop(theirs);
     let moved = folder.path().join("moved.json");
@@ -83,8 +113,15 @@ fn a_study_whose_dataset_is_gone_loses_no_decision_before_the_dataset_is_found()
     let mut window = window();
     click(&mut window, "Keep physics model V+10kt");
     open_by_path(&mut window, &study);
-    assert!(window.query_by_label("Don't save").is_none(), "where its dataset is comes first");
-    fill(&mut window, "Path of the dataset", &folder.path().join("nowhere.json"));
+    assert!(
+        window.query_by_label("Don't save").is_none(),
+        "where its dataset is comes first"
+    );
+    fill(
+        &mut window,
+        "Path of the dataset",
+        &folder.path().join("nowhere.json"),
+    );
     click(&mut window, "Open with this dataset");
     assert!(state(&window).unsaved && state(&window).dataset().conditions().len() == 11);
     open_by_path(&mut window, &study);
@@ -117,11 +154,17 @@ impl egui::DroppedFile for Dropped {
 fn a_dataset_dropped_on_the_window_is_opened() {
     let mut window = window();
     let path = small_dataset();
-    window.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(path)));
+    window
+        .input_mut()
+        .dropped_files
+        .push(std::sync::Arc::new(Dropped(path)));
     window.run_steps(1);
     settle(&mut window);
     assert_eq!(state(&window).dataset().conditions().len(), 2);
-    assert_eq!(state(&window).notice.as_ref().map(|notice| notice.kind), Some(NoticeKind::Done));
+    assert_eq!(
+        state(&window).notice.as_ref().map(|notice| notice.kind),
+        Some(NoticeKind::Done)
+    );
 }
 
 #[test]
@@ -159,7 +202,10 @@ fn a_dataset_opened_again_is_analysed_again() {
 #[test]
 fn files_opened_of_late_are_in_the_menu_and_a_missing_one_cannot_be_chosen() {
     let (directory, folder) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
-    let setup = Setup { directory: Some(directory.path().to_owned()), ..Setup::default() };
+    let setup = Setup {
+        directory: Some(directory.path().to_owned()),
+        ..Setup::default()
+    };
     let small = small_dataset();
     let mut window = window_with(example(), setup.clone());
     for name in ["first.json", "second.json"] {
@@ -167,18 +213,26 @@ fn files_opened_of_late_are_in_the_menu_and_a_missing_one_cannot_be_chosen() {
         std::fs::copy(&small, &path).unwrap();
         open_by_path(&mut window, &path);
     }
-    wait_until(&mut window, "both are listed", |window| state(window).recent.len() == 2);
+    wait_until(&mut window, "both are listed", |window| {
+        state(window).recent.len() == 2
+    });
     std::fs::remove_file(folder.path().join("second.json")).unwrap();
 
     let mut window = window_with(example(), setup);
-    wait_until(&mut window, "the list is read", |window| state(window).recent.len() == 2);
+    wait_until(&mut window, "the list is read", |window| {
+        state(window).recent.len() == 2
+    });
     click(&mut window, "File");
     click(&mut window, "Open recent");
     let missing = window.get_by_label_contains("second.json");
     assert!(missing.accesskit_node().is_disabled());
     window.get_by_label_contains("first.json").click();
     settle(&mut window);
-    assert_eq!(state(&window).dataset().conditions().len(), 2, "the small dataset is open");
+    assert_eq!(
+        state(&window).dataset().conditions().len(),
+        2,
+        "the small dataset is open"
+    );
 }
 
 #[test]
@@ -193,38 +247,58 @@ fn corrections_are_exported_for_other_tools_and_an_existing_file_is_asked_about(
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("correction.py");
     let mut window = window();
-    window.state_mut().dispatch(Command::ShowForm(Some(FormKind::ExportAs)));
+    window
+        .state_mut()
+        .dispatch(Command::ShowForm(Some(FormKind::ExportAs)));
     window.run_steps(2);
-    assert_eq!(state(&window).forms.typed[&FormKind::ExportAs], "example.mat");
+    assert_eq!(
+        state(&window).forms.typed[&FormKind::ExportAs],
+        "example.mat"
+    );
     click(&mut window, "Python module, a function of airspeed");
     assert_eq!(
         state(&window).forms.typed[&FormKind::ExportAs],
         "example.py",
         "the end of the name goes with the format"
     );
-    wait_until(&mut window, "results", |window| state(window).analysis().is_some());
+    wait_until(&mut window, "results", |window| {
+        state(window).analysis().is_some()
+    });
     window.run_steps(2);
-    for words in
-        ["Contains: gains scheduled, delays none, leads none, couplings none.", "Left out: delay of output NX: "]
-    {
+    for words in [
+        "Contains: gains scheduled, delays none, leads none, couplings none.",
+        "Left out: delay of output NX: ",
+    ] {
         assert!(window.query_by_label_contains(words).is_some(), "{words}");
     }
     let notice = exported(&mut window, &path);
-    assert!(notice.kind == NoticeKind::Done && notice.text.contains("delays are not scheduled"), "{}", notice.text);
     assert!(
-        notice
-            .text
-            .contains(": gains scheduled, delays none, leads none, couplings none; left out: delay of output NX")
+        notice.kind == NoticeKind::Done && notice.text.contains("delays are not scheduled"),
+        "{}",
+        notice.text
     );
-    assert!(std::fs::read_to_string(&path).unwrap().contains("def gdcm_correction(airspeed_kt):"));
+    assert!(notice.text.contains(
+        ": gains scheduled, delays none, leads none, couplings none; left out: delay of output NX"
+    ));
+    assert!(
+        std::fs::read_to_string(&path)
+            .unwrap()
+            .contains("def gdcm_correction(airspeed_kt):")
+    );
 
     std::fs::write(&path, "mine").unwrap();
-    window.state_mut().dispatch(Command::ShowForm(Some(FormKind::ExportAs)));
+    window
+        .state_mut()
+        .dispatch(Command::ShowForm(Some(FormKind::ExportAs)));
     window.run_steps(10);
     click(&mut window, "Export file");
     assert!(window.query_by_label("This file exists already").is_some());
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "mine");
     click(&mut window, "Overwrite");
-    assert!(std::fs::read_to_string(&path).unwrap().contains("def gdcm_correction"));
+    assert!(
+        std::fs::read_to_string(&path)
+            .unwrap()
+            .contains("def gdcm_correction")
+    );
     assert_eq!(state(&window).forms.shown, None);
 }

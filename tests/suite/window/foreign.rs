@@ -14,14 +14,32 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     crate::assembling::foreign_tree(&root);
     let mut window = window();
     give(&mut window, AssemblingCommand::Open);
-    type_into(&mut window, "Folder or file of models", root.to_str().unwrap());
-    wait_until(&mut window, "the models", |window| bench(window).reading.is_none());
+    type_into(
+        &mut window,
+        "Folder or file of models",
+        root.to_str().unwrap(),
+    );
+    wait_until(&mut window, "the models", |window| {
+        bench(window).reading.is_none()
+    });
     type_into(&mut window, "Unit of input 1", "%");
     // What an inch is nobody guesses.
     assert!(window.query_by_label_contains("to complete").is_some());
-    type_into(&mut window, "Factor of xb from in", &crate::assembling::PERCENT_IN_AN_INCH.to_string());
-    assert!(bench(&window).assembly().problems().is_empty(), "{:?}", bench(&window).assembly().told());
-    type_into(&mut window, "Path of the dataset to make", folder.path().join("made.json.gz").to_str().unwrap());
+    type_into(
+        &mut window,
+        "Factor of xb from in",
+        &crate::assembling::PERCENT_IN_AN_INCH.to_string(),
+    );
+    assert!(
+        bench(&window).assembly().problems().is_empty(),
+        "{:?}",
+        bench(&window).assembly().told()
+    );
+    type_into(
+        &mut window,
+        "Path of the dataset to make",
+        folder.path().join("made.json.gz").to_str().unwrap(),
+    );
     window.get_by_label("Make dataset").click();
     wait_until(&mut window, "the dataset", |window| {
         state(window).assembling.is_none() && state(window).dataset().conditions().len() == 2
@@ -31,28 +49,51 @@ fn a_foreign_tree_with_a_turned_channel_and_inches_is_carried_to_corrected_model
     // The sign is found by the program, named before anything else, and turned by its button.
     let doubted = |window: &Window| -> Vec<String> {
         let analysis = state(window).analysis().expect("there is a result");
-        analysis.doubts.iter().map(|doubt| doubt.words(state(window).dataset())).collect()
+        analysis
+            .doubts
+            .iter()
+            .map(|doubt| doubt.words(state(window).dataset()))
+            .collect()
     };
     let words = doubted(&window);
-    assert!(words.len() == 1 && words[0].starts_with("COL → NZ differs by half a turn"), "{words:?}");
+    assert!(
+        words.len() == 1 && words[0].starts_with("COL → NZ differs by half a turn"),
+        "{words:?}"
+    );
     window.get_by_label("its sign seems to be the other one");
     let cost = |window: &Window| {
         let pair = pair(window, "NZ", "COL");
-        state(window).shown().and_then(|shown| shown.cost[pair]).expect("it has a J").uncorrected.total()
+        state(window)
+            .shown()
+            .and_then(|shown| shown.cost[pair])
+            .expect("it has a J")
+            .uncorrected
+            .total()
     };
     let before = cost(&window);
     click(&mut window, "Turn NZ");
     assert_eq!(doubted(&window), Vec::<String>::new());
     // Half a turn alone is a J of 20 * 0.0175 * 180^2.
-    assert!(before > 5_000.0 && cost(&window) < 0.1 * before, "{before} and {}", cost(&window));
+    assert!(
+        before > 5_000.0 && cost(&window) < 0.1 * before,
+        "{before} and {}",
+        cost(&window)
+    );
 
     // Corrected models for the other program.
     let path = folder.path().join("corrected.mat");
-    window.state_mut().dispatch(gdcm::view::Command::ShowForm(Some(gdcm::view::FormKind::ExportAs)));
+    window
+        .state_mut()
+        .dispatch(gdcm::view::Command::ShowForm(Some(
+            gdcm::view::FormKind::ExportAs,
+        )));
     window.run_steps(2);
     let notice = exported(&mut window, &path);
     assert_eq!(notice.kind, NoticeKind::Done, "{}", notice.text);
-    assert!(std::fs::metadata(&path).unwrap().len() > 10_000, "models of two conditions");
+    assert!(
+        std::fs::metadata(&path).unwrap().len() > 10_000,
+        "models of two conditions"
+    );
 }
 
 #[test]
@@ -62,10 +103,19 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_chosen_in_the_page_of_col
         let at = f64::from(k);
         // A rate of 40 is no radians in a second; one of 0.4 can be either.
         let (rate, slow) = (40.0 * (0.2 * at).sin(), 0.4 * (0.2 * at).cos());
-        format!("{:.2},{},{},{rate},{slow}\n", 0.02 * at, 50.0 + at.sin(), 50.0 + at.cos())
+        format!(
+            "{:.2},{},{},{rate},{slow}\n",
+            0.02 * at,
+            50.0 + at.sin(),
+            50.0 + at.cos()
+        )
     };
     let path = folder.path().join("flight.csv");
-    std::fs::write(&path, "time_s,LON,LAT,P,Q\n".to_owned() + &(0..80).map(row).collect::<String>()).unwrap();
+    std::fs::write(
+        &path,
+        "time_s,LON,LAT,P,Q\n".to_owned() + &(0..80).map(row).collect::<String>(),
+    )
+    .unwrap();
     let dataset = folder.path().join("small.json");
     std::fs::write(&dataset, crate::commands::SMALL).unwrap();
     let mut window = window();
@@ -73,11 +123,20 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_chosen_in_the_page_of_col
     show_records(&mut window);
     give(&mut window, RecordsCommand::Add(vec![path]));
     let id = state(&window).condition().id();
-    let row = |window: &Window| state(window).records.conditions.get(&id).and_then(|of| of.rows.first().cloned());
+    let row = |window: &Window| {
+        state(window)
+            .records
+            .conditions
+            .get(&id)
+            .and_then(|of| of.rows.first().cloned())
+    };
     wait_until(&mut window, "the record", |window| row(window).is_some());
     let asked = row(&window).unwrap();
     let words: Vec<String> = asked.problems.iter().map(ToString::to_string).collect();
-    assert!(words.len() == 1 && words[0].starts_with("the file does not say the unit of Q"), "{words:?}");
+    assert!(
+        words.len() == 1 && words[0].starts_with("the file does not say the unit of Q"),
+        "{words:?}"
+    );
     assert!(asked.flight.is_none(), "nothing is chosen");
     give(&mut window, RecordsCommand::Show(RecordsPage::Columns));
     window.run_steps(2);
@@ -88,13 +147,19 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_chosen_in_the_page_of_col
     let said = row(&window).unwrap();
     assert!(said.problems.is_empty(), "{:?}", said.problems);
     assert_eq!(
-        said.layout.outputs.iter().map(|used| used.unwrap().factor).collect::<Vec<_>>(),
+        said.layout
+            .outputs
+            .iter()
+            .map(|used| used.unwrap().factor)
+            .collect::<Vec<_>>(),
         [1.0, 180.0 / std::f64::consts::PI]
     );
 }
 
 fn show_records(window: &mut Window) {
-    window.state_mut().dispatch(gdcm::view::Command::ShowStart(false));
+    window
+        .state_mut()
+        .dispatch(gdcm::view::Command::ShowStart(false));
     show(window, View::Records);
 }
 
@@ -102,15 +167,27 @@ fn show_records(window: &mut Window) {
 fn reading_is_told_beside_stop_which_ends_it_and_leaves_what_was_open() {
     let folder = tempfile::tempdir().unwrap();
     let row = |k: u32| format!("{:.3},{k},1,2,3,4,5,6,7,8,9\n", 0.02 * f64::from(k));
-    let text = "time_s,LON,LAT,PED,COL,P,Q,R,NX,NY,NZ\n".to_owned() + &(0..400_000).map(row).collect::<String>();
+    let text = "time_s,LON,LAT,PED,COL,P,Q,R,NX,NY,NZ\n".to_owned()
+        + &(0..400_000).map(row).collect::<String>();
     let path = folder.path().join("long.csv");
     std::fs::write(&path, text).unwrap();
     let mut window = window();
     show_records(&mut window);
-    wait_until(&mut window, "the records looked for", |window| state(window).records.reading.is_none());
-    let rows = |window: &Window| -> usize { state(window).records.conditions.values().map(|of| of.rows.len()).sum() };
+    wait_until(&mut window, "the records looked for", |window| {
+        state(window).records.reading.is_none()
+    });
+    let rows = |window: &Window| -> usize {
+        state(window)
+            .records
+            .conditions
+            .values()
+            .map(|of| of.rows.len())
+            .sum()
+    };
     let before = rows(&window);
-    window.state_mut().dispatch(RecordsCommand::Add(vec![path]).into());
+    window
+        .state_mut()
+        .dispatch(RecordsCommand::Add(vec![path]).into());
     window.step();
     window.get_by_label_contains("long.csv …");
     window.get_by_label("Stop").click();
@@ -123,7 +200,9 @@ fn reading_is_told_beside_stop_which_ends_it_and_leaves_what_was_open() {
     let large = folder.path().join("large.json");
     let blanks = " ".repeat(60 << 20);
     std::fs::write(&large, format!("{blanks}{}", crate::commands::SMALL)).unwrap();
-    window.state_mut().dispatch(gdcm::view::Command::Open(large));
+    window
+        .state_mut()
+        .dispatch(gdcm::view::Command::Open(large));
     window.step();
     assert!(state(&window).opening.is_some());
     window.get_by_label("Stop").click();
@@ -131,5 +210,9 @@ fn reading_is_told_beside_stop_which_ends_it_and_leaves_what_was_open() {
     assert!(state(&window).opening.is_none());
     std::thread::sleep(Duration::from_millis(400));
     settle(&mut window);
-    assert_eq!((state(&window).dataset().name(), rows(&window)), (name.as_str(), before), "late answers count no more");
+    assert_eq!(
+        (state(&window).dataset().name(), rows(&window)),
+        (name.as_str(), before),
+        "late answers count no more"
+    );
 }

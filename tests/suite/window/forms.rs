@@ -14,7 +14,13 @@ fn type_text(window: &mut Window, text: &str) {
 
 /// A window whose home directory is `home`.
 fn window_at(home: &Path) -> Window {
-    window_with(example(), Setup { home: Some(home.to_owned()), ..Setup::default() })
+    window_with(
+        example(),
+        Setup {
+            home: Some(home.to_owned()),
+            ..Setup::default()
+        },
+    )
 }
 
 #[test]
@@ -51,7 +57,11 @@ fn enter_exports_and_what_exists_already_is_asked_about() {
     window.get_by_label("These files exist already");
     press(&mut window, Modifiers::NONE, Key::Enter);
     settle(&mut window);
-    assert_eq!(std::fs::read(&written).unwrap(), first, "Enter alone overwrites nothing");
+    assert_eq!(
+        std::fs::read(&written).unwrap(),
+        first,
+        "Enter alone overwrites nothing"
+    );
     window.get_by_label("Export folder");
     press(&mut window, Modifiers::NONE, Key::Enter);
     settle(&mut window);
@@ -63,17 +73,28 @@ fn enter_exports_and_what_exists_already_is_asked_about() {
 fn coherence_is_switched_where_something_is_measured_with_it() {
     let mut example = window();
     unfold_settings(&mut example, true);
-    assert!(example.query_by_label("Coherence counts").is_none(), "the example has none");
+    assert!(
+        example.query_by_label("Coherence counts").is_none(),
+        "the example has none"
+    );
     open_by_path(&mut example, &files::small_dataset());
     settle(&mut example);
     unfold_settings(&mut example, true);
-    assert_eq!(state(&example).study.settings.coherence_threshold, Some(0.6));
+    assert_eq!(
+        state(&example).study.settings.coherence_threshold,
+        Some(0.6)
+    );
     click(&mut example, "Coherence counts");
     assert_eq!(state(&example).study.settings.coherence_threshold, None);
     click(&mut example, "Coherence counts");
-    example.get_by_label("Least coherence").set_value_accesskit(0.75);
+    example
+        .get_by_label("Least coherence")
+        .set_value_accesskit(0.75);
     settle(&mut example);
-    assert_eq!(state(&example).study.settings.coherence_threshold, Some(0.75));
+    assert_eq!(
+        state(&example).study.settings.coherence_threshold,
+        Some(0.75)
+    );
 }
 
 #[test]
@@ -82,7 +103,12 @@ fn escape_closes_each_form_and_decides_nothing() {
     click(&mut window, "Keep physics model V+10kt");
     let before = state(&window).study.clone();
     let (ctrl, shift) = (Modifiers::COMMAND, Modifiers::COMMAND | Modifiers::SHIFT);
-    for (modifiers, key) in [(shift, Key::O), (ctrl, Key::E), (ctrl, Key::Q), (Modifiers::NONE, Key::F1)] {
+    for (modifiers, key) in [
+        (shift, Key::O),
+        (ctrl, Key::E),
+        (ctrl, Key::Q),
+        (Modifiers::NONE, Key::F1),
+    ] {
         press(&mut window, modifiers, key);
         assert!(state(&window).forms.shown.is_some(), "{key:?}");
         press(&mut window, Modifiers::NONE, Key::Escape);

@@ -14,7 +14,12 @@ fn secondary_click(window: &mut Window, at: egui::Pos2) {
     window.run_steps(2);
     for pressed in [true, false] {
         let button = PointerButton::Secondary;
-        window.event(Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE });
+        window.event(Event::PointerButton {
+            pos: at,
+            button,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
     }
     window.run_steps(3);
 }
@@ -23,9 +28,18 @@ fn secondary_click(window: &mut Window, at: egui::Pos2) {
 fn ask(window: &mut Window, entry: &str, expected: f64) {
     window.get_by_label(entry).click();
     window.run_steps(3);
-    let asked = state(window).display.asked.clone().expect("a figure is explained");
+    let asked = state(window)
+        .display
+        .asked
+        .clone()
+        .expect("a figure is explained");
     let found = derivation(state(window).analysis().unwrap(), &asked).expect("it has a derivation");
-    assert!((found.value - expected).abs() <= 1e-12 * expected.abs(), "{}: {} {expected}", found.title, found.value);
+    assert!(
+        (found.value - expected).abs() <= 1e-12 * expected.abs(),
+        "{}: {} {expected}",
+        found.title,
+        found.value
+    );
     window.get_by_label_contains("It rests on");
     window.key_press(Key::Escape);
     window.run_steps(3);
@@ -36,7 +50,9 @@ fn ask(window: &mut Window, entry: &str, expected: f64) {
 fn a_dot_of_net_gain_says_how_it_was_computed() {
     let mut window = window();
     let fifth = ConditionId(5);
-    let at = state(&window).display.figures[&View::NetGain].screen_position(0, &MarkId::Condition(fifth)).unwrap();
+    let at = state(&window).display.figures[&View::NetGain]
+        .screen_position(0, &MarkId::Condition(fifth))
+        .unwrap();
     secondary_click(&mut window, at);
     let pair = gdcm::view::views::net_gain_pairs(state(&window))[0];
     let result = state(&window).analysis().unwrap().condition(fifth).unwrap();
@@ -49,11 +65,27 @@ fn a_dot_of_a_channel_says_how_gain_and_schedule_were_computed() {
     let mut window = window();
     show(&mut window, View::Channels);
     let seventh = ConditionId(7);
-    let at = state(&window).display.channels.outputs.screen_position(2, &MarkId::Condition(seventh)).unwrap();
+    let at = state(&window)
+        .display
+        .channels
+        .outputs
+        .screen_position(2, &MarkId::Condition(seventh))
+        .unwrap();
     let analysis = state(&window).analysis().unwrap();
     let gain = analysis.condition(seventh).unwrap().correction.output_gains[2];
-    let airspeed_kt = analysis.study.dataset.condition(seventh).unwrap().flight_state().airspeed_kt;
-    let scheduled = analysis.schedule.as_ref().unwrap().at(airspeed_kt).output_gains[2];
+    let airspeed_kt = analysis
+        .study
+        .dataset
+        .condition(seventh)
+        .unwrap()
+        .flight_state()
+        .airspeed_kt;
+    let scheduled = analysis
+        .schedule
+        .as_ref()
+        .unwrap()
+        .at(airspeed_kt)
+        .output_gains[2];
     secondary_click(&mut window, at);
     ask(&mut window, "Gain", gain);
     secondary_click(&mut window, at);
@@ -64,19 +96,40 @@ fn a_dot_of_a_channel_says_how_gain_and_schedule_were_computed() {
 fn a_bar_of_the_assessment_says_how_it_was_computed() {
     let mut window = window();
     show(&mut window, View::Assessment);
-    wait_until(&mut window, "the assessment", |window| state(window).assessment().is_some());
+    wait_until(&mut window, "the assessment", |window| {
+        state(window).assessment().is_some()
+    });
     window.run_steps(2);
     let second = ConditionId(2);
-    let foot = state(&window).display.figures[&View::Assessment].position(0, [1.0, 0.0]).unwrap();
+    let foot = state(&window).display.figures[&View::Assessment]
+        .position(0, [1.0, 0.0])
+        .unwrap();
     secondary_click(&mut window, foot + egui::vec2(0.0, -3.0));
-    let pair = state(&window).dataset().measuring_pairs().marked().next().unwrap();
-    let expected = state(&window).assessment().unwrap().change(second, pair).unwrap().total();
+    let pair = state(&window)
+        .dataset()
+        .measuring_pairs()
+        .marked()
+        .next()
+        .unwrap();
+    let expected = state(&window)
+        .assessment()
+        .unwrap()
+        .change(second, pair)
+        .unwrap()
+        .total();
     window.get_by_label("Change of J").click();
     window.run_steps(3);
     let asked = state(&window).display.asked.clone();
-    assert!(matches!(&asked, Some(ExplainTarget::CostChange(id, at, _)) if (*id, *at) == (second, pair)), "{asked:?}");
+    assert!(
+        matches!(&asked, Some(ExplainTarget::CostChange(id, at, _)) if (*id, *at) == (second, pair)),
+        "{asked:?}"
+    );
     let found = derivation(state(&window).analysis().unwrap(), &asked.unwrap()).unwrap();
-    assert!((found.value - expected).abs() < 1e-9, "{} {expected}", found.value);
+    assert!(
+        (found.value - expected).abs() < 1e-9,
+        "{} {expected}",
+        found.value
+    );
 }
 
 #[test]
@@ -87,23 +140,45 @@ fn a_curve_of_the_overview_is_pointed_at_isolated_and_rejected() {
     let pair = pair(&window, "Q", "LON");
     let at = {
         let state = state(&window);
-        let name = state.shown().unwrap().representative_name(BundleKind::Physics).to_owned();
-        let model = state.condition().position(BundleKind::Physics, &name).unwrap();
+        let name = state
+            .shown()
+            .unwrap()
+            .representative_name(BundleKind::Physics)
+            .to_owned();
+        let model = state
+            .condition()
+            .position(BundleKind::Physics, &name)
+            .unwrap();
         let curves = state.curves().unwrap();
         let middle = curves.grid.omega().len() / 2;
         let db = 20.0 * curves.physics[model].curve(pair)[middle].norm().log10();
-        state.display.overview.position_in(pair, curves.grid.omega()[middle].log10(), db).unwrap()
+        state
+            .display
+            .overview
+            .position_in(pair, curves.grid.omega()[middle].log10(), db)
+            .unwrap()
     };
     window.hover_at(at);
     window.run_steps(2);
-    let meant = state(&window).display.hovered.clone().expect("a curve is under the pointer");
+    let meant = state(&window)
+        .display
+        .hovered
+        .clone()
+        .expect("a curve is under the pointer");
     secondary_click(&mut window, at);
     click(&mut window, "Isolate model");
-    let isolated = state(&window).display.isolated.clone().expect("one model is alone");
+    let isolated = state(&window)
+        .display
+        .isolated
+        .clone()
+        .expect("one model is alone");
     give(&mut window, Action::EndIsolation);
     secondary_click(&mut window, at);
     click(&mut window, "Reject model");
-    assert!(state(&window).study.is_rejected(&isolated), "{isolated:?}, {meant:?}");
+    assert!(
+        state(&window).study.is_rejected(&isolated),
+        "{isolated:?}, {meant:?}"
+    );
     give(&mut window, Action::Undo);
     assert!(!state(&window).study.is_rejected(&isolated));
 }
@@ -114,13 +189,21 @@ fn every_table_of_a_view_is_saved_as_csv() {
     let folder = tempfile::tempdir().unwrap();
     show(&mut window, View::NetGain);
     click(&mut window, "evidence");
-    window.get_by_label("Sort Errors of each form of the schedule by unseen [%]").click_secondary();
+    window
+        .get_by_label("Sort Errors of each form of the schedule by unseen [%]")
+        .click_secondary();
     window.run_steps(2);
     window.get_by_label("Save the table as CSV…").click();
     window.run_steps(3);
     let path = folder.path().join("evidence.csv");
-    let table = state(&window).forms.table.clone().expect("the form holds the table");
-    window.state_mut().dispatch(Action::SaveTable(table.clone(), path.clone()));
+    let table = state(&window)
+        .forms
+        .table
+        .clone()
+        .expect("the form holds the table");
+    window
+        .state_mut()
+        .dispatch(Action::SaveTable(table.clone(), path.clone()));
     settle(&mut window);
     let text = std::fs::read_to_string(path).unwrap();
     let rows = text.lines().filter(|line| !line.starts_with('#')).count();
@@ -133,7 +216,10 @@ fn undo_after_each_command_restores_the_study_exactly() {
     let mut window = window();
     let mut decisions = 0;
     for entry in every_command(state(&window)) {
-        if !entry.enabled || !stays_within(&entry.command) || matches!(entry.command, Action::Undo | Action::Redo) {
+        if !entry.enabled
+            || !stays_within(&entry.command)
+            || matches!(entry.command, Action::Undo | Action::Redo)
+        {
             continue;
         }
         let before = state(&window).study.clone();

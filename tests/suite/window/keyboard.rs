@@ -15,14 +15,20 @@ fn press(window: &mut Window, modifiers: Modifiers, key: Key) {
 
 /// The label of what has the focus; empty where nothing has it.
 fn focused(window: &Window) -> String {
-    let found =
-        window.root().children_recursive().find(|node| node.is_focused() && node.accesskit_node().label().is_some());
-    found.and_then(|node| node.accesskit_node().label()).unwrap_or_default()
+    let found = window
+        .root()
+        .children_recursive()
+        .find(|node| node.is_focused() && node.accesskit_node().label().is_some());
+    found
+        .and_then(|node| node.accesskit_node().label())
+        .unwrap_or_default()
 }
 
 /// Gives the focus to a field for a number, types into it and presses Enter.
 fn enter(window: &mut Window, field: &str, text: &str) {
-    window.get_by_role_and_label(Role::SpinButton, field).focus();
+    window
+        .get_by_role_and_label(Role::SpinButton, field)
+        .focus();
     window.run_steps(2);
     window.event(Event::Text(text.to_owned()));
     press(window, Modifiers::NONE, Key::Enter);
@@ -57,10 +63,18 @@ fn alt_and_an_arrow_go_through_the_views_of_the_group_and_leave_the_response() {
         (Key::ArrowLeft, views[views.len() - 1]),
     ] {
         press(&mut window, Modifiers::ALT, key);
-        assert_eq!((view(&window), state(&window).display.pair), (expected, response), "{key:?}");
+        assert_eq!(
+            (view(&window), state(&window).display.pair),
+            (expected, response),
+            "{key:?}"
+        );
     }
     press(&mut window, Modifiers::NONE, Key::ArrowRight);
-    assert_ne!(state(&window).display.pair, response, "without Alt it is the next response");
+    assert_ne!(
+        state(&window).display.pair,
+        response,
+        "without Alt it is the next response"
+    );
     assert_eq!(view(&window), views[views.len() - 1]);
 }
 
@@ -71,7 +85,11 @@ fn a_space_in_a_text_decides_nothing() {
     press(&mut window, Modifiers::COMMAND | Modifiers::SHIFT, Key::O);
     window.event(Event::Text(" ".to_owned()));
     press(&mut window, Modifiers::NONE, Key::Space);
-    assert_eq!(state(&window).forms.typed[&FormKind::Open], " ", "it goes to the field");
+    assert_eq!(
+        state(&window).forms.typed[&FormKind::Open],
+        " ",
+        "it goes to the field"
+    );
     press(&mut window, Modifiers::NONE, Key::Escape);
     // A list row that has the focus is what the space bar presses.
     window.get_by_label_contains("Condition 3: ").focus();
@@ -104,11 +122,18 @@ fn f6_goes_through_the_parts_of_the_window_and_comes_back_to_where_the_focus_was
         assert!(label.starts_with(start), "{label} in the place of {start}");
     }
     press(&mut window, Modifiers::NONE, Key::Tab);
-    assert_eq!(focused(&window), "Use physics model nominal as representative");
+    assert_eq!(
+        focused(&window),
+        "Use physics model nominal as representative"
+    );
     press(&mut window, Modifiers::NONE, Key::F6);
     assert_eq!(focused(&window), "Show nominal", "round the end");
     press(&mut window, Modifiers::SHIFT, Key::F6);
-    assert_eq!(focused(&window), "Use physics model nominal as representative", "where it was");
+    assert_eq!(
+        focused(&window),
+        "Use physics model nominal as representative",
+        "where it was"
+    );
     press(&mut window, Modifiers::SHIFT, Key::F6);
     assert!(focused(&window).starts_with("Condition 2: "));
 }
@@ -116,9 +141,12 @@ fn f6_goes_through_the_parts_of_the_window_and_comes_back_to_where_the_focus_was
 #[test]
 fn what_the_keyboard_reaches_is_scrolled_into_view() {
     let build = |creation: &mut eframe::CreationContext<'static>| {
-        GdcmApp::with(&creation.egui_ctx, example(), Setup::default()).expect("a thread can be started")
+        GdcmApp::with(&creation.egui_ctx, example(), Setup::default())
+            .expect("a thread can be started")
     };
-    let mut window = Harness::builder().with_size(vec2(900.0, 560.0)).build_eframe(build);
+    let mut window = Harness::builder()
+        .with_size(vec2(900.0, 560.0))
+        .build_eframe(build);
     settle(&mut window);
     window.get_by_label("Response LON → P").focus();
     for _ in 0..40 {
@@ -128,7 +156,10 @@ fn what_the_keyboard_reaches_is_scrolled_into_view() {
     let label = focused(&window);
     assert!(label.contains("→ NZ") || label.contains("→ NY"), "{label}");
     let place = window.get_by_label(&label).rect();
-    assert!(place.min.y > 0.0 && place.max.y < 560.0, "{label} at {place}");
+    assert!(
+        place.min.y > 0.0 && place.max.y < 560.0,
+        "{label} at {place}"
+    );
 }
 
 /// The rings drawn in the last frame.
@@ -137,7 +168,9 @@ fn rings(window: &Window) -> Vec<egui::Rect> {
     let shapes = window.output().shapes.iter();
     shapes
         .filter_map(|clipped| match &clipped.shape {
-            Shape::Rect(shape) if is_ring(shape.stroke.color, shape.stroke.width) => Some(shape.rect),
+            Shape::Rect(shape) if is_ring(shape.stroke.color, shape.stroke.width) => {
+                Some(shape.rect)
+            }
             _ => None,
         })
         .collect()
@@ -155,12 +188,20 @@ fn a_ring_surrounds_whatever_has_the_focus() {
         assert_eq!(rings.len(), at_rest + 1, "{label}");
         let place = window.get_by_label(label).rect();
         assert!(
-            rings.iter().any(|ring| ring.expand(0.5).contains_rect(place) && place.expand(6.0).contains_rect(*ring))
+            rings
+                .iter()
+                .any(|ring| ring.expand(0.5).contains_rect(place)
+                    && place.expand(6.0).contains_rect(*ring))
         );
     }
     press(&mut window, Modifiers::COMMAND | Modifiers::SHIFT, Key::O);
     let place = window.get_by_label("Path to open").rect();
-    assert!(rings(&window).iter().any(|ring| ring.expand(0.5).contains_rect(place)), "in a form too");
+    assert!(
+        rings(&window)
+            .iter()
+            .any(|ring| ring.expand(0.5).contains_rect(place)),
+        "in a form too"
+    );
 }
 
 #[test]
@@ -169,14 +210,22 @@ fn a_number_out_of_order_or_out_of_range_is_refused_with_a_word_and_the_old_one_
     let before = state(&window).study.clone();
     unfold_settings(&mut window, true);
     let cases = [
-        ("Band from", "30", "from 0.0001 to 12 rad/s, found 30; it stays 0.500 rad/s"),
+        (
+            "Band from",
+            "30",
+            "from 0.0001 to 12 rad/s, found 30; it stays 0.500 rad/s",
+        ),
         ("Band from", "12", "found min 12, max 12"),
         ("Band to", "0,1", "from 0.5 to 100000 rad/s, found 0.1"),
         ("Lower gain bound", "5", "found 5"),
         ("Upper gain bound", "0.1", "found 0.1"),
         ("Upper delay bound", "-1", "from 0 to 1000000 ms, found -1"),
         ("α gains", "-1", "from 0 to 1000000, found -1"),
-        ("Frequencies in the band", "1", "a whole number from 2 to 5000, found 1"),
+        (
+            "Frequencies in the band",
+            "1",
+            "a whole number from 2 to 5000, found 1",
+        ),
         ("Frequencies in the band", "20.5", "a whole number"),
         ("Bound quantile", "60", "from 0 to 50 %, found 60"),
         ("Airspeed tolerance", "-1", "from 0 to 100 kt, found -1"),
@@ -184,7 +233,10 @@ fn a_number_out_of_order_or_out_of_range_is_refused_with_a_word_and_the_old_one_
     ];
     for (field, text, words) in cases {
         enter(&mut window, field, text);
-        let notice = state(&window).notice.clone().unwrap_or_else(|| panic!("{field} {text}: nothing is said"));
+        let notice = state(&window)
+            .notice
+            .clone()
+            .unwrap_or_else(|| panic!("{field} {text}: nothing is said"));
         assert_eq!(notice.kind, NoticeKind::Trouble);
         assert!(notice.text.contains(words), "{}", notice.text);
         assert_eq!(state(&window).study, before, "{field} {text}");
@@ -202,7 +254,10 @@ fn a_digit_switches_a_chip_while_a_plot_has_the_focus() {
     window.get_by_label_contains("Magnitude of LAT → P").focus();
     window.run_steps(2);
     press(&mut window, Modifiers::NONE, Key::Num1);
-    assert_eq!(hidden(&window).difference(&usual).collect::<Vec<_>>(), [&CurveRole::Nominal]);
+    assert_eq!(
+        hidden(&window).difference(&usual).collect::<Vec<_>>(),
+        [&CurveRole::Nominal]
+    );
     press(&mut window, Modifiers::NONE, Key::Num1);
     assert_eq!(hidden(&window), usual);
 }
@@ -211,32 +266,52 @@ fn a_digit_switches_a_chip_while_a_plot_has_the_focus() {
 fn a_number_typed_in_its_unit_is_taken_once_it_is_complete() {
     let mut window = window();
     unfold_settings(&mut window, true);
-    window.get_by_role_and_label(Role::SpinButton, "Band to").focus();
+    window
+        .get_by_role_and_label(Role::SpinButton, "Band to")
+        .focus();
     window.run_steps(2);
     for text in ["3", "0"] {
         window.event(Event::Text(text.to_owned()));
         window.run_steps(2);
-        assert_eq!(state(&window).study.settings.band.max(), 12.0, "not while it is typed");
+        assert_eq!(
+            state(&window).study.settings.band.max(),
+            12.0,
+            "not while it is typed"
+        );
     }
     press(&mut window, Modifiers::NONE, Key::Enter);
     assert_eq!(state(&window).study.settings.band.max(), 30.0);
     enter(&mut window, "Upper delay bound", "80 ms");
     assert_eq!(state(&window).study.settings.delay_upper_s, Some(0.08));
-    window.get_by_role_and_label(Role::SpinButton, "Band to").focus();
+    window
+        .get_by_role_and_label(Role::SpinButton, "Band to")
+        .focus();
     window.run_steps(2);
     window.event(Event::Text("4".to_owned()));
     press(&mut window, Modifiers::NONE, Key::Escape);
     window.run_steps(4);
-    assert_eq!(state(&window).study.settings.band.max(), 30.0, "Escape leaves the old one");
+    assert_eq!(
+        state(&window).study.settings.band.max(),
+        30.0,
+        "Escape leaves the old one"
+    );
 }
 
 #[test]
 fn what_is_typed_in_one_frame_goes_to_the_fields_meant() {
     let mut window = window();
     unfold_settings(&mut window, true);
-    window.get_by_role_and_label(Role::SpinButton, "Lower gain bound").focus();
+    window
+        .get_by_role_and_label(Role::SpinButton, "Lower gain bound")
+        .focus();
     window.run_steps(2);
-    let key = |key, modifiers| Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
+    let key = |key, modifiers| Event::Key {
+        key,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers,
+    };
     let text = |text: &str| Event::Text(text.to_owned());
     let tab = || key(Key::Tab, Modifiers::NONE);
     window.input_mut().events.extend([
@@ -250,13 +325,29 @@ fn what_is_typed_in_one_frame_goes_to_the_fields_meant() {
     window.step();
     window.run_steps(12);
     assert_eq!(focused(&window), "Upper gain bound", "back with Shift");
-    let bounds = || Some(GainBounds { lower: 0.7, upper: 1.4 });
+    let bounds = || {
+        Some(GainBounds {
+            lower: 0.7,
+            upper: 1.4,
+        })
+    };
     assert_eq!(state(&window).study.settings.gain_bounds, bounds());
     let back = key(Key::Tab, Modifiers::SHIFT);
-    window.input_mut().events.extend([text("1.5"), back, text("0.6"), key(Key::Enter, Modifiers::NONE)]);
+    window.input_mut().events.extend([
+        text("1.5"),
+        back,
+        text("0.6"),
+        key(Key::Enter, Modifiers::NONE),
+    ]);
     window.step();
     window.run_steps(12);
-    assert_eq!(state(&window).study.settings.gain_bounds, Some(GainBounds { lower: 0.6, upper: 1.5 }));
+    assert_eq!(
+        state(&window).study.settings.gain_bounds,
+        Some(GainBounds {
+            lower: 0.6,
+            upper: 1.5
+        })
+    );
 }
 
 #[test]
@@ -264,7 +355,9 @@ fn going_through_every_field_with_tab_decides_nothing() {
     let mut window = window();
     let before = state(&window).study.clone();
     unfold_settings(&mut window, true);
-    window.get_by_role_and_label(Role::Slider, "α gains slider").focus();
+    window
+        .get_by_role_and_label(Role::Slider, "α gains slider")
+        .focus();
     window.run_steps(2);
     for _ in 0..20 {
         press(&mut window, Modifiers::NONE, Key::Tab);

@@ -12,7 +12,9 @@ fn window_of(size: egui::Vec2, pixels_per_point: f32) -> Window {
     let build = |creation: &mut eframe::CreationContext<'static>| {
         GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
     };
-    let builder = Harness::builder().with_size(size).with_pixels_per_point(pixels_per_point);
+    let builder = Harness::builder()
+        .with_size(size)
+        .with_pixels_per_point(pixels_per_point);
     let mut window = builder.build_eframe(build);
     settle(&mut window);
     window
@@ -24,19 +26,33 @@ const SMALL: egui::Vec2 = vec2(1280.0, 720.0);
 fn assert_answered(window: &Window, view: View) {
     let screen = egui::Rect::from_min_size(Pos2::ZERO, SMALL);
     let is_whole = |label: &str, place: egui::Rect| {
-        assert!(screen.contains_rect(place) && place.height() > 8.0, "{label} at {place} in {view:?}");
+        assert!(
+            screen.contains_rect(place) && place.height() > 8.0,
+            "{label} at {place} in {view:?}"
+        );
     };
     for part in ["Gain: ", "Phase: ", "global optimum"] {
-        let mut found = window.query_all_by_label_contains(part).map(|node| node.rect());
-        assert!(found.any(|place| screen.contains_rect(place)), "{part} in {view:?}");
+        let mut found = window
+            .query_all_by_label_contains(part)
+            .map(|node| node.rect());
+        assert!(
+            found.any(|place| screen.contains_rect(place)),
+            "{part} in {view:?}"
+        );
     }
     let (inputs, outputs) = state(window).dataset().names_of_channels();
-    for (output, input) in outputs.iter().flat_map(|output| inputs.iter().map(move |input| (output, input))) {
+    for (output, input) in outputs
+        .iter()
+        .flat_map(|output| inputs.iter().map(move |input| (output, input)))
+    {
         let label = format!("Response {input} → {output}");
         is_whole(&label, window.get_by_label(&label).rect());
     }
     for label in ["Settings", "Export corrections…"] {
-        is_whole(label, window.get_by_role_and_label(Role::Button, label).rect());
+        is_whole(
+            label,
+            window.get_by_role_and_label(Role::Button, label).rect(),
+        );
     }
 }
 
@@ -68,7 +84,10 @@ fn a_click_on_a_cell_of_the_map_of_costs_goes_to_its_condition_and_response() {
 fn a_narrow_window_has_a_rail_with_sheets_and_a_key_shows_the_panel() {
     let mut window = window_of(SMALL, 1.0);
     let keep = "Keep physics model nominal";
-    assert!(window.query_by_label(keep).is_none(), "the list has no room");
+    assert!(
+        window.query_by_label(keep).is_none(),
+        "the list has no room"
+    );
     click(&mut window, "Open the list: Models");
     assert_eq!(state(&window).display.sheet, Some(Sheet::Models));
     window.get_by_label(keep);
@@ -76,18 +95,30 @@ fn a_narrow_window_has_a_rail_with_sheets_and_a_key_shows_the_panel() {
     window.run_steps(3);
     assert_eq!(state(&window).display.sheet, None, "Escape closes it");
     click(&mut window, "Open the list: Identified");
-    assert!(window.query_all_by_label_contains("Keep identified model ").next().is_some());
+    assert!(
+        window
+            .query_all_by_label_contains("Keep identified model ")
+            .next()
+            .is_some()
+    );
     // A click beside it.
     window.drag_at(pos2(900.0, 300.0));
     window.run_steps(1);
     window.drop_at(pos2(900.0, 300.0));
     window.run_steps(3);
-    assert_eq!(state(&window).display.sheet, None, "and so does a click beside it");
+    assert_eq!(
+        state(&window).display.sheet,
+        None,
+        "and so does a click beside it"
+    );
     for is_open in [true, false] {
         window.key_press_modifiers(Modifiers::COMMAND, Key::B);
         window.run_steps(3);
         assert_eq!(window.query_by_label(keep).is_some(), is_open);
-        assert_eq!(window.query_by_label("Open the list: Models").is_none(), is_open);
+        assert_eq!(
+            window.query_by_label("Open the list: Models").is_none(),
+            is_open
+        );
     }
 }
 
@@ -97,10 +128,22 @@ fn the_menu_of_the_schedule_stands_in_the_order_of_its_settings() {
     show(&mut window, View::NetGain);
     let button = window.get_by_label("Form of the schedule").rect();
     click(&mut window, "Form of the schedule");
-    let labels = ["Schedule", "Scheduled quantity", "Second variable of the schedule"];
+    let labels = [
+        "Schedule",
+        "Scheduled quantity",
+        "Second variable of the schedule",
+    ];
     let places = labels.map(|label| window.get_by_role_and_label(Role::ComboBox, label).rect());
-    assert!(places.windows(2).all(|pair| pair[0].bottom() <= pair[1].top()), "{places:?}");
-    assert!(places[0].top() - button.bottom() < 40.0, "it begins at its button: {button} {places:?}");
+    assert!(
+        places
+            .windows(2)
+            .all(|pair| pair[0].bottom() <= pair[1].top()),
+        "{places:?}"
+    );
+    assert!(
+        places[0].top() - button.bottom() < 40.0,
+        "it begins at its button: {button} {places:?}"
+    );
 }
 
 /// The place of a form on the screen.
@@ -108,7 +151,10 @@ fn form(window: &Window, kind: FormKind) -> egui::Rect {
     assert_eq!(state(window).forms.shown, Some(kind));
     let id = egui::Id::unique(("form", kind, false));
     let layer = LayerId::new(Order::Foreground, id);
-    window.ctx.memory(|memory| memory.area_rect(layer.id)).expect("the form is drawn")
+    window
+        .ctx
+        .memory(|memory| memory.area_rect(layer.id))
+        .expect("the form is drawn")
 }
 
 #[test]
@@ -123,16 +169,31 @@ fn the_palette_and_the_page_of_keys_keep_sizes_of_their_own() {
     press(&mut window, Modifiers::NONE, Key::Escape);
     press(&mut window, Modifiers::COMMAND, Key::K);
     let palette = form(&window, FormKind::Palette);
-    assert!(palette.height() > 200.0 && keys.height() > 500.0, "{palette} {keys}");
+    assert!(
+        palette.height() > 200.0 && keys.height() > 500.0,
+        "{palette} {keys}"
+    );
     window.event(Event::Text("zzz".to_owned()));
     window.run_steps(4);
-    assert_eq!(form(&window, FormKind::Palette).size(), palette.size(), "with nothing found");
+    assert_eq!(
+        form(&window, FormKind::Palette).size(),
+        palette.size(),
+        "with nothing found"
+    );
     press(&mut window, Modifiers::NONE, Key::Escape);
     press(&mut window, Modifiers::NONE, Key::F1);
-    assert_eq!(form(&window, FormKind::Shortcuts).size(), keys.size(), "after the palette");
+    assert_eq!(
+        form(&window, FormKind::Shortcuts).size(),
+        keys.size(),
+        "after the palette"
+    );
     press(&mut window, Modifiers::NONE, Key::Escape);
     press(&mut window, Modifiers::COMMAND, Key::K);
-    assert_eq!(form(&window, FormKind::Palette).size(), palette.size(), "after the page of keys");
+    assert_eq!(
+        form(&window, FormKind::Palette).size(),
+        palette.size(),
+        "after the page of keys"
+    );
 }
 
 #[test]
@@ -140,11 +201,26 @@ fn the_poles_have_a_legend_above_their_plots() {
     let mut window = window();
     choose_condition_10(&mut window);
     show(&mut window, View::Poles);
-    wait_until(&mut window, "the modes", |window| state(window).modes().is_some());
+    wait_until(&mut window, "the modes", |window| {
+        state(window).modes().is_some()
+    });
     window.run_steps(2);
-    let top = state(&window).display.figures[&View::Poles].transform(0).unwrap().frame().top();
-    for name in ["nominal", "perturbed", "representative", "other identified", "identified"] {
-        let place = window.query_all_by_label(name).map(|node| node.rect()).find(|place| place.bottom() <= top);
+    let top = state(&window).display.figures[&View::Poles]
+        .transform(0)
+        .unwrap()
+        .frame()
+        .top();
+    for name in [
+        "nominal",
+        "perturbed",
+        "representative",
+        "other identified",
+        "identified",
+    ] {
+        let place = window
+            .query_all_by_label(name)
+            .map(|node| node.rect())
+            .find(|place| place.bottom() <= top);
         assert!(place.is_some(), "{name} over the plots");
     }
 }

@@ -22,7 +22,11 @@ fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_i
     let mut window = window();
     let last = |window: &Window, role: CurveRole| {
         let curve = drawn(window, role);
-        let known = curve.omega.iter().zip(curve.magnitude_db.iter()).filter(|(_, db)| db.is_finite());
+        let known = curve
+            .omega
+            .iter()
+            .zip(curve.magnitude_db.iter())
+            .filter(|(_, db)| db.is_finite());
         known.map(|(omega, _)| *omega).next_back().unwrap()
     };
     // A little beyond the band of 0.5 to 12 rad/s.
@@ -32,11 +36,30 @@ fn what_leads_cost_is_drawn_up_to_ten_times_the_band_and_the_flight_ends_where_i
     assert!((last(&window, CurveRole::Corrected) - 120.0).abs() < 1e-6);
     let flight = last(&window, CurveRole::IdentifiedRepresentative);
     assert!(flight <= 20.4 * (1.0 + 1e-9) && flight > 20.0, "{flight}");
-    assert!((before - 20.4).abs() < 1e-6 && (state(&window).display.bode.omega_range().1 - 120.0).abs() < 1e-6);
-    let texts: Vec<String> = texts_in(&window, egui::Rect::EVERYTHING).into_iter().map(|(text, _)| text).collect();
-    assert!(texts.iter().any(|text| text == "not valid above 12 rad/s"), "{texts:?}");
-    let at_end = |role| drawn(&window, role).value_at(Pane::Magnitude, 120.0).unwrap();
-    let price = format!("{} dB", signed(at_end(CurveRole::Corrected) - at_end(CurveRole::WithoutLeads), 1));
+    assert!(
+        (before - 20.4).abs() < 1e-6
+            && (state(&window).display.bode.omega_range().1 - 120.0).abs() < 1e-6
+    );
+    let texts: Vec<String> = texts_in(&window, egui::Rect::EVERYTHING)
+        .into_iter()
+        .map(|(text, _)| text)
+        .collect();
+    assert!(
+        texts.iter().any(|text| text == "not valid above 12 rad/s"),
+        "{texts:?}"
+    );
+    let at_end = |role| {
+        drawn(&window, role)
+            .value_at(Pane::Magnitude, 120.0)
+            .unwrap()
+    };
+    let price = format!(
+        "{} dB",
+        signed(
+            at_end(CurveRole::Corrected) - at_end(CurveRole::WithoutLeads),
+            1
+        )
+    );
     assert!(texts.contains(&price), "{price} in {texts:?}");
 }
 
@@ -45,7 +68,9 @@ fn nothing_that_leads_say_makes_the_answer_wider_than_its_panel() {
     let build = |creation: &mut eframe::CreationContext<'static>| {
         GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
     };
-    let mut window = Harness::builder().with_size(vec2(1280.0, 720.0)).build_eframe(build);
+    let mut window = Harness::builder()
+        .with_size(vec2(1280.0, 720.0))
+        .build_eframe(build);
     settle(&mut window);
     let last_cell = |window: &Window| window.get_by_label("Response COL → NZ").rect();
     let before = last_cell(&window);
@@ -63,30 +88,54 @@ fn one_click_takes_the_lead_that_the_result_offers_and_undo_gives_it_back() {
     let before = state(&window).shown().unwrap().correction.clone();
     assert!(before.leads.is_none());
     give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
-    window.get_by_label("Correct the phase by delay or lead").click_accesskit();
+    window
+        .get_by_label("Correct the phase by delay or lead")
+        .click_accesskit();
     settle(&mut window);
     assert_eq!(state(&window).study.settings.phase, PhaseCorrection::Lead);
     let shown = state(&window).shown().unwrap();
     assert!(shown.correction.leads.is_some() && shown.offer.is_none());
-    assert!(window.query_by_label("Correct the phase by delay or lead").is_none(), "it is taken");
+    assert!(
+        window
+            .query_by_label("Correct the phase by delay or lead")
+            .is_none(),
+        "it is taken"
+    );
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut window);
-    assert_eq!(state(&window).shown().unwrap().correction, before, "to the last digit");
+    assert_eq!(
+        state(&window).shown().unwrap().correction,
+        before,
+        "to the last digit"
+    );
 }
 
 #[test]
 fn the_phase_is_chosen_beside_alpha_with_what_belongs_to_it() {
     let mut window = window();
-    assert!(window.query_by_label("n of the lead filters").is_none(), "there are no filters yet");
+    assert!(
+        window.query_by_label("n of the lead filters").is_none(),
+        "there are no filters yet"
+    );
     choose(&mut window, "Phase correction", "delay or lead");
     assert_eq!(state(&window).study.settings.phase, PhaseCorrection::Lead);
-    for label in ["n of the lead filters", "R_max of the lead filters", "Order of the lead filters"] {
+    for label in [
+        "n of the lead filters",
+        "R_max of the lead filters",
+        "Order of the lead filters",
+    ] {
         window.get_by_label(label);
     }
     choose(&mut window, "Phase correction", "none");
     assert!(window.query_by_label("n of the lead filters").is_none());
     let correction = &state(&window).shown().unwrap().correction;
-    assert!(correction.input_delays_s.iter().chain(&correction.output_delays_s).all(|delay_s| *delay_s == 0.0));
+    assert!(
+        correction
+            .input_delays_s
+            .iter()
+            .chain(&correction.output_delays_s)
+            .all(|delay_s| *delay_s == 0.0)
+    );
 }
 
 #[test]
@@ -105,17 +154,29 @@ fn the_phase_without_leads_lies_beside_the_corrected_one_and_the_result_tells_se
     let mut window = window();
     let gains_alone = drawn(&window, CurveRole::Corrected);
     choose(&mut window, "Phase correction", "delay or lead");
-    let (with, without) = (drawn(&window, CurveRole::Corrected), drawn(&window, CurveRole::WithoutLeads));
+    let (with, without) = (
+        drawn(&window, CurveRole::Corrected),
+        drawn(&window, CurveRole::WithoutLeads),
+    );
     let top = state(&window).study.settings.band.max();
     let phase = |curve: &BodeCurve| curve.value_at(Pane::Phase, top).unwrap();
-    assert!(phase(&with) > phase(&without) + 10.0, "lead turns the phase up");
+    assert!(
+        phase(&with) > phase(&without) + 10.0,
+        "lead turns the phase up"
+    );
     // The gains differ a little, the phase is that of gains alone: the example's delays are none. Between two frequencies of
     // either grid a phase is interpolated, and is 0.01 degrees off.
     assert!((phase(&without) - phase(&gains_alone)).abs() < 0.05);
     give(&mut window, Action::ShowSheet(Some(Sheet::Reasons)));
-    let told = window.query_all_by_label_contains("as if a servo of").count();
+    let told = window
+        .query_all_by_label_contains("as if a servo of")
+        .count();
     assert_eq!(told, 10, "a sentence for each channel");
-    assert!(window.query_by_label_contains("Do not use the corrected model above 12 rad/s.").is_some());
+    assert!(
+        window
+            .query_by_label_contains("Do not use the corrected model above 12 rad/s.")
+            .is_some()
+    );
     assert!(!remarks_shown(state(&window), state(&window).shown().unwrap()).is_empty());
 }
 
@@ -123,12 +184,22 @@ fn the_phase_without_leads_lies_beside_the_corrected_one_and_the_result_tells_se
 fn channels_show_signed_delays_within_their_bounds() {
     let mut window = window();
     choose(&mut window, "Phase correction", "delay or lead");
-    give(&mut window, Action::ShowChannels(Measure::Delay, Across::Conditions));
+    give(
+        &mut window,
+        Action::ShowChannels(Measure::Delay, Across::Conditions),
+    );
     let figure = channel_plots(state(&window)).figure;
-    let taus: Vec<f64> = figure.panels().flat_map(|(_, panel)| panel.dots()).map(|dot| dot.y).collect();
+    let taus: Vec<f64> = figure
+        .panels()
+        .flat_map(|(_, panel)| panel.dots())
+        .map(|dot| dot.y)
+        .collect();
     assert_eq!(taus.len(), 110);
     assert!(taus.iter().any(|tau| *tau < -20.0), "lead is down");
-    assert!(taus.iter().any(|tau| *tau > 20.0), "NX wants delay in condition 4");
+    assert!(
+        taus.iter().any(|tau| *tau > 20.0),
+        "NX wants delay in condition 4"
+    );
 }
 
 #[test]
@@ -139,16 +210,19 @@ fn the_assessment_is_had_without_the_leads_too() {
     let mean = |window: &Window| {
         let table = state(window).assessment().unwrap();
         let measuring = state(window).dataset().measuring_pairs();
-        let changes = table.conditions.iter().flat_map(|of| measuring.marked().filter_map(|pair| of.changes[pair]));
+        let changes = table
+            .conditions
+            .iter()
+            .flat_map(|of| measuring.marked().filter_map(|pair| of.changes[pair]));
         let after: Vec<f64> = changes.map(|change| change.corrected.total()).collect();
         after.iter().sum::<f64>() / after.len() as f64
     };
     let with = mean(&window);
     choose(&mut window, "Correction assessed", "scheduled, no leads");
     wait_until(&mut window, "the assessment", |window| {
-        state(window)
-            .assessment()
-            .is_some_and(|table| table.choice.correction == AssessedCorrection::ScheduledWithoutLeads)
+        state(window).assessment().is_some_and(|table| {
+            table.choice.correction == AssessedCorrection::ScheduledWithoutLeads
+        })
     });
     let without = mean(&window);
     assert!(with < 0.4 * without, "{with} with leads, {without} without");

@@ -9,9 +9,12 @@ use gdcm::view::{Command as Action, Sheet};
 /// The window at its least width.
 fn narrow_window(height: f32) -> Window {
     let build = |creation: &mut eframe::CreationContext<'static>| {
-        GdcmApp::with(&creation.egui_ctx, example(), Setup::default()).expect("a thread can be started")
+        GdcmApp::with(&creation.egui_ctx, example(), Setup::default())
+            .expect("a thread can be started")
     };
-    let mut window = Harness::builder().with_size(vec2(900.0, height)).build_eframe(build);
+    let mut window = Harness::builder()
+        .with_size(vec2(900.0, height))
+        .build_eframe(build);
     settle(&mut window);
     window
 }
@@ -30,7 +33,8 @@ pub(super) fn texts_in(window: &Window, area: egui::Rect) -> Vec<(String, egui::
             egui::Shape::Text(text) => {
                 let place = text.visual_bounding_rect();
                 let visible = clipped.clip_rect.intersects(place) && area.contains(place.center());
-                (visible && !text.galley.text().is_empty()).then(|| (text.galley.text().to_owned(), place))
+                (visible && !text.galley.text().is_empty())
+                    .then(|| (text.galley.text().to_owned(), place))
             }
             _ => None,
         })
@@ -43,7 +47,10 @@ fn assert_apart(window: &Window, area: egui::Rect, what: &str) {
     for (index, (text, place)) in texts.iter().enumerate() {
         for (other, at) in &texts[index + 1..] {
             let over = place.intersect(*at);
-            assert!(over.width() < 1.0 || over.height() < 3.0, "{what}: \"{text}\" and \"{other}\" at {over}");
+            assert!(
+                over.width() < 1.0 || over.height() < 3.0,
+                "{what}: \"{text}\" and \"{other}\" at {over}"
+            );
         }
     }
 }
@@ -53,31 +60,47 @@ fn at_the_least_size_no_text_of_a_list_lies_over_another() {
     let mut window = narrow_window(560.0);
     // Bounds that leave gains unmatched give every condition its marks.
     unfold_settings(&mut window, true);
-    window.get_by_label("Upper gain bound").set_value_accesskit(1.0);
+    window
+        .get_by_label("Upper gain bound")
+        .set_value_accesskit(1.0);
     settle(&mut window);
-    let rows: Vec<egui::Rect> = window.query_all_by_label_contains("Condition ").map(|row| row.rect()).collect();
+    let rows: Vec<egui::Rect> = window
+        .query_all_by_label_contains("Condition ")
+        .map(|row| row.rect())
+        .collect();
     assert_eq!(rows.len(), 11);
     for row in rows {
         assert_apart(&window, row, "a condition");
     }
     give(&mut window, Action::ShowSheet(Some(Sheet::Models)));
-    let models: Vec<egui::Rect> =
-        window.query_all_by_label_contains("Keep physics model").map(|row| row.rect()).collect();
+    let models: Vec<egui::Rect> = window
+        .query_all_by_label_contains("Keep physics model")
+        .map(|row| row.rect())
+        .collect();
     for model in models {
         let row = egui::Rect::from_min_max(model.min, pos2(model.min.x + 180.0, model.max.y));
         assert_apart(&window, row, "a model");
     }
     give(&mut window, Action::ShowSheet(None));
     let tab = window.get_by_label("Bode").rect();
-    assert_apart(&window, egui::Rect::from_x_y_ranges(0.0..=900.0, tab.y_range()), "the bar of the views");
+    assert_apart(
+        &window,
+        egui::Rect::from_x_y_ranges(0.0..=900.0, tab.y_range()),
+        "the bar of the views",
+    );
 }
 
 #[test]
 fn the_list_of_conditions_has_headings() {
     let window = window();
-    let heading = window.get_by_label_contains("Condition 1: ").rect().translate(vec2(0.0, -16.0));
-    let texts: Vec<String> =
-        texts_in(&window, heading.expand2(vec2(0.0, 4.0))).into_iter().map(|(text, _)| text).collect();
+    let heading = window
+        .get_by_label_contains("Condition 1: ")
+        .rect()
+        .translate(vec2(0.0, -16.0));
+    let texts: Vec<String> = texts_in(&window, heading.expand2(vec2(0.0, 4.0)))
+        .into_iter()
+        .map(|(text, _)| text)
+        .collect();
     for word in ["no.", "kt", "P", "NZ"] {
         assert!(texts.iter().any(|text| text == word), "{texts:?}");
     }
@@ -85,50 +108,87 @@ fn the_list_of_conditions_has_headings() {
 
 fn marks_of_10(window: &Window) -> Vec<String> {
     let row = window.get_by_label_contains("Condition 10: ").rect();
-    texts_in(window, row).into_iter().map(|(text, _)| text).filter(|text| text.starts_with(['⚠', 'k', 'τ'])).collect()
+    texts_in(window, row)
+        .into_iter()
+        .map(|(text, _)| text)
+        .filter(|text| text.starts_with(['⚠', 'k', 'τ']))
+        .collect()
 }
 
 #[test]
 fn a_mark_goes_once_what_it_asks_for_is_done() {
     let mut window = window();
-    assert_eq!(marks_of_10(&window), ["⚠"], "delays that need lead ask for nothing");
+    assert_eq!(
+        marks_of_10(&window),
+        ["⚠"],
+        "delays that need lead ask for nothing"
+    );
     choose_condition_10(&mut window);
     click(&mut window, "Reject 3 suggested");
-    assert!(marks_of_10(&window).is_empty(), "{:?}", marks_of_10(&window));
+    assert!(
+        marks_of_10(&window).is_empty(),
+        "{:?}",
+        marks_of_10(&window)
+    );
 }
 
 #[test]
 fn a_condition_left_out_of_the_schedule_says_so_and_its_menu_takes_it_in_again() {
     let mut window = window();
-    window.get_by_label_contains("Condition 3: ").click_secondary();
+    window
+        .get_by_label_contains("Condition 3: ")
+        .click_secondary();
     window.run_steps(2);
     click(&mut window, "Leave out of the schedule: condition 3");
     assert!(!state(&window).study.choice(ConditionId(3)).scheduled);
-    window.get_by_label_contains(", left out of the schedule").click_secondary();
+    window
+        .get_by_label_contains(", left out of the schedule")
+        .click_secondary();
     window.run_steps(2);
     click(&mut window, "Include in the schedule: condition 3");
     assert!(state(&window).study.choice(ConditionId(3)).scheduled);
-    assert!(window.query_by_label_contains(", left out of the schedule").is_none());
-    let edit = Edit::SetScheduled { condition: ConditionId(3), scheduled: true };
-    assert_eq!(state(&window).history.undo_label(), Some(edit.label(&state(&window).study).as_str()));
+    assert!(
+        window
+            .query_by_label_contains(", left out of the schedule")
+            .is_none()
+    );
+    let edit = Edit::SetScheduled {
+        condition: ConditionId(3),
+        scheduled: true,
+    };
+    assert_eq!(
+        state(&window).history.undo_label(),
+        Some(edit.label(&state(&window).study).as_str())
+    );
 }
 
 #[test]
 fn the_title_of_the_window_names_the_study_and_the_dataset_and_marks_what_is_not_saved() {
     let mut window = window();
     let dataset = state(&window).dataset().name().to_owned();
-    assert_eq!(state(&window).window_title(), format!("untitled study – {dataset} – gdcm"));
+    assert_eq!(
+        state(&window).window_title(),
+        format!("untitled study – {dataset} – gdcm")
+    );
     window.get_by_label("Keep physics model V+10kt").click();
     let mut titles = Vec::new();
     for _ in 0..10 {
         window.step();
-        let commands = window.output().viewport_output.values().flat_map(|viewport| viewport.commands.iter());
+        let commands = window
+            .output()
+            .viewport_output
+            .values()
+            .flat_map(|viewport| viewport.commands.iter());
         titles.extend(commands.filter_map(|command| match command {
             egui::ViewportCommand::Title(title) => Some(title.clone()),
             _ => None,
         }));
     }
-    assert_eq!(titles, [format!("untitled study • – {dataset} – gdcm")], "told once");
+    assert_eq!(
+        titles,
+        [format!("untitled study • – {dataset} – gdcm")],
+        "told once"
+    );
 }
 
 #[test]
@@ -136,12 +196,20 @@ fn the_title_of_the_window_names_the_study_and_the_dataset_and_marks_what_is_not
 fn no_two_labels_of_the_plots_lie_over_one_another_on_any_response_of_any_condition() {
     let mut window = window();
     wait_for_bars(&mut window);
-    let conditions: Vec<ConditionId> = state(&window).dataset().conditions().iter().map(|of| of.id()).collect();
+    let conditions: Vec<ConditionId> = state(&window)
+        .dataset()
+        .conditions()
+        .iter()
+        .map(|of| of.id())
+        .collect();
     let pairs: Vec<Pair> = state(&window).study.settings.constrained.pairs().collect();
     assert_eq!((conditions.len(), pairs.len()), (11, 24));
     // Between the panels, which are 272 and 352 points wide, below the bar of the views.
     let size = window.ctx.content_rect();
-    let centre = egui::Rect::from_min_max(pos2(272.0, 80.0), pos2(size.right() - 352.0, size.bottom() - 26.0));
+    let centre = egui::Rect::from_min_max(
+        pos2(272.0, 80.0),
+        pos2(size.right() - 352.0, size.bottom() - 26.0),
+    );
     for condition in conditions {
         give(&mut window, Action::SelectCondition(condition));
         for pair in &pairs {
@@ -150,7 +218,10 @@ fn no_two_labels_of_the_plots_lie_over_one_another_on_any_response_of_any_condit
             assert_apart(
                 &window,
                 centre,
-                &format!("condition {condition}, {}", state(&window).dataset().pair_name(*pair)),
+                &format!(
+                    "condition {condition}, {}",
+                    state(&window).dataset().pair_name(*pair)
+                ),
             );
         }
     }

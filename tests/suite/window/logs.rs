@@ -11,7 +11,10 @@ fn asked(log: &str, bytes: &[u8]) -> (Window, tempfile::TempDir) {
     std::fs::write(folder.path().join(log), bytes).unwrap();
     let mut window = window();
     show(&mut window, View::Records);
-    give(&mut window, RecordsCommand::Add(vec![folder.path().join(log)]));
+    give(
+        &mut window,
+        RecordsCommand::Add(vec![folder.path().join(log)]),
+    );
     wait_until(&mut window, "the records", |window| rows_shown(window) > 0);
     give(&mut window, RecordsCommand::AskDataset);
     (window, folder)
@@ -31,23 +34,47 @@ fn made(window: &mut Window, name: &str) -> Vec<String> {
     show(window, View::Records);
     wait_until(window, "its record", |window| rows_shown(window) == 1);
     let row = &state(window).records.conditions[&ConditionId(1)].rows[0];
-    assert!(row.problems.is_empty() && row.flight.is_some(), "{:?}", row.problems);
+    assert!(
+        row.problems.is_empty() && row.flight.is_some(),
+        "{:?}",
+        row.problems
+    );
     row.table.notes.clone()
 }
 
 #[test]
 fn a_log_of_px4_proposes_its_setpoints_and_rates() {
-    let (mut window, _folder) = asked("quadrotor.ulg", include_bytes!("../../data/logs/quadrotor.ulg"));
-    let WantedDataset { inputs, outputs, .. } = wanted(&window);
-    let has = |list: &str, names: &[&str]| names.iter().all(|name| list.split(", ").any(|of| of == *name));
+    let (mut window, _folder) = asked(
+        "quadrotor.ulg",
+        include_bytes!("../../data/logs/quadrotor.ulg"),
+    );
+    let WantedDataset {
+        inputs, outputs, ..
+    } = wanted(&window);
+    let has = |list: &str, names: &[&str]| {
+        names
+            .iter()
+            .all(|name| list.split(", ").any(|of| of == *name))
+    };
     assert!(
         has(inputs, &["LAT", "LON", "PED"]) && has(outputs, &["P", "Q", "R", "NX", "NY", "NZ"]),
         "{inputs}; {outputs}"
     );
     let notes = made(&mut window, "quadrotor");
-    assert!(notes.iter().any(|note| note.contains("signs are PX4's")), "{notes:?}");
-    let units: Vec<&str> = state(&window).dataset().outputs().iter().map(|channel| channel.unit.as_str()).collect();
-    assert!(units.contains(&"rad/s") && units.contains(&"m/s^2"), "{units:?}");
+    assert!(
+        notes.iter().any(|note| note.contains("signs are PX4's")),
+        "{notes:?}"
+    );
+    let units: Vec<&str> = state(&window)
+        .dataset()
+        .outputs()
+        .iter()
+        .map(|channel| channel.unit.as_str())
+        .collect();
+    assert!(
+        units.contains(&"rad/s") && units.contains(&"m/s^2"),
+        "{units:?}"
+    );
 }
 
 #[test]
@@ -60,28 +87,59 @@ fn a_log_of_ardupilot_proposes_outputs_of_its_controller_and_rates_of_its_identi
         let (stamp, at) = (1_000_000 + 2500 * k, 0.0025 * f64::from(k));
         let (stick, rate) = ((2.0 * at).sin(), (2.0 * at).cos());
         text += &format!("RATE, {stamp}, {rate}, {stick}, {stick}, {rate}\n");
-        text += &format!("SIDD, {}, {at}, {stick}, {rate}, {}\n", stamp + 300, rate + stick);
+        text += &format!(
+            "SIDD, {}, {at}, {stick}, {rate}, {}\n",
+            stamp + 300,
+            rate + stick
+        );
     }
     let (mut window, _folder) = asked("00000042.log", text.as_bytes());
-    let WantedDataset { inputs, outputs, columns, .. } = wanted(&window);
-    assert_eq!((inputs.as_str(), outputs.as_str()), ("LAT, LON", "P, Q"), "{columns:?}");
+    let WantedDataset {
+        inputs,
+        outputs,
+        columns,
+        ..
+    } = wanted(&window);
+    assert_eq!(
+        (inputs.as_str(), outputs.as_str()),
+        ("LAT, LON", "P, Q"),
+        "{columns:?}"
+    );
     let notes = made(&mut window, "00000042");
-    assert!(notes.iter().any(|note| note.contains("P = SIDD.Gx")), "{notes:?}");
+    assert!(
+        notes.iter().any(|note| note.contains("P = SIDD.Gx")),
+        "{notes:?}"
+    );
     // What the identification mode adds drives the loop from outside.
     let row = &state(&window).records.conditions[&ConditionId(1)].rows[0];
-    assert!(row.possible_references().contains(&("SIDD.Targ", true)), "{:?}", row.possible_references());
+    assert!(
+        row.possible_references().contains(&("SIDD.Targ", true)),
+        "{:?}",
+        row.possible_references()
+    );
 }
 
 #[test]
 fn a_log_of_betaflight_proposes_sums_of_its_controller_and_its_gyroscope() {
-    let (mut window, _folder) = asked("two-flights.bbl", include_bytes!("../../data/logs/two-flights.bbl"));
-    let WantedDataset { inputs, outputs, .. } = wanted(&window);
+    let (mut window, _folder) = asked(
+        "two-flights.bbl",
+        include_bytes!("../../data/logs/two-flights.bbl"),
+    );
+    let WantedDataset {
+        inputs, outputs, ..
+    } = wanted(&window);
     let sorted = |list: &str| {
         let mut names: Vec<String> = list.split(", ").map(str::to_owned).collect();
         names.sort();
         names
     };
-    assert_eq!((sorted(inputs), sorted(outputs)), (sorted("LAT, LON, PED, COL"), sorted("P, Q, R")));
+    assert_eq!(
+        (sorted(inputs), sorted(outputs)),
+        (sorted("LAT, LON, PED, COL"), sorted("P, Q, R"))
+    );
     let notes = made(&mut window, "two-flights");
-    assert!(notes.iter().any(|note| note.contains("axisSum")), "{notes:?}");
+    assert!(
+        notes.iter().any(|note| note.contains("axisSum")),
+        "{notes:?}"
+    );
 }

@@ -71,13 +71,20 @@ fn example() -> Opened {
 /// An engine that has analysed the example, error bars and all: most windows begin with that, and none has to wait for it again.
 static WARM: LazyLock<Engine> = LazyLock::new(|| {
     let mut engine = Engine::default().with_proofs_within(LIVE_PROOF);
-    let analysis = engine.analyze(&Study::new(crate::EXAMPLE.dataset.clone()), &Unobserved).expect("nothing stops it");
-    engine.uncertainty(&analysis, &Unobserved).expect("nothing stops it");
+    let analysis = engine
+        .analyze(&Study::new(crate::EXAMPLE.dataset.clone()), &Unobserved)
+        .expect("nothing stops it");
+    engine
+        .uncertainty(&analysis, &Unobserved)
+        .expect("nothing stops it");
     engine
 });
 
 fn warm() -> Setup {
-    Setup { engine: Arc::new(|| WARM.fork(Box::new(Pool))), ..Setup::default() }
+    Setup {
+        engine: Arc::new(|| WARM.fork(Box::new(Pool))),
+        ..Setup::default()
+    }
 }
 
 /// The window on a few conditions of the example, its first results there.
@@ -89,7 +96,9 @@ fn window_with(opened: Opened, setup: Setup) -> Window {
     let build = |creation: &mut eframe::CreationContext<'static>| {
         GdcmApp::with(&creation.egui_ctx, opened, setup).expect("a thread can be started")
     };
-    let mut window = Harness::builder().with_size(vec2(1600.0, 1000.0)).build_eframe(build);
+    let mut window = Harness::builder()
+        .with_size(vec2(1600.0, 1000.0))
+        .build_eframe(build);
     settle(&mut window);
     window
 }
@@ -100,7 +109,12 @@ pub(crate) fn wait_until(window: &mut Window, what: &str, is_so: impl Fn(&Window
     while !is_so(window) {
         window.run_steps(1);
         let results = &state(window).results;
-        assert!(Instant::now() < limit, "never came: {what} ({} of {})", results.received, results.requested);
+        assert!(
+            Instant::now() < limit,
+            "never came: {what} ({} of {})",
+            results.received,
+            results.requested
+        );
         std::thread::sleep(Duration::from_millis(5));
     }
     window.run_steps(1);
@@ -111,7 +125,8 @@ pub(crate) fn settle(window: &mut Window) {
     window.run_steps(2);
     wait_until(window, "the results", |window| {
         let state = state(window);
-        let drawn = !state.display.drawn.is_empty() || !state.display.arrangement.is_shown(View::Bode);
+        let drawn =
+            !state.display.drawn.is_empty() || !state.display.arrangement.is_shown(View::Bode);
         let shown = state.curves().is_some() && drawn;
         !state.results.is_waiting() && shown && state.opening.is_none()
     });
@@ -120,7 +135,9 @@ pub(crate) fn settle(window: &mut Window) {
 
 /// Draws frames until the values have their error bars, which come after what [`settle`] waits for.
 pub(crate) fn wait_for_bars(window: &mut Window) {
-    wait_until(window, "the error bars", |window| state(window).uncertainty().is_some());
+    wait_until(window, "the error bars", |window| {
+        state(window).uncertainty().is_some()
+    });
 }
 
 pub(crate) fn click(window: &mut Window, label: &str) {
@@ -133,17 +150,27 @@ pub(crate) fn state(window: &Window) -> &State {
 }
 
 fn pair(window: &Window, output: &str, input: &str) -> Pair {
-    state(window).dataset().find_pair(output, input).expect("the example has this response")
+    state(window)
+        .dataset()
+        .find_pair(output, input)
+        .expect("the example has this response")
 }
 
 fn net_gain(window: &Window, output: &str, input: &str) -> f64 {
     let pair = pair(window, output, input);
-    state(window).shown().expect("the condition has a result").correction.net_gain(pair)
+    state(window)
+        .shown()
+        .expect("the condition has a result")
+        .correction
+        .net_gain(pair)
 }
 
 fn drawn(window: &Window, role: CurveRole) -> BodeCurve {
     let mut curves = state(window).display.drawn.iter();
-    curves.find(|curve| curve.role == role).expect("a curve of this role is drawn").clone()
+    curves
+        .find(|curve| curve.role == role)
+        .expect("a curve of this role is drawn")
+        .clone()
 }
 
 fn choose_condition_10(window: &mut Window) {
@@ -163,7 +190,9 @@ pub(crate) fn unfold_settings(window: &mut Window, is_open: bool) {
 /// Moves the slider of a setting, which is unfolded for that.
 pub(crate) fn slide(window: &mut Window, name: &str, value: f64) {
     unfold_settings(window, true);
-    window.get_by_role_and_label(Role::Slider, &format!("{name} slider")).set_value_accesskit(value);
+    window
+        .get_by_role_and_label(Role::Slider, &format!("{name} slider"))
+        .set_value_accesskit(value);
     window.run_steps(2);
     unfold_settings(window, false);
 }
@@ -182,7 +211,10 @@ fn exported(window: &mut Window, path: &Path) -> Notice {
     window.run_steps(2);
     fill(window, "Path of the export", path);
     click(window, "Export file");
-    state(window).notice.clone().expect("the export is reported")
+    state(window)
+        .notice
+        .clone()
+        .expect("the export is reported")
 }
 
 fn open_by_path(window: &mut Window, path: &Path) {
@@ -196,17 +228,24 @@ pub(crate) fn export_to(window: &mut Window, folder: &Path) {
     click(window, "Export corrections…");
     fill(window, "Export folder", folder);
     click(window, "Export");
-    let notice = state(window).notice.clone().expect("the export is reported");
+    let notice = state(window)
+        .notice
+        .clone()
+        .expect("the export is reported");
     assert_eq!(notice.kind, NoticeKind::Done, "{}", notice.text);
 }
 
 fn wait_for_toggles(window: &mut Window) {
-    wait_until(window, "the costs", |window| state(window).toggles().is_some());
+    wait_until(window, "the costs", |window| {
+        state(window).toggles().is_some()
+    });
 }
 
 /// Draws frames until nothing is computed beside the window either.
 fn wait_for_background(window: &mut Window) {
-    wait_until(window, "what is computed beside", |window| state(window).results.background_since.is_none());
+    wait_until(window, "what is computed beside", |window| {
+        state(window).results.background_since.is_none()
+    });
 }
 
 /// Saves the study as the form does.

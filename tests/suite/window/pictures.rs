@@ -32,9 +32,17 @@ struct Format {
 }
 
 /// What tests compare.
-const COMPARED: Format = Format { size: [1280, 720], folder: "tests/data/pictures", scale: 2 };
+const COMPARED: Format = Format {
+    size: [1280, 720],
+    folder: "tests/data/pictures",
+    scale: 2,
+};
 /// What the pages show: as large as the renderer allows.
-const SHOWN: Format = Format { size: [1280, 720], folder: "assets/screenshots", scale: 1 };
+const SHOWN: Format = Format {
+    size: [1280, 720],
+    folder: "assets/screenshots",
+    scale: 1,
+};
 
 impl Format {
     /// Size of a picture \[px\].
@@ -43,7 +51,9 @@ impl Format {
     }
 
     fn path(self, name: &str) -> PathBuf {
-        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(self.folder).join(format!("{name}.png"))
+        PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+            .join(self.folder)
+            .join(format!("{name}.png"))
     }
 }
 
@@ -60,7 +70,12 @@ impl TestRenderer for Textures {
     fn handle_delta(&mut self, delta: &mut TexturesDelta) {
         let mut textures = self.0.borrow_mut();
         for (id, changes) in std::mem::take(&mut delta.set) {
-            for ImageDelta { image: ImageData::Color(image), pos, .. } in changes {
+            for ImageDelta {
+                image: ImageData::Color(image),
+                pos,
+                ..
+            } in changes
+            {
                 match (pos, textures.get_mut(&id)) {
                     (Some([left, top]), Some(whole)) => {
                         for (row, line) in image.pixels.chunks(image.size[0]).enumerate() {
@@ -90,37 +105,68 @@ fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
         .borrow()
         .iter()
         .map(|(id, image)| {
-            let pixels: Vec<u8> = image.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
-            (*id, renderer.create_texture(image.size[0], image.size[1], &pixels).expect("a texture of letters"))
+            let pixels: Vec<u8> = image
+                .pixels
+                .iter()
+                .flat_map(|pixel| pixel.to_array())
+                .collect();
+            (
+                *id,
+                renderer
+                    .create_texture(image.size[0], image.size[1], &pixels)
+                    .expect("a texture of letters"),
+            )
         })
         .collect();
     let shapes = window.ctx.tessellate(window.output().shapes.clone(), 1.0);
-    let mut frame = renderer.begin_frame(width, height).expect("the size is allowed");
+    let mut frame = renderer
+        .begin_frame(width, height)
+        .expect("the size is allowed");
     let ground = Palette::of(&window.ctx.global_style().visuals).background;
     frame.clear(colour(ground));
     for of in shapes {
-        let Primitive::Mesh(mesh) = of.primitive else { continue };
+        let Primitive::Mesh(mesh) = of.primitive else {
+            continue;
+        };
         let corner = |at: Pos2| [at.x.round().max(0.0) as u32, at.y.round().max(0.0) as u32];
         let ([min_x, min_y], [max_x, max_y]) = (corner(of.clip_rect.min), corner(of.clip_rect.max));
-        let vertices: Vec<Vertex> =
-            mesh.vertices.iter().map(|at| Vertex::new(at.pos.into(), at.uv.into(), colour(at.color))).collect();
+        let vertices: Vec<Vertex> = mesh
+            .vertices
+            .iter()
+            .map(|at| Vertex::new(at.pos.into(), at.uv.into(), colour(at.color)))
+            .collect();
         let texture = known.get(&mesh.texture_id).copied();
-        let mesh = Mesh { vertices: &vertices, indices: &mesh.indices, texture };
-        let clip = ClipRect { min_x, min_y, max_x, max_y };
+        let mesh = Mesh {
+            vertices: &vertices,
+            indices: &mesh.indices,
+            texture,
+        };
+        let clip = ClipRect {
+            min_x,
+            min_y,
+            max_x,
+            max_y,
+        };
         if let Err(error) = frame.mesh(mesh, clip) {
-            let shown = View::ALL.into_iter().filter(|view| state(window).display.arrangement.is_shown(*view));
+            let shown = View::ALL
+                .into_iter()
+                .filter(|view| state(window).display.arrangement.is_shown(*view));
             panic!("a mesh of {:?}: {error:?}", shown.collect::<Vec<View>>());
         }
     }
     let pixels = &frame.surface().pixels;
     let average = |x: usize, y: usize, channel: usize| {
         let square = (0..scale * scale).map(|at| (x * scale + at % scale, y * scale + at / scale));
-        let sum: usize = square.map(|(x, y)| usize::from(pixels[4 * (y * width + x) + channel])).sum();
+        let sum: usize = square
+            .map(|(x, y)| usize::from(pixels[4 * (y * width + x) + channel]))
+            .sum();
         (sum / (scale * scale)) as u8
     };
     let [columns, rows] = format.pixels();
     let places = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
-    places.flat_map(|(x, y)| [0, 1, 2].map(|channel| average(x, y, channel))).collect()
+    places
+        .flat_map(|(x, y)| [0, 1, 2].map(|channel| average(x, y, channel)))
+        .collect()
 }
 
 fn write(name: &str, pixels: &[u8], format: Format) {
@@ -129,13 +175,19 @@ fn write(name: &str, pixels: &[u8], format: Format) {
     let mut encoder = png::Encoder::new(File::create(path).unwrap(), width as u32, height as u32);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::High);
-    encoder.write_header().unwrap().write_image_data(pixels).unwrap();
+    encoder
+        .write_header()
+        .unwrap()
+        .write_image_data(pixels)
+        .unwrap();
 }
 
 fn read(name: &str, format: Format) -> Vec<u8> {
     let path = format.path(name);
     let file = File::open(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
+    let mut reader = png::Decoder::new(std::io::BufReader::new(file))
+        .read_info()
+        .unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut pixels).unwrap();
     pixels
@@ -155,7 +207,9 @@ fn miss(name: &str, window: &Window, textures: &Textures, format: Format) -> Opt
 fn others(one: &[u8], other: &[u8]) -> f64 {
     assert_eq!(one.len(), other.len());
     let pairs = one.chunks(3).zip(other.chunks(3));
-    let differing = pairs.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > OTHER)).count();
+    let differing = pairs
+        .filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > OTHER))
+        .count();
     differing as f64 / (one.len() / 3) as f64
 }
 
@@ -164,7 +218,10 @@ fn pictured_window(textures: &Textures, format: Format) -> Window {
         GdcmApp::with(&creation.egui_ctx, example(), warm()).expect("a thread can be started")
     };
     let size = vec2(format.size[0] as f32, format.size[1] as f32);
-    let mut window = Harness::builder().with_size(size).renderer(textures.clone()).build_eframe(build);
+    let mut window = Harness::builder()
+        .with_size(size)
+        .renderer(textures.clone())
+        .build_eframe(build);
     settle(&mut window);
     window
 }
@@ -174,11 +231,19 @@ fn every_view_looks_as_it_did_in_both_themes() {
     let textures = Textures::default();
     let mut window = pictured_window(&textures, COMPARED);
     give(&mut window, Action::OpenDock(false));
-    give(&mut window, Edit::KeepVariant { name: "all models".to_owned() });
+    give(
+        &mut window,
+        Edit::KeepVariant {
+            name: "all models".to_owned(),
+        },
+    );
     click(&mut window, CONDITION_10);
     wait_for_bars(&mut window);
     let mut misses = Vec::new();
-    for (theme, preference) in [("dark", ThemePreference::Dark), ("light", ThemePreference::Light)] {
+    for (theme, preference) in [
+        ("dark", ThemePreference::Dark),
+        ("light", ThemePreference::Light),
+    ] {
         give(&mut window, Action::SetTheme(preference));
         for view in View::ALL {
             show(&mut window, view);
@@ -186,13 +251,17 @@ fn every_view_looks_as_it_did_in_both_themes() {
                 View::Across => state(window).across().is_some(),
                 View::Poles => state(window).modes().is_some(),
                 View::Compare => !state(window).results.variants.is_empty(),
-                View::Records => {
-                    state(window).records.conditions.get(&ConditionId(10)).is_some_and(|of| of.rows.len() == 9)
-                }
+                View::Records => state(window)
+                    .records
+                    .conditions
+                    .get(&ConditionId(10))
+                    .is_some_and(|of| of.rows.len() == 9),
                 _ => true,
             });
             // What is under way is told in the status bar.
-            wait_until(&mut window, "rest", |window| !state(window).results.background.is_busy());
+            wait_until(&mut window, "rest", |window| {
+                !state(window).results.background.is_busy()
+            });
             // Tooltips, fades and the bars of a scroll area come to rest.
             window.run_steps(8);
             let name = format!("{}-{theme}", view.name().to_lowercase().replace(' ', "-"));
@@ -212,7 +281,10 @@ fn the_pictures_of_the_pages_are_those_of_the_window() {
     click(&mut window, "Response LON → Q");
     let mut misses = Vec::new();
     let mut look = |window: &mut Window, name: &str| {
-        for (theme, preference) in [("dark", ThemePreference::Dark), ("light", ThemePreference::Light)] {
+        for (theme, preference) in [
+            ("dark", ThemePreference::Dark),
+            ("light", ThemePreference::Light),
+        ] {
             give(window, Action::SetTheme(preference));
             wait_for_background(window);
             window.run_steps(8);
@@ -232,19 +304,31 @@ fn the_pictures_of_the_pages_are_those_of_the_window() {
     look(&mut window, "leads");
     show(&mut window, View::Records);
     wait_until(&mut window, "the records", |window| {
-        state(window).records.conditions.get(&ConditionId(10)).is_some_and(|of| of.rows.len() == 9)
+        state(window)
+            .records
+            .conditions
+            .get(&ConditionId(10))
+            .is_some_and(|of| of.rows.len() == 9)
     });
     click(&mut window, "Identify");
     wait_until(&mut window, "the models", |window| {
-        state(window).records.conditions[&ConditionId(10)].identification().is_some()
+        state(window).records.conditions[&ConditionId(10)]
+            .identification()
+            .is_some()
     });
     click(&mut window, "Page Response");
     look(&mut window, "records");
     let folder = tempfile::tempdir().unwrap();
     crate::assembling::example_folder(folder.path());
-    give(&mut window, AssemblingCommand::Add(vec![folder.path().to_owned()]));
+    give(
+        &mut window,
+        AssemblingCommand::Add(vec![folder.path().to_owned()]),
+    );
     wait_until(&mut window, "the models", |window| {
-        state(window).assembling.as_ref().is_some_and(|bench| bench.reading.is_none() && !bench.sources.is_empty())
+        state(window)
+            .assembling
+            .as_ref()
+            .is_some_and(|bench| bench.reading.is_none() && !bench.sources.is_empty())
     });
     // Where the folder is, is another place each time.
     for (field, text) in [
@@ -264,7 +348,11 @@ fn a_missing_line_of_text_is_another_picture() {
     let textures = Textures::default();
     let mut window = pictured_window(&textures, COMPARED);
     let before = picture(&window, &textures, COMPARED);
-    assert_eq!(others(&before, &picture(&window, &textures, COMPARED)), 0.0, "a picture is the same twice");
+    assert_eq!(
+        others(&before, &picture(&window, &textures, COMPARED)),
+        0.0,
+        "a picture is the same twice"
+    );
     click(&mut window, CONDITION_10);
     assert!(others(&before, &picture(&window, &textures, COMPARED)) > MOST_OTHERS);
 }

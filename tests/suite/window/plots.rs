@@ -15,7 +15,8 @@ pub(super) fn place_on_nominal(window: &Window) -> Pos2 {
     // At 2 rad/s the nominal model stands 3 dB above the bundle: nothing else is near.
     let at = nominal.omega.iter().position(|&omega| omega > 2.0).unwrap();
     let view = &state(window).display.bode;
-    view.screen_position(Pane::Magnitude, nominal.omega[at], nominal.magnitude_db[at]).unwrap()
+    view.screen_position(Pane::Magnitude, nominal.omega[at], nominal.magnitude_db[at])
+        .unwrap()
 }
 
 #[test]
@@ -27,7 +28,11 @@ fn a_click_on_a_curve_rejects_it_and_another_click_restores_it() {
     for rejected in [true, false] {
         window.hover_at(place);
         window.run_steps(2);
-        assert_eq!(state(&window).display.hovered.as_ref(), Some(&id), "hovering points at the model");
+        assert_eq!(
+            state(&window).display.hovered.as_ref(),
+            Some(&id),
+            "hovering points at the model"
+        );
         window.drag_at(place);
         window.run_steps(1);
         window.drop_at(place);
@@ -53,14 +58,22 @@ fn a_double_click_on_a_curve_leaves_no_decision() {
         // Both in one frame: a frame of the harness takes nearly as long as two clicks may be apart.
         for pressed in [true, false] {
             let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-            window.input_mut().events.push(Event::PointerButton { pos: place, button, pressed, modifiers });
+            window.input_mut().events.push(Event::PointerButton {
+                pos: place,
+                button,
+                pressed,
+                modifiers,
+            });
         }
         window.step();
     }
     settle(&mut window);
     assert_eq!(state(&window).study, start);
     assert_eq!(state(&window).history.undo_label(), None, "nothing to undo");
-    assert!(state(&window).history.redo_label().is_some(), "what could be redone before still can");
+    assert!(
+        state(&window).history.redo_label().is_some(),
+        "what could be redone before still can"
+    );
 }
 
 /// Presses the primary button at `from` and drags it to `to`, in steps; it is not let go.
@@ -86,7 +99,11 @@ fn place_of(window: &Window, omega: f64) -> Pos2 {
 
 /// The frequency at a place of the magnitude plot.
 fn omega_at(window: &Window, place: Pos2) -> f64 {
-    let transform = *state(window).display.bode.transform(Pane::Magnitude).unwrap();
+    let transform = *state(window)
+        .display
+        .bode
+        .transform(Pane::Magnitude)
+        .unwrap();
     10f64.powf(transform.value_from_position(place).x)
 }
 
@@ -105,16 +122,30 @@ fn a_dragged_end_of_the_band_stays_under_the_pointer_and_the_view_follows_when_i
         let expected = omega_at(&window, to);
         let view = state(&window).display.bode.omega_range();
         drag_along(&mut window, from, to);
-        assert_eq!(state(&window).display.bode.omega_range(), view, "nothing moves under the pointer");
+        assert_eq!(
+            state(&window).display.bode.omega_range(),
+            view,
+            "nothing moves under the pointer"
+        );
         window.drop_at(to);
         settle(&mut window);
-        let found = if by > 0.0 { band(&window).0 } else { band(&window).1 };
+        let found = if by > 0.0 {
+            band(&window).0
+        } else {
+            band(&window).1
+        };
         // A hundredth of a point on the screen.
-        assert!((found / expected - 1.0).abs() < 1e-4, "{end} dragged to {expected}: {found}");
+        assert!(
+            (found / expected - 1.0).abs() < 1e-4,
+            "{end} dragged to {expected}: {found}"
+        );
         // As far as curves are drawn: 1.7 times the band on either side.
         let (first, last) = state(&window).display.bode.omega_range();
         let (min, max) = band(&window);
-        assert!((first * 1.7 / min - 1.0).abs() < 1e-6 && (last / 1.7 / max - 1.0).abs() < 1e-6, "{first} to {last}");
+        assert!(
+            (first * 1.7 / min - 1.0).abs() < 1e-6 && (last / 1.7 / max - 1.0).abs() < 1e-6,
+            "{first} to {last}"
+        );
     }
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut window);
@@ -125,13 +156,26 @@ fn a_dragged_end_of_the_band_stays_under_the_pointer_and_the_view_follows_when_i
 fn a_zoom_outlives_whatever_is_computed_and_whatever_is_shown() {
     let mut window = window();
     choose_condition_10(&mut window);
-    let area = *state(&window).display.bode.transform(Pane::Magnitude).unwrap().frame();
-    let (from, to) = (area.lerp_inside(vec2(0.3, 0.3)), area.lerp_inside(vec2(0.7, 0.8)));
+    let area = *state(&window)
+        .display
+        .bode
+        .transform(Pane::Magnitude)
+        .unwrap()
+        .frame();
+    let (from, to) = (
+        area.lerp_inside(vec2(0.3, 0.3)),
+        area.lerp_inside(vec2(0.7, 0.8)),
+    );
     window.hover_at(from);
     window.run_steps(2);
     let button = |pressed| {
         let (pos, modifiers) = (if pressed { from } else { to }, Modifiers::NONE);
-        Event::PointerButton { pos, button: PointerButton::Secondary, pressed, modifiers }
+        Event::PointerButton {
+            pos,
+            button: PointerButton::Secondary,
+            pressed,
+            modifiers,
+        }
     };
     window.event(button(true));
     window.run_steps(1);
@@ -143,7 +187,11 @@ fn a_zoom_outlives_whatever_is_computed_and_whatever_is_shown() {
     settle(&mut window);
     let ranges = |window: &Window| {
         let view = &state(window).display.bode;
-        (view.omega_range(), view.value_range(Pane::Magnitude), view.value_range(Pane::Phase))
+        (
+            view.omega_range(),
+            view.value_range(Pane::Magnitude),
+            view.value_range(Pane::Phase),
+        )
     };
     let zoomed = ranges(&window);
     assert!(zoomed.0.0 > 0.5 && zoomed.0.1 < 12.0, "{zoomed:?}");
@@ -152,13 +200,28 @@ fn a_zoom_outlives_whatever_is_computed_and_whatever_is_shown() {
     window.key_press(Key::ArrowUp);
     settle(&mut window);
     assert_ne!(state(&window).condition().id(), ConditionId(10));
-    assert_eq!((ranges(&window).0, ranges(&window).1), (zoomed.0, zoomed.1), "in another condition");
-    assert_ne!(ranges(&window).2, zoomed.2, "phases, which nobody zoomed, are fitted");
+    assert_eq!(
+        (ranges(&window).0, ranges(&window).1),
+        (zoomed.0, zoomed.1),
+        "in another condition"
+    );
+    assert_ne!(
+        ranges(&window).2,
+        zoomed.2,
+        "phases, which nobody zoomed, are fitted"
+    );
     click(&mut window, "Response LAT → P");
-    assert_eq!((ranges(&window).0, ranges(&window).1), (zoomed.0, zoomed.1), "of another response");
+    assert_eq!(
+        (ranges(&window).0, ranges(&window).1),
+        (zoomed.0, zoomed.1),
+        "of another response"
+    );
     window.key_press(Key::F);
     settle(&mut window);
-    assert!(ranges(&window).0.0 < 0.5 && ranges(&window).0.1 > 12.0, "until everything is fitted");
+    assert!(
+        ranges(&window).0.0 < 0.5 && ranges(&window).0.1 > 12.0,
+        "until everything is fitted"
+    );
 }
 
 #[test]
@@ -191,7 +254,13 @@ fn an_idle_window_draws_no_frames() {
     // A pointer that rests on a curve: its name is shown, and stays.
     let nominal = drawn(&window, CurveRole::Nominal);
     let view = &state(&window).display.bode;
-    let place = view.screen_position(Pane::Magnitude, nominal.omega[200], nominal.magnitude_db[200]).unwrap();
+    let place = view
+        .screen_position(
+            Pane::Magnitude,
+            nominal.omega[200],
+            nominal.magnitude_db[200],
+        )
+        .unwrap();
     window.hover_at(place);
     window.run();
     assert!(state(&window).display.hovered.is_some());
@@ -202,9 +271,18 @@ fn an_idle_window_draws_no_frames() {
 fn assert_asks_for_no_frame(window: &mut Window, what: &str) {
     for _ in 0..5 {
         window.run_steps(1);
-        let delays: Vec<Duration> =
-            window.output().viewport_output.values().map(|output| output.repaint_delay).collect();
-        assert_eq!(delays, [Duration::MAX], "{what}: {:?}", window.ctx.repaint_causes());
+        let delays: Vec<Duration> = window
+            .output()
+            .viewport_output
+            .values()
+            .map(|output| output.repaint_delay)
+            .collect();
+        assert_eq!(
+            delays,
+            [Duration::MAX],
+            "{what}: {:?}",
+            window.ctx.repaint_causes()
+        );
     }
 }
 
@@ -217,7 +295,13 @@ fn what_is_out_of_sight_is_not_tessellated() {
     }
     let nominal = drawn(&window, CurveRole::Nominal);
     let view = &state(&window).display.bode;
-    let place = view.screen_position(Pane::Magnitude, nominal.omega[200], nominal.magnitude_db[200]).unwrap();
+    let place = view
+        .screen_position(
+            Pane::Magnitude,
+            nominal.omega[200],
+            nominal.magnitude_db[200],
+        )
+        .unwrap();
     window.hover_at(place);
     for _ in 0..50 {
         window.event(egui::Event::MouseWheel {
@@ -237,17 +321,27 @@ fn what_is_out_of_sight_is_not_tessellated() {
 /// Every shape in view is tessellated as a whole: dashes and letters at an edge have a few triangles beyond it.
 fn assert_little_is_hidden(window: &Window, what: &str) {
     let (hidden, all) = hidden_triangles(window);
-    assert!(all > 10_000 && hidden < all / 100, "{what}: {hidden} of {all} triangles");
+    assert!(
+        all > 10_000 && hidden < all / 100,
+        "{what}: {hidden} of {all} triangles"
+    );
 }
 
 /// How many triangles of the frame drawn last lie outside what they are clipped to, and how many there are.
 fn hidden_triangles(window: &Window) -> (usize, usize) {
     let output = window.output();
     let (mut hidden, mut all) = (0, 0);
-    for primitive in window.ctx.tessellate(output.shapes.clone(), output.pixels_per_point) {
-        let egui::epaint::Primitive::Mesh(mesh) = &primitive.primitive else { continue };
+    for primitive in window
+        .ctx
+        .tessellate(output.shapes.clone(), output.pixels_per_point)
+    {
+        let egui::epaint::Primitive::Mesh(mesh) = &primitive.primitive else {
+            continue;
+        };
         for corners in mesh.indices.chunks_exact(3) {
-            let positions = corners.iter().map(|&corner| mesh.vertices[corner as usize].pos);
+            let positions = corners
+                .iter()
+                .map(|&corner| mesh.vertices[corner as usize].pos);
             let bounds = egui::Rect::from_points(&positions.collect::<Vec<_>>());
             hidden += usize::from(!bounds.intersects(primitive.clip_rect));
             all += 1;
@@ -259,15 +353,22 @@ fn hidden_triangles(window: &Window) -> (usize, usize) {
 #[test]
 fn pointing_at_plots_starts_no_analysis() {
     let mut window = window();
-    let (requested, analysis) = (state(&window).results.requested, state(&window).results.analysis.clone());
+    let (requested, analysis) = (
+        state(&window).results.requested,
+        state(&window).results.analysis.clone(),
+    );
     for step in 0..40 {
         // From corner to corner, across lists, plots, matrix and settings.
         window.hover_at(pos2(40.0 * step as f32, 25.0 * step as f32));
         window.run_steps(1);
     }
     assert_eq!(state(&window).results.requested, requested);
-    let same =
-        state(&window).results.analysis.as_ref().zip(analysis.as_ref()).map(|(a, b)| std::sync::Arc::ptr_eq(a, b));
+    let same = state(&window)
+        .results
+        .analysis
+        .as_ref()
+        .zip(analysis.as_ref())
+        .map(|(a, b)| std::sync::Arc::ptr_eq(a, b));
     assert_eq!(same, Some(true));
 }
 
@@ -276,24 +377,41 @@ fn across_values(window: &Window) -> [Range; 2] {
     let state = state(window);
     let (made_of, display) = ((state.dataset(), state.analysis()), &state.display);
     let curves = state.across().expect("the responses are there");
-    let drawn = airspeed_curves(made_of, display.across_role, display.pair, curves, &mut AirspeedCache::default());
+    let drawn = airspeed_curves(
+        made_of,
+        display.across_role,
+        display.pair,
+        curves,
+        &mut AirspeedCache::default(),
+    );
     let band = state.study.settings.band;
-    [Pane::Magnitude, Pane::Phase].map(|pane| fitted_values(&drawn, pane, (band.min(), band.max())).expect("curves"))
+    [Pane::Magnitude, Pane::Phase]
+        .map(|pane| fitted_values(&drawn, pane, (band.min(), band.max())).expect("curves"))
 }
 
 /// Whether Airspeeds shows just that, but for a margin.
 fn across_is_fitted(window: &Window) -> bool {
     let view = &state(window).display.across;
     let values = across_values(window);
-    [Pane::Magnitude, Pane::Phase].into_iter().zip(values).all(|(pane, values)| {
-        let shown = view.value_range(pane);
-        shown.min <= values.min && shown.max >= values.max && shown.width() <= 1.2 * values.width().max(20.0)
-    })
+    [Pane::Magnitude, Pane::Phase]
+        .into_iter()
+        .zip(values)
+        .all(|(pane, values)| {
+            let shown = view.value_range(pane);
+            shown.min <= values.min
+                && shown.max >= values.max
+                && shown.width() <= 1.2 * values.width().max(20.0)
+        })
 }
 
 /// Turns the wheel over the magnitudes of Airspeeds.
 fn zoom_across(window: &mut Window) {
-    let frame = *state(window).display.across.transform(Pane::Magnitude).expect("it is drawn").frame();
+    let frame = *state(window)
+        .display
+        .across
+        .transform(Pane::Magnitude)
+        .expect("it is drawn")
+        .frame();
     window.hover_at(frame.center());
     window.event(Event::MouseWheel {
         unit: egui::MouseWheelUnit::Line,
@@ -310,7 +428,9 @@ fn zoom_across(window: &mut Window) {
 fn airspeeds_is_fitted_to_another_response_and_by_f_and_by_fit() {
     let mut window = window();
     show(&mut window, View::Across);
-    wait_until(&mut window, "the responses", |window| state(window).across().is_some());
+    wait_until(&mut window, "the responses", |window| {
+        state(window).across().is_some()
+    });
     window.run_steps(2);
     assert!(across_is_fitted(&window));
     let before = state(&window).display.across.value_range(Pane::Magnitude);
@@ -319,12 +439,19 @@ fn airspeeds_is_fitted_to_another_response_and_by_f_and_by_fit() {
         assert!(across_is_fitted(&window), "{input} → {output}");
     }
     click(&mut window, "Response PED → NX");
-    assert_ne!(state(&window).display.across.value_range(Pane::Magnitude), before, "they are far apart");
+    assert_ne!(
+        state(&window).display.across.value_range(Pane::Magnitude),
+        before,
+        "they are far apart"
+    );
     give(&mut window, Action::ShowAcross(AcrossRole::Identified));
     settle(&mut window);
     wait_for_background(&mut window);
     window.run_steps(2);
-    assert!(across_is_fitted(&window), "the identified models, as soon as they are there");
+    assert!(
+        across_is_fitted(&window),
+        "the identified models, as soon as they are there"
+    );
     zoom_across(&mut window);
     window.key_press(Key::F);
     window.run_steps(3);
@@ -338,13 +465,25 @@ fn airspeeds_is_fitted_to_another_response_and_by_f_and_by_fit() {
 fn the_label_of_airspeeds_lies_inside_its_plot() {
     let mut window = window();
     show(&mut window, View::Across);
-    wait_until(&mut window, "the responses", |window| state(window).across().is_some());
+    wait_until(&mut window, "the responses", |window| {
+        state(window).across().is_some()
+    });
     click(&mut window, "Response LON → Q");
     window.run_steps(2);
-    let frame = *state(&window).display.across.transform(Pane::Magnitude).unwrap().frame();
+    let frame = *state(&window)
+        .display
+        .across
+        .transform(Pane::Magnitude)
+        .unwrap()
+        .frame();
     // That of the heading stands above it.
-    let labels = texts_in(&window, frame.expand(30.0)).into_iter().filter(|(text, _)| text == "LON → Q");
-    let places: Vec<egui::Rect> = labels.map(|(_, place)| place).filter(|place| place.bottom() > frame.top()).collect();
+    let labels = texts_in(&window, frame.expand(30.0))
+        .into_iter()
+        .filter(|(text, _)| text == "LON → Q");
+    let places: Vec<egui::Rect> = labels
+        .map(|(_, place)| place)
+        .filter(|place| place.bottom() > frame.top())
+        .collect();
     assert_eq!(places.len(), 1, "{places:?}");
     assert!(frame.contains_rect(places[0]), "{} in {frame}", places[0]);
 }

@@ -19,9 +19,14 @@ fn rest_at(window: &mut Window, at: Pos2) {
 
 /// The part of the screen that the tooltips take.
 fn tooltips(window: &Window) -> Vec<egui::Rect> {
-    let layers = window.ctx.memory(|memory| memory.areas().visible_layer_ids());
-    let open = layers.into_iter().filter(|layer| layer.order == Order::Tooltip);
-    open.filter_map(|layer| window.ctx.memory(|memory| memory.area_rect(layer.id))).collect()
+    let layers = window
+        .ctx
+        .memory(|memory| memory.areas().visible_layer_ids());
+    let open = layers
+        .into_iter()
+        .filter(|layer| layer.order == Order::Tooltip);
+    open.filter_map(|layer| window.ctx.memory(|memory| memory.area_rect(layer.id)))
+        .collect()
 }
 
 /// Asserts that nothing opens where something of a plot is pointed at, and that the status line says what it is.
@@ -31,7 +36,10 @@ fn assert_told(window: &mut Window, what: &str, at: Pos2) {
     let told = told.unwrap_or_else(|| panic!("{what}: nothing is said at {at}"));
     assert_eq!(tooltips(window), [], "{what}: {told}");
     let line = window.get_by_label(&told).rect();
-    assert!(line.top() > 970.0, "{what}: in the status line, not at {line}");
+    assert!(
+        line.top() > 970.0,
+        "{what}: in the status line, not at {line}"
+    );
 }
 
 #[test]
@@ -41,15 +49,27 @@ fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
     let nominal = super::plots::place_on_nominal(&window);
     assert_told(&mut window, "Bode", nominal);
     let told = state(&window).display.told.clone().unwrap();
-    assert!(told.contains("nominal · ") && told.ends_with("click to reject"), "{told}");
+    assert!(
+        told.contains("nominal · ") && told.ends_with("click to reject"),
+        "{told}"
+    );
 
     let dot = |window: &Window, view: View| {
         let id = MarkId::Condition(ConditionId(3));
-        state(window).display.figures[&view].screen_position(0, &id).expect("its dot is drawn")
+        state(window).display.figures[&view]
+            .screen_position(0, &id)
+            .expect("its dot is drawn")
     };
     let net_gain = dot(&window, View::NetGain);
     assert_told(&mut window, "Net gain", net_gain);
-    assert!(state(&window).display.told.as_ref().unwrap().starts_with("condition 3, 45 kt · "));
+    assert!(
+        state(&window)
+            .display
+            .told
+            .as_ref()
+            .unwrap()
+            .starts_with("condition 3, 45 kt · ")
+    );
 
     show(&mut window, View::Overview);
     let pair = pair(&window, "Q", "LON");
@@ -57,11 +77,18 @@ fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
     assert_told(&mut window, "Overview", cell);
 
     show(&mut window, View::Poles);
-    wait_until(&mut window, "the modes", |window| state(window).modes().is_some());
+    wait_until(&mut window, "the modes", |window| {
+        state(window).modes().is_some()
+    });
     window.run_steps(2);
     let figure = gdcm::view::views::poles(state(&window)).expect("the modes are known");
-    let fastest = figure.plots[0].panels[0].dots().map(|dot| [dot.x, dot.y]).min_by(|a, b| a[0].total_cmp(&b[0]));
-    let pole = state(&window).display.figures[&View::Poles].position(0, fastest.unwrap()).unwrap();
+    let fastest = figure.plots[0].panels[0]
+        .dots()
+        .map(|dot| [dot.x, dot.y])
+        .min_by(|a, b| a[0].total_cmp(&b[0]));
+    let pole = state(&window).display.figures[&View::Poles]
+        .position(0, fastest.unwrap())
+        .unwrap();
     assert_told(&mut window, "Poles", pole);
 }
 
@@ -72,31 +99,47 @@ fn marked_frequencies_are_named_over_the_plot_and_not_over_its_curves() {
     let marks = vec![("ω180", 4.0)];
     give(&mut window, gdcm::view::CurveCommand::MarkCrossings(marks));
     let chip = window.get_by_label_contains("ω180 4.0").rect();
-    let frame = *state(&window).display.bode.transform(Pane::Magnitude).unwrap().frame();
+    let frame = *state(&window)
+        .display
+        .bode
+        .transform(Pane::Magnitude)
+        .unwrap()
+        .frame();
     assert!(chip.bottom() < frame.top(), "{chip} over {frame}");
     window.get_by_label_contains("ω180 4.0").click();
     settle(&mut window);
-    assert!(state(&window).display.curves.crossings.is_empty(), "a click takes the marks away");
+    assert!(
+        state(&window).display.curves.crossings.is_empty(),
+        "a click takes the marks away"
+    );
 }
 
 /// In how many lines the texts of the tooltip stand that opens at a place.
 fn lines_of_tooltip(window: &mut Window, at: Pos2) -> usize {
     let labels = |window: &Window| -> BTreeSet<String> {
         let nodes = window.query_all_by_role(Role::Label);
-        nodes.map(|node| format!("{:?} {}", node.accesskit_node().label(), node.rect())).collect()
+        nodes
+            .map(|node| format!("{:?} {}", node.accesskit_node().label(), node.rect()))
+            .collect()
     };
     window.hover_at(pos2(3.0, 3.0));
     window.run_steps(3);
     let before = labels(window);
     rest_at(window, at);
     let open = tooltips(window);
-    let [place] = open[..] else { panic!("one tooltip: {open:?}") };
+    let [place] = open[..] else {
+        panic!("one tooltip: {open:?}")
+    };
     // What lies under it was there before.
-    let is_new = |label: &Option<String>, rect: egui::Rect| !before.contains(&format!("{label:?} {rect}"));
+    let is_new =
+        |label: &Option<String>, rect: egui::Rect| !before.contains(&format!("{label:?} {rect}"));
     let nodes = window.query_all_by_role(Role::Label);
     let texts = nodes.map(|node| (node.accesskit_node().label(), node.rect()));
-    let inside = texts.filter(|(label, rect)| place.expand(1.0).contains_rect(*rect) && is_new(label, *rect));
-    let lines: BTreeSet<i64> = inside.map(|(_, rect)| rect.center().y.round() as i64).collect();
+    let inside = texts
+        .filter(|(label, rect)| place.expand(1.0).contains_rect(*rect) && is_new(label, *rect));
+    let lines: BTreeSet<i64> = inside
+        .map(|(_, rect)| rect.center().y.round() as i64)
+        .collect();
     lines.len()
 }
 
@@ -128,11 +171,25 @@ fn what_a_tooltip_does_not_say_is_behind_the_question() {
     use gdcm_study::study::{ExplainTarget, derivation};
     let window = window();
     let id = ModelId::new(ConditionId(10), BundleKind::Physics, "V+10kt");
-    let found = derivation(state(&window).analysis().unwrap(), &ExplainTarget::Score(id)).unwrap();
-    assert!(found.rests_on.iter().any(|words| words.ends_with(" states")), "{:?}", found.rests_on);
+    let found = derivation(
+        state(&window).analysis().unwrap(),
+        &ExplainTarget::Score(id),
+    )
+    .unwrap();
+    assert!(
+        found
+            .rests_on
+            .iter()
+            .any(|words| words.ends_with(" states")),
+        "{:?}",
+        found.rests_on
+    );
     let text = gdcm::view::explanation::text_of(&found);
     for (symbol, meaning) in found.terms() {
-        assert!(text.contains(&format!("{symbol}\t{meaning}")), "{symbol} in {text}");
+        assert!(
+            text.contains(&format!("{symbol}\t{meaning}")),
+            "{symbol} in {text}"
+        );
     }
 }
 
@@ -142,10 +199,16 @@ fn the_cell_under_the_pointer_keeps_how_sure_its_gain_is() {
     wait_for_bars(&mut window);
     let bars = |window: &Window| {
         let cell = window.get_by_label("Response LON → Q").rect();
-        let texts = window.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
-            egui::Shape::Text(text) if cell.contains(text.pos) => Some(text.galley.text().to_owned()),
-            _ => None,
-        });
+        let texts = window
+            .output()
+            .shapes
+            .iter()
+            .filter_map(|clipped| match &clipped.shape {
+                egui::Shape::Text(text) if cell.contains(text.pos) => {
+                    Some(text.galley.text().to_owned())
+                }
+                _ => None,
+            });
         texts.filter(|text| text.starts_with('±')).count()
     };
     window.run_steps(3);

@@ -17,23 +17,42 @@ fn doubtful() -> (Window, tempfile::TempDir) {
     let path = late_dataset(folder.path());
     let last = folder.path().join("flight_3.csv");
     let larger = |line: &str| {
-        let cells = line.split(',').enumerate().map(|(at, cell)| match cell.parse::<f64>() {
-            Ok(value) if at > 2 => (1.6 * value).to_string(),
-            _ => cell.to_owned(),
-        });
+        let cells = line
+            .split(',')
+            .enumerate()
+            .map(|(at, cell)| match cell.parse::<f64>() {
+                Ok(value) if at > 2 => (1.6 * value).to_string(),
+                _ => cell.to_owned(),
+            });
         cells.collect::<Vec<_>>().join(",") + "\n"
     };
-    fs::write(&last, fs::read_to_string(&last).unwrap().lines().map(larger).collect::<String>()).unwrap();
+    fs::write(
+        &last,
+        fs::read_to_string(&last)
+            .unwrap()
+            .lines()
+            .map(larger)
+            .collect::<String>(),
+    )
+    .unwrap();
     let mut dataset: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
     dataset["conditions"][0]["records"][3]["held_out"] = json!(true);
     fs::write(&path, dataset.to_string()).unwrap();
     let mut window = window();
     open_by_path(&mut window, &path);
     show(&mut window, View::Records);
-    let records = |window: &Window| state(window).records.conditions.get(&OF).map_or(0, |of| of.rows.len());
+    let records = |window: &Window| {
+        state(window)
+            .records
+            .conditions
+            .get(&OF)
+            .map_or(0, |of| of.rows.len())
+    };
     wait_until(&mut window, "the records", |window| records(window) == 4);
     window.get_by_label("Identify").click();
-    wait_until(&mut window, "the models", |window| state(window).records.conditions[&OF].found.is_some());
+    wait_until(&mut window, "the models", |window| {
+        state(window).records.conditions[&OF].found.is_some()
+    });
     settle(&mut window);
     (window, folder)
 }
@@ -51,8 +70,14 @@ fn records(window: &Window) -> &ConditionRecords {
 #[test]
 fn cautions_stand_as_marks_at_their_places_and_their_buttons_act() {
     let (mut window, _folder) = doubtful();
-    let codes: Vec<&str> = records(&window).cautions().map(|(_, note)| note.code).collect();
-    assert!(codes.contains(&"held-out") && codes.contains(&"band-narrowed"), "{codes:?}");
+    let codes: Vec<&str> = records(&window)
+        .cautions()
+        .map(|(_, note)| note.code)
+        .collect();
+    assert!(
+        codes.contains(&"held-out") && codes.contains(&"band-narrowed"),
+        "{codes:?}"
+    );
     // At the record that is not predicted, and at no other.
     window.get_by_label("Cautions of flight 3");
     assert!(window.query_by_label("Cautions of flight 1").is_none());
@@ -60,8 +85,13 @@ fn cautions_stand_as_marks_at_their_places_and_their_buttons_act() {
     click(&mut window, "Page Response");
     window.get_by_label_contains("⚠ shows nothing");
     press(&mut window, "Fit flight 3 too");
-    assert!(records(&window).rows.iter().all(|row| !row.guess.held_out) && records(&window).changed);
-    assert!(window.query_by_label("Cautions of flight 3").is_none(), "what was said is out of date");
+    assert!(
+        records(&window).rows.iter().all(|row| !row.guess.held_out) && records(&window).changed
+    );
+    assert!(
+        window.query_by_label("Cautions of flight 3").is_none(),
+        "what was said is out of date"
+    );
     press(&mut window, "Leave flight 3 out");
     assert!(!records(&window).rows[3].used);
 }

@@ -30,20 +30,35 @@ fn records_window() -> Window {
 }
 
 fn rows(window: &Window) -> usize {
-    state(window).records.conditions.get(&CONDITION_10_ID).map_or(0, |records| records.rows.len())
+    state(window)
+        .records
+        .conditions
+        .get(&CONDITION_10_ID)
+        .map_or(0, |records| records.rows.len())
 }
 
 fn identified_models(window: &Window) -> Vec<String> {
-    let condition = state(window).dataset().condition(CONDITION_10_ID).expect("the example has it");
-    condition.bundle(BundleKind::Identified).iter().map(|model| model.name.clone()).collect()
+    let condition = state(window)
+        .dataset()
+        .condition(CONDITION_10_ID)
+        .expect("the example has it");
+    condition
+        .bundle(BundleKind::Identified)
+        .iter()
+        .map(|model| model.name.clone())
+        .collect()
 }
 
 #[test]
 fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_labels() {
     let mut window = records_window();
     let records = &state(&window).records.conditions[&CONDITION_10_ID];
-    let held_out: Vec<&str> =
-        records.rows.iter().filter(|row| row.guess.held_out).map(|row| row.table.name.as_str()).collect();
+    let held_out: Vec<&str> = records
+        .rows
+        .iter()
+        .filter(|row| row.guess.held_out)
+        .map(|row| row.table.name.as_str())
+        .collect();
     assert_eq!(held_out, ["cond10_validation"], "its name says so");
     let before = identified_models(&window);
     window.get_by_label("Identify").click();
@@ -52,37 +67,70 @@ fn the_example_s_records_become_models_that_are_taken_and_given_back_by_their_la
         running.is_none_or(|job| job.told().first_model.is_some())
     });
     wait_until(&mut window, "the models", |window| {
-        state(window).records.conditions[&CONDITION_10_ID].identification().is_some()
+        state(window).records.conditions[&CONDITION_10_ID]
+            .identification()
+            .is_some()
     });
-    let found = state(&window).records.conditions[&CONDITION_10_ID].identification().unwrap().clone();
+    let found = state(&window).records.conditions[&CONDITION_10_ID]
+        .identification()
+        .unwrap()
+        .clone();
     // The known figure of this condition is 0.86, of the held-out record 0.92 (M14, a trial in numpy: 0.86).
     assert!((found.cost - 0.86).abs() < 0.05, "J/dof {}", found.cost);
-    let held_out = found.held_out_cost.expect("the validation record is held out");
-    assert!(held_out <= 1.15 * found.cost, "held out {held_out} of {}", found.cost);
+    let held_out = found
+        .held_out_cost
+        .expect("the validation record is held out");
+    assert!(
+        held_out <= 1.15 * found.cost,
+        "held out {held_out} of {}",
+        found.cost
+    );
     for page in RecordsPage::ALL {
         click(&mut window, &format!("Page {}", page.words().0));
         assert_eq!(state(&window).records.page, page);
     }
     let table = condition_table(state(&window));
-    let [id, _, order, cost, held_out_cost, .., time_s] = &table.rows[0][..] else { panic!("{table:?}") };
+    let [id, _, order, cost, held_out_cost, .., time_s] = &table.rows[0][..] else {
+        panic!("{table:?}")
+    };
     assert_eq!((table.rows.len(), id.as_str()), (1, "10"));
     assert_eq!(order.parse::<usize>().ok(), found.refined.order());
     assert_eq!(
         [cost, held_out_cost].map(|cell| cell.parse::<f64>().unwrap()),
         [found.cost, held_out].map(|of| (100.0 * of).round() / 100.0)
     );
-    assert!(time_s.parse::<f64>().is_ok_and(|time_s| time_s > 0.0), "{time_s}");
+    assert!(
+        time_s.parse::<f64>().is_ok_and(|time_s| time_s > 0.0),
+        "{time_s}"
+    );
     click(&mut window, "Use these models");
     click(&mut window, "The refined models");
     let taken = identified_models(&window);
     assert!(taken[0].starts_with("CT-PBSID, refined"), "{taken:?}");
     assert_eq!(taken.len(), 1 + found.bundle.len());
-    assert!(state(&window).study.dataset.condition(CONDITION_10_ID).unwrap().records().len() == 9);
-    let bands =
-        state(&window).dataset().condition(CONDITION_10_ID).unwrap().bundle(BundleKind::Identified)[0].bands.clone();
+    assert!(
+        state(&window)
+            .study
+            .dataset
+            .condition(CONDITION_10_ID)
+            .unwrap()
+            .records()
+            .len()
+            == 9
+    );
+    let bands = state(&window)
+        .dataset()
+        .condition(CONDITION_10_ID)
+        .unwrap()
+        .bundle(BundleKind::Identified)[0]
+        .bands
+        .clone();
     assert!(bands.is_some(), "the recommended model says how sure it is");
     settle(&mut window);
-    assert!(state(&window).shown().is_some(), "the correction follows the models taken");
+    assert!(
+        state(&window).shown().is_some(),
+        "the correction follows the models taken"
+    );
     click(&mut window, "Restore the file's models");
     assert_eq!(identified_models(&window), before);
     give(&mut window, gdcm::view::command::Command::Undo);
@@ -94,9 +142,16 @@ fn all_conditions_are_identified_one_after_the_other_and_stand_in_a_table() {
     let mut window = records_window();
     let ids = [ConditionId(3), CONDITION_10_ID];
     for id in ids {
-        give(&mut window, gdcm::view::command::Command::SelectCondition(id));
+        give(
+            &mut window,
+            gdcm::view::command::Command::SelectCondition(id),
+        );
         wait_until(&mut window, "the records", |window| {
-            state(window).records.conditions.get(&id).is_some_and(|of| !of.rows.is_empty())
+            state(window)
+                .records
+                .conditions
+                .get(&id)
+                .is_some_and(|of| !of.rows.is_empty())
         });
         // A search of little: what is looked at is that it comes to its end.
         if window.query_by_label("Identification: orders").is_none() {
@@ -107,10 +162,17 @@ fn all_conditions_are_identified_one_after_the_other_and_stand_in_a_table() {
         type_into(&mut window, "Identification: Laguerre poles", "6");
     }
     window.get_by_label("Identify all 2 conditions").click();
-    wait_until(&mut window, "the first of them", |window| !state(window).records.running.is_empty());
-    wait_until(&mut window, "the end", |window| state(window).records.running.is_empty());
+    wait_until(&mut window, "the first of them", |window| {
+        !state(window).records.running.is_empty()
+    });
+    wait_until(&mut window, "the end", |window| {
+        state(window).records.running.is_empty()
+    });
     for id in ids {
-        assert!(state(&window).records.conditions[&id].found.is_some(), "{id}");
+        assert!(
+            state(&window).records.conditions[&id].found.is_some(),
+            "{id}"
+        );
     }
     window.run_steps(2);
     window.get_by_label("finished: models of 2 conditions identified");
@@ -119,22 +181,37 @@ fn all_conditions_are_identified_one_after_the_other_and_stand_in_a_table() {
     let heading = "Sort Identified conditions by airspeed [kt]";
     let row_of = |window: &Window, airspeed: &str| {
         let heading = window.get_by_label(heading).rect();
-        let is_below =
-            |place: &egui::Rect| place.top() > heading.bottom() && heading.x_range().contains(place.center().x);
-        window.query_all_by_label(airspeed).map(|node| node.rect()).find(is_below).expect("a row of the table")
+        let is_below = |place: &egui::Rect| {
+            place.top() > heading.bottom() && heading.x_range().contains(place.center().x)
+        };
+        window
+            .query_all_by_label(airspeed)
+            .map(|node| node.rect())
+            .find(is_below)
+            .expect("a row of the table")
     };
     window.get_by_label(heading).click();
     window.run_steps(3);
-    assert!(row_of(&window, "45").top() < row_of(&window, "60").top(), "rising");
+    assert!(
+        row_of(&window, "45").top() < row_of(&window, "60").top(),
+        "rising"
+    );
     window.get_by_label(heading).click();
     window.run_steps(3);
-    assert!(row_of(&window, "60").top() < row_of(&window, "45").top(), "falling");
+    assert!(
+        row_of(&window, "60").top() < row_of(&window, "45").top(),
+        "falling"
+    );
     let at = row_of(&window, "45").center();
     window.drag_at(at);
     window.run_steps(1);
     window.drop_at(at);
     settle(&mut window);
-    assert_eq!(state(&window).condition().id(), ConditionId(3), "a click goes there");
+    assert_eq!(
+        state(&window).condition().id(),
+        ConditionId(3),
+        "a click goes there"
+    );
 }
 
 #[test]
@@ -142,15 +219,28 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
     let mut window = records_window();
     let part = |window: &Window, index: usize| {
         let row = &state(window).records.conditions[&CONDITION_10_ID].rows[index];
-        (row.table.part_s, row.used, row.flight.as_ref().map_or(0, |flight| flight.time_s.len()))
+        (
+            row.table.part_s,
+            row.used,
+            row.flight.as_ref().map_or(0, |flight| flight.time_s.len()),
+        )
     };
     assert_eq!(part(&window, 0), (None, true, 3001));
     type_into(&mut window, "Part of the record", "5 25");
-    assert_eq!(part(&window, 0), (None, false, 3001), "the whole counts no more");
-    assert_eq!(part(&window, 1), (Some([5.0, 25.0]), true, 1001), "20 s at 50 Hz");
+    assert_eq!(
+        part(&window, 0),
+        (None, false, 3001),
+        "the whole counts no more"
+    );
+    assert_eq!(
+        part(&window, 1),
+        (Some([5.0, 25.0]), true, 1001),
+        "20 s at 50 Hz"
+    );
     click(&mut window, "drag parts");
     let chart = window.get_by_label_contains("LON [%]").rect();
-    let [from, to] = [0.6, 0.8].map(|share| egui::pos2(chart.left() + share * chart.width(), chart.center().y));
+    let [from, to] =
+        [0.6, 0.8].map(|share| egui::pos2(chart.left() + share * chart.width(), chart.center().y));
     window.drag_at(from);
     window.run_steps(2);
     window.hover_at(to);
@@ -158,17 +248,35 @@ fn parts_of_a_record_that_are_typed_or_dragged_are_records_of_their_own_in_its_p
     window.drop_at(to);
     window.run_steps(3);
     assert_eq!(rows(&window), 11);
-    let (Some([first, last]), true, samples) = part(&window, 2) else { panic!("{:?}", part(&window, 2)) };
-    assert!(first > 25.0 && last > first && samples > 200, "{first} to {last} s, {samples} samples");
+    let (Some([first, last]), true, samples) = part(&window, 2) else {
+        panic!("{:?}", part(&window, 2))
+    };
+    assert!(
+        first > 25.0 && last > first && samples > 200,
+        "{first} to {last} s, {samples} samples"
+    );
     click(&mut window, "Record cond10_sweep_COL_1, 5 to 25 s");
     click(&mut window, "Remove part");
-    assert_eq!((rows(&window), part(&window, 1).0), (10, Some([first, last])));
+    assert_eq!(
+        (rows(&window), part(&window, 1).0),
+        (10, Some([first, last]))
+    );
     // What is searched is typed too, and what cannot be is refused.
     click(&mut window, "Advanced");
     type_into(&mut window, "Identification: orders", "8 10");
-    assert_eq!(state(&window).records.conditions[&CONDITION_10_ID].search.orders, [8, 10]);
+    assert_eq!(
+        state(&window).records.conditions[&CONDITION_10_ID]
+            .search
+            .orders,
+        [8, 10]
+    );
     type_into(&mut window, "Identification: past windows", "0");
-    assert!(state(&window).records.conditions[&CONDITION_10_ID].search.pasts.is_empty());
+    assert!(
+        state(&window).records.conditions[&CONDITION_10_ID]
+            .search
+            .pasts
+            .is_empty()
+    );
 }
 
 #[test]
@@ -177,16 +285,24 @@ fn records_are_chosen_held_out_and_left_out_and_an_identification_is_stopped() {
     click(&mut window, "Record cond10_sweep_LON_1");
     let chosen = |window: &Window| state(window).records.conditions[&CONDITION_10_ID].chosen;
     assert_eq!(
-        state(&window).records.conditions[&CONDITION_10_ID].rows[chosen(&window)].table.name,
+        state(&window).records.conditions[&CONDITION_10_ID].rows[chosen(&window)]
+            .table
+            .name,
         "cond10_sweep_LON_1"
     );
     click(&mut window, "Use cond10_sweep_LON_1");
     click(&mut window, "Hold out cond10_sweep_LON_2");
     let index = chosen(&window);
-    give(&mut window, RecordsCommand::SetKind(index, RecordKind::Multisine));
+    give(
+        &mut window,
+        RecordsCommand::SetKind(index, RecordKind::Multisine),
+    );
     let records = &state(&window).records.conditions[&CONDITION_10_ID];
     assert!(!records.rows[index].used && records.rows[index].guess.kind == RecordKind::Multisine);
-    assert_eq!(records.rows.iter().filter(|row| row.guess.held_out).count(), 2);
+    assert_eq!(
+        records.rows.iter().filter(|row| row.guess.held_out).count(),
+        2
+    );
     window.get_by_label("Identify").click();
     window.run_steps(2);
     assert!(state(&window).records.running(CONDITION_10_ID).is_some());
@@ -194,7 +310,9 @@ fn records_are_chosen_held_out_and_left_out_and_an_identification_is_stopped() {
     window.run_steps(3);
     assert!(state(&window).records.running.is_empty());
     assert!(
-        state(&window).records.conditions[&CONDITION_10_ID].identification().is_none(),
+        state(&window).records.conditions[&CONDITION_10_ID]
+            .identification()
+            .is_none(),
         "nothing half made is shown"
     );
 }
@@ -204,11 +322,21 @@ fn of_several_conditions_the_one_shown_is_identified_first_and_the_others_say_wh
     let condition_3 = "Condition 3: 45 kt, low altitude, low weight";
     let mut window = records_window();
     click(&mut window, condition_3);
-    wait_until(&mut window, "its records", |window| state(window).records.conditions.contains_key(&ConditionId(3)));
+    wait_until(&mut window, "its records", |window| {
+        state(window)
+            .records
+            .conditions
+            .contains_key(&ConditionId(3))
+    });
     click(&mut window, CONDITION_10);
     window.get_by_label("Identify all 2 conditions").click();
-    wait_until(&mut window, "a step of the first", |window| state(window).records.under_way().is_some());
-    assert_eq!(state(&window).records.under_way().map(|job| job.condition), Some(CONDITION_10_ID));
+    wait_until(&mut window, "a step of the first", |window| {
+        state(window).records.under_way().is_some()
+    });
+    assert_eq!(
+        state(&window).records.under_way().map(|job| job.condition),
+        Some(CONDITION_10_ID)
+    );
     window.get_by_label(condition_3).click();
     window.run_steps(3);
     window.get_by_label("Waits for condition 10");
@@ -227,33 +355,65 @@ fn the_records_that_a_dataset_names_are_read_out_of_their_archive() {
     show(&mut window, View::Records);
     wait_until(&mut window, "the records", |window| rows(window) == 9);
     let records = &state(&window).records.conditions[&CONDITION_10_ID];
-    let held_out: Vec<&str> =
-        records.rows.iter().filter(|row| row.guess.held_out).map(|row| row.table.name.as_str()).collect();
-    assert_eq!((held_out, state(&window).records.faults.len()), (vec!["cond10_validation"], 0));
-    assert!(records.rows.iter().all(|row| row.problems.is_empty() && row.used));
+    let held_out: Vec<&str> = records
+        .rows
+        .iter()
+        .filter(|row| row.guess.held_out)
+        .map(|row| row.table.name.as_str())
+        .collect();
+    assert_eq!(
+        (held_out, state(&window).records.faults.len()),
+        (vec!["cond10_validation"], 0)
+    );
+    assert!(
+        records
+            .rows
+            .iter()
+            .all(|row| row.problems.is_empty() && row.used)
+    );
 }
 
 #[test]
 fn files_of_records_go_to_the_condition_that_their_names_say_and_what_is_wrong_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let text = |columns: &str| {
-        let rows: String =
-            (0..40).map(|k| format!("{},{k},1,2,3,4,5,6,7,8,{}\n", 0.02 * f64::from(k), k % 3)).collect();
+        let rows: String = (0..40)
+            .map(|k| format!("{},{k},1,2,3,4,5,6,7,8,{}\n", 0.02 * f64::from(k), k % 3))
+            .collect();
         format!("{columns}\n{rows}")
     };
     let columns = "time_s,LON,LAT,PED,COL,P,Q,R,NX,NY,NZ";
     std::fs::write(folder.path().join("cond03_sweep_LON_9.csv"), text(columns)).unwrap();
-    std::fs::write(folder.path().join("flight.csv"), text("time_s,LON,LAT,PED,COL,P,Q,R,NX,NY,speed")).unwrap();
+    std::fs::write(
+        folder.path().join("flight.csv"),
+        text("time_s,LON,LAT,PED,COL,P,Q,R,NX,NY,speed"),
+    )
+    .unwrap();
     let mut window = records_window();
-    give(&mut window, RecordsCommand::Add(vec![folder.path().to_owned()]));
+    give(
+        &mut window,
+        RecordsCommand::Add(vec![folder.path().to_owned()]),
+    );
     wait_until(&mut window, "the files", |window| rows(window) == 10);
     let records = &state(&window).records;
     let of_condition_3 = &records.conditions[&ConditionId(3)].rows;
     assert_eq!(of_condition_3.len(), 10, "its own nine stay");
-    assert!(of_condition_3.iter().any(|row| row.table.name == "cond03_sweep_LON_9"));
-    let wrong = records.conditions[&CONDITION_10_ID].rows.iter().find(|row| row.table.name == "flight").unwrap();
     assert!(
-        wrong.flight.is_none() && wrong.problems.iter().any(|problem| problem.to_string().contains("NZ")),
+        of_condition_3
+            .iter()
+            .any(|row| row.table.name == "cond03_sweep_LON_9")
+    );
+    let wrong = records.conditions[&CONDITION_10_ID]
+        .rows
+        .iter()
+        .find(|row| row.table.name == "flight")
+        .unwrap();
+    assert!(
+        wrong.flight.is_none()
+            && wrong
+                .problems
+                .iter()
+                .any(|problem| problem.to_string().contains("NZ")),
         "{:?}",
         wrong.problems
     );
@@ -266,26 +426,52 @@ fn step(window: &mut Window, modifiers: Modifiers) {
 }
 
 const UNDO: Modifiers = Modifiers::COMMAND;
-const REDO: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
+const REDO: Modifiers = Modifiers {
+    shift: true,
+    ..Modifiers::COMMAND
+};
 
 /// Name, use, role and columns of each record of condition 10, and the weight of the study.
 fn decided(window: &Window) -> String {
     let of = state(window).records.conditions.get(&CONDITION_10_ID);
     let rows = of.iter().flat_map(|records| &records.rows);
-    let rows =
-        rows.map(|row| (row.table.name.clone(), row.used, row.guess.held_out, row.guess.kind, row.layout.clone()));
-    let skews: Vec<f64> = of.iter().flat_map(|records| &records.outputs).map(|channel| channel.delay_s).collect();
-    format!("{:?} {skews:?} {}", rows.collect::<Vec<_>>(), state(window).study.settings.alpha_gain)
+    let rows = rows.map(|row| {
+        (
+            row.table.name.clone(),
+            row.used,
+            row.guess.held_out,
+            row.guess.kind,
+            row.layout.clone(),
+        )
+    });
+    let skews: Vec<f64> = of
+        .iter()
+        .flat_map(|records| &records.outputs)
+        .map(|channel| channel.delay_s)
+        .collect();
+    format!(
+        "{:?} {skews:?} {}",
+        rows.collect::<Vec<_>>(),
+        state(window).study.settings.alpha_gain
+    )
 }
 
 #[test]
 fn edits_of_records_are_undone_and_redone_in_order_with_decisions_about_the_study() {
     let mut window = records_window();
-    let layout = |window: &Window| state(window).records.conditions[&CONDITION_10_ID].rows[0].layout.clone();
+    let layout = |window: &Window| {
+        state(window).records.conditions[&CONDITION_10_ID].rows[0]
+            .layout
+            .clone()
+    };
     let mut states = vec![decided(&window)];
     let mut other = layout(&window);
     other.outputs.swap(0, 1);
-    let q = Signal { role: ChannelSide::Output, index: 1, name: "Q".to_owned() };
+    let q = Signal {
+        role: ChannelSide::Output,
+        index: 1,
+        name: "Q".to_owned(),
+    };
     let edits: Vec<Action> = vec![
         RecordsCommand::SetUsed(2, false).into(),
         setting::ALPHA_GAIN.to(3.0).into(),
@@ -305,7 +491,10 @@ fn edits_of_records_are_undone_and_redone_in_order_with_decisions_about_the_stud
         assert_ne!(states.last(), Some(&now), "each of them changes something");
         states.push(now);
     }
-    assert_eq!(state(&window).history.undo_label(), Some("remove cond10_sweep_COL_1, 5 to 25 s (condition 10)"));
+    assert_eq!(
+        state(&window).history.undo_label(),
+        Some("remove cond10_sweep_COL_1, 5 to 25 s (condition 10)")
+    );
     for at in (0..count).rev() {
         step(&mut window, UNDO);
         assert_eq!(decided(&window), states[at], "after step {at} was undone");
@@ -313,7 +502,11 @@ fn edits_of_records_are_undone_and_redone_in_order_with_decisions_about_the_stud
     assert_eq!(state(&window).history.undo_label(), None);
     for (at, expected) in states.iter().enumerate().skip(1) {
         step(&mut window, REDO);
-        assert_eq!(&decided(&window), expected, "after step {at} was brought back");
+        assert_eq!(
+            &decided(&window),
+            expected,
+            "after step {at} was brought back"
+        );
     }
 }
 
@@ -330,66 +523,108 @@ fn the_record_that_a_part_was_of_is_used_again_once_its_last_part_is_gone_unless
     click(&mut window, "Record cond10_sweep_COL_1, 30 to 50 s");
     click(&mut window, "Remove part");
     assert!(used(&window) && rows(&window) == 9, "its tick is back");
-    for command in
-        [RecordsCommand::SetUsed(0, false), RecordsCommand::AddPart(0, [5.0, 25.0]), RecordsCommand::RemovePart(1)]
-    {
+    for command in [
+        RecordsCommand::SetUsed(0, false),
+        RecordsCommand::AddPart(0, [5.0, 25.0]),
+        RecordsCommand::RemovePart(1),
+    ] {
         give(&mut window, command);
     }
     assert!(!used(&window), "the engineer left it out before");
 }
 
 #[test]
-fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_refused_with_the_span() {
+fn a_part_counts_from_the_start_of_the_record_too_and_one_without_samples_is_refused_with_the_span()
+{
     let folder = tempfile::tempdir().unwrap();
     let row = |k: u32| {
         let at = 42.3 + 0.02 * f64::from(k);
-        format!("{at:.2},{0:.3},{0:.3},{0:.3},{0:.3},1,2,3,4,5,{0:.4}\n", (0.1 * f64::from(k)).sin() * 30.0)
+        format!(
+            "{at:.2},{0:.3},{0:.3},{0:.3},{0:.3},1,2,3,4,5,{0:.4}\n",
+            (0.1 * f64::from(k)).sin() * 30.0
+        )
     };
     let text = "time_s,LON [%],LAT [%],PED [%],COL [%],P [deg/s],Q [deg/s],R [deg/s],NX [m/s2],NY [m/s2],NZ [m/s2]\n"
         .to_owned()
         + &(0..=1950).map(row).collect::<String>();
     std::fs::write(folder.path().join("prbs.csv"), text).unwrap();
     let mut window = records_window();
-    give(&mut window, RecordsCommand::Add(vec![folder.path().join("prbs.csv")]));
+    give(
+        &mut window,
+        RecordsCommand::Add(vec![folder.path().join("prbs.csv")]),
+    );
     wait_until(&mut window, "the record", |window| rows(window) == 10);
     give(&mut window, RecordsCommand::Choose(9));
-    let span_s = state(&window).records.conditions[&CONDITION_10_ID].rows[9].span_s().unwrap();
-    assert!((span_s[0] - 42.3).abs() < 1e-9 && (span_s[1] - 81.3).abs() < 1e-9, "{span_s:?}");
-    window.get_by_label("runs from 42.30 s to 81.30 s on its clock, +0.00 s to +39.00 s from its start");
+    let span_s = state(&window).records.conditions[&CONDITION_10_ID].rows[9]
+        .span_s()
+        .unwrap();
+    assert!(
+        (span_s[0] - 42.3).abs() < 1e-9 && (span_s[1] - 81.3).abs() < 1e-9,
+        "{span_s:?}"
+    );
+    window.get_by_label(
+        "runs from 42.30 s to 81.30 s on its clock, +0.00 s to +39.00 s from its start",
+    );
     type_into(&mut window, "Part of the record", "5 34");
     let told = state(&window).notice.clone().expect("it is refused");
-    assert!(told.kind == NoticeKind::Trouble && told.text.contains("it runs from 42.30 s to 81.30 s"), "{}", told.text);
+    assert!(
+        told.kind == NoticeKind::Trouble && told.text.contains("it runs from 42.30 s to 81.30 s"),
+        "{}",
+        told.text
+    );
     assert_eq!(rows(&window), 10);
     type_into(&mut window, "Part of the record", "+5 +34");
     let part = &state(&window).records.conditions[&CONDITION_10_ID].rows[10];
     assert_eq!(part.table.part_s, Some([47.3, 76.3]));
     let [first_s, last_s] = part.span_s().unwrap();
-    assert!((first_s - 47.3).abs() < 0.021 && (last_s - 76.3).abs() < 0.021, "{first_s} {last_s}");
+    assert!(
+        (first_s - 47.3).abs() < 0.021 && (last_s - 76.3).abs() < 0.021,
+        "{first_s} {last_s}"
+    );
 }
 
 /// Records of conditions that have used some, and how many of these conditions there are.
 fn used_rows(window: &Window) -> (usize, usize) {
-    let used = state(window).records.conditions.values().map(|of| of.used_rows().count());
-    used.filter(|count| *count > 0).fold((0, 0), |(rows, conditions), count| (rows + count, conditions + 1))
+    let used = state(window)
+        .records
+        .conditions
+        .values()
+        .map(|of| of.used_rows().count());
+    used.filter(|count| *count > 0)
+        .fold((0, 0), |(rows, conditions), count| {
+            (rows + count, conditions + 1)
+        })
 }
 
 /// The README, "From flight records to identified models", step 5, word by word.
 #[test]
 fn all_conditions_come_from_one_archive_as_the_readme_says() {
     let mut window = records_window();
-    let own: Vec<_> =
-        state(&window).records.conditions[&CONDITION_10_ID].rows.iter().map(|row| row.flight.clone()).collect();
+    let own: Vec<_> = state(&window).records.conditions[&CONDITION_10_ID]
+        .rows
+        .iter()
+        .map(|row| row.flight.clone())
+        .collect();
     type_into(&mut window, "Path of records", "assets/example-records.zip");
-    wait_until(&mut window, "the archive", |window| used_rows(window) == (99, 11));
+    wait_until(&mut window, "the archive", |window| {
+        used_rows(window) == (99, 11)
+    });
     window.get_by_label("81 records of 9 conditions added; 18 there already");
     let records = &state(&window).records;
     assert!(
-        records.conditions.values().flat_map(|of| &of.rows).all(|row| row.problems.is_empty()),
+        records
+            .conditions
+            .values()
+            .flat_map(|of| &of.rows)
+            .all(|row| row.problems.is_empty()),
         "no unit is asked for"
     );
     assert!(records.open_units().is_none() && records.faults.is_empty());
     for (row, flight) in records.conditions[&CONDITION_10_ID].rows.iter().zip(own) {
-        assert!(std::sync::Arc::ptr_eq(row.flight.as_ref().unwrap(), &flight.unwrap()), "its own records are kept");
+        assert!(
+            std::sync::Arc::ptr_eq(row.flight.as_ref().unwrap(), &flight.unwrap()),
+            "its own records are kept"
+        );
     }
     // The page Conditions has them all, none of them identified yet.
     click(&mut window, "Page Conditions");
@@ -401,21 +636,43 @@ fn all_conditions_come_from_one_archive_as_the_readme_says() {
     assert_eq!(used_rows(&window), (99, 11));
     // A search of little, so that the walk takes seconds; the whole one where all is tried.
     let is_quick = tries(1, 2) == 1;
-    let search = SearchSpace { orders: vec![8], pasts: vec![10], poles: vec![6.0] };
-    for id in state(&window).dataset().ids().filter(|_| is_quick).collect::<Vec<_>>() {
+    let search = SearchSpace {
+        orders: vec![8],
+        pasts: vec![10],
+        poles: vec![6.0],
+    };
+    for id in state(&window)
+        .dataset()
+        .ids()
+        .filter(|_| is_quick)
+        .collect::<Vec<_>>()
+    {
         give(&mut window, Action::SelectCondition(id));
         give(&mut window, RecordsCommand::SetSearch(search.clone()));
     }
     window.get_by_label("Identify all 11 conditions").click();
-    wait_until(&mut window, "the first of them", |window| !state(window).records.running.is_empty());
-    wait_until(&mut window, "the end", |window| state(window).records.running.is_empty());
+    wait_until(&mut window, "the first of them", |window| {
+        !state(window).records.running.is_empty()
+    });
+    wait_until(&mut window, "the end", |window| {
+        state(window).records.running.is_empty()
+    });
     window.run_steps(2);
     assert_eq!(state(&window).records.page, RecordsPage::Conditions);
     let table = condition_table(state(&window));
-    let is_identified =
-        |row: &Vec<String>| row.len() > 2 && row[2].parse::<usize>().is_ok_and(|order| !is_quick || order == 8);
-    assert!(table.rows.len() == 11 && table.rows.iter().all(is_identified), "{table:?}");
-    window.get_by_label("Use the models of 11 conditions").click();
+    let is_identified = |row: &Vec<String>| {
+        row.len() > 2
+            && row[2]
+                .parse::<usize>()
+                .is_ok_and(|order| !is_quick || order == 8)
+    };
+    assert!(
+        table.rows.len() == 11 && table.rows.iter().all(is_identified),
+        "{table:?}"
+    );
+    window
+        .get_by_label("Use the models of 11 conditions")
+        .click();
     window.run_steps(3);
     window.get_by_label("The refined models").click();
     settle(&mut window);
@@ -427,9 +684,12 @@ fn without_units(phase: f64) -> String {
     let row = |k: u32| {
         let at = 0.02 * f64::from(k);
         let value = |rate: f64| (rate * at + phase).sin();
-        let sticks: String =
-            (0..4).map(|stick| format!(",{:.4}", 40.0 + 9.0 * value(1.0 + f64::from(stick)))).collect();
-        let outputs: String = (0..6).map(|output| format!(",{:.4}", 2.0 * value(1.5 + f64::from(output)))).collect();
+        let sticks: String = (0..4)
+            .map(|stick| format!(",{:.4}", 40.0 + 9.0 * value(1.0 + f64::from(stick))))
+            .collect();
+        let outputs: String = (0..6)
+            .map(|output| format!(",{:.4}", 2.0 * value(1.5 + f64::from(output))))
+            .collect();
         format!("{at:.2}{sticks}{outputs}\n")
     };
     "time_s,LON,LAT,PED,COL,P,Q,R,NX,NY,NZ\n".to_owned() + &(0..400).map(row).collect::<String>()
@@ -438,30 +698,61 @@ fn without_units(phase: f64) -> String {
 #[test]
 fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
     let folder = tempfile::tempdir().unwrap();
-    for (file, phase) in [("cond05_flight.csv", 0.3), ("cond08_flight.csv", 0.7), ("cond10_flight.csv", 1.1)] {
+    for (file, phase) in [
+        ("cond05_flight.csv", 0.3),
+        ("cond08_flight.csv", 0.7),
+        ("cond10_flight.csv", 1.1),
+    ] {
         std::fs::write(folder.path().join(file), without_units(phase)).unwrap();
     }
     let mut window = records_window();
-    give(&mut window, RecordsCommand::Add(vec![folder.path().to_owned()]));
+    give(
+        &mut window,
+        RecordsCommand::Add(vec![folder.path().to_owned()]),
+    );
     wait_until(&mut window, "the files", |window| rows(window) == 10);
-    let open = |window: &Window| state(window).records.open_units().map(|open| (open.records, open.conditions));
+    let open = |window: &Window| {
+        state(window)
+            .records
+            .open_units()
+            .map(|open| (open.records, open.conditions))
+    };
     assert_eq!(open(&window), Some((3, 3)));
-    let channels: Vec<String> =
-        state(&window).records.open_units().unwrap().channels.into_iter().map(|(name, _)| name).collect();
+    let channels: Vec<String> = state(&window)
+        .records
+        .open_units()
+        .unwrap()
+        .channels
+        .into_iter()
+        .map(|(name, _)| name)
+        .collect();
     assert_eq!(channels, ["P", "Q", "R", "NX", "NY", "NZ"]);
     click(&mut window, "Take the dataset's units");
     assert_eq!(open(&window), None);
     let factor = |window: &Window, id: i64, output: usize| {
         let rows = &state(window).records.conditions[&ConditionId(id)].rows;
-        rows.iter().find(|row| row.table.name.ends_with("_flight")).unwrap().layout.outputs[output].unwrap().factor
+        rows.iter()
+            .find(|row| row.table.name.ends_with("_flight"))
+            .unwrap()
+            .layout
+            .outputs[output]
+            .unwrap()
+            .factor
     };
     assert_eq!([5, 8, 10].map(|id| factor(&window, id, 0)), [1.0; 3]);
     step(&mut window, UNDO);
     assert_eq!(open(&window), Some((3, 3)));
     // In another unit: what is said of the columns of one record is said of all that were added.
     click(&mut window, "Say others…");
-    assert_eq!((state(&window).condition().id(), state(&window).records.page), (ConditionId(5), RecordsPage::Columns));
-    let own = |window: &Window| state(window).records.conditions[&CONDITION_10_ID].rows[0].layout.clone();
+    assert_eq!(
+        (state(&window).condition().id(), state(&window).records.page),
+        (ConditionId(5), RecordsPage::Columns)
+    );
+    let own = |window: &Window| {
+        state(window).records.conditions[&CONDITION_10_ID].rows[0]
+            .layout
+            .clone()
+    };
     let before = own(&window);
     let of_5 = &state(&window).records.conditions[&ConditionId(5)];
     let mut layout = of_5.rows[of_5.chosen].layout.clone();
@@ -469,10 +760,21 @@ fn units_that_no_file_says_are_asked_once_for_the_records_of_all_conditions() {
     let index = of_5.chosen;
     give(&mut window, RecordsCommand::SetLayout(index, layout));
     for id in [5, 8, 10] {
-        assert!((factor(&window, id, 0) - 180.0 / std::f64::consts::PI).abs() < 1e-9, "condition {id}");
+        assert!(
+            (factor(&window, id, 0) - 180.0 / std::f64::consts::PI).abs() < 1e-9,
+            "condition {id}"
+        );
     }
-    assert_eq!(own(&window), before, "a record that the dataset names is in the dataset's units");
-    assert_eq!(state(&window).records.open_units().unwrap().channels.len(), 5, "the others are still asked for");
+    assert_eq!(
+        own(&window),
+        before,
+        "a record that the dataset names is in the dataset's units"
+    );
+    assert_eq!(
+        state(&window).records.open_units().unwrap().channels.len(),
+        5,
+        "the others are still asked for"
+    );
     step(&mut window, UNDO);
     assert_eq!([5, 8, 10].map(|id| factor(&window, id, 0)), [1.0; 3]);
 }
@@ -490,22 +792,42 @@ fn a_record_is_added_once_a_changed_file_takes_its_place_and_another_of_its_name
     let mut window = records_window();
     let add = |window: &mut Window, path: &Path| {
         give(window, RecordsCommand::Add(vec![path.to_owned()]));
-        wait_until(window, "the file", |window| state(window).records.reading.is_none());
+        wait_until(window, "the file", |window| {
+            state(window).records.reading.is_none()
+        });
         let rows = &state(window).records.conditions[&CONDITION_10_ID].rows;
-        rows[9..].iter().map(|row| row.table.name.clone()).collect::<Vec<_>>()
+        rows[9..]
+            .iter()
+            .map(|row| row.table.name.clone())
+            .collect::<Vec<_>>()
     };
     assert_eq!(add(&mut window, &first), ["cond10_flight"]);
     let steps = state(&window).history.undo_label().map(str::to_owned);
     assert_eq!(steps.as_deref(), Some("add 1 record"));
-    assert_eq!(add(&mut window, &first), ["cond10_flight"], "the same is not added twice");
+    assert_eq!(
+        add(&mut window, &first),
+        ["cond10_flight"],
+        "the same is not added twice"
+    );
     window.get_by_label("nothing added: 1 record there already");
-    assert_eq!(add(&mut window, &second), ["cond10_flight", "cond10_flight (2)"]);
+    assert_eq!(
+        add(&mut window, &second),
+        ["cond10_flight", "cond10_flight (2)"]
+    );
     let sha256 = |window: &Window, at: usize| {
-        state(window).records.conditions[&CONDITION_10_ID].rows[at].table.source.sha256.clone()
+        state(window).records.conditions[&CONDITION_10_ID].rows[at]
+            .table
+            .source
+            .sha256
+            .clone()
     };
     let before = sha256(&window, 9);
     std::fs::write(&first, without_units(1.1)).unwrap();
-    assert_eq!(add(&mut window, &first), ["cond10_flight", "cond10_flight (2)"], "a changed file is read again");
+    assert_eq!(
+        add(&mut window, &first),
+        ["cond10_flight", "cond10_flight (2)"],
+        "a changed file is read again"
+    );
     assert_ne!(sha256(&window, 9), before);
     step(&mut window, UNDO);
     assert_eq!(sha256(&window, 9), before);
@@ -525,27 +847,45 @@ fn a_condition_without_identified_models_offers_to_identify_them_from_records_in
     std::fs::write(&path, dataset.to_string()).unwrap();
     let mut window = window();
     open_by_path(&mut window, &path);
-    let failure = |window: &Window| state(window).outcome().and_then(|of| of.as_ref().err()).map(|why| why.code());
-    wait_until(&mut window, "that there is no reference", |window| failure(window) == Some("no-reference"));
+    let failure = |window: &Window| {
+        state(window)
+            .outcome()
+            .and_then(|of| of.as_ref().err())
+            .map(|why| why.code())
+    };
+    wait_until(&mut window, "that there is no reference", |window| {
+        failure(window) == Some("no-reference")
+    });
     for view in View::ALL {
         give(&mut window, Action::ShowView(view));
         window.run_steps(2);
     }
     give(&mut window, Action::ShowIdentified(true));
     show(&mut window, View::Bode);
-    assert!(drawn(&window, CurveRole::Nominal).label.contains("nominal"), "physics models are drawn all the same");
+    assert!(
+        drawn(&window, CurveRole::Nominal).label.contains("nominal"),
+        "physics models are drawn all the same"
+    );
     click(&mut window, "Identify from records");
     assert!(state(&window).display.arrangement.is_shown(View::Records));
     wait_until(&mut window, "its records", |window| rows_shown(window) == 4);
     window.get_by_label("Identify").click();
-    let found = |window: &Window| state(window).records.conditions[&ConditionId(7)].identification().is_some();
+    let found = |window: &Window| {
+        state(window).records.conditions[&ConditionId(7)]
+            .identification()
+            .is_some()
+    };
     wait_until(&mut window, "the models", found);
     click(&mut window, "Use these models");
     click(&mut window, "The refined models");
-    wait_until(&mut window, "a result", |window| state(window).shown().is_some());
+    wait_until(&mut window, "a result", |window| {
+        state(window).shown().is_some()
+    });
     assert!(window.query_by_label("Identify from records").is_none());
     click(&mut window, "Restore the file's models");
-    wait_until(&mut window, "none again", |window| failure(window) == Some("no-reference"));
+    wait_until(&mut window, "none again", |window| {
+        failure(window) == Some("no-reference")
+    });
 }
 
 /// A dataset of which condition 7 has a known aircraft for its physics model and four flights of it for records, in all of which Q is
@@ -553,12 +893,22 @@ fn a_condition_without_identified_models_offers_to_identify_them_from_records_in
 pub(crate) fn late_dataset(folder: &Path) -> PathBuf {
     let aircraft = stable_aircraft();
     let mut entries = Vec::new();
-    for (number, record) in Flight::of(aircraft.clone(), Gusts::light()).records(31, 4).iter().enumerate() {
+    for (number, record) in Flight::of(aircraft.clone(), Gusts::light())
+        .records(31, 4)
+        .iter()
+        .enumerate()
+    {
         let rows: String = (0..record.time_s.len())
             .map(|at| {
                 let (u, y) = (&record.inputs, &record.outputs);
                 let late = y[(at.saturating_sub(3), 1)];
-                format!("{},{},{},{},{late}\n", record.time_s[at], u[(at, 0)], u[(at, 1)], y[(at, 0)])
+                format!(
+                    "{},{},{},{},{late}\n",
+                    record.time_s[at],
+                    u[(at, 0)],
+                    u[(at, 1)],
+                    y[(at, 0)]
+                )
             })
             .collect();
         let file = format!("flight_{number}.csv");
@@ -566,9 +916,13 @@ pub(crate) fn late_dataset(folder: &Path) -> PathBuf {
         entries.push(json!({"name": format!("flight {number}"), "file": file}));
     }
     let rows = |matrix: &DMatrix<f64>| -> Vec<Vec<f64>> {
-        matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+        matrix
+            .row_iter()
+            .map(|row| row.iter().copied().collect())
+            .collect()
     };
-    let mut dataset: Value = serde_json::from_str(include_str!("../../data/small-dataset.json")).unwrap();
+    let mut dataset: Value =
+        serde_json::from_str(include_str!("../../data/small-dataset.json")).unwrap();
     dataset["frequency_band"]["max"] = json!(24.0);
     let condition = &mut dataset["conditions"][0];
     condition["records"] = json!(entries);
@@ -585,10 +939,20 @@ fn what_is_late_in_all_records_and_a_band_that_they_do_not_show_are_mended_by_th
     let mut window = window();
     open_by_path(&mut window, &late_dataset(folder.path()));
     show(&mut window, View::Records);
-    let records = |window: &Window| state(window).records.conditions.get(&ConditionId(7)).cloned();
-    wait_until(&mut window, "the records", |window| records(window).is_some_and(|of| of.rows.len() == 4));
+    let records = |window: &Window| {
+        state(window)
+            .records
+            .conditions
+            .get(&ConditionId(7))
+            .cloned()
+    };
+    wait_until(&mut window, "the records", |window| {
+        records(window).is_some_and(|of| of.rows.len() == 4)
+    });
     window.get_by_label("Identify").click();
-    wait_until(&mut window, "the models", |window| records(window).is_some_and(|of| of.found.is_some()));
+    wait_until(&mut window, "the models", |window| {
+        records(window).is_some_and(|of| of.found.is_some())
+    });
     settle(&mut window);
     for _ in 0..2 {
         // Once more does not take it out twice.
@@ -597,7 +961,9 @@ fn what_is_late_in_all_records_and_a_band_that_they_do_not_show_are_mended_by_th
         let delay_s = records(&window).unwrap().outputs[1].delay_s;
         assert!((delay_s - 0.12).abs() < 0.01, "{delay_s}");
     }
-    window.get_by_label_contains("Identify from 0.50 to").click();
+    window
+        .get_by_label_contains("Identify from 0.50 to")
+        .click();
     window.run_steps(2);
     let [low, high] = records(&window).unwrap().band.expect("the band was taken");
     assert!(low == 0.5 && (7.0..=11.0).contains(&high), "{high}");
@@ -609,13 +975,26 @@ fn what_is_late_in_all_records_and_a_band_that_they_do_not_show_are_mended_by_th
 fn a_simulation_is_computed_beside_the_window() {
     let mut window = records_window();
     click(&mut window, "physics model");
-    wait_until(&mut window, "the simulation", |window| state(window).results.simulations.len() == 1);
+    wait_until(&mut window, "the simulation", |window| {
+        state(window).results.simulations.len() == 1
+    });
     let (job, outcome) = &state(&window).results.simulations[0];
     let validation = outcome.as_ref().unwrap();
-    let simulated: usize = validation.windows.iter().map(|window| window.simulated.nrows()).sum();
-    assert_eq!(simulated, job.record.time_s.len(), "all samples are in some window");
+    let simulated: usize = validation
+        .windows
+        .iter()
+        .map(|window| window.simulated.nrows())
+        .sum();
+    assert_eq!(
+        simulated,
+        job.record.time_s.len(),
+        "all samples are in some window"
+    );
     click(&mut window, "physics model");
-    assert!(state(&window).results.simulations.is_empty(), "what is not asked for is not kept");
+    assert!(
+        state(&window).results.simulations.is_empty(),
+        "what is not asked for is not kept"
+    );
 }
 
 #[test]
@@ -625,8 +1004,13 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     std::fs::copy(data, folder.path().join("prbs.mat")).unwrap();
     let mut window = window();
     show(&mut window, View::Records);
-    give(&mut window, RecordsCommand::Add(vec![folder.path().join("prbs.mat")]));
-    wait_until(&mut window, "its two topics", |window| rows_shown(window) == 2);
+    give(
+        &mut window,
+        RecordsCommand::Add(vec![folder.path().join("prbs.mat")]),
+    );
+    wait_until(&mut window, "its two topics", |window| {
+        rows_shown(window) == 2
+    });
     click(&mut window, "Make a dataset of them…");
     for (field, text) in [
         ("Lower end of the band to identify", "3"),
@@ -637,18 +1021,29 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
         fill_in(&mut window, field, text);
     }
     click(&mut window, "Make the dataset");
-    wait_until(&mut window, "an answer", |window| !state(window).records.wanted.problems.is_empty());
+    wait_until(&mut window, "an answer", |window| {
+        !state(window).records.wanted.problems.is_empty()
+    });
     let problems = state(&window).records.wanted.problems.join("\n");
     assert!(problems.contains("no column is the output q"), "{problems}");
     // Enter in a field makes the dataset too.
     type_into(&mut window, "Outputs of the dataset", "q [rad/s]");
-    wait_until(&mut window, "the dataset", |window| state(window).dataset().name() == "prbs");
+    wait_until(&mut window, "the dataset", |window| {
+        state(window).dataset().name() == "prbs"
+    });
     show(&mut window, View::Records);
     wait_until(&mut window, "its record", |window| rows_shown(window) == 1);
     click(&mut window, "Identify");
     let of = ConditionId(1);
-    wait_until(&mut window, "the models", |window| state(window).records.conditions[&of].identification().is_some());
-    let found = state(&window).records.conditions[&of].identification().unwrap().clone();
+    wait_until(&mut window, "the models", |window| {
+        state(window).records.conditions[&of]
+            .identification()
+            .is_some()
+    });
+    let found = state(&window).records.conditions[&of]
+        .identification()
+        .unwrap()
+        .clone();
     // M14.13, the trial in numpy: 35.9, 30.8 and 22.6 dB at 5, 8 and 20 rad/s.
     let model = PreparedModel::of(&found.refined.dynamics);
     for ends in [[(5.0, 35.9), (20.0, 22.6)], [(8.0, 30.8), (20.0, 22.6)]] {
@@ -656,7 +1051,10 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
         let response = model.response(&grid);
         for (value, (omega, expected)) in response.curve(Pair::new(0, 0)).iter().zip(ends) {
             let found_db = 20.0 * value.norm().log10();
-            assert!((found_db - expected).abs() < 0.7, "{found_db} dB at {omega} rad/s, expected {expected} dB");
+            assert!(
+                (found_db - expected).abs() < 0.7,
+                "{found_db} dB at {omega} rad/s, expected {expected} dB"
+            );
         }
     }
     click(&mut window, "Use these models");
@@ -669,13 +1067,25 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     give(&mut window, RecordsCommand::Add(vec![data]));
     wait_until(&mut window, "the sweep", |window| rows_shown(window) == 2);
     give(&mut window, RecordsCommand::SetUsed(0, false));
-    give(&mut window, RecordsCommand::SetReferences(vec!["nothing".to_owned()]));
+    give(
+        &mut window,
+        RecordsCommand::SetReferences(vec!["nothing".to_owned()]),
+    );
     give(&mut window, RecordsCommand::Identify);
-    let told = state(&window).notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
-    assert!(told.contains("sweep: there is no column \"nothing\""), "{told}");
+    let told = state(&window)
+        .notice
+        .as_ref()
+        .map(|notice| notice.text.clone())
+        .unwrap_or_default();
+    assert!(
+        told.contains("sweep: there is no column \"nothing\""),
+        "{told}"
+    );
     give(&mut window, RecordsCommand::SetReferences(Vec::new()));
     click(&mut window, "Identify");
-    wait_until(&mut window, "the models of the sweep", |window| !state(window).records.conditions[&of].changed);
+    wait_until(&mut window, "the models of the sweep", |window| {
+        !state(window).records.conditions[&of].changed
+    });
     click(&mut window, "By way of x0");
     assert_eq!(state(&window).records.conditions[&of].references, ["x0"]);
     // The list of columns takes it back, and takes it again.
@@ -683,7 +1093,9 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     window.run_steps(10);
     for expected in [&[][..], &["x0".to_owned()][..]] {
         click(&mut window, "Identification: references");
-        window.get_by_role_and_label(egui::accesskit::Role::CheckBox, "x0").click();
+        window
+            .get_by_role_and_label(egui::accesskit::Role::CheckBox, "x0")
+            .click();
         window.run_steps(3);
         assert_eq!(state(&window).records.conditions[&of].references, expected);
         window.key_press(Key::Escape);
@@ -692,19 +1104,33 @@ fn the_quadrotor_is_identified_in_the_window_from_its_log_alone() {
     click(&mut window, "Identify");
     wait_until(&mut window, "the models by reference", |window| {
         let records = &state(window).records.conditions[&of];
-        records.found.as_ref().is_some_and(|(job, found)| job.request.options.references == 1 && found.is_ok())
+        records
+            .found
+            .as_ref()
+            .is_some_and(|(job, found)| job.request.options.references == 1 && found.is_ok())
     });
-    let found = state(&window).records.conditions[&of].identification().unwrap().clone();
+    let found = state(&window).records.conditions[&of]
+        .identification()
+        .unwrap()
+        .clone();
     let grid = FrequencyGrid::logarithmic(Band::new(8.0, 20.0).unwrap(), 2);
-    let at_8_db =
-        20.0 * PreparedModel::of(&found.refined.dynamics).response(&grid).curve(Pair::new(0, 0))[0].norm().log10();
+    let at_8_db = 20.0
+        * PreparedModel::of(&found.refined.dynamics)
+            .response(&grid)
+            .curve(Pair::new(0, 0))[0]
+            .norm()
+            .log10();
     assert!((at_8_db - 30.8).abs() < 1.0, "{at_8_db} dB");
 }
 
 /// Records of the condition shown.
 pub(super) fn rows_shown(window: &Window) -> usize {
     let state = state(window);
-    state.records.conditions.get(&state.condition().id()).map_or(0, |records| records.rows.len())
+    state
+        .records
+        .conditions
+        .get(&state.condition().id())
+        .map_or(0, |records| records.rows.len())
 }
 
 /// A window that makes a dataset of two records in a folder, of these channels.
@@ -723,27 +1149,58 @@ fn making_a_dataset(folder: &Path, inputs: &str, outputs: &str) -> Window {
 fn a_record_that_a_dataset_of_records_leaves_out_is_named_with_the_reason() {
     let folder = tempfile::tempdir().unwrap();
     let rows = |step_s: f64| {
-        let row = |k: u32| format!("{},{},{}\n", step_s * f64::from(k), (0.1 * f64::from(k)).sin(), f64::from(k).cos());
+        let row = |k: u32| {
+            format!(
+                "{},{},{}\n",
+                step_s * f64::from(k),
+                (0.1 * f64::from(k)).sin(),
+                f64::from(k).cos()
+            )
+        };
         (0..500).map(row).collect::<String>()
     };
     for (file, step_s) in [("good.csv", 0.02), ("slow.csv", 20.0)] {
-        std::fs::write(folder.path().join(file), "time [s],M,q [rad/s]\n".to_owned() + &rows(step_s)).unwrap();
+        std::fs::write(
+            folder.path().join(file),
+            "time [s],M,q [rad/s]\n".to_owned() + &rows(step_s),
+        )
+        .unwrap();
     }
     let mut window = making_a_dataset(folder.path(), "M", "q [rad/s]");
-    wait_until(&mut window, "the dataset", |window| state(window).dataset().inputs()[0].name == "M");
+    wait_until(&mut window, "the dataset", |window| {
+        state(window).dataset().inputs()[0].name == "M"
+    });
     show(&mut window, View::Records);
     wait_until(&mut window, "its record", |window| rows_shown(window) == 1);
-    assert!(window.query_by_label_contains("left out of the dataset: slow: ").is_some());
+    assert!(
+        window
+            .query_by_label_contains("left out of the dataset: slow: ")
+            .is_some()
+    );
 }
 
 #[test]
 fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
     let folder = tempfile::tempdir().unwrap();
-    let line = |k: u32, step_s: f64, of: fn(f64) -> f64| format!("{},{}\n", step_s * f64::from(k), of(f64::from(k)));
-    let stick = (0..2000).map(|k| line(k, 0.01, |k| (0.05 * k).sin())).collect::<String>();
-    let rate = (0..1000).map(|k| line(k, 0.02, |k| (0.1 * k).cos())).collect::<String>();
-    std::fs::write(folder.path().join("stick.csv"), "timestamp,value\n".to_owned() + &stick).unwrap();
-    std::fs::write(folder.path().join("rate.csv"), "timestamp,value\n".to_owned() + &rate).unwrap();
+    let line = |k: u32, step_s: f64, of: fn(f64) -> f64| {
+        format!("{},{}\n", step_s * f64::from(k), of(f64::from(k)))
+    };
+    let stick = (0..2000)
+        .map(|k| line(k, 0.01, |k| (0.05 * k).sin()))
+        .collect::<String>();
+    let rate = (0..1000)
+        .map(|k| line(k, 0.02, |k| (0.1 * k).cos()))
+        .collect::<String>();
+    std::fs::write(
+        folder.path().join("stick.csv"),
+        "timestamp,value\n".to_owned() + &stick,
+    )
+    .unwrap();
+    std::fs::write(
+        folder.path().join("rate.csv"),
+        "timestamp,value\n".to_owned() + &rate,
+    )
+    .unwrap();
     let mut window = making_a_dataset(folder.path(), "M=stick", "q [rad/s]=rate");
     let problems = |window: &Window| state(window).records.wanted.problems.join("\n");
     wait_until(&mut window, "the dataset", |window| {
@@ -753,11 +1210,17 @@ fn topics_with_clocks_of_their_own_become_the_record_of_a_dataset() {
     show(&mut window, View::Records);
     wait_until(&mut window, "its record", |window| rows_shown(window) == 1);
     let row = &state(&window).records.conditions[&ConditionId(1)].rows[0];
-    assert!(row.problems.is_empty() && row.flight.is_some(), "{:?}", row.problems);
+    assert!(
+        row.problems.is_empty() && row.flight.is_some(),
+        "{:?}",
+        row.problems
+    );
     // They are on the clock that the band takes which is identified over: 20 4/3 of its end over 2 pi, as far as the rate has 50 Hz.
     let rate_hz = |window: &Window| {
         let row = &state(window).records.conditions[&ConditionId(1)].rows[0];
-        row.flight.as_ref().map_or(0.0, |flight| 1.0 / (flight.time_s[1] - flight.time_s[0]))
+        row.flight
+            .as_ref()
+            .map_or(0.0, |flight| 1.0 / (flight.time_s[1] - flight.time_s[0]))
     };
     let of_band = |end: f64| (20.0 * 4.0 / 3.0 * end / std::f64::consts::TAU).min(50.0);
     let is_at = |window: &Window, end: f64| (rate_hz(window) / of_band(end) - 1.0).abs() < 1e-6;

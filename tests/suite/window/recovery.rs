@@ -6,14 +6,22 @@ use super::*;
 
 /// Keeps what is not saved in a directory of its own, soon.
 fn setup(directory: &Path) -> Setup {
-    Setup { directory: Some(directory.to_owned()), keep_after: Duration::from_millis(50), ..Setup::default() }
+    Setup {
+        directory: Some(directory.to_owned()),
+        keep_after: Duration::from_millis(50),
+        ..Setup::default()
+    }
 }
 
 /// The recovery files of a directory.
 fn kept(directory: &Path) -> Vec<PathBuf> {
-    let Ok(entries) = std::fs::read_dir(directory.join("recovery")) else { return Vec::new() };
+    let Ok(entries) = std::fs::read_dir(directory.join("recovery")) else {
+        return Vec::new();
+    };
     let paths = entries.map(|entry| entry.unwrap().path());
-    paths.filter(|path| path.to_str().unwrap().ends_with(".gdcm-study.json")).collect()
+    paths
+        .filter(|path| path.to_str().unwrap().ends_with(".gdcm-study.json"))
+        .collect()
 }
 
 /// A window whose decisions are not saved, and are kept.
@@ -21,7 +29,9 @@ fn with_decisions(opened: Opened, directory: &Path) -> Window {
     let mut window = window_with(opened, setup(directory));
     slide(&mut window, "α gains", 12.5);
     settle(&mut window);
-    wait_until(&mut window, "the decisions are kept", |_| !kept(directory).is_empty());
+    wait_until(&mut window, "the decisions are kept", |_| {
+        !kept(directory).is_empty()
+    });
     window
 }
 
@@ -49,7 +59,11 @@ fn decisions_that_were_not_saved_are_offered_at_the_next_start_and_restored() {
     let study = state(&lost).study.clone();
     drop(lost);
     let file = kept(directory.path()).remove(0);
-    assert_eq!(open_study(&file).unwrap().study, study, "it is a study, and opens by hand too");
+    assert_eq!(
+        open_study(&file).unwrap().study,
+        study,
+        "it is a study, and opens by hand too"
+    );
 
     let mut window = next_window(directory.path());
     window.get_by_label_contains("for the embedded example were not saved");
@@ -67,8 +81,15 @@ fn decisions_that_were_not_saved_are_offered_at_the_next_start_and_restored() {
 fn a_study_that_was_saved_before_is_offered_by_its_name_and_saved_there_again() {
     let (directory, folder) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let dataset = folder.path().join("data.json");
-    std::fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json"), &dataset).unwrap();
-    let mut lost = window_with(load_any(&dataset, &Default::default()).unwrap(), setup(directory.path()));
+    std::fs::copy(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json"),
+        &dataset,
+    )
+    .unwrap();
+    let mut lost = window_with(
+        load_any(&dataset, &Default::default()).unwrap(),
+        setup(directory.path()),
+    );
     let path = folder.path().join("mine.gdcm-study.json");
     save_as(&mut lost, &path);
     slide(&mut lost, "α gains", 12.5);
@@ -81,9 +102,19 @@ fn a_study_that_was_saved_before_is_offered_by_its_name_and_saved_there_again() 
     window.key_press_modifiers(Modifiers::COMMAND, Key::S);
     settle(&mut window);
     assert!(!state(&window).unsaved);
-    wait_until(&mut window, "the list is read", |window| !state(window).recent.is_empty());
-    let recent: Vec<&str> = state(&window).recent.iter().map(|file| file.name.as_str()).collect();
-    assert_eq!(recent, ["mine.gdcm-study.json", "data.json"], "the recovery file is none of them");
+    wait_until(&mut window, "the list is read", |window| {
+        !state(window).recent.is_empty()
+    });
+    let recent: Vec<&str> = state(&window)
+        .recent
+        .iter()
+        .map(|file| file.name.as_str())
+        .collect();
+    assert_eq!(
+        recent,
+        ["mine.gdcm-study.json", "data.json"],
+        "the recovery file is none of them"
+    );
     assert_eq!(open_study(&path).unwrap().study.settings.alpha_gain, 12.5);
 }
 
@@ -92,13 +123,19 @@ fn what_is_saved_or_taken_back_leaves_no_recovery_file() {
     let (directory, folder) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let mut window = with_decisions(example(), directory.path());
     save_as(&mut window, &folder.path().join("mine.gdcm-study.json"));
-    wait_until(&mut window, "saved: the file is gone", |_| kept(directory.path()).is_empty());
+    wait_until(&mut window, "saved: the file is gone", |_| {
+        kept(directory.path()).is_empty()
+    });
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut window);
-    wait_until(&mut window, "another decision is kept", |_| !kept(directory.path()).is_empty());
+    wait_until(&mut window, "another decision is kept", |_| {
+        !kept(directory.path()).is_empty()
+    });
     window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     settle(&mut window);
-    wait_until(&mut window, "as saved again: the file is gone", |_| kept(directory.path()).is_empty());
+    wait_until(&mut window, "as saved again: the file is gone", |_| {
+        kept(directory.path()).is_empty()
+    });
 }
 
 #[test]
@@ -112,7 +149,9 @@ fn discarded_decisions_are_gone_and_later_they_are_offered_again() {
     let mut window = next_window(directory.path());
     click(&mut window, "Discard");
     assert!(window.query_by_label_contains("were not saved").is_none());
-    wait_until(&mut window, "the file is gone", |_| kept(directory.path()).is_empty());
+    wait_until(&mut window, "the file is gone", |_| {
+        kept(directory.path()).is_empty()
+    });
 }
 
 #[test]
@@ -120,7 +159,9 @@ fn the_decisions_of_a_window_that_is_open_are_not_offered_to_another() {
     let directory = tempfile::tempdir().unwrap();
     let first = with_decisions(example(), directory.path());
     let mut second = with_decisions(example(), directory.path());
-    wait_until(&mut second, "each has its own file", |_| kept(directory.path()).len() == 2);
+    wait_until(&mut second, "each has its own file", |_| {
+        kept(directory.path()).len() == 2
+    });
     for window in [&first, &second] {
         assert!(window.query_by_label_contains("were not saved").is_none());
     }
@@ -150,6 +191,9 @@ fn decisions_stay_safe_where_what_was_to_be_opened_in_their_place_cannot_be_read
     std::fs::write(&broken, "{").unwrap();
     open_by_path(&mut window, &broken);
     assert!(window.query_by_label("Don't save").is_none());
-    assert_eq!(state(&window).notice.as_ref().map(|notice| notice.kind), Some(NoticeKind::Trouble));
+    assert_eq!(
+        state(&window).notice.as_ref().map(|notice| notice.kind),
+        Some(NoticeKind::Trouble)
+    );
     assert!(state(&window).unsaved && !kept(directory.path()).is_empty());
 }

@@ -13,11 +13,17 @@ struct Copy {
 
 impl Copy {
     fn new() -> Self {
-        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json"));
+        let text = std::fs::read_to_string(
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json"),
+        );
         let (folder, text) = (tempfile::tempdir().unwrap(), text.unwrap());
         let path = folder.path().join("my-dataset.json");
         std::fs::write(&path, &text).unwrap();
-        Self { _folder: folder, path, text }
+        Self {
+            _folder: folder,
+            path,
+            text,
+        }
     }
 
     /// Writes another name of the dataset into the file: the figures stay.
@@ -32,13 +38,18 @@ impl Copy {
     }
 
     fn window(&self) -> Window {
-        let setup = Setup { look_every: Duration::from_millis(20), ..Setup::default() };
+        let setup = Setup {
+            look_every: Duration::from_millis(20),
+            ..Setup::default()
+        };
         window_with(load_any(&self.path, &Default::default()).unwrap(), setup)
     }
 }
 
 fn is_told(window: &Window) -> bool {
-    window.query_by_label_contains("my-dataset.json has changed on disk").is_some()
+    window
+        .query_by_label_contains("my-dataset.json has changed on disk")
+        .is_some()
 }
 
 #[test]
@@ -51,20 +62,35 @@ fn a_file_that_changes_is_told_and_reloaded_and_undo_goes_back_across_it() {
     let received = state(&window).results.received;
     copy.rename("renewed");
     wait_until(&mut window, "the change is told", is_told);
-    assert_eq!(state(&window).dataset().name(), before, "nothing is taken up unasked");
+    assert_eq!(
+        state(&window).dataset().name(),
+        before,
+        "nothing is taken up unasked"
+    );
     click(&mut window, "Reload");
     assert!(state(&window).dataset().name().starts_with("renewed"));
-    assert_eq!(state(&window).study.settings.alpha_gain, 12.5, "the decision still applies");
+    assert_eq!(
+        state(&window).study.settings.alpha_gain,
+        12.5,
+        "the decision still applies"
+    );
     assert!(state(&window).results.received > received && state(&window).shown().is_some());
     assert!(!is_told(&window));
     window.get_by_label("↶ Undo reload my-dataset.json");
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut window);
     assert_eq!(state(&window).dataset().name(), before);
-    assert!(state(&window).shown().is_some(), "its results are there again");
+    assert!(
+        state(&window).shown().is_some(),
+        "its results are there again"
+    );
     window.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(&mut window);
-    assert_eq!(state(&window).study.settings.alpha_gain, 1.0, "and the decisions before it");
+    assert_eq!(
+        state(&window).study.settings.alpha_gain,
+        1.0,
+        "and the decisions before it"
+    );
     for _ in 0..2 {
         window.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
         settle(&mut window);
@@ -98,7 +124,9 @@ fn what_is_open_may_be_kept_and_the_next_change_is_told_again() {
     copy.rename("once more");
     wait_until(&mut window, "the next change is told", is_told);
     std::fs::write(&copy.path, &copy.text).unwrap();
-    wait_until(&mut window, "as it was opened: nothing to tell", |window| !is_told(window));
+    wait_until(&mut window, "as it was opened: nothing to tell", |window| {
+        !is_told(window)
+    });
 }
 
 #[test]
@@ -110,7 +138,11 @@ fn a_changed_file_that_is_wrong_leaves_what_is_open() {
     wait_until(&mut window, "the change is told", is_told);
     click(&mut window, "Reload");
     let notice = state(&window).notice.clone().expect("the trouble is told");
-    assert!(notice.kind == NoticeKind::Trouble && notice.text.contains("my-dataset.json"), "{}", notice.text);
+    assert!(
+        notice.kind == NoticeKind::Trouble && notice.text.contains("my-dataset.json"),
+        "{}",
+        notice.text
+    );
     assert_eq!(state(&window).study, before);
     assert!(is_told(&window), "it can be tried again");
 }
@@ -124,7 +156,10 @@ fn what_is_different_after_a_reload_is_listed() {
     wait_until(&mut window, "the change is told", is_told);
     click(&mut window, "Reload");
     window.get_by_label_contains("my-dataset.json was reloaded");
-    assert!(window.query_all_by_label_contains("V+5kt").count() >= 1, "the model that is gone is named");
+    assert!(
+        window.query_all_by_label_contains("V+5kt").count() >= 1,
+        "the model that is gone is named"
+    );
     window.get_by_label("Keep physics model V+6kt");
     assert!(state(&window).unsaved);
     click(&mut window, "Put the list away");

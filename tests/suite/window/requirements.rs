@@ -6,7 +6,9 @@ use gdcm::view::View;
 use gdcm::view::views::RequirementsPage;
 use gdcm_method::requirements::{ModeVerdict, RecordCheck, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
-use gdcm_study::study::{BandwidthFinding, Edit, RecordHistory, RequirementRole, RequirementSettings};
+use gdcm_study::study::{
+    BandwidthFinding, Edit, RecordHistory, RequirementRole, RequirementSettings,
+};
 
 use super::assembling::type_into;
 use super::lists::texts_in;
@@ -16,7 +18,11 @@ use gdcm::view::RequirementTable;
 use gdcm::view::command::Command as Action;
 
 fn texts(window: &Window) -> String {
-    texts_in(window, egui::Rect::EVERYTHING).into_iter().map(|(text, _)| text).collect::<Vec<_>>().join("\n")
+    texts_in(window, egui::Rect::EVERYTHING)
+        .into_iter()
+        .map(|(text, _)| text)
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 #[test]
@@ -28,40 +34,81 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
     });
     let requirements = state(&window).requirements().unwrap().clone();
     let said = texts(&window);
-    assert!(said.contains("these numbers are no qualification") && said.contains("ω_BW [rad/s]"), "{said}");
+    assert!(
+        said.contains("these numbers are no qualification") && said.contains("ω_BW [rad/s]"),
+        "{said}"
+    );
     // The numbers are those of the command: one finding a condition, measuring response and role.
-    let roles = if state(&window).analysis().unwrap().schedule.is_ok() { 4 } else { 3 };
+    let roles = if state(&window).analysis().unwrap().schedule.is_ok() {
+        4
+    } else {
+        3
+    };
     let pairs = state(&window).dataset().measuring_pairs().marked().count();
     assert_eq!(requirements.bandwidth.len(), 3 * pairs * roles);
     let p_lat = pair(&window, "P", "LAT");
     let id = state(&window).condition().id();
-    let corrected = requirements.bandwidth_of(id, p_lat, RequirementRole::Corrected).unwrap();
-    let row = requirements.bandwidth.iter().position(|of| std::ptr::eq(of, corrected)).unwrap();
+    let corrected = requirements
+        .bandwidth_of(id, p_lat, RequirementRole::Corrected)
+        .unwrap();
+    let row = requirements
+        .bandwidth
+        .iter()
+        .position(|of| std::ptr::eq(of, corrected))
+        .unwrap();
     let table = requirements.bandwidth_table(state(&window).dataset());
     assert_eq!(table.rows[row][3], "corrected");
-    for (chosen, heading) in
-        [(RequirementsPage::Modes, "physics ζ"), (RequirementsPage::Summary, "in MUAD on-axis [%]")]
-    {
+    for (chosen, heading) in [
+        (RequirementsPage::Modes, "physics ζ"),
+        (RequirementsPage::Summary, "in MUAD on-axis [%]"),
+    ] {
         give(&mut window, Action::ShowRequirements(chosen));
         assert!(texts(&window).contains(heading), "{heading}");
     }
     // A click on a mark goes to Bode, where the frequencies are marked that its numbers are read at.
-    give(&mut window, Action::ShowRequirements(RequirementsPage::Bandwidth));
+    give(
+        &mut window,
+        Action::ShowRequirements(RequirementsPage::Bandwidth),
+    );
     window.get_by_label_contains("Phase delay over bandwidth of LAT → P");
     let first = requirements.bandwidth.first().unwrap();
-    let rests = window.get_all_by_label(first.role.name()).next().unwrap().rect().center();
+    let rests = window
+        .get_all_by_label(first.role.name())
+        .next()
+        .unwrap()
+        .rect()
+        .center();
     window.drag_at(rests);
     window.drop_at(rests);
     window.run_steps(4);
-    assert!(state(&window).display.arrangement.is_shown(View::Bode), "the row leads to Bode");
+    assert!(
+        state(&window).display.arrangement.is_shown(View::Bode),
+        "the row leads to Bode"
+    );
     assert_eq!(state(&window).display.pair, first.pair);
-    let marked: Vec<Option<f64>> =
-        state(&window).display.curves.crossings.iter().map(|(_, omega)| Some(*omega)).collect();
+    let marked: Vec<Option<f64>> = state(&window)
+        .display
+        .curves
+        .crossings
+        .iter()
+        .map(|(_, omega)| Some(*omega))
+        .collect();
     assert_ne!(first.role, RequirementRole::Corrected);
-    assert_eq!(marked, [first.omega_phase_rad_s, first.omega_gain_rad_s, first.omega_180_rad_s], "of the row's model");
+    assert_eq!(
+        marked,
+        [
+            first.omega_phase_rad_s,
+            first.omega_gain_rad_s,
+            first.omega_180_rad_s
+        ],
+        "of the row's model"
+    );
     let figure = gdcm::view::figure_of(state(&window), View::Bode).unwrap();
     let words = format!("{figure:?}");
-    assert!(words.contains("ω_phase") && words.contains("ω180"), "on paper too");
+    assert!(
+        words.contains("ω_phase") && words.contains("ω180"),
+        "on paper too"
+    );
 }
 
 #[test]
@@ -76,14 +123,32 @@ fn a_click_on_a_mark_is_of_that_model() {
     // The one that lies farthest from all other marks: nothing hides it.
     let places = |of: &BandwidthFinding| gdcm_plot::figure::bandwidth_place(of);
     let apart = |of: &BandwidthFinding| -> f64 {
-        let Some([x, y]) = places(of) else { return -1.0 };
-        let others = requirements.bandwidth.iter().filter(|other| other.pair == p_lat && !std::ptr::eq(*other, of));
+        let Some([x, y]) = places(of) else {
+            return -1.0;
+        };
+        let others = requirements
+            .bandwidth
+            .iter()
+            .filter(|other| other.pair == p_lat && !std::ptr::eq(*other, of));
         let distance = |[a, b]: [f64; 2]| ((a - x) / 2.0).hypot((b - y) / 100.0);
-        others.filter_map(places).map(distance).fold(f64::INFINITY, f64::min)
+        others
+            .filter_map(places)
+            .map(distance)
+            .fold(f64::INFINITY, f64::min)
     };
-    let meant = requirements.bandwidth.iter().filter(of_role).max_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap();
-    let plot = gdcm_plot::figure::bandwidth_pairs(&requirements).iter().position(|of| *of == p_lat).unwrap();
-    let at = state(&window).display.figures[&View::Requirements].position(plot, places(meant).unwrap()).unwrap();
+    let meant = requirements
+        .bandwidth
+        .iter()
+        .filter(of_role)
+        .max_by(|a, b| apart(a).total_cmp(&apart(b)))
+        .unwrap();
+    let plot = gdcm_plot::figure::bandwidth_pairs(&requirements)
+        .iter()
+        .position(|of| *of == p_lat)
+        .unwrap();
+    let at = state(&window).display.figures[&View::Requirements]
+        .position(plot, places(meant).unwrap())
+        .unwrap();
     window.hover_at(at);
     window.run_steps(2);
     window.drag_at(at);
@@ -91,18 +156,28 @@ fn a_click_on_a_mark_is_of_that_model() {
     window.run_steps(4);
     assert_eq!(state(&window).condition().id(), meant.condition);
     let crossings = &state(&window).display.curves.crossings;
-    let expected = [meant.omega_phase_rad_s, meant.omega_gain_rad_s, meant.omega_180_rad_s].map(Option::unwrap);
+    let expected = [
+        meant.omega_phase_rad_s,
+        meant.omega_gain_rad_s,
+        meant.omega_180_rad_s,
+    ]
+    .map(Option::unwrap);
     assert_eq!(crossings.len(), 3, "{crossings:?}");
     for ((name, omega), expected) in crossings.iter().zip(expected) {
         // Roots are found to a relative 1e-12 each time that the answer is computed anew.
-        assert!((omega / expected - 1.0).abs() < 1e-11, "{name}: {omega} {expected}");
+        assert!(
+            (omega / expected - 1.0).abs() < 1e-11,
+            "{name}: {omega} {expected}"
+        );
     }
 }
 
 fn shown_requirements(window: &mut Window) -> std::sync::Arc<gdcm_study::study::Requirements> {
     wait_until(window, "the requirements", |window| {
         let decided = &state(window).study.requirements.attitude_command;
-        state(window).requirements().is_some_and(|of| of.attitude_command == *decided)
+        state(window)
+            .requirements()
+            .is_some_and(|of| of.attitude_command == *decided)
     });
     state(window).requirements().unwrap().clone()
 }
@@ -116,20 +191,41 @@ fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
     let attitude = shown_requirements(&mut window);
     assert!(attitude.attitude_command.contains("P") && rate.attitude_command.is_empty());
     let p_lat = pair(&window, "P", "LAT");
-    let of = attitude.bandwidth.iter().find(|of| of.pair == p_lat && of.omega_phase_rad_s.is_some()).unwrap();
-    assert_eq!(of.omega_bw_rad_s, of.omega_phase_rad_s, "the bandwidth is that of the phase margin alone");
+    let of = attitude
+        .bandwidth
+        .iter()
+        .find(|of| of.pair == p_lat && of.omega_phase_rad_s.is_some())
+        .unwrap();
+    assert_eq!(
+        of.omega_bw_rad_s, of.omega_phase_rad_s,
+        "the bandwidth is that of the phase margin alone"
+    );
     give(&mut window, Action::Undo);
     assert!(shown_requirements(&mut window).attitude_command.is_empty());
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("levels.json");
-    std::fs::write(&path, r#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#).unwrap();
-    give(&mut window, Action::ReadRequirementTable(RequirementTable::Levels, path.clone()));
+    std::fs::write(
+        &path,
+        r#"[{"name": "Level 1", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#,
+    )
+    .unwrap();
+    give(
+        &mut window,
+        Action::ReadRequirementTable(RequirementTable::Levels, path.clone()),
+    );
     assert_eq!(state(&window).study.requirements.levels.all().len(), 1);
     assert!(texts(&window).contains("levels: 1"));
     std::fs::write(&path, "[]]").unwrap();
-    give(&mut window, Action::ReadRequirementTable(RequirementTable::Levels, path));
-    assert_eq!(state(&window).study.requirements.levels.all().len(), 1, "what cannot be read changes nothing");
+    give(
+        &mut window,
+        Action::ReadRequirementTable(RequirementTable::Levels, path),
+    );
+    assert_eq!(
+        state(&window).study.requirements.levels.all().len(),
+        1,
+        "what cannot be read changes nothing"
+    );
     click(&mut window, "Remove levels");
     assert!(state(&window).study.requirements.levels.all().is_empty());
 }
@@ -138,7 +234,10 @@ fn what_bandwidths_are_asked_with_is_decided_undone_and_drawn() {
 fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
     let mut window = few_window();
     show(&mut window, View::Requirements);
-    give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
+    give(
+        &mut window,
+        Action::ShowRequirements(RequirementsPage::Histories),
+    );
     give(&mut window, Action::ShowTest(true));
     let answers = |window: &mut Window| {
         wait_until(window, "the answers", |window| {
@@ -149,12 +248,19 @@ fn models_answer_to_a_step_or_a_doublet_of_the_input_in_focus() {
     };
     let step = answers(&mut window);
     assert_eq!(step.input, state(&window).display.pair.input);
-    assert!(step.models.iter().all(|(_, answer)| answer.is_ok()), "{:?}", step.models);
+    assert!(
+        step.models.iter().all(|(_, answer)| answer.is_ok()),
+        "{:?}",
+        step.models
+    );
     window.get_by_label("P [deg/s] over time");
     click(&mut window, "Course of the test input");
     click(&mut window, "doublet");
     let doublet = answers(&mut window);
-    assert!(doublet.signal.iter().any(|value| *value < 0.0) && step.signal.iter().all(|value| *value >= 0.0));
+    assert!(
+        doublet.signal.iter().any(|value| *value < 0.0)
+            && step.signal.iter().all(|value| *value >= 0.0)
+    );
     give(&mut window, Action::Undo);
     assert_eq!(answers(&mut window).test, step.test);
 }
@@ -164,42 +270,83 @@ fn a_record_stands_within_tolerances_that_are_edited_and_kept_in_a_file() {
     let mut window = few_window();
     choose_condition_10(&mut window);
     show(&mut window, View::Requirements);
-    give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
+    give(
+        &mut window,
+        Action::ShowRequirements(RequirementsPage::Histories),
+    );
     let shown = |window: &mut Window| {
         wait_until(window, "the record", |window| {
             let decided = &state(window).study.requirements.tolerances;
             let found = state(window).results.record_history.as_ref();
             found.is_some_and(|(job, found)| job.tolerances == *decided && found.is_ok())
         });
-        state(window).results.record_history.as_ref().unwrap().1.clone().unwrap()
+        state(window)
+            .results
+            .record_history
+            .as_ref()
+            .unwrap()
+            .1
+            .clone()
+            .unwrap()
     };
     let by_default = shown(&mut window);
     let shares = |of: &RecordHistory| -> Vec<f64> {
-        let physics =
-            |(role, check): &(_, RecordCheck)| (*role == RequirementRole::Physics).then(|| check.share_inside());
-        of.quantities.iter().map(|of| of.models.iter().find_map(physics).unwrap()).collect()
+        let physics = |(role, check): &(_, RecordCheck)| {
+            (*role == RequirementRole::Physics).then(|| check.share_inside())
+        };
+        of.quantities
+            .iter()
+            .map(|of| of.models.iter().find_map(physics).unwrap())
+            .collect()
     };
     let first = shares(&by_default);
-    let worst = (0..first.len()).min_by(|a, b| first[*a].total_cmp(&first[*b])).unwrap();
+    let worst = (0..first.len())
+        .min_by(|a, b| first[*a].total_cmp(&first[*b]))
+        .unwrap();
     assert!(first[worst] < 1.0, "{first:?}");
     click(&mut window, "Tolerances");
     let quantity = &by_default.quantities[worst].tolerance;
-    let row = state(&window).study.requirements.tolerances.rows().iter().position(|of| of == quantity).unwrap();
-    type_into(&mut window, &format!("Absolute tolerance {}", row + 1), "900");
+    let row = state(&window)
+        .study
+        .requirements
+        .tolerances
+        .rows()
+        .iter()
+        .position(|of| of == quantity)
+        .unwrap();
+    type_into(
+        &mut window,
+        &format!("Absolute tolerance {}", row + 1),
+        "900",
+    );
     let wide = shares(&shown(&mut window));
     let others = |of: &[f64]| [&of[..worst], &of[worst + 1..]].concat();
-    assert_eq!((wide[worst], others(&wide)), (1.0, others(&first)), "nothing is so far from flight");
+    assert_eq!(
+        (wide[worst], others(&wide)),
+        (1.0, others(&first)),
+        "nothing is so far from flight"
+    );
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mine.json");
     give(&mut window, Action::WriteTolerances(path.clone()));
     give(&mut window, Action::Undo);
     assert_eq!(shares(&shown(&mut window)), first);
-    give(&mut window, Action::ReadRequirementTable(RequirementTable::Tolerances, path.clone()));
+    give(
+        &mut window,
+        Action::ReadRequirementTable(RequirementTable::Tolerances, path.clone()),
+    );
     assert_eq!(shares(&shown(&mut window)), wide);
     std::fs::write(&path, "{}").unwrap();
-    give(&mut window, Action::ReadRequirementTable(RequirementTable::Tolerances, path));
-    assert_eq!(shares(&shown(&mut window)), wide, "what cannot be read changes nothing");
+    give(
+        &mut window,
+        Action::ReadRequirementTable(RequirementTable::Tolerances, path),
+    );
+    assert_eq!(
+        shares(&shown(&mut window)),
+        wide,
+        "what cannot be read changes nothing"
+    );
     click(&mut window, "Default tolerances");
     assert_eq!(shares(&shown(&mut window)), first);
 }
@@ -209,36 +356,83 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     let mut window = few_window();
     choose_condition_10(&mut window);
     show(&mut window, View::Requirements);
-    give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
-    wait_until(&mut window, "the records", |window| !state(window).records.conditions.is_empty());
-    give(&mut window, Action::ShowRequirements(RequirementsPage::Summary));
+    give(
+        &mut window,
+        Action::ShowRequirements(RequirementsPage::Histories),
+    );
+    wait_until(&mut window, "the records", |window| {
+        !state(window).records.conditions.is_empty()
+    });
+    give(
+        &mut window,
+        Action::ShowRequirements(RequirementsPage::Summary),
+    );
     wait_until(&mut window, "the answers", |window| {
         state(window).time_histories().is_some() && state(window).requirements().is_some()
     });
     let found = state(&window).time_histories().unwrap().clone();
     let rms = |role| found.j_rms(ConditionId(10), role).unwrap();
     assert!(rms(RequirementRole::Identified) < rms(RequirementRole::Physics));
-    let table = state(&window).requirements().unwrap().summary_table(Some(&found));
-    let of_flight = table.rows.iter().find(|row| row[..3] == ["10", "60", "identified"].map(str::to_owned)).unwrap();
-    assert_eq!(of_flight[7], format!("{:.2}", rms(RequirementRole::Identified)));
+    let table = state(&window)
+        .requirements()
+        .unwrap()
+        .summary_table(Some(&found));
+    let of_flight = table
+        .rows
+        .iter()
+        .find(|row| row[..3] == ["10", "60", "identified"].map(str::to_owned))
+        .unwrap();
+    assert_eq!(
+        of_flight[7],
+        format!("{:.2}", rms(RequirementRole::Identified))
+    );
     assert!(texts(&window).contains("J_rms") && texts(&window).contains("Theil P"));
     // The overview has them too, and its limits are decided, undone and drawn.
     let overview = |window: &Window| {
         let limits = &state(window).study.requirements.overview;
-        state(window).requirements().unwrap().overview(state(window).dataset(), Some(&found), limits)
+        state(window).requirements().unwrap().overview(
+            state(window).dataset(),
+            Some(&found),
+            limits,
+        )
     };
     let usual = overview(&window);
-    let pitch = usual.table.rows.iter().position(|row| row[0] == "pitch rate inside").unwrap();
-    let column = usual.table.columns.iter().position(|of| of == "10").unwrap();
-    let share = found.share_inside(ConditionId(10), RequirementRole::Corrected, "pitch rate").unwrap();
-    assert_eq!(usual.table.rows[pitch][column], format!("{:.1}", (1e3 * share).floor() / 10.0));
+    let pitch = usual
+        .table
+        .rows
+        .iter()
+        .position(|row| row[0] == "pitch rate inside")
+        .unwrap();
+    let column = usual
+        .table
+        .columns
+        .iter()
+        .position(|of| of == "10")
+        .unwrap();
+    let share = found
+        .share_inside(ConditionId(10), RequirementRole::Corrected, "pitch rate")
+        .unwrap();
+    assert_eq!(
+        usual.table.rows[pitch][column],
+        format!("{:.1}", (1e3 * share).floor() / 10.0)
+    );
     assert!(texts(&window).contains("pitch rate inside") && texts(&window).contains("≥ 90"));
     click(&mut window, "Limits of the overview");
     type_into(&mut window, "Least time inside", "100.5");
-    assert!(overview(&window).is_outside(pitch, column), "nothing is inside for longer than always");
+    assert!(
+        overview(&window).is_outside(pitch, column),
+        "nothing is inside for longer than always"
+    );
     type_into(&mut window, "Limit of the bandwidth", "0");
-    let refused = state(&window).notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
-    assert!(refused.contains("expected bandwidth above zero"), "{refused}");
+    let refused = state(&window)
+        .notice
+        .as_ref()
+        .map(|notice| notice.text.clone())
+        .unwrap_or_default();
+    assert!(
+        refused.contains("expected bandwidth above zero"),
+        "{refused}"
+    );
     give(&mut window, Action::Undo);
     assert_eq!(overview(&window), usual);
 
@@ -246,7 +440,10 @@ fn the_summary_has_what_the_records_that_are_open_say() {
     let folder = tempfile::tempdir().unwrap();
     let width = gdcm_plot::figure::ColumnWidth::Double;
     let path = folder.path().join("summary.csv");
-    give(&mut window, Action::SaveFigure(View::Requirements, width, path.clone()));
+    give(
+        &mut window,
+        Action::SaveFigure(View::Requirements, width, path.clone()),
+    );
     let saved = std::fs::read_to_string(path).unwrap();
     assert!(
         saved.contains("pitch rate inside,% of time,≥ 90")
@@ -254,24 +451,46 @@ fn the_summary_has_what_the_records_that_are_open_say() {
             && !saved.contains('\u{2212}')
     );
     let picture = folder.path().join("summary.svg");
-    give(&mut window, Action::SaveFigure(View::Requirements, width, picture.clone()));
-    let refused = state(&window).notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
-    assert!(refused.contains("ends in .csv") && !picture.exists(), "{refused}");
+    give(
+        &mut window,
+        Action::SaveFigure(View::Requirements, width, picture.clone()),
+    );
+    let refused = state(&window)
+        .notice
+        .as_ref()
+        .map(|notice| notice.text.clone())
+        .unwrap_or_default();
+    assert!(
+        refused.contains("ends in .csv") && !picture.exists(),
+        "{refused}"
+    );
 }
 
 #[test]
 fn tolerances_are_reached_without_a_record_and_those_of_modes_are_edited() {
     let mut window = few_window();
     show(&mut window, View::Requirements);
-    give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
+    give(
+        &mut window,
+        Action::ShowRequirements(RequirementsPage::Histories),
+    );
     give(&mut window, Action::ShowTest(true));
     click(&mut window, "Tolerances");
     type_into(&mut window, "Absolute tolerance 1", "4.5");
     assert!((state(&window).study.requirements.tolerances.rows()[0].absolute - 4.5).abs() < 1e-12);
 
-    give(&mut window, Action::ShowRequirements(RequirementsPage::Modes));
+    give(
+        &mut window,
+        Action::ShowRequirements(RequirementsPage::Modes),
+    );
     let verdicts = |window: &Window| -> Vec<_> {
-        state(window).requirements().unwrap().modes.iter().map(|of| of.verdict).collect()
+        state(window)
+            .requirements()
+            .unwrap()
+            .modes
+            .iter()
+            .map(|of| of.verdict)
+            .collect()
     };
     let shown = |window: &mut Window| {
         wait_until(window, "the modes", |window| {
@@ -284,15 +503,26 @@ fn tolerances_are_reached_without_a_record_and_those_of_modes_are_edited() {
     let usual = shown(&mut window);
     assert!(usual.contains(&ModeVerdict::Outside), "{usual:?}");
     click(&mut window, "Tolerances of modes");
-    for field in ["Tolerance of the period 2", "Tolerance of the time to half 2", "Tolerance of the damping ratio 2"] {
+    for field in [
+        "Tolerance of the period 2",
+        "Tolerance of the time to half 2",
+        "Tolerance of the damping ratio 2",
+    ] {
         type_into(&mut window, field, "1e4");
     }
-    for field in ["Tolerance of the period 1", "Tolerance of the time to half 1", "Tolerance of the damping ratio 1"] {
+    for field in [
+        "Tolerance of the period 1",
+        "Tolerance of the time to half 1",
+        "Tolerance of the damping ratio 1",
+    ] {
         type_into(&mut window, field, "1e4");
     }
     // What does not oscillate where the flown mode does stays outside, whatever the tolerance.
     let outside = |of: &[ModeVerdict]| of.iter().filter(|of| **of == ModeVerdict::Outside).count();
-    assert!(outside(&shown(&mut window)) < outside(&usual), "nothing is so far from flight");
+    assert!(
+        outside(&shown(&mut window)) < outside(&usual),
+        "nothing is so far from flight"
+    );
     click(&mut window, "Default tolerances of modes");
     assert_eq!(shown(&mut window), usual);
 }
@@ -302,23 +532,36 @@ fn the_report_of_the_window_has_the_records_that_are_open_and_what_was_decided_l
     let mut window = few_window();
     choose_condition_10(&mut window);
     show(&mut window, View::Requirements);
-    give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
-    wait_until(&mut window, "the records", |window| !state(window).records.conditions.is_empty());
+    give(
+        &mut window,
+        Action::ShowRequirements(RequirementsPage::Histories),
+    );
+    wait_until(&mut window, "the records", |window| {
+        !state(window).records.conditions.is_empty()
+    });
     settle(&mut window);
     let mut settings = RequirementSettings::clone(&state(&window).study.requirements);
-    let levels = r#"[{"name": "Level 1 of the tests", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#;
+    let levels =
+        r#"[{"name": "Level 1 of the tests", "axis": "P", "points": [[2, 0], [2.5, 0.2]]}]"#;
     settings.levels = serde_json::from_str(levels).unwrap();
     let mut rows = settings.tolerances.rows().to_vec();
     rows[0].absolute = 12.375;
     settings.tolerances = ToleranceTable::new("edited", rows).unwrap();
-    give(&mut window, Edit::SetRequirements("levels", Arc::new(settings)));
+    give(
+        &mut window,
+        Edit::SetRequirements("levels", Arc::new(settings)),
+    );
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("report.html");
     give(&mut window, Action::WriteReport(path.clone()));
     wait_until(&mut window, "the report", |_| path.exists());
     let written = std::fs::read_to_string(&path).unwrap();
-    for words in ["Level 1 of the tests", "12.375", "Records of condition 10", "J_rms over all records of a condition"]
-    {
+    for words in [
+        "Level 1 of the tests",
+        "12.375",
+        "Records of condition 10",
+        "J_rms over all records of a condition",
+    ] {
         assert!(written.contains(words), "{words}");
     }
 }
@@ -334,11 +577,25 @@ fn a_condition_without_rates_and_records_says_so_in_words() {
     let opened = load_any(&desk.path("forces.json"), &Default::default()).unwrap();
     let mut window = window_with(opened, Setup::default());
     show(&mut window, View::Requirements);
-    wait_until(&mut window, "the requirements", |window| state(window).requirements().is_some());
+    wait_until(&mut window, "the requirements", |window| {
+        state(window).requirements().is_some()
+    });
     let said = texts(&window);
-    assert!(said.contains("No on-axis response is of an angle or its rate"), "{said}");
-    assert!(said.contains("it is neither a rate (deg/s, rad/s) nor an attitude"), "{said}");
-    give(&mut window, Action::ShowRequirements(RequirementsPage::Histories));
+    assert!(
+        said.contains("No on-axis response is of an angle or its rate"),
+        "{said}"
+    );
+    assert!(
+        said.contains("it is neither a rate (deg/s, rad/s) nor an attitude"),
+        "{said}"
+    );
+    give(
+        &mut window,
+        Action::ShowRequirements(RequirementsPage::Histories),
+    );
     let said = texts(&window);
-    assert!(said.contains("No flight record of this condition is used (view Records)"), "{said}");
+    assert!(
+        said.contains("No flight record of this condition is used (view Records)"),
+        "{said}"
+    );
 }

@@ -13,13 +13,21 @@ fn begun_with(setup: Setup) -> Window {
     let build = |creation: &mut eframe::CreationContext<'static>| {
         GdcmApp::with(&creation.egui_ctx, example(), setup).expect("a thread can be started")
     };
-    let mut window = Harness::builder().with_size(vec2(1280.0, 720.0)).build_eframe(build);
+    let mut window = Harness::builder()
+        .with_size(vec2(1280.0, 720.0))
+        .build_eframe(build);
     window.run_steps(3);
     window
 }
 
 fn preferring(opens_with: OpensWith) -> Setup {
-    Setup { preferences: Preferences { opens_with, ..Preferences::default() }, ..warm() }
+    Setup {
+        preferences: Preferences {
+            opens_with,
+            ..Preferences::default()
+        },
+        ..warm()
+    }
 }
 
 fn press(window: &mut Window, label: &str) {
@@ -31,13 +39,24 @@ fn press(window: &mut Window, label: &str) {
 fn a_line_over_the_plots_of_the_example_offers_three_ways_in() {
     let mut window = window();
     let places = WAYS.map(|way| window.get_by_label(way).rect());
-    assert!(places.windows(2).all(|pair| pair[0].right() < pair[1].left()), "beside one another: {places:?}");
-    assert!(places.iter().all(|place| place.height() <= 18.0), "slim: {places:?}");
+    assert!(
+        places
+            .windows(2)
+            .all(|pair| pair[0].right() < pair[1].left()),
+        "beside one another: {places:?}"
+    );
+    assert!(
+        places.iter().all(|place| place.height() <= 18.0),
+        "slim: {places:?}"
+    );
     click(&mut window, "Import models…");
     assert!(state(&window).assembling.is_some());
     let mut window = super::window();
     open_by_path(&mut window, &files::small_dataset());
-    assert!(WAYS.iter().all(|way| window.query_by_label(way).is_none()), "one's own data need no such line");
+    assert!(
+        WAYS.iter().all(|way| window.query_by_label(way).is_none()),
+        "one's own data need no such line"
+    );
 }
 
 #[test]
@@ -49,7 +68,10 @@ fn the_start_page_comes_with_close_and_from_the_menu_and_leads_back() {
     for way in WAYS {
         window.get_by_label(way);
     }
-    assert!(window.query_by_label("Export corrections…").is_none(), "no panels");
+    assert!(
+        window.query_by_label("Export corrections…").is_none(),
+        "no panels"
+    );
     press(&mut window, "Explore the example");
     assert!(!state(&window).on_start_page);
     settle(&mut window);
@@ -77,14 +99,23 @@ fn what_opens_first_is_a_preference() {
     let mut window = begun_with(preferring(OpensWith::StartPage));
     assert!(state(&window).on_start_page);
     window.get_by_label("Explore the example");
-    window.state_mut().dispatch(Action::BeginWith(OpensWith::LastStudy));
-    assert_eq!(Preferences::of(&state(&window).display).opens_with, OpensWith::LastStudy, "and is kept");
+    window
+        .state_mut()
+        .dispatch(Action::BeginWith(OpensWith::LastStudy));
+    assert_eq!(
+        Preferences::of(&state(&window).display).opens_with,
+        OpensWith::LastStudy,
+        "and is kept"
+    );
 }
 
 #[test]
 fn what_went_wrong_before_the_window_opened_is_told_in_it() {
     let trouble = "broken.json: line 1, column 12: expected a value, found the end of the file";
-    let window = begun_with(Setup { trouble: Some(trouble.to_owned()), ..preferring(OpensWith::StartPage) });
+    let window = begun_with(Setup {
+        trouble: Some(trouble.to_owned()),
+        ..preferring(OpensWith::StartPage)
+    });
     window.get_by_label(trouble);
     assert!(!state(&window).on_start_page, "the example is open");
 }

@@ -8,7 +8,9 @@ use gdcm::view::views::{PairSet, net_gain_pairs};
 use gdcm::view::{Arrangement, View, ViewGroup};
 use gdcm_method::correction::Channel;
 use gdcm_plot::figure::{DotShape, Mark, Panel};
-use gdcm_study::study::{AcrossRole, Analysis, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation};
+use gdcm_study::study::{
+    AcrossRole, Analysis, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation,
+};
 
 use super::*;
 
@@ -39,10 +41,19 @@ fn controls_of_plots_side_by_side_have_names_of_their_own() {
     let mut window = window();
     for beside in [View::Error, View::Across] {
         give(&mut window, Action::ShowBeside(Some(beside)));
-        wait_until(&mut window, "the responses", |window| beside == View::Error || state(window).across().is_some());
-        for name in ["Frequency axis", "Value axis", "Lower end of the band", "Upper end of the band"] {
-            let labels: Vec<String> =
-                window.query_all_by_label_contains(name).filter_map(|node| node.accesskit_node().label()).collect();
+        wait_until(&mut window, "the responses", |window| {
+            beside == View::Error || state(window).across().is_some()
+        });
+        for name in [
+            "Frequency axis",
+            "Value axis",
+            "Lower end of the band",
+            "Upper end of the band",
+        ] {
+            let labels: Vec<String> = window
+                .query_all_by_label_contains(name)
+                .filter_map(|node| node.accesskit_node().label())
+                .collect();
             let unique: std::collections::BTreeSet<&String> = labels.iter().collect();
             assert_eq!(unique.len(), labels.len(), "{labels:?}");
             assert!(labels.len() >= 2, "{name}: {labels:?}");
@@ -55,8 +66,17 @@ fn an_arrangement_is_remembered_and_one_command_resets_it() {
     let mut window = window();
     give(&mut window, Action::ShowBeside(Some(View::Poles)));
     let kept = Preferences::of(&state(&window).display);
-    let mut other = window_with(example(), Setup { preferences: kept, ..Setup::default() });
-    assert_eq!(state(&other).display.arrangement, state(&window).display.arrangement);
+    let mut other = window_with(
+        example(),
+        Setup {
+            preferences: kept,
+            ..Setup::default()
+        },
+    );
+    assert_eq!(
+        state(&other).display.arrangement,
+        state(&window).display.arrangement
+    );
     give(&mut other, Action::ResetLayout);
     assert_eq!(state(&other).display.arrangement, Arrangement::default());
 }
@@ -65,29 +85,52 @@ fn an_arrangement_is_remembered_and_one_command_resets_it() {
 fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
     let mut window = window();
     show(&mut window, View::Poles);
-    wait_until(&mut window, "the modes", |window| state(window).modes().is_some());
+    wait_until(&mut window, "the modes", |window| {
+        state(window).modes().is_some()
+    });
     let figure = poles(state(&window)).expect("the modes are known");
-    let marks: Vec<[f64; 2]> = figure.plots[0].panels[0].dots().map(|dot| [dot.x, dot.y]).collect();
+    let marks: Vec<[f64; 2]> = figure.plots[0].panels[0]
+        .dots()
+        .map(|dot| [dot.x, dot.y])
+        .collect();
     let condition = state(&window).condition();
-    let order: usize =
-        BundleKind::BOTH.into_iter().flat_map(|kind| condition.bundle(kind)).filter_map(|model| model.order()).sum();
+    let order: usize = BundleKind::BOTH
+        .into_iter()
+        .flat_map(|kind| condition.bundle(kind))
+        .filter_map(|model| model.order())
+        .sum();
     assert_eq!(marks.len(), order, "a mark for each state of each model");
     let (table, _) = state(&window).display.modes.table();
     // One row a real pole and one a pair of the reference model.
-    let reference =
-        condition.model(BundleKind::Physics, state(&window).shown().unwrap().representative_name(BundleKind::Physics));
+    let reference = condition.model(
+        BundleKind::Physics,
+        state(&window)
+            .shown()
+            .unwrap()
+            .representative_name(BundleKind::Physics),
+    );
     assert!(!table.rows.is_empty() && table.rows.len() <= reference.unwrap().order().unwrap());
     let names: Vec<&str> = table.rows.iter().map(|row| row[0].as_str()).collect();
     for name in ["phugoid", "Dutch roll", "spiral"] {
-        assert_eq!(names.iter().filter(|of| **of == name).count(), 1, "{name} in {names:?}");
+        assert_eq!(
+            names.iter().filter(|of| **of == name).count(),
+            1,
+            "{name} in {names:?}"
+        );
     }
 
     // The fastest pole of some perturbed model stands clear of the crowd.
     let fastest = marks.iter().min_by(|a, b| a[0].total_cmp(&b[0])).unwrap();
-    let at = state(&window).display.figures[&View::Poles].position(0, *fastest).unwrap();
+    let at = state(&window).display.figures[&View::Poles]
+        .position(0, *fastest)
+        .unwrap();
     window.hover_at(at);
     window.run_steps(2);
-    let meant = state(&window).display.hovered.clone().expect("the pole is pointed at");
+    let meant = state(&window)
+        .display
+        .hovered
+        .clone()
+        .expect("the pole is pointed at");
     window.drag_at(at);
     window.drop_at(at);
     settle(&mut window);
@@ -100,16 +143,31 @@ fn a_click_on_a_pole_rejects_its_model_and_the_modes_are_listed() {
 fn zeros_of_the_response_in_focus_are_shown_on_wish() {
     let mut window = window();
     show(&mut window, View::Poles);
-    wait_until(&mut window, "the modes", |window| state(window).modes().is_some());
+    wait_until(&mut window, "the modes", |window| {
+        state(window).modes().is_some()
+    });
     let zeros = |window: &Window| {
         let figure = poles(state(window)).expect("the modes are known");
         let of = |mark: &Mark| {
-            if let Mark::Dots(dots) = mark { usize::from(dots.shape == DotShape::Circle) * dots.dots.len() } else { 0 }
+            if let Mark::Dots(dots) = mark {
+                usize::from(dots.shape == DotShape::Circle) * dots.dots.len()
+            } else {
+                0
+            }
         };
-        figure.plots[0].panels[0].marks.iter().map(of).sum::<usize>()
+        figure.plots[0].panels[0]
+            .marks
+            .iter()
+            .map(of)
+            .sum::<usize>()
     };
     assert_eq!(zeros(&window), 0);
-    let name = format!("zeros of {}", state(&window).dataset().pair_name(state(&window).display.pair));
+    let name = format!(
+        "zeros of {}",
+        state(&window)
+            .dataset()
+            .pair_name(state(&window).display.pair)
+    );
     click(&mut window, &name);
     assert!(zeros(&window) > 0);
 }
@@ -122,7 +180,9 @@ fn one_response_of_every_condition_is_laid_over_the_others_whichever_model_it_is
         give(&mut window, Action::ShowAcross(role));
         wait_until(&mut window, "the responses", |window| {
             let state = state(window);
-            state.across().is_some_and(|curves| curves.responses.len() == 11)
+            state
+                .across()
+                .is_some_and(|curves| curves.responses.len() == 11)
         });
     }
     assert_eq!(state(&window).across().unwrap().responses.len(), 11);
@@ -146,7 +206,9 @@ fn freeing_a_response_does_not_take_its_net_gains_away() {
 fn a_click_on_a_dot_with_ctrl_takes_its_condition_out_of_the_schedule() {
     let mut window = window();
     let fifth = ConditionId(5);
-    let at = state(&window).display.figures[&View::NetGain].screen_position(0, &MarkId::Condition(fifth)).unwrap();
+    let at = state(&window).display.figures[&View::NetGain]
+        .screen_position(0, &MarkId::Condition(fifth))
+        .unwrap();
     window.hover_at(at);
     window.run_steps(1);
     let press = |pressed| Event::PointerButton {
@@ -169,9 +231,16 @@ fn a_degree_is_chosen_on_evidence() {
     let before = state(&window).study.clone();
     click(&mut window, "evidence");
     let evidence = state(&window).analysis().unwrap().compare_forms().unwrap();
-    let (conditions, shown) = state(&window).display.evidence.found().expect("the evidence is there");
+    let (conditions, shown) = state(&window)
+        .display
+        .evidence
+        .found()
+        .expect("the evidence is there");
     assert_eq!((conditions.len(), shown), (11, &evidence));
-    click(&mut window, "Sort Errors of each form of the schedule by unseen [%]");
+    click(
+        &mut window,
+        "Sort Errors of each form of the schedule by unseen [%]",
+    );
     assert_eq!(state(&window).study, before, "sorting decides nothing");
     assert!(!state(&window).unsaved);
 }
@@ -188,12 +257,26 @@ fn the_evidence_answers_which_differences_are_in_earnest() {
     let line = window.get_by_label("5.4 × expected").rect();
     for words in ["COL → NZ", "conditions 3 and 5 (45 kt)", "13 %"] {
         let is_beside = |place: egui::Rect| (place.center().y - line.center().y).abs() < 2.0;
-        assert!(window.query_all_by_label(words).any(|node| is_beside(node.rect())), "{words} at {line}");
+        assert!(
+            window
+                .query_all_by_label(words)
+                .any(|node| is_beside(node.rect())),
+            "{words} at {line}"
+        );
     }
-    let split = window.query_by_label_contains("LON → Q at equal airspeed: ").is_some();
-    assert!(split, "what the scatter is made of has a line for each response");
+    let split = window
+        .query_by_label_contains("LON → Q at equal airspeed: ")
+        .is_some();
+    assert!(
+        split,
+        "what the scatter is made of has a line for each response"
+    );
     let uncertainty = state(&window).uncertainty().unwrap();
-    assert_eq!(uncertainty.differences.len(), 35, "five responses, seven pairs of conditions");
+    assert_eq!(
+        uncertainty.differences.len(),
+        35,
+        "five responses, seven pairs of conditions"
+    );
 }
 
 #[test]
@@ -202,37 +285,64 @@ fn error_bars_come_beside_the_answer_and_can_be_switched_off() {
     show(&mut window, View::NetGain);
     wait_for_bars(&mut window);
     let panels = |window: &Window| -> Vec<Panel> {
-        let plots = gdcm::view::views::net_gain_plots(state(window)).figure.plots;
+        let plots = gdcm::view::views::net_gain_plots(state(window))
+            .figure
+            .plots;
         plots.into_iter().flat_map(|plot| plot.panels).collect()
     };
     let has_bars = |panel: &Panel| {
         let of = |mark: &Mark| matches!(mark, Mark::Intervals(bars) if bars.ends.len() == panel.dots().count());
         panel.marks.iter().any(of)
     };
-    let has_bands = |panel: &Panel| panel.marks.iter().any(|mark| matches!(mark, Mark::Envelope(_)));
-    let significant =
-        |mark: &Mark| matches!(mark, Mark::Brackets(of) if of.brackets.iter().any(|bracket| !bracket.label.is_empty()));
+    let has_bands = |panel: &Panel| {
+        panel
+            .marks
+            .iter()
+            .any(|mark| matches!(mark, Mark::Envelope(_)))
+    };
+    let significant = |mark: &Mark| matches!(mark, Mark::Brackets(of) if of.brackets.iter().any(|bracket| !bracket.label.is_empty()));
     let shown = panels(&window);
-    assert!(shown.iter().all(|panel| has_bars(panel) && has_bands(panel)));
-    assert!(shown.iter().any(|panel| panel.marks.iter().any(significant)));
+    assert!(
+        shown
+            .iter()
+            .all(|panel| has_bars(panel) && has_bands(panel))
+    );
+    assert!(
+        shown
+            .iter()
+            .any(|panel| panel.marks.iter().any(significant))
+    );
     click(&mut window, "error bars");
     let bare = panels(&window);
-    assert!(bare.iter().all(|panel| !has_bars(panel) && !has_bands(panel)));
+    assert!(
+        bare.iter()
+            .all(|panel| !has_bars(panel) && !has_bands(panel))
+    );
 }
 
 #[test]
 fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
     let mut window = window();
     let held_out = ConditionId(3);
-    let edit = Edit::SetHeldOut { condition: held_out, held_out: true };
+    let edit = Edit::SetHeldOut {
+        condition: held_out,
+        held_out: true,
+    };
     window.state_mut().dispatch(edit.into());
     settle(&mut window);
     let analysis = state(&window).analysis().unwrap();
-    assert_eq!((analysis.scheduled().len(), analysis.conditions.len()), (10, 11));
+    assert_eq!(
+        (analysis.scheduled().len(), analysis.conditions.len()),
+        (10, 11)
+    );
     show(&mut window, View::Assessment);
     let choice = gdcm::view::views::assessment_choice(state(&window));
-    let words = gdcm_study::study::held_out_verdict(state(&window).analysis().unwrap(), choice).unwrap();
-    assert!(words.starts_with("held out (3): better in ") && words.contains("; the others: better in "), "{words}");
+    let words =
+        gdcm_study::study::held_out_verdict(state(&window).analysis().unwrap(), choice).unwrap();
+    assert!(
+        words.starts_with("held out (3): better in ") && words.contains("; the others: better in "),
+        "{words}"
+    );
 }
 
 #[test]
@@ -240,7 +350,9 @@ fn an_assessment_can_be_had_for_every_model_correction_and_response() {
     let mut window = window();
     show(&mut window, View::Assessment);
     let wait = |window: &mut Window| {
-        wait_until(window, "the assessment", |window| state(window).assessment().is_some());
+        wait_until(window, "the assessment", |window| {
+            state(window).assessment().is_some()
+        });
     };
     wait(&mut window);
     let table = state(&window).assessment().unwrap();
@@ -260,7 +372,10 @@ fn an_assessment_can_be_had_for_every_model_correction_and_response() {
     let (condition, lon_q) = (shown.condition().id(), pair(&window, "Q", "LON"));
     let own = shown.shown().unwrap().cost[lon_q].unwrap();
     let change = table.change(condition, lon_q).unwrap();
-    assert!((change.total() - own.total()).abs() < 1e-9, "the same figure, computed twice");
+    assert!(
+        (change.total() - own.total()).abs() < 1e-9,
+        "the same figure, computed twice"
+    );
 }
 
 #[test]
@@ -270,13 +385,17 @@ fn variants_are_kept_compared_taken_and_removed_and_undo_brings_each_back() {
     let before = state(&window).study.clone();
     window.get_by_label("Name of the variant").focus();
     window.run_steps(2);
-    window.get_by_label("Name of the variant").type_text("as it was");
+    window
+        .get_by_label("Name of the variant")
+        .type_text("as it was");
     window.run_steps(2);
     click(&mut window, "Keep as variant");
     assert_eq!(state(&window).study.variants.len(), 1);
     let kept = state(&window).study.clone();
     click(&mut window, "Hold LON → Q");
-    wait_until(&mut window, "the variant's analysis", |window| state(window).results.variants.len() == 1);
+    wait_until(&mut window, "the variant's analysis", |window| {
+        state(window).results.variants.len() == 1
+    });
     let (_, analysis) = &state(&window).results.variants[0];
     assert_eq!(analysis.study.settings, before.settings);
     click(&mut window, "Take variant as it was");
@@ -296,7 +415,12 @@ fn variants_are_kept_compared_taken_and_removed_and_undo_brings_each_back() {
 #[test]
 fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
     let mut window = window();
-    give(&mut window, Edit::KeepVariant { name: "as it was".to_owned() });
+    give(
+        &mut window,
+        Edit::KeepVariant {
+            name: "as it was".to_owned(),
+        },
+    );
     click(&mut window, "Hold LON → Q");
     show(&mut window, View::Compare);
     click(&mut window, "Overlay variant as it was");
@@ -305,15 +429,30 @@ fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
     give(&mut window, Action::FocusPair(lon_q));
     let of = |window: &Window, role: CurveRole| {
         let drawn = &state(window).display.drawn;
-        drawn.iter().find(|curve| curve.role == role).map(|curve| curve.magnitude_db[0])
+        drawn
+            .iter()
+            .find(|curve| curve.role == role)
+            .map(|curve| curve.magnitude_db[0])
     };
-    wait_until(&mut window, "the variant's curve", |window| of(window, CurveRole::Variant).is_some());
+    wait_until(&mut window, "the variant's curve", |window| {
+        of(window, CurveRole::Variant).is_some()
+    });
     let condition = state(&window).condition().id();
-    let held = |analysis: &Analysis| analysis.condition(condition).unwrap().correction.net_gain(lon_q);
+    let held = |analysis: &Analysis| {
+        analysis
+            .condition(condition)
+            .unwrap()
+            .correction
+            .net_gain(lon_q)
+    };
     let (_, variant) = &state(&window).results.variants[0];
     let ratio_db = 20.0 * (held(variant) / held(state(&window).analysis().unwrap())).log10();
-    let drawn_db = of(&window, CurveRole::Variant).unwrap() - of(&window, CurveRole::Corrected).unwrap();
-    assert!(ratio_db.abs() > 1e-3 && (drawn_db - ratio_db).abs() < 1e-9, "{drawn_db} dB drawn, {ratio_db} dB");
+    let drawn_db =
+        of(&window, CurveRole::Variant).unwrap() - of(&window, CurveRole::Corrected).unwrap();
+    assert!(
+        ratio_db.abs() > 1e-3 && (drawn_db - ratio_db).abs() < 1e-9,
+        "{drawn_db} dB drawn, {ratio_db} dB"
+    );
     let has_key = |window: &Window| {
         let figure = gdcm::view::views::net_gain_plots(state(window)).figure;
         figure.plots[0].panels[0]
@@ -333,7 +472,10 @@ fn a_condition_pointed_at_in_the_list_is_lit_among_the_dots() {
     let row = window.get_by_label_contains("Condition 3: ").rect();
     window.hover_at(row.left_center() + vec2(30.0, 0.0));
     window.run_steps(3);
-    assert_eq!(state(&window).display.hovered_condition, Some(ConditionId(3)));
+    assert_eq!(
+        state(&window).display.hovered_condition,
+        Some(ConditionId(3))
+    );
     window.hover_at(pos2(800.0, 5.0));
     window.run_steps(3);
     assert_eq!(state(&window).display.hovered_condition, None);
@@ -343,7 +485,9 @@ fn a_condition_pointed_at_in_the_list_is_lit_among_the_dots() {
 fn a_double_click_on_its_edge_puts_a_panel_back() {
     let mut window = window();
     // Frames of a test are a quarter of a second apart.
-    window.ctx.options_mut(|options| options.input_options.max_double_click_delay = 5.0);
+    window
+        .ctx
+        .options_mut(|options| options.input_options.max_double_click_delay = 5.0);
     let edge = |window: &Window| window.get_by_label("Export corrections…").rect().left();
     let (before, y) = (edge(&window), 500.0);
     // The edge of the answer panel, some points left of what it holds.
@@ -354,13 +498,21 @@ fn a_double_click_on_its_edge_puts_a_panel_back() {
     window.run_steps(2);
     window.drop_at(at - vec2(60.0, 0.0));
     settle(&mut window);
-    assert!((before - edge(&window) - 60.0).abs() < 4.0, "{before} {}", edge(&window));
+    assert!(
+        (before - edge(&window) - 60.0).abs() < 4.0,
+        "{before} {}",
+        edge(&window)
+    );
     for _ in 0..2 {
         window.drag_at(at - vec2(60.0, 0.0));
         window.drop_at(at - vec2(60.0, 0.0));
     }
     settle(&mut window);
-    assert!((before - edge(&window)).abs() < 1.0, "{before} {}", edge(&window));
+    assert!(
+        (before - edge(&window)).abs() < 1.0,
+        "{before} {}",
+        edge(&window)
+    );
 }
 
 #[test]
@@ -369,7 +521,9 @@ fn a_figure_says_how_it_was_computed_and_follows_the_results() {
     let condition = state(&window).condition().id();
     let asked = ExplainTarget::Gain(condition, Channel::Input(0));
     give(&mut window, Action::Explain(Some(asked.clone())));
-    let title = derivation(state(&window).analysis().unwrap(), &asked).unwrap().title;
+    let title = derivation(state(&window).analysis().unwrap(), &asked)
+        .unwrap()
+        .title;
     assert!(window.query_by_label(&title).is_some(), "{title}");
     click(&mut window, "Copy the derivation");
     give(&mut window, Edit::ConstrainOnAxis);

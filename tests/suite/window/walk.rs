@@ -17,7 +17,10 @@ struct Dice(u64);
 
 impl Dice {
     fn below(&mut self, bound: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         ((self.0 >> 33) as usize) % bound
     }
 }
@@ -45,7 +48,11 @@ pub(super) fn stays_within(command: &Action) -> bool {
 
 fn random_command(window: &Window, dice: &mut Dice) -> Option<Action> {
     match dice.below(12) {
-        0 => Some(setting::ALPHA_GAIN.to(10f64.powi(dice.below(5) as i32 - 2)).into()),
+        0 => Some(
+            setting::ALPHA_GAIN
+                .to(10f64.powi(dice.below(5) as i32 - 2))
+                .into(),
+        ),
         1 => Some(setting::POINTS.to(20 + dice.below(60)).into()),
         2 => Some(Action::Undo),
         3 => Some(Action::Redo),
@@ -60,16 +67,25 @@ fn random_command(window: &Window, dice: &mut Dice) -> Option<Action> {
 
 fn assert_fresh(window: &Window, step: usize) {
     let shown = state(window).analysis().expect("there are results");
-    let fresh = Engine::default().analyze(&state(window).study, &Unobserved).unwrap();
+    let fresh = Engine::default()
+        .analyze(&state(window).study, &Unobserved)
+        .unwrap();
     assert_eq!(shown.study, state(window).study, "step {step}");
     for (id, outcome) in &fresh.conditions {
         match (outcome, &shown.conditions[id]) {
             (Ok(fresh), Ok(shown)) => {
-                assert_eq!(fresh.comparison, shown.comparison, "step {step}, condition {id}");
+                assert_eq!(
+                    fresh.comparison, shown.comparison,
+                    "step {step}, condition {id}"
+                );
                 // What may still be proven is the same optimum, or a better one.
-                let same =
-                    (fresh.gains.objective - shown.gains.objective).abs() <= 1e-6 * (1.0 + fresh.gains.objective);
-                assert!(same, "step {step}, condition {id}: {} {}", fresh.gains.objective, shown.gains.objective);
+                let same = (fresh.gains.objective - shown.gains.objective).abs()
+                    <= 1e-6 * (1.0 + fresh.gains.objective);
+                assert!(
+                    same,
+                    "step {step}, condition {id}: {} {}",
+                    fresh.gains.objective, shown.gains.objective
+                );
                 assert_eq!(fresh.delays, shown.delays, "step {step}, condition {id}");
             }
             (Err(fresh), Err(shown)) => assert_eq!(fresh, shown, "step {step}, condition {id}"),

@@ -3,14 +3,19 @@
 use std::collections::BTreeSet;
 
 use gdcm_method::correction::{
-    ActiveConstraint, Channel, ChannelCorrection, Channels, Conflict, ConflictKind, LeadPrice, Outcome, Problem,
-    Quantity, Sensitivity, Solution, kkt_residual, sensitivities,
+    ActiveConstraint, Channel, ChannelCorrection, Channels, Conflict, ConflictKind, LeadPrice,
+    Outcome, Problem, Quantity, Sensitivity, Solution, kkt_residual, sensitivities,
 };
 use gdcm_method::fidelity::Cost;
-use gdcm_method::schedule::{Regression, Schedule, ScheduleCaution, ScheduleKind, ScheduledQuantity};
-use gdcm_model::dataset::{self, BundleKind, Condition, ConditionId, Model, Pair, PairTable, Provenance};
+use gdcm_method::schedule::{
+    Regression, Schedule, ScheduleCaution, ScheduleKind, ScheduledQuantity,
+};
+use gdcm_model::dataset::{
+    self, BundleKind, Condition, ConditionId, Model, Pair, PairTable, Provenance,
+};
 use gdcm_study::study::{
-    Analysis, AxisCost, Caution, ConditionAnalysis, CouplingCost, CouplingsAssessment, lead_cautions,
+    Analysis, AxisCost, Caution, ConditionAnalysis, CouplingCost, CouplingsAssessment,
+    lead_cautions,
 };
 use serde_json::{Map, Value, json};
 
@@ -27,13 +32,15 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
     let names = ChannelNames::of(analysis);
     let is_chosen = |condition: &&std::sync::Arc<Condition>| chosen.contains(&condition.id());
     let without = |id: ConditionId, why: &str| json!({"id": id.0, "why": why});
-    let (mut conditions, mut failed, mut assessed, mut left_out) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut conditions, mut failed, mut assessed, mut left_out) =
+        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for condition in dataset.conditions().iter().filter(is_chosen) {
         let id = condition.id();
         match analysis.conditions.get(&id) {
             Some(Ok(result)) => conditions.push(names.condition(condition, result)),
             Some(Err(failure)) => {
-                failed.push(json!({"id": id.0, "code": failure.code(), "why": failure.to_string()}));
+                failed
+                    .push(json!({"id": id.0, "code": failure.code(), "why": failure.to_string()}));
             }
             None => {}
         }
@@ -51,7 +58,10 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
     }
     let mut settings = analysis.study.settings.named(dataset);
     // Readers of older programs find there whether the schedule below has delays.
-    settings.schedule.delays = analysis.schedule.as_ref().is_ok_and(|schedule| schedule.delays.is_some());
+    settings.schedule.delays = analysis
+        .schedule
+        .as_ref()
+        .is_ok_and(|schedule| schedule.delays.is_some());
     let corrections = json!({
         "format": NAME,
         "version": VERSION,
@@ -74,12 +84,16 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
 
 /// Names and units of channels, in the order of every list and table.
 fn channels(channels: &[dataset::Channel]) -> Value {
-    channels.iter().map(|channel| json!({"name": channel.name, "unit": channel.unit})).collect()
+    channels
+        .iter()
+        .map(|channel| json!({"name": channel.name, "unit": channel.unit}))
+        .collect()
 }
 
 /// Whether a member says nothing: null, false, and empty lists.
 pub(super) fn says_nothing(value: &Value) -> bool {
-    matches!(value, Value::Null | Value::Bool(false)) || value.as_array().is_some_and(|list| list.is_empty())
+    matches!(value, Value::Null | Value::Bool(false))
+        || value.as_array().is_some_and(|list| list.is_empty())
 }
 
 /// An object without those of its members that say nothing.
@@ -92,12 +106,18 @@ pub(crate) fn without_empty(mut object: Value, members: &[&str]) -> Value {
 
 /// A table as rows of outputs; what is not finite is null, for JSON has no such numbers.
 fn rows<T>(table: &PairTable<Option<T>>, figure: impl Fn(&T) -> f64) -> Value {
-    rows_of(table.outputs(), table.inputs(), |pair| table[pair].as_ref().map(&figure).into())
+    rows_of(table.outputs(), table.inputs(), |pair| {
+        table[pair].as_ref().map(&figure).into()
+    })
 }
 
 /// A table as rows of outputs.
 pub(super) fn rows_of(outputs: usize, inputs: usize, entry: impl Fn(Pair) -> Value) -> Value {
-    let row = |output| (0..inputs).map(|input| entry(Pair { output, input })).collect::<Value>();
+    let row = |output| {
+        (0..inputs)
+            .map(|input| entry(Pair { output, input }))
+            .collect::<Value>()
+    };
     (0..outputs).map(row).collect()
 }
 
@@ -111,7 +131,11 @@ pub(super) struct ChannelNames<'a> {
 impl<'a> ChannelNames<'a> {
     fn of(analysis: &'a Analysis) -> Self {
         let (inputs, outputs) = analysis.study.dataset.names_of_channels();
-        Self { analysis, inputs, outputs }
+        Self {
+            analysis,
+            inputs,
+            outputs,
+        }
     }
 
     /// The names of a response, output first.
@@ -126,7 +150,10 @@ impl<'a> ChannelNames<'a> {
     /// What is known of a response, behind the names of its output and its input.
     pub(super) fn of_pair(&self, pair: Pair, entries: Value) -> Value {
         let (output, input) = self.pair(pair);
-        let mut members = Map::from_iter([("output".to_owned(), output.into()), ("input".to_owned(), input.into())]);
+        let mut members = Map::from_iter([
+            ("output".to_owned(), output.into()),
+            ("input".to_owned(), input.into()),
+        ]);
         if let Value::Object(entries) = entries {
             members.extend(entries);
         }
@@ -136,7 +163,11 @@ impl<'a> ChannelNames<'a> {
     /// A value for each channel, by its name.
     pub(super) fn by_channel<T: Into<Value>>(&self, value: impl Fn(Channel) -> T) -> Value {
         let named = |names: &[String], channel: fn(usize) -> Channel| -> Value {
-            names.iter().enumerate().map(|(at, name)| (name.clone(), value(channel(at)).into())).collect()
+            names
+                .iter()
+                .enumerate()
+                .map(|(at, name)| (name.clone(), value(channel(at)).into()))
+                .collect()
         };
         json!({"inputs": named(&self.inputs, Channel::Input), "outputs": named(&self.outputs, Channel::Output)})
     }
@@ -177,16 +208,27 @@ impl<'a> ChannelNames<'a> {
         let (choice, correction) = (study.choice(condition.id()), &result.correction);
         let words = |caution: &Caution| caution.words(|pair| study.dataset.pair_name(pair));
         let set_aside = result.cautions.iter().filter_map(|caution| match caution {
-            Caution::SetAside { model, .. } => Some(json!({"model": model.name, "why": words(caution)})),
+            Caution::SetAside { model, .. } => {
+                Some(json!({"model": model.name, "why": words(caution)}))
+            }
             _ => None,
         });
         let reasons = BundleKind::BOTH.into_iter().flat_map(|kind| {
             let reasons = choice.bundle(kind).reasons.iter();
-            reasons.map(move |(model, why)| json!({"bundle": kind.to_string(), "model": model, "why": why}))
+            reasons.map(
+                move |(model, why)| json!({"bundle": kind.to_string(), "model": model, "why": why}),
+            )
         });
-        let doubts = result.doubts.iter().map(|doubt| doubt.words(&study.dataset));
-        let cautions = doubts.chain(result.cautions.iter().map(words)).chain(lead_cautions(study, result));
-        let corrected = result.cost.map(|_, change| change.map(|change| change.corrected));
+        let doubts = result
+            .doubts
+            .iter()
+            .map(|doubt| doubt.words(&study.dataset));
+        let cautions = doubts
+            .chain(result.cautions.iter().map(words))
+            .chain(lead_cautions(study, result));
+        let corrected = result
+            .cost
+            .map(|_, change| change.map(|change| change.corrected));
         let costs = |table: &PairTable<Option<Cost>>| json!({"mag": rows(table, |cost| cost.magnitude), "phase": rows(table, |cost| cost.phase)});
         let found = json!({
             "id": condition.id().0,
@@ -226,7 +268,17 @@ impl<'a> ChannelNames<'a> {
             "J": {"uncorrected": costs(&result.comparison.representative.cost), "corrected": costs(&corrected)},
             "cautions": cautions.collect::<Value>(),
         });
-        without_empty(found, &["reasons", "sources", "held_out", "lead", "bars", "couplings"])
+        without_empty(
+            found,
+            &[
+                "reasons",
+                "sources",
+                "held_out",
+                "lead",
+                "bars",
+                "couplings",
+            ],
+        )
     }
 
     fn gain_solution(&self, result: &ConditionAnalysis) -> Value {
@@ -278,7 +330,8 @@ impl<'a> ChannelNames<'a> {
     /// Why the gains, or the delays, are not matched, what would help, and what holding costs.
     fn explanation(&self, problem: &Problem, solution: &Solution) -> Value {
         let conflict = |of: &Conflict| self.conflict(of, of.words(&self.inputs, &self.outputs));
-        let agreement = |of: &Conflict| self.conflict(of, of.agreement_words(&self.inputs, &self.outputs));
+        let agreement =
+            |of: &Conflict| self.conflict(of, of.agreement_words(&self.inputs, &self.outputs));
         let remedy = solution.remedy.as_ref().map(|remedy| {
             let free = self.pairs(remedy.free.iter().copied());
             json!({"upper": remedy.upper, "lower": remedy.lower, "free": free})
@@ -295,14 +348,28 @@ impl<'a> ChannelNames<'a> {
 
     fn conflict(&self, conflict: &Conflict, words: String) -> Value {
         let (kind, figure, upper, lower) = match conflict.kind {
-            ConflictKind::AboveUpper { asked, upper, .. } => ("upper_bound", Some(asked), Some(upper), None),
-            ConflictKind::BelowLower { asked, lower: None, .. } => ("lead", Some(-asked), None, None),
-            ConflictKind::BelowLower { asked, lower, .. } => ("lower_bound", Some(asked), None, lower),
-            ConflictKind::TooFarApart { asked, upper, lower, .. } => ("both_bounds", Some(asked), Some(upper), lower),
+            ConflictKind::AboveUpper { asked, upper, .. } => {
+                ("upper_bound", Some(asked), Some(upper), None)
+            }
+            ConflictKind::BelowLower {
+                asked, lower: None, ..
+            } => ("lead", Some(-asked), None, None),
+            ConflictKind::BelowLower { asked, lower, .. } => {
+                ("lower_bound", Some(asked), None, lower)
+            }
+            ConflictKind::TooFarApart {
+                asked,
+                upper,
+                lower,
+                ..
+            } => ("both_bounds", Some(asked), Some(upper), lower),
             ConflictKind::Loop { mismatch } => ("loop", Some(mismatch), None, None),
             ConflictKind::Unclear => ("unclear", None, None, None),
         };
-        let channels = conflict.channels().into_iter().map(|channel| channel.name(&self.inputs, &self.outputs));
+        let channels = conflict
+            .channels()
+            .into_iter()
+            .map(|channel| channel.name(&self.inputs, &self.outputs));
         json!({
             "kind": kind,
             "entries": self.pairs(conflict.entries.iter().copied()),
@@ -402,7 +469,12 @@ impl<'a> ChannelNames<'a> {
                 "unit": "J",
                 "text": text,
             }),
-            ScheduleCaution::SignedDelayApart { channel, condition, tau_s, elsewhere_s } => json!({
+            ScheduleCaution::SignedDelayApart {
+                channel,
+                condition,
+                tau_s,
+                elsewhere_s,
+            } => json!({
                 "code": caution.code(),
                 "condition": condition.0,
                 "channel": channel.name(&self.inputs, &self.outputs),
@@ -423,7 +495,16 @@ impl<'a> ChannelNames<'a> {
 /// Where the models come from, as far as their dataset says.
 fn sources(condition: &Condition) -> Value {
     let entry = |bundle: BundleKind, model: &Model| {
-        let Provenance { file, sha256, variable, made, note, records, unused, .. } = model.source.as_ref()?;
+        let Provenance {
+            file,
+            sha256,
+            variable,
+            made,
+            note,
+            records,
+            unused,
+            ..
+        } = model.source.as_ref()?;
         let source = json!({
             "bundle": bundle.to_string(),
             "model": model.name,
@@ -437,15 +518,30 @@ fn sources(condition: &Condition) -> Value {
         });
         Some(without_empty(source, &["records", "unused"]))
     };
-    let of_bundle = |kind| condition.bundle(kind).iter().filter_map(move |model| entry(kind, model));
+    let of_bundle = |kind| {
+        condition
+            .bundle(kind)
+            .iter()
+            .filter_map(move |model| entry(kind, model))
+    };
     BundleKind::BOTH.into_iter().flat_map(of_bundle).collect()
 }
 
 /// Discontinuity ratios by name, in file order; none where none could be computed.
 fn discontinuity(condition: &Condition, result: &ConditionAnalysis) -> Value {
-    let ratios = result.figures.discontinuity.as_ref().map(|found| found.ratios.as_slice()).unwrap_or_default();
+    let ratios = result
+        .figures
+        .discontinuity
+        .as_ref()
+        .map(|found| found.ratios.as_slice())
+        .unwrap_or_default();
     let models = condition.bundle(BundleKind::Physics).iter();
-    Value::Object(models.zip(ratios).map(|(model, ratio)| (model.name.clone(), json!(ratio))).collect())
+    Value::Object(
+        models
+            .zip(ratios)
+            .map(|(model, ratio)| (model.name.clone(), json!(ratio)))
+            .collect(),
+    )
 }
 
 // Which couplings the physics models have, and what these are worth (M16).
@@ -454,7 +550,9 @@ fn discontinuity(condition: &Condition, result: &ConditionAnalysis) -> Value {
 pub(super) fn couplings(analysis: &Analysis) -> Value {
     let fitted = match &analysis.couplings {
         None => return Value::Null,
-        Some(Err(error)) => return json!({"why": error.words(&analysis.study.dataset.names_of_channels().0)}),
+        Some(Err(error)) => {
+            return json!({"why": error.words(&analysis.study.dataset.names_of_channels().0)});
+        }
         Some(Ok(fitted)) => fitted,
     };
     let feedback = fitted.matrices().feedback();
@@ -462,7 +560,9 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
     let assessment = analysis.coupling_assessment.as_deref();
     let deviations = assessment.map(CouplingsAssessment::feedback);
     // Rows are of the input that receives.
-    let rows = |entry: &dyn Fn(usize, usize) -> Value| rows_of(inputs, outputs, |at: Pair| entry(at.output, at.input));
+    let rows = |entry: &dyn Fn(usize, usize) -> Value| {
+        rows_of(inputs, outputs, |at: Pair| entry(at.output, at.input))
+    };
     let costs = assessment.map(|assessment| &assessment.costs);
     let found = json!({
         "conditions": fitted.problem.conditions.iter().map(|of| of.id.0).collect::<Value>(),
@@ -475,7 +575,17 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
         "left_out": costs.and_then(|costs| costs.left_out).map(coupling_cost),
         "words": analysis.coupling_remarks().into_iter().map(|remark| remark.text).collect::<Value>(),
     });
-    without_empty(found, &["feedback_sd", "uncorrected", "own", "scheduled", "left_out", "words"])
+    without_empty(
+        found,
+        &[
+            "feedback_sd",
+            "uncorrected",
+            "own",
+            "scheduled",
+            "left_out",
+            "words",
+        ],
+    )
 }
 
 fn axis_cost(of: AxisCost) -> Value {
@@ -493,14 +603,18 @@ fn coupling_cost(of: CouplingCost) -> Value {
 
 /// The mixing of a condition, ones on its diagonal, and what the couplings do to its physics representative; null without couplings.
 pub(super) fn condition_couplings(analysis: &Analysis, result: &ConditionAnalysis) -> Value {
-    let Some(coupled) = &result.coupled else { return Value::Null };
+    let Some(coupled) = &result.coupled else {
+        return Value::Null;
+    };
     let airspeed_kt = result.condition.flight_state().airspeed_kt;
     let mixing = coupled.fitted.matrices().normalised_mixing(airspeed_kt);
     let assessment = analysis.coupling_assessment.as_deref();
     let deviations = assessment.map(|assessment| assessment.mixing(airspeed_kt));
     let of = assessment.and_then(|assessment| assessment.conditions.get(&result.condition.id()));
     let rows = |entry: &dyn Fn(usize, usize) -> Value| {
-        rows_of(mixing.nrows(), mixing.ncols(), |at: Pair| entry(at.output, at.input))
+        rows_of(mixing.nrows(), mixing.ncols(), |at: Pair| {
+            entry(at.output, at.input)
+        })
     };
     let poles = of.and_then(|of| of.poles.as_ref().ok()).map(|shifts| {
         let pole = |shift: &gdcm_method::couplings::PoleShift| {
@@ -522,5 +636,13 @@ pub(super) fn condition_couplings(analysis: &Analysis, result: &ConditionAnalysi
         }),
         "left_out": of.and_then(|of| of.left_out).map(coupling_cost),
     });
-    without_empty(found, &["mixing_sd", "poles_moved", "least_singular_value", "left_out"])
+    without_empty(
+        found,
+        &[
+            "mixing_sd",
+            "poles_moved",
+            "least_singular_value",
+            "left_out",
+        ],
+    )
 }

@@ -28,7 +28,12 @@ const NAME: &str = "gdcm-corrections";
 const VERSION: u64 = 1;
 
 /// The names of the files of results; the last holds the checksums of the others.
-pub const RESULT_FILES: [&str; 4] = ["corrections.json", "corrections.csv", "assessment.csv", "corrections.sha256"];
+pub const RESULT_FILES: [&str; 4] = [
+    "corrections.json",
+    "corrections.csv",
+    "assessment.csv",
+    "corrections.sha256",
+];
 
 /// Where the files of results stand in a directory.
 pub fn result_paths(directory: &Path) -> [PathBuf; 4] {
@@ -49,7 +54,9 @@ pub fn write_results(
     let [json, channels, responses, checksums] = result_paths(directory);
     outputs.check(&[&json, &channels, &responses, &checksums])?;
     make_directory(directory)?;
-    outputs.add(&json, |file| write_corrections(analysis, sha256, chosen, file))?;
+    outputs.add(&json, |file| {
+        write_corrections(analysis, sha256, chosen, file)
+    })?;
     outputs.add(&channels, |file| channel_table(analysis, chosen, file))?;
     outputs.add(&responses, |file| response_table(analysis, chosen, file))?;
     outputs.add_checksums(&checksums)?;
@@ -97,65 +104,200 @@ type ResponseColumn = (&'static str, fn(&ResponseRow<'_>) -> String);
 
 const CHANNEL_COLUMNS: [ChannelColumn; 23] = [
     ("condition", |row| row.found.condition.id().to_string()),
-    ("airspeed_kt", |row| row.found.condition.flight_state().airspeed_kt.to_string()),
-    ("kind", |row| if matches!(row.channel, Channel::Input(_)) { "input" } else { "output" }.to_owned()),
+    ("airspeed_kt", |row| {
+        row.found.condition.flight_state().airspeed_kt.to_string()
+    }),
+    ("kind", |row| {
+        if matches!(row.channel, Channel::Input(_)) {
+            "input"
+        } else {
+            "output"
+        }
+        .to_owned()
+    }),
     ("channel", |row| row.name()),
-    ("gain", |row| cell(row.found.own().map(|own| own.gain(row.channel)))),
-    ("delay_s", |row| cell(row.found.own().map(|own| own.pure_delay_s(row.channel)))),
-    ("scheduled_gain", |row| cell(row.found.scheduled.as_ref().map(|of| of.gain(row.channel)))),
-    ("scheduled_delay_s", |row| cell(row.found.scheduled.as_ref().map(|of| of.pure_delay_s(row.channel)))),
+    ("gain", |row| {
+        cell(row.found.own().map(|own| own.gain(row.channel)))
+    }),
+    ("delay_s", |row| {
+        cell(row.found.own().map(|own| own.pure_delay_s(row.channel)))
+    }),
+    ("scheduled_gain", |row| {
+        cell(row.found.scheduled.as_ref().map(|of| of.gain(row.channel)))
+    }),
+    ("scheduled_delay_s", |row| {
+        cell(
+            row.found
+                .scheduled
+                .as_ref()
+                .map(|of| of.pure_delay_s(row.channel)),
+        )
+    }),
     ("tau_s", |row| cell(row.tau_s(row.found.own()))),
     ("lead_s", |row| cell(row.filter().map(LeadFilter::lead_s))),
-    ("zero_rad_s", |row| cell(row.filter().map(LeadFilter::zero_rad_s))),
-    ("lag_rad_s", |row| cell(row.filter().map(LeadFilter::lag_rad_s))),
-    ("gain_at_infinity_db", |row| cell(row.filter().map(LeadFilter::gain_at_infinity_db))),
-    ("scheduled_tau_s", |row| cell(row.tau_s(row.found.scheduled.as_ref()))),
-    ("gain_low", |row| row.found.end(Scalar::ChannelGain(row.channel), 0)),
-    ("gain_high", |row| row.found.end(Scalar::ChannelGain(row.channel), 1)),
-    ("delay_low_s", |row| row.found.end(Scalar::ChannelDelay(row.channel), 0)),
-    ("delay_high_s", |row| row.found.end(Scalar::ChannelDelay(row.channel), 1)),
-    ("u_gain_physics", |row| row.found.deviation(Scalar::ChannelGain(row.channel), |bar| bar.trim)),
-    ("u_gain_identification", |row| row.found.deviation(Scalar::ChannelGain(row.channel), |bar| bar.identification)),
-    ("gain_above_band_db", |row| cell(row.price().map(|price| price.gains_db[row.channel]))),
-    ("not_valid_above_rad_s", |row| cell(row.price().map(|price| price.limit_rad_s))),
+    ("zero_rad_s", |row| {
+        cell(row.filter().map(LeadFilter::zero_rad_s))
+    }),
+    ("lag_rad_s", |row| {
+        cell(row.filter().map(LeadFilter::lag_rad_s))
+    }),
+    ("gain_at_infinity_db", |row| {
+        cell(row.filter().map(LeadFilter::gain_at_infinity_db))
+    }),
+    ("scheduled_tau_s", |row| {
+        cell(row.tau_s(row.found.scheduled.as_ref()))
+    }),
+    ("gain_low", |row| {
+        row.found.end(Scalar::ChannelGain(row.channel), 0)
+    }),
+    ("gain_high", |row| {
+        row.found.end(Scalar::ChannelGain(row.channel), 1)
+    }),
+    ("delay_low_s", |row| {
+        row.found.end(Scalar::ChannelDelay(row.channel), 0)
+    }),
+    ("delay_high_s", |row| {
+        row.found.end(Scalar::ChannelDelay(row.channel), 1)
+    }),
+    ("u_gain_physics", |row| {
+        row.found
+            .deviation(Scalar::ChannelGain(row.channel), |bar| bar.trim)
+    }),
+    ("u_gain_identification", |row| {
+        row.found
+            .deviation(Scalar::ChannelGain(row.channel), |bar| bar.identification)
+    }),
+    ("gain_above_band_db", |row| {
+        cell(row.price().map(|price| price.gains_db[row.channel]))
+    }),
+    ("not_valid_above_rad_s", |row| {
+        cell(row.price().map(|price| price.limit_rad_s))
+    }),
     ("contains", |row| row.found.contains.clone()),
 ];
 
 const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
     ("condition", |row| row.found.condition.id().to_string()),
-    ("airspeed_kt", |row| row.found.condition.flight_state().airspeed_kt.to_string()),
-    ("output", |row| row.found.analysis.study.dataset.outputs()[row.pair.output].name.clone()),
-    ("input", |row| row.found.analysis.study.dataset.inputs()[row.pair.input].name.clone()),
-    ("on_axis", |row| row.found.analysis.study.dataset.on_axis()[row.pair].to_string()),
-    ("held", |row| row.found.result().is_some_and(|result| result.held()[row.pair]).to_string()),
-    ("G", |row| cell(row.found.result().and_then(|result| result.wanted_gain(row.pair)))),
-    ("D_s", |row| cell(row.found.result().and_then(|result| result.comparison.delta.delay_s[row.pair]))),
-    ("net_gain", |row| cell(row.found.own().map(|own| own.net_gain(row.pair)))),
-    ("net_delay_s", |row| cell(row.found.own().map(|own| own.net_delay_s(row.pair)))),
-    ("scheduled_net_gain", |row| cell(row.found.scheduled.as_ref().map(|of| of.net_gain(row.pair)))),
-    ("scheduled_net_delay_s", |row| cell(row.found.scheduled.as_ref().map(|of| of.net_delay_s(row.pair)))),
-    ("J_mag_uncorrected", |row| cell(row.change().map(|change| change.uncorrected.magnitude))),
-    ("J_phase_uncorrected", |row| cell(row.change().map(|change| change.uncorrected.phase))),
-    ("J_mag_scheduled", |row| cell(row.change().map(|change| change.corrected.magnitude))),
-    ("J_phase_scheduled", |row| cell(row.change().map(|change| change.corrected.phase))),
-    ("dJ_mag", |row| cell(row.change().map(|change| change.magnitude()))),
-    ("dJ_phase", |row| cell(row.change().map(|change| change.phase()))),
+    ("airspeed_kt", |row| {
+        row.found.condition.flight_state().airspeed_kt.to_string()
+    }),
+    ("output", |row| {
+        row.found.analysis.study.dataset.outputs()[row.pair.output]
+            .name
+            .clone()
+    }),
+    ("input", |row| {
+        row.found.analysis.study.dataset.inputs()[row.pair.input]
+            .name
+            .clone()
+    }),
+    ("on_axis", |row| {
+        row.found.analysis.study.dataset.on_axis()[row.pair].to_string()
+    }),
+    ("held", |row| {
+        row.found
+            .result()
+            .is_some_and(|result| result.held()[row.pair])
+            .to_string()
+    }),
+    ("G", |row| {
+        cell(
+            row.found
+                .result()
+                .and_then(|result| result.wanted_gain(row.pair)),
+        )
+    }),
+    ("D_s", |row| {
+        cell(
+            row.found
+                .result()
+                .and_then(|result| result.comparison.delta.delay_s[row.pair]),
+        )
+    }),
+    ("net_gain", |row| {
+        cell(row.found.own().map(|own| own.net_gain(row.pair)))
+    }),
+    ("net_delay_s", |row| {
+        cell(row.found.own().map(|own| own.net_delay_s(row.pair)))
+    }),
+    ("scheduled_net_gain", |row| {
+        cell(row.found.scheduled.as_ref().map(|of| of.net_gain(row.pair)))
+    }),
+    ("scheduled_net_delay_s", |row| {
+        cell(
+            row.found
+                .scheduled
+                .as_ref()
+                .map(|of| of.net_delay_s(row.pair)),
+        )
+    }),
+    ("J_mag_uncorrected", |row| {
+        cell(row.change().map(|change| change.uncorrected.magnitude))
+    }),
+    ("J_phase_uncorrected", |row| {
+        cell(row.change().map(|change| change.uncorrected.phase))
+    }),
+    ("J_mag_scheduled", |row| {
+        cell(row.change().map(|change| change.corrected.magnitude))
+    }),
+    ("J_phase_scheduled", |row| {
+        cell(row.change().map(|change| change.corrected.phase))
+    }),
+    ("dJ_mag", |row| {
+        cell(row.change().map(|change| change.magnitude()))
+    }),
+    ("dJ_phase", |row| {
+        cell(row.change().map(|change| change.phase()))
+    }),
     ("dJ", |row| cell(row.change().map(|change| change.total()))),
     ("left_out", |row| row.left_out()),
-    ("D_band_s", |row| cell(row.found.result().and_then(|result| result.comparison.delta.band_delay_s[row.pair]))),
-    ("held_out", |row| row.found.analysis.study.choice(row.found.condition.id()).held_out.to_string()),
+    ("D_band_s", |row| {
+        cell(
+            row.found
+                .result()
+                .and_then(|result| result.comparison.delta.band_delay_s[row.pair]),
+        )
+    }),
+    ("held_out", |row| {
+        row.found
+            .analysis
+            .study
+            .choice(row.found.condition.id())
+            .held_out
+            .to_string()
+    }),
     ("G_low", |row| row.found.end(Scalar::Gain(row.pair), 0)),
     ("G_high", |row| row.found.end(Scalar::Gain(row.pair), 1)),
     ("D_low_s", |row| row.found.end(Scalar::Delay(row.pair), 0)),
     ("D_high_s", |row| row.found.end(Scalar::Delay(row.pair), 1)),
-    ("net_gain_low", |row| row.found.end(Scalar::NetGain(row.pair), 0)),
-    ("net_gain_high", |row| row.found.end(Scalar::NetGain(row.pair), 1)),
-    ("u_net_gain_physics", |row| row.found.deviation(Scalar::NetGain(row.pair), |bar| bar.trim)),
-    ("u_net_gain_identification", |row| row.found.deviation(Scalar::NetGain(row.pair), |bar| bar.identification)),
-    ("degrees_of_freedom", |row| cell(row.found.bar(Scalar::NetGain(row.pair)).and_then(Bar::degrees_of_freedom))),
+    ("net_gain_low", |row| {
+        row.found.end(Scalar::NetGain(row.pair), 0)
+    }),
+    ("net_gain_high", |row| {
+        row.found.end(Scalar::NetGain(row.pair), 1)
+    }),
+    ("u_net_gain_physics", |row| {
+        row.found
+            .deviation(Scalar::NetGain(row.pair), |bar| bar.trim)
+    }),
+    ("u_net_gain_identification", |row| {
+        row.found
+            .deviation(Scalar::NetGain(row.pair), |bar| bar.identification)
+    }),
+    ("degrees_of_freedom", |row| {
+        cell(
+            row.found
+                .bar(Scalar::NetGain(row.pair))
+                .and_then(Bar::degrees_of_freedom),
+        )
+    }),
     ("left_in_band", |row| row.left_in_band()),
-    ("D_band_low_s", |row| row.found.end(Scalar::BandDelay(row.pair), 0)),
-    ("D_band_high_s", |row| row.found.end(Scalar::BandDelay(row.pair), 1)),
+    ("D_band_low_s", |row| {
+        row.found.end(Scalar::BandDelay(row.pair), 0)
+    }),
+    ("D_band_high_s", |row| {
+        row.found.end(Scalar::BandDelay(row.pair), 1)
+    }),
 ];
 
 /// `corrections.csv`: the channel gains (ratios) and delays \[s\] of the chosen conditions, and the scheduled ones at the same
@@ -168,7 +310,10 @@ pub(crate) fn channel_table(
 ) -> io::Result<()> {
     let channels = all_channels(&analysis.study.dataset);
     let rows = conditions(analysis, chosen).flat_map(|found| {
-        let row = move |&channel: &Channel| ChannelRow { found: found.clone(), channel };
+        let row = move |&channel: &Channel| ChannelRow {
+            found: found.clone(),
+            channel,
+        };
         channels.iter().map(row)
     });
     let couplings = analysis.fitted_couplings().is_some();
@@ -176,9 +321,15 @@ pub(crate) fn channel_table(
     let mixed = inputs.iter().map(|name| format!("mixing_{name}"));
     let fed_back = outputs.iter().map(|name| format!("feedback_{name}"));
     let heading = CHANNEL_COLUMNS.iter().map(|(name, _)| (*name).to_owned());
-    let heading: Vec<String> = heading.chain(mixed.chain(fed_back).filter(|_| couplings)).collect();
+    let heading: Vec<String> = heading
+        .chain(mixed.chain(fed_back).filter(|_| couplings))
+        .collect();
     let cells = |row: ChannelRow<'_>| -> Vec<String> {
-        CHANNEL_COLUMNS.iter().map(|(_, cell)| cell(&row)).chain(row.coupling_cells()).collect()
+        CHANNEL_COLUMNS
+            .iter()
+            .map(|(_, cell)| cell(&row))
+            .chain(row.coupling_cells())
+            .collect()
     };
     write_records(file, std::iter::once(heading).chain(rows.map(cells)))
 }
@@ -193,16 +344,28 @@ pub(super) fn response_table(
 ) -> io::Result<()> {
     let pairs: Vec<Pair> = analysis.study.dataset.on_axis().pairs().collect();
     let rows = conditions(analysis, chosen).flat_map(|found| {
-        let row = move |&pair: &Pair| ResponseRow { found: found.clone(), pair };
+        let row = move |&pair: &Pair| ResponseRow {
+            found: found.clone(),
+            pair,
+        };
         pairs.iter().map(row)
     });
     let heading = RESPONSE_COLUMNS.map(|(name, _)| name.to_owned());
-    write_records(file, std::iter::once(heading).chain(rows.map(|row| RESPONSE_COLUMNS.map(|(_, cell)| cell(&row)))))
+    write_records(
+        file,
+        std::iter::once(heading)
+            .chain(rows.map(|row| RESPONSE_COLUMNS.map(|(_, cell)| cell(&row)))),
+    )
 }
 
-fn conditions<'a>(analysis: &'a Analysis, chosen: &BTreeSet<ConditionId>) -> impl Iterator<Item = Found<'a>> {
+fn conditions<'a>(
+    analysis: &'a Analysis,
+    chosen: &BTreeSet<ConditionId>,
+) -> impl Iterator<Item = Found<'a>> {
     let conditions = analysis.study.dataset.conditions();
-    let chosen = conditions.iter().filter(|condition| chosen.contains(&condition.id()));
+    let chosen = conditions
+        .iter()
+        .filter(|condition| chosen.contains(&condition.id()));
     let contents = ExportContents::of_results(analysis);
     let mut contains = contents.words();
     for words in contents.left_out_words(&analysis.study.dataset) {
@@ -210,8 +373,17 @@ fn conditions<'a>(analysis: &'a Analysis, chosen: &BTreeSet<ConditionId>) -> imp
     }
     chosen.map(move |condition| {
         let contains = contains.clone();
-        let scheduled = analysis.schedule.as_ref().ok().map(|schedule| schedule.at_state(condition.flight_state()));
-        Found { analysis, condition, scheduled, contains }
+        let scheduled = analysis
+            .schedule
+            .as_ref()
+            .ok()
+            .map(|schedule| schedule.at_state(condition.flight_state()));
+        Found {
+            analysis,
+            condition,
+            scheduled,
+            contains,
+        }
     })
 }
 
@@ -226,19 +398,43 @@ impl Found<'_> {
     }
 
     fn bar(&self, scalar: Scalar) -> Option<&Bar> {
-        self.analysis.uncertainty.as_ref()?.bar(self.condition.id(), scalar)
+        self.analysis
+            .uncertainty
+            .as_ref()?
+            .bar(self.condition.id(), scalar)
     }
 
     /// The lower (0) or upper (1) end of the whole bar, of a gain as a ratio.
     fn end(&self, scalar: Scalar, end: usize) -> String {
-        let level = self.analysis.uncertainty.as_ref().map(|uncertainty| uncertainty.level);
-        let ends = self.bar(scalar).zip(level).and_then(|(bar, level)| bar.interval(level));
-        cell(ends.map(|ends| if scalar.is_delay() { ends[end] } else { ends[end].exp() }))
+        let level = self
+            .analysis
+            .uncertainty
+            .as_ref()
+            .map(|uncertainty| uncertainty.level);
+        let ends = self
+            .bar(scalar)
+            .zip(level)
+            .and_then(|(bar, level)| bar.interval(level));
+        cell(ends.map(|ends| {
+            if scalar.is_delay() {
+                ends[end]
+            } else {
+                ends[end].exp()
+            }
+        }))
     }
 
     /// The standard deviation of a component of a bar.
-    fn deviation(&self, scalar: Scalar, component: fn(&Bar) -> Option<VarianceComponent>) -> String {
-        cell(self.bar(scalar).and_then(component).map(|component| component.variance.sqrt()))
+    fn deviation(
+        &self,
+        scalar: Scalar,
+        component: fn(&Bar) -> Option<VarianceComponent>,
+    ) -> String {
+        cell(
+            self.bar(scalar)
+                .and_then(component)
+                .map(|component| component.variance.sqrt()),
+        )
     }
 }
 
@@ -254,13 +450,21 @@ impl ChannelRow<'_> {
 
     /// Of an input what it takes of each input and of each output; nothing without couplings.
     fn coupling_cells(&self) -> Vec<String> {
-        let Some(fitted) = self.found.analysis.fitted_couplings() else { return Vec::new() };
-        let (matrices, airspeed_kt) = (fitted.matrices(), self.found.condition.flight_state().airspeed_kt);
+        let Some(fitted) = self.found.analysis.fitted_couplings() else {
+            return Vec::new();
+        };
+        let (matrices, airspeed_kt) = (
+            fitted.matrices(),
+            self.found.condition.flight_state().airspeed_kt,
+        );
         let (mixing, feedback) = (matrices.normalised_mixing(airspeed_kt), matrices.feedback());
         match self.channel {
             Channel::Input(to) => {
                 let taken = (0..mixing.ncols()).map(|from| mixing[(to, from)]);
-                taken.chain((0..feedback.ncols()).map(|of| feedback[(to, of)])).map(|value| cell(Some(value))).collect()
+                taken
+                    .chain((0..feedback.ncols()).map(|of| feedback[(to, of)]))
+                    .map(|value| cell(Some(value)))
+                    .collect()
             }
             Channel::Output(_) => vec![String::new(); mixing.ncols() + feedback.ncols()],
         }
@@ -277,11 +481,21 @@ impl ChannelRow<'_> {
 
 impl ResponseRow<'_> {
     fn change(&self) -> Option<CostChange> {
-        self.found.analysis.assessment.get(&self.found.condition.id())?.as_ref().ok()?[self.pair]
+        self.found
+            .analysis
+            .assessment
+            .get(&self.found.condition.id())?
+            .as_ref()
+            .ok()?[self.pair]
     }
 
     fn left_out(&self) -> String {
-        match self.found.analysis.assessment.get(&self.found.condition.id()) {
+        match self
+            .found
+            .analysis
+            .assessment
+            .get(&self.found.condition.id())
+        {
             Some(Err(why)) => why.clone(),
             _ => String::new(),
         }
@@ -289,12 +503,19 @@ impl ResponseRow<'_> {
 
     fn left_in_band(&self) -> String {
         let uncertainty = self.found.analysis.uncertainty.as_ref();
-        cell(uncertainty.and_then(|of| of.conditions.get(&self.found.condition.id())?.left_in_band[self.pair]))
+        cell(
+            uncertainty.and_then(|of| {
+                of.conditions.get(&self.found.condition.id())?.left_in_band[self.pair]
+            }),
+        )
     }
 }
 
 /// A value to the last digit; an empty cell where there is none, or none that is finite.
 fn cell(value: Option<f64>) -> String {
     // Debug writes an exponent where Display would write hundreds of zeros.
-    value.filter(|value| value.is_finite()).map(|value| format!("{value:?}")).unwrap_or_default()
+    value
+        .filter(|value| value.is_finite())
+        .map(|value| format!("{value:?}"))
+        .unwrap_or_default()
 }

@@ -5,7 +5,9 @@ use serde_json::{Value, json};
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceDecomposition};
 use gdcm_model::dataset::{ConditionId, Pair};
-use gdcm_study::study::{AirspeedDifference, Analysis, PairScatter, SecondVariableTest, Uncertainty};
+use gdcm_study::study::{
+    AirspeedDifference, Analysis, PairScatter, SecondVariableTest, Uncertainty,
+};
 
 use super::corrections::{ChannelNames, rows_of, says_nothing, without_empty};
 
@@ -17,33 +19,61 @@ fn bar(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Valu
     };
     let members = [
         ("interval", json!(told(bar.interval(level)))),
-        ("interval_identification", json!(told(bar.inner_interval(level)))),
-        ("u_physics", json!(bar.trim.map(|part| part.variance.sqrt()))),
-        ("u_identification", json!(bar.identification.map(|part| part.variance.sqrt()))),
+        (
+            "interval_identification",
+            json!(told(bar.inner_interval(level))),
+        ),
+        (
+            "u_physics",
+            json!(bar.trim.map(|part| part.variance.sqrt())),
+        ),
+        (
+            "u_identification",
+            json!(bar.identification.map(|part| part.variance.sqrt())),
+        ),
         ("degrees_of_freedom", json!(bar.degrees_of_freedom())),
         ("left_in_band", json!(left_in_band)),
         ("remarks", json!(bar.remarks())),
     ];
-    members.into_iter().filter(|(_, value)| !says_nothing(value)).collect()
+    members
+        .into_iter()
+        .filter(|(_, value)| !says_nothing(value))
+        .collect()
 }
 
 /// The bar of a net gain.
-pub(super) fn net_gain_bar(analysis: &Analysis, condition: ConditionId, pair: Pair) -> Option<Value> {
+pub(super) fn net_gain_bar(
+    analysis: &Analysis,
+    condition: ConditionId,
+    pair: Pair,
+) -> Option<Value> {
     let uncertainty = analysis.uncertainty.as_ref()?;
     let of = uncertainty.bar(condition, Scalar::NetGain(pair))?;
     let left_in_band = uncertainty.conditions.get(&condition)?.left_in_band[pair];
-    Some(bar(Scalar::NetGain(pair), of, uncertainty.level, left_in_band))
+    Some(bar(
+        Scalar::NetGain(pair),
+        of,
+        uncertainty.level,
+        left_in_band,
+    ))
 }
 
 /// The bars of a condition's other figures.
 pub(super) fn bars(names: &ChannelNames, condition: ConditionId) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let of = uncertainty.conditions.get(&condition)?;
-    let entry =
-        |scalar| of.bars[scalar].as_ref().map_or(Value::Null, |found| bar(scalar, found, uncertainty.level, None));
-    let table =
-        |scalar: fn(Pair) -> Scalar| rows_of(names.outputs.len(), names.inputs.len(), |pair| entry(scalar(pair)));
-    let channels = |scalar: fn(Channel) -> Scalar| names.by_channel(|channel| entry(scalar(channel)));
+    let entry = |scalar| {
+        of.bars[scalar].as_ref().map_or(Value::Null, |found| {
+            bar(scalar, found, uncertainty.level, None)
+        })
+    };
+    let table = |scalar: fn(Pair) -> Scalar| {
+        rows_of(names.outputs.len(), names.inputs.len(), |pair| {
+            entry(scalar(pair))
+        })
+    };
+    let channels =
+        |scalar: fn(Channel) -> Scalar| names.by_channel(|channel| entry(scalar(channel)));
     let asks_band_delays = names.analysis.condition(condition)?.asks_band_delays();
     let bars = json!({
         "G": table(Scalar::Gain),
@@ -59,9 +89,18 @@ pub(super) fn bars(names: &ChannelNames, condition: ConditionId) -> Option<Value
 pub(super) fn uncertainty(names: &ChannelNames) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let level = uncertainty.level;
-    let differences = uncertainty.differences.iter().map(|of| names.of_pair(of.pair, difference(of, level)));
-    let scatter = uncertainty.scatter.iter().map(|of| names.of_pair(of.pair, scatter(of, level)));
-    let tests = uncertainty.second_variables.iter().map(|of| names.of_pair(of.pair, second_variable(of)));
+    let differences = uncertainty
+        .differences
+        .iter()
+        .map(|of| names.of_pair(of.pair, difference(of, level)));
+    let scatter = uncertainty
+        .scatter
+        .iter()
+        .map(|of| names.of_pair(of.pair, scatter(of, level)));
+    let tests = uncertainty
+        .second_variables
+        .iter()
+        .map(|of| names.of_pair(of.pair, second_variable(of)));
     Some(json!({
         "level": level,
         "differences": differences.collect::<Value>(),
@@ -108,12 +147,18 @@ fn scatter(of: &PairScatter, level: f64) -> Value {
 
 /// The scheduled net gains that measure a model with their bands, as natural logarithms.
 fn bands(names: &ChannelNames, uncertainty: &Uncertainty) -> Value {
-    let (Ok(schedule), Some(bands)) = (&names.analysis.schedule, &uncertainty.bands) else { return json!([]) };
+    let (Ok(schedule), Some(bands)) = (&names.analysis.schedule, &uncertainty.bands) else {
+        return json!([]);
+    };
     let airspeed_kt = schedule.airspeeds.clusters_kt();
     let entry = |pair: Pair| {
-        let widths = airspeed_kt.iter().map(|&airspeed| bands.at(schedule, Scalar::NetGain(pair), airspeed));
+        let widths = airspeed_kt
+            .iter()
+            .map(|&airspeed| bands.at(schedule, Scalar::NetGain(pair), airspeed));
         let widths: Vec<_> = widths.collect::<Option<_>>()?;
-        let fit = airspeed_kt.iter().map(|&airspeed| schedule.at(airspeed).net_gain(pair).ln());
+        let fit = airspeed_kt
+            .iter()
+            .map(|&airspeed| schedule.at(airspeed).net_gain(pair).ln());
         let band = json!({
             "airspeed_kt": airspeed_kt,
             "fit": fit.collect::<Value>(),
@@ -122,7 +167,14 @@ fn bands(names: &ChannelNames, uncertainty: &Uncertainty) -> Value {
         });
         Some(names.of_pair(pair, band))
     };
-    names.analysis.study.dataset.measuring_pairs().marked().filter_map(entry).collect()
+    names
+        .analysis
+        .study
+        .dataset
+        .measuring_pairs()
+        .marked()
+        .filter_map(entry)
+        .collect()
 }
 
 /// Whether the schedule of a net gain needs a second variable.

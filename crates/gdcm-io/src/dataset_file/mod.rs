@@ -90,7 +90,10 @@ impl LoadedDataset {
     /// The name of the dataset's file, or what stands for it.
     pub fn file_name(&self) -> String {
         let name = self.path().and_then(Path::file_name);
-        name.map_or_else(|| self.origin.to_string(), |name| sanitized(&name.to_string_lossy()))
+        name.map_or_else(
+            || self.origin.to_string(),
+            |name| sanitized(&name.to_string_lossy()),
+        )
     }
 }
 
@@ -100,8 +103,15 @@ pub fn load_dataset(path: &Path) -> Result<LoadedDataset, FileError> {
 }
 
 /// The same within a budget that somebody may end.
-pub fn load_dataset_within(path: &Path, budget: &ReadingBudget<'_>) -> Result<LoadedDataset, FileError> {
-    dataset_from(&Source::read(path, budget)?, DatasetOrigin::File(path.to_owned()), budget)
+pub fn load_dataset_within(
+    path: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<LoadedDataset, FileError> {
+    dataset_from(
+        &Source::read(path, budget)?,
+        DatasetOrigin::File(path.to_owned()),
+        budget,
+    )
 }
 
 /// Everything that is wrong in a dataset's file, each with its place; nothing where it can be loaded. Text that cannot be read at all
@@ -110,20 +120,30 @@ pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
     let (text, _) = FORMAT.decode::<DatasetText>(source.text(), path, &budget)?;
-    let (draft, _) = text.into_draft().map_err(|error| FileError::content_of(path, error, source.text()))?;
+    let (draft, _) = text
+        .into_draft()
+        .map_err(|error| FileError::content_of(path, error, source.text()))?;
     let told = |error| FileError::content_of(path, ContentError::from(error), source.text());
     Ok(draft.faults().into_iter().map(told).collect())
 }
 
 /// Whether a text has the structure of a dataset, as far as it goes.
-pub(super) fn check_dataset_text(text: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<(), FileError> {
+pub(super) fn check_dataset_text(
+    text: &[u8],
+    path: &Path,
+    budget: &ReadingBudget<'_>,
+) -> Result<(), FileError> {
     FORMAT.decode::<DatasetText>(text, path, budget).map(drop)
 }
 
 /// Loads a dataset from bytes that are already at hand; `origin` is what errors call them.
 pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
     let budget = ReadingBudget::default();
-    dataset_from(&Source::of(bytes, &origin.path(), &budget)?, origin, &budget)
+    dataset_from(
+        &Source::of(bytes, &origin.path(), &budget)?,
+        origin,
+        &budget,
+    )
 }
 
 /// The example dataset inside the program.
@@ -133,7 +153,11 @@ pub fn embedded_example() -> Result<LoadedDataset, FileError> {
 
 /// Writes the example dataset, unpacked, into a directory (made where there is none), and returns the file's path.
 pub fn write_example(directory: &Path, existing: Existing) -> Result<PathBuf, FileError> {
-    let source = Source::of(EXAMPLE, &DatasetOrigin::EmbeddedExample.path(), &ReadingBudget::default())?;
+    let source = Source::of(
+        EXAMPLE,
+        &DatasetOrigin::EmbeddedExample.path(),
+        &ReadingBudget::default(),
+    )?;
     let path = directory.join(EXAMPLE_NAME);
     let mut outputs = OutputSet::new(existing, Vec::new());
     outputs.check(&[&path])?;
@@ -151,13 +175,20 @@ pub fn save_dataset(dataset: &Dataset, path: &Path) -> Result<(), FileError> {
 }
 
 /// Adds a dataset to `outputs`; packed by gzip where the name ends in `.gz`.
-pub fn add_dataset(dataset: &Dataset, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
+pub fn add_dataset(
+    dataset: &Dataset,
+    path: &Path,
+    outputs: &mut OutputSet,
+) -> Result<(), FileError> {
     let text = DatasetText::of(dataset);
-    let packed = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
+    let packed = path
+        .extension()
+        .is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
     outputs.add(path, |file| {
         if packed {
             // The encoder clears a buffer of its own at each piece, and the pieces of JSON are single numbers and marks.
-            let mut pieces = BufWriter::with_capacity(1 << 16, GzEncoder::new(file, Compression::default()));
+            let mut pieces =
+                BufWriter::with_capacity(1 << 16, GzEncoder::new(file, Compression::default()));
             write_compact(&text, &mut pieces)?;
             pieces.into_inner()?.finish()?;
             Ok(())
@@ -175,10 +206,21 @@ pub(super) fn dataset_from(
 ) -> Result<LoadedDataset, FileError> {
     let path = origin.path();
     let (text, mut cautions) = FORMAT.decode::<DatasetText>(source.text(), &path, budget)?;
-    let (draft, misplaced) = text.into_draft().map_err(|error| FileError::content_of(&path, error, source.text()))?;
+    let (draft, misplaced) = text
+        .into_draft()
+        .map_err(|error| FileError::content_of(&path, error, source.text()))?;
     cautions.extend(misplaced);
-    let (dataset, odd) =
-        draft.checked().map_err(|error| FileError::content_of(&path, ContentError::from(error), source.text()))?;
-    cautions.extend(odd.into_iter().map(|odd| format!("{}{}", odd.place.before(), odd.words)));
-    Ok(LoadedDataset { dataset: Arc::new(dataset), sha256: source.sha256.clone(), origin, cautions })
+    let (dataset, odd) = draft
+        .checked()
+        .map_err(|error| FileError::content_of(&path, ContentError::from(error), source.text()))?;
+    cautions.extend(
+        odd.into_iter()
+            .map(|odd| format!("{}{}", odd.place.before(), odd.words)),
+    );
+    Ok(LoadedDataset {
+        dataset: Arc::new(dataset),
+        sha256: source.sha256.clone(),
+        origin,
+        cautions,
+    })
 }

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use gdcm_model::dataset::limits::{
-    MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS, MOST_MODELS_IN_ALL, MOST_PAIRS,
-    MOST_PIECES, MOST_RECORDS, MOST_STATES,
+    MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS,
+    MOST_MODELS_IN_ALL, MOST_PAIRS, MOST_PIECES, MOST_RECORDS, MOST_STATES,
 };
 use gdcm_model::dataset::{
-    BandsDraft, BundleKind, Channel, ChannelRemedy, ChannelSide, Condition, ConditionDraft, ConditionId,
-    ConditionRecord, Dataset, DatasetDraft, Estimate, FlightState, Location, Model, ModelDraft, Origin, Provenance,
-    RecordKind, ResponseArray, ResponseDraft, Timing,
+    BandsDraft, BundleKind, Channel, ChannelRemedy, ChannelSide, Condition, ConditionDraft,
+    ConditionId, ConditionRecord, Dataset, DatasetDraft, Estimate, FlightState, Location, Model,
+    ModelDraft, Origin, Provenance, RecordKind, ResponseArray, ResponseDraft, Timing,
 };
 use gdcm_model::whole_number::{whole, whole_or_none};
 use nalgebra::DMatrix;
@@ -20,7 +20,10 @@ use crate::file_error::{ContentError, ContentFault};
 use crate::json_text::{Format, Limited, Nested, Numbers, list, list_while};
 
 /// What a dataset file calls itself.
-pub(super) const FORMAT: Format = Format { name: "gdcm-dataset", version: 1 };
+pub(super) const FORMAT: Format = Format {
+    name: "gdcm-dataset",
+    version: 1,
+};
 
 #[derive(Deserialize, Serialize)]
 pub(super) struct DatasetText {
@@ -44,15 +47,27 @@ pub(super) struct DatasetText {
 /// Reads conditions as long as they and their models are not too many.
 fn conditions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<ConditionText>, D::Error> {
     let mut models = 0;
-    list_while(deserializer, MOST_CONDITIONS, |condition: &ConditionText| {
-        models += condition.physics_models.len() + condition.identified_models.len();
-        let few = models <= MOST_MODELS_IN_ALL;
-        if few { Ok(()) } else { Err(format!("expected at most {MOST_MODELS_IN_ALL} models in all, found more")) }
-    })
+    list_while(
+        deserializer,
+        MOST_CONDITIONS,
+        |condition: &ConditionText| {
+            models += condition.physics_models.len() + condition.identified_models.len();
+            let few = models <= MOST_MODELS_IN_ALL;
+            if few {
+                Ok(())
+            } else {
+                Err(format!(
+                    "expected at most {MOST_MODELS_IN_ALL} models in all, found more"
+                ))
+            }
+        },
+    )
 }
 
 /// Reads the coordinates of a perturbation, or null.
-fn coordinates<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<BTreeMap<String, f64>>, D::Error> {
+fn coordinates<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<BTreeMap<String, f64>>, D::Error> {
     Ok(Option::<Numbers<MOST_COORDINATES>>::deserialize(deserializer)?.map(|numbers| numbers.0))
 }
 
@@ -125,15 +140,27 @@ pub(crate) struct ModelText {
     /// Of a physics model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) role: Option<String>,
-    #[serde(default, deserialize_with = "coordinates", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "coordinates",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub(crate) perturbation: Option<BTreeMap<String, f64>>,
     /// Of an identified model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) method: Option<String>,
-    #[serde(default, deserialize_with = "whole_or_none", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "whole_or_none",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub(crate) order: Option<usize>,
     /// What the file of a model outside a dataset says about its flight condition.
-    #[serde(default, deserialize_with = "whole_or_none", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        deserialize_with = "whole_or_none",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub(crate) condition: Option<i64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) airspeed_kt: Option<f64>,
@@ -284,8 +311,14 @@ impl DatasetText {
     pub(super) fn into_draft(self) -> Result<(DatasetDraft, Vec<String>), ContentError> {
         let band = self.frequency_band;
         if band.unit != "rad/s" {
-            let fault = ContentFault::Word { expected: "\"rad/s\"".to_owned(), found: band.unit };
-            return Err(ContentError::new(Location::entry("frequency_band, unit"), fault));
+            let fault = ContentFault::Word {
+                expected: "\"rad/s\"".to_owned(),
+                found: band.unit,
+            };
+            return Err(ContentError::new(
+                Location::entry("frequency_band, unit"),
+                fault,
+            ));
         }
         let mut cautions = Vec::new();
         let conditions = self.conditions.into_iter().enumerate();
@@ -293,8 +326,16 @@ impl DatasetText {
         let draft = DatasetDraft {
             name: self.name,
             description: self.description.unwrap_or_default(),
-            inputs: self.inputs.into_iter().map(ChannelText::into_channel).collect(),
-            outputs: self.outputs.into_iter().map(ChannelText::into_channel).collect(),
+            inputs: self
+                .inputs
+                .into_iter()
+                .map(ChannelText::into_channel)
+                .collect(),
+            outputs: self
+                .outputs
+                .into_iter()
+                .map(ChannelText::into_channel)
+                .collect(),
             on_axis: Limited::entries(self.on_axis),
             band: (band.min, band.max),
             conditions: conditions.collect::<Result<_, _>>()?,
@@ -305,7 +346,10 @@ impl DatasetText {
     /// The text of a dataset, entry by entry.
     pub(super) fn of(dataset: &Dataset) -> Self {
         let names = |pair: gdcm_model::dataset::Pair| {
-            (dataset.outputs()[pair.output].name.clone(), dataset.inputs()[pair.input].name.clone())
+            (
+                dataset.outputs()[pair.output].name.clone(),
+                dataset.inputs()[pair.input].name.clone(),
+            )
         };
         Self {
             format: FORMAT.name.to_owned(),
@@ -315,8 +359,16 @@ impl DatasetText {
             inputs: dataset.inputs().iter().map(ChannelText::of).collect(),
             outputs: dataset.outputs().iter().map(ChannelText::of).collect(),
             on_axis: Some(Limited(dataset.on_axis().marked().map(names).collect())),
-            frequency_band: BandText { min: dataset.band().min(), max: dataset.band().max(), unit: "rad/s".to_owned() },
-            conditions: dataset.conditions().iter().map(|condition| ConditionText::of(condition)).collect(),
+            frequency_band: BandText {
+                min: dataset.band().min(),
+                max: dataset.band().max(),
+                unit: "rad/s".to_owned(),
+            },
+            conditions: dataset
+                .conditions()
+                .iter()
+                .map(|condition| ConditionText::of(condition))
+                .collect(),
         }
     }
 }
@@ -327,16 +379,28 @@ fn written(text: &str) -> Option<String> {
 
 impl ChannelText {
     fn into_channel(self) -> Channel {
-        Channel { name: self.name, unit: self.unit, description: self.description.unwrap_or_default() }
+        Channel {
+            name: self.name,
+            unit: self.unit,
+            description: self.description.unwrap_or_default(),
+        }
     }
 
     fn of(channel: &Channel) -> Self {
-        Self { name: channel.name.clone(), unit: channel.unit.clone(), description: written(&channel.description) }
+        Self {
+            name: channel.name.clone(),
+            unit: channel.unit.clone(),
+            description: written(&channel.description),
+        }
     }
 }
 
 impl ConditionText {
-    fn into_draft(self, position: usize, cautions: &mut Vec<String>) -> Result<ConditionDraft, ContentError> {
+    fn into_draft(
+        self,
+        position: usize,
+        cautions: &mut Vec<String>,
+    ) -> Result<ConditionDraft, ContentError> {
         let place = Location::condition(position, self.id);
         let flight_state = FlightState {
             id: ConditionId(self.id),
@@ -350,11 +414,12 @@ impl ConditionText {
         let mut models = |kind, texts: Vec<ModelText>| -> Result<Vec<ModelDraft>, ContentError> {
             let draft = |(index, model): (usize, ModelText)| {
                 let place = place.model(kind, index + 1, &model.name);
-                cautions.extend(
-                    model
-                        .misplaced(kind)
-                        .map(|key| format!("{}the key \"{key}\" is not known and not used", place.before())),
-                );
+                cautions.extend(model.misplaced(kind).map(|key| {
+                    format!(
+                        "{}the key \"{key}\" is not known and not used",
+                        place.before()
+                    )
+                }));
                 let origin = match kind {
                     BundleKind::Physics => model.physics_origin(&place)?,
                     BundleKind::Identified => model.identified_origin(),
@@ -367,12 +432,23 @@ impl ConditionText {
         let identified = models(BundleKind::Identified, self.identified_models)?;
         let records = Limited::entries(self.records).into_iter().enumerate();
         let records = records.map(|(index, record)| record.into_record(&place, index + 1));
-        Ok(ConditionDraft { flight_state, physics, identified, records: records.collect::<Result<_, _>>()? })
+        Ok(ConditionDraft {
+            flight_state,
+            physics,
+            identified,
+            records: records.collect::<Result<_, _>>()?,
+        })
     }
 
     fn of(condition: &Condition) -> Self {
         let state = condition.flight_state().clone();
-        let models = |kind| condition.bundle(kind).iter().map(ModelText::of_model).collect();
+        let models = |kind| {
+            condition
+                .bundle(kind)
+                .iter()
+                .map(ModelText::of_model)
+                .collect()
+        };
         Self {
             id: state.id.0,
             name: state.name,
@@ -390,13 +466,23 @@ impl ConditionText {
 
 impl RecordText {
     /// The record; `condition` is where it stands.
-    pub(crate) fn into_record(self, condition: &Location, position: usize) -> Result<ConditionRecord, ContentError> {
+    pub(crate) fn into_record(
+        self,
+        condition: &Location,
+        position: usize,
+    ) -> Result<ConditionRecord, ContentError> {
         let kind = match self.kind {
             None => RecordKind::Other,
             Some(word) => RecordKind::of(&word).ok_or_else(|| {
                 let words = RecordKind::ALL.map(|kind| format!("\"{}\"", kind.word()));
-                let fault = ContentFault::Word { expected: format!("one of {}", words.join(", ")), found: word };
-                ContentError::new(condition.at(format!("records, entry {position}, kind")), fault)
+                let fault = ContentFault::Word {
+                    expected: format!("one of {}", words.join(", ")),
+                    found: word,
+                };
+                ContentError::new(
+                    condition.at(format!("records, entry {position}, kind")),
+                    fault,
+                )
             })?,
         };
         Ok(ConditionRecord {
@@ -454,21 +540,35 @@ impl ModelText {
             ("notes", self.notes.is_some()),
             ("recommended", self.recommended.is_some()),
         ];
-        keys.into_iter().filter(|(_, is_there)| *is_there).map(|(key, _)| key)
+        keys.into_iter()
+            .filter(|(_, is_there)| *is_there)
+            .map(|(key, _)| key)
     }
 
     fn physics_origin(&self, place: &Location) -> Result<Origin, ContentError> {
         let role = self.role.clone();
-        let role =
-            role.ok_or_else(|| ContentError::new(place.clone(), ContentFault::MissingKey { key: "role".into() }))?;
-        self.origin().filter(|origin| !matches!(origin, Origin::Identified { .. })).ok_or_else(|| {
-            let fault = ContentFault::Word { expected: "\"nominal\" or \"perturbed\"".to_owned(), found: role };
-            ContentError::new(place.at("role"), fault)
-        })
+        let role = role.ok_or_else(|| {
+            ContentError::new(
+                place.clone(),
+                ContentFault::MissingKey { key: "role".into() },
+            )
+        })?;
+        self.origin()
+            .filter(|origin| !matches!(origin, Origin::Identified { .. }))
+            .ok_or_else(|| {
+                let fault = ContentFault::Word {
+                    expected: "\"nominal\" or \"perturbed\"".to_owned(),
+                    found: role,
+                };
+                ContentError::new(place.at("role"), fault)
+            })
     }
 
     pub(crate) fn identified_origin(&self) -> Origin {
-        Origin::Identified { method: self.method.clone(), order: self.order }
+        Origin::Identified {
+            method: self.method.clone(),
+            order: self.order,
+        }
     }
 
     /// What the role says that the model is of; nothing where it says something unknown.
@@ -502,7 +602,10 @@ impl ModelText {
             response: self.frequency_response.map(ResponseText::into_draft),
             states: Limited::entries(self.states),
             source: self.source.map(SourceText::into_provenance),
-            bands: self.bands.filter(|_| is_identified).map(BandsText::into_draft),
+            bands: self
+                .bands
+                .filter(|_| is_identified)
+                .map(BandsText::into_draft),
         }
     }
 
@@ -513,8 +616,14 @@ impl ModelText {
 
     /// A model, as files say it.
     pub(crate) fn of(draft: ModelDraft) -> Self {
-        let [a, b, c, d] = draft.matrices.map(|matrix| matrix.as_ref().map(Nested::of_matrix));
-        let Timing { sample_time_s, input_delays_s, output_delays_s } = draft.timing;
+        let [a, b, c, d] = draft
+            .matrices
+            .map(|matrix| matrix.as_ref().map(Nested::of_matrix));
+        let Timing {
+            sample_time_s,
+            input_delays_s,
+            output_delays_s,
+        } = draft.timing;
         let (role, perturbation, method, order) = match draft.origin {
             Origin::Nominal { perturbation } => (Some("nominal"), perturbation, None, None),
             Origin::Perturbed { perturbation } => (Some("perturbed"), perturbation, None, None),
@@ -556,11 +665,19 @@ fn nested(ResponseArray { shape, values }: ResponseArray) -> Nested<3> {
 
 impl BandsText {
     fn into_draft(self) -> BandsDraft {
-        BandsDraft { omega: self.omega_rad_s, sd_db: array(self.sd_db), sd_deg: array(self.sd_deg) }
+        BandsDraft {
+            omega: self.omega_rad_s,
+            sd_db: array(self.sd_db),
+            sd_deg: array(self.sd_deg),
+        }
     }
 
     fn of(bands: BandsDraft) -> Self {
-        Self { omega_rad_s: bands.omega, sd_db: nested(bands.sd_db), sd_deg: nested(bands.sd_deg) }
+        Self {
+            omega_rad_s: bands.omega,
+            sd_db: nested(bands.sd_db),
+            sd_deg: nested(bands.sd_deg),
+        }
     }
 }
 
@@ -572,7 +689,10 @@ impl ResponseText {
             im: array(self.im),
             coherence: self.coherence.map(array),
             valid_bands: self.valid_band_rad_s.map(array),
-            estimate: Estimate { averages: self.averages, window_s: self.window_s },
+            estimate: Estimate {
+                averages: self.averages,
+                window_s: self.window_s,
+            },
         }
     }
 
@@ -592,7 +712,16 @@ impl ResponseText {
 
 impl SourceText {
     fn into_provenance(self) -> Provenance {
-        let Self { file, sha256, variable, made, note, records, unused, by_position } = self;
+        let Self {
+            file,
+            sha256,
+            variable,
+            made,
+            note,
+            records,
+            unused,
+            by_position,
+        } = self;
         Provenance {
             file,
             sha256,
@@ -601,12 +730,24 @@ impl SourceText {
             note,
             records: Limited::entries(records),
             unused: Limited::entries(unused),
-            by_position: Limited::entries(by_position).into_iter().map(SideText::side).collect(),
+            by_position: Limited::entries(by_position)
+                .into_iter()
+                .map(SideText::side)
+                .collect(),
         }
     }
 
     fn of(source: Provenance) -> Self {
-        let Provenance { file, sha256, variable, made, note, records, unused, by_position } = source;
+        let Provenance {
+            file,
+            sha256,
+            variable,
+            made,
+            note,
+            records,
+            unused,
+            by_position,
+        } = source;
         Self {
             file,
             sha256,

@@ -22,9 +22,13 @@ pub(super) const JSON: ExportFormat = ExportFormat {
     check_path: |_| Ok(()),
     contents: |analysis, _| ExportContents::of_results(analysis),
     export: |of| {
-        let Export { analysis, source, .. } = *of;
-        Ok(Exported::new(move |file| write_corrections(analysis, &source.sha256, &all(analysis), file))
-            .with(of.price()))
+        let Export {
+            analysis, source, ..
+        } = *of;
+        Ok(Exported::new(move |file| {
+            write_corrections(analysis, &source.sha256, &all(analysis), file)
+        })
+        .with(of.price()))
     },
 };
 
@@ -38,7 +42,10 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     contents: |analysis, _| ExportContents::of_results(analysis),
     export: |of| {
         let analysis = of.analysis;
-        Ok(Exported::new(move |file| channel_table(analysis, &all(analysis), file)).with(of.price()))
+        Ok(
+            Exported::new(move |file| channel_table(analysis, &all(analysis), file))
+                .with(of.price()),
+        )
     },
 };
 
@@ -53,7 +60,11 @@ pub(super) const MAT: ExportFormat = ExportFormat {
     export: |of| {
         let corrections = corrections(of.analysis, &of.source.sha256, &all(of.analysis));
         let value = corrections_struct(corrections, &of.analysis.study.dataset);
-        Ok(Exported::bytes(mat::write(&[Variable { name: "corrections".to_owned(), value }])?).with(of.price()))
+        Ok(Exported::bytes(mat::write(&[Variable {
+            name: "corrections".to_owned(),
+            value,
+        }])?)
+        .with(of.price()))
     },
 };
 
@@ -62,19 +73,33 @@ fn all(analysis: &Analysis) -> BTreeSet<ConditionId> {
 }
 
 /// Figures of channels are arrays in the order of the dataset's `inputs` and `outputs`.
-const LAYOUT: Layout = Layout { by_channel: &["inputs", "outputs"], by_name: &["discontinuity"], columns: &["table"] };
+const LAYOUT: Layout = Layout {
+    by_channel: &["inputs", "outputs"],
+    by_name: &["discontinuity"],
+    columns: &["table"],
+};
 
 /// The fields of `corrections.json`. Lists of responses are matrices of truths with a row for each output and a column for each input,
 /// the figures of `net_gains` stand in the matrices of `net_gain_table`; beside them, what earlier programs wrote keeps its name.
 fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
     let pair_rows = |of: &dyn Fn(&str, &str) -> Tree| -> Tree {
-        let row =
-            |output: &Channel| dataset.inputs().iter().map(|input| of(&output.name, &input.name)).collect::<Tree>();
+        let row = |output: &Channel| {
+            dataset
+                .inputs()
+                .iter()
+                .map(|input| of(&output.name, &input.name))
+                .collect::<Tree>()
+        };
         dataset.outputs().iter().map(row).collect()
     };
     let marked = |pairs: &Tree| {
         let pairs = pairs.as_array().map(Vec::as_slice).unwrap_or_default();
-        pair_rows(&|output, input| pairs.iter().any(|pair| pair[0] == output && pair[1] == input).into())
+        pair_rows(&|output, input| {
+            pairs
+                .iter()
+                .any(|pair| pair[0] == output && pair[1] == input)
+                .into()
+        })
     };
     let settings = &mut corrections["settings"];
     for name in ["constrained", "ignored"] {
@@ -84,19 +109,31 @@ fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
     if settings.get("coherence_threshold").is_none() {
         settings["coherence_threshold"] = Tree::Null;
     }
-    for condition in corrections["conditions"].as_array_mut().into_iter().flatten() {
+    for condition in corrections["conditions"]
+        .as_array_mut()
+        .into_iter()
+        .flatten()
+    {
         condition["held"] = marked(&condition["held"]);
         condition["held_out"] = condition.get("held_out").cloned().unwrap_or(false.into());
         let net_gains = condition["net_gains"].take();
         let net_gains = net_gains.as_array().map(Vec::as_slice).unwrap_or_default();
         let metric = |key: &str, place: Option<usize>| {
             pair_rows(&|output, input| {
-                let found = net_gains.iter().find(|net| net["output"] == output && net["input"] == input);
+                let found = net_gains
+                    .iter()
+                    .find(|net| net["output"] == output && net["input"] == input);
                 let value = found.and_then(|net| net.get(key));
-                value.and_then(|value| place.map_or(Some(value), |place| value.get(place))).cloned().into()
+                value
+                    .and_then(|value| place.map_or(Some(value), |place| value.get(place)))
+                    .cloned()
+                    .into()
             })
         };
-        condition["net_gain_table"] = net_gains.chunks(dataset.inputs().len()).map(|row| json!(row)).collect();
+        condition["net_gain_table"] = net_gains
+            .chunks(dataset.inputs().len())
+            .map(|row| json!(row))
+            .collect();
         condition["net_gains"] = metric("gain", None);
         condition["net_gains_low"] = metric("interval", Some(0));
         condition["net_gains_high"] = metric("interval", Some(1));
@@ -115,23 +152,41 @@ fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
     }
     // Names and units stand in columns of their own.
     for side in ["inputs", "outputs"] {
-        corrections.as_object_mut().and_then(|members| members.shift_remove(side));
+        corrections
+            .as_object_mut()
+            .and_then(|members| members.shift_remove(side));
     }
     if corrections["schedule"].is_null() {
         corrections["schedule"] = json!([]);
     }
-    for row in corrections["schedule"].get_mut("table").and_then(Tree::as_array_mut).into_iter().flatten() {
+    for row in corrections["schedule"]
+        .get_mut("table")
+        .and_then(Tree::as_array_mut)
+        .into_iter()
+        .flatten()
+    {
         for (name, side) in [("input_delays_s", "inputs"), ("output_delays_s", "outputs")] {
-            if let Some(delays) = row.get("delays_s").and_then(|delays| delays[side].as_object()) {
+            if let Some(delays) = row
+                .get("delays_s")
+                .and_then(|delays| delays[side].as_object())
+            {
                 row[name] = delays.values().cloned().collect();
             }
         }
     }
-    let Value::Struct(mut records) = LAYOUT.value("", &corrections) else { return LAYOUT.value("", &corrections) };
+    let Value::Struct(mut records) = LAYOUT.value("", &corrections) else {
+        return LAYOUT.value("", &corrections);
+    };
     for (side, channels) in [("input", dataset.inputs()), ("output", dataset.outputs())] {
-        let of = |part: fn(&Channel) -> &String| cell_of_texts(channels.iter().map(|channel| part(channel).clone()));
-        records.fields.push((format!("{side}s"), vec![of(|channel| &channel.name)]));
-        records.fields.push((format!("{side}_units"), vec![of(|channel| &channel.unit)]));
+        let of = |part: fn(&Channel) -> &String| {
+            cell_of_texts(channels.iter().map(|channel| part(channel).clone()))
+        };
+        records
+            .fields
+            .push((format!("{side}s"), vec![of(|channel| &channel.name)]));
+        records
+            .fields
+            .push((format!("{side}_units"), vec![of(|channel| &channel.unit)]));
     }
     Value::Struct(records)
 }
@@ -150,11 +205,23 @@ mod tests {
     /// The paths of everything that JSON holds, without places in lists and names of channels and models.
     fn json_paths(json: &serde_json::Value, path: &str, found: &mut BTreeSet<String>) {
         match json {
-            serde_json::Value::Array(list) => list.iter().for_each(|entry| json_paths(entry, path, found)),
+            serde_json::Value::Array(list) => {
+                list.iter().for_each(|entry| json_paths(entry, path, found))
+            }
             serde_json::Value::Object(members) => {
                 for (name, value) in members {
-                    let is_name = ["inputs", "outputs", "discontinuity"].iter().any(|by| path.ends_with(by));
-                    json_paths(value, &if is_name { path.to_owned() } else { format!("{path}.{name}") }, found);
+                    let is_name = ["inputs", "outputs", "discontinuity"]
+                        .iter()
+                        .any(|by| path.ends_with(by));
+                    json_paths(
+                        value,
+                        &if is_name {
+                            path.to_owned()
+                        } else {
+                            format!("{path}.{name}")
+                        },
+                        found,
+                    );
                 }
             }
             _ => {
@@ -168,10 +235,15 @@ mod tests {
         match value {
             Value::Struct(records) => {
                 for (name, values) in &records.fields {
-                    values.iter().for_each(|value| struct_paths(value, &format!("{path}.{name}"), found));
+                    values
+                        .iter()
+                        .for_each(|value| struct_paths(value, &format!("{path}.{name}"), found));
                 }
             }
-            Value::Cell(cell) => cell.values.iter().for_each(|value| struct_paths(value, path, found)),
+            Value::Cell(cell) => cell
+                .values
+                .iter()
+                .for_each(|value| struct_paths(value, path, found)),
             _ => {}
         }
     }
@@ -181,22 +253,41 @@ mod tests {
         let model = ModelId::new(ConditionId(10), BundleKind::Physics, "nominal");
         let mut altitude = Study::new(embedded_example().unwrap().dataset);
         altitude.settings.schedule.second = Some(SecondVariable::Altitude);
-        altitude.apply(&Edit::RejectBecause { model, reason: "trimmed badly".to_owned() }).unwrap();
+        altitude
+            .apply(&Edit::RejectBecause {
+                model,
+                reason: "trimmed badly".to_owned(),
+            })
+            .unwrap();
         let mut leads = Study::new(embedded_example().unwrap().dataset);
-        leads.apply(&setting::PHASE.to(PhaseCorrection::Lead)).unwrap();
+        leads
+            .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+            .unwrap();
         let mut engine = Engine::default();
         let (mut of_json, mut of_matlab) = (BTreeSet::new(), BTreeSet::new());
         for study in [altitude, leads] {
             let mut analysis = engine.analyze(&study, &Unobserved).unwrap();
-            analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &Unobserved).unwrap()));
+            analysis.uncertainty = Some(Arc::new(
+                engine.uncertainty(&analysis, &Unobserved).unwrap(),
+            ));
             let corrections = corrections(&analysis, "ba78", &all(&analysis));
             json_paths(&corrections, "", &mut of_json);
-            struct_paths(&corrections_struct(corrections, &study.dataset), "", &mut of_matlab);
+            struct_paths(
+                &corrections_struct(corrections, &study.dataset),
+                "",
+                &mut of_matlab,
+            );
         }
-        let of_json = of_json.iter().map(|path| path.replace(".net_gains.", ".net_gain_table."));
+        let of_json = of_json
+            .iter()
+            .map(|path| path.replace(".net_gains.", ".net_gain_table."));
         let missing: Vec<String> = of_json.filter(|path| !of_matlab.contains(path)).collect();
         assert_eq!(missing, [""; 0]);
-        for path in [".schedule.second_variable.inputs", ".conditions.reasons.why", ".conditions.bars.G.interval"] {
+        for path in [
+            ".schedule.second_variable.inputs",
+            ".conditions.reasons.why",
+            ".conditions.bars.G.interval",
+        ] {
             assert!(of_matlab.contains(path), "{path} of {of_matlab:?}");
         }
     }

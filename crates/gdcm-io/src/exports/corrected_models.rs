@@ -8,7 +8,8 @@ use nalgebra::DMatrix;
 use gdcm_method::correction::{self, ChannelCorrection, CorrectedModel, LeadPrice};
 use gdcm_model::assembly::{Facts, FoundModel};
 use gdcm_model::dataset::{
-    BundleKind, Channel, Condition, ConditionId, Dataset, Dynamics, Model, ModelDraft, Origin, StateSpace,
+    BundleKind, Channel, Condition, ConditionId, Dataset, Dynamics, Model, ModelDraft, Origin,
+    StateSpace,
 };
 use gdcm_model::units::{number, telling};
 use gdcm_study::study::{Analysis, AssessedCorrection, ConditionAnalysis, CouplingCorrection};
@@ -35,7 +36,9 @@ pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
         let remarks = models.iter().map(ExportedModel::words).collect();
         let exported = match ModelsFormat::of(of.path)? {
             // Packed: the matrices of delayed models are mostly zeros.
-            ModelsFormat::Mat => Exported::bytes(mat::write_packed(&[models_variable(&models, dataset)])?),
+            ModelsFormat::Mat => {
+                Exported::bytes(mat::write_packed(&[models_variable(&models, dataset)])?)
+            }
             ModelsFormat::Npz => Exported::bytes(write_npz(&model_arrays(&models, dataset))?),
             ModelsFormat::Json => {
                 let models = containing_models(&models, dataset);
@@ -56,7 +59,11 @@ enum ModelsFormat {
 
 impl ModelsFormat {
     fn of(path: &Path) -> Result<Self, ExportFault> {
-        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_lowercase();
+        let extension = path
+            .extension()
+            .and_then(|extension| extension.to_str())
+            .unwrap_or_default()
+            .to_lowercase();
         match extension.as_str() {
             "mat" => Ok(Self::Mat),
             "json" => Ok(Self::Json),
@@ -102,15 +109,26 @@ struct ExportedModel {
 }
 
 /// The corrected models that a request asks for, in the dataset's order.
-fn exported_models(analysis: &Analysis, request: &ExportRequest) -> Result<Vec<ExportedModel>, ExportFault> {
+fn exported_models(
+    analysis: &Analysis,
+    request: &ExportRequest,
+) -> Result<Vec<ExportedModel>, ExportFault> {
     let dataset = &analysis.study.dataset;
-    analysis.asked_couplings().map_err(|why| ExportFault::NoCouplings { why })?;
-    if let Some(condition) = request.condition.filter(|&condition| dataset.condition(condition).is_none()) {
+    analysis
+        .asked_couplings()
+        .map_err(|why| ExportFault::NoCouplings { why })?;
+    if let Some(condition) = request
+        .condition
+        .filter(|&condition| dataset.condition(condition).is_none())
+    {
         return Err(ExportFault::NoCondition { condition });
     }
-    let asked = |condition: &&Arc<Condition>| request.condition.is_none_or(|id| id == condition.id());
+    let asked =
+        |condition: &&Arc<Condition>| request.condition.is_none_or(|id| id == condition.id());
     let conditions = dataset.conditions().iter().filter(asked);
-    conditions.map(|condition| exported_model(analysis, request, condition)).collect()
+    conditions
+        .map(|condition| exported_model(analysis, request, condition))
+        .collect()
 }
 
 /// What the models of a request contain; of a study without the schedule that is asked for, nothing.
@@ -128,7 +146,9 @@ fn contents_of(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
 fn left_out_phase_deg(contents: &ExportContents, omega: f64) -> f64 {
     let (mut input_s, mut output_s) = (0.0_f64, 0.0_f64);
     for part in &contents.left_out {
-        let LeftOutPart::Delay(delayed) = part else { continue };
+        let LeftOutPart::Delay(delayed) = part else {
+            continue;
+        };
         for own in &delayed.delays {
             match delayed.channel {
                 correction::Channel::Input(_) => input_s = input_s.max(own.delay_s),
@@ -148,18 +168,28 @@ fn exported_model(
     let model = model_of(analysis, &request.role, condition)?;
     let correction = correction_of(analysis, request.correction, condition)?;
     let Dynamics::StateSpace(dynamics) = &model.dynamics else {
-        return Err(ExportFault::NoMatrices { condition: id, model: model.name.clone() });
+        return Err(ExportFault::NoMatrices {
+            condition: id,
+            model: model.name.clone(),
+        });
     };
-    let corrected = analysis.corrected_model(condition, dynamics, &correction, request.pade).map_err(|error| {
-        let (inputs, outputs) = analysis.study.dataset.names_of_channels();
-        let words = error.words(&inputs, &outputs);
-        ExportFault::Model { condition: id, model: model.name.clone(), words }
-    })?;
+    let corrected = analysis
+        .corrected_model(condition, dynamics, &correction, request.pade)
+        .map_err(|error| {
+            let (inputs, outputs) = analysis.study.dataset.names_of_channels();
+            let words = error.words(&inputs, &outputs);
+            ExportFault::Model {
+                condition: id,
+                model: model.name.clone(),
+                words,
+            }
+        })?;
     let (inputs, outputs) = analysis.study.dataset.names_of_channels();
     let price = correction.leads.as_ref().and_then(LeadPrice::of);
     let band_top_rad_s = analysis.study.settings.band.max();
     let is_sampled = dynamics.timing().sample_time_s.is_some();
-    let contents = ExportContents::of_models(analysis, request.correction, &[id]).map_err(ExportFault::Schedule)?;
+    let contents = ExportContents::of_models(analysis, request.correction, &[id])
+        .map_err(ExportFault::Schedule)?;
     Ok(ExportedModel {
         condition: id,
         airspeed_kt: condition.flight_state().airspeed_kt,
@@ -171,7 +201,11 @@ fn exported_model(
             AssessedCorrection::Own => "own",
         },
         states: state_names(analysis, model, &corrected),
-        delay_states: corrected.delay_states.iter().map(|(_, states)| states).sum(),
+        delay_states: corrected
+            .delay_states
+            .iter()
+            .map(|(_, states)| states)
+            .sum(),
         lead_states: corrected.lead_states.iter().map(|(_, states)| states).sum(),
         pade_order: if is_sampled { 0 } else { request.pade.order() },
         approximation_error_deg: corrected.phase_error(band_top_rad_s).to_degrees(),
@@ -189,8 +223,12 @@ fn exported_model(
 
 /// What is in a model besides the correction of its channels.
 fn couplings_words(analysis: &Analysis, dynamics: &StateSpace) -> &'static str {
-    let has_delays = !StateSpace::timing(dynamics).is_plain() && dynamics.timing().sample_time_s.is_none();
-    match (analysis.fitted_couplings(), analysis.study.settings.couplings) {
+    let has_delays =
+        !StateSpace::timing(dynamics).is_plain() && dynamics.timing().sample_time_s.is_none();
+    match (
+        analysis.fitted_couplings(),
+        analysis.study.settings.couplings,
+    ) {
         (None, _) => "",
         (Some(_), CouplingCorrection::MixingAndFeedback) if has_delays => {
             "; with mixing and feedback of the model, its own delays inside the loop as Pade approximants"
@@ -200,15 +238,26 @@ fn couplings_words(analysis: &Analysis, dynamics: &StateSpace) -> &'static str {
     }
 }
 
-fn model_of<'c>(analysis: &Analysis, role: &ExportedRole, condition: &'c Condition) -> Result<&'c Model, ExportFault> {
+fn model_of<'c>(
+    analysis: &Analysis,
+    role: &ExportedRole,
+    condition: &'c Condition,
+) -> Result<&'c Model, ExportFault> {
     let bundle = condition.bundle(BundleKind::Physics);
     let name = match role {
         ExportedRole::Nominal => return Ok(&bundle[condition.nominal()]),
-        ExportedRole::Representative => result_of(analysis, condition)?.representative_name(BundleKind::Physics),
+        ExportedRole::Representative => {
+            result_of(analysis, condition)?.representative_name(BundleKind::Physics)
+        }
         ExportedRole::Named(name) => name,
     };
-    let missing = || ExportFault::NoModel { condition: condition.id(), model: name.to_owned() };
-    condition.model(BundleKind::Physics, name).ok_or_else(missing)
+    let missing = || ExportFault::NoModel {
+        condition: condition.id(),
+        model: name.to_owned(),
+    };
+    condition
+        .model(BundleKind::Physics, name)
+        .ok_or_else(missing)
 }
 
 fn correction_of(
@@ -219,19 +268,34 @@ fn correction_of(
     match which {
         AssessedCorrection::Own => Ok(result_of(analysis, condition)?.correction.clone()),
         AssessedCorrection::Scheduled | AssessedCorrection::ScheduledWithoutLeads => {
-            let schedule = analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))?;
+            let schedule = analysis
+                .schedule
+                .as_ref()
+                .map_err(|error| ExportFault::Schedule(*error))?;
             let correction = schedule.at_state(condition.flight_state());
-            Ok(if which == AssessedCorrection::Scheduled { correction } else { correction.without_leads() })
+            Ok(if which == AssessedCorrection::Scheduled {
+                correction
+            } else {
+                correction.without_leads()
+            })
         }
         AssessedCorrection::ScheduleOfOthers => {
-            let schedule = analysis.schedule_without(condition.id()).map_err(ExportFault::Schedule)?;
+            let schedule = analysis
+                .schedule_without(condition.id())
+                .map_err(ExportFault::Schedule)?;
             Ok(schedule.at_state(condition.flight_state()))
         }
     }
 }
 
-fn result_of<'a>(analysis: &'a Analysis, condition: &Condition) -> Result<&'a ConditionAnalysis, ExportFault> {
-    let without = |why: String| ExportFault::NoResult { condition: condition.id(), why };
+fn result_of<'a>(
+    analysis: &'a Analysis,
+    condition: &Condition,
+) -> Result<&'a ConditionAnalysis, ExportFault> {
+    let without = |why: String| ExportFault::NoResult {
+        condition: condition.id(),
+        why,
+    };
     match analysis.conditions.get(&condition.id()) {
         Some(Ok(result)) => Ok(result),
         Some(Err(failure)) => Err(without(failure.to_string())),
@@ -245,14 +309,24 @@ fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -
     let of_channels = |channels: &[Channel], what: &str, counts: &[usize]| -> Vec<String> {
         let of = |(channel, &count): (&Channel, &usize)| {
             let name = channel.name.clone();
-            (1..=count).map(move |place| format!("{name} {what} {place}")).collect::<Vec<_>>()
+            (1..=count)
+                .map(move |place| format!("{name} {what} {place}"))
+                .collect::<Vec<_>>()
         };
         channels.iter().zip(counts).flat_map(of).collect()
     };
     let mut names = of_channels(dataset.inputs(), "lead", &corrected.lead_states.inputs);
-    names.extend(of_channels(dataset.inputs(), "delay", &corrected.delay_states.inputs));
+    names.extend(of_channels(
+        dataset.inputs(),
+        "delay",
+        &corrected.delay_states.inputs,
+    ));
     let mut last = of_channels(dataset.outputs(), "delay", &corrected.delay_states.outputs);
-    last.extend(of_channels(dataset.outputs(), "lead", &corrected.lead_states.outputs));
+    last.extend(of_channels(
+        dataset.outputs(),
+        "lead",
+        &corrected.lead_states.outputs,
+    ));
     let own = corrected.model.order() - names.len() - last.len();
     names.extend((0..own).map(|state| model.state_name(state)));
     names.extend(last);
@@ -268,16 +342,30 @@ impl ExportedModel {
 
     /// What it is and how exact, in one line.
     fn words(&self) -> String {
-        let Self { condition, name, correction, .. } = self;
-        let price = self.price.as_ref().map(|(_, words)| format!("; {words}")).unwrap_or_default();
-        let (delays, left_out, couplings) = (self.delay_words(), self.left_out_words(), self.couplings);
-        format!("condition {condition}, model {name}, {correction} correction: {delays}{left_out}{couplings}{price}")
+        let Self {
+            condition,
+            name,
+            correction,
+            ..
+        } = self;
+        let price = self
+            .price
+            .as_ref()
+            .map(|(_, words)| format!("; {words}"))
+            .unwrap_or_default();
+        let (delays, left_out, couplings) =
+            (self.delay_words(), self.left_out_words(), self.couplings);
+        format!(
+            "condition {condition}, model {name}, {correction} correction: {delays}{left_out}{couplings}{price}"
+        )
     }
 
     /// The gain at ten times the band that the leads of the response that pays most add \[dB\]; 0 without leads.
     fn gain_above_band_db(&self) -> f64 {
         let most = |gains_db: &[f64]| gains_db.iter().copied().fold(0.0, f64::max);
-        self.price.as_ref().map_or(0.0, |(price, _)| most(&price.gains_db.inputs) + most(&price.gains_db.outputs))
+        self.price.as_ref().map_or(0.0, |(price, _)| {
+            most(&price.gains_db.inputs) + most(&price.gains_db.outputs)
+        })
     }
 
     /// That delays of the condition's own correction are not in it, and what that is at the top of the band; else nothing.
@@ -286,7 +374,9 @@ impl ExportedModel {
             return String::new();
         }
         let (left_out, top) = (telling(self.left_out_deg, 3), number(self.band_top_rad_s));
-        format!("; the delays of the condition's own correction are left out, up to {left_out} deg at {top} rad/s")
+        format!(
+            "; the delays of the condition's own correction are left out, up to {left_out} deg at {top} rad/s"
+        )
     }
 
     /// Which parts are in it, and how exact they are; never a word of exactness about delays that are not in it.
@@ -303,12 +393,25 @@ impl ExportedModel {
             return "gains and lead filters exact".to_owned();
         }
         if self.pade_order == 0 || self.delay_states == 0 {
-            return if has_delays { "gains and delays exact" } else { "gains exact, without delays" }.to_owned();
+            return if has_delays {
+                "gains and delays exact"
+            } else {
+                "gains exact, without delays"
+            }
+            .to_owned();
         }
         format!(
             "{} exact, {} by Pade approximants of order {}, phase error up to {} deg at {} rad/s",
-            if self.lead_states > 0 { "gains and lead filters" } else { "gains" },
-            if has_delays { "delays" } else { "the model's own delays" },
+            if self.lead_states > 0 {
+                "gains and lead filters"
+            } else {
+                "gains"
+            },
+            if has_delays {
+                "delays"
+            } else {
+                "the model's own delays"
+            },
             self.pade_order,
             bound_words(self.approximation_error_deg),
             number(self.band_top_rad_s)
@@ -320,7 +423,11 @@ impl ExportedModel {
 fn bound_words(error_deg: f64) -> String {
     /// The least bound that is told.
     const LEAST_DEG: f64 = 1e-3;
-    let bound_deg = if error_deg > 0.0 { error_deg.max(LEAST_DEG) } else { 0.0 };
+    let bound_deg = if error_deg > 0.0 {
+        error_deg.max(LEAST_DEG)
+    } else {
+        0.0
+    };
     format!("{bound_deg:.3}")
 }
 
@@ -338,7 +445,11 @@ fn found_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<FoundModel> 
         },
         inputs: labels(dataset.inputs()),
         outputs: labels(dataset.outputs()),
-        facts: Facts { condition: Some(model.condition.0), airspeed_kt: Some(model.airspeed_kt), ..Facts::default() },
+        facts: Facts {
+            condition: Some(model.condition.0),
+            airspeed_kt: Some(model.airspeed_kt),
+            ..Facts::default()
+        },
         notes: vec![model.words()],
     };
     models.iter().map(found).collect()
@@ -348,15 +459,20 @@ fn found_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<FoundModel> 
 fn containing_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<ContainingModel> {
     let mut containing = Vec::new();
     for (model, exported) in found_models(models, dataset).into_iter().zip(models) {
-        containing.push(ContainingModel { model, contains: exported.contents.json(dataset) });
+        containing.push(ContainingModel {
+            model,
+            contains: exported.contents.json(dataset),
+        });
     }
     containing
 }
 
 /// The variable `models`: one record for each model, with the properties of MATLAB's `ss`: `ss(m.A, m.B, m.C, m.D, m.Ts)`.
 fn models_variable(models: &[ExportedModel], dataset: &Dataset) -> Variable {
-    let names = |channels: &[Channel]| cell_of_texts(channels.iter().map(|channel| channel.name.clone()));
-    let units = |channels: &[Channel]| cell_of_texts(channels.iter().map(|channel| channel.unit.clone()));
+    let names =
+        |channels: &[Channel]| cell_of_texts(channels.iter().map(|channel| channel.name.clone()));
+    let units =
+        |channels: &[Channel]| cell_of_texts(channels.iter().map(|channel| channel.unit.clone()));
     let record = |model: &ExportedModel| {
         let mut fields = Fields::default();
         for (name, values) in matrices(model) {
@@ -376,11 +492,17 @@ fn models_variable(models: &[ExportedModel], dataset: &Dataset) -> Variable {
         for (name, source) in model.contents.parts() {
             contains.add(name, Value::text(source.word()));
         }
-        contains.add("left_out", cell_of_texts(model.contents.left_out_words(dataset)));
+        contains.add(
+            "left_out",
+            cell_of_texts(model.contents.left_out_words(dataset)),
+        );
         fields.add("contains", contains.record());
         fields
     };
-    Variable { name: "models".to_owned(), value: records(models.iter().map(record).collect()) }
+    Variable {
+        name: "models".to_owned(),
+        value: records(models.iter().map(record).collect()),
+    }
 }
 
 /// A metric of a model, and its name.
@@ -393,7 +515,12 @@ const METRICS: [Metric; 8] = [
     ("pade_order", |model| model.pade_order as f64),
     ("phase_error_deg", ExportedModel::phase_error_deg),
     ("band_top_rad_s", |model| model.band_top_rad_s),
-    ("not_valid_above_rad_s", |model| model.price.as_ref().map_or(f64::INFINITY, |(price, _)| price.limit_rad_s)),
+    ("not_valid_above_rad_s", |model| {
+        model
+            .price
+            .as_ref()
+            .map_or(f64::INFINITY, |(price, _)| price.limit_rad_s)
+    }),
     ("gain_above_band_db", ExportedModel::gain_above_band_db),
 ];
 
@@ -413,28 +540,43 @@ fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
     let variable = |name: String, value: Value| Variable { name, value };
     let mut variables = Vec::new();
     for (place, model) in models.iter().enumerate() {
-        let named = matrices(model).map(|(name, values)| variable(format!("{name}_{place}"), array(values)));
+        let named = matrices(model)
+            .map(|(name, values)| variable(format!("{name}_{place}"), array(values)));
         variables.extend(named);
-        variables.push(variable(format!("StateName_{place}"), row_of_texts(model.states.iter())));
+        variables.push(variable(
+            format!("StateName_{place}"),
+            row_of_texts(model.states.iter()),
+        ));
     }
     for (name, channels) in [("Input", dataset.inputs()), ("Output", dataset.outputs())] {
         let names = row_of_texts(channels.iter().map(|channel| &channel.name));
         let units = row_of_texts(channels.iter().map(|channel| &channel.unit));
-        variables.extend([variable(format!("{name}Name"), names), variable(format!("{name}Unit"), units)]);
+        variables.extend([
+            variable(format!("{name}Name"), names),
+            variable(format!("{name}Unit"), units),
+        ]);
     }
     for (name, metric) in METRICS {
         let values = models.iter().map(metric).collect();
         variables.push(variable(name.to_owned(), matrix(1, models.len(), values)));
     }
-    variables.push(variable("model".to_owned(), row_of_texts(models.iter().map(|model| &model.name))));
+    variables.push(variable(
+        "model".to_owned(),
+        row_of_texts(models.iter().map(|model| &model.name)),
+    ));
     let corrections = models.iter().map(|model| model.correction);
     variables.push(variable("correction".to_owned(), row_of_texts(corrections)));
     for (name, source) in CONTAINED {
         let words = models.iter().map(|model| source(&model.contents).word());
         variables.push(variable(format!("contains_{name}"), row_of_texts(words)));
     }
-    let left_out = models.iter().map(|model| model.contents.left_out_words(dataset).join("; "));
-    variables.push(variable("contains_left_out".to_owned(), row_of_texts(left_out)));
+    let left_out = models
+        .iter()
+        .map(|model| model.contents.left_out_words(dataset).join("; "));
+    variables.push(variable(
+        "contains_left_out".to_owned(),
+        row_of_texts(left_out),
+    ));
     variables
 }
 
@@ -455,7 +597,10 @@ fn array(values: &DMatrix<f64>) -> Value {
 
 fn row_of_texts<T: ToString>(texts: impl Iterator<Item = T>) -> Value {
     let texts: Vec<String> = texts.map(|text| text.to_string()).collect();
-    Value::Text(TextArray { shape: vec![1, texts.len()], texts })
+    Value::Text(TextArray {
+        shape: vec![1, texts.len()],
+        texts,
+    })
 }
 
 #[cfg(test)]
@@ -478,20 +623,43 @@ mod tests {
             let id = model.condition;
             let own_s = analysis.condition(id).unwrap().correction.pure_delay_s(nx);
             let [LeftOutPart::Delay(left_out)] = &model.contents.left_out[..] else {
-                assert!(model.contents.left_out.is_empty() && own_s < 5e-5, "condition {id}: {own_s} s");
+                assert!(
+                    model.contents.left_out.is_empty() && own_s < 5e-5,
+                    "condition {id}: {own_s} s"
+                );
                 assert_eq!(model.phase_error_deg(), 0.0);
-                assert!(model.words().contains("gains exact, without delays"), "{}", model.words());
+                assert!(
+                    model.words().contains("gains exact, without delays"),
+                    "{}",
+                    model.words()
+                );
                 continue;
             };
             assert_eq!((id, left_out.channel), (ConditionId(4), nx));
             let phase_deg = (12.0 * own_s).to_degrees();
-            assert!((model.phase_error_deg() - phase_deg).abs() < 1e-9 && phase_deg > 0.1, "{phase_deg}");
-            assert!(model.words().contains("are left out, up to"), "{}", model.words());
+            assert!(
+                (model.phase_error_deg() - phase_deg).abs() < 1e-9 && phase_deg > 0.1,
+                "{phase_deg}"
+            );
+            assert!(
+                model.words().contains("are left out, up to"),
+                "{}",
+                model.words()
+            );
         }
-        let own = ExportRequest { correction: AssessedCorrection::Own, ..ExportRequest::default() };
+        let own = ExportRequest {
+            correction: AssessedCorrection::Own,
+            ..ExportRequest::default()
+        };
         let own = exported_models(&analysis, &own).unwrap();
-        assert!(own.iter().all(|model| model.contents.left_out.is_empty() && model.left_out_deg == 0.0));
-        assert!(own.iter().all(|model| model.contents.delays == PartSource::Own));
+        assert!(
+            own.iter()
+                .all(|model| model.contents.left_out.is_empty() && model.left_out_deg == 0.0)
+        );
+        assert!(
+            own.iter()
+                .all(|model| model.contents.delays == PartSource::Own)
+        );
     }
 
     #[test]
@@ -500,21 +668,44 @@ mod tests {
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let models = exported_models(&analysis, &ExportRequest::default()).unwrap();
         let meter = ReadingBudget::new(1 << 28);
-        let arrays = read_npz(&write_npz(&model_arrays(&models, &study.dataset)).unwrap(), &meter).unwrap();
+        let arrays = read_npz(
+            &write_npz(&model_arrays(&models, &study.dataset)).unwrap(),
+            &meter,
+        )
+        .unwrap();
         let bytes = mat::write_packed(&[models_variable(&models, &study.dataset)]).unwrap();
-        let [Variable { value: Value::Struct(records), .. }] = &mat::read(&bytes, &meter).unwrap()[..] else {
+        let [
+            Variable {
+                value: Value::Struct(records),
+                ..
+            },
+        ] = &mat::read(&bytes, &meter).unwrap()[..]
+        else {
             panic!("one struct array")
         };
         for (place, model) in models.iter().enumerate() {
             for name in ["A", "B", "C", "D"] {
-                let found = arrays.iter().find(|array| array.name == format!("{name}_{place}")).unwrap();
-                assert_eq!(found.value, records.field(name).unwrap()[place], "{name} of model {place}");
+                let found = arrays
+                    .iter()
+                    .find(|array| array.name == format!("{name}_{place}"))
+                    .unwrap();
+                assert_eq!(
+                    found.value,
+                    records.field(name).unwrap()[place],
+                    "{name} of model {place}"
+                );
             }
             assert_eq!(records.field("A").unwrap()[place], array(model.model.a()));
-            let names = arrays.iter().find(|array| array.name == format!("StateName_{place}")).unwrap();
+            let names = arrays
+                .iter()
+                .find(|array| array.name == format!("StateName_{place}"))
+                .unwrap();
             assert_eq!(names.value, row_of_texts(model.states.iter()));
         }
-        let airspeeds = arrays.iter().find(|array| array.name == "airspeed_kt").unwrap();
+        let airspeeds = arrays
+            .iter()
+            .find(|array| array.name == "airspeed_kt")
+            .unwrap();
         let values = models.iter().map(|model| model.airspeed_kt).collect();
         assert_eq!(airspeeds.value, matrix(1, models.len(), values));
     }
@@ -522,16 +713,28 @@ mod tests {
     #[test]
     fn a_corrected_model_with_couplings_has_the_response_of_the_analysis() {
         let mut study = Study::new(embedded_example().unwrap().dataset);
-        study.apply(&setting::PHASE.to(PhaseCorrection::None)).unwrap();
-        study.apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback)).unwrap();
+        study
+            .apply(&setting::PHASE.to(PhaseCorrection::None))
+            .unwrap();
+        study
+            .apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
+            .unwrap();
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
-        let own = ExportRequest { correction: AssessedCorrection::Own, ..ExportRequest::default() };
+        let own = ExportRequest {
+            correction: AssessedCorrection::Own,
+            ..ExportRequest::default()
+        };
         let grid = FrequencyGrid::logarithmic(study.settings.band, 12);
         for model in exported_models(&analysis, &own).unwrap() {
-            assert!(model.words().contains("with mixing and feedback, exact"), "{}", model.words());
+            assert!(
+                model.words().contains("with mixing and feedback, exact"),
+                "{}",
+                model.words()
+            );
             let result = analysis.condition(model.condition).unwrap();
             let bundle = result.condition.bundle(BundleKind::Physics);
-            let physics = FrequencyResponse::of(&bundle[result.condition.nominal()].dynamics, &grid);
+            let physics =
+                FrequencyResponse::of(&bundle[result.condition.nominal()].dynamics, &grid);
             let coupled = result.coupled_response(&physics);
             let found = FrequencyResponse::of(&Dynamics::StateSpace(model.model.clone()), &grid);
             for (pair, curve) in coupled.curves().iter() {
@@ -539,7 +742,11 @@ mod tests {
                 let largest = curve.iter().map(|value| value.norm()).fold(0.0, f64::max) * gain;
                 for (found, expected) in found.curve(pair).iter().zip(curve) {
                     // Both close the loop, one in states, the other at each frequency.
-                    assert!((found - expected * gain).norm() <= 1e-9 * largest, "{pair:?} of {}", model.condition);
+                    assert!(
+                        (found - expected * gain).norm() <= 1e-9 * largest,
+                        "{pair:?} of {}",
+                        model.condition
+                    );
                 }
             }
         }

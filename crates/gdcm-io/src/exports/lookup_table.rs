@@ -53,10 +53,26 @@ struct Kind {
     is_time: bool,
 }
 
-const GAIN: Kind = Kind { name: "gain", field: "gains", is_time: false };
-const DELAY: Kind = Kind { name: "delay", field: "delays_s", is_time: true };
-const MIXING: Kind = Kind { name: "mixing", field: "mixing", is_time: false };
-const LEAD: Kind = Kind { name: "lead numerator", field: "lead_numerators_s", is_time: true };
+const GAIN: Kind = Kind {
+    name: "gain",
+    field: "gains",
+    is_time: false,
+};
+const DELAY: Kind = Kind {
+    name: "delay",
+    field: "delays_s",
+    is_time: true,
+};
+const MIXING: Kind = Kind {
+    name: "mixing",
+    field: "mixing",
+    is_time: false,
+};
+const LEAD: Kind = Kind {
+    name: "lead numerator",
+    field: "lead_numerators_s",
+    is_time: true,
+};
 
 impl Kind {
     /// The error of a value against the true one: \[%\] of a gain, \[ms\] of a time.
@@ -106,27 +122,48 @@ impl<'e> BreakpointTable<'e> {
         };
         let airspeeds_kt = breakpoints_kt.map_or_else(distinct, <[f64]>::to_vec);
         let increasing = airspeeds_kt.windows(2).all(|pair| pair[0] < pair[1]);
-        if airspeeds_kt.is_empty() || !increasing || !airspeeds_kt.iter().all(|point| point.is_finite()) {
+        if airspeeds_kt.is_empty()
+            || !increasing
+            || !airspeeds_kt.iter().all(|point| point.is_finite())
+        {
             return Err(ExportFault::Breakpoints);
         }
         // Ends and middle: between them the effect is nearly a straight line.
-        let second = of
-            .schedule
-            .second
-            .as_ref()
-            .map_or_else(|| vec![None], |term| [term.range[0], term.middle(), term.range[1]].map(Some).to_vec());
-        let at = |second: Option<f64>| airspeeds_kt.iter().map(move |&airspeed_kt| (airspeed_kt, second));
+        let second = of.schedule.second.as_ref().map_or_else(
+            || vec![None],
+            |term| {
+                [term.range[0], term.middle(), term.range[1]]
+                    .map(Some)
+                    .to_vec()
+            },
+        );
+        let at = |second: Option<f64>| {
+            airspeeds_kt
+                .iter()
+                .map(move |&airspeed_kt| (airspeed_kt, second))
+        };
         let rows = second.iter().flat_map(|&second| at(second)).collect();
-        let mut table = Self { of: of.clone(), airspeeds_kt, rows, columns: Vec::new() };
+        let mut table = Self {
+            of: of.clone(),
+            airspeeds_kt,
+            rows,
+            columns: Vec::new(),
+        };
         for channel in all_channels(of.dataset) {
             let evaluate = |kt, second| of.schedule.evaluate(kt, second);
             let gain = |kt, second| evaluate(kt, second).gain(channel);
             let delay_s = |kt, second| evaluate(kt, second).pure_delay_s(channel);
-            table.columns.push(table.column(channel, &GAIN, &second, gain));
-            table.columns.push(table.column(channel, &DELAY, &second, delay_s));
+            table
+                .columns
+                .push(table.column(channel, &GAIN, &second, gain));
+            table
+                .columns
+                .push(table.column(channel, &DELAY, &second, delay_s));
             if let Some(zero_s) = of.zero_s(channel) {
                 let zero_s = |kt, _| zero_s.figures.at(&of.schedule.airspeeds, kt);
-                table.columns.push(table.column(channel, &LEAD, &second, zero_s));
+                table
+                    .columns
+                    .push(table.column(channel, &LEAD, &second, zero_s));
             }
         }
         table.add_mixing();
@@ -135,13 +172,24 @@ impl<'e> BreakpointTable<'e> {
 
     /// What each input takes of each input, where there are couplings: of the first input first.
     fn add_mixing(&mut self) {
-        let (Some(couplings), count) = (self.of.couplings, self.of.dataset.inputs().len()) else { return };
+        let (Some(couplings), count) = (self.of.couplings, self.of.dataset.inputs().len()) else {
+            return;
+        };
         let (inputs, _) = self.of.dataset.names_of_channels();
         for (to, from) in (0..count).flat_map(|to| (0..count).map(move |from| (to, from))) {
-            let of =
-                self.column(Channel::Input(to), &MIXING, &[None], |kt, _| couplings.normalised_mixing(kt)[(to, from)]);
-            let values = self.rows.iter().map(|(kt, _)| couplings.normalised_mixing(*kt)[(to, from)]).collect();
-            self.columns.push(Column { name: format!("{} from {}", inputs[to], inputs[from]), values, ..of });
+            let of = self.column(Channel::Input(to), &MIXING, &[None], |kt, _| {
+                couplings.normalised_mixing(kt)[(to, from)]
+            });
+            let values = self
+                .rows
+                .iter()
+                .map(|(kt, _)| couplings.normalised_mixing(*kt)[(to, from)])
+                .collect();
+            self.columns.push(Column {
+                name: format!("{} from {}", inputs[to], inputs[from]),
+                values,
+                ..of
+            });
         }
     }
 
@@ -158,34 +206,68 @@ impl<'e> BreakpointTable<'e> {
         let range_kt = [airspeeds.min_kt, airspeeds.max_kt];
         let errors = second.iter().map(|&second| {
             let truth = |airspeed_kt: f64| value(airspeed_kt, second);
-            TableError::greatest(&self.airspeeds_kt, range_kt, truth, |value, truth| kind.error(value, truth))
+            TableError::greatest(&self.airspeeds_kt, range_kt, truth, |value, truth| {
+                kind.error(value, truth)
+            })
         });
-        let worst = |worst: TableError, found: TableError| if found.error > worst.error { found } else { worst };
-        let none = TableError { error: 0.0, airspeed_kt: range_kt[0] };
+        let worst = |worst: TableError, found: TableError| {
+            if found.error > worst.error {
+                found
+            } else {
+                worst
+            }
+        };
+        let none = TableError {
+            error: 0.0,
+            airspeed_kt: range_kt[0],
+        };
         Column {
             kind,
             channel,
             name: channel.name(&inputs, &outputs),
-            values: self.rows.iter().map(|&(airspeed_kt, second)| value(airspeed_kt, second)).collect(),
+            values: self
+                .rows
+                .iter()
+                .map(|&(airspeed_kt, second)| value(airspeed_kt, second))
+                .collect(),
             error: errors.reduce(worst).unwrap_or(none),
         }
     }
 
     /// What is to be known of the schedule, and how far the table lies from it.
     fn remarks(&self) -> Vec<String> {
-        let off = self.columns.iter().filter(|column| column.error.error > 0.0);
-        let off = off.map(|column| format!("table of the {}: off by up to {}", column.words(), column.error_words()));
+        let off = self
+            .columns
+            .iter()
+            .filter(|column| column.error.error > 0.0);
+        let off = off.map(|column| {
+            format!(
+                "table of the {}: off by up to {}",
+                column.words(),
+                column.error_words()
+            )
+        });
         self.of.notes().into_iter().chain(off).collect()
     }
 
     /// Lines that begin with # say what it is and how far each column lies from its curve at most.
     fn csv(&self) -> String {
-        let mut text: String = self.of.heading(&self.of.notes()).iter().map(|line| format!("# {line}\n")).collect();
+        let mut text: String = self
+            .of
+            .heading(&self.of.notes())
+            .iter()
+            .map(|line| format!("# {line}\n"))
+            .collect();
         text.push_str(
             "# Greatest error of linear interpolation in this table, end values outside it, against the curves:\n",
         );
         for column in &self.columns {
-            let _ = writeln!(text, "# {}: {}", comment(&column.words()), column.error_words());
+            let _ = writeln!(
+                text,
+                "# {}: {}",
+                comment(&column.words()),
+                column.error_words()
+            );
         }
         for line in self.feedback_lines() {
             let _ = writeln!(text, "# {line}");
@@ -196,7 +278,11 @@ impl<'e> BreakpointTable<'e> {
         }
         for column in &self.columns {
             let unit = if column.kind.is_time { "s" } else { "-" };
-            let _ = write!(text, ",\"{} [{unit}]\"", comment(&column.words()).replace('"', "\"\""));
+            let _ = write!(
+                text,
+                ",\"{} [{unit}]\"",
+                comment(&column.words()).replace('"', "\"\"")
+            );
         }
         text.push('\n');
         for (row, (airspeed_kt, second)) in self.rows.iter().enumerate() {
@@ -210,12 +296,24 @@ impl<'e> BreakpointTable<'e> {
 
     /// The feedback, a line for each input that receives; nothing without couplings.
     fn feedback_lines(&self) -> Vec<String> {
-        let Some(couplings) = self.of.couplings else { return Vec::new() };
+        let Some(couplings) = self.of.couplings else {
+            return Vec::new();
+        };
         let (inputs, outputs) = self.of.dataset.names_of_channels();
         let line = |to: usize| {
-            let of = |from: usize| format!("{} {}", comment(&outputs[from]), number(couplings.feedback()[(to, from)]));
+            let of = |from: usize| {
+                format!(
+                    "{} {}",
+                    comment(&outputs[from]),
+                    number(couplings.feedback()[(to, from)])
+                )
+            };
             let entries: Vec<String> = (0..outputs.len()).map(of).collect();
-            format!("feedback to input {}: {}", comment(&inputs[to]), entries.join(", "))
+            format!(
+                "feedback to input {}: {}",
+                comment(&inputs[to]),
+                entries.join(", ")
+            )
         };
         (0..inputs.len()).map(line).collect()
     }
@@ -227,54 +325,108 @@ impl<'e> BreakpointTable<'e> {
         let (inputs, outputs) = self.of.dataset.names_of_channels();
         let mut fields = Fields::default();
         fields.add("about", cell_of_texts(self.of.heading(&self.of.notes())));
-        fields.add("airspeed_kt", column(self.rows.iter().map(|(airspeed_kt, _)| *airspeed_kt)));
+        fields.add(
+            "airspeed_kt",
+            column(self.rows.iter().map(|(airspeed_kt, _)| *airspeed_kt)),
+        );
         if let Some(term) = &schedule.second {
             let name = format!("{}_{}", term.variable.name(), term.variable.unit());
-            fields.add(&name, column(self.rows.iter().filter_map(|(_, second)| *second)));
+            fields.add(
+                &name,
+                column(self.rows.iter().filter_map(|(_, second)| *second)),
+            );
         }
         for (side, names) in [("input", inputs), ("output", outputs)] {
             fields.add(&format!("{side}s"), cell_of_texts(names));
-            for kind in [&GAIN, &DELAY, &LEAD].into_iter().take(if schedule.leads.is_some() { 3 } else { 2 }) {
+            for kind in [&GAIN, &DELAY, &LEAD]
+                .into_iter()
+                .take(if schedule.leads.is_some() { 3 } else { 2 })
+            {
                 let is_of = |column: &&Column| column.side() == side && column.kind == kind;
                 let columns: Vec<&Column> = self.columns.iter().filter(is_of).collect();
-                let values = columns.iter().flat_map(|column| column.values.iter().copied()).collect();
-                fields.add(&format!("{side}_{}", kind.field), matrix(self.rows.len(), columns.len(), values));
+                let values = columns
+                    .iter()
+                    .flat_map(|column| column.values.iter().copied())
+                    .collect();
+                fields.add(
+                    &format!("{side}_{}", kind.field),
+                    matrix(self.rows.len(), columns.len(), values),
+                );
                 let unit = if kind.is_time { "ms" } else { "percent" };
                 let name = format!("{side}_{}_error_{unit}", kind.name.replace(' ', "_"));
                 fields.add(&name, row(columns.iter().map(|column| column.error.error)));
             }
         }
         if let Some(couplings) = self.of.couplings {
-            let columns: Vec<&Column> = self.columns.iter().filter(|column| column.kind == &MIXING).collect();
-            let values = columns.iter().flat_map(|column| column.values.iter().copied()).collect();
+            let columns: Vec<&Column> = self
+                .columns
+                .iter()
+                .filter(|column| column.kind == &MIXING)
+                .collect();
+            let values = columns
+                .iter()
+                .flat_map(|column| column.values.iter().copied())
+                .collect();
             fields.add("mixing", matrix(self.rows.len(), columns.len(), values));
-            fields.add("mixing_of", cell_of_texts(columns.iter().map(|column| column.name.clone())));
+            fields.add(
+                "mixing_of",
+                cell_of_texts(columns.iter().map(|column| column.name.clone())),
+            );
             let feedback = couplings.feedback();
-            fields.add("feedback", matrix(feedback.nrows(), feedback.ncols(), feedback.as_slice().to_vec()));
+            fields.add(
+                "feedback",
+                matrix(
+                    feedback.nrows(),
+                    feedback.ncols(),
+                    feedback.as_slice().to_vec(),
+                ),
+            );
         }
         if let Some(leads) = &schedule.leads {
-            fields.add("lead_order", Value::number(leads.design.settings().order.number() as f64));
+            fields.add(
+                "lead_order",
+                Value::number(leads.design.settings().order.number() as f64),
+            );
             fields.add("lead_lag_s", Value::number(leads.design.lag_s()));
         }
         if let Some(price) = schedule.lead_price() {
             fields.add("not_valid_above_rad_s", Value::number(price.limit_rad_s));
-            fields.add("input_gain_above_band_db", row(price.gains_db.inputs.iter().copied()));
-            fields.add("output_gain_above_band_db", row(price.gains_db.outputs.iter().copied()));
+            fields.add(
+                "input_gain_above_band_db",
+                row(price.gains_db.inputs.iter().copied()),
+            );
+            fields.add(
+                "output_gain_above_band_db",
+                row(price.gains_db.outputs.iter().copied()),
+            );
         }
         let mut contains = Fields::default();
         for (name, source) in self.of.contents.parts() {
             contains.add(name, Value::text(source.word()));
         }
-        contains.add("left_out", cell_of_texts(self.of.contents.left_out_words(self.of.dataset)));
+        contains.add(
+            "left_out",
+            cell_of_texts(self.of.contents.left_out_words(self.of.dataset)),
+        );
         fields.add("contains", contains.record());
-        fields.add("interpolation", Value::text("linear between the airspeeds, the end values outside"));
-        Variable { name: "gdcm_table".to_owned(), value: fields.record() }
+        fields.add(
+            "interpolation",
+            Value::text("linear between the airspeeds, the end values outside"),
+        );
+        Variable {
+            name: "gdcm_table".to_owned(),
+            value: fields.record(),
+        }
     }
 }
 
 impl Column {
     fn side(&self) -> &'static str {
-        if matches!(self.channel, Channel::Input(_)) { "input" } else { "output" }
+        if matches!(self.channel, Channel::Input(_)) {
+            "input"
+        } else {
+            "output"
+        }
     }
 
     /// What it is: "gain of input LON".
@@ -286,7 +438,11 @@ impl Column {
     fn error_words(&self) -> String {
         let unit = if self.kind.is_time { "ms" } else { "%" };
         let TableError { error, airspeed_kt } = self.error;
-        let place = if error > 0.0 { format!(" at {airspeed_kt:.3} kt") } else { String::new() };
+        let place = if error > 0.0 {
+            format!(" at {airspeed_kt:.3} kt")
+        } else {
+            String::new()
+        };
         format!("{error:.3e} {unit}{place}")
     }
 }
@@ -318,17 +474,27 @@ impl TableError {
         let error = |x: f64| measure(interpolated(points, &values, x), curve(x));
         let [least, most] = range_kt;
         let step = (most - least) / GRID as f64;
-        let mut best = Self { error: error(least), airspeed_kt: least };
+        let mut best = Self {
+            error: error(least),
+            airspeed_kt: least,
+        };
         for index in 1..=GRID {
             best.improve(error, least + index as f64 * step);
         }
-        let (mut low, mut high) = ((best.airspeed_kt - step).max(least), (best.airspeed_kt + step).min(most));
+        let (mut low, mut high) = (
+            (best.airspeed_kt - step).max(least),
+            (best.airspeed_kt + step).min(most),
+        );
         let ratio = (5_f64.sqrt() - 1.0) / 2.0;
         for _ in 0..STEPS {
             let (left, right) = (high - ratio * (high - low), low + ratio * (high - low));
             let left_is_greater = error(left) > error(right);
             best.improve(error, if left_is_greater { left } else { right });
-            if left_is_greater { high = right } else { low = left }
+            if left_is_greater {
+                high = right
+            } else {
+                low = left
+            }
         }
         best
     }
@@ -336,7 +502,10 @@ impl TableError {
     fn improve(&mut self, error: impl Fn(f64) -> f64, airspeed_kt: f64) {
         let found = error(airspeed_kt);
         if found > self.error {
-            *self = Self { error: found, airspeed_kt };
+            *self = Self {
+                error: found,
+                airspeed_kt,
+            };
         }
     }
 }
@@ -369,14 +538,28 @@ mod tests {
     #[test]
     fn the_error_of_a_parabola_is_greatest_in_the_middle() {
         // x^2 between 0 and h is at most h^2/4 below its chord.
-        let found = TableError::greatest(&[0.0, 10.0, 16.0], [0.0, 16.0], |x| x * x, |a, b| (a - b).abs());
-        assert!((found.error - 25.0).abs() < 1e-12 && (found.airspeed_kt - 5.0).abs() < 1e-5, "{found:?}");
+        let found = TableError::greatest(
+            &[0.0, 10.0, 16.0],
+            [0.0, 16.0],
+            |x| x * x,
+            |a, b| (a - b).abs(),
+        );
+        assert!(
+            (found.error - 25.0).abs() < 1e-12 && (found.airspeed_kt - 5.0).abs() < 1e-5,
+            "{found:?}"
+        );
     }
 
     #[test]
     fn beyond_the_table_its_end_values_count() {
         let found = TableError::greatest(&[2.0, 4.0], [0.0, 4.0], |x| x, |a, b| (a - b).abs());
-        assert_eq!(found, TableError { error: 2.0, airspeed_kt: 0.0 });
+        assert_eq!(
+            found,
+            TableError {
+                error: 2.0,
+                airspeed_kt: 0.0
+            }
+        );
     }
 
     const POINTS: [f64; 4] = [20.0, 45.0, 100.0, 150.0];
@@ -391,28 +574,57 @@ mod tests {
     fn table<'a>(analysis: &'a Analysis, source: &'a ExportSource) -> BreakpointTable<'a> {
         let (schedule, dataset) = (analysis.schedule.as_ref().unwrap(), &analysis.study.dataset);
         let contents = ExportContents::of_scheduled(analysis);
-        let of = Scheduled { schedule, dataset, source, couplings: None, contents };
+        let of = Scheduled {
+            schedule,
+            dataset,
+            source,
+            couplings: None,
+            contents,
+        };
         BreakpointTable::of(of, Some(&POINTS)).unwrap()
     }
 
     fn source() -> ExportSource {
-        ExportSource { name: "example".to_owned(), sha256: "ba78".to_owned() }
+        ExportSource {
+            name: "example".to_owned(),
+            sha256: "ba78".to_owned(),
+        }
     }
 
     #[test]
     fn the_table_holds_the_schedule_at_its_airspeeds() {
         let (analysis, source) = (analysis(None), source());
-        let (table, schedule) = (table(&analysis, &source), analysis.schedule.as_ref().unwrap());
+        let (table, schedule) = (
+            table(&analysis, &source),
+            analysis.schedule.as_ref().unwrap(),
+        );
         let read = read_table(&table.csv(), &ReadingBudget::new(1 << 20)).unwrap();
-        assert_eq!((&read.columns[0][..], read.columns.len()), (&POINTS[..], 21));
+        assert_eq!(
+            (&read.columns[0][..], read.columns.len()),
+            (&POINTS[..], 21)
+        );
         assert_eq!(read.units[2].as_deref(), Some("s"));
-        let of = |value: &dyn Fn(&ChannelCorrection) -> f64| POINTS.map(|kt| value(&schedule.at(kt))).to_vec();
+        let of = |value: &dyn Fn(&ChannelCorrection) -> f64| {
+            POINTS.map(|kt| value(&schedule.at(kt))).to_vec()
+        };
         assert_eq!(read.columns[3], of(&|correction| correction.input_gains[1]));
-        assert_eq!(read.columns[10], of(&|correction| correction.output_delays_s[0]));
-        let Value::Struct(of_matlab) = table.variable().value else { panic!("no struct") };
-        let Some([Value::Array(gains)]) = of_matlab.field("input_gains") else { panic!("no gains") };
-        assert_eq!((&gains.shape[..], &gains.re[4..8]), (&[4, 4][..], &read.columns[3][..]));
-        let Some([Value::Array(errors)]) = of_matlab.field("output_delay_error_ms") else { panic!("no errors") };
+        assert_eq!(
+            read.columns[10],
+            of(&|correction| correction.output_delays_s[0])
+        );
+        let Value::Struct(of_matlab) = table.variable().value else {
+            panic!("no struct")
+        };
+        let Some([Value::Array(gains)]) = of_matlab.field("input_gains") else {
+            panic!("no gains")
+        };
+        assert_eq!(
+            (&gains.shape[..], &gains.re[4..8]),
+            (&[4, 4][..], &read.columns[3][..])
+        );
+        let Some([Value::Array(errors)]) = of_matlab.field("output_delay_error_ms") else {
+            panic!("no errors")
+        };
         assert_eq!(errors.shape, [1, 6]);
     }
 
@@ -421,12 +633,21 @@ mod tests {
         let (analysis, source) = (analysis(None), source());
         let table = table(&analysis, &source);
         let worst = table.columns[0].error;
-        assert!(worst.error > 0.0 && !POINTS.contains(&worst.airspeed_kt), "{worst:?}");
-        let line = format!("\n# gain of input LON: {:.3e} % at {:.3} kt\n", worst.error, worst.airspeed_kt);
+        assert!(
+            worst.error > 0.0 && !POINTS.contains(&worst.airspeed_kt),
+            "{worst:?}"
+        );
+        let line = format!(
+            "\n# gain of input LON: {:.3e} % at {:.3} kt\n",
+            worst.error, worst.airspeed_kt
+        );
         assert!(table.csv().contains(&line), "{}", table.csv());
         for points in [&[][..], &[1.0, 1.0], &[1.0, f64::NAN]] {
             assert!(
-                matches!(BreakpointTable::of(table.of.clone(), Some(points)), Err(ExportFault::Breakpoints)),
+                matches!(
+                    BreakpointTable::of(table.of.clone(), Some(points)),
+                    Err(ExportFault::Breakpoints)
+                ),
                 "{points:?}"
             );
         }
@@ -439,7 +660,16 @@ mod tests {
         let schedule = analysis.schedule.as_ref().unwrap();
         assert_eq!(table.rows.len(), 3 * POINTS.len());
         let (airspeed_kt, altitude) = table.rows[9];
-        assert_eq!(table.columns[0].values[9], schedule.evaluate(airspeed_kt, altitude).input_gains[0]);
-        assert!(table.csv().contains("\nairspeed [kt],altitude [ft],\"gain of input LON [-]\""), "{}", table.csv());
+        assert_eq!(
+            table.columns[0].values[9],
+            schedule.evaluate(airspeed_kt, altitude).input_gains[0]
+        );
+        assert!(
+            table
+                .csv()
+                .contains("\nairspeed [kt],altitude [ft],\"gain of input LON [-]\""),
+            "{}",
+            table.csv()
+        );
     }
 }

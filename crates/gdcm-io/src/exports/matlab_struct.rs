@@ -45,7 +45,10 @@ impl Layout {
             Json::Object(members) if self.by_name.contains(&name) => {
                 let mut fields = Fields::default();
                 fields.add("name", cell_of_texts(members.keys().cloned()));
-                fields.add("value", self.gathered(&[members.len()], members.values().collect()));
+                fields.add(
+                    "value",
+                    self.gathered(&[members.len()], members.values().collect()),
+                );
                 fields.record()
             }
             Json::Object(_) => self.records(&[json]),
@@ -54,7 +57,10 @@ impl Layout {
 
     fn list(&self, name: &str, entries: &[Json]) -> Value {
         if entries.is_empty() {
-            return Value::Cell(CellArray { shape: vec![0, 1], values: Vec::new() });
+            return Value::Cell(CellArray {
+                shape: vec![0, 1],
+                values: Vec::new(),
+            });
         }
         if entries.iter().all(Json::is_object) {
             let entries: Vec<&Json> = entries.iter().collect();
@@ -80,10 +86,18 @@ impl Layout {
     fn records(&self, objects: &[&Json]) -> Value {
         let of = |name: &str| {
             let values = objects.iter().map(|object| object.get(name));
-            values.map(|value| value.map_or_else(Value::empty, |value| self.value(name, value))).collect()
+            values
+                .map(|value| value.map_or_else(Value::empty, |value| self.value(name, value)))
+                .collect()
         };
-        let fields = names_of(objects).into_iter().map(|name| (valid_name(name), of(name))).collect();
-        Value::Struct(StructArray { shape: vec![1, objects.len()], fields })
+        let fields = names_of(objects)
+            .into_iter()
+            .map(|name| (valid_name(name), of(name)))
+            .collect();
+        Value::Struct(StructArray {
+            shape: vec![1, objects.len()],
+            fields,
+        })
     }
 
     /// Leaves of an array of this shape, its last index running fastest: of objects a struct of arrays, of numbers an array.
@@ -91,14 +105,24 @@ impl Layout {
         if leaves.iter().any(|leaf| leaf.is_object()) {
             let mut fields = Fields::default();
             for name in names_of(&leaves) {
-                let values: Vec<&Json> = leaves.iter().map(|leaf| leaf.get(name).unwrap_or(&NULL)).collect();
-                let lengths = values.iter().filter_map(|value| Some(value.as_object()?.len()));
+                let values: Vec<&Json> = leaves
+                    .iter()
+                    .map(|leaf| leaf.get(name).unwrap_or(&NULL))
+                    .collect();
+                let lengths = values
+                    .iter()
+                    .filter_map(|value| Some(value.as_object()?.len()));
                 let value = match lengths.max().filter(|_| self.by_channel.contains(&name)) {
                     Some(length) => {
                         let member_at = |value: &'j Json, at: usize| {
-                            value.as_object().and_then(|of| of.values().nth(at)).unwrap_or(&NULL)
+                            value
+                                .as_object()
+                                .and_then(|of| of.values().nth(at))
+                                .unwrap_or(&NULL)
                         };
-                        let members = values.iter().flat_map(|value| (0..length).map(move |at| member_at(value, at)));
+                        let members = values
+                            .iter()
+                            .flat_map(|value| (0..length).map(move |at| member_at(value, at)));
                         self.gathered(&[shape, &[length]].concat(), members.collect())
                     }
                     None => self.gathered(shape, values),
@@ -108,10 +132,21 @@ impl Layout {
             return fields.record();
         }
         if leaves.iter().all(|leaf| is_number(leaf)) {
-            return array(shape, leaves.into_iter().map(number).collect(), ElementKind::Float);
+            return array(
+                shape,
+                leaves.into_iter().map(number).collect(),
+                ElementKind::Float,
+            );
         }
-        if let Some(flags) = leaves.iter().map(|leaf| leaf.as_bool()).collect::<Option<Vec<_>>>() {
-            let numbers = flags.into_iter().map(|flag| f64::from(u8::from(flag))).collect();
+        if let Some(flags) = leaves
+            .iter()
+            .map(|leaf| leaf.as_bool())
+            .collect::<Option<Vec<_>>>()
+        {
+            let numbers = flags
+                .into_iter()
+                .map(|flag| f64::from(u8::from(flag)))
+                .collect();
             return array(shape, numbers, ElementKind::Logical);
         }
         let length = leaves.iter().find_map(|leaf| Some(leaf.as_array()?.len()));
@@ -124,21 +159,32 @@ impl Layout {
                 Json::Array(list) => list.iter().map(number).collect(),
                 _ => vec![f64::NAN; length],
             });
-            return array(&[shape, &[length]].concat(), numbers.collect(), ElementKind::Float);
+            return array(
+                &[shape, &[length]].concat(),
+                numbers.collect(),
+                ElementKind::Float,
+            );
         }
         let values = leaves.iter().map(|leaf| match leaf {
             Json::Null => Value::empty(),
             leaf => self.value("", leaf),
         });
         let shape = sides(shape);
-        Value::Cell(CellArray { values: first_index_fastest(&shape, values.collect()), shape })
+        Value::Cell(CellArray {
+            values: first_index_fastest(&shape, values.collect()),
+            shape,
+        })
     }
 }
 
 /// The names of the members of all objects, each once, in the order in which they are met.
 fn names_of<'j>(objects: &[&'j Json]) -> Vec<&'j str> {
     let mut names: Vec<&str> = Vec::new();
-    for name in objects.iter().filter_map(|object| object.as_object()).flat_map(|members| members.keys()) {
+    for name in objects
+        .iter()
+        .filter_map(|object| object.as_object())
+        .flat_map(|members| members.keys())
+    {
         if !names.contains(&name.as_str()) {
             names.push(name);
         }
@@ -148,19 +194,38 @@ fn names_of<'j>(objects: &[&'j Json]) -> Vec<&'j str> {
 
 /// A name that MATLAB takes for a field: a letter, then letters, digits and _.
 fn valid_name(name: &str) -> String {
-    let letters = name.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '_' });
-    let first = if name.starts_with(|first: char| first.is_ascii_alphabetic()) { "" } else { "x" };
+    let letters = name.chars().map(|letter| {
+        if letter.is_ascii_alphanumeric() {
+            letter
+        } else {
+            '_'
+        }
+    });
+    let first = if name.starts_with(|first: char| first.is_ascii_alphabetic()) {
+        ""
+    } else {
+        "x"
+    };
     first.chars().chain(letters).take(LONGEST_NAME).collect()
 }
 
 /// At least two sides; a list stands as a column.
 fn sides(shape: &[usize]) -> Vec<usize> {
-    if let [length] = shape { vec![*length, 1] } else { shape.to_vec() }
+    if let [length] = shape {
+        vec![*length, 1]
+    } else {
+        shape.to_vec()
+    }
 }
 
 fn array(shape: &[usize], numbers: Vec<f64>, kind: ElementKind) -> Value {
     let shape = sides(shape);
-    Value::Array(Array { re: first_index_fastest(&shape, numbers), kind, im: None, shape })
+    Value::Array(Array {
+        re: first_index_fastest(&shape, numbers),
+        kind,
+        im: None,
+        shape,
+    })
 }
 
 /// The fields of a record, in their order.
@@ -199,7 +264,10 @@ pub(super) fn records(records: Vec<Fields>) -> Value {
 /// Texts below one another, each in a cell.
 pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
     let values: Vec<Value> = texts.into_iter().map(Value::text).collect();
-    Value::Cell(CellArray { shape: vec![values.len(), 1], values })
+    Value::Cell(CellArray {
+        shape: vec![values.len(), 1],
+        values,
+    })
 }
 
 /// Numbers beside one another.
@@ -223,20 +291,31 @@ pub(super) fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Value {
 mod tests {
     use super::*;
 
-    const LAYOUT: Layout = Layout { by_channel: &["inputs"], by_name: &["ratios"], columns: &["table"] };
+    const LAYOUT: Layout = Layout {
+        by_channel: &["inputs"],
+        by_name: &["ratios"],
+        columns: &["table"],
+    };
 
     fn field(json: &str, path: &[&str]) -> Value {
         let json: Json = serde_json::from_str(json).unwrap();
         path.iter().fold(LAYOUT.value("", &json), |value, name| {
-            let Value::Struct(records) = value else { panic!("{name} of {value:?}") };
+            let Value::Struct(records) = value else {
+                panic!("{name} of {value:?}")
+            };
             records.field(name).unwrap()[0].clone()
         })
     }
 
     #[test]
     fn tables_are_matrices_and_what_is_null_is_nan() {
-        let Value::Array(table) = field("{\"G\": [[1, 2, 3], [4, null, 6]]}", &["G"]) else { panic!("an array") };
-        assert_eq!((table.shape, &table.re[..3]), (vec![2, 3], &[1.0, 4.0, 2.0][..]));
+        let Value::Array(table) = field("{\"G\": [[1, 2, 3], [4, null, 6]]}", &["G"]) else {
+            panic!("an array")
+        };
+        assert_eq!(
+            (table.shape, &table.re[..3]),
+            (vec![2, 3], &[1.0, 4.0, 2.0][..])
+        );
         assert!(table.re[3].is_nan());
         assert_eq!(field("{\"band\": [1, 2]}", &["band"]), row([1.0, 2.0]));
     }
@@ -245,21 +324,43 @@ mod tests {
     fn objects_by_channel_are_arrays_in_their_order() {
         let json = "{\"inputs\": {\"Z\": {\"u\": 1, \"ends\": [1, 2]}, \"A\": {\"u\": 2, \"ends\": null}}}";
         assert_eq!(field(json, &["inputs", "u"]), column([1.0, 2.0]));
-        let Value::Array(ends) = field(json, &["inputs", "ends"]) else { panic!("an array") };
-        assert_eq!((ends.shape, &ends.re[..1], ends.re[2]), (vec![2, 2], &[1.0][..], 2.0));
-        let rows = "{\"table\": [{\"inputs\": {\"Z\": 1, \"A\": 2}}, {\"inputs\": {\"Z\": 3, \"A\": 4}}]}";
-        assert_eq!(field(rows, &["table", "inputs"]), matrix(2, 2, vec![1.0, 3.0, 2.0, 4.0]));
+        let Value::Array(ends) = field(json, &["inputs", "ends"]) else {
+            panic!("an array")
+        };
+        assert_eq!(
+            (ends.shape, &ends.re[..1], ends.re[2]),
+            (vec![2, 2], &[1.0][..], 2.0)
+        );
+        let rows =
+            "{\"table\": [{\"inputs\": {\"Z\": 1, \"A\": 2}}, {\"inputs\": {\"Z\": 3, \"A\": 4}}]}";
+        assert_eq!(
+            field(rows, &["table", "inputs"]),
+            matrix(2, 2, vec![1.0, 3.0, 2.0, 4.0])
+        );
     }
 
     #[test]
     fn records_that_lack_a_field_have_it_empty_and_names_are_valid() {
         let json = "{\"of\": [{\"a\": true}, {\"2 b\": [[\"P\", \"LAT\"], [\"Q\", \"LON\"]]}]}";
-        let Value::Struct(of) = field(json, &["of"]) else { panic!("structs") };
+        let Value::Struct(of) = field(json, &["of"]) else {
+            panic!("structs")
+        };
         assert_eq!(of.shape, [1, 2]);
-        assert_eq!(of.field("a").unwrap(), [Value::truth(true), matrix(0, 0, Vec::new())]);
-        let Value::Cell(pairs) = &of.field("x2_b").unwrap()[1] else { panic!("cells") };
-        assert_eq!((&pairs.shape, &pairs.values[1]), (&vec![2, 2], &Value::text("Q")));
-        let names = field("{\"ratios\": {\"V+5kt\": 1, \"V-5kt\": 2}}", &["ratios", "name"]);
+        assert_eq!(
+            of.field("a").unwrap(),
+            [Value::truth(true), matrix(0, 0, Vec::new())]
+        );
+        let Value::Cell(pairs) = &of.field("x2_b").unwrap()[1] else {
+            panic!("cells")
+        };
+        assert_eq!(
+            (&pairs.shape, &pairs.values[1]),
+            (&vec![2, 2], &Value::text("Q"))
+        );
+        let names = field(
+            "{\"ratios\": {\"V+5kt\": 1, \"V-5kt\": 2}}",
+            &["ratios", "name"],
+        );
         assert_eq!(names, cell_of_texts(["V+5kt", "V-5kt"].map(str::to_owned)));
     }
 }

@@ -129,17 +129,38 @@ impl<'e> Export<'e> {
     /// What the leads of the schedule cost, in words, for a file that holds them as numbers.
     fn price(&self) -> Vec<String> {
         let (inputs, outputs) = self.analysis.study.dataset.names_of_channels();
-        let price = self.analysis.schedule.as_ref().ok().and_then(|schedule| schedule.lead_price());
-        price.into_iter().map(|price| price.words(&inputs, &outputs)).collect()
+        let price = self
+            .analysis
+            .schedule
+            .as_ref()
+            .ok()
+            .and_then(|schedule| schedule.lead_price());
+        price
+            .into_iter()
+            .map(|price| price.words(&inputs, &outputs))
+            .collect()
     }
 
     /// The schedule of the study.
     fn scheduled(&self) -> Result<Scheduled<'e>, ExportFault> {
-        let schedule = self.analysis.schedule.as_ref().map_err(|error| ExportFault::Schedule(*error))?;
-        let couplings = self.analysis.asked_couplings().map_err(|why| ExportFault::NoCouplings { why })?;
+        let schedule = self
+            .analysis
+            .schedule
+            .as_ref()
+            .map_err(|error| ExportFault::Schedule(*error))?;
+        let couplings = self
+            .analysis
+            .asked_couplings()
+            .map_err(|why| ExportFault::NoCouplings { why })?;
         let couplings = couplings.map(|fitted| fitted.matrices());
         let contents = ExportContents::of_scheduled(self.analysis);
-        Ok(Scheduled { schedule, dataset: &self.analysis.study.dataset, source: self.source, couplings, contents })
+        Ok(Scheduled {
+            schedule,
+            dataset: &self.analysis.study.dataset,
+            source: self.source,
+            couplings,
+            contents,
+        })
     }
 }
 
@@ -154,7 +175,10 @@ pub struct Exported<'e> {
 
 impl<'e> Exported<'e> {
     fn new(write: impl FnOnce(&mut dyn Write) -> io::Result<()> + 'e) -> Self {
-        Self { write: Box::new(write), remarks: Vec::new() }
+        Self {
+            write: Box::new(write),
+            remarks: Vec::new(),
+        }
     }
 
     fn bytes(bytes: impl Into<Vec<u8>>) -> Self {
@@ -190,7 +214,12 @@ pub fn write_export(
     mut outputs: OutputSet,
 ) -> Result<Vec<String>, FileError> {
     check_export(request.format, path)?;
-    let exported = (request.format.export)(&Export { analysis, source, request, path });
+    let exported = (request.format.export)(&Export {
+        analysis,
+        source,
+        request,
+        path,
+    });
     let Exported { write, remarks } = exported.map_err(|fault| FileError::export(path, fault))?;
     outputs.add(path, write)?;
     outputs.persist()?;
@@ -203,7 +232,9 @@ pub fn write_export(
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExportFault {
     /// A curve cannot be computed.
-    #[error("the {curve} of {channel} has a number that is not finite; correct it before it is exported")]
+    #[error(
+        "the {curve} of {channel} has a number that is not finite; correct it before it is exported"
+    )]
     Curve {
         /// The channel.
         channel: String,
@@ -233,7 +264,9 @@ pub enum ExportFault {
     #[error(transparent)]
     Schedule(#[from] ScheduleError),
     /// The study asks for couplings and has none: what would be exported is not what was asked for.
-    #[error("the study asks for couplings, and there are none: {why}; mend that, or set couplings to none")]
+    #[error(
+        "the study asks for couplings, and there are none: {why}; mend that, or set couplings to none"
+    )]
     NoCouplings {
         /// Why there are none.
         why: String,
@@ -253,7 +286,9 @@ pub enum ExportFault {
         condition: ConditionId,
     },
     /// A condition has no physics model of this name.
-    #[error("condition {condition} has no physics model \"{model}\"; name the condition that has it")]
+    #[error(
+        "condition {condition} has no physics model \"{model}\"; name the condition that has it"
+    )]
     NoModel {
         /// The condition.
         condition: ConditionId,
@@ -261,7 +296,9 @@ pub enum ExportFault {
         model: String,
     },
     /// A model is known by its response only.
-    #[error("condition {condition}, model \"{model}\": it is a measured response and has no matrices to be exported")]
+    #[error(
+        "condition {condition}, model \"{model}\": it is a measured response and has no matrices to be exported"
+    )]
     NoMatrices {
         /// The condition.
         condition: ConditionId,
@@ -283,6 +320,9 @@ pub enum ExportFault {
 impl ExportFault {
     /// Whether it is the analysis that has not what is asked for; otherwise something else would have to be asked.
     pub fn is_of_analysis(&self) -> bool {
-        matches!(self, Self::Schedule(_) | Self::NoResult { .. } | Self::Curve { .. })
+        matches!(
+            self,
+            Self::Schedule(_) | Self::NoResult { .. } | Self::Curve { .. }
+        )
     }
 }

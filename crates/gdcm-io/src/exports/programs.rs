@@ -105,7 +105,9 @@ impl Language {
         let scheduled = of.scheduled()?;
         scheduled.check()?;
         let (name, remarks) = (stem(of.path), scheduled.notes_of_curves());
-        let write = move |file: &mut dyn io::Write| file.write_all(self.text(&scheduled, &name)?.as_bytes());
+        let write = move |file: &mut dyn io::Write| {
+            file.write_all(self.text(&scheduled, &name)?.as_bytes())
+        };
         Ok(Exported::new(write).with(remarks))
     }
 
@@ -131,7 +133,9 @@ impl Language {
             }
         });
         let is_input = |channel: &Channel| matches!(channel, Channel::Input(_));
-        let (inputs, outputs) = all_channels(of.dataset).into_iter().partition::<Vec<_>, _>(is_input);
+        let (inputs, outputs) = all_channels(of.dataset)
+            .into_iter()
+            .partition::<Vec<_>, _>(is_input);
         let values = context! {
             name,
             capitals => name.to_ascii_uppercase(),
@@ -146,10 +150,15 @@ impl Language {
             sides => vec![self.side(of, "Input", &inputs), self.side(of, "Output", &outputs)],
         };
         let mut environment = Environment::new();
-        let whole_lines =
-            SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).keep_trailing_newline(true).build();
+        let whole_lines = SyntaxConfig::builder()
+            .trim_blocks(true)
+            .lstrip_blocks(true)
+            .keep_trailing_newline(true)
+            .build();
         environment.set_syntax(whole_lines.map_err(io::Error::other)?);
-        environment.render_str(self.template, values).map_err(io::Error::other)
+        environment
+            .render_str(self.template, values)
+            .map_err(io::Error::other)
     }
 
     /// What the file contains: for each part its name and where it comes from, and what is left out, as texts of the language.
@@ -176,8 +185,12 @@ impl Language {
             };
             (0..inputs).map(entry).collect::<Vec<_>>()
         };
-        let feedback =
-            |to: usize| (0..outputs).map(|from| number(of.feedback()[(to, from)])).collect::<Vec<_>>().join(", ");
+        let feedback = |to: usize| {
+            (0..outputs)
+                .map(|from| number(of.feedback()[(to, from)]))
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
         context! {
             least => number(airspeeds.min_kt),
             most => number(airspeeds.max_kt),
@@ -219,7 +232,11 @@ impl Language {
     fn expression(&self, curve: &Curve) -> Value {
         let mut arrays = Vec::new();
         let mut array = |numbers: &[f64]| {
-            let numbers = numbers.iter().map(|&value| number(value)).collect::<Vec<_>>().join(", ");
+            let numbers = numbers
+                .iter()
+                .map(|&value| number(value))
+                .collect::<Vec<_>>()
+                .join(", ");
             if !self.declares_arrays {
                 return format!("[{numbers}]");
             }
@@ -227,10 +244,22 @@ impl Language {
             format!("c{}", arrays.len() - 1)
         };
         let mut figures = |of: &Regression| match of {
-            Regression::Polynomial { coefficients } if coefficients.len() == 1 => number(coefficients[0]),
-            Regression::Polynomial { coefficients } => format!("{}({}, v)", self.polynomial, array(coefficients)),
-            Regression::Table { airspeeds_kt, values } => {
-                format!("{}({}, {}, a)", self.table, array(airspeeds_kt), array(values))
+            Regression::Polynomial { coefficients } if coefficients.len() == 1 => {
+                number(coefficients[0])
+            }
+            Regression::Polynomial { coefficients } => {
+                format!("{}({}, v)", self.polynomial, array(coefficients))
+            }
+            Regression::Table {
+                airspeeds_kt,
+                values,
+            } => {
+                format!(
+                    "{}({}, {}, a)",
+                    self.table,
+                    array(airspeeds_kt),
+                    array(values)
+                )
             }
         };
         let mut value = figures(&curve.figures);
@@ -241,7 +270,13 @@ impl Language {
             value = format!("{}({value})", self.exp);
         }
         if let Some(upper) = &curve.upper {
-            value = format!("{}({}({value}, {}), {})", self.max, self.min, figures(upper), number(0.0));
+            value = format!(
+                "{}({}({value}, {}), {})",
+                self.max,
+                self.min,
+                figures(upper),
+                number(0.0)
+            );
         }
         context! { arrays, value }
     }
@@ -251,13 +286,19 @@ impl Language {
 fn scaled(airspeeds: &Airspeeds) -> String {
     match airspeeds.half_range_kt {
         0.0 => number(0.0),
-        half_range_kt => format!("(a - ({})) / {}", number(airspeeds.mean_kt), number(half_range_kt)),
+        half_range_kt => format!(
+            "(a - ({})) / {}",
+            number(airspeeds.mean_kt),
+            number(half_range_kt)
+        ),
     }
 }
 
 /// The name of a file without its ending.
 fn stem(path: &Path) -> String {
-    path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default()
+    path.file_stem()
+        .map(|stem| stem.to_string_lossy().into_owned())
+        .unwrap_or_default()
 }
 
 /// What MATLAB (`iskeyword`) and GNU Octave keep for themselves, and the functions in the file.
@@ -269,11 +310,15 @@ const KEYWORDS: &str = "break case catch classdef continue do else elseif end en
 fn check_function_name(name: &str) -> Result<(), ExportFault> {
     let is_name = name.starts_with(|first: char| first.is_ascii_alphabetic())
         && name.len() <= LONGEST_NAME
-        && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+        && name
+            .chars()
+            .all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
     if is_name && !KEYWORDS.split(' ').any(|word| word == name) {
         return Ok(());
     }
-    Err(ExportFault::FunctionName { found: name.to_owned() })
+    Err(ExportFault::FunctionName {
+        found: name.to_owned(),
+    })
 }
 
 /// A text for a comment of any language: visible characters of ASCII, the signs of the program's own words by what stands for them
@@ -333,9 +378,13 @@ mod tests {
     use std::process::Command;
     use std::sync::Arc;
 
-    use gdcm_method::schedule::{DelayScheduling, ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable};
+    use gdcm_method::schedule::{
+        DelayScheduling, ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable,
+    };
     use gdcm_model::dataset::Dataset;
-    use gdcm_study::study::{Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
+    use gdcm_study::study::{
+        Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, Study, Unobserved, setting,
+    };
 
     use nalgebra::DMatrix;
     use proptest::prelude::*;
@@ -353,7 +402,12 @@ mod tests {
             for quantity in [ScheduledQuantity::LnGain, ScheduledQuantity::Gain] {
                 for delays in [false, true] {
                     let mut study = Study::new(embedded_example().unwrap().dataset);
-                    let schedule = ScheduleSettings { kind, quantity, delays, ..ScheduleSettings::default() };
+                    let schedule = ScheduleSettings {
+                        kind,
+                        quantity,
+                        delays,
+                        ..ScheduleSettings::default()
+                    };
                     study.settings.schedule = schedule;
                     study.settings.set_delay_scheduling(delays.into());
                     let analysis = engine.analyze(&study, &Unobserved).unwrap();
@@ -364,8 +418,13 @@ mod tests {
         // Leads, of one signed delay for all airspeeds and of one that follows them.
         for tau_degree in [0, 2] {
             let mut study = Study::new(embedded_example().unwrap().dataset);
-            let schedule = ScheduleSettings { tau_degree, ..ScheduleSettings::default() };
-            study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).unwrap();
+            let schedule = ScheduleSettings {
+                tau_degree,
+                ..ScheduleSettings::default()
+            };
+            study
+                .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+                .unwrap();
             study.settings.schedule = schedule;
             let analysis = engine.analyze(&study, &Unobserved).unwrap();
             analyses.push((format!("leads of degree {tau_degree}"), analysis));
@@ -374,18 +433,38 @@ mod tests {
         let mut study = Study::new(embedded_example().unwrap().dataset);
         let conditions = study.dataset.clone();
         let at = conditions.conditions()[3].flight_state().airspeed_kt;
-        for condition in conditions.conditions().iter().filter(|other| other.flight_state().airspeed_kt != at) {
-            study.apply(&Edit::SetScheduled { condition: condition.id(), scheduled: false }).unwrap();
+        for condition in conditions
+            .conditions()
+            .iter()
+            .filter(|other| other.flight_state().airspeed_kt != at)
+        {
+            study
+                .apply(&Edit::SetScheduled {
+                    condition: condition.id(),
+                    scheduled: false,
+                })
+                .unwrap();
         }
-        analyses.push(("one airspeed".to_owned(), engine.analyze(&study, &Unobserved).unwrap()));
+        analyses.push((
+            "one airspeed".to_owned(),
+            engine.analyze(&study, &Unobserved).unwrap(),
+        ));
         analyses
     }
 
     /// The schedule of an analysis as a program in a language; `name` is that of its file.
     fn program(language: &str, analysis: &Analysis, name: &str) -> String {
-        let source = &ExportSource { name: NASTY[0].to_owned(), sha256: "ba78".to_owned() };
+        let source = &ExportSource {
+            name: NASTY[0].to_owned(),
+            sha256: "ba78".to_owned(),
+        };
         let path = format!("{}.{language}", if name.is_empty() { "c" } else { name });
-        let export = Export { analysis, source, request: &ExportRequest::default(), path: Path::new(&path) };
+        let export = Export {
+            analysis,
+            source,
+            request: &ExportRequest::default(),
+            path: Path::new(&path),
+        };
         let exported = (ExportFormat::named(language).unwrap().export)(&export).unwrap();
         let mut text = Vec::new();
         (exported.write)(&mut text).unwrap();
@@ -393,12 +472,18 @@ mod tests {
     }
 
     /// Names that would end a comment or a text if they were written as they are.
-    const NASTY: [&str; 3] =
-        ["LAT \"x\" 'y' */ \\ %d\n%}\r*/ end", "δ_a ??/ /* \u{2028} ''' \"\"\" ${x}", "\\u{7f}\u{0}\\"];
+    const NASTY: [&str; 3] = [
+        "LAT \"x\" 'y' */ \\ %d\n%}\r*/ end",
+        "δ_a ??/ /* \u{2028} ''' \"\"\" ${x}",
+        "\\u{7f}\u{0}\\",
+    ];
 
     /// Fifty airspeeds \[kt\], from below the range of the example to above it, with both its ends.
     fn airspeeds() -> Vec<f64> {
-        (0..48).map(|index| 31.0 + f64::from(index) * 2.5).chain([45.0, 140.0]).collect()
+        (0..48)
+            .map(|index| 31.0 + f64::from(index) * 2.5)
+            .chain([45.0, 140.0])
+            .collect()
     }
 
     /// What the program itself says, in the order in which the programs print.
@@ -406,7 +491,13 @@ mod tests {
         let schedule = analysis.schedule.as_ref().unwrap();
         let values = |airspeed: f64| {
             let at = schedule.at(airspeed);
-            [at.input_gains, at.output_gains, at.input_delays_s, at.output_delays_s].concat()
+            [
+                at.input_gains,
+                at.output_gains,
+                at.input_delays_s,
+                at.output_delays_s,
+            ]
+            .concat()
         };
         airspeeds().into_iter().flat_map(values).collect()
     }
@@ -415,39 +506,69 @@ mod tests {
         assert_eq!(found.len(), expected.len(), "{words}");
         for (index, (a, b)) in found.iter().zip(expected).enumerate() {
             // A delay that crosses zero is cut there: beside it, less than a femtosecond is nothing.
-            assert!((a - b).abs() <= 1e-12 * b.abs() + 1e-16, "{words}, value {index}: {a} instead of {b}");
+            assert!(
+                (a - b).abs() <= 1e-12 * b.abs() + 1e-16,
+                "{words}, value {index}: {a} instead of {b}"
+            );
         }
     }
 
     /// Runs a program and compares what it prints; says so where it is not there.
-    fn assert_run(words: &str, program: &str, arguments: &[&str], folder: &std::path::Path, expected: &[f64]) {
-        let output = Command::new(program).args(arguments).current_dir(folder).output().unwrap();
-        assert!(output.status.success(), "{words}: {}", String::from_utf8_lossy(&output.stderr));
+    fn assert_run(
+        words: &str,
+        program: &str,
+        arguments: &[&str],
+        folder: &std::path::Path,
+        expected: &[f64],
+    ) {
+        let output = Command::new(program)
+            .args(arguments)
+            .current_dir(folder)
+            .output()
+            .unwrap();
+        assert!(
+            output.status.success(),
+            "{words}: {}",
+            String::from_utf8_lossy(&output.stderr)
+        );
         let text = String::from_utf8(output.stdout).unwrap();
-        let found: Vec<f64> = text.split_whitespace().map(|word| word.parse().unwrap()).collect();
+        let found: Vec<f64> = text
+            .split_whitespace()
+            .map(|word| word.parse().unwrap())
+            .collect();
         assert_same(&format!("{program}, {words}"), &found, expected);
     }
 
     fn is_there(program: &str) -> bool {
         let found = Command::new(program).arg("--version").output().is_ok();
         if !found {
-            eprintln!("SKIPPED: {program} is not installed, its programs are not run against the schedule");
+            eprintln!(
+                "SKIPPED: {program} is not installed, its programs are not run against the schedule"
+            );
         }
         found
     }
 
     fn listed() -> String {
-        airspeeds().iter().map(|kt| format!("{kt:?}")).collect::<Vec<_>>().join(", ")
+        airspeeds()
+            .iter()
+            .map(|kt| format!("{kt:?}"))
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 
     #[test]
     fn delays_that_are_not_scheduled_are_zero_and_a_note_says_so() {
         for (words, analysis) in analyses() {
             let settings = &analysis.study.settings;
-            let has_delays =
-                settings.schedule_delays == DelayScheduling::Always || settings.phase == PhaseCorrection::Lead;
+            let has_delays = settings.schedule_delays == DelayScheduling::Always
+                || settings.phase == PhaseCorrection::Lead;
             let text = program("py", &analysis, "");
-            assert_eq!(text.contains("# Note: delays are not scheduled in this study"), !has_delays, "{words}");
+            assert_eq!(
+                text.contains("# Note: delays are not scheduled in this study"),
+                !has_delays,
+                "{words}"
+            );
         }
     }
 
@@ -455,25 +576,57 @@ mod tests {
     fn leads_say_their_limit_and_their_gain_above_the_band_in_ascii() {
         for (words, analysis) in analyses() {
             let price = analysis.schedule.as_ref().unwrap().lead_price();
-            assert_eq!(price.is_some(), analysis.study.settings.phase == PhaseCorrection::Lead, "{words}");
-            for (language, limit) in
-                [("m", ""), ("py", "NOT_VALID_ABOVE_RAD_S = 1.2"), ("h", "GDCM_NOT_VALID_ABOVE_RAD_S 1.2")]
-            {
+            assert_eq!(
+                price.is_some(),
+                analysis.study.settings.phase == PhaseCorrection::Lead,
+                "{words}"
+            );
+            for (language, limit) in [
+                ("m", ""),
+                ("py", "NOT_VALID_ABOVE_RAD_S = 1.2"),
+                ("h", "GDCM_NOT_VALID_ABOVE_RAD_S 1.2"),
+            ] {
                 let text = program(language, &analysis, "k");
-                let (says, has_number) =
-                    (text.contains("Note: not valid above 12 rad/s: at 120 rad/s"), text.contains(limit));
-                assert!(text.is_ascii() && says == price.is_some(), "{words}: {text}");
-                assert!(limit.is_empty() || has_number == price.is_some(), "{words}: {text}");
+                let (says, has_number) = (
+                    text.contains("Note: not valid above 12 rad/s: at 120 rad/s"),
+                    text.contains(limit),
+                );
+                assert!(
+                    text.is_ascii() && says == price.is_some(),
+                    "{words}: {text}"
+                );
+                assert!(
+                    limit.is_empty() || has_number == price.is_some(),
+                    "{words}: {text}"
+                );
             }
-            let source = ExportSource { name: "example".to_owned(), sha256: "ba78".to_owned() };
+            let source = ExportSource {
+                name: "example".to_owned(),
+                sha256: "ba78".to_owned(),
+            };
             for exporter in EXPORTERS.iter() {
                 let path = Path::new("k").with_extension(exporter.extension);
                 let request = ExportRequest::default();
-                let export = Export { analysis: &analysis, source: &source, request: &request, path: &path };
-                let Ok(exported) = (exporter.export)(&export) else { continue };
-                let says =
-                    exported.remarks.iter().any(|remark| remark.contains("not valid above 12 rad/s: at 120 rad/s"));
-                assert_eq!(says, price.is_some(), "{words}, {}: {:?}", exporter.name, exported.remarks);
+                let export = Export {
+                    analysis: &analysis,
+                    source: &source,
+                    request: &request,
+                    path: &path,
+                };
+                let Ok(exported) = (exporter.export)(&export) else {
+                    continue;
+                };
+                let says = exported
+                    .remarks
+                    .iter()
+                    .any(|remark| remark.contains("not valid above 12 rad/s: at 120 rad/s"));
+                assert_eq!(
+                    says,
+                    price.is_some(),
+                    "{words}, {}: {:?}",
+                    exporter.name,
+                    exported.remarks
+                );
             }
         }
     }
@@ -491,7 +644,13 @@ mod tests {
                  print(*[repr(m[k][k]) for m in (mi, mo) for k in range(len(m))], *map(repr, ti + to))",
                 listed()
             );
-            assert_run(&words, "python3", &["-c", &program], folder.path(), &expected(&analysis));
+            assert_run(
+                &words,
+                "python3",
+                &["-c", &program],
+                folder.path(),
+                &expected(&analysis),
+            );
         }
     }
 
@@ -513,10 +672,28 @@ mod tests {
                 listed()
             );
             std::fs::write(folder.path().join("main.c"), main).unwrap();
-            let flags =
-                ["-std=c99", "-Wall", "-Wextra", "-Wshadow", "-Werror", "-pedantic", "-o", "main", "main.c", "-lm"];
-            let built = Command::new("cc").args(flags).current_dir(&folder).output().unwrap();
-            assert!(built.status.success(), "{words}: {}", String::from_utf8_lossy(&built.stderr));
+            let flags = [
+                "-std=c99",
+                "-Wall",
+                "-Wextra",
+                "-Wshadow",
+                "-Werror",
+                "-pedantic",
+                "-o",
+                "main",
+                "main.c",
+                "-lm",
+            ];
+            let built = Command::new("cc")
+                .args(flags)
+                .current_dir(&folder)
+                .output()
+                .unwrap();
+            assert!(
+                built.status.success(),
+                "{words}: {}",
+                String::from_utf8_lossy(&built.stderr)
+            );
             let program = folder.path().join("main").display().to_string();
             assert_run(&words, &program, &[], folder.path(), &expected(&analysis));
         }
@@ -535,36 +712,58 @@ mod tests {
                 "for s = [{}], [Mi, Mo, ti, to] = my_study(s); printf('%.17g ', [diag(Mi); diag(Mo); ti; to]); end",
                 listed()
             );
-            assert_run(&words, "octave-cli", &["--eval", &program], folder.path(), &expected(&analysis));
+            assert_run(
+                &words,
+                "octave-cli",
+                &["--eval", &program],
+                folder.path(),
+                &expected(&analysis),
+            );
         }
     }
 
     /// The example with mixing and feedback, gains alone.
     fn coupled() -> Analysis {
         let mut study = Study::new(embedded_example().unwrap().dataset);
-        study.apply(&setting::PHASE.to(PhaseCorrection::None)).unwrap();
-        study.apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback)).unwrap();
+        study
+            .apply(&setting::PHASE.to(PhaseCorrection::None))
+            .unwrap();
+        study
+            .apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
+            .unwrap();
         Engine::default().analyze(&study, &Unobserved).unwrap()
     }
 
     /// A feed-through of 6 x 4, of numbers that every language writes alike.
     fn feed_through() -> DMatrix<f64> {
-        DMatrix::from_fn(6, 4, |output, input| 0.25 * (output as f64 - 2.0) * (input as f64 + 1.0) / 4.0)
+        DMatrix::from_fn(6, 4, |output, input| {
+            0.25 * (output as f64 - 2.0) * (input as f64 + 1.0) / 4.0
+        })
     }
 
     fn list_of_rows(of: &DMatrix<f64>, [open, close]: [char; 2]) -> String {
         let row = |row: usize| {
-            let values: Vec<String> = of.row(row).iter().map(|value| format!("{value:?}")).collect();
+            let values: Vec<String> = of
+                .row(row)
+                .iter()
+                .map(|value| format!("{value:?}"))
+                .collect();
             format!("{open}{}{close}", values.join(", "))
         };
-        format!("{open}{}{close}", (0..of.nrows()).map(row).collect::<Vec<_>>().join(", "))
+        format!(
+            "{open}{}{close}",
+            (0..of.nrows()).map(row).collect::<Vec<_>>().join(", ")
+        )
     }
 
     /// At each airspeed the mixing, the feedback, and the feedback closed through the feed-through, row by row.
     fn expected_couplings(analysis: &Analysis) -> Vec<f64> {
         let matrices = analysis.fitted_couplings().unwrap().matrices();
         let feedback = matrices.feedback();
-        let closed = feedback * (DMatrix::identity(6, 6) - feed_through() * feedback).try_inverse().unwrap();
+        let closed = feedback
+            * (DMatrix::identity(6, 6) - feed_through() * feedback)
+                .try_inverse()
+                .unwrap();
         let values = |airspeed: f64| {
             let of = [&matrices.normalised_mixing(airspeed), feedback, &closed];
             of.map(|of| of.transpose().as_slice().to_vec()).concat()
@@ -585,7 +784,13 @@ mod tests {
                 listed(),
                 list_of_rows(&feed_through(), ['[', ']'])
             );
-            assert_run("couplings", "python3", &["-c", &program], folder.path(), &expected);
+            assert_run(
+                "couplings",
+                "python3",
+                &["-c", &program],
+                folder.path(),
+                &expected,
+            );
         }
         if is_there("cc") {
             let main = format!(
@@ -600,50 +805,103 @@ mod tests {
                 list_of_rows(&feed_through(), ['{', '}'])
             );
             std::fs::write(folder.path().join("main.c"), main).unwrap();
-            let flags =
-                ["-std=c99", "-Wall", "-Wextra", "-Wshadow", "-Werror", "-pedantic", "-o", "main", "main.c", "-lm"];
-            let built = Command::new("cc").args(flags).current_dir(&folder).output().unwrap();
-            assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+            let flags = [
+                "-std=c99",
+                "-Wall",
+                "-Wextra",
+                "-Wshadow",
+                "-Werror",
+                "-pedantic",
+                "-o",
+                "main",
+                "main.c",
+                "-lm",
+            ];
+            let built = Command::new("cc")
+                .args(flags)
+                .current_dir(&folder)
+                .output()
+                .unwrap();
+            assert!(
+                built.status.success(),
+                "{}",
+                String::from_utf8_lossy(&built.stderr)
+            );
             let program = folder.path().join("main").display().to_string();
             assert_run("couplings", &program, &[], folder.path(), &expected);
         }
         if is_there("octave-cli") {
-            std::fs::write(folder.path().join("my_study.m"), program("m", &analysis, "my_study")).unwrap();
-            let rows: Vec<String> =
-                feed_through().row_iter().map(|row| format!("{:?}", row.iter().collect::<Vec<_>>())).collect();
+            std::fs::write(
+                folder.path().join("my_study.m"),
+                program("m", &analysis, "my_study"),
+            )
+            .unwrap();
+            let rows: Vec<String> = feed_through()
+                .row_iter()
+                .map(|row| format!("{:?}", row.iter().collect::<Vec<_>>()))
+                .collect();
             let program = format!(
                 "D = [{}]; for s = [{}], [~, ~, ~, ~, m, k] = my_study(s); [~, ~, ~, ~, ~, f] = my_study(s, D); \
                  printf('%.17g ', m', k', f'); end",
                 rows.join("; "),
                 listed()
             );
-            assert_run("couplings", "octave-cli", &["--eval", &program], folder.path(), &expected);
+            assert_run(
+                "couplings",
+                "octave-cli",
+                &["--eval", &program],
+                folder.path(),
+                &expected,
+            );
         }
     }
 
     #[test]
     fn a_study_without_couplings_has_none_in_its_programs() {
-        let analysis =
-            Engine::default().analyze(&Study::new(embedded_example().unwrap().dataset), &Unobserved).unwrap();
+        let analysis = Engine::default()
+            .analyze(
+                &Study::new(embedded_example().unwrap().dataset),
+                &Unobserved,
+            )
+            .unwrap();
         for language in ["m", "py", "h"] {
             let text = program(language, &analysis, "k").to_lowercase();
-            assert!(!text.contains("mixing") && !text.contains("feedback"), "{language}: {text}");
+            assert!(
+                !text.contains("mixing") && !text.contains("feedback"),
+                "{language}: {text}"
+            );
         }
     }
 
     /// The example with altitude as its second variable, and what it says at fifty airspeeds and three altitudes.
     fn with_altitude(kind: ScheduleKind) -> (Analysis, Vec<f64>) {
         let mut study = Study::new(embedded_example().unwrap().dataset);
-        let schedule = ScheduleSettings { kind, second: Some(SecondVariable::Altitude), ..ScheduleSettings::default() };
+        let schedule = ScheduleSettings {
+            kind,
+            second: Some(SecondVariable::Altitude),
+            ..ScheduleSettings::default()
+        };
         study.settings.schedule = schedule;
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let schedule = analysis.schedule.clone().unwrap();
         let values = |airspeed: f64, altitude: f64| {
             let at = schedule.evaluate(airspeed, Some(altitude));
-            [at.input_gains, at.output_gains, at.input_delays_s, at.output_delays_s].concat()
+            [
+                at.input_gains,
+                at.output_gains,
+                at.input_delays_s,
+                at.output_delays_s,
+            ]
+            .concat()
         };
-        let pairs = || airspeeds().into_iter().flat_map(|airspeed| ALTITUDES.map(|altitude| (airspeed, altitude)));
-        let expected = pairs().flat_map(|(airspeed, altitude)| values(airspeed, altitude)).collect();
+        let pairs = || {
+            airspeeds()
+                .into_iter()
+                .flat_map(|airspeed| ALTITUDES.map(|altitude| (airspeed, altitude)))
+        };
+        let expected = pairs()
+            .flat_map(|(airspeed, altitude)| values(airspeed, altitude))
+            .collect();
         (analysis, expected)
     }
 
@@ -663,7 +921,13 @@ mod tests {
                      print(*[repr(m[k][k]) for m in (mi, mo) for k in range(len(m))], *map(repr, ti + to))",
                     listed()
                 );
-                assert_run(&words, "python3", &["-c", &program], folder.path(), &expected);
+                assert_run(
+                    &words,
+                    "python3",
+                    &["-c", &program],
+                    folder.path(),
+                    &expected,
+                );
             }
             if is_there("cc") {
                 let folder = tempfile::tempdir().unwrap();
@@ -678,14 +942,35 @@ mod tests {
                     listed()
                 );
                 std::fs::write(folder.path().join("main.c"), main).unwrap();
-                let flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-o", "main", "main.c", "-lm"];
-                let built = Command::new("cc").args(flags).current_dir(&folder).output().unwrap();
-                assert!(built.status.success(), "{words}: {}", String::from_utf8_lossy(&built.stderr));
+                let flags = [
+                    "-std=c99",
+                    "-Wall",
+                    "-Wextra",
+                    "-Werror",
+                    "-pedantic",
+                    "-o",
+                    "main",
+                    "main.c",
+                    "-lm",
+                ];
+                let built = Command::new("cc")
+                    .args(flags)
+                    .current_dir(&folder)
+                    .output()
+                    .unwrap();
+                assert!(
+                    built.status.success(),
+                    "{words}: {}",
+                    String::from_utf8_lossy(&built.stderr)
+                );
                 let program = folder.path().join("main").display().to_string();
                 assert_run(&words, &program, &[], folder.path(), &expected);
             }
             let function = program("m", &analysis, "my_study");
-            assert!(function.contains("my_study(airspeed_kt, altitude_ft)"), "{function}");
+            assert!(
+                function.contains("my_study(airspeed_kt, altitude_ft)"),
+                "{function}"
+            );
         }
     }
 
@@ -696,7 +981,11 @@ mod tests {
         header.inputs[0].name = NASTY[0].to_owned();
         header.outputs[0].name = NASTY[1].to_owned();
         header.outputs[1].name = NASTY[2].to_owned();
-        let conditions = example.conditions().iter().map(|condition| condition.as_ref().clone()).collect();
+        let conditions = example
+            .conditions()
+            .iter()
+            .map(|condition| condition.as_ref().clone())
+            .collect();
         let study = Study::new(Arc::new(Dataset::new(header, conditions).unwrap()));
         Engine::default().analyze(&study, &Unobserved).unwrap()
     }
@@ -721,9 +1010,27 @@ mod tests {
                 program("h", &analysis, "")
             );
             std::fs::write(folder.path().join("main.c"), main).unwrap();
-            let flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-o", "main", "main.c", "-lm"];
-            let built = Command::new("cc").args(flags).current_dir(&folder).output().unwrap();
-            assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+            let flags = [
+                "-std=c99",
+                "-Wall",
+                "-Wextra",
+                "-Werror",
+                "-pedantic",
+                "-o",
+                "main",
+                "main.c",
+                "-lm",
+            ];
+            let built = Command::new("cc")
+                .args(flags)
+                .current_dir(&folder)
+                .output()
+                .unwrap();
+            assert!(
+                built.status.success(),
+                "{}",
+                String::from_utf8_lossy(&built.stderr)
+            );
             let program = folder.path().join("main").display().to_string();
             assert_run("names", &program, &[], folder.path(), &expected);
         }
@@ -732,21 +1039,42 @@ mod tests {
     #[test]
     fn every_line_of_a_function_of_matlab_that_is_no_code_is_a_comment() {
         let text = program("m", &with_nasty_names(), "k2_v");
-        assert!(text.is_ascii() && text.starts_with("function [Mi, Mo, tau_i, tau_o] = k2_v("), "{text}");
+        assert!(
+            text.is_ascii() && text.starts_with("function [Mi, Mo, tau_i, tau_o] = k2_v("),
+            "{text}"
+        );
         let code = ["function ", "  ", "end", "%"];
         for line in text.lines().filter(|line| !line.is_empty()) {
             assert!(code.iter().any(|start| line.starts_with(start)), "{line}");
             assert!(!matches!(line.trim(), "%{" | "%}"));
         }
-        assert_eq!(text.lines().filter(|line| line.starts_with("% Input")).count(), 4);
+        assert_eq!(
+            text.lines()
+                .filter(|line| line.starts_with("% Input"))
+                .count(),
+            4
+        );
     }
 
     #[test]
     fn a_name_that_matlab_cannot_call_is_refused() {
-        for name in ["2nd", "my-study", "gdcm_table", "end", "parfor", "endfunction", "\u{e9}t\u{e9}", &"x".repeat(64)]
-        {
+        for name in [
+            "2nd",
+            "my-study",
+            "gdcm_table",
+            "end",
+            "parfor",
+            "endfunction",
+            "\u{e9}t\u{e9}",
+            &"x".repeat(64),
+        ] {
             let refused = (MATLAB.check_path)(Path::new(&format!("folder/{name}.m")));
-            assert_eq!(refused, Err(ExportFault::FunctionName { found: name.to_owned() }));
+            assert_eq!(
+                refused,
+                Err(ExportFault::FunctionName {
+                    found: name.to_owned()
+                })
+            );
         }
         assert_eq!((MATLAB.check_path)(Path::new("k2_v.m")), Ok(()));
     }

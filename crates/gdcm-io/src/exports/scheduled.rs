@@ -38,16 +38,28 @@ pub(super) struct Curve {
 
 impl Curve {
     pub(super) fn plain(figures: Regression) -> Self {
-        Self { figures, slope: None, of_logarithm: false, upper: None }
+        Self {
+            figures,
+            slope: None,
+            of_logarithm: false,
+            upper: None,
+        }
     }
 
     fn constant(value: f64) -> Self {
-        Self::plain(Regression::Polynomial { coefficients: vec![value] })
+        Self::plain(Regression::Polynomial {
+            coefficients: vec![value],
+        })
     }
 
     fn is_finite(&self) -> bool {
         let upper = self.upper.as_ref().map_or(&[][..], Regression::figures);
-        self.figures.figures().iter().chain(&self.slope).chain(upper).all(|figure| figure.is_finite())
+        self.figures
+            .figures()
+            .iter()
+            .chain(&self.slope)
+            .chain(upper)
+            .all(|figure| figure.is_finite())
     }
 }
 
@@ -58,7 +70,11 @@ impl Scheduled<'_> {
     /// The gain of a channel \[-\].
     pub(super) fn gain(&self, channel: Channel) -> Curve {
         Curve {
-            slope: self.schedule.second.as_ref().map(|term| term.slopes[channel]),
+            slope: self
+                .schedule
+                .second
+                .as_ref()
+                .map(|term| term.slopes[channel]),
             of_logarithm: self.schedule.settings.quantity == ScheduledQuantity::LnGain,
             ..Curve::plain(self.schedule.gains[channel].clone())
         }
@@ -68,24 +84,44 @@ impl Scheduled<'_> {
     pub(super) fn delay_s(&self, channel: Channel) -> Curve {
         let (figures, upper) = match (&self.schedule.leads, &self.schedule.delays) {
             (Some(leads), _) => {
-                let (airspeeds_kt, values) = (vec![self.schedule.airspeeds.min_kt], vec![leads.bounds_s[1]]);
-                (&leads.taus_s[channel], Regression::Table { airspeeds_kt, values })
+                let (airspeeds_kt, values) = (
+                    vec![self.schedule.airspeeds.min_kt],
+                    vec![leads.bounds_s[1]],
+                );
+                (
+                    &leads.taus_s[channel],
+                    Regression::Table {
+                        airspeeds_kt,
+                        values,
+                    },
+                )
             }
             (None, Some(delays)) => (&delays.taus_s[channel], delays.upper_s.clone()),
             (None, None) => return Curve::constant(0.0),
         };
-        Curve { upper: Some(upper), ..Curve::plain(figures.clone()) }
+        Curve {
+            upper: Some(upper),
+            ..Curve::plain(figures.clone())
+        }
     }
 
     /// Time constant `a` of the numerator of a channel's lead filter \[s\]: equal to `b` where there is no lead. None of a schedule
     /// without leads.
     pub(super) fn zero_s(&self, channel: Channel) -> Option<Curve> {
         let leads = self.schedule.leads.as_ref()?;
-        let (least, most) = (self.schedule.airspeeds.min_kt, self.schedule.airspeeds.max_kt);
+        let (least, most) = (
+            self.schedule.airspeeds.min_kt,
+            self.schedule.airspeeds.max_kt,
+        );
         let figures = &leads.taus_s[channel];
         let at = |kt: f64| {
-            let tau_s = figures.at(&self.schedule.airspeeds, kt).clamp(leads.bounds_s[0], leads.bounds_s[1]);
-            leads.design.filter(tau_s).map_or(leads.design.lag_s(), |filter| filter.zero_s)
+            let tau_s = figures
+                .at(&self.schedule.airspeeds, kt)
+                .clamp(leads.bounds_s[0], leads.bounds_s[1]);
+            leads
+                .design
+                .filter(tau_s)
+                .map_or(leads.design.lag_s(), |filter| filter.zero_s)
         };
         if figures.figures().len() == 1 || least == most {
             return Some(Curve::constant(at(least)));
@@ -94,31 +130,61 @@ impl Scheduled<'_> {
         let kt = |place: u32| least + (most - least) * f64::from(place) / f64::from(LEAD_POINTS);
         let airspeeds_kt: Vec<f64> = (0..=LEAD_POINTS).map(kt).collect();
         let values = airspeeds_kt.iter().map(|&kt| at(kt)).collect();
-        Some(Curve::plain(Regression::Table { airspeeds_kt, values }))
+        Some(Curve::plain(Regression::Table {
+            airspeeds_kt,
+            values,
+        }))
     }
 
     /// What is to be known of the schedule.
     pub(super) fn notes(&self) -> Vec<String> {
         let unscheduled = "delays are not scheduled in this study: they are zero here".to_owned();
         let (inputs, outputs) = self.dataset.names_of_channels();
-        let cautions = self.schedule.cautions.iter().map(|caution| caution.words(&inputs, &outputs));
-        let price = self.schedule.lead_price().map(|price| price.words(&inputs, &outputs));
+        let cautions = self
+            .schedule
+            .cautions
+            .iter()
+            .map(|caution| caution.words(&inputs, &outputs));
+        let price = self
+            .schedule
+            .lead_price()
+            .map(|price| price.words(&inputs, &outputs));
         let cautions = price.into_iter().chain(cautions);
-        (!self.schedule.has_delays()).then_some(unscheduled).into_iter().chain(cautions).collect()
+        (!self.schedule.has_delays())
+            .then_some(unscheduled)
+            .into_iter()
+            .chain(cautions)
+            .collect()
     }
 
     /// The same, and what the curves leave out.
     pub(super) fn notes_of_curves(&self) -> Vec<String> {
-        let is_table = |channel| self.zero_s(channel).is_some_and(|zero_s| zero_s.figures.figures().len() > 1);
+        let is_table = |channel| {
+            self.zero_s(channel)
+                .is_some_and(|zero_s| zero_s.figures.figures().len() > 1)
+        };
         let points = LEAD_POINTS + 1;
-        let tables = format!("the lead filters are tables over airspeed, linear between {points} points");
-        self.notes().into_iter().chain(all_channels(self.dataset).into_iter().any(is_table).then_some(tables)).collect()
+        let tables =
+            format!("the lead filters are tables over airspeed, linear between {points} points");
+        self.notes()
+            .into_iter()
+            .chain(
+                all_channels(self.dataset)
+                    .into_iter()
+                    .any(is_table)
+                    .then_some(tables),
+            )
+            .collect()
     }
 
     /// What a file of it is, line by line, with these notes.
     pub(super) fn heading(&self, notes: &[String]) -> Vec<String> {
         let airspeeds = &self.schedule.airspeeds;
-        let what = if self.schedule.has_delays() { "Gains and delays" } else { "Gains (no delays)" };
+        let what = if self.schedule.has_delays() {
+            "Gains and delays"
+        } else {
+            "Gains (no delays)"
+        };
         let mut lines = vec![
             format!("{what} that correct a model of a helicopter, scheduled with airspeed."),
             "The model gets the input Mi*u(t - tau_i); its output ym gives y(t) = Mo*ym(t - tau_o).".to_owned(),
@@ -169,10 +235,19 @@ impl Scheduled<'_> {
     pub(super) fn check(&self) -> Result<(), ExportFault> {
         let (inputs, outputs) = self.dataset.names_of_channels();
         for channel in all_channels(self.dataset) {
-            let curves = [("gain", Some(self.gain(channel))), ("delay", Some(self.delay_s(channel)))];
-            for (curve, of) in curves.into_iter().chain([("lead numerator", self.zero_s(channel))]) {
+            let curves = [
+                ("gain", Some(self.gain(channel))),
+                ("delay", Some(self.delay_s(channel))),
+            ];
+            for (curve, of) in curves
+                .into_iter()
+                .chain([("lead numerator", self.zero_s(channel))])
+            {
                 if of.is_some_and(|of| !of.is_finite()) {
-                    return Err(ExportFault::Curve { channel: channel.name(&inputs, &outputs), curve });
+                    return Err(ExportFault::Curve {
+                        channel: channel.name(&inputs, &outputs),
+                        curve,
+                    });
                 }
             }
         }

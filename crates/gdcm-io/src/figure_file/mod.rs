@@ -18,38 +18,65 @@ use gdcm_plot::paper::{pdf, svg, write_png};
 /// # Errors
 /// [`FileError::FigureFormat`] where it says none of those that there are.
 pub fn figure_format(path: &Path) -> Result<FigureFormat, FileError> {
-    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_lowercase();
-    let found = FigureFormat::ALL.into_iter().find(|format| format.extension() == extension);
-    found.ok_or_else(|| FileError::FigureFormat { path: path.to_owned() })
+    let extension = path
+        .extension()
+        .and_then(|extension| extension.to_str())
+        .unwrap_or_default()
+        .to_lowercase();
+    let found = FigureFormat::ALL
+        .into_iter()
+        .find(|format| format.extension() == extension);
+    found.ok_or_else(|| FileError::FigureFormat {
+        path: path.to_owned(),
+    })
 }
 
 /// Writes a figure to a file, in the format that its name says.
 ///
 /// # Errors
 /// [`FileError::FigureWithoutNumbers`] where the numbers of a figure are asked for that shows none; else what hinders the writing.
-pub fn write_figure(figure: &Figure, width: ColumnWidth, path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
+pub fn write_figure(
+    figure: &Figure,
+    width: ColumnWidth,
+    path: &Path,
+    mut outputs: OutputSet,
+) -> Result<(), FileError> {
     let format = figure_format(path)?;
     if format == FigureFormat::Csv && figure.long_rows().next().is_none() {
-        return Err(FileError::FigureWithoutNumbers { path: path.to_owned(), title: figure.title.clone() });
+        return Err(FileError::FigureWithoutNumbers {
+            path: path.to_owned(),
+            title: figure.title.clone(),
+        });
     }
     outputs.add(path, |file| write_as(figure, width, format, file))?;
     outputs.persist()
 }
 
 /// Writes a figure in a format.
-pub fn write_as(figure: &Figure, width: ColumnWidth, format: FigureFormat, file: &mut dyn Write) -> io::Result<()> {
+pub fn write_as(
+    figure: &Figure,
+    width: ColumnWidth,
+    format: FigureFormat,
+    file: &mut dyn Write,
+) -> io::Result<()> {
     match format {
         FigureFormat::Svg => file.write_all(svg(&figure.drawing(width)).as_bytes()),
         FigureFormat::Png => write_png(&figure.drawing(width), file),
         FigureFormat::Pdf => file.write_all(&pdf(&figure.drawing(width))?),
-        FigureFormat::Csv => write_records(file, once(LONG_COLUMNS.map(str::to_owned)).chain(figure.long_rows())),
+        FigureFormat::Csv => write_records(
+            file,
+            once(LONG_COLUMNS.map(str::to_owned)).chain(figure.long_rows()),
+        ),
     }
 }
 
 // Comma-separated values (RFC 4180).
 
 /// Writes records of one length below one another; each cell is a [`plain`] one.
-pub(super) fn write_records<R>(file: &mut dyn Write, records: impl Iterator<Item = R>) -> io::Result<()>
+pub(super) fn write_records<R>(
+    file: &mut dyn Write,
+    records: impl Iterator<Item = R>,
+) -> io::Result<()>
 where
     R: IntoIterator,
     R::Item: AsRef<str>,
@@ -58,10 +85,12 @@ where
     for record in records {
         // Unpacked, so that a full disk is told as one.
         let cells = record.into_iter().map(|cell| plain(cell.as_ref()));
-        table.write_record(cells).map_err(|error| match error.into_kind() {
-            csv::ErrorKind::Io(error) => error,
-            _ => io::ErrorKind::InvalidData.into(),
-        })?;
+        table
+            .write_record(cells)
+            .map_err(|error| match error.into_kind() {
+                csv::ErrorKind::Io(error) => error,
+                _ => io::ErrorKind::InvalidData.into(),
+            })?;
     }
     table.flush()
 }
@@ -116,9 +145,12 @@ mod tests {
     /// A curve of a model whose name would turn a terminal red and hide what follows.
     fn named_by_codes() -> Figure {
         let name = "\u{1b}[31mred\u{9b}31m\u{202e}";
-        let curve = Curve::new(name, Stroke::solid(Color::INK, 1.0), [1.0, 2.0], [3.0, 4.0]).key(name);
+        let curve =
+            Curve::new(name, Stroke::solid(Color::INK, 1.0), [1.0, 2.0], [3.0, 4.0]).key(name);
         let panel = Panel::new(Axis::linear("x"), Axis::linear("y")).with(curve);
-        Figure::new(name).caption(name).plot(Plot::new(name).panel(panel))
+        Figure::new(name)
+            .caption(name)
+            .plot(Plot::new(name).panel(panel))
     }
 
     #[test]
@@ -127,8 +159,15 @@ mod tests {
             let mut bytes = Vec::new();
             write_as(&named_by_codes(), ColumnWidth::Single, format, &mut bytes).unwrap();
             let text = String::from_utf8(bytes).unwrap();
-            assert!(text.contains("\\u{1b}[31mred\\u{9b}31m\\u{202e}"), "{format:?}");
-            assert!(!text.contains(|c: char| (c.is_control() && !"\r\n".contains(c)) || c == '\u{202e}'), "{format:?}");
+            assert!(
+                text.contains("\\u{1b}[31mred\\u{9b}31m\\u{202e}"),
+                "{format:?}"
+            );
+            assert!(
+                !text
+                    .contains(|c: char| (c.is_control() && !"\r\n".contains(c)) || c == '\u{202e}'),
+                "{format:?}"
+            );
         }
     }
 
@@ -138,12 +177,28 @@ mod tests {
         let path = folder.path().join("empty.csv");
         let panel = Panel::new(Axis::linear("x"), Axis::linear("y"));
         let figure = Figure::new("Error of LON → Q").plot(Plot::new("").panel(panel));
-        let refusal =
-            write_figure(&figure, ColumnWidth::Single, &path, OutputSet::new(Existing::Keep, Vec::new())).unwrap_err();
-        assert!(refusal.to_string().contains("\"Error of LON → Q\" shows no numbers"), "{refusal}");
+        let refusal = write_figure(
+            &figure,
+            ColumnWidth::Single,
+            &path,
+            OutputSet::new(Existing::Keep, Vec::new()),
+        )
+        .unwrap_err();
+        assert!(
+            refusal
+                .to_string()
+                .contains("\"Error of LON → Q\" shows no numbers"),
+            "{refusal}"
+        );
         assert!(!path.exists());
         let drawn = folder.path().join("empty.svg");
-        write_figure(&figure, ColumnWidth::Single, &drawn, OutputSet::new(Existing::Keep, Vec::new())).unwrap();
+        write_figure(
+            &figure,
+            ColumnWidth::Single,
+            &drawn,
+            OutputSet::new(Existing::Keep, Vec::new()),
+        )
+        .unwrap();
         assert!(drawn.exists());
     }
 }
@@ -161,7 +216,10 @@ mod csv_tests {
 
     #[test]
     fn one_table_is_headings_and_rows() {
-        assert_eq!(csv_text(&[table("left out")]), "model,J [-]\n\"V+5kt, again\",1.5\n");
+        assert_eq!(
+            csv_text(&[table("left out")]),
+            "model,J [-]\n\"V+5kt, again\",1.5\n"
+        );
     }
 
     #[test]
@@ -183,7 +241,13 @@ mod csv_tests {
         }
         let mut table = Table::new("=title", ["=1+1"]);
         table.row(["@x"]);
-        assert_eq!(csv_text(&[table.clone(), table]).lines().filter(|line| line.starts_with('\'')).count(), 6);
+        assert_eq!(
+            csv_text(&[table.clone(), table])
+                .lines()
+                .filter(|line| line.starts_with('\''))
+                .count(),
+            6
+        );
     }
 
     #[test]
@@ -198,9 +262,21 @@ mod csv_tests {
     fn a_table_is_written_whole_and_over_nothing_that_is_there() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("table.csv");
-        save_tables(&[table("")], &path, OutputSet::new(Existing::Keep, Vec::new())).unwrap();
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), "model,J [-]\n\"V+5kt, again\",1.5\n");
-        let again = save_tables(&[table("")], &path, OutputSet::new(Existing::Keep, Vec::new()));
+        save_tables(
+            &[table("")],
+            &path,
+            OutputSet::new(Existing::Keep, Vec::new()),
+        )
+        .unwrap();
+        assert_eq!(
+            std::fs::read_to_string(&path).unwrap(),
+            "model,J [-]\n\"V+5kt, again\",1.5\n"
+        );
+        let again = save_tables(
+            &[table("")],
+            &path,
+            OutputSet::new(Existing::Keep, Vec::new()),
+        );
         assert!(matches!(again, Err(FileError::Exists { .. })));
     }
 }

@@ -14,7 +14,8 @@ use crate::models_file::found_models;
 use crate::source::{GZIP_MAGIC, Source, text_of, without_mark};
 use crate::strides::Places;
 use crate::variables::{
-    Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, Variable, VariableFault,
+    Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, Variable,
+    VariableFault,
 };
 
 /// JSON, and whatever is packed by gzip.
@@ -22,16 +23,22 @@ pub(crate) const JSON: Importer = Importer {
     name: "JSON",
     endings: &["json", "gz"],
     recognises: |bytes, ending| {
-        bytes.starts_with(&GZIP_MAGIC) || ending == "json" || bytes.trim_ascii_start().first() == Some(&b'{')
+        bytes.starts_with(&GZIP_MAGIC)
+            || ending == "json"
+            || bytes.trim_ascii_start().first() == Some(&b'{')
     },
     read: |bytes, path, budget| {
         let wrong = |fault| FileError::variables(path, fault);
         let text = text_of(bytes, path, budget)?;
         let text = without_mark(&text);
-        if bytes.starts_with(&GZIP_MAGIC) && !matches!(text.trim_ascii_start().first(), Some(b'{' | b'[')) {
+        if bytes.starts_with(&GZIP_MAGIC)
+            && !matches!(text.trim_ascii_start().first(), Some(b'{' | b'['))
+        {
             let packed = path.with_extension("");
             return match importer_of(text, &packed) {
-                importer if importer.name == JSON.name => Contents::row_major(variables_of(text, budget), path),
+                importer if importer.name == JSON.name => {
+                    Contents::row_major(variables_of(text, budget), path)
+                }
                 importer => (importer.read)(text, path, budget),
             };
         }
@@ -42,7 +49,10 @@ pub(crate) const JSON: Importer = Importer {
                 // The text is unpacked again.
                 let source = Source::of(bytes, path, budget)?;
                 let loaded = dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?;
-                return Ok(Contents::Dataset(Box::new(loaded.dataset.as_ref().clone()), loaded.cautions));
+                return Ok(Contents::Dataset(
+                    Box::new(loaded.dataset.as_ref().clone()),
+                    loaded.cautions,
+                ));
             }
             Some("\"gdcm-models\"" | "\"gdcm-identified\"") => {
                 if let Some((models, unknown)) = found_models(text, path, budget) {
@@ -59,17 +69,32 @@ pub(crate) const JSON: Importer = Importer {
 fn variables_of(text: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let refused = RefCell::new(None);
     let mut json = serde_json::Deserializer::from_slice(text);
-    let read = TreeReader { budget, refused: &refused }.deserialize(&mut json);
-    let tree = read.and_then(|tree| json.end().map(|()| tree)).map_err(|error| {
-        let wrong = || VariableFault::line("", error.line(), format!("this is not JSON: {error}"));
-        refused.take().unwrap_or_else(wrong)
-    })?;
+    let read = TreeReader {
+        budget,
+        refused: &refused,
+    }
+    .deserialize(&mut json);
+    let tree = read
+        .and_then(|tree| json.end().map(|()| tree))
+        .map_err(|error| {
+            let wrong =
+                || VariableFault::line("", error.line(), format!("this is not JSON: {error}"));
+            refused.take().unwrap_or_else(wrong)
+        })?;
     match tree {
         Tree::Object(members) => {
-            let variable = |(name, value)| Ok(Variable { value: value_of(value, budget)?, name });
+            let variable = |(name, value)| {
+                Ok(Variable {
+                    value: value_of(value, budget)?,
+                    name,
+                })
+            };
             members.into_iter().map(variable).collect()
         }
-        other => Ok(vec![Variable { name: "models".to_owned(), value: value_of(other, budget)? }]),
+        other => Ok(vec![Variable {
+            name: "models".to_owned(),
+            value: value_of(other, budget)?,
+        }]),
     }
 }
 
@@ -181,7 +206,11 @@ fn value_of(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableFau
         Tree::Text(text) => Value::text(text),
         Tree::List(list) => list_of(list, budget)?,
         Tree::Object(members) => {
-            budget.take(members.len() as u64, size_of::<(String, Vec<Value>)>() as u64, "")?;
+            budget.take(
+                members.len() as u64,
+                size_of::<(String, Vec<Value>)>() as u64,
+                "",
+            )?;
             let field = |(name, value)| Ok((name, vec![value_of(value, budget)?]));
             let fields = members.into_iter().map(field).collect::<Result<_, _>>()?;
             Value::Struct(StructArray::one(fields))
@@ -193,16 +222,28 @@ fn value_of(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableFau
 fn list_of(list: Vec<Tree>, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
     if !list.is_empty() && list.iter().all(|item| matches!(item, Tree::Text(_))) {
         budget.take(list.len() as u64, size_of::<String>() as u64, "")?;
-        let text = |item| if let Tree::Text(text) = item { Some(text) } else { None };
+        let text = |item| {
+            if let Tree::Text(text) = item {
+                Some(text)
+            } else {
+                None
+            }
+        };
         let texts: Vec<String> = list.into_iter().filter_map(text).collect();
-        return Ok(Value::Text(TextArray { shape: vec![1, texts.len()], texts }));
+        return Ok(Value::Text(TextArray {
+            shape: vec![1, texts.len()],
+            texts,
+        }));
     }
     if let Some(array) = numbers_of(&list, budget)? {
         return Ok(Value::Array(array));
     }
     budget.take(list.len() as u64, size_of::<Value>() as u64, "")?;
     let shape = vec![1, list.len()];
-    let values = list.into_iter().map(|item| value_of(item, budget)).collect::<Result<_, _>>()?;
+    let values = list
+        .into_iter()
+        .map(|item| value_of(item, budget))
+        .collect::<Result<_, _>>()?;
     Ok(Value::Cell(CellArray { shape, values }))
 }
 
@@ -224,8 +265,17 @@ fn numbers_of(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Array>
         [count] => Array::matrix(1, *count, values),
         _ => {
             budget.take(values.len() as u64, 8, "")?;
-            let re = Places::row_major(&shape).into_iter().flatten().map(|place| values[place]).collect();
-            Array { shape, kind: ElementKind::Float, re, im: None }
+            let re = Places::row_major(&shape)
+                .into_iter()
+                .flatten()
+                .map(|place| values[place])
+                .collect();
+            Array {
+                shape,
+                kind: ElementKind::Float,
+                re,
+                im: None,
+            }
         }
     }))
 }
@@ -237,7 +287,12 @@ fn flatten(
     values: &mut Vec<f64>,
     budget: &ReadingBudget<'_>,
 ) -> Result<Option<()>, VariableFault> {
-    let Some((count, rest)) = shape.split_first().filter(|(count, _)| list.len() == **count) else { return Ok(None) };
+    let Some((count, rest)) = shape
+        .split_first()
+        .filter(|(count, _)| list.len() == **count)
+    else {
+        return Ok(None);
+    };
     // Lists grow by doubling.
     budget.take(*count as u64, 16, "")?;
     for item in list {
@@ -259,18 +314,33 @@ mod tests {
         let budget = ReadingBudget::new(1 << 20);
         let of = |text: &str| {
             let text = format!("{{\"x\": {text}}}");
-            variables_of(text.as_bytes(), &budget).unwrap().remove(0).value
+            variables_of(text.as_bytes(), &budget)
+                .unwrap()
+                .remove(0)
+                .value
         };
-        assert_eq!(of("[[1, 2, 3], [4, 5, 6]]"), Value::Array(Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0])));
+        assert_eq!(
+            of("[[1, 2, 3], [4, 5, 6]]"),
+            Value::Array(Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0]))
+        );
         assert!(matches!(of("[[1, 2], [3]]"), Value::Cell(_)));
-        let Value::Array(cube) = of("[[[1, 2], [3, 4]]]") else { panic!("an array") };
-        assert_eq!((cube.shape, cube.re), (vec![1, 2, 2], vec![1.0, 3.0, 2.0, 4.0]));
+        let Value::Array(cube) = of("[[[1, 2], [3, 4]]]") else {
+            panic!("an array")
+        };
+        assert_eq!(
+            (cube.shape, cube.re),
+            (vec![1, 2, 2], vec![1.0, 3.0, 2.0, 4.0])
+        );
         assert!(matches!(of("[\"LON\", \"LAT\"]"), Value::Text(_)));
     }
 
     #[test]
     fn members_come_in_the_order_of_their_names_and_the_last_of_one_name_counts() {
-        let read = variables_of(b"{\"b\": 1, \"a\": 2, \"b\": 3}", &ReadingBudget::new(1 << 20)).unwrap();
+        let read = variables_of(
+            b"{\"b\": 1, \"a\": 2, \"b\": 3}",
+            &ReadingBudget::new(1 << 20),
+        )
+        .unwrap();
         let number = |name: &str, value| Variable {
             name: name.to_owned(),
             value: Value::Array(Array::matrix(1, 1, vec![value])),

@@ -110,22 +110,39 @@ pub(crate) enum Contents {
 
 impl Contents {
     /// Arrays as NumPy and JSON have them, or why not.
-    pub(crate) fn row_major(read: Result<Vec<Variable>, VariableFault>, path: &Path) -> Result<Self, FileError> {
+    pub(crate) fn row_major(
+        read: Result<Vec<Variable>, VariableFault>,
+        path: &Path,
+    ) -> Result<Self, FileError> {
         let variables = read.map_err(|fault| FileError::variables(path, fault))?;
-        Ok(Self::Variables { variables, notes: Vec::new(), pages_first: true })
+        Ok(Self::Variables {
+            variables,
+            notes: Vec::new(),
+            pages_first: true,
+        })
     }
 
     /// Variables that were read, or why not.
-    pub(crate) fn variables(read: Result<Vec<Variable>, VariableFault>, path: &Path) -> Result<Self, FileError> {
+    pub(crate) fn variables(
+        read: Result<Vec<Variable>, VariableFault>,
+        path: &Path,
+    ) -> Result<Self, FileError> {
         let variables = read.map_err(|fault| FileError::variables(path, fault))?;
-        Ok(Self::Variables { variables, notes: Vec::new(), pages_first: false })
+        Ok(Self::Variables {
+            variables,
+            notes: Vec::new(),
+            pages_first: false,
+        })
     }
 }
 
 /// The format of bytes of a file of this name.
 pub(crate) fn importer_of(bytes: &[u8], path: &Path) -> &'static Importer {
     let ending = ending_of(path);
-    FORMATS.iter().find(|format| (format.recognises)(bytes, &ending)).unwrap_or(&TEXT)
+    FORMATS
+        .iter()
+        .find(|format| (format.recognises)(bytes, &ending))
+        .unwrap_or(&TEXT)
 }
 
 /// What is told while files are read, and whether to go on.
@@ -160,7 +177,12 @@ pub(crate) fn import_bytes<'f>(
     budget: &ReadingBudget<'_>,
 ) -> Result<ImportedFile<'f>, FileError> {
     let contents = (importer_of(bytes, path).read)(bytes, path, budget)?;
-    Ok(ImportedFile { path, name, sha256: sha256(bytes, path, budget)?, contents })
+    Ok(ImportedFile {
+        path,
+        name,
+        sha256: sha256(bytes, path, budget)?,
+        contents,
+    })
 }
 
 /// Reads one file.
@@ -187,7 +209,9 @@ pub(crate) fn import(
             break;
         }
         progress.reading(index + 1, files.len(), name);
-        let budget = ReadingBudget::default().stopped_by(Arc::clone(&stop)).telling(&tell);
+        let budget = ReadingBudget::default()
+            .stopped_by(Arc::clone(&stop))
+            .telling(&tell);
         match import_file(path, name, &budget).and_then(|file| take(file, &budget)) {
             Ok(()) => {}
             Err(error) if paths.len() == 1 && files.len() == 1 => return Err(error),
@@ -199,7 +223,13 @@ pub(crate) fn import(
 
 /// Words with the file in front that they are about, unless it stands there.
 pub(crate) fn of_file(name: &str, words: Vec<String>) -> impl Iterator<Item = String> {
-    words.into_iter().map(move |words| if words.starts_with(name) { words } else { format!("{name}: {words}") })
+    words.into_iter().map(move |words| {
+        if words.starts_with(name) {
+            words
+        } else {
+            format!("{name}: {words}")
+        }
+    })
 }
 
 /// The folder from which the models of these files and folders name their files: that which was given first; a file alone lies in its
@@ -207,19 +237,33 @@ pub(crate) fn of_file(name: &str, words: Vec<String>) -> impl Iterator<Item = St
 pub fn sources_folder(sources: &[PathBuf]) -> &Path {
     let here = Path::new(".");
     let first = sources.first().map_or(here, PathBuf::as_path);
-    let folder = if first.is_dir() { first } else { first.parent().unwrap_or(here) };
-    if folder.as_os_str().is_empty() { here } else { folder }
+    let folder = if first.is_dir() {
+        first
+    } else {
+        first.parent().unwrap_or(here)
+    };
+    if folder.as_os_str().is_empty() {
+        here
+    } else {
+        folder
+    }
 }
 
 /// Files, and those of folders whose names end as those of a format, in the order of their names: their paths, and their names relative to what was asked
 /// for. What is no file is skipped with a word.
-fn files_of(paths: &[PathBuf], skipped: &mut Vec<String>) -> Result<Vec<(PathBuf, String)>, FileError> {
+fn files_of(
+    paths: &[PathBuf],
+    skipped: &mut Vec<String>,
+) -> Result<Vec<(PathBuf, String)>, FileError> {
     let mut files = Vec::new();
     for path in paths {
         if path.is_dir() {
             list(path, path, DEEPEST, &mut files, skipped)?;
         } else {
-            let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+            let name = path
+                .file_name()
+                .map(|name| name.to_string_lossy().into_owned())
+                .unwrap_or_default();
             files.push((path.clone(), name));
         }
     }
@@ -235,7 +279,10 @@ fn list(
     skipped: &mut Vec<String>,
 ) -> Result<(), FileError> {
     let failed = |error: std::io::Error| FileError::reading(folder, &error);
-    let mut entries = fs::read_dir(folder).map_err(failed)?.collect::<Result<Vec<_>, _>>().map_err(failed)?;
+    let mut entries = fs::read_dir(folder)
+        .map_err(failed)?
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(failed)?;
     entries.sort_by_key(|entry| natural(&entry.file_name().to_string_lossy()));
     for entry in entries {
         let path = entry.path();
@@ -252,14 +299,24 @@ fn list(
             list(&path, root, deeper - 1, files, skipped)?;
         } else if is_known(&path) && !is_other_log(&path) {
             let meant = fs::metadata(&path).map_or(kind, |metadata| metadata.file_type());
-            let name = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
+            let name = path
+                .strip_prefix(root)
+                .unwrap_or(&path)
+                .to_string_lossy()
+                .replace('\\', "/");
             match kind_of(meant) {
-                Some(kind) => skipped.push(format!("{}: skipped, for this is {kind}, not a file", sanitized(&name))),
+                Some(kind) => skipped.push(format!(
+                    "{}: skipped, for this is {kind}, not a file",
+                    sanitized(&name)
+                )),
                 None => files.push((path, name)),
             }
         }
         if files.len() > MOST_FILES {
-            return Err(FileError::TooManyFiles { path: root.to_owned(), most: MOST_FILES });
+            return Err(FileError::TooManyFiles {
+                path: root.to_owned(),
+                most: MOST_FILES,
+            });
         }
     }
     Ok(())
@@ -273,20 +330,25 @@ fn is_other_log(path: &Path) -> bool {
         return false;
     }
     let mut first = Vec::with_capacity(FIRST);
-    let read = fs::File::open(path).and_then(|file| file.take(FIRST as u64).read_to_end(&mut first));
+    let read =
+        fs::File::open(path).and_then(|file| file.take(FIRST as u64).read_to_end(&mut first));
     read.is_ok() && importer_of(&first, path).name == TEXT.name
 }
 
 /// Whether the name of a file ends as those of some format do; studies are no sources of models or records.
 pub(crate) fn is_known(path: &Path) -> bool {
     let ending = ending_of(path);
-    FORMATS.iter().any(|format| format.endings.contains(&ending.as_str()))
+    FORMATS
+        .iter()
+        .any(|format| format.endings.contains(&ending.as_str()))
         && !path.to_string_lossy().ends_with(".gdcm-study.json")
 }
 
 /// The ending of a file's name, in lower case.
 fn ending_of(path: &Path) -> String {
-    path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
+    path.extension()
+        .map(|ending| ending.to_string_lossy().to_lowercase())
+        .unwrap_or_default()
 }
 
 /// A key that sorts "c2" before "c10".
@@ -299,7 +361,10 @@ fn natural(name: &str) -> Vec<(String, u64)> {
             continue;
         }
         if !digits.is_empty() {
-            parts.push((std::mem::take(&mut text), digits.parse().unwrap_or(u64::MAX)));
+            parts.push((
+                std::mem::take(&mut text),
+                digits.parse().unwrap_or(u64::MAX),
+            ));
             digits.clear();
         }
         text.extend(letter.to_lowercase());
@@ -318,20 +383,41 @@ const UNPACK: &str = "unpack it, or pack it as .zip or .gz";
 const FROM_FEATHER: &str = "save it as CSV: pandas.read_feather(\"{file}\").to_csv(\"{stem}.csv\")";
 const FROM_PARQUET: &str = "save it as CSV: pandas.read_parquet(\"{file}\").to_csv(\"{stem}.csv\")";
 const FROM_PICKLE: &str = "save its arrays: numpy.savez(\"{stem}.npz\", A=A, B=B, C=C, D=D)";
-const FROM_NETCDF: &str = "save it as CSV or as netCDF-4, which is HDF5: nccopy -k nc4 \"{file}\" \"{stem}.h5\"";
+const FROM_NETCDF: &str =
+    "save it as CSV or as netCDF-4, which is HDF5: nccopy -k nc4 \"{file}\" \"{stem}.h5\"";
 
 const FOREIGN: [Foreign; 13] = [
     (&[b"PAR1"], "a Parquet file", FROM_PARQUET),
     (&[b"ARROW1"], "an Arrow or Feather file", FROM_FEATHER),
     (&[b"FEA1"], "a Feather file", FROM_FEATHER),
-    (&[b"\x80\x02", b"\x80\x03", b"\x80\x04", b"\x80\x05"], "a pickle of Python", FROM_PICKLE),
-    (&[b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"], "an Excel workbook or another document of Microsoft Office", AS_TABLE),
+    (
+        &[b"\x80\x02", b"\x80\x03", b"\x80\x04", b"\x80\x05"],
+        "a pickle of Python",
+        FROM_PICKLE,
+    ),
+    (
+        &[b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1"],
+        "an Excel workbook or another document of Microsoft Office",
+        AS_TABLE,
+    ),
     (&[b"SQLite format 3"], "a database of SQLite", AS_TABLE),
     (&[b"CDF\x01", b"CDF\x02"], "a netCDF file", FROM_NETCDF),
-    (&[b"MDF     "], "an MDF file of measurements", "save it as CSV or MATLAB"),
-    (&[b"TDSm"], "a TDMS file of LabVIEW", "save it as CSV or MATLAB"),
+    (
+        &[b"MDF     "],
+        "an MDF file of measurements",
+        "save it as CSV or MATLAB",
+    ),
+    (
+        &[b"TDSm"],
+        "a TDMS file of LabVIEW",
+        "save it as CSV or MATLAB",
+    ),
     (&[b"%PDF-"], "a PDF document", AS_TABLE),
-    (&[b"\x89PNG"], "a picture", "save its numbers, not what they look like"),
+    (
+        &[b"\x89PNG"],
+        "a picture",
+        "save its numbers, not what they look like",
+    ),
     (&[b"7z\xbc\xaf\x27"], "an archive of 7-Zip", UNPACK),
     (&[b"\xfd7zXZ"], "a file packed by xz", UNPACK),
 ];
@@ -342,13 +428,19 @@ pub(crate) const FOREIGN_FORMAT: Importer = Importer {
     endings: &["parquet", "feather", "pkl"],
     recognises: |bytes, _| foreign(bytes).is_some(),
     read: |bytes, path, _| {
-        let (what, remedy) = foreign(bytes).map_or(("a file", AS_TABLE), |(_, what, remedy)| (*what, *remedy));
-        Err(FileError::variables(path, VariableFault::unsupported("", what, remedy)))
+        let (what, remedy) =
+            foreign(bytes).map_or(("a file", AS_TABLE), |(_, what, remedy)| (*what, *remedy));
+        Err(FileError::variables(
+            path,
+            VariableFault::unsupported("", what, remedy),
+        ))
     },
 };
 
 fn foreign(bytes: &[u8]) -> Option<&'static Foreign> {
-    FOREIGN.iter().find(|(marks, ..)| marks.iter().any(|mark| bytes.starts_with(mark)))
+    FOREIGN
+        .iter()
+        .find(|(marks, ..)| marks.iter().any(|mark| bytes.starts_with(mark)))
 }
 
 #[cfg(test)]
@@ -369,7 +461,13 @@ mod tests {
         assert_eq!(of(b"% omega, re, im\n1,2,3\n4,5,6\n", "a.m"), TEXT.name);
         assert_eq!(of(b"Fs = 50\nt,P\n0,1\n1,2\n", "a.txt"), TEXT.name);
         assert_eq!(of(b"A = [\n1 2\n3 4\n];", "a.m"), LITERALS.name);
-        assert_eq!(of(b"# Created by Octave 7.3.0\n# name: A\n# type: matrix\n", "a.txt"), OCTAVE_TEXT.name);
+        assert_eq!(
+            of(
+                b"# Created by Octave 7.3.0\n# name: A\n# type: matrix\n",
+                "a.txt"
+            ),
+            OCTAVE_TEXT.name
+        );
         let header = [&[b'M'; 124][..], &[0, 1, b'I', b'M']].concat();
         assert_eq!(of(&header, "no extension"), MAT.name);
     }
@@ -387,11 +485,23 @@ mod foreign_tests {
 
     #[test]
     fn a_file_of_another_format_is_named_with_the_way_to_save_it_otherwise() {
-        let read =
-            (FOREIGN_FORMAT.read)(b"PAR1\x15\x04", Path::new("logs/flight 7.parquet"), &ReadingBudget::new(1 << 20));
-        let words = read.err().map(|error| error.to_string()).unwrap_or_default();
-        assert!(words.contains("a Parquet file cannot be read; save it as CSV"), "{words}");
-        assert!(words.ends_with("pandas.read_parquet(\"flight 7.parquet\").to_csv(\"flight 7.csv\")"), "{words}");
+        let read = (FOREIGN_FORMAT.read)(
+            b"PAR1\x15\x04",
+            Path::new("logs/flight 7.parquet"),
+            &ReadingBudget::new(1 << 20),
+        );
+        let words = read
+            .err()
+            .map(|error| error.to_string())
+            .unwrap_or_default();
+        assert!(
+            words.contains("a Parquet file cannot be read; save it as CSV"),
+            "{words}"
+        );
+        assert!(
+            words.ends_with("pandas.read_parquet(\"flight 7.parquet\").to_csv(\"flight 7.csv\")"),
+            "{words}"
+        );
         assert!(!(FOREIGN_FORMAT.recognises)(b"omega,re,im\n", "csv"));
     }
 }

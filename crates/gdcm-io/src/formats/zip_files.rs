@@ -26,36 +26,59 @@ pub(crate) const ZIP: Importer = Importer {
     name: "a zip archive",
     endings: &["npz", "zip"],
     recognises: |bytes, _| matches!(bytes, [b'P', b'K', 3 | 5, ..]),
-    read: |bytes, path, budget| read_archive(bytes, budget).map_err(|fault| FileError::variables(path, fault)),
+    read: |bytes, path, budget| {
+        read_archive(bytes, budget).map_err(|fault| FileError::variables(path, fault))
+    },
 };
 
 /// The arrays and the other files of an archive; archives in archives are not read.
-pub(crate) fn read_archive(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Contents, VariableFault> {
+pub(crate) fn read_archive(
+    bytes: &[u8],
+    budget: &ReadingBudget<'_>,
+) -> Result<Contents, VariableFault> {
     let (mut names, mut variables) = (HashSet::new(), Vec::new());
     let (mut files, mut ignored) = (Vec::new(), Vec::new());
     visit_files(bytes, |file| {
         // A few bytes in the archive's directory become a variable or a file, whatever it holds.
-        budget.take(1, (size_of::<Variable>() + size_of::<Contents>() + file.path.len()) as u64, "")?;
+        budget.take(
+            1,
+            (size_of::<Variable>() + size_of::<Contents>() + file.path.len()) as u64,
+            "",
+        )?;
         let path = Path::new(file.path);
         if let Some(name) = file.path.strip_suffix(ARRAY) {
             if !names.insert(name.to_owned()) {
-                return Err(VariableFault::Duplicate { name: name.to_owned() });
+                return Err(VariableFault::Duplicate {
+                    name: name.to_owned(),
+                });
             }
             variables.extend(read_npy(&file.unpack(name, budget)?, name, budget)?);
             return Ok(());
         }
-        let unpacked = if is_known(path) { Some(file.unpack(file.path, budget)?) } else { None };
-        let importer = unpacked.as_deref().map(|bytes| (importer_of(bytes, path), bytes));
+        let unpacked = if is_known(path) {
+            Some(file.unpack(file.path, budget)?)
+        } else {
+            None
+        };
+        let importer = unpacked
+            .as_deref()
+            .map(|bytes| (importer_of(bytes, path), bytes));
         match importer.filter(|(importer, _)| importer.name != ZIP.name) {
             None => ignored.push(format!("{}: no file of a known kind", file.path)),
             Some((importer, bytes)) => match (importer.read)(bytes, path, budget) {
-                Err(FileError::Variables { fault, .. }) if fault.is_of_the_budget() => return Err(fault),
+                Err(FileError::Variables { fault, .. }) if fault.is_of_the_budget() => {
+                    return Err(fault);
+                }
                 contents => files.push((file.path.to_owned(), contents)),
             },
         }
         Ok(())
     })?;
-    Ok(Contents::Archive { variables, files, ignored })
+    Ok(Contents::Archive {
+        variables,
+        files,
+        ignored,
+    })
 }
 
 /// A file in a zip archive (APPNOTE 6.3), packed as it is.
@@ -75,10 +98,9 @@ pub(super) fn visit_files(
 ) -> Result<(), VariableFault> {
     let archive = ZipArchive::from_slice(bytes).map_err(|_| unreadable(bytes))?;
     let mut entries = archive.entries();
-    while let Some(entry) = entries
-        .next_entry()
-        .map_err(|error| VariableFault::damaged("", error.to_string(), archive.directory_offset()))?
-    {
+    while let Some(entry) = entries.next_entry().map_err(|error| {
+        VariableFault::damaged("", error.to_string(), archive.directory_offset())
+    })? {
         if entry.is_dir() {
             continue;
         }
@@ -86,32 +108,54 @@ pub(super) fn visit_files(
         let offset = entry.local_header_offset();
         let path = std::str::from_utf8(path.as_bytes())
             .map_err(|_| VariableFault::damaged("", "a name is not UTF-8", offset))?;
-        visit(&ZipFile { path, offset, archive: &archive, entry: &entry })?;
+        visit(&ZipFile {
+            path,
+            offset,
+            archive: &archive,
+            entry: &entry,
+        })?;
     }
     Ok(())
 }
 
 impl ZipFile<'_, '_> {
     /// Unpacks the file, and no further than the archive says: a few kilobytes can unpack to gigabytes. `name` is what faults call it.
-    pub(super) fn unpack(&self, name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, VariableFault> {
-        let unsupported =
-            |what: &str| VariableFault::unsupported(name, what, "pack it again by deflate, without a password");
+    pub(super) fn unpack(
+        &self,
+        name: &str,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Vec<u8>, VariableFault> {
+        let unsupported = |what: &str| {
+            VariableFault::unsupported(name, what, "pack it again by deflate, without a password")
+        };
         if self.entry.flags().is_encrypted() {
             return Err(unsupported("an encrypted entry"));
         }
         let found = self.archive.get_entry(self.entry.wayfinder());
-        let found = found.map_err(|error| VariableFault::damaged(name, error.to_string(), self.offset))?;
+        let found =
+            found.map_err(|error| VariableFault::damaged(name, error.to_string(), self.offset))?;
         let (packed, length) = (found.data(), self.entry.uncompressed_size_hint());
         if length > (packed.len() as u64).saturating_mul(LARGEST_RATIO) {
-            return Err(VariableFault::damaged(name, "it claims more bytes than it can unpack to", self.offset));
+            return Err(VariableFault::damaged(
+                name,
+                "it claims more bytes than it can unpack to",
+                self.offset,
+            ));
         }
         budget.take(length, 1, name)?;
         let unpacked = match self.entry.compression_method() {
             CompressionMethod::STORE => read_whole(found.verifying_reader(packed), length, budget)?,
-            CompressionMethod::DEFLATE => {
-                read_whole(found.verifying_reader(DeflateDecoder::new(packed)), length, budget)?
+            CompressionMethod::DEFLATE => read_whole(
+                found.verifying_reader(DeflateDecoder::new(packed)),
+                length,
+                budget,
+            )?,
+            method => {
+                return Err(unsupported(&format!(
+                    "an entry packed by method {}",
+                    method.as_u16()
+                )));
             }
-            method => return Err(unsupported(&format!("an entry packed by method {}", method.as_u16()))),
         };
         unpacked.map_err(|error| VariableFault::damaged(name, error.to_string(), self.offset))
     }
@@ -145,7 +189,10 @@ fn unreadable(bytes: &[u8]) -> VariableFault {
 }
 
 #[cfg(test)]
-pub(crate) fn read_npz(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub(crate) fn read_npz(
+    bytes: &[u8],
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<Variable>, VariableFault> {
     match read_archive(bytes, budget)? {
         Contents::Archive { variables, .. } => Ok(variables),
         _ => Ok(Vec::new()),

@@ -75,12 +75,22 @@ pub(super) fn delay_fields<'v>(fields: &[Field<'v>]) -> Vec<DelayField<'v>> {
                     "Internal" => Delayed::Inside,
                     _ => Delayed::Unclear,
                 };
-                found.extend(values.first().map(|value| DelayField { name, value, delayed, unit: DelayUnit::Matlab }));
+                found.extend(values.first().map(|value| DelayField {
+                    name,
+                    value,
+                    delayed,
+                    unit: DelayUnit::Matlab,
+                }));
             }
             continue;
         }
         if let Some((delayed, unit)) = meaning(name) {
-            found.push(DelayField { name, value, delayed, unit });
+            found.push(DelayField {
+                name,
+                value,
+                delayed,
+                unit,
+            });
         }
     }
     found
@@ -102,8 +112,10 @@ fn meaning(name: &str) -> Option<(Delayed, DelayUnit)> {
         "internaldelay" => Delayed::Inside,
         _ => return resembles_delay(&folded).then_some((Delayed::Unclear, DelayUnit::Unsaid)),
     };
-    let is_matlab =
-        matches!(name.trim_end_matches('_'), "InputDelay" | "OutputDelay" | "IODelay" | "ioDelay" | "InternalDelay");
+    let is_matlab = matches!(
+        name.trim_end_matches('_'),
+        "InputDelay" | "OutputDelay" | "IODelay" | "ioDelay" | "InternalDelay"
+    );
     Some((delayed, if is_matlab { DelayUnit::Matlab } else { unit }))
 }
 
@@ -121,7 +133,11 @@ fn unit_at_end(name: &str) -> (&str, DelayUnit) {
             return (stem, unit);
         }
     }
-    match trimmed.strip_suffix("Ms").or_else(|| trimmed.strip_suffix("elayms").map(|_| &trimmed[..trimmed.len() - 2])) {
+    match trimmed.strip_suffix("Ms").or_else(|| {
+        trimmed
+            .strip_suffix("elayms")
+            .map(|_| &trimmed[..trimmed.len() - 2])
+    }) {
         Some(stem) => (stem, DelayUnit::Milliseconds),
         None => (trimmed, DelayUnit::Unsaid),
     }
@@ -155,14 +171,17 @@ fn resembles_delay(folded: &str) -> bool {
 }
 
 /// The name that a delay is to have, for whoever is asked.
-const WAYS: &str =
-    "call it input_delays_s or output_delays_s (one number for each channel, in s), or otherwise if it is no delay";
+const WAYS: &str = "call it input_delays_s or output_delays_s (one number for each channel, in s), or otherwise if it is no delay";
 
 /// Sample time and delays of a model, and how they were read where that is a convention.
 ///
 /// # Errors
 /// What looks like a delay and leaves open what it delays or in which unit: it is asked about, never dropped.
-pub(super) fn timing_of(record: &Record<'_>, outputs: usize, inputs: usize) -> Result<(Timing, Vec<String>), String> {
+pub(super) fn timing_of(
+    record: &Record<'_>,
+    outputs: usize,
+    inputs: usize,
+) -> Result<(Timing, Vec<String>), String> {
     refuse_other_time_units(record)?;
     let mut reading = DelayReading {
         sample_time_s: sample_time_of(record)?,
@@ -194,7 +213,10 @@ pub(super) fn timing_of(record: &Record<'_>, outputs: usize, inputs: usize) -> R
 
 /// Refuses delays of a measured response, which has them in it; what only looks like one is left alone.
 pub(super) fn refuse_delays(record: &Record<'_>) -> Result<(), String> {
-    let mut known = record.delay_fields().iter().filter(|field| field.delayed != Delayed::Unclear);
+    let mut known = record
+        .delay_fields()
+        .iter()
+        .filter(|field| field.delayed != Delayed::Unclear);
     match known.find(|field| field.says_something()) {
         Some(field) => Err(format!(
             "{}: a measured response has its delays in it; multiply it by them (in MATLAB: sys = absorbDelay(sys)), or remove the field",
@@ -226,12 +248,12 @@ impl DelayReading {
     fn take(&mut self, field: &DelayField<'_>) -> Result<(), String> {
         let name = field.name;
         match field.delayed {
-            Delayed::Unclear => {
-                Err(format!("{name} looks like a delay, and its name leaves open of what and in which unit: {WAYS}"))
-            }
-            Delayed::Inside => {
-                Err(format!("{name}: internal delays cannot be taken; absorb them first: sys = pade(sys, 3)"))
-            }
+            Delayed::Unclear => Err(format!(
+                "{name} looks like a delay, and its name leaves open of what and in which unit: {WAYS}"
+            )),
+            Delayed::Inside => Err(format!(
+                "{name}: internal delays cannot be taken; absorb them first: sys = pade(sys, 3)"
+            )),
             Delayed::Inputs => {
                 let delays = self.of_channels(field, self.inputs, "input")?;
                 keep(&mut self.of_inputs, delays, name)
@@ -240,9 +262,9 @@ impl DelayReading {
                 let delays = self.of_channels(field, self.outputs, "output")?;
                 keep(&mut self.of_outputs, delays, name)
             }
-            Delayed::Responses if self.of_responses.is_some() => {
-                Err(format!("{name}: delays of single responses are given twice; remove one"))
-            }
+            Delayed::Responses if self.of_responses.is_some() => Err(format!(
+                "{name}: delays of single responses are given twice; remove one"
+            )),
             Delayed::Responses => {
                 self.of_responses = Some(self.of_responses(field)?);
                 Ok(())
@@ -251,14 +273,22 @@ impl DelayReading {
     }
 
     /// One delay [s] for each channel of a side.
-    fn of_channels(&mut self, field: &DelayField<'_>, count: usize, side: &str) -> Result<Vec<f64>, String> {
+    fn of_channels(
+        &mut self,
+        field: &DelayField<'_>,
+        count: usize,
+        side: &str,
+    ) -> Result<Vec<f64>, String> {
         let name = field.name;
         let mut delays = list_of(name, field.value)?;
         if delays.len() == 1 {
             delays = vec![delays[0]; count];
         }
         if delays.len() != count {
-            return Err(format!("{name}: expected {count} delays, one for each {side}, found {}", delays.len()));
+            return Err(format!(
+                "{name}: expected {count} delays, one for each {side}, found {}",
+                delays.len()
+            ));
         }
         self.in_seconds(field, &delays)
     }
@@ -268,10 +298,15 @@ impl DelayReading {
         let name = field.name;
         let (p, m) = (self.outputs, self.inputs);
         if p == 0 || m == 0 {
-            return Ok(SplitDelays { inputs: vec![0.0; m], outputs: vec![0.0; p] });
+            return Ok(SplitDelays {
+                inputs: vec![0.0; m],
+                outputs: vec![0.0; p],
+            });
         }
         let values = list_of(name, field.value)?;
-        let shape = array_of(field.value).map(|array: &Array| array.shape.clone()).unwrap_or_default();
+        let shape = array_of(field.value)
+            .map(|array: &Array| array.shape.clone())
+            .unwrap_or_default();
         let is_row_or_column = (p == 1 || m == 1) && values.len() == p * m;
         let values = match values.as_slice() {
             [one] => vec![*one; p * m],
@@ -288,7 +323,11 @@ impl DelayReading {
         // The output that is delayed least has no delay of its own.
         let first = table.column(0).imin();
         let inputs: Vec<f64> = table.row(first).iter().copied().collect();
-        let outputs: Vec<f64> = table.column(0).iter().map(|delay| delay - inputs[0]).collect();
+        let outputs: Vec<f64> = table
+            .column(0)
+            .iter()
+            .map(|delay| delay - inputs[0])
+            .collect();
         for output in 0..p {
             for input in 0..m {
                 if (table[(output, input)] - outputs[output] - inputs[input]).abs() > ROUNDING {
@@ -301,23 +340,30 @@ impl DelayReading {
                 }
             }
         }
-        self.notes.push(format!("{name} split into delays of inputs and of outputs"));
+        self.notes
+            .push(format!("{name} split into delays of inputs and of outputs"));
         Ok(SplitDelays { inputs, outputs })
     }
 
     /// Delays in seconds, where their unit is known.
     fn in_seconds(&mut self, field: &DelayField<'_>, delays: &[f64]) -> Result<Vec<f64>, String> {
         let name = field.name;
-        let greatest = delays.iter().fold(0.0_f64, |greatest, delay| greatest.max(*delay));
+        let greatest = delays
+            .iter()
+            .fold(0.0_f64, |greatest, delay| greatest.max(*delay));
         let are_whole = delays.iter().all(|delay| delay.fract() == 0.0);
         let factor = match (field.unit, self.sample_time_s) {
             (DelayUnit::Seconds, _) => 1.0,
             (DelayUnit::Milliseconds, _) => 1e-3,
-            (DelayUnit::Samples, None) => return Err(question(name, "in samples of a model that has no sample time")),
+            (DelayUnit::Samples, None) => {
+                return Err(question(
+                    name,
+                    "in samples of a model that has no sample time",
+                ));
+            }
             (DelayUnit::Samples, Some(sample_time_s)) => sample_time_s,
             (DelayUnit::Matlab, Some(_)) if !are_whole => {
-                let open =
-                    "MATLAB counts the delays of a discrete-time model in samples, and these are no whole numbers";
+                let open = "MATLAB counts the delays of a discrete-time model in samples, and these are no whole numbers";
                 return Err(question(name, open));
             }
             (DelayUnit::Matlab, Some(sample_time_s)) => {
@@ -325,12 +371,20 @@ impl DelayReading {
                 sample_time_s
             }
             (DelayUnit::Unsaid, Some(_)) => {
-                return Err(question(name, "seconds or samples of this discrete-time model are not said"));
-            }
-            (DelayUnit::Matlab | DelayUnit::Unsaid, None) if greatest > LONGEST_PLAIN_S && !self.is_object => {
                 return Err(question(
                     name,
-                    &format!("{} can be seconds or milliseconds, which is not said", number(greatest)),
+                    "seconds or samples of this discrete-time model are not said",
+                ));
+            }
+            (DelayUnit::Matlab | DelayUnit::Unsaid, None)
+                if greatest > LONGEST_PLAIN_S && !self.is_object =>
+            {
+                return Err(question(
+                    name,
+                    &format!(
+                        "{} can be seconds or milliseconds, which is not said",
+                        number(greatest)
+                    ),
                 ));
             }
             (DelayUnit::Matlab | DelayUnit::Unsaid, None) => {
@@ -339,10 +393,14 @@ impl DelayReading {
             }
         };
         let delays: Vec<f64> = delays.iter().map(|delay| factor * delay).collect();
-        match delays.iter().find(|delay| !(0.0..=GREATEST_CHANNEL_DELAY_S).contains(*delay)) {
-            Some(delay) => {
-                Err(format!("{name}: expected delays from 0 to {GREATEST_CHANNEL_DELAY_S} s, found {}", number(*delay)))
-            }
+        match delays
+            .iter()
+            .find(|delay| !(0.0..=GREATEST_CHANNEL_DELAY_S).contains(*delay))
+        {
+            Some(delay) => Err(format!(
+                "{name}: expected delays from 0 to {GREATEST_CHANNEL_DELAY_S} s, found {}",
+                number(*delay)
+            )),
             None => Ok(delays),
         }
     }
@@ -370,14 +428,24 @@ impl DelayReading {
 
 /// What a unit leaves open, and the name that leaves nothing open.
 fn question(name: &str, open: &str) -> String {
-    format!("{name}: {open}; call it {}_s and give it in s", name.trim_end_matches('_'))
+    format!(
+        "{name}: {open}; call it {}_s and give it in s",
+        name.trim_end_matches('_')
+    )
 }
 
 /// Keeps the delays of a side; another list that says otherwise is refused.
 fn keep(kept: &mut Option<Vec<f64>>, delays: Vec<f64>, name: &str) -> Result<(), String> {
     match kept {
-        Some(known) if known.iter().zip(&delays).any(|(one, other)| (one - other).abs() > ROUNDING) => {
-            Err(format!("{name}: these delays are given a second time, with other numbers; remove one"))
+        Some(known)
+            if known
+                .iter()
+                .zip(&delays)
+                .any(|(one, other)| (one - other).abs() > ROUNDING) =>
+        {
+            Err(format!(
+                "{name}: these delays are given a second time, with other numbers; remove one"
+            ))
         }
         _ => {
             *kept = Some(delays);
@@ -389,14 +457,20 @@ fn keep(kept: &mut Option<Vec<f64>>, delays: Vec<f64>, name: &str) -> Result<(),
 /// The delays of a side, those of its channels and those that come of single responses; none where all are zero.
 fn sum(own: Option<Vec<f64>>, more: Option<Vec<f64>>) -> Option<Vec<f64>> {
     let delays = match (own, more) {
-        (Some(own), Some(more)) => own.iter().zip(&more).map(|(one, other)| one + other).collect(),
+        (Some(own), Some(more)) => own
+            .iter()
+            .zip(&more)
+            .map(|(one, other)| one + other)
+            .collect(),
         (own, more) => own.or(more)?,
     };
     Some(delays).filter(|delays: &Vec<f64>| delays.iter().any(|delay| *delay != 0.0))
 }
 
 fn sample_time_of(record: &Record<'_>) -> Result<Option<f64>, String> {
-    let Some(value) = record.get(&SAMPLE_TIME_NAMES) else { return Ok(None) };
+    let Some(value) = record.get(&SAMPLE_TIME_NAMES) else {
+        return Ok(None);
+    };
     match scalar_of(value) {
         Some(0.0) => Ok(None),
         Some(sample_time) if sample_time > 0.0 => Ok(Some(sample_time)),
@@ -405,16 +479,23 @@ fn sample_time_of(record: &Record<'_>) -> Result<Option<f64>, String> {
             number(sample_time)
         )),
         None if array_of(value).is_some_and(|array| array.is_empty()) => Ok(None),
-        None => Err(format!("the sample time: expected a number, found {}", value.words())),
+        None => Err(format!(
+            "the sample time: expected a number, found {}",
+            value.words()
+        )),
     }
 }
 
 /// A model whose time is not counted in seconds has other frequencies and other delays than it seems to have.
 fn refuse_other_time_units(record: &Record<'_>) -> Result<(), String> {
-    let Some(texts) = record.get(&["TimeUnit"]).and_then(texts_of) else { return Ok(()) };
+    let Some(texts) = record.get(&["TimeUnit"]).and_then(texts_of) else {
+        return Ok(());
+    };
     match texts.first().map(String::as_str) {
         None | Some("" | "s" | "sec" | "second" | "seconds") => Ok(()),
-        Some(unit) => Err(format!("its time is in {unit}; in MATLAB: sys = chgTimeUnit(sys, 'seconds')")),
+        Some(unit) => Err(format!(
+            "its time is in {unit}; in MATLAB: sys = chgTimeUnit(sys, 'seconds')"
+        )),
     }
 }
 

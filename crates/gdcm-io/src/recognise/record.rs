@@ -52,38 +52,65 @@ pub(crate) struct Record<'v> {
 impl<'v> Record<'v> {
     /// The variables of a file.
     pub(crate) fn of_variables(variables: &'v [Variable]) -> Self {
-        Self::of_fields(variables.iter().map(|variable| (variable.name.as_str(), &variable.value)))
+        Self::of_fields(
+            variables
+                .iter()
+                .map(|variable| (variable.name.as_str(), &variable.value)),
+        )
     }
 
     /// Values under names that stand beside others.
     pub(crate) fn of_fields(fields: impl Iterator<Item = (&'v str, &'v Value)>) -> Self {
-        Self { fields: fields.collect(), ..Self::default() }
+        Self {
+            fields: fields.collect(),
+            ..Self::default()
+        }
     }
 
     /// One record of a struct array. Of an object also what lies in its inner parts, the `page`-th where they are arrays: objects of
     /// MATLAB keep their numbers in `Data_`.
-    pub(crate) fn of_struct(records: &'v StructArray, index: usize, class: Option<&'v str>, page: usize) -> Self {
+    pub(crate) fn of_struct(
+        records: &'v StructArray,
+        index: usize,
+        class: Option<&'v str>,
+        page: usize,
+    ) -> Self {
         let mut fields = fields_of(records, index);
-        let holds_response = fields.iter().any(|(name, _)| folded_name(name) == RESPONSE_PART);
+        let holds_response = fields
+            .iter()
+            .any(|(name, _)| folded_name(name) == RESPONSE_PART);
         if class.is_some() || holds_response {
             add_inner(&mut fields, page, DEEPEST_PART);
         }
-        Self { fields, class, stands_alone: true, ..Self::default() }
+        Self {
+            fields,
+            class,
+            stands_alone: true,
+            ..Self::default()
+        }
     }
 
     /// The same fields, inside another record.
     pub(super) fn inside(self, outer: &Rc<Record<'v>>) -> Self {
-        Self { outer: Some(Rc::clone(outer)), ..self }
+        Self {
+            outer: Some(Rc::clone(outer)),
+            ..self
+        }
     }
 
     /// The same fields, of which some are those of several models.
     pub(super) fn shared(self) -> Self {
-        Self { is_shared: true, ..self }
+        Self {
+            is_shared: true,
+            ..self
+        }
     }
 
     /// Number of models that an object is an array of: each has a record of numbers of its own.
     pub(crate) fn pages(records: &StructArray, index: usize) -> usize {
-        let data = fields_of(records, index).into_iter().find(|(name, _)| folded_name(name) == "data");
+        let data = fields_of(records, index)
+            .into_iter()
+            .find(|(name, _)| folded_name(name) == "data");
         match data {
             Some((_, Value::Object(object))) => object.records.shape.iter().product(),
             _ => 1,
@@ -148,8 +175,14 @@ impl<'v> Record<'v> {
         if self.class.is_some() {
             return Vec::new();
         }
-        let unused = self.fields.iter().filter(|(name, _)| !self.is_used(name)).map(|(name, _)| (*name).to_owned());
-        unused.chain(self.unused_inside.borrow().iter().cloned()).collect()
+        let unused = self
+            .fields
+            .iter()
+            .filter(|(name, _)| !self.is_used(name))
+            .map(|(name, _)| (*name).to_owned());
+        unused
+            .chain(self.unused_inside.borrow().iter().cloned())
+            .collect()
     }
 
     /// The fields that look like delays.
@@ -167,7 +200,10 @@ impl<'v> Record<'v> {
             let mut index = Index::default();
             for &(name, value) in &self.fields {
                 index.exact.entry(name).or_insert((name, value));
-                index.folded.entry(folded_name(name)).or_insert((name, value));
+                index
+                    .folded
+                    .entry(folded_name(name))
+                    .or_insert((name, value));
             }
             index
         })
@@ -181,7 +217,9 @@ impl<'v> Record<'v> {
 
 fn fields_of(records: &StructArray, index: usize) -> Vec<(&str, &Value)> {
     let values = records.fields.iter();
-    values.filter_map(|(name, values)| Some((name.as_str(), values.get(index)?))).collect()
+    values
+        .filter_map(|(name, values)| Some((name.as_str(), values.get(index)?)))
+        .collect()
 }
 
 /// Appends what lies in the inner parts of an object, and in theirs; what stands outside goes first.
@@ -207,8 +245,17 @@ fn add_inner<'v>(fields: &mut Vec<(&'v str, &'v Value)>, page: usize, deeper: us
 
 // Names, units and facts beside the numbers of a model.
 
-const INPUT_NAMES: &[&str] =
-    &["InputName", "inputs", "inname", "input_names", "input_labels", "InputLabels", "u_names", "unames", "input"];
+const INPUT_NAMES: &[&str] = &[
+    "InputName",
+    "inputs",
+    "inname",
+    "input_names",
+    "input_labels",
+    "InputLabels",
+    "u_names",
+    "unames",
+    "input",
+];
 const OUTPUT_NAMES: &[&str] = &[
     "OutputName",
     "outputs",
@@ -222,16 +269,26 @@ const OUTPUT_NAMES: &[&str] = &[
 ];
 const INPUT_UNITS: &[&str] = &["InputUnit", "input_units", "InputUnits", "u_units"];
 const OUTPUT_UNITS: &[&str] = &["OutputUnit", "output_units", "OutputUnits", "y_units"];
-const STATE_NAMES: &[&str] = &["StateName", "stname", "states", "state_names", "state_labels", "x_names", "xnames"];
+const STATE_NAMES: &[&str] = &[
+    "StateName",
+    "stname",
+    "states",
+    "state_names",
+    "state_labels",
+    "x_names",
+    "xnames",
+];
 
 /// Texts in a value: an array of texts, a cell array of them.
 pub(crate) fn texts_of(value: &Value) -> Option<Vec<String>> {
     let trimmed = |text: &String| text.trim().to_owned();
     match value {
         Value::Text(text) => Some(text.texts.iter().map(trimmed).collect()),
-        Value::Cell(cell) => {
-            cell.values.iter().map(|value| Some(texts_of(value)?.into_iter().next().unwrap_or_default())).collect()
-        }
+        Value::Cell(cell) => cell
+            .values
+            .iter()
+            .map(|value| Some(texts_of(value)?.into_iter().next().unwrap_or_default()))
+            .collect(),
         Value::Array(array) if array.is_empty() => Some(Vec::new()),
         Value::Array(_) | Value::Struct(_) | Value::Object(_) | Value::Opaque { .. } => None,
     }
@@ -249,15 +306,26 @@ pub(super) fn outputs_of(record: &Record<'_>, count: usize) -> Result<Vec<Channe
 
 /// Names of the states, where there are as many as states.
 pub(super) fn states_of(record: &Record<'_>, order: usize) -> Vec<String> {
-    let names = record.get(STATE_NAMES).and_then(texts_of).unwrap_or_default();
-    if names.len() == order && names.iter().all(|name| !name.is_empty()) { names } else { Vec::new() }
+    let names = record
+        .get(STATE_NAMES)
+        .and_then(texts_of)
+        .unwrap_or_default();
+    if names.len() == order && names.iter().all(|name| !name.is_empty()) {
+        names
+    } else {
+        Vec::new()
+    }
 }
 
 /// Labels of the `count` channels of a side: those beside the model, else those of the record around it that fit.
 ///
 /// # Errors
 /// A list beside the model that names another number of channels, or one without an order: its channels are never taken by position.
-fn labels(record: &Record<'_>, side: ChannelSide, count: usize) -> Result<Vec<ChannelLabel>, String> {
+fn labels(
+    record: &Record<'_>,
+    side: ChannelSide,
+    count: usize,
+) -> Result<Vec<ChannelLabel>, String> {
     let names = list_of_labels(record, side.of(INPUT_NAMES, OUTPUT_NAMES), side, count)?;
     let units = list_of_labels(record, side.of(INPUT_UNITS, OUTPUT_UNITS), side, count)?;
     let names = names.unwrap_or_else(|| vec![String::new(); count]);
@@ -278,10 +346,17 @@ fn list_of_labels(
     count: usize,
 ) -> Result<Option<Vec<String>>, String> {
     for (level, record) in record.with_outer().enumerate() {
-        let Some((name, value)) = record.find(keys) else { continue };
-        let Some(mut texts) = label_texts(name, value)? else { continue };
+        let Some((name, value)) = record.find(keys) else {
+            continue;
+        };
+        let Some(mut texts) = label_texts(name, value)? else {
+            continue;
+        };
         if count > 1 && texts.len() == 1 && texts[0].split(',').count() == count {
-            texts = texts[0].split(',').map(|text| text.trim().to_owned()).collect();
+            texts = texts[0]
+                .split(',')
+                .map(|text| text.trim().to_owned())
+                .collect();
         }
         if texts.iter().all(String::is_empty) {
             record.use_field(name);
@@ -310,23 +385,46 @@ fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String
     }
     let mut records: Vec<(&StructArray, usize)> = Vec::new();
     match value {
-        Value::Struct(of) => records.extend((0..of.shape.iter().product()).map(|index| (of, index))),
-        Value::Cell(cell) if cell.values.iter().all(|value| matches!(value, Value::Array(_))) => return Ok(None),
+        Value::Struct(of) => {
+            records.extend((0..of.shape.iter().product()).map(|index| (of, index)))
+        }
+        Value::Cell(cell)
+            if cell
+                .values
+                .iter()
+                .all(|value| matches!(value, Value::Array(_))) =>
+        {
+            return Ok(None);
+        }
         Value::Cell(cell) => {
             for value in &cell.values {
                 let Value::Struct(of) = value else {
-                    return Err(format!("{field}: expected the names of channels, found {}", value.words()));
+                    return Err(format!(
+                        "{field}: expected the names of channels, found {}",
+                        value.words()
+                    ));
                 };
                 records.push((of, 0));
             }
         }
-        Value::Array(_) | Value::Text(_) | Value::Object(_) | Value::Opaque { .. } => return Ok(None),
+        Value::Array(_) | Value::Text(_) | Value::Object(_) | Value::Opaque { .. } => {
+            return Ok(None);
+        }
     }
     let label = |(records, index): (&StructArray, usize)| {
         let record = Record::of_struct(records, index, None, 0);
-        let text = |keys: &[&str]| record.get(keys).and_then(texts_of).and_then(|texts| texts.into_iter().next());
+        let text = |keys: &[&str]| {
+            record
+                .get(keys)
+                .and_then(texts_of)
+                .and_then(|texts| texts.into_iter().next())
+        };
         let (name, unit) = (text(LABEL_NAMES)?, text(LABEL_UNITS).unwrap_or_default());
-        Some(if unit.is_empty() || label_of(&name).unit.is_some() { name } else { format!("{name} [{unit}]") })
+        Some(if unit.is_empty() || label_of(&name).unit.is_some() {
+            name
+        } else {
+            format!("{name} [{unit}]")
+        })
     };
     match records.into_iter().map(label).collect::<Option<Vec<_>>>() {
         Some(labels) => Ok(Some(labels)),
@@ -341,15 +439,23 @@ fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String
 pub(crate) fn label_of(text: &str) -> ChannelLabel {
     let text = text.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {
-        if let Some((name, unit)) = text.strip_suffix(close).and_then(|text| text.split_once(open))
+        if let Some((name, unit)) = text
+            .strip_suffix(close)
+            .and_then(|text| text.split_once(open))
             && !name.trim().is_empty()
             && !unit.trim().is_empty()
             && direction_of(unit).is_none()
         {
-            return ChannelLabel { name: Some(name.trim().to_owned()), unit: Some(unit.trim().to_owned()) };
+            return ChannelLabel {
+                name: Some(name.trim().to_owned()),
+                unit: Some(unit.trim().to_owned()),
+            };
         }
     }
-    ChannelLabel { name: Some(text.to_owned()).filter(|name| !name.is_empty()), unit: None }
+    ChannelLabel {
+        name: Some(text.to_owned()).filter(|name| !name.is_empty()),
+        unit: None,
+    }
 }
 
 /// What beside a model says about its flight condition: read from the page of an array of models that it is, 1 of 1 by itself.
@@ -370,7 +476,12 @@ const AIRSPEEDS: &[&str] = &["airspeed_kt", "V_kt", "airspeed_knots", "speed_kt"
 const ALTITUDES: &[&str] = &["altitude_ft", "alt_ft", "h_ft"];
 const MASSES: &[&str] = &["mass_kg", "m_kg"];
 /// Structs that hold such facts.
-const FACTS: [&[&str]; 4] = [&["trim"], &["flight_condition"], &["flight_state"], &["condition"]];
+const FACTS: [&[&str]; 4] = [
+    &["trim"],
+    &["flight_condition"],
+    &["flight_state"],
+    &["condition"],
+];
 /// A struct of the offsets of the trim, by coordinate.
 const OFFSETS: &[&str] = &["perturbation", "trim_offset", "trim_offsets"];
 /// What the name of a single offset begins with: `by_roll_deg`.
@@ -381,7 +492,8 @@ const OFFSET: &str = "by_";
 /// # Errors
 /// A list of another length than there are models, and a number beside the model that is not the one around it.
 pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String> {
-    let condition = fact(record, CONDITIONS, page)?.filter(|id| id.fract() == 0.0 && id.abs() < 1e9);
+    let condition =
+        fact(record, CONDITIONS, page)?.filter(|id| id.fract() == 0.0 && id.abs() < 1e9);
     Ok(Facts {
         condition: condition.map(|id| id as i64),
         airspeed_kt: fact(record, AIRSPEEDS, page)?,
@@ -397,7 +509,10 @@ fn fact(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, 
     let mut known: Option<f64> = None;
     for (level, record) in record.with_outer().enumerate() {
         let page = if level == 0 { page } else { Page::ONLY };
-        for value in [figure(record, names, page)?, figure_inside(record, names)?].into_iter().flatten() {
+        for value in [figure(record, names, page)?, figure_inside(record, names)?]
+            .into_iter()
+            .flatten()
+        {
             match known {
                 Some(known) if known != value => {
                     return Err(format!(
@@ -416,15 +531,23 @@ fn fact(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, 
 
 /// The number of a field, or that of the page in a list.
 fn figure(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
-    let Some((name, value)) = record.find(names) else { return Ok(None) };
-    let Some(array) = array_of(value) else { return Ok(None) };
+    let Some((name, value)) = record.find(names) else {
+        return Ok(None);
+    };
+    let Some(array) = array_of(value) else {
+        return Ok(None);
+    };
     let value = match array.re.as_slice() {
         [value] => *value,
         values if page.count > 1 && values.len() == page.count => values[page.index],
         [] => return Ok(None),
         _ if page.count == 1 => return Ok(None),
         values => {
-            return Err(format!("{name}: {} numbers for {} models; write one for each", values.len(), page.count));
+            return Err(format!(
+                "{name}: {} numbers for {} models; write one for each",
+                values.len(),
+                page.count
+            ));
         }
     };
     if !value.is_finite() {
@@ -437,7 +560,9 @@ fn figure(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>
 /// The number of a field of a struct that describes the flight condition: `trim.airspeed_kt`, `condition.id`.
 fn figure_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, String> {
     for keys in FACTS {
-        let Some((key, Value::Struct(records))) = record.find(keys) else { continue };
+        let Some((key, Value::Struct(records))) = record.find(keys) else {
+            continue;
+        };
         let inner = Record::of_struct(records, 0, None, 0);
         let value = match figure(&inner, names, Page::ONLY)? {
             None if names == CONDITIONS && keys != ["trim"] => figure(&inner, &["id"], Page::ONLY)?,
@@ -448,8 +573,12 @@ fn figure_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, Str
             record.use_field(key);
         }
         if value.is_some() && is_new {
-            let is_fact =
-                |name: &str| [AIRSPEEDS, ALTITUDES, MASSES, CONDITIONS].concat().contains(&name) || name == "id";
+            let is_fact = |name: &str| {
+                [AIRSPEEDS, ALTITUDES, MASSES, CONDITIONS]
+                    .concat()
+                    .contains(&name)
+                    || name == "id"
+            };
             let others = inner.fields().filter(|(name, _)| !is_fact(name));
             record.note_unused_inside(others.map(|(name, _)| format!("{key}.{name}")));
         }
@@ -480,7 +609,9 @@ fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
 pub(super) fn origin_of(record: &Record<'_>) -> Origin {
     let text = |names: &[&str]| -> Option<String> {
         for record in record.with_outer() {
-            let Some((name, value)) = record.find(names) else { continue };
+            let Some((name, value)) = record.find(names) else {
+                continue;
+            };
             if let Some([text]) = texts_of(value).as_deref() {
                 record.use_field(name);
                 return Some(text.clone());
@@ -495,8 +626,14 @@ pub(super) fn origin_of(record: &Record<'_>) -> Origin {
     match role {
         Some(RowRole::Nominal) => Origin::Nominal { perturbation },
         Some(RowRole::Perturbed) => Origin::Perturbed { perturbation },
-        Some(RowRole::Identified) => Origin::Identified { method: text(&["method"]), order: None },
-        None if is_identified => Origin::Identified { method: text(&["method"]), order: None },
+        Some(RowRole::Identified) => Origin::Identified {
+            method: text(&["method"]),
+            order: None,
+        },
+        None if is_identified => Origin::Identified {
+            method: text(&["method"]),
+            order: None,
+        },
         None => Origin::Perturbed { perturbation },
     }
 }
@@ -506,12 +643,15 @@ fn offsets_of(record: &Record<'_>) -> BTreeMap<String, f64> {
     let mut offsets = BTreeMap::new();
     for record in record.with_outer() {
         for (name, value) in record.fields() {
-            if let (Some(coordinate), Some(offset)) = (name.strip_prefix(OFFSET), scalar_of(value)) {
+            if let (Some(coordinate), Some(offset)) = (name.strip_prefix(OFFSET), scalar_of(value))
+            {
                 record.use_field(name);
                 offsets.entry(coordinate.to_owned()).or_insert(offset);
             }
         }
-        let Some((key, Value::Struct(records))) = record.find(OFFSETS) else { continue };
+        let Some((key, Value::Struct(records))) = record.find(OFFSETS) else {
+            continue;
+        };
         let inner = Record::of_struct(records, 0, None, 0);
         record.use_field(key);
         for (coordinate, value) in inner.fields() {
@@ -534,7 +674,9 @@ pub(super) fn array_of(value: &Value) -> Option<&Array> {
         Value::Array(array) => Some(array),
         Value::Object(object) => {
             // The polynomials of GNU Octave's transfer functions are objects too.
-            let values = ["Value", "Value_", "poly"].iter().find_map(|name| object.records.field(name))?;
+            let values = ["Value", "Value_", "poly"]
+                .iter()
+                .find_map(|name| object.records.field(name))?;
             array_of(values.first()?)
         }
         Value::Struct(records) if records.shape.iter().product::<usize>() == 1 => {
@@ -546,10 +688,17 @@ pub(super) fn array_of(value: &Value) -> Option<&Array> {
 
 /// A real matrix of finite numbers.
 pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, String> {
-    let array =
-        array_of(value).ok_or_else(|| format!("{name}: expected a matrix of numbers, found {}", value.words()))?;
+    let array = array_of(value).ok_or_else(|| {
+        format!(
+            "{name}: expected a matrix of numbers, found {}",
+            value.words()
+        )
+    })?;
     if array.shape.iter().skip(2).product::<usize>() > 1 {
-        return Err(format!("{name}: expected a matrix, found {}", value.words()));
+        return Err(format!(
+            "{name}: expected a matrix, found {}",
+            value.words()
+        ));
     }
     page_of(name, array, 0, false)
 }
@@ -564,19 +713,45 @@ pub(super) fn pages_of(array: &Array, pages_first: bool) -> (usize, [usize; 2]) 
 }
 
 /// One matrix of an array of matrices.
-pub(super) fn page_of(name: &str, array: &Array, page: usize, pages_first: bool) -> Result<DMatrix<f64>, String> {
+pub(super) fn page_of(
+    name: &str,
+    array: &Array,
+    page: usize,
+    pages_first: bool,
+) -> Result<DMatrix<f64>, String> {
     let (pages, [rows, columns]) = pages_of(array, pages_first);
-    if array.im.as_ref().is_some_and(|im| im.iter().any(|part| *part != 0.0)) {
+    if array
+        .im
+        .as_ref()
+        .is_some_and(|im| im.iter().any(|part| *part != 0.0))
+    {
         return Err(format!("{name}: expected real numbers, found complex ones"));
     }
-    let (start, step) = if array.shape.len() == 3 && pages_first { (page, pages) } else { (page * rows * columns, 1) };
-    let values: Vec<f64> = array.re.iter().skip(start).step_by(step.max(1)).take(rows * columns).copied().collect();
+    let (start, step) = if array.shape.len() == 3 && pages_first {
+        (page, pages)
+    } else {
+        (page * rows * columns, 1)
+    };
+    let values: Vec<f64> = array
+        .re
+        .iter()
+        .skip(start)
+        .step_by(step.max(1))
+        .take(rows * columns)
+        .copied()
+        .collect();
     // There are sides enough and no numbers where one behind them is 0.
     if values.len() != rows * columns {
-        return Err(format!("{name}: expected a matrix, found an array without numbers"));
+        return Err(format!(
+            "{name}: expected a matrix, found an array without numbers"
+        ));
     }
     if let Some(at) = values.iter().position(|value| !value.is_finite()) {
-        let place = if rows == 0 { (0, 0) } else { (at % rows + 1, at / rows + 1) };
+        let place = if rows == 0 {
+            (0, 0)
+        } else {
+            (at % rows + 1, at / rows + 1)
+        };
         return Err(format!(
             "{name}, row {}, column {}: expected a finite number, found {}",
             place.0, place.1, values[at]
@@ -596,9 +771,14 @@ pub(super) fn scalar_of(value: &Value) -> Option<f64> {
 
 /// Numbers in a row or a column.
 pub(super) fn list_of(name: &str, value: &Value) -> Result<Vec<f64>, String> {
-    let array = array_of(value).ok_or_else(|| format!("{name}: expected numbers, found {}", value.words()))?;
+    let array = array_of(value)
+        .ok_or_else(|| format!("{name}: expected numbers, found {}", value.words()))?;
     match array.re.iter().position(|value| !value.is_finite()) {
-        Some(at) => Err(format!("{name}, entry {}: expected a finite number, found {}", at + 1, number(array.re[at]))),
+        Some(at) => Err(format!(
+            "{name}, entry {}: expected a finite number, found {}",
+            at + 1,
+            number(array.re[at])
+        )),
         None => Ok(array.re.clone()),
     }
 }
@@ -606,9 +786,15 @@ pub(super) fn list_of(name: &str, value: &Value) -> Result<Vec<f64>, String> {
 /// Complex numbers in a row or a column.
 pub(super) fn complex_list_of(name: &str, value: &Value) -> Result<Vec<Complex<f64>>, String> {
     let re = list_of(name, value)?;
-    let im = array_of(value).and_then(|array| array.im.clone()).unwrap_or_else(|| vec![0.0; re.len()]);
+    let im = array_of(value)
+        .and_then(|array| array.im.clone())
+        .unwrap_or_else(|| vec![0.0; re.len()]);
     if im.iter().any(|part| !part.is_finite()) {
         return Err(format!("{name}: expected finite numbers"));
     }
-    Ok(re.into_iter().zip(im).map(|(re, im)| Complex::new(re, im)).collect())
+    Ok(re
+        .into_iter()
+        .zip(im)
+        .map(|(re, im)| Complex::new(re, im))
+        .collect())
 }

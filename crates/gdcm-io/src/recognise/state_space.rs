@@ -9,33 +9,52 @@ use nalgebra::{Complex, DMatrix};
 use crate::models_file::bare_draft;
 use crate::recognise::delays::timing_of;
 use crate::recognise::record::{
-    Page, Record, array_of, complex_list_of, facts_of, inputs_of, list_of, matrix_of, origin_of, outputs_of, page_of,
-    pages_of, states_of,
+    Page, Record, array_of, complex_list_of, facts_of, inputs_of, list_of, matrix_of, origin_of,
+    outputs_of, page_of, pages_of, states_of,
 };
 use crate::variables::{CellArray, Value};
 
 /// Whether fields are those of a state-space model: the matrices A and B, by their very names, large or small.
 pub(super) fn is_state_space(record: &Record<'_>) -> bool {
     let has = |large: &str, small: &str| {
-        let value = record.peek(large).or_else(|| record.peek(small).filter(|_| record.stands_alone));
+        let value = record
+            .peek(large)
+            .or_else(|| record.peek(small).filter(|_| record.stands_alone));
         value.and_then(array_of).is_some()
     };
     has("A", "a") && has("B", "b") && has("C", "c")
 }
 
 /// The model of the matrices in `record`, or each of an array of them: `A(:,:,k)` of MATLAB, `A[k,:,:]` of NumPy.
-pub(super) fn state_spaces(record: &Record<'_>, variable: &str, pages_first: bool) -> Vec<Result<FoundModel, String>> {
-    let get = |large: &str, small: &str| record.exact(large).or_else(|| record.exact(small)).and_then(array_of);
-    let (Some(a), Some(b), Some(c)) = (get("A", "a"), get("B", "b"), get("C", "c")) else { return Vec::new() };
+pub(super) fn state_spaces(
+    record: &Record<'_>,
+    variable: &str,
+    pages_first: bool,
+) -> Vec<Result<FoundModel, String>> {
+    let get = |large: &str, small: &str| {
+        record
+            .exact(large)
+            .or_else(|| record.exact(small))
+            .and_then(array_of)
+    };
+    let (Some(a), Some(b), Some(c)) = (get("A", "a"), get("B", "b"), get("C", "c")) else {
+        return Vec::new();
+    };
     if [a, b, c].iter().all(|array| array.shape.len() < 3) {
-        return vec![one(record, variable, Page::ONLY, &|name, value| matrix_of(name, value))];
+        return vec![one(record, variable, Page::ONLY, &|name, value| {
+            matrix_of(name, value)
+        })];
     }
     // Which index counts the models shows where the others fit one another.
     let fits = |first: bool| {
         let ((pages, of_a), (of_pages, of_b), (pages_of_c, of_c)) =
             (pages_of(a, first), pages_of(b, first), pages_of(c, first));
         let is_as_many = |count: usize| count == pages || count == 1;
-        of_a[0] == of_a[1] && of_b[0] == of_a[0] && of_c[1] == of_a[0] && is_as_many(of_pages) && is_as_many(pages_of_c)
+        of_a[0] == of_a[1]
+            && of_b[0] == of_a[0]
+            && of_c[1] == of_a[0]
+            && is_as_many(of_pages)
+            && is_as_many(pages_of_c)
     };
     let first = match (fits(false), fits(true)) {
         (true, true) => pages_first,
@@ -43,22 +62,43 @@ pub(super) fn state_spaces(record: &Record<'_>, variable: &str, pages_first: boo
     };
     let count = pages_of(a, first).0;
     let page = |page: usize| {
-        let place = if first { format!("[{page},:,:]") } else { format!("(:,:,{})", page + 1) };
-        one(record, &format!("{variable}{place}"), Page { index: page, count }, &|name, value| match array_of(value) {
-            // A matrix that all of them share.
-            Some(array) if array.shape.len() < 3 => page_of(name, array, 0, false),
-            Some(array) if page < pages_of(array, first).0 => page_of(name, array, page, first),
-            _ => Err(format!("{name}: expected {count} matrices as in A, found {}", value.words())),
-        })
+        let place = if first {
+            format!("[{page},:,:]")
+        } else {
+            format!("(:,:,{})", page + 1)
+        };
+        one(
+            record,
+            &format!("{variable}{place}"),
+            Page { index: page, count },
+            &|name, value| match array_of(value) {
+                // A matrix that all of them share.
+                Some(array) if array.shape.len() < 3 => page_of(name, array, 0, false),
+                Some(array) if page < pages_of(array, first).0 => page_of(name, array, page, first),
+                _ => Err(format!(
+                    "{name}: expected {count} matrices as in A, found {}",
+                    value.words()
+                )),
+            },
+        )
     };
     (0..count).map(page).collect()
 }
 
 type MatrixOf<'f> = &'f dyn Fn(&str, &Value) -> Result<DMatrix<f64>, String>;
 
-fn one(record: &Record<'_>, variable: &str, page: Page, matrix: MatrixOf<'_>) -> Result<FoundModel, String> {
+fn one(
+    record: &Record<'_>,
+    variable: &str,
+    page: Page,
+    matrix: MatrixOf<'_>,
+) -> Result<FoundModel, String> {
     let get = |large: &str, small: &str| record.exact(large).or_else(|| record.exact(small));
-    let read = |name: &str, small: &str| get(name, small).map(|value| matrix(name, value)).transpose();
+    let read = |name: &str, small: &str| {
+        get(name, small)
+            .map(|value| matrix(name, value))
+            .transpose()
+    };
     let missing = |name: &str| format!("matrix {name} is missing");
     let a = read("A", "a")?.ok_or_else(|| missing("A"))?;
     let b = read("B", "b")?.ok_or_else(|| missing("B"))?;
@@ -78,7 +118,11 @@ fn one(record: &Record<'_>, variable: &str, page: Page, matrix: MatrixOf<'_>) ->
         Some(e) => solved(e, a, b)?,
         None => (a, b),
     };
-    let d = if d.len() == 1 && d[0] == 0.0 { DMatrix::zeros(c.nrows(), b.ncols()) } else { d };
+    let d = if d.len() == 1 && d[0] == 0.0 {
+        DMatrix::zeros(c.nrows(), b.ncols())
+    } else {
+        d
+    };
     check_shapes(&a, &b, &c, &d)?;
     let (timing, of_timing) = timing_of(record, c.nrows(), b.ncols())?;
     let mut model = found(record, variable, page, [a, b, c, d], timing)?;
@@ -95,14 +139,20 @@ pub(super) fn found(
     [a, b, c, d]: [DMatrix<f64>; 4],
     timing: Timing,
 ) -> Result<FoundModel, String> {
-    let (inputs, outputs) = (inputs_of(record, b.ncols())?, outputs_of(record, c.nrows())?);
+    let (inputs, outputs) = (
+        inputs_of(record, b.ncols())?,
+        outputs_of(record, c.nrows())?,
+    );
     let states = states_of(record, a.nrows());
     let source = Some(variable.to_owned()).filter(|variable| !variable.is_empty());
     Ok(FoundModel {
         draft: ModelDraft {
             matrices: [a, b, c, d].map(Some),
             timing,
-            source: Some(Provenance { variable: source, ..Provenance::default() }),
+            source: Some(Provenance {
+                variable: source,
+                ..Provenance::default()
+            }),
             states,
             ..bare_draft(variable.to_owned(), origin_of(record))
         },
@@ -116,21 +166,41 @@ pub(super) fn found(
 /// Refuses more of something than a model of a dataset can have of states, before there is a matrix of so many rows and columns.
 fn at_most(count: usize, of: &str, place: &str) -> Result<(), String> {
     match count > MOST_STATES {
-        true => Err(format!("{place}: {count} {of}; at most {MOST_STATES} are read")),
+        true => Err(format!(
+            "{place}: {count} {of}; at most {MOST_STATES} are read"
+        )),
         false => Ok(()),
     }
 }
 
-fn check_shapes(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>, d: &DMatrix<f64>) -> Result<(), String> {
+fn check_shapes(
+    a: &DMatrix<f64>,
+    b: &DMatrix<f64>,
+    c: &DMatrix<f64>,
+    d: &DMatrix<f64>,
+) -> Result<(), String> {
     let n = a.nrows();
     if a.ncols() != n {
-        return Err(format!("A: expected a square matrix, found {} x {}", n, a.ncols()));
+        return Err(format!(
+            "A: expected a square matrix, found {} x {}",
+            n,
+            a.ncols()
+        ));
     }
-    let expected = [("B", b, (n, b.ncols())), ("C", c, (c.nrows(), n)), ("D", d, (c.nrows(), b.ncols()))];
-    match expected.iter().find(|(_, matrix, shape)| matrix.shape() != *shape) {
-        Some((name, matrix, (rows, columns))) => {
-            Err(format!("{name}: expected {rows} x {columns}, found {} x {}", matrix.nrows(), matrix.ncols()))
-        }
+    let expected = [
+        ("B", b, (n, b.ncols())),
+        ("C", c, (c.nrows(), n)),
+        ("D", d, (c.nrows(), b.ncols())),
+    ];
+    match expected
+        .iter()
+        .find(|(_, matrix, shape)| matrix.shape() != *shape)
+    {
+        Some((name, matrix, (rows, columns))) => Err(format!(
+            "{name}: expected {rows} x {columns}, found {} x {}",
+            matrix.nrows(),
+            matrix.ncols()
+        )),
         None => Ok(()),
     }
 }
@@ -148,7 +218,11 @@ pub(super) fn solved(
 ) -> Result<(DMatrix<f64>, DMatrix<f64>), String> {
     let n = a.nrows();
     if e.shape() != (n, n) {
-        return Err(format!("E: expected {n} x {n} as A, found {} x {}", e.nrows(), e.ncols()));
+        return Err(format!(
+            "E: expected {n} x {n} as A, found {} x {}",
+            e.nrows(),
+            e.ncols()
+        ));
     }
     if e == DMatrix::identity(n, n) {
         return Ok((a, b));
@@ -156,7 +230,11 @@ pub(super) fn solved(
     let singular = e.singular_values();
     let (most, least) = (singular.max(), singular.min());
     if least <= 0.0 || most / least > WORST_CONDITION {
-        let condition = if least > 0.0 { number(most / least) } else { "infinite".to_owned() };
+        let condition = if least > 0.0 {
+            number(most / least)
+        } else {
+            "infinite".to_owned()
+        };
         return Err(format!(
             "E is singular (condition {condition}): the model has no state-space form; export it without E"
         ));
@@ -164,7 +242,9 @@ pub(super) fn solved(
     let factored = e.lu();
     match (factored.solve(&a), factored.solve(&b)) {
         (Some(a), Some(b)) => Ok((a, b)),
-        _ => Err("E is singular: the model has no state-space form; export it without E".to_owned()),
+        _ => {
+            Err("E is singular: the model has no state-space form; export it without E".to_owned())
+        }
     }
 }
 
@@ -176,7 +256,10 @@ pub(super) fn is_transfer_function(record: &Record<'_>) -> bool {
 }
 
 fn polynomials<'v>(record: &Record<'v>) -> Option<(&'v Value, &'v Value)> {
-    let (numerator, denominator) = (record.find(&["num", "Numerator"])?, record.find(&["den", "Denominator"])?);
+    let (numerator, denominator) = (
+        record.find(&["num", "Numerator"])?,
+        record.find(&["den", "Denominator"])?,
+    );
     Some((record.used(numerator), record.used(denominator)))
 }
 
@@ -197,19 +280,32 @@ impl Fraction {
     /// The fraction in lowest form of leading coefficients; refused where it is not proper.
     fn new(numerator: &[f64], denominator: &[f64], place: &str) -> Result<Self, String> {
         let strip = |polynomial: &[f64]| -> Vec<f64> {
-            let first = polynomial.iter().position(|coefficient| *coefficient != 0.0).unwrap_or(polynomial.len());
+            let first = polynomial
+                .iter()
+                .position(|coefficient| *coefficient != 0.0)
+                .unwrap_or(polynomial.len());
             polynomial[first..].to_vec()
         };
         at_most(denominator.len().saturating_sub(1), "states", place)?;
         let (numerator, denominator) = (strip(numerator), strip(denominator));
-        let Some(&leading) = denominator.first() else { return Err(format!("{place}: the denominator is zero")) };
+        let Some(&leading) = denominator.first() else {
+            return Err(format!("{place}: the denominator is zero"));
+        };
         if numerator.len() > denominator.len() {
             return Err(format!(
                 "{place}: the numerator is of higher degree than the denominator; such a response has no state-space form"
             ));
         }
-        let scaled = |polynomial: Vec<f64>| polynomial.into_iter().map(|coefficient| coefficient / leading).collect();
-        Ok(Self { numerator: scaled(numerator), denominator: scaled(denominator) })
+        let scaled = |polynomial: Vec<f64>| {
+            polynomial
+                .into_iter()
+                .map(|coefficient| coefficient / leading)
+                .collect()
+        };
+        Ok(Self {
+            numerator: scaled(numerator),
+            denominator: scaled(denominator),
+        })
     }
 
     fn order(&self) -> usize {
@@ -246,7 +342,8 @@ pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<F
         d[(output, input)] = numerator[0];
         for state in 0..n {
             a[(start, start + state)] = -fraction.denominator[state + 1];
-            c[(output, start + state)] = numerator[state + 1] - numerator[0] * fraction.denominator[state + 1];
+            c[(output, start + state)] =
+                numerator[state + 1] - numerator[0] * fraction.denominator[state + 1];
         }
         for state in 1..n {
             a[(start + state, start + state - 1)] = 1.0;
@@ -259,7 +356,9 @@ pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<F
     let (timing, of_timing) = timing_of(record, outputs, inputs)?;
     let mut model = found(record, variable, Page::ONLY, [a, b, c, d], timing)?;
     model.notes.extend(of_timing);
-    model.notes.push("transfer functions, each realised by itself".to_owned());
+    model
+        .notes
+        .push("transfer functions, each realised by itself".to_owned());
     Ok(model)
 }
 
@@ -271,27 +370,50 @@ fn fractions_of(record: &Record<'_>) -> Result<(Vec<Fraction>, usize, usize), St
         let fraction = |(index, numerator): (usize, &&Value)| {
             let place = format!("response {}", index + 1);
             // One denominator may stand for all.
-            let denominator =
-                denominators.get(index).or(denominators.first()).ok_or_else(|| format!("{place}: no denominator"))?;
-            Fraction::new(&list_of("numerator", numerator)?, &list_of("denominator", denominator)?, &place)
+            let denominator = denominators
+                .get(index)
+                .or(denominators.first())
+                .ok_or_else(|| format!("{place}: no denominator"))?;
+            Fraction::new(
+                &list_of("numerator", numerator)?,
+                &list_of("denominator", denominator)?,
+                &place,
+            )
         };
-        let fractions = numerators.iter().enumerate().map(fraction).collect::<Result<_, _>>()?;
+        let fractions = numerators
+            .iter()
+            .enumerate()
+            .map(fraction)
+            .collect::<Result<_, _>>()?;
         return Ok((fractions, outputs, inputs));
     }
     let (zeros, poles, gains) = factors(record).ok_or_else(|| "no transfer function".to_owned())?;
     let (zeros, outputs, inputs) = cells(zeros);
     let (poles, ..) = cells(poles);
-    let gains = array_of(gains).map(|array| array.re.clone()).unwrap_or_default();
+    let gains = array_of(gains)
+        .map(|array| array.re.clone())
+        .unwrap_or_default();
     let fraction = |(index, zeros): (usize, &&Value)| {
         let place = format!("response {}", index + 1);
-        let poles = poles.get(index).ok_or_else(|| format!("{place}: no poles"))?;
-        let gain = gains.get(index).ok_or_else(|| format!("{place}: no gain"))?;
-        let (zeros, poles) = (complex_list_of("zeros", zeros)?, complex_list_of("poles", poles)?);
+        let poles = poles
+            .get(index)
+            .ok_or_else(|| format!("{place}: no poles"))?;
+        let gain = gains
+            .get(index)
+            .ok_or_else(|| format!("{place}: no gain"))?;
+        let (zeros, poles) = (
+            complex_list_of("zeros", zeros)?,
+            complex_list_of("poles", poles)?,
+        );
         at_most(zeros.len().max(poles.len()), "states", &place)?;
         let numerator: Vec<f64> = polynomial(&zeros).iter().map(|term| term * gain).collect();
         Fraction::new(&numerator, &polynomial(&poles), &place)
     };
-    let fractions = zeros.iter().enumerate().map(fraction).collect::<Result<_, _>>()?;
+    let fractions = zeros
+        .iter()
+        .enumerate()
+        .map(fraction)
+        .collect::<Result<_, _>>()?;
     Ok((fractions, outputs, inputs))
 }
 
@@ -300,7 +422,11 @@ fn cells(value: &Value) -> (Vec<&Value>, usize, usize) {
     match value {
         Value::Cell(CellArray { shape, values }) => {
             let rows = shape.first().copied().unwrap_or(0);
-            (values.iter().collect(), rows, shape.get(1).copied().unwrap_or(0))
+            (
+                values.iter().collect(),
+                rows,
+                shape.get(1).copied().unwrap_or(0),
+            )
         }
         other => (vec![other], 1, 1),
     }
@@ -316,7 +442,10 @@ fn polynomial(roots: &[Complex<f64>]) -> Vec<f64> {
             coefficients[index] -= root * before;
         }
     }
-    coefficients.iter().map(|coefficient| coefficient.re).collect()
+    coefficients
+        .iter()
+        .map(|coefficient| coefficient.re)
+        .collect()
 }
 
 #[cfg(test)]
@@ -327,10 +456,25 @@ mod descriptor_tests {
     fn a_regular_e_is_solved_and_a_singular_one_refused() {
         let matrix = |values: [f64; 4]| DMatrix::from_row_slice(2, 2, &values);
         let b = DMatrix::from_row_slice(2, 1, &[2.0, 4.0]);
-        let (a, b) = solved(matrix([2.0, 0.0, 0.0, 4.0]), matrix([2.0, 4.0, 4.0, 8.0]), b).unwrap();
-        assert_eq!((a, b), (matrix([1.0, 2.0, 1.0, 2.0]), DMatrix::from_row_slice(2, 1, &[1.0, 1.0])));
+        let (a, b) = solved(
+            matrix([2.0, 0.0, 0.0, 4.0]),
+            matrix([2.0, 4.0, 4.0, 8.0]),
+            b,
+        )
+        .unwrap();
+        assert_eq!(
+            (a, b),
+            (
+                matrix([1.0, 2.0, 1.0, 2.0]),
+                DMatrix::from_row_slice(2, 1, &[1.0, 1.0])
+            )
+        );
         let b = DMatrix::from_row_slice(2, 1, &[2.0, 4.0]);
-        assert!(solved(matrix([1.0, 1.0, 1.0, 1.0]), matrix([1.0; 4]), b).unwrap_err().contains("singular"));
+        assert!(
+            solved(matrix([1.0, 1.0, 1.0, 1.0]), matrix([1.0; 4]), b)
+                .unwrap_err()
+                .contains("singular")
+        );
     }
 }
 
@@ -341,12 +485,18 @@ mod transfer_function_tests {
     use super::*;
 
     fn row(name: &str, values: &[f64]) -> Variable {
-        Variable { name: name.into(), value: Value::Array(Array::matrix(1, values.len(), values.to_vec())) }
+        Variable {
+            name: name.into(),
+            value: Value::Array(Array::matrix(1, values.len(), values.to_vec())),
+        }
     }
 
     fn response(model: &FoundModel, s: Complex<f64>) -> Complex<f64> {
-        let [a, b, c, d] =
-            model.draft.matrices.clone().map(|matrix| matrix.unwrap().map(|entry| Complex::new(entry, 0.0)));
+        let [a, b, c, d] = model
+            .draft
+            .matrices
+            .clone()
+            .map(|matrix| matrix.unwrap().map(|entry| Complex::new(entry, 0.0)));
         let n = a.nrows();
         let inner = (DMatrix::identity(n, n) * s - a).lu().solve(&b).unwrap();
         (c * inner + d)[(0, 0)]
@@ -365,8 +515,14 @@ mod transfer_function_tests {
     #[test]
     fn zeros_poles_and_a_gain_are_the_same_as_their_polynomials() {
         let pair = |name: &str, re: f64, im: f64| {
-            let array = Array { im: Some(vec![im, -im]), ..Array::matrix(2, 1, vec![re, re]) };
-            Variable { name: name.into(), value: Value::Array(array) }
+            let array = Array {
+                im: Some(vec![im, -im]),
+                ..Array::matrix(2, 1, vec![re, re])
+            };
+            Variable {
+                name: name.into(),
+                value: Value::Array(array),
+            }
         };
         let variables = [row("z", &[-3.0]), pair("p", -1.0, 2.0), row("k", &[5.0])];
         let model = transfer_function(&Record::of_variables(&variables), "").unwrap();
@@ -390,9 +546,14 @@ mod transfer_function_tests {
             let error = transfer_function(&Record::of_variables(variables), "").unwrap_err();
             assert!(error.contains("states; at most 1000 are read"), "{error}");
         }
-        let column = Variable { name: "C".into(), value: Value::Array(Array::matrix(30_000, 1, long.clone())) };
+        let column = Variable {
+            name: "C".into(),
+            value: Value::Array(Array::matrix(30_000, 1, long.clone())),
+        };
         let variables = [row("A", &[-1.0]), row("B", &long), column];
-        let error = state_spaces(&Record::of_variables(&variables), "", false).remove(0).unwrap_err();
+        let error = state_spaces(&Record::of_variables(&variables), "", false)
+            .remove(0)
+            .unwrap_err();
         assert!(error.contains("B: 30000 inputs"), "{error}");
     }
 }

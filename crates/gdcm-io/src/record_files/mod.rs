@@ -15,13 +15,19 @@ use std::sync::atomic::AtomicBool;
 
 use gdcm_model::assembly::standard_patterns;
 use gdcm_model::dataset::ConditionRecord;
-use gdcm_sysid::records::{ModeSpan, RecordColumn, RecordGuess, RecordSource, RecordTable, Separation};
+use gdcm_sysid::records::{
+    ModeSpan, RecordColumn, RecordGuess, RecordSource, RecordTable, Separation,
+};
 
 use crate::file_error::FileError;
 use crate::formats::text::{NumberedText, TextTable, numbered_words, read_table, sections};
-use crate::formats::{Contents, FolderProgress, ImportedFile, MOST_MEMORY, import, import_bytes, import_file, of_file};
+use crate::formats::{
+    Contents, FolderProgress, ImportedFile, MOST_MEMORY, import, import_bytes, import_file, of_file,
+};
 use crate::recognise::{Found, search};
-use crate::record_files::record_columns::{columns_of, experiments, is_iddata, simulink_columns, timetable_columns};
+use crate::record_files::record_columns::{
+    columns_of, experiments, is_iddata, simulink_columns, timetable_columns,
+};
 use crate::study_file::relative_folder;
 use crate::variables::{ReadingBudget, Variable, VariableFault};
 
@@ -44,22 +50,42 @@ pub struct FoundRecords {
 
 /// The records of files and folders, folders with all that is in them. A file that cannot be read is a fault, and the rest is read;
 /// where only one was asked for, it is an error.
-pub fn read_records(paths: &[PathBuf], progress: &dyn FolderProgress) -> Result<FoundRecords, FileError> {
+pub fn read_records(
+    paths: &[PathBuf],
+    progress: &dyn FolderProgress,
+) -> Result<FoundRecords, FileError> {
     let (mut found, mut whole) = (FoundRecords::default(), Vec::new());
     let (files, faults) = import(paths, progress, |file, budget| {
-        let (path, records, faults) = (file.path.to_owned(), found.tables.len(), found.faults.len());
+        let (path, records, faults) =
+            (file.path.to_owned(), found.tables.len(), found.faults.len());
         found.take(file, budget)?;
-        whole.extend((found.tables.len() > records && found.faults.len() == faults).then_some(path));
+        whole
+            .extend((found.tables.len() > records && found.faults.len() == faults).then_some(path));
         Ok(())
     })?;
     found.faults.extend(faults);
-    let unread = paths.iter().filter(|path| !path.is_dir() && !whole.contains(path)).cloned().collect();
-    Ok(FoundRecords { files, unread, ..found })
+    let unread = paths
+        .iter()
+        .filter(|path| !path.is_dir() && !whole.contains(path))
+        .cloned()
+        .collect();
+    Ok(FoundRecords {
+        files,
+        unread,
+        ..found
+    })
 }
 
 /// The records in the bytes of a file of this name, within a budget.
-pub fn records_of_bytes(bytes: &[u8], name: &str, budget: &ReadingBudget<'_>) -> Result<FoundRecords, FileError> {
-    let mut found = FoundRecords { files: 1, ..FoundRecords::default() };
+pub fn records_of_bytes(
+    bytes: &[u8],
+    name: &str,
+    budget: &ReadingBudget<'_>,
+) -> Result<FoundRecords, FileError> {
+    let mut found = FoundRecords {
+        files: 1,
+        ..FoundRecords::default()
+    };
     found.take(import_bytes(bytes, Path::new(name), name, budget)?, budget)?;
     Ok(found)
 }
@@ -74,19 +100,35 @@ pub fn load_records(
     variables: &[Option<&str>],
     budget: &ReadingBudget<'_>,
 ) -> Result<Vec<Result<RecordTable, FileError>>, FileError> {
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let name = path
+        .file_name()
+        .map(|name| name.to_string_lossy().into_owned())
+        .unwrap_or_default();
     let mut found = FoundRecords::default();
     if path.is_dir() {
-        import(&[path.to_owned()], &Stopped(budget.stop()), |file, budget| found.take(file, budget))?;
+        import(
+            &[path.to_owned()],
+            &Stopped(budget.stop()),
+            |file, budget| found.take(file, budget),
+        )?;
     } else {
         found.take(import_file(path, &name, budget)?, budget)?;
     }
     let held = found.tables.len();
     let record = |variable: &Option<&str>| {
-        let record = found.tables.iter().find(|table| table.source.variable.as_deref() == *variable).cloned();
-        let together = || variable.and_then(|variable| RecordTable::of_topics_called(&found.tables, variable));
+        let record = found
+            .tables
+            .iter()
+            .find(|table| table.source.variable.as_deref() == *variable)
+            .cloned();
+        let together =
+            || variable.and_then(|variable| RecordTable::of_topics_called(&found.tables, variable));
         let record = record.or_else(together);
-        record.ok_or_else(|| FileError::NoRecord { path: path.to_owned(), record: variable.map(str::to_owned), held })
+        record.ok_or_else(|| FileError::NoRecord {
+            path: path.to_owned(),
+            record: variable.map(str::to_owned),
+            held,
+        })
     };
     Ok(variables.iter().map(record).collect())
 }
@@ -103,49 +145,98 @@ impl FolderProgress for Stopped<'_> {
 }
 
 impl FoundRecords {
-    fn take(&mut self, file: ImportedFile<'_>, budget: &ReadingBudget<'_>) -> Result<(), FileError> {
-        let ImportedFile { path, name, sha256, contents } = file;
+    fn take(
+        &mut self,
+        file: ImportedFile<'_>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<(), FileError> {
+        let ImportedFile {
+            path,
+            name,
+            sha256,
+            contents,
+        } = file;
         let wrong = |fault| FileError::variables(path, fault);
         match contents {
-            Contents::Variables { variables, notes, .. } => {
-                self.add_found(search_records(&variables, budget).map_err(wrong)?, &notes, (name, &sha256));
+            Contents::Variables {
+                variables, notes, ..
+            } => {
+                self.add_found(
+                    search_records(&variables, budget).map_err(wrong)?,
+                    &notes,
+                    (name, &sha256),
+                );
             }
             Contents::Text(text) => {
                 for columns in of_text(&text, budget).map_err(wrong)? {
                     self.add(columns.of_file(name, &sha256));
                 }
             }
-            Contents::Logs(logs) => logs.into_iter().for_each(|log| self.add(log.of_file(name, &sha256))),
+            Contents::Logs(logs) => logs
+                .into_iter()
+                .for_each(|log| self.add(log.of_file(name, &sha256))),
             Contents::Dataset(..) | Contents::Models(..) => {
-                self.ignored.push(format!("{name}: a dataset or models, not a record"));
+                self.ignored
+                    .push(format!("{name}: a dataset or models, not a record"));
             }
-            Contents::Archive { variables, files, ignored } => {
+            Contents::Archive {
+                variables,
+                files,
+                ignored,
+            } => {
                 self.ignored.extend(ignored);
                 for (inner, contents) in files {
                     let mut found = FoundRecords::default();
                     let taken = contents.and_then(|contents| {
                         let (path, sha256) = (Path::new(&inner), sha256.clone());
-                        found.take(ImportedFile { path, name: &inner, sha256, contents }, budget)
+                        found.take(
+                            ImportedFile {
+                                path,
+                                name: &inner,
+                                sha256,
+                                contents,
+                            },
+                            budget,
+                        )
                     });
                     match taken {
                         Err(stopped) if stopped.is_stopped() => return Err(stopped),
-                        taken => self.faults.extend(taken.err().map(|error| error.to_string())),
+                        taken => self
+                            .faults
+                            .extend(taken.err().map(|error| error.to_string())),
                     }
                     self.faults.append(&mut found.faults);
                     self.ignored.append(&mut found.ignored);
                     // A file in the archive is what a variable is in others.
                     for mut table in found.tables {
-                        let variable = table.source.variable.map(|variable| format!("{inner}, {variable}"));
-                        let (file, variable) = (name.to_owned(), Some(variable.unwrap_or_else(|| inner.clone())));
-                        table.source = RecordSource { file, variable, ..table.source };
+                        let variable = table
+                            .source
+                            .variable
+                            .map(|variable| format!("{inner}, {variable}"));
+                        let (file, variable) = (
+                            name.to_owned(),
+                            Some(variable.unwrap_or_else(|| inner.clone())),
+                        );
+                        table.source = RecordSource {
+                            file,
+                            variable,
+                            ..table.source
+                        };
                         self.tables.push(table);
                     }
                     if self.tables.len() > MOST_RECORDS {
-                        return Err(wrong(VariableFault::TooLarge { variable: inner, most_mib: MOST_MEMORY >> 20 }));
+                        return Err(wrong(VariableFault::TooLarge {
+                            variable: inner,
+                            most_mib: MOST_MEMORY >> 20,
+                        }));
                     }
                 }
                 if !variables.is_empty() {
-                    self.add_found(search_records(&variables, budget).map_err(wrong)?, &[], (name, &sha256));
+                    self.add_found(
+                        search_records(&variables, budget).map_err(wrong)?,
+                        &[],
+                        (name, &sha256),
+                    );
                 }
             }
         }
@@ -188,7 +279,14 @@ pub(crate) struct Columns {
 impl Columns {
     /// Columns with names, of which nothing else is known.
     pub(crate) fn new(variable: String, columns: Vec<RecordColumn>) -> Self {
-        Self { variable, columns, named: true, sample_time_s: None, notes: Vec::new(), modes: Vec::new() }
+        Self {
+            variable,
+            columns,
+            named: true,
+            sample_time_s: None,
+            notes: Vec::new(),
+            modes: Vec::new(),
+        }
     }
 
     /// The record of these columns in a file.
@@ -196,14 +294,26 @@ impl Columns {
         let file = name.rsplit('/').next().unwrap_or(name);
         let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
         let stem = stem.strip_suffix(".csv").unwrap_or(stem);
-        let Self { variable, columns, named, sample_time_s, notes, modes } = self;
+        let Self {
+            variable,
+            columns,
+            named,
+            sample_time_s,
+            notes,
+            modes,
+        } = self;
         let variable = Some(variable).filter(|variable| !variable.is_empty());
-        let name_of_record =
-            variable.as_ref().map_or_else(|| stem.to_owned(), |variable| format!("{stem}, {variable}"));
+        let name_of_record = variable
+            .as_ref()
+            .map_or_else(|| stem.to_owned(), |variable| format!("{stem}, {variable}"));
         RecordTable {
             named,
             sample_time_s,
-            source: RecordSource { file: name.to_owned(), sha256: sha256.to_owned(), variable },
+            source: RecordSource {
+                file: name.to_owned(),
+                sha256: sha256.to_owned(),
+                variable,
+            },
             notes,
             modes,
             ..RecordTable::new(name_of_record, columns)
@@ -222,16 +332,29 @@ fn of_text(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Columns>, Varia
     let mut found = Vec::new();
     for (index, (line, part)) in parts.into_iter().enumerate().filter(|_| count > 1) {
         match of_whole_text(part, budget) {
-            Ok(columns) if columns.columns.first().is_some_and(|column| column.values.len() >= Separation::FEWEST) => {
+            Ok(columns)
+                if columns
+                    .columns
+                    .first()
+                    .is_some_and(|column| column.values.len() >= Separation::FEWEST) =>
+            {
                 let note = format!("one of {count} tables in the file, from line {line}");
                 let notes = [vec![note], columns.notes].concat();
-                found.push(Columns { variable: format!("table {}", index + 1), notes, ..columns });
+                found.push(Columns {
+                    variable: format!("table {}", index + 1),
+                    notes,
+                    ..columns
+                });
             }
             Err(fault) if fault.is_of_the_budget() => return Err(fault),
             _ => {}
         }
     }
-    if found.is_empty() { Err(first) } else { Ok(found) }
+    if found.is_empty() {
+        Err(first)
+    } else {
+        Ok(found)
+    }
 }
 
 /// The columns of one table: of one with words or times of the clock among its numbers, with numbers in their place.
@@ -240,7 +363,9 @@ fn of_whole_text(text: &str, budget: &ReadingBudget<'_>) -> Result<Columns, Vari
         Err(fault @ (VariableFault::Line { .. } | VariableFault::Format { .. })) => fault,
         table => return table.map(of_table),
     };
-    let Some(NumberedText { text, notes }) = numbered_words(text, budget)? else { return Err(first) };
+    let Some(NumberedText { text, notes }) = numbered_words(text, budget)? else {
+        return Err(first);
+    };
     // What is wrong in the text as it stands says more than what is wrong in this one.
     let mut columns = of_table(read_table(&text, budget).map_err(|_| first)?);
     columns.notes.extend(notes);
@@ -249,25 +374,47 @@ fn of_whole_text(text: &str, budget: &ReadingBudget<'_>) -> Result<Columns, Vari
 
 /// The columns of a table of text.
 fn of_table(table: TextTable) -> Columns {
-    let TextTable { names, units, columns, notes, .. } = table;
+    let TextTable {
+        names,
+        units,
+        columns,
+        notes,
+        ..
+    } = table;
     let named = names.is_some();
     let names = names.unwrap_or_default();
     let (columns, mut notes) = (columns, notes);
-    let columns = if named { columns } else { without_numbers(columns, &mut notes) };
+    let columns = if named {
+        columns
+    } else {
+        without_numbers(columns, &mut notes)
+    };
     let columns = columns.into_iter().enumerate().map(|(index, values)| {
         let name = names.get(index).filter(|name| !name.is_empty()).cloned();
         let name = name.unwrap_or_else(|| format!("column {}", index + 1));
-        RecordColumn { unit: units.get(index).cloned().flatten(), ..RecordColumn::new(name, values) }
+        RecordColumn {
+            unit: units.get(index).cloned().flatten(),
+            ..RecordColumn::new(name, values)
+        }
     });
-    Columns { named, notes, ..Columns::new(String::new(), columns.collect()) }
+    Columns {
+        named,
+        notes,
+        ..Columns::new(String::new(), columns.collect())
+    }
 }
 
 /// Columns without a first line that counts them: 1, 2, 3, …
 fn without_numbers(mut columns: Vec<Vec<f64>>, notes: &mut Vec<String>) -> Vec<Vec<f64>> {
-    let counts = columns.iter().enumerate().all(|(index, values)| values.first() == Some(&(index as f64 + 1.0)));
+    let counts = columns
+        .iter()
+        .enumerate()
+        .all(|(index, values)| values.first() == Some(&(index as f64 + 1.0)));
     if counts && columns.len() > 2 {
         columns.iter_mut().for_each(|values| values.rotate_left(1));
-        columns.iter_mut().for_each(|values| values.truncate(values.len() - 1));
+        columns
+            .iter_mut()
+            .for_each(|values| values.truncate(values.len() - 1));
         notes.push("the first line numbers the columns: it is no sample".to_owned());
     }
     columns
@@ -290,7 +437,8 @@ pub fn example_records(condition: i64) -> Result<Vec<RecordTable>, FileError> {
     }
     let patterns = standard_patterns();
     let found = records_of_bytes(ARCHIVE, NAME, &ReadingBudget::default())?;
-    let is_of = |table: &RecordTable| RecordGuess::of(&table.name, patterns).condition == Some(condition);
+    let is_of =
+        |table: &RecordTable| RecordGuess::of(&table.name, patterns).condition == Some(condition);
     Ok(found.tables.into_iter().filter(is_of).collect())
 }
 
@@ -314,19 +462,41 @@ pub(super) fn search_records(
 }
 
 /// What a dataset at `dataset` says of a record, its file relative to the dataset's; `asked` are the files and folders that were read.
-pub fn relative_entry(mut entry: ConditionRecord, asked: &[PathBuf], dataset: &Path) -> ConditionRecord {
+pub fn relative_entry(
+    mut entry: ConditionRecord,
+    asked: &[PathBuf],
+    dataset: &Path,
+) -> ConditionRecord {
     // A file by itself, or below the folder that was asked for.
     let place = asked.iter().find_map(|path| {
-        let own = path.file_name().is_some_and(|name| name.to_string_lossy() == entry.file.as_str());
+        let own = path
+            .file_name()
+            .is_some_and(|name| name.to_string_lossy() == entry.file.as_str());
         let below = path.join(&entry.file);
-        if own { Some(path.clone()) } else { Some(below).filter(|_| path.is_dir()) }
+        if own {
+            Some(path.clone())
+        } else {
+            Some(below).filter(|_| path.is_dir())
+        }
     });
     // Topics of a folder whose files were given one by one.
-    let together = || asked.first().and_then(|path| path.parent()).filter(|_| entry.file.is_empty());
+    let together = || {
+        asked
+            .first()
+            .and_then(|path| path.parent())
+            .filter(|_| entry.file.is_empty())
+    };
     if let Some(place) = place.or_else(|| together().map(Path::to_owned)) {
         let folder = relative_folder(place.parent().unwrap_or(Path::new(".")), dataset);
-        let name = place.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        entry.file = if folder.is_empty() || folder == "." { name } else { format!("{folder}/{name}") };
+        let name = place
+            .file_name()
+            .map(|name| name.to_string_lossy().into_owned())
+            .unwrap_or_default();
+        entry.file = if folder.is_empty() || folder == "." {
+            name
+        } else {
+            format!("{folder}/{name}")
+        };
     }
     entry
 }
@@ -340,8 +510,16 @@ mod example_tests {
         for condition in EXAMPLE_RECORD_CONDITIONS {
             let records = example_records(condition).unwrap();
             let rows: Vec<usize> = records.iter().map(RecordTable::rows).collect();
-            assert_eq!(rows, [[3001; 8].as_slice(), &[3301]].concat(), "60 s and 66 s at 50 Hz");
-            assert!(records.iter().all(|record| record.columns.len() == 11 && record.named));
+            assert_eq!(
+                rows,
+                [[3001; 8].as_slice(), &[3301]].concat(),
+                "60 s and 66 s at 50 Hz"
+            );
+            assert!(
+                records
+                    .iter()
+                    .all(|record| record.columns.len() == 11 && record.named)
+            );
         }
         assert!(example_records(1).unwrap().is_empty());
     }
@@ -353,13 +531,19 @@ mod tests {
     use crate::variables::{Array, CellArray, Object, StructArray, TextArray, Value};
     use gdcm_model::assembly::ChannelRule;
     use gdcm_model::dataset::ChannelSide;
-    use gdcm_sysid::records::{ColumnUse, LaidOutRecord, RecordChannels, RecordLayout, TimeWish, with_topics_joined};
+    use gdcm_sysid::records::{
+        ColumnUse, LaidOutRecord, RecordChannels, RecordLayout, TimeWish, with_topics_joined,
+    };
 
     const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/records/");
 
     fn read(name: &str) -> FoundRecords {
-        records_of_bytes(&std::fs::read(format!("{FOLDER}{name}")).unwrap(), name, &ReadingBudget::new(1 << 24))
-            .unwrap()
+        records_of_bytes(
+            &std::fs::read(format!("{FOLDER}{name}")).unwrap(),
+            name,
+            &ReadingBudget::new(1 << 24),
+        )
+        .unwrap()
     }
 
     fn channels() -> RecordChannels {
@@ -430,9 +614,20 @@ mod tests {
             "columns.json",
         ] {
             let found = read(name);
-            assert_eq!((found.tables.len(), &found.faults), (1, &Vec::new()), "{name}: {:?}", found.ignored);
+            assert_eq!(
+                (found.tables.len(), &found.faults),
+                (1, &Vec::new()),
+                "{name}: {:?}",
+                found.ignored
+            );
             assert_eq!(found.tables[0].rows(), 60, "{name}");
-            assert_eq!((found.tables[0].source.file.as_str(), found.tables[0].source.sha256.len()), (name, 64));
+            assert_eq!(
+                (
+                    found.tables[0].source.file.as_str(),
+                    found.tables[0].source.sha256.len()
+                ),
+                (name, 64)
+            );
             assert_record(&found.tables[0], 3);
         }
     }
@@ -443,15 +638,27 @@ mod tests {
             let found = read(name);
             let columns = found.tables[0].columns.iter();
             columns
-                .map(|column| (column.name.clone(), column.unit.clone().unwrap_or_default(), column.side))
+                .map(|column| {
+                    (
+                        column.name.clone(),
+                        column.unit.clone().unwrap_or_default(),
+                        column.side,
+                    )
+                })
                 .collect::<Vec<_>>()
         };
         let (input, output) = (Some(ChannelSide::Input), Some(ChannelSide::Output));
         let column = |name: &str, unit: &str, side| (name.to_owned(), unit.to_owned(), side);
-        assert_eq!(of("units.csv")[..2], [column("time", "s", None), column("LON", "%", None)]);
+        assert_eq!(
+            of("units.csv")[..2],
+            [column("time", "s", None), column("LON", "%", None)]
+        );
         assert_eq!(of("comma.csv")[3], column("roll rate", "rad/s", None));
         assert_eq!(of("strokes.txt")[1], column("elev,yoke1", "", None));
-        assert_eq!(of("sides.mat")[..2], [column("t", "", None), column("inr_1", "", input)]);
+        assert_eq!(
+            of("sides.mat")[..2],
+            [column("t", "", None), column("inr_1", "", input)]
+        );
         let labelled = [
             column("LON", "", input),
             column("LAT", "", input),
@@ -467,59 +674,114 @@ mod tests {
     #[test]
     fn several_records_of_one_file_are_told_apart() {
         let runs = read("runs.csv");
-        let names: Vec<&str> = runs.tables.iter().map(|table| table.name.as_str()).collect();
+        let names: Vec<&str> = runs
+            .tables
+            .iter()
+            .map(|table| table.name.as_str())
+            .collect();
         assert_eq!(names, ["runs, run 4", "runs, run 5"]);
         let restart = read("restart.csv");
         assert_eq!(restart.tables.len(), 2);
         let experiments = read("experiments.mat");
-        let names: Vec<&str> = experiments.tables.iter().map(|table| table.name.as_str()).collect();
+        let names: Vec<&str> = experiments
+            .tables
+            .iter()
+            .map(|table| table.name.as_str())
+            .collect();
         assert_eq!(names, ["experiments, data, up", "experiments, data, down"]);
         assert_eq!(experiments.tables[1].rows(), 40);
-        let all = runs.tables.iter().chain(&restart.tables).chain(&experiments.tables);
+        let all = runs
+            .tables
+            .iter()
+            .chain(&restart.tables)
+            .chain(&experiments.tables);
         all.for_each(|table| assert_record(table, 3));
     }
 
     #[test]
     fn files_in_an_archive_are_records_of_it() {
         let found = read("two.zip");
-        let sources: Vec<(&str, Option<&str>)> =
-            found.tables.iter().map(|table| (table.source.file.as_str(), table.source.variable.as_deref())).collect();
-        assert_eq!(sources, [("two.zip", Some("records/units.csv")), ("two.zip", Some("records/sides.mat"))]);
+        let sources: Vec<(&str, Option<&str>)> = found
+            .tables
+            .iter()
+            .map(|table| (table.source.file.as_str(), table.source.variable.as_deref()))
+            .collect();
+        assert_eq!(
+            sources,
+            [
+                ("two.zip", Some("records/units.csv")),
+                ("two.zip", Some("records/sides.mat"))
+            ]
+        );
         assert_eq!(found.ignored, ["readme.md: no file of a known kind"]);
-        found.tables.iter().for_each(|table| assert_record(table, 3));
+        found
+            .tables
+            .iter()
+            .for_each(|table| assert_record(table, 3));
     }
 
     #[test]
     fn records_are_found_again_by_what_the_dataset_calls_them() {
         let load = |name: &str, variables: &[Option<&str>]| {
-            load_records(Path::new(&format!("{FOLDER}{name}")), variables, &ReadingBudget::default()).unwrap()
+            load_records(
+                Path::new(&format!("{FOLDER}{name}")),
+                variables,
+                &ReadingBudget::default(),
+            )
+            .unwrap()
         };
         let of_runs = load("runs.csv", &[Some("run 5"), Some("run 6")]);
         assert_eq!(of_runs[0].as_ref().unwrap(), &read("runs.csv").tables[1]);
-        assert_eq!(load("units.csv", &[None])[0].as_ref().unwrap(), &read("units.csv").tables[0]);
+        assert_eq!(
+            load("units.csv", &[None])[0].as_ref().unwrap(),
+            &read("units.csv").tables[0]
+        );
         let words = of_runs[1].as_ref().unwrap_err().to_string();
-        assert!(words.ends_with("runs.csv: the record \"run 6\" is not in it; it holds 2 records"), "{words}");
+        assert!(
+            words.ends_with("runs.csv: the record \"run 6\" is not in it; it holds 2 records"),
+            "{words}"
+        );
     }
 
     #[test]
     fn words_and_times_of_the_clock_stand_among_the_numbers_of_a_log() {
         let row = |k: usize, run: &str| {
             let (at, cs) = (k as f64, 2 * k);
-            let stick = (50.0 + 10.0 * (0.3 * at).sin(), 45.0 + 8.0 * (0.2 * at).cos());
+            let stick = (
+                50.0 + 10.0 * (0.3 * at).sin(),
+                45.0 + 8.0 * (0.2 * at).cos(),
+            );
             let aircraft = (0.3 * (0.25 * at).sin(), 1.0 + 0.2 * (0.35 * at).cos());
             let clock = format!("2026-03-01 12:30:{:02}.{:02}", cs / 100, cs % 100);
-            format!("{clock},{run},{:.4},{:.4},{:.4},{:.4}\n", stick.0, stick.1, aircraft.0, aircraft.1)
+            format!(
+                "{clock},{run},{:.4},{:.4},{:.4},{:.4}\n",
+                stick.0, stick.1, aircraft.0, aircraft.1
+            )
         };
         let head = "time,manoeuvre,LON,LAT,P,NZ\n".to_owned();
         let log = (0..60)
             .map(|k| row(k, "LON sweep"))
             .chain((0..60).map(|k| row(k, "LAT sweep")))
             .fold(head, |log, row| log + &row);
-        let found = records_of_bytes(log.as_bytes(), "log.csv", &ReadingBudget::new(1 << 24)).unwrap();
-        let names: Vec<&str> = found.tables.iter().map(|table| table.name.as_str()).collect();
+        let found =
+            records_of_bytes(log.as_bytes(), "log.csv", &ReadingBudget::new(1 << 24)).unwrap();
+        let names: Vec<&str> = found
+            .tables
+            .iter()
+            .map(|table| table.name.as_str())
+            .collect();
         assert_eq!(names, ["log, manoeuvre 1", "log, manoeuvre 2"]);
-        assert!(found.tables[1].notes.iter().any(|note| note.contains("1 is LON sweep, 2 is LAT sweep")), "{found:?}");
-        found.tables.iter().for_each(|table| assert_record(table, 3));
+        assert!(
+            found.tables[1]
+                .notes
+                .iter()
+                .any(|note| note.contains("1 is LON sweep, 2 is LAT sweep")),
+            "{found:?}"
+        );
+        found
+            .tables
+            .iter()
+            .for_each(|table| assert_record(table, 3));
     }
 
     #[test]
@@ -527,44 +789,89 @@ mod tests {
         let log = |columns: &str, rows: usize| {
             let cells = columns.split('|').count();
             let row = |k: usize| {
-                (0..cells).map(|cell| format!(" {} |", (k * (cell + 1)) as f64 * 0.02)).collect::<String>() + "\n"
+                (0..cells)
+                    .map(|cell| format!(" {} |", (k * (cell + 1)) as f64 * 0.02))
+                    .collect::<String>()
+                    + "\n"
             };
             format!("{columns} |\n") + &(0..rows).map(row).collect::<String>()
         };
         let text = log("time,s | P,rad/s", 3) + "\n" + &log("time,s | P,rad/s | Q,rad/s", 50);
-        let found = records_of_bytes(text.as_bytes(), "log.txt", &ReadingBudget::new(1 << 24)).unwrap();
-        assert_eq!((found.tables.len(), found.tables[0].rows(), found.tables[0].columns.len()), (1, 50, 3));
-        assert_eq!(found.tables[0].notes[0], "one of 2 tables in the file, from line 6");
+        let found =
+            records_of_bytes(text.as_bytes(), "log.txt", &ReadingBudget::new(1 << 24)).unwrap();
+        assert_eq!(
+            (
+                found.tables.len(),
+                found.tables[0].rows(),
+                found.tables[0].columns.len()
+            ),
+            (1, 50, 3)
+        );
+        assert_eq!(
+            found.tables[0].notes[0],
+            "one of 2 tables in the file, from line 6"
+        );
         assert_eq!(found.tables[0].source.variable.as_deref(), Some("table 2"));
     }
 
     fn numbers(rows: usize, columns: usize, value: impl Fn(usize) -> f64) -> Value {
-        Value::Array(Array::matrix(rows, columns, (0..rows * columns).map(value).collect()))
+        Value::Array(Array::matrix(
+            rows,
+            columns,
+            (0..rows * columns).map(value).collect(),
+        ))
     }
 
     fn texts(texts: &[&str]) -> Value {
-        let text = |text: &&str| Value::Text(TextArray { shape: vec![1, 1], texts: vec![(*text).to_owned()] });
-        Value::Cell(CellArray { shape: vec![1, texts.len()], values: texts.iter().map(text).collect() })
+        let text = |text: &&str| {
+            Value::Text(TextArray {
+                shape: vec![1, 1],
+                texts: vec![(*text).to_owned()],
+            })
+        };
+        Value::Cell(CellArray {
+            shape: vec![1, texts.len()],
+            values: texts.iter().map(text).collect(),
+        })
     }
 
     fn record(fields: Vec<(&str, Value)>) -> StructArray {
-        let fields = fields.into_iter().map(|(name, value)| (name.to_owned(), vec![value])).collect();
-        StructArray { shape: vec![1, 1], fields }
+        let fields = fields
+            .into_iter()
+            .map(|(name, value)| (name.to_owned(), vec![value]))
+            .collect();
+        StructArray {
+            shape: vec![1, 1],
+            fields,
+        }
     }
 
     fn object(class: &str, fields: Vec<(&str, Value)>) -> Value {
-        Value::Object(Object { class: class.to_owned(), records: record(fields) })
+        Value::Object(Object {
+            class: class.to_owned(),
+            records: record(fields),
+        })
     }
 
     fn searched(name: &str, value: Value) -> Found<Columns> {
-        search_records(&[Variable { name: name.to_owned(), value }], &ReadingBudget::new(1 << 20)).unwrap()
+        search_records(
+            &[Variable {
+                name: name.to_owned(),
+                value,
+            }],
+            &ReadingBudget::new(1 << 20),
+        )
+        .unwrap()
     }
 
     /// A timetable of two variables over these row times, as MATLAB saves it.
     fn timetable(row_times: Value) -> Value {
         let data = CellArray {
             shape: vec![1, 2],
-            values: vec![numbers(60, 1, |k| k as f64), numbers(60, 2, |k| -(k as f64))],
+            values: vec![
+                numbers(60, 1, |k| k as f64),
+                numbers(60, 2, |k| -(k as f64)),
+            ],
         };
         let any = record(vec![
             ("data", Value::Cell(data)),
@@ -578,16 +885,35 @@ mod tests {
 
     #[test]
     fn timetables_have_their_row_times() {
-        let duration = |rows: usize, ms: fn(usize) -> f64| object("duration", vec![("millis", numbers(rows, 1, ms))]);
-        let columns = |row_times: Value| searched("tt", timetable(row_times)).items.into_iter().next().unwrap();
+        let duration = |rows: usize, ms: fn(usize) -> f64| {
+            object("duration", vec![("millis", numbers(rows, 1, ms))])
+        };
+        let columns = |row_times: Value| {
+            searched("tt", timetable(row_times))
+                .items
+                .into_iter()
+                .next()
+                .unwrap()
+        };
         let of = columns(duration(60, |k| 20.0 * k as f64));
-        let names: Vec<&str> = of.columns.iter().map(|column| column.name.as_str()).collect();
+        let names: Vec<&str> = of
+            .columns
+            .iter()
+            .map(|column| column.name.as_str())
+            .collect();
         assert_eq!(names, ["Time", "LON", "rates_1", "rates_2"]);
         assert_eq!(
-            (of.columns[0].values[3], of.columns[3].values[0], of.columns[2].unit.as_deref()),
+            (
+                of.columns[0].values[3],
+                of.columns[3].values[0],
+                of.columns[2].unit.as_deref()
+            ),
             (0.06, -60.0, Some("deg/s"))
         );
-        let clock = object("datetime", vec![("data", numbers(60, 1, |k| 1.7e12 + 20.0 * k as f64))]);
+        let clock = object(
+            "datetime",
+            vec![("data", numbers(60, 1, |k| 1.7e12 + 20.0 * k as f64))],
+        );
         assert_eq!(columns(clock).columns[0].values[3], 0.06);
         let regular = |by_rate: f64| {
             Value::Struct(record(vec![
@@ -598,7 +924,10 @@ mod tests {
             ]))
         };
         assert_eq!(
-            (columns(regular(1.0)).sample_time_s, columns(regular(0.0)).sample_time_s),
+            (
+                columns(regular(1.0)).sample_time_s,
+                columns(regular(0.0)).sample_time_s
+            ),
             (Some(0.02), Some(0.01))
         );
     }
@@ -616,10 +945,16 @@ mod tests {
             ],
         );
         let of = searched("z", matlab).items.into_iter().next().unwrap();
-        let columns: Vec<(&str, Option<&str>)> =
-            of.columns.iter().map(|column| (column.name.as_str(), column.unit.as_deref())).collect();
+        let columns: Vec<(&str, Option<&str>)> = of
+            .columns
+            .iter()
+            .map(|column| (column.name.as_str(), column.unit.as_deref()))
+            .collect();
         assert_eq!(columns, [("u1", None), ("P", Some("rad/s")), ("Q", None)]);
-        assert_eq!((of.sample_time_s, of.columns[1].side), (Some(0.01), Some(ChannelSide::Output)));
+        assert_eq!(
+            (of.sample_time_s, of.columns[1].side),
+            (Some(0.01), Some(ChannelSide::Output))
+        );
         let octave = object(
             "iddata",
             vec![
@@ -629,7 +964,13 @@ mod tests {
             ],
         );
         assert_eq!(searched("z", octave).items[0].sample_time_s, Some(0.05));
-        let over_frequency = object("iddata", vec![("y", numbers(60, 1, |_| 1.0)), ("Domain", texts(&["Frequency"]))]);
+        let over_frequency = object(
+            "iddata",
+            vec![
+                ("y", numbers(60, 1, |_| 1.0)),
+                ("Domain", texts(&["Frequency"])),
+            ],
+        );
         assert_eq!(
             searched("z", over_frequency).faults,
             ["z: data over frequency are no record; save those over time"]
@@ -639,17 +980,35 @@ mod tests {
     #[test]
     fn what_simulink_logs_with_time_is_a_record() {
         let signal = |label: &str, columns: usize| {
-            let label = Value::Text(TextArray { shape: vec![1, 1], texts: vec![label.to_owned()] });
+            let label = Value::Text(TextArray {
+                shape: vec![1, 1],
+                texts: vec![label.to_owned()],
+            });
             vec![numbers(60, columns, |k| k as f64), label]
         };
         let (first, second) = (signal("LON [%]", 1), signal("rates", 2));
         let fields = ["values", "label"].into_iter().enumerate();
-        let fields = fields.map(|(at, name)| (name.to_owned(), vec![first[at].clone(), second[at].clone()])).collect();
-        let signals = Value::Struct(StructArray { shape: vec![1, 2], fields });
-        let logged = Value::Struct(record(vec![("time", numbers(60, 1, |k| 0.02 * k as f64)), ("signals", signals)]));
+        let fields = fields
+            .map(|(at, name)| (name.to_owned(), vec![first[at].clone(), second[at].clone()]))
+            .collect();
+        let signals = Value::Struct(StructArray {
+            shape: vec![1, 2],
+            fields,
+        });
+        let logged = Value::Struct(record(vec![
+            ("time", numbers(60, 1, |k| 0.02 * k as f64)),
+            ("signals", signals),
+        ]));
         let of = searched("out", logged).items.into_iter().next().unwrap();
-        let names: Vec<&str> = of.columns.iter().map(|column| column.name.as_str()).collect();
-        assert_eq!((names, of.columns[1].unit.as_deref()), (vec!["time", "LON", "rates_1", "rates_2"], Some("%")));
+        let names: Vec<&str> = of
+            .columns
+            .iter()
+            .map(|column| column.name.as_str())
+            .collect();
+        assert_eq!(
+            (names, of.columns[1].unit.as_deref()),
+            (vec!["time", "LON", "rates_1", "rates_2"], Some("%"))
+        );
     }
 
     #[test]
@@ -661,17 +1020,33 @@ mod tests {
             ("C", numbers(6, 60, |_| 0.0)),
             ("D", scalar(0.0)),
         ];
-        assert!(searched("sys", Value::Struct(record(model))).items.is_empty());
-        let short = vec![("t", numbers(10, 1, |k| k as f64)), ("P", numbers(10, 1, |k| k as f64))];
+        assert!(
+            searched("sys", Value::Struct(record(model)))
+                .items
+                .is_empty()
+        );
+        let short = vec![
+            ("t", numbers(10, 1, |k| k as f64)),
+            ("P", numbers(10, 1, |k| k as f64)),
+        ];
         let found = searched("x", Value::Struct(record(short)));
-        assert_eq!((found.items.len(), found.ignored), (0, vec!["x: a 1 x 1 struct array".to_owned()]));
+        assert_eq!(
+            (found.items.len(), found.ignored),
+            (0, vec!["x: a 1 x 1 struct array".to_owned()])
+        );
     }
 
     #[test]
     fn damaged_files_are_faults_and_never_a_panic() {
-        for name in
-            ["units.csv", "sides.mat", "experiments.mat", "matlab73.mat", "arrays.npz", "two.zip", "columns.json"]
-        {
+        for name in [
+            "units.csv",
+            "sides.mat",
+            "experiments.mat",
+            "matlab73.mat",
+            "arrays.npz",
+            "two.zip",
+            "columns.json",
+        ] {
             let whole = std::fs::read(format!("{FOLDER}{name}")).unwrap();
             let step = 1 + whole.len() / 150;
             for at in (0..whole.len()).step_by(step) {
@@ -687,77 +1062,162 @@ mod tests {
 
     fn sides(inputs: &[&str], outputs: &[&str]) -> RecordChannels {
         let rules = |names: &[&str]| names.iter().map(|name| ChannelRule::named(*name)).collect();
-        RecordChannels { inputs: rules(inputs), outputs: rules(outputs), ..RecordChannels::default() }
+        RecordChannels {
+            inputs: rules(inputs),
+            outputs: rules(outputs),
+            ..RecordChannels::default()
+        }
     }
 
     #[test]
     fn a_log_of_px4_is_opened_with_channels_proposed_in_the_units_of_its_documentation() {
         let bytes = include_bytes!("../../../../tests/data/logs/quadrotor.ulg");
-        let found = records_of_bytes(bytes, "quadrotor.ulg", &ReadingBudget::new(MOST_MEMORY)).unwrap();
+        let found =
+            records_of_bytes(bytes, "quadrotor.ulg", &ReadingBudget::new(MOST_MEMORY)).unwrap();
         assert_eq!(found.tables.len(), 1);
         let channels = sides(&["LAT", "LON", "PED"], &["P", "Q", "R", "NX"]);
-        let (record, notes) =
-            LaidOutRecord::proposed(found.tables.into_iter().next().unwrap(), &channels, &TimeWish::default());
+        let (record, notes) = LaidOutRecord::proposed(
+            found.tables.into_iter().next().unwrap(),
+            &channels,
+            &TimeWish::default(),
+        );
         assert!(record.problems.is_empty(), "{:?}", record.problems);
-        let unit = |used: &Option<ColumnUse>| record.table.columns[used.unwrap().column].unit.clone().unwrap();
-        assert_eq!(record.layout.outputs.iter().map(unit).collect::<Vec<_>>(), ["rad/s", "rad/s", "rad/s", "m/s^2"]);
+        let unit = |used: &Option<ColumnUse>| {
+            record.table.columns[used.unwrap().column]
+                .unit
+                .clone()
+                .unwrap()
+        };
+        assert_eq!(
+            record.layout.outputs.iter().map(unit).collect::<Vec<_>>(),
+            ["rad/s", "rad/s", "rad/s", "m/s^2"]
+        );
         // The acceleration is logged 20 times a second, the rest 50 times.
-        assert!(notes.iter().any(|note| note.contains("LAT 50.0 Hz") && note.contains("NX 20.0 Hz")), "{notes:?}");
+        assert!(
+            notes
+                .iter()
+                .any(|note| note.contains("LAT 50.0 Hz") && note.contains("NX 20.0 Hz")),
+            "{notes:?}"
+        );
         let flight = record.flight.unwrap();
-        assert!(flight.time_s.len() > 250 && flight.time_s[0] > 120.0, "16 s, two minutes after the start");
-        assert!(record.table.modes.iter().any(|mode| mode.name == "armed"), "{:?}", record.table.modes);
+        assert!(
+            flight.time_s.len() > 250 && flight.time_s[0] > 120.0,
+            "16 s, two minutes after the start"
+        );
+        assert!(
+            record.table.modes.iter().any(|mode| mode.name == "armed"),
+            "{:?}",
+            record.table.modes
+        );
     }
 
     #[test]
     fn a_blackbox_holds_several_flights_each_of_which_is_a_record() {
         let bytes = include_bytes!("../../../../tests/data/logs/two-flights.bbl");
-        let found = records_of_bytes(bytes, "two-flights.bbl", &ReadingBudget::new(MOST_MEMORY)).unwrap();
-        let names: Vec<&str> = found.tables.iter().map(|table| table.name.as_str()).collect();
-        assert_eq!(names, ["two-flights, flight 2"], "{:?}", found.tables[0].notes);
+        let found =
+            records_of_bytes(bytes, "two-flights.bbl", &ReadingBudget::new(MOST_MEMORY)).unwrap();
+        let names: Vec<&str> = found
+            .tables
+            .iter()
+            .map(|table| table.name.as_str())
+            .collect();
+        assert_eq!(
+            names,
+            ["two-flights, flight 2"],
+            "{:?}",
+            found.tables[0].notes
+        );
         let channels = sides(&["LAT", "LON", "PED", "COL"], &["P", "Q", "R"]);
-        let (record, _) =
-            LaidOutRecord::proposed(found.tables.into_iter().next().unwrap(), &channels, &TimeWish::default());
+        let (record, _) = LaidOutRecord::proposed(
+            found.tables.into_iter().next().unwrap(),
+            &channels,
+            &TimeWish::default(),
+        );
         assert!(record.problems.is_empty(), "{:?}", record.problems);
         let flight = record.flight.unwrap();
-        let steps: Vec<f64> = flight.time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let steps: Vec<f64> = flight
+            .time_s
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .collect();
         // Every sixteenth turn of the controller, which turns once in two samples of 125 µs.
-        assert!(steps.iter().filter(|step| (**step - 0.004).abs() < 1e-5).count() * 10 > 9 * steps.len());
+        assert!(
+            steps
+                .iter()
+                .filter(|step| (**step - 0.004).abs() < 1e-5)
+                .count()
+                * 10
+                > 9 * steps.len()
+        );
         let motor = &record.table.columns[record.table.find("motor[0]").unwrap()];
         let (least, most) = motor.range().unwrap();
-        assert!((158.0..2048.0).contains(&least) && most < 2048.0, "as the heading says: {least} to {most}");
+        assert!(
+            (158.0..2048.0).contains(&least) && most < 2048.0,
+            "as the heading says: {least} to {most}"
+        );
     }
 
     #[test]
     fn a_table_for_each_topic_in_an_archive_is_one_record() {
         let folder = tempfile::tempdir().unwrap();
         let rows = |rate: u32, name: &str| {
-            let row = |k: u32| format!("{},{}\n", f64::from(k) / f64::from(rate), f64::from(k % 17));
-            format!("time,{name}\n{}", (0..20 * rate).map(row).collect::<String>())
+            let row =
+                |k: u32| format!("{},{}\n", f64::from(k) / f64::from(rate), f64::from(k % 17));
+            format!(
+                "time,{name}\n{}",
+                (0..20 * rate).map(row).collect::<String>()
+            )
         };
         std::fs::write(folder.path().join("notes.log"), "it went well").unwrap();
         std::fs::write(folder.path().join("M.csv"), rows(100, "value")).unwrap();
         std::fs::write(folder.path().join("imu.csv"), rows(50, "q")).unwrap();
         let found = read_records(&[folder.path().to_owned()], &Stopped(&Arc::default())).unwrap();
         let tables = with_topics_joined(found.tables, &sides(&["M"], &["q"]), &TimeWish::default());
-        assert_eq!((tables.len(), found.faults), (1, Vec::new()), "other programs' logs are passed over");
-        let (record, _) = LaidOutRecord::proposed(tables[0].clone(), &sides(&["M"], &["q"]), &TimeWish::default());
+        assert_eq!(
+            (tables.len(), found.faults),
+            (1, Vec::new()),
+            "other programs' logs are passed over"
+        );
+        let (record, _) = LaidOutRecord::proposed(
+            tables[0].clone(),
+            &sides(&["M"], &["q"]),
+            &TimeWish::default(),
+        );
         let first = record.flight.unwrap();
         assert!(record.problems.is_empty() && first.time_s.len() > 900);
         // A dataset names the folder and what its tables make together; they are found so again.
-        let again = load_records(folder.path(), &[Some(RecordTable::TOPICS)], &ReadingBudget::default())
-            .unwrap()
-            .remove(0)
-            .unwrap();
+        let again = load_records(
+            folder.path(),
+            &[Some(RecordTable::TOPICS)],
+            &ReadingBudget::default(),
+        )
+        .unwrap()
+        .remove(0)
+        .unwrap();
         assert_eq!(again.columns, tables[0].columns);
     }
 
     #[test]
     fn a_first_line_that_numbers_the_columns_is_no_sample() {
-        let rows: String = (0..60).map(|k| format!("{},{},{}\n", 0.02 * f64::from(k), k, 2 * k)).collect();
-        let found =
-            records_of_bytes(format!("1,2,3\n{rows}").as_bytes(), "n.csv", &ReadingBudget::new(1 << 20)).unwrap();
-        assert_eq!((found.tables[0].rows(), found.tables[0].columns[2].values[1]), (60, 2.0));
-        assert!(found.tables[0].notes.iter().any(|note| note.contains("numbers the columns")));
+        let rows: String = (0..60)
+            .map(|k| format!("{},{},{}\n", 0.02 * f64::from(k), k, 2 * k))
+            .collect();
+        let found = records_of_bytes(
+            format!("1,2,3\n{rows}").as_bytes(),
+            "n.csv",
+            &ReadingBudget::new(1 << 20),
+        )
+        .unwrap();
+        assert_eq!(
+            (found.tables[0].rows(), found.tables[0].columns[2].values[1]),
+            (60, 2.0)
+        );
+        assert!(
+            found.tables[0]
+                .notes
+                .iter()
+                .any(|note| note.contains("numbers the columns"))
+        );
     }
 
     #[test]
@@ -773,16 +1233,42 @@ mod tests {
         let labels = ["time (sec)", "lon (deg)    ", "q (deg/s)", "az (g's)"];
         let texts = labels.map(|label| format!("{label:<13}")).into();
         let variables = [
-            Variable { name: "fdata".into(), value: Value::Array(Array::matrix(rows as usize, 4, values.clone())) },
-            Variable { name: "varlab".into(), value: Value::Text(TextArray { shape: vec![4, 1], texts }) },
+            Variable {
+                name: "fdata".into(),
+                value: Value::Array(Array::matrix(rows as usize, 4, values.clone())),
+            },
+            Variable {
+                name: "varlab".into(),
+                value: Value::Text(TextArray {
+                    shape: vec![4, 1],
+                    texts,
+                }),
+            },
         ];
         let bytes = crate::formats::mat::write(&variables).unwrap();
         let found = records_of_bytes(&bytes, "flight.mat", &ReadingBudget::default()).unwrap();
-        let [table] = found.tables.as_slice() else { panic!("one record: {found:?}") };
-        let columns: Vec<(&str, Option<&str>)> =
-            table.columns.iter().map(|column| (column.name.as_str(), column.unit.as_deref())).collect();
-        assert_eq!(columns, [("time", Some("sec")), ("lon", Some("deg")), ("q", Some("deg/s")), ("az", Some("g's"))]);
+        let [table] = found.tables.as_slice() else {
+            panic!("one record: {found:?}")
+        };
+        let columns: Vec<(&str, Option<&str>)> = table
+            .columns
+            .iter()
+            .map(|column| (column.name.as_str(), column.unit.as_deref()))
+            .collect();
+        assert_eq!(
+            columns,
+            [
+                ("time", Some("sec")),
+                ("lon", Some("deg")),
+                ("q", Some("deg/s")),
+                ("az", Some("g's"))
+            ]
+        );
         assert!(table.named && found.faults.is_empty(), "{found:?}");
-        assert_eq!(table.columns[3].values, values[3 * rows as usize..], "column by column, not sample by sample");
+        assert_eq!(
+            table.columns[3].values,
+            values[3 * rows as usize..],
+            "column by column, not sample by sample"
+        );
     }
 }

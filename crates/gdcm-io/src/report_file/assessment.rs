@@ -8,15 +8,15 @@ use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{ConditionId, Pair, PairTable};
 use gdcm_model::units::signed;
 use gdcm_study::study::{
-    Analysis, AssessmentChoice, AssessmentTable, Cancelled, Engine, Progress, Table, bar_table, difference_table,
-    held_out_verdict, scatter_table, second_variable_table,
+    Analysis, AssessmentChoice, AssessmentTable, Cancelled, Engine, Progress, Table, bar_table,
+    difference_table, held_out_verdict, scatter_table, second_variable_table,
 };
 
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, PAIRS_DRAWN, Page};
 use gdcm_plot::figure::{
-    FrequencyUnit, assessment_figure, average_word, change_table, couplings_figure, decimals, evidence_figure,
-    usual_choice,
+    FrequencyUnit, assessment_figure, average_word, change_table, couplings_figure, decimals,
+    evidence_figure, usual_choice,
 };
 
 /// The analysis with how sure its figures are.
@@ -32,12 +32,17 @@ pub(super) fn with_bars(
         Some(uncertainty) => Arc::clone(uncertainty),
         None => Arc::new(engine.uncertainty(analysis, &Unobtrusive(progress))?),
     };
-    Ok(Analysis { uncertainty: Some(uncertainty), ..analysis.clone() })
+    Ok(Analysis {
+        uncertainty: Some(uncertainty),
+        ..analysis.clone()
+    })
 }
 
 /// Adds the section on the uncertainty, where bars are there.
 pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
-    let Some(uncertainty) = &analysis.uncertainty else { return };
+    let Some(uncertainty) = &analysis.uncertainty else {
+        return;
+    };
     let dataset = &analysis.study.dataset;
     page.section("Uncertainty");
     page.paragraph(
@@ -46,10 +51,24 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
          the identification uncertainty; the bar is Student's t times the root of the sum of squares (M13). What neither explains is \
          a physical effect, or a model-form error. An error common to all identified models is not seen, and a bar is not a bound.",
     );
-    let beyond: Vec<_> = uncertainty.differences.iter().filter(|of| of.is_significant(uncertainty.level)).collect();
+    let beyond: Vec<_> = uncertainty
+        .differences
+        .iter()
+        .filter(|of| of.is_significant(uncertainty.level))
+        .collect();
     page.paragraph(&uncertainty.differences_in_words());
-    page.list(beyond.iter().map(|of| format!("{}: {}.", dataset.pair_name(of.pair), of.words(uncertainty.level))));
-    let pairs: Vec<Pair> = dataset.measuring_pairs().marked().take(PAIRS_DRAWN).collect();
+    page.list(beyond.iter().map(|of| {
+        format!(
+            "{}: {}.",
+            dataset.pair_name(of.pair),
+            of.words(uncertainty.level)
+        )
+    }));
+    let pairs: Vec<Pair> = dataset
+        .measuring_pairs()
+        .marked()
+        .take(PAIRS_DRAWN)
+        .collect();
     if let Some(figure) = evidence_figure(analysis, &pairs) {
         let caption = "Shares of the variance, and standard deviations of ln k_o k_i, about the mean of each airspeed and about the \
                        schedule; above the bars, scatter as a multiple of what is expected.";
@@ -79,19 +98,33 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
          below 0 is better. J takes {} over frequency; up to {ACCEPTABLE} is acceptable, up to 50 next to indistinguishable.",
         average_word(choice.average)
     ));
-    page.list(table.left_out.iter().map(|of| format!("Condition {} is left out: {}.", of.condition, of.why)));
+    page.list(
+        table
+            .left_out
+            .iter()
+            .map(|of| format!("Condition {} is left out: {}.", of.condition, of.why)),
+    );
     let measuring = analysis.study.dataset.measuring_pairs();
     let has_on_axis = analysis.study.dataset.on_axis().marked().next().is_some();
     let on_axis: Vec<Pair> = measuring.marked().collect();
     let off_axis: Vec<Pair> = measuring.pairs().filter(|pair| !measuring[*pair]).collect();
-    let of_on_axis = if has_on_axis { "on-axis responses" } else { "responses" };
+    let of_on_axis = if has_on_axis {
+        "on-axis responses"
+    } else {
+        "responses"
+    };
     for (pairs, of) in [(on_axis, of_on_axis), (off_axis, "off-axis responses")] {
         if pairs.is_empty() {
             continue;
         }
         page.subsection(&capital(of));
-        let marked = PairTable::from_fn(measuring.outputs(), measuring.inputs(), |pair| pairs.contains(&pair));
-        page.paragraph(&format!("{}.", capital(&table.summary(&marked).words(&analysis.study.dataset))));
+        let marked = PairTable::from_fn(measuring.outputs(), measuring.inputs(), |pair| {
+            pairs.contains(&pair)
+        });
+        page.paragraph(&format!(
+            "{}.",
+            capital(&table.summary(&marked).words(&analysis.study.dataset))
+        ));
         add_figures(page, analysis, choice, &pairs, of);
         add_tables(page, analysis, &table, &pairs, of);
         if of == of_on_axis {
@@ -109,24 +142,52 @@ pub(super) fn capital(words: &str) -> String {
     capital
 }
 
-fn add_figures(page: &mut Page, analysis: &Analysis, choice: AssessmentChoice, pairs: &[Pair], of: &str) {
+fn add_figures(
+    page: &mut Page,
+    analysis: &Analysis,
+    choice: AssessmentChoice,
+    pairs: &[Pair],
+    of: &str,
+) {
     let drawn = &pairs[..pairs.len().min(PAIRS_DRAWN)];
     for pairs in drawn.chunks(IN_A_FIGURE) {
         let figure = assessment_figure(analysis, pairs, choice);
-        page.figure(&figure, &format!("Change of J of {of}"), "The whole, its magnitude part and its phase part.");
+        page.figure(
+            &figure,
+            &format!("Change of J of {of}"),
+            "The whole, its magnitude part and its phase part.",
+        );
     }
     if drawn.len() < pairs.len() {
-        page.paragraph(&format!("{} of {} responses are drawn.", drawn.len(), pairs.len()));
+        page.paragraph(&format!(
+            "{} of {} responses are drawn.",
+            drawn.len(),
+            pairs.len()
+        ));
     }
 }
 
 /// ΔJ of every response in every condition, as many conditions side by side as fit.
-fn add_tables(page: &mut Page, analysis: &Analysis, found: &AssessmentTable, pairs: &[Pair], of: &str) {
+fn add_tables(
+    page: &mut Page,
+    analysis: &Analysis,
+    found: &AssessmentTable,
+    pairs: &[Pair],
+    of: &str,
+) {
     let shown = &found.conditions[..found.conditions.len().min(CONDITIONS_DRAWN)];
-    let conditions: Vec<(ConditionId, String)> =
-        shown.iter().map(|of| (of.condition, format!("cond. {}", of.condition))).collect();
+    let conditions: Vec<(ConditionId, String)> = shown
+        .iter()
+        .map(|of| (of.condition, format!("cond. {}", of.condition)))
+        .collect();
     let made_of = (&*analysis.study.dataset, found);
-    let table = change_table(format!("ΔJ of {of}"), made_of, pairs, &conditions, CostChange::total);
+    let table = change_table(
+        format!("ΔJ of {of}"),
+        made_of,
+        pairs,
+        &conditions,
+        CostChange::total,
+    );
     page.wide_table(&table, CONDITIONS);
     let more = found.conditions.len() - shown.len();
     if more > 0 {
@@ -135,9 +196,16 @@ fn add_tables(page: &mut Page, analysis: &Analysis, found: &AssessmentTable, pai
         ));
     }
     let missing = shown.iter().flat_map(|assessed| {
-        let of_these = assessed.missing.iter().filter(|(pair, _)| pairs.contains(pair));
+        let of_these = assessed
+            .missing
+            .iter()
+            .filter(|(pair, _)| pairs.contains(pair));
         of_these.map(|(pair, why)| {
-            format!("Condition {}: no ΔJ of {}: {why}.", assessed.condition, analysis.study.dataset.pair_name(*pair))
+            format!(
+                "Condition {}: no ΔJ of {}: {why}.",
+                assessed.condition,
+                analysis.study.dataset.pair_name(*pair)
+            )
         })
     });
     page.list(missing);
@@ -145,10 +213,25 @@ fn add_tables(page: &mut Page, analysis: &Analysis, found: &AssessmentTable, pai
 
 /// J before and after, and the parts of its change, of every condition and response.
 fn parts_table(analysis: &Analysis, found: &AssessmentTable, pairs: &[Pair]) -> Table {
-    let columns = ["condition", "model", "response", "J before", "J after", "ΔJ", "ΔJ magnitude", "ΔJ phase"];
-    let mut table = Table::new("J of the nominal models before and under the schedule", columns);
+    let columns = [
+        "condition",
+        "model",
+        "response",
+        "J before",
+        "J after",
+        "ΔJ",
+        "ΔJ magnitude",
+        "ΔJ phase",
+    ];
+    let mut table = Table::new(
+        "J of the nominal models before and under the schedule",
+        columns,
+    );
     for assessed in &found.conditions {
-        for (pair, change) in pairs.iter().filter_map(|pair| Some((pair, assessed.changes[*pair]?))) {
+        for (pair, change) in pairs
+            .iter()
+            .filter_map(|pair| Some((pair, assessed.changes[*pair]?)))
+        {
             table.row([
                 assessed.condition.to_string(),
                 assessed.model.clone(),
@@ -180,8 +263,12 @@ pub(super) fn with_couplings(
         return Ok(analysis);
     }
     let study = &analysis.study;
-    let assessed = engine.assess_couplings(study, study.settings.couplings, &Unobtrusive(progress))?;
-    Ok(Analysis { coupling_assessment: assessed.and_then(Result::ok), ..analysis })
+    let assessed =
+        engine.assess_couplings(study, study.settings.couplings, &Unobtrusive(progress))?;
+    Ok(Analysis {
+        coupling_assessment: assessed.and_then(Result::ok),
+        ..analysis
+    })
 }
 
 /// Adds the section, where couplings are asked for.
@@ -195,11 +282,21 @@ pub(super) fn add_couplings(page: &mut Page, analysis: &Analysis) {
          corrections of the channels: what representatives, G, D, gains, delays, leads and J of this report are found on is the physics \
          model with them. Which model represents its bundle, and which is suspected, is decided without them.",
     );
-    page.list(analysis.coupling_remarks().into_iter().map(|remark| remark.text));
-    let Some(assessment) = &analysis.coupling_assessment else { return };
+    page.list(
+        analysis
+            .coupling_remarks()
+            .into_iter()
+            .map(|remark| remark.text),
+    );
+    let Some(assessment) = &analysis.coupling_assessment else {
+        return;
+    };
     page.paragraph(&format!("{}.", capital(&assessment.heading())));
     page.table(&assessment.cost_table());
-    assessment.matrix_tables(&analysis.study.dataset).iter().for_each(|table| page.wide_table(table, MATRIX_COLUMNS));
+    assessment
+        .matrix_tables(&analysis.study.dataset)
+        .iter()
+        .for_each(|table| page.wide_table(table, MATRIX_COLUMNS));
     page.table(&assessment.pole_table());
     if let Some(figure) = couplings_figure(assessment, None, FrequencyUnit::default()) {
         let caption = "The least singular value of I \u{2212} K H at the sticks, of each condition: 1 is no loop, under 0.5 the loop is close \

@@ -7,15 +7,15 @@ use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, ModelId, Pair};
 use gdcm_model::units::{number, s_to_ms, signed};
 use gdcm_study::study::{
-    Analysis, CURVE_POINTS, Cancelled, ConditionAnalysis, ConditionModes, Engine, Progress, RemarkKind, Study, Table,
-    Unobserved, curves_band, details, lead_words, remarks,
+    Analysis, CURVE_POINTS, Cancelled, ConditionAnalysis, ConditionModes, Engine, Progress,
+    RemarkKind, Study, Table, Unobserved, curves_band, details, lead_words, remarks,
 };
 
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, names};
 use gdcm_plot::figure::{
-    BodeOptions, ConditionSource, Figure, Mark, Role, all_channels, bode_figure, class_names, compact, condition_words,
-    decimals, error_figure, overview_figure, poles_figure,
+    BodeOptions, ConditionSource, Figure, Mark, Role, all_channels, bode_figure, class_names,
+    compact, condition_words, decimals, error_figure, overview_figure, poles_figure,
 };
 
 /// Adds the section on the conditions: representatives, gains and delays, what they rest on, and plots of each.
@@ -44,7 +44,9 @@ pub(super) fn add(
                     draw(page, analysis, condition.id(), (engine, progress))?;
                 }
             }
-            Some(Err(failure)) => page.paragraph(&format!("This condition has no result: {failure}.")),
+            Some(Err(failure)) => {
+                page.paragraph(&format!("This condition has no result: {failure}."))
+            }
             None => page.paragraph("This condition was not analysed."),
         }
         progress.advanced(index + 1, conditions.len());
@@ -63,7 +65,13 @@ fn draw(
     let curves = engine.curves(&study.dataset, id, grid, &Unobtrusive(progress))?;
     if let Some((curves, result)) = curves.zip(analysis.condition(id)) {
         let schedule = analysis.schedule.as_ref().ok();
-        let source = ConditionSource { study, analysis: Some(result), schedule, curves: &curves, variant: None };
+        let source = ConditionSource {
+            study,
+            analysis: Some(result),
+            schedule,
+            curves: &curves,
+            variant: None,
+        };
         add_plots(page, result, &source);
     }
     Ok(())
@@ -72,11 +80,13 @@ fn draw(
 fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) {
     page.facts(facts(analysis, result));
     let study = &analysis.study;
-    let said = remarks(study, result, None).into_iter().map(|remark| match remark.kind {
-        RemarkKind::Good => remark.text,
-        RemarkKind::Caution => format!("Caution: {}", remark.text),
-        RemarkKind::Trouble => format!("Not matched: {}", remark.text),
-    });
+    let said = remarks(study, result, None)
+        .into_iter()
+        .map(|remark| match remark.kind {
+            RemarkKind::Good => remark.text,
+            RemarkKind::Caution => format!("Caution: {}", remark.text),
+            RemarkKind::Trouble => format!("Not matched: {}", remark.text),
+        });
     page.heading_within("What was matched, what was not and why");
     page.list(said);
     page.fine_list(details(study, result));
@@ -86,7 +96,9 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
     }
     add_responses(page, study, result);
     page.table(&channel_table(analysis, result));
-    BundleKind::BOTH.into_iter().for_each(|kind| add_models(page, study, result, kind));
+    BundleKind::BOTH
+        .into_iter()
+        .for_each(|kind| add_models(page, study, result, kind));
 }
 
 /// How sure the gains are, in a word.
@@ -103,26 +115,68 @@ fn facts<'a>(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<(&'a str, S
     let least_ms = compact(s_to_ms(result.delay_bounds_s()[0]));
     let most_ms = decimals(s_to_ms(result.delay_upper_s()), 2);
     let bound = gains.proof.lower_bound;
-    let at_least = if bound.is_finite() { format!(", lower bound {}", compact(bound)) } else { String::new() };
-    let scheduled = if analysis.study.choice(result.condition.id()).scheduled { "yes" } else { "no" };
+    let at_least = if bound.is_finite() {
+        format!(", lower bound {}", compact(bound))
+    } else {
+        String::new()
+    };
+    let scheduled = if analysis.study.choice(result.condition.id()).scheduled {
+        "yes"
+    } else {
+        "no"
+    };
     vec![
         ("Flight state", flight_words(&result.condition)),
-        ("Physics models", representative(analysis, result, BundleKind::Physics)),
-        ("Identified models", representative(analysis, result, BundleKind::Identified)),
-        ("Bounds of the gains", format!("{} to {}", decimals(bounds.lower, 4), decimals(bounds.upper, 4))),
-        ("Bounds of the delays", format!("{least_ms} to {most_ms} ms")),
-        ("Objective of the gains", format!("{}{at_least}; {}", compact(gains.objective), proof_word(result))),
-        ("Objective of the delays", format!("{} s²; global optimum (convex)", compact(delays.objective))),
+        (
+            "Physics models",
+            representative(analysis, result, BundleKind::Physics),
+        ),
+        (
+            "Identified models",
+            representative(analysis, result, BundleKind::Identified),
+        ),
+        (
+            "Bounds of the gains",
+            format!(
+                "{} to {}",
+                decimals(bounds.lower, 4),
+                decimals(bounds.upper, 4)
+            ),
+        ),
+        (
+            "Bounds of the delays",
+            format!("{least_ms} to {most_ms} ms"),
+        ),
+        (
+            "Objective of the gains",
+            format!(
+                "{}{at_least}; {}",
+                compact(gains.objective),
+                proof_word(result)
+            ),
+        ),
+        (
+            "Objective of the delays",
+            format!("{} s²; global optimum (convex)", compact(delays.objective)),
+        ),
         ("In the schedule", scheduled.to_owned()),
     ]
 }
 
 fn flight_words(condition: &Condition) -> String {
     let state = condition.flight_state();
-    let altitude = state.altitude_ft.map(|altitude| format!("{} ft", number(altitude)));
+    let altitude = state
+        .altitude_ft
+        .map(|altitude| format!("{} ft", number(altitude)));
     let mass = state.mass_kg.map(|mass| format!("{} kg", number(mass)));
     let [altitude_class, weight_class] = class_names(state);
-    let parts = [Some(format!("{} kt", number(state.airspeed_kt))), altitude_class, altitude, weight_class, mass];
+    let parts = [
+        Some(format!("{} kt", number(state.airspeed_kt))),
+        altitude_class,
+        altitude,
+        weight_class,
+        mass,
+    ];
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
@@ -131,20 +185,39 @@ fn representative(analysis: &Analysis, result: &ConditionAnalysis, kind: BundleK
     let choice = analysis.study.choice(result.condition.id()).bundle(kind);
     let name = result.representative_name(kind);
     let all = result.condition.bundle(kind).len();
-    let pinned = if choice.pinned.as_deref() == Some(name) { ", chosen by the analyst" } else { "" };
-    format!("{} of {all} kept; represented by {name}{pinned}", all - choice.rejected.len().min(all))
+    let pinned = if choice.pinned.as_deref() == Some(name) {
+        ", chosen by the analyst"
+    } else {
+        ""
+    };
+    format!(
+        "{} of {all} kept; represented by {name}{pinned}",
+        all - choice.rejected.len().min(all)
+    )
 }
 
 fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     let (dataset, correction) = (&analysis.study.dataset, &result.correction);
-    let title = format!("Condition {}: gain and delay of each channel", result.condition.id());
+    let title = format!(
+        "Condition {}: gain and delay of each channel",
+        result.condition.id()
+    );
     let mut table = Table::new(title, ["channel", "side", "gain k", "delay τ [ms]"]);
     let (inputs, outputs) = dataset.names_of_channels();
     for channel in all_channels(dataset) {
-        let side = if matches!(channel, Channel::Input(_)) { "input" } else { "output" };
+        let side = if matches!(channel, Channel::Input(_)) {
+            "input"
+        } else {
+            "output"
+        };
         let (gain, delay_s) = (correction.gain(channel), correction.delay_s(channel));
         let name = channel.name(&inputs, &outputs);
-        table.row([name, side.to_owned(), decimals(gain, 4), decimals(s_to_ms(delay_s), 2)]);
+        table.row([
+            name,
+            side.to_owned(),
+            decimals(gain, 4),
+            decimals(s_to_ms(delay_s), 2),
+        ]);
     }
     table
 }
@@ -167,12 +240,18 @@ const RESPONSE_COLUMNS: [&str; 11] = [
 fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
     let all: Vec<Pair> = study.dataset.on_axis().pairs().collect();
     let measuring = study.dataset.measuring_pairs();
-    let matters = |pair: &Pair| all.len() <= PAIRS_LISTED || measuring[*pair] || study.settings.constrained[*pair];
+    let matters = |pair: &Pair| {
+        all.len() <= PAIRS_LISTED || measuring[*pair] || study.settings.constrained[*pair]
+    };
     let shown: Vec<Pair> = all.iter().copied().filter(matters).collect();
     let id = result.condition.id();
-    let title = format!("Condition {id}: G, D and J of the representative before and after its own correction");
+    let title = format!(
+        "Condition {id}: G, D and J of the representative before and after its own correction"
+    );
     let mut table = Table::new(title, RESPONSE_COLUMNS);
-    shown.iter().for_each(|pair| table.row(response_cells(study, result, *pair)));
+    shown
+        .iter()
+        .for_each(|pair| table.row(response_cells(study, result, *pair)));
     page.table(&table);
     if shown.len() < all.len() {
         page.paragraph(&format!(
@@ -186,17 +265,28 @@ fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
 fn response_cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [String; 11] {
     let cost = result.cost[pair];
     let is_defined = result.wanted_gain(pair).is_some();
-    let treated = match (is_defined, result.held()[pair], !study.settings.ignored[pair]) {
+    let treated = match (
+        is_defined,
+        result.held()[pair],
+        !study.settings.ignored[pair],
+    ) {
         (false, ..) => "no G, no D",
         (true, true, _) => "held",
         (true, false, true) => "fitted",
         (true, false, false) => "ignored",
     };
-    let of = |value: Option<f64>, digits: usize| value.map_or("–".to_owned(), |value| decimals(value, digits));
+    let of = |value: Option<f64>, digits: usize| {
+        value.map_or("–".to_owned(), |value| decimals(value, digits))
+    };
     let change = |value: Option<f64>| value.map_or("–".to_owned(), |value| signed(value, 1));
     [
         study.dataset.pair_name(pair),
-        if study.dataset.on_axis()[pair] { "yes" } else { "no" }.to_owned(),
+        if study.dataset.on_axis()[pair] {
+            "yes"
+        } else {
+            "no"
+        }
+        .to_owned(),
         treated.to_owned(),
         of(result.wanted_gain(pair), 3),
         of(Some(result.correction.net_gain(pair)), 3),
@@ -213,14 +303,17 @@ fn response_cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [Str
 fn undefined(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
     for (pair, why) in result.comparison.undefined.iter() {
-        let Some(why) = why.map(|why| why.to_string()) else { continue };
+        let Some(why) = why.map(|why| why.to_string()) else {
+            continue;
+        };
         let name = study.dataset.pair_name(pair);
         match reasons.iter_mut().find(|(known, _)| *known == why) {
             Some((_, pairs)) => pairs.push(name),
             None => reasons.push((why, vec![name])),
         }
     }
-    let sentence = |(why, pairs): (String, Vec<String>)| format!("No G and no D of {}: {why}.", names(&pairs));
+    let sentence =
+        |(why, pairs): (String, Vec<String>)| format!("No G and no D of {}: {why}.", names(&pairs));
     reasons.into_iter().map(sentence).collect()
 }
 
@@ -229,32 +322,70 @@ fn add_models(page: &mut Page, study: &Study, result: &ConditionAnalysis, kind: 
     let models = result.condition.bundle(kind);
     let shown = models_shown(study, result, kind);
     let is_physics = kind == BundleKind::Physics;
-    let columns = ["model", "kept", "order", "mean distance [√J]", "discontinuity ratio"];
-    let columns = if is_physics { &columns[..] } else { &columns[..4] };
-    let mut table = Table::new(format!("Condition {}: {kind} models", result.condition.id()), columns.iter().copied());
+    let columns = [
+        "model",
+        "kept",
+        "order",
+        "mean distance [√J]",
+        "discontinuity ratio",
+    ];
+    let columns = if is_physics {
+        &columns[..]
+    } else {
+        &columns[..4]
+    };
+    let mut table = Table::new(
+        format!("Condition {}: {kind} models", result.condition.id()),
+        columns.iter().copied(),
+    );
     for &index in &shown {
         let model = &models[index];
-        let ratio = result.discontinuity_ratio(&model.name).filter(|_| is_physics);
-        let mark = if ratio.is_some_and(|ratio| ratio > SUGGESTION_RATIO) { " (suspect)" } else { "" };
+        let ratio = result
+            .discontinuity_ratio(&model.name)
+            .filter(|_| is_physics);
+        let mark = if ratio.is_some_and(|ratio| ratio > SUGGESTION_RATIO) {
+            " (suspect)"
+        } else {
+            ""
+        };
         table.row([
             model.name.clone(),
             kept_word(study, result, kind, &model.name).to_owned(),
-            model.order().map_or("–".to_owned(), |order| order.to_string()),
-            result.score(kind, &model.name).map_or("–".to_owned(), |score| decimals(score, 2)),
-            ratio.map_or("–".to_owned(), |ratio| format!("{}{mark}", decimals(ratio, 2))),
+            model
+                .order()
+                .map_or("–".to_owned(), |order| order.to_string()),
+            result
+                .score(kind, &model.name)
+                .map_or("–".to_owned(), |score| decimals(score, 2)),
+            ratio.map_or("–".to_owned(), |ratio| {
+                format!("{}{mark}", decimals(ratio, 2))
+            }),
         ]);
     }
     page.table(&table);
     if shown.len() < models.len() {
-        page.paragraph(&format!("{} of {} {kind} models are listed and drawn.", shown.len(), models.len()));
+        page.paragraph(&format!(
+            "{} of {} {kind} models are listed and drawn.",
+            shown.len(),
+            models.len()
+        ));
     }
 }
 
-fn kept_word(study: &Study, result: &ConditionAnalysis, kind: BundleKind, name: &str) -> &'static str {
+fn kept_word(
+    study: &Study,
+    result: &ConditionAnalysis,
+    kind: BundleKind,
+    name: &str,
+) -> &'static str {
     let id = ModelId::new(result.condition.id(), kind, name);
     if study.is_rejected(&id) {
         "rejected"
-    } else if result.cautions.iter().any(|caution| caution.is_set_aside(kind, name)) {
+    } else if result
+        .cautions
+        .iter()
+        .any(|caution| caution.is_set_aside(kind, name))
+    {
         "set aside"
     } else if result.representative_name(kind) == name {
         "represents"
@@ -271,7 +402,10 @@ fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSour
     let id = source.curves.condition.id();
     let measuring: Vec<Pair> = source.study.dataset.measuring_pairs().marked().collect();
     let drawn = &measuring[..measuring.len().min(PAIRS_DRAWN)];
-    let options = BodeOptions { hidden_models: models_hidden(source.study, result), ..BodeOptions::default() };
+    let options = BodeOptions {
+        hidden_models: models_hidden(source.study, result),
+        ..BodeOptions::default()
+    };
     for pairs in drawn.chunks(IN_A_FIGURE) {
         let title = format!("Condition {id}, responses{}", on_axis_words(source));
         let caption = "Magnitude and phase of every model, and of the representative under its own and under the scheduled \
@@ -280,20 +414,41 @@ fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSour
         let title = format!("Condition {id}, what the fit sees of them");
         let caption = "Ratio and phase difference of the identified representative and each kept physics model, with G, D, the \
                        bounds and the quantiles.";
-        page.figure(&without_values(error_figure(source, pairs, &options)), &title, caption);
+        page.figure(
+            &without_values(error_figure(source, pairs, &options)),
+            &title,
+            caption,
+        );
     }
     if drawn.len() < measuring.len() {
-        page.paragraph(&format!("{} of {} responses that measure a model are drawn.", drawn.len(), measuring.len()));
+        page.paragraph(&format!(
+            "{} of {} responses that measure a model are drawn.",
+            drawn.len(),
+            measuring.len()
+        ));
     }
     let few = BTreeSet::from([Role::Perturbed, Role::Identified, Role::Rejected]);
-    let overview = overview_figure(source, &BodeOptions { hidden: few, ..options.clone() });
+    let overview = overview_figure(
+        source,
+        &BodeOptions {
+            hidden: few,
+            ..options.clone()
+        },
+    );
     if overview.plots.len() <= 6 * IN_A_FIGURE {
         let title = format!("Condition {id}, magnitude of every response");
-        page.figure(&overview, &title, "With J before and after the correction; * is held exactly.");
+        page.figure(
+            &overview,
+            &title,
+            "With J before and after the correction; * is held exactly.",
+        );
     }
     if let Ok(modes) = ConditionModes::of(&source.curves.condition, &Unobserved) {
         let title = format!("Condition {id}, poles of its models");
-        let shifts = source.analysis.map(ConditionAnalysis::pole_shifts).unwrap_or_default();
+        let shifts = source
+            .analysis
+            .map(ConditionAnalysis::pole_shifts)
+            .unwrap_or_default();
         page.figure(
             &poles_figure(source, &modes, &options, (&|_| Vec::new(), &shifts)),
             &title,
@@ -315,7 +470,11 @@ fn without_values(mut figure: Figure) -> Figure {
 
 /// " on axis" where some responses are; all of them measure a model otherwise.
 fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
-    if source.study.dataset.on_axis().marked().next().is_some() { " on axis" } else { "" }
+    if source.study.dataset.on_axis().marked().next().is_some() {
+        " on axis"
+    } else {
+        ""
+    }
 }
 
 /// The models of a bundle that are listed and drawn, by their places: all of a short one; of a long one the representative, the nominal
@@ -332,7 +491,9 @@ fn models_shown(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> 
         let is_suggested = kind == BundleKind::Physics && suggested.contains(name);
         models[*index].is_nominal() || result.representative_name(kind) == name || is_suggested
     };
-    let rejected = (0..models.len()).filter(|&index| study.is_rejected(&id(index))).take(MODELS_SHOWN / 2);
+    let rejected = (0..models.len())
+        .filter(|&index| study.is_rejected(&id(index)))
+        .take(MODELS_SHOWN / 2);
     let first = (0..models.len()).filter(matters).chain(rejected);
     let evenly = (0..MODELS_SHOWN).map(|part| part * models.len() / MODELS_SHOWN);
     let mut shown = BTreeSet::new();

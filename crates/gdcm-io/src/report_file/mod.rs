@@ -39,9 +39,16 @@ impl ReportSource {
     /// The files of a study: its dataset, and its own where it has one. They are named without their folders, so that the report
     /// is the same wherever they are.
     pub fn of(loaded: &LoadedDataset, study: Option<&Path>) -> Self {
-        let study = study.and_then(Path::file_name).map(|name| sanitized(&name.to_string_lossy()));
+        let study = study
+            .and_then(Path::file_name)
+            .map(|name| sanitized(&name.to_string_lossy()));
         let cautions = loaded.cautions.clone();
-        Self { study, dataset: loaded.file_name(), sha256: loaded.sha256.clone(), cautions }
+        Self {
+            study,
+            dataset: loaded.file_name(),
+            sha256: loaded.sha256.clone(),
+            cautions,
+        }
     }
 }
 
@@ -78,13 +85,33 @@ pub fn report(
     schedule::add_schedule(&mut page, analysis);
     assessment::add_uncertainty(&mut page, analysis);
     assessment::add_assessment(&mut page, analysis);
-    requirements::add_requirements(&mut page, ReportSubject { analysis, ..subject }, engine, progress)?;
+    requirements::add_requirements(
+        &mut page,
+        ReportSubject {
+            analysis,
+            ..subject
+        },
+        engine,
+        progress,
+    )?;
     page.section("The method");
     page.fixed(include_str!("method.html"));
     study::add_models(&mut page, &analysis.study);
-    let title = format!("Gain and delay corrections of {}", analysis.study.dataset.name());
-    let study = source.study.as_ref().map_or(String::new(), |study| format!("Study {study}. "));
-    Ok(page.finish(&title, &[format!("{study}Dataset {}. Made by {PROGRAM}.", source.dataset)]))
+    let title = format!(
+        "Gain and delay corrections of {}",
+        analysis.study.dataset.name()
+    );
+    let study = source
+        .study
+        .as_ref()
+        .map_or(String::new(), |study| format!("Study {study}. "));
+    Ok(page.finish(
+        &title,
+        &[format!(
+            "{study}Dataset {}. Made by {PROGRAM}.",
+            source.dataset
+        )],
+    ))
 }
 
 /// Tells whether the report is still wanted, and nothing of the steps within one of its own.

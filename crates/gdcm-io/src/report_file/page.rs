@@ -20,7 +20,12 @@ pub(super) const NAMES_SHOWN: usize = 12;
 
 /// Names with commas; of many, the first, and how many more there are.
 pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
-    let shown = all.iter().take(NAMES_SHOWN).map(AsRef::as_ref).collect::<Vec<_>>().join(", ");
+    let shown = all
+        .iter()
+        .take(NAMES_SHOWN)
+        .map(AsRef::as_ref)
+        .collect::<Vec<_>>()
+        .join(", ");
     match all.len().saturating_sub(NAMES_SHOWN) {
         0 => shown,
         more => format!("{shown} and {more} more"),
@@ -72,8 +77,14 @@ impl Page {
     }
 
     fn heading(&mut self, tag: &str, number: String, title: &str) {
-        self.body.push_str(&format!("<{tag} id=\"s{number}\">{number} {}</{tag}>\n", words(title)));
-        self.headings.push(Heading { number, title: title.to_owned() });
+        self.body.push_str(&format!(
+            "<{tag} id=\"s{number}\">{number} {}</{tag}>\n",
+            words(title)
+        ));
+        self.headings.push(Heading {
+            number,
+            title: title.to_owned(),
+        });
     }
 
     /// A heading within a part, which the contents do not list.
@@ -97,7 +108,10 @@ impl Page {
     }
 
     fn list_of(&mut self, class: &str, items: impl IntoIterator<Item = impl AsRef<str>>) {
-        let items: String = items.into_iter().map(|item| element("li", item.as_ref())).collect();
+        let items: String = items
+            .into_iter()
+            .map(|item| element("li", item.as_ref()))
+            .collect();
         if !items.is_empty() {
             self.body.push_str(&format!("<ul{class}>\n{items}</ul>\n"));
         }
@@ -107,7 +121,11 @@ impl Page {
     pub(super) fn facts<'a>(&mut self, facts: impl IntoIterator<Item = (&'a str, String)>) {
         self.body.push_str("<table class=\"facts\"><tbody>\n");
         for (name, value) in facts {
-            self.body.push_str(&format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", words(name), words(&value)));
+            self.body.push_str(&format!(
+                "<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n",
+                words(name),
+                words(&value)
+            ));
         }
         self.body.push_str("</tbody></table>\n");
     }
@@ -119,20 +137,33 @@ impl Page {
         }
         let more = table.rows.len().saturating_sub(ROWS);
         self.tables += 1;
-        let classes: Vec<&str> = (0..table.columns.len()).map(|column| class_of(table, column)).collect();
+        let classes: Vec<&str> = (0..table.columns.len())
+            .map(|column| class_of(table, column))
+            .collect();
         let row = |tag: &str, cells: &[String]| {
-            let cells = cells.iter().zip(&classes).map(|(text, class)| match *class {
-                "" => element(tag, text),
-                class => classed(tag, class, text),
-            });
+            let cells = cells
+                .iter()
+                .zip(&classes)
+                .map(|(text, class)| match *class {
+                    "" => element(tag, text),
+                    class => classed(tag, class, text),
+                });
             format!("<tr>\n{}</tr>\n", cells.collect::<String>())
         };
-        let class = if table.rows.len() <= ROWS_ON_A_SHEET { " class=\"whole\"" } else { "" };
+        let class = if table.rows.len() <= ROWS_ON_A_SHEET {
+            " class=\"whole\""
+        } else {
+            ""
+        };
         let title = format!("Table {}. {}", self.tables, table.title);
-        self.body.push_str(&format!("<table{class}>\n{}<thead>\n", element("caption", &title)));
+        self.body.push_str(&format!(
+            "<table{class}>\n{}<thead>\n",
+            element("caption", &title)
+        ));
         self.body.push_str(&row("th", &table.columns));
         self.body.push_str("</thead>\n<tbody>\n");
-        self.body.extend(table.rows.iter().take(ROWS).map(|cells| row("td", cells)));
+        self.body
+            .extend(table.rows.iter().take(ROWS).map(|cells| row("td", cells)));
         self.body.push_str("</tbody>\n</table>\n");
         if more > 0 {
             self.paragraph(&format!("{more} more rows are left out here."));
@@ -149,7 +180,11 @@ impl Page {
         for from in (heads..table.columns.len()).step_by(columns) {
             let part = |cells: &[String]| {
                 let to = (from + columns).min(cells.len());
-                cells[..heads].iter().chain(&cells[from..to]).cloned().collect::<Vec<_>>()
+                cells[..heads]
+                    .iter()
+                    .chain(&cells[from..to])
+                    .cloned()
+                    .collect::<Vec<_>>()
             };
             let mut sheet = Table::new(table.title.clone(), part(&table.columns));
             sheet.rows = table.rows.iter().map(|row| part(row)).collect();
@@ -160,12 +195,22 @@ impl Page {
     /// A figure under its number, with these words in place of its own title and caption.
     pub(super) fn figure(&mut self, figure: &Figure, title: &str, caption: &str) {
         self.figures += 1;
-        let bare = Figure { title: String::new(), caption: String::new(), ..figure.clone() };
+        let bare = Figure {
+            title: String::new(),
+            caption: String::new(),
+            ..figure.clone()
+        };
         let drawing = bare.drawing(ColumnWidth::Double).thinned(TOLERANCE_PT);
-        let drawing = Drawing { title: title.to_owned(), ..drawing };
+        let drawing = Drawing {
+            title: title.to_owned(),
+            ..drawing
+        };
         let svg = inline_svg(&drawing, &format!("f{}-", self.figures));
         let caption = format!("Figure {}. {title}. {caption}", self.figures);
-        self.body.push_str(&format!("<figure>\n{svg}{}</figure>\n", element("figcaption", caption.trim_end())));
+        self.body.push_str(&format!(
+            "<figure>\n{svg}{}</figure>\n",
+            element("figcaption", caption.trim_end())
+        ));
     }
 
     /// Markup of the program itself.
@@ -175,7 +220,10 @@ impl Page {
 
     /// The whole page under a title, which `lines` stand below.
     pub(super) fn finish(self, title: &str, lines: &[String]) -> String {
-        let below: String = lines.iter().map(|line| classed("p", "below", line)).collect();
+        let below: String = lines
+            .iter()
+            .map(|line| classed("p", "below", line))
+            .collect();
         let contents = self.contents();
         let (head, style) = (words(title), STYLE.trim_end());
         let body = self.body;
@@ -190,8 +238,15 @@ impl Page {
 
     fn contents(&self) -> String {
         let entry = |Heading { number, title }: &Heading| {
-            let class = if number.contains('.') { "part" } else { "section" };
-            format!("<li class=\"{class}\"><a href=\"#s{number}\">{number} {}</a></li>\n", words(title))
+            let class = if number.contains('.') {
+                "part"
+            } else {
+                "section"
+            };
+            format!(
+                "<li class=\"{class}\"><a href=\"#s{number}\">{number} {}</a></li>\n",
+                words(title)
+            )
         };
         let entries: String = self.headings.iter().map(entry).collect();
         format!("<nav aria-label=\"Contents\">\n<h2>Contents</h2>\n<ul>\n{entries}</ul>\n</nav>\n")
@@ -200,7 +255,10 @@ impl Page {
 
 /// Whether a column is one of figures, or of words so short that they stand in one line.
 fn class_of(table: &Table, column: usize) -> &'static str {
-    let is_short = table.rows.iter().all(|row| row[column].chars().count() <= SHORT);
+    let is_short = table
+        .rows
+        .iter()
+        .all(|row| row[column].chars().count() <= SHORT);
     match (table.has_numbers(column), is_short) {
         (true, _) => "n",
         (false, true) => "s",
@@ -252,41 +310,87 @@ mod tests {
 
     /// The document type is HTML's, which names no other file.
     fn parsed(text: &str) -> Document<'_> {
-        Document::parse_with_options(text, ParsingOptions { allow_dtd: true, ..ParsingOptions::default() }).unwrap()
+        Document::parse_with_options(
+            text,
+            ParsingOptions {
+                allow_dtd: true,
+                ..ParsingOptions::default()
+            },
+        )
+        .unwrap()
     }
 
     #[test]
     fn sections_tables_and_figures_are_numbered_and_the_contents_lead_to_them() {
         let text = page();
         let document = parsed(&text);
-        let of = |tag: &'static str| document.descendants().filter(move |node| node.has_tag_name(tag));
+        let of = |tag: &'static str| {
+            document
+                .descendants()
+                .filter(move |node| node.has_tag_name(tag))
+        };
         let links: Vec<&str> = of("a").filter_map(|node| node.attribute("href")).collect();
         assert_eq!(links, ["#s1", "#s1.1", "#s2"]);
-        let ids: BTreeSet<&str> = document.descendants().filter_map(|node| node.attribute("id")).collect();
+        let ids: BTreeSet<&str> = document
+            .descendants()
+            .filter_map(|node| node.attribute("id"))
+            .collect();
         assert!(links.iter().all(|link| ids.contains(&link[1..])));
         let captions: Vec<&str> = of("figcaption").filter_map(|node| node.text()).collect();
-        assert_eq!(captions, ["Figure 1. One. It has a caption.", "Figure 2. Two."]);
-        assert_eq!(of("caption").filter_map(|node| node.text()).collect::<Vec<_>>(), ["Table 1. Gains & delays"]);
+        assert_eq!(
+            captions,
+            ["Figure 1. One. It has a caption.", "Figure 2. Two."]
+        );
+        assert_eq!(
+            of("caption")
+                .filter_map(|node| node.text())
+                .collect::<Vec<_>>(),
+            ["Table 1. Gains & delays"]
+        );
     }
 
     #[test]
     fn no_two_parts_of_a_page_share_a_name_and_every_name_that_is_referred_to_is_there() {
         let text = page();
         let document = parsed(&text);
-        let ids: Vec<&str> = document.descendants().filter_map(|node| node.attribute("id")).collect();
-        assert_eq!(ids.iter().collect::<BTreeSet<_>>().len(), ids.len(), "{ids:?}");
-        let clips: Vec<&str> = document.descendants().filter_map(|node| node.attribute("clip-path")).collect();
+        let ids: Vec<&str> = document
+            .descendants()
+            .filter_map(|node| node.attribute("id"))
+            .collect();
+        assert_eq!(
+            ids.iter().collect::<BTreeSet<_>>().len(),
+            ids.len(),
+            "{ids:?}"
+        );
+        let clips: Vec<&str> = document
+            .descendants()
+            .filter_map(|node| node.attribute("clip-path"))
+            .collect();
         assert_eq!(clips.len(), 4);
-        assert!(clips.iter().all(|clip| ids.contains(&&clip["url(#".len()..clip.len() - 1])), "{clips:?}");
+        assert!(
+            clips
+                .iter()
+                .all(|clip| ids.contains(&&clip["url(#".len()..clip.len() - 1])),
+            "{clips:?}"
+        );
     }
 
     #[test]
     fn a_figure_says_what_it_shows_to_who_cannot_see_it() {
         let text = page();
         let document = parsed(&text);
-        let labels: Vec<_> = document.descendants().filter(|node| node.has_tag_name("svg")).collect();
-        let said = labels.iter().map(|svg| (svg.attribute("role"), svg.attribute("aria-label"))).collect::<Vec<_>>();
-        assert_eq!(said, [(Some("img"), Some("One")), (Some("img"), Some("Two"))]);
+        let labels: Vec<_> = document
+            .descendants()
+            .filter(|node| node.has_tag_name("svg"))
+            .collect();
+        let said = labels
+            .iter()
+            .map(|svg| (svg.attribute("role"), svg.attribute("aria-label")))
+            .collect::<Vec<_>>();
+        assert_eq!(
+            said,
+            [(Some("img"), Some("One")), (Some("img"), Some("Two"))]
+        );
     }
 
     #[test]
@@ -306,6 +410,10 @@ mod tests {
     fn of_many_names_the_first_are_given_and_the_others_counted() {
         assert_eq!(names(&["a", "b"]), "a, b");
         let many: Vec<String> = (0..1000).map(|number| number.to_string()).collect();
-        assert!(names(&many).ends_with("10, 11 and 988 more"), "{}", names(&many));
+        assert!(
+            names(&many).ends_with("10, 11 and 988 more"),
+            "{}",
+            names(&many)
+        );
     }
 }

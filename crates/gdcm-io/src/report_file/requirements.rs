@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use gdcm_model::dataset::ConditionId;
 use gdcm_study::study::{
-    BandwidthFinding, Cancelled, Engine, Progress, Requirements, RequirementsOverview, Study, Table, TimeHistories,
+    BandwidthFinding, Cancelled, Engine, Progress, Requirements, RequirementsOverview, Study,
+    Table, TimeHistories,
 };
 
 use super::page::Page;
@@ -20,7 +21,11 @@ const COLUMNS: usize = 9;
 /// [`Cancelled`] soon after `progress` says so.
 pub(super) fn add_requirements(
     page: &mut Page,
-    ReportSubject { analysis, histories, known }: ReportSubject<'_>,
+    ReportSubject {
+        analysis,
+        histories,
+        known,
+    }: ReportSubject<'_>,
     engine: &Engine,
     progress: &dyn Progress,
 ) -> Result<(), Cancelled> {
@@ -45,8 +50,18 @@ pub(super) fn add_requirements(
     if let Some(histories) = histories {
         add_histories(page, histories);
     }
-    let missing = requirements.missing.iter().map(|of| (of.condition, format!("no {}: {}", of.what, of.why)));
-    page.list(by_words(missing.chain(requirements.cautions.iter().map(|of| (Some(of.condition), of.text.clone())))));
+    let missing = requirements
+        .missing
+        .iter()
+        .map(|of| (of.condition, format!("no {}: {}", of.what, of.why)));
+    page.list(by_words(
+        missing.chain(
+            requirements
+                .cautions
+                .iter()
+                .map(|of| (Some(of.condition), of.text.clone())),
+        ),
+    ));
     Ok(())
 }
 
@@ -59,17 +74,27 @@ fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
          which 45\u{b0} of phase margin and 6 dB of gain margin are left; the phase delay is the phase lost from \u{3c9}180 to \
          2 \u{3c9}180 over 2 \u{3c9}180. Levels depend on the mission task and the category; only the engineer's own are drawn.",
     );
-    let is_known = |of: &&BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
-    let (known, unknown): (Vec<&BandwidthFinding>, Vec<_>) = requirements.bandwidth.iter().partition(is_known);
+    let is_known =
+        |of: &&BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
+    let (known, unknown): (Vec<&BandwidthFinding>, Vec<_>) =
+        requirements.bandwidth.iter().partition(is_known);
     if !known.is_empty() {
         let figure = requirements_figure(requirements, dataset, &study.requirements.levels);
         let caption = "Phase delay over bandwidth; arrows lead from physics to corrected models.";
         page.figure(&figure, &figure.title, caption);
     }
-    let known = Requirements { bandwidth: known.into_iter().cloned().collect(), ..requirements.clone() };
+    let known = Requirements {
+        bandwidth: known.into_iter().cloned().collect(),
+        ..requirements.clone()
+    };
     page.table(&known.bandwidth_table(dataset));
     let why = |of: &BandwidthFinding| of.absent.get("omega_bw_rad_s").cloned().unwrap_or_default();
-    let reason = |of: &BandwidthFinding| (Some(of.condition), format!("{}: {}", dataset.pair_name(of.pair), why(of)));
+    let reason = |of: &BandwidthFinding| {
+        (
+            Some(of.condition),
+            format!("{}: {}", dataset.pair_name(of.pair), why(of)),
+        )
+    };
     page.list(by_words(unknown.into_iter().map(reason)));
 }
 
@@ -80,9 +105,12 @@ fn add_modes(page: &mut Page, requirements: &Requirements) {
          table C2A, 2.c.3.a and 2.d.3.a. Gains and delays move no pole; couplings do, and where there are some the corrected model's \
          stand beside them.",
     );
-    let mut conditions: Vec<ConditionId> = requirements.modes.iter().map(|of| of.condition).collect();
+    let mut conditions: Vec<ConditionId> =
+        requirements.modes.iter().map(|of| of.condition).collect();
     conditions.dedup();
-    conditions.into_iter().for_each(|id| page.wide_table(&requirements.mode_table(id), COLUMNS));
+    conditions
+        .into_iter()
+        .for_each(|id| page.wide_table(&requirements.mode_table(id), COLUMNS));
 }
 
 /// Time histories within tolerances, and what is not compared.
@@ -100,19 +128,42 @@ fn add_histories(page: &mut Page, histories: &TimeHistories) {
     page.table(&tolerance_table(histories));
     if !histories.records.is_empty() {
         page.table(&histories.share_table());
-        histories.conditions().into_iter().for_each(|(id, _)| page.table(&histories.record_table(id)));
+        histories
+            .conditions()
+            .into_iter()
+            .for_each(|(id, _)| page.table(&histories.record_table(id)));
     }
-    page.list(by_words(histories.missing.iter().map(|of| (of.condition, of.why.clone()))));
+    page.list(by_words(
+        histories
+            .missing
+            .iter()
+            .map(|of| (of.condition, of.why.clone())),
+    ));
 }
 
 /// The tolerances asked for.
 fn tolerance_table(histories: &TimeHistories) -> Table {
-    let mut table = Table::new("Tolerances", ["quantity", "from", "absolute", "relative [%]", "entry"]);
+    let mut table = Table::new(
+        "Tolerances",
+        ["quantity", "from", "absolute", "relative [%]", "entry"],
+    );
     for row in histories.tolerance_table.rows() {
-        let from = if row.integrated { format!("integral of {}", row.channel) } else { row.channel.clone() };
+        let from = if row.integrated {
+            format!("integral of {}", row.channel)
+        } else {
+            row.channel.clone()
+        };
         let absolute = format!("\u{b1}{} {}", row.absolute, row.unit);
-        let relative = row.relative.map_or_else(String::new, |share| format!("\u{b1}{}", 100.0 * share));
-        table.row([row.quantity.clone(), from, absolute, relative, row.entry.clone()]);
+        let relative = row
+            .relative
+            .map_or_else(String::new, |share| format!("\u{b1}{}", 100.0 * share));
+        table.row([
+            row.quantity.clone(),
+            from,
+            absolute,
+            relative,
+            row.entry.clone(),
+        ]);
     }
     table
 }

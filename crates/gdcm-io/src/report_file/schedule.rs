@@ -8,7 +8,9 @@ use gdcm_study::study::{Analysis, Study, Table};
 
 use super::page::{PAIRS_DRAWN, Page, names};
 use super::study::schedule_words;
-use gdcm_plot::figure::{Across, Measure, all_channels, channels_figure, net_gain_figure, quantity_symbol};
+use gdcm_plot::figure::{
+    Across, Measure, all_channels, channels_figure, net_gain_figure, quantity_symbol,
+};
 use gdcm_plot::figure::{compact, decimals};
 
 /// Channels in one figure, in two rows.
@@ -23,11 +25,19 @@ pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     page.section("Channels and schedule");
     page.subsection("Channels over the conditions");
     let is_input = |channel: &Channel| matches!(channel, Channel::Input(_));
-    let (inputs, outputs): (Vec<_>, Vec<_>) = all_channels(&analysis.study.dataset).into_iter().partition(is_input);
+    let (inputs, outputs): (Vec<_>, Vec<_>) = all_channels(&analysis.study.dataset)
+        .into_iter()
+        .partition(is_input);
     for (measure, what) in [(Measure::Gain, "Gains"), (Measure::Delay, "Delays")] {
         for (of, channels) in [("inputs", &inputs), ("outputs", &outputs)] {
             let title = format!("{what} of the {of} over conditions");
-            add_channels(page, analysis, channels, (measure, Across::Conditions), &title);
+            add_channels(
+                page,
+                analysis,
+                channels,
+                (measure, Across::Conditions),
+                &title,
+            );
         }
     }
     page.subsection("Schedule over airspeed");
@@ -45,7 +55,12 @@ fn add_channels(
     title: &str,
 ) {
     for channels in channels.chunks(IN_A_FIGURE) {
-        let figure = channels_figure(analysis, analysis.uncertainty.as_deref(), channels, (measure, across));
+        let figure = channels_figure(
+            analysis,
+            analysis.uncertainty.as_deref(),
+            channels,
+            (measure, across),
+        );
         let caption = "Each condition's optimum, within the bounds it was looked for in; dashed: no correction.";
         page.figure(&figure, title, caption);
     }
@@ -53,30 +68,61 @@ fn add_channels(
 
 fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, channels: &[Channel]) {
     let (inputs, outputs) = analysis.study.dataset.names_of_channels();
-    let (low, high) = (number(schedule.airspeeds.min_kt), number(schedule.airspeeds.max_kt));
+    let (low, high) = (
+        number(schedule.airspeeds.min_kt),
+        number(schedule.airspeeds.max_kt),
+    );
     let left_out = not_scheduled(analysis);
     page.facts([
         ("Form", schedule_words(&schedule.settings)),
-        ("Degree used", schedule.degree().map_or("–".to_owned(), |degree| degree.to_string())),
-        ("Airspeeds", format!("{low} to {high} kt; outside, the end value holds")),
-        ("Conditions left out of it", if left_out.is_empty() { "none".to_owned() } else { names(&left_out) }),
+        (
+            "Degree used",
+            schedule
+                .degree()
+                .map_or("–".to_owned(), |degree| degree.to_string()),
+        ),
+        (
+            "Airspeeds",
+            format!("{low} to {high} kt; outside, the end value holds"),
+        ),
+        (
+            "Conditions left out of it",
+            if left_out.is_empty() {
+                "none".to_owned()
+            } else {
+                names(&left_out)
+            },
+        ),
     ]);
-    let price = schedule.lead_price().map(|price| format!("Leads: {}.", price.words(&inputs, &outputs)));
-    let cautions = schedule.cautions.iter().map(|of| format!("Caution: {}.", of.words(&inputs, &outputs)));
+    let price = schedule
+        .lead_price()
+        .map(|price| format!("Leads: {}.", price.words(&inputs, &outputs)));
+    let cautions = schedule
+        .cautions
+        .iter()
+        .map(|of| format!("Caution: {}.", of.words(&inputs, &outputs)));
     let left_out = analysis.unscheduled_delays().into_iter();
     let left_out = left_out.map(|of| format!("Left out: {}.", of.words(&analysis.study.dataset)));
     page.list(price.into_iter().chain(cautions).chain(left_out));
     add_coefficients(page, schedule, (&inputs, &outputs));
     add_gains(page, analysis, schedule);
-    let measures =
-        [(Measure::Gain, "gains")].into_iter().chain(schedule.has_delays().then_some((Measure::Delay, "delays")));
+    let measures = [(Measure::Gain, "gains")]
+        .into_iter()
+        .chain(schedule.has_delays().then_some((Measure::Delay, "delays")));
     for (measure, what) in measures {
         let title = format!("Channel {what} over airspeed, and their schedule");
-        add_channels(page, analysis, channels, (measure, Across::Airspeed), &title);
+        add_channels(
+            page,
+            analysis,
+            channels,
+            (measure, Across::Airspeed),
+            &title,
+        );
     }
     for pairs in shown_pairs(&analysis.study).chunks(PAIRS_IN_A_FIGURE) {
         let figure = net_gain_figure(analysis, analysis.uncertainty.as_deref(), pairs);
-        let caption = "Each condition's optimum with its number, and the schedule; dashed: no correction.";
+        let caption =
+            "Each condition's optimum with its number, and the schedule; dashed: no correction.";
         page.figure(&figure, "Net gains against airspeed", caption);
     }
 }
@@ -84,8 +130,15 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
 /// The conditions that have a result and are left out of the schedule by hand.
 fn not_scheduled(analysis: &Analysis) -> Vec<String> {
     let scheduled: Vec<ConditionId> = analysis.scheduled();
-    let all = analysis.study.dataset.conditions().iter().map(|condition| condition.id());
-    all.filter(|id| !scheduled.contains(id)).map(|id| id.to_string()).collect()
+    let all = analysis
+        .study
+        .dataset
+        .conditions()
+        .iter()
+        .map(|condition| condition.id());
+    all.filter(|id| !scheduled.contains(id))
+        .map(|id| id.to_string())
+        .collect()
 }
 
 /// The responses that measure a model, and those held.
@@ -95,13 +148,20 @@ fn shown_pairs(study: &Study) -> Vec<Pair> {
     shown.marked().take(PAIRS_DRAWN).collect()
 }
 
-fn add_coefficients(page: &mut Page, schedule: &Schedule, (inputs, outputs): (&[String], &[String])) {
+fn add_coefficients(
+    page: &mut Page,
+    schedule: &Schedule,
+    (inputs, outputs): (&[String], &[String]),
+) {
     let found = schedule.coefficients(inputs, outputs);
     let of = quantity_symbol(schedule.settings.quantity);
     let title = if found.scale.is_empty() {
         format!("The schedule: {of} at each airspeed, linear between")
     } else {
-        format!("The schedule: coefficients of {of} in the scaled airspeed, {}", found.scale)
+        format!(
+            "The schedule: coefficients of {of} in the scaled airspeed, {}",
+            found.scale
+        )
     };
     let columns = std::iter::once("channel".to_owned()).chain(found.columns.iter().cloned());
     let mut table = Table::new(title, columns);
@@ -118,19 +178,49 @@ fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let (inputs, outputs) = dataset.names_of_channels();
     let (channels, pairs) = (all_channels(dataset), shown_pairs(&analysis.study));
     let named = |symbol: &str| -> Vec<String> {
-        channels.iter().map(|channel| format!("{symbol}_{}", channel.name(&inputs, &outputs))).collect()
+        channels
+            .iter()
+            .map(|channel| format!("{symbol}_{}", channel.name(&inputs, &outputs)))
+            .collect()
     };
-    add_over_airspeed(page, schedule, "Scheduled gains of the channels", &named("k"), |correction| {
-        channels.iter().map(|channel| decimals(correction.gain(*channel), 4)).collect()
-    });
+    add_over_airspeed(
+        page,
+        schedule,
+        "Scheduled gains of the channels",
+        &named("k"),
+        |correction| {
+            channels
+                .iter()
+                .map(|channel| decimals(correction.gain(*channel), 4))
+                .collect()
+        },
+    );
     let names: Vec<String> = pairs.iter().map(|pair| dataset.pair_name(*pair)).collect();
-    add_over_airspeed(page, schedule, "Scheduled net gains", &names, |correction| {
-        pairs.iter().map(|pair| decimals(correction.net_gain(*pair), 4)).collect()
-    });
+    add_over_airspeed(
+        page,
+        schedule,
+        "Scheduled net gains",
+        &names,
+        |correction| {
+            pairs
+                .iter()
+                .map(|pair| decimals(correction.net_gain(*pair), 4))
+                .collect()
+        },
+    );
     if schedule.has_delays() {
-        add_over_airspeed(page, schedule, "Scheduled delays of the channels [ms]", &named("τ"), |correction| {
-            channels.iter().map(|channel| decimals(s_to_ms(correction.delay_s(*channel)), 2)).collect()
-        });
+        add_over_airspeed(
+            page,
+            schedule,
+            "Scheduled delays of the channels [ms]",
+            &named("τ"),
+            |correction| {
+                channels
+                    .iter()
+                    .map(|channel| decimals(s_to_ms(correction.delay_s(*channel)), 2))
+                    .collect()
+            },
+        );
     }
 }
 
@@ -142,9 +232,13 @@ fn add_over_airspeed(
     names: &[String],
     cells: impl Fn(&ChannelCorrection) -> Vec<String>,
 ) {
-    let mut table = Table::new(title, std::iter::once("V [kt]").chain(names.iter().map(String::as_str)));
+    let mut table = Table::new(
+        title,
+        std::iter::once("V [kt]").chain(names.iter().map(String::as_str)),
+    );
     for airspeed_kt in schedule.airspeeds.clusters_kt() {
-        table.row(std::iter::once(decimals(airspeed_kt, 1)).chain(cells(&schedule.at(airspeed_kt))));
+        table
+            .row(std::iter::once(decimals(airspeed_kt, 1)).chain(cells(&schedule.at(airspeed_kt))));
     }
     page.wide_table(&table, COLUMNS);
 }

@@ -12,7 +12,9 @@ use std::sync::Arc;
 use gdcm_io::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable};
 use gdcm_io::{FolderProgress, read_models, write_mat, write_npz};
 use gdcm_method::correction::GainBounds;
-use gdcm_model::assembly::{Assembly, ChannelRule, FileScope, FoundModel, Headings, Rules, UnitRule};
+use gdcm_model::assembly::{
+    Assembly, ChannelRule, FileScope, FoundModel, Headings, Rules, UnitRule,
+};
 use gdcm_model::dataset::{Band, Dataset, Pair};
 use gdcm_model::response::FrequencyGrid;
 use gdcm_study::study::{Engine, Study, Unobserved, setting};
@@ -45,7 +47,10 @@ const DELAYS_S: [[f64; CHANNELS]; 2] = [[0.01, 0.02, 0.015], [0.005, 0.0, 0.01]]
 /// Known gains of the inputs and of the outputs in a condition.
 fn gains(condition: usize) -> [[f64; CHANNELS]; 2] {
     let k = condition as f64;
-    [[1.0 + 0.05 * k, 0.9 + 0.02 * k, 1.1 - 0.03 * k], [0.95 + 0.03 * k, 1.05 - 0.02 * k, 1.2 - 0.04 * k]]
+    [
+        [1.0 + 0.05 * k, 0.9 + 0.02 * k, 1.1 - 0.03 * k],
+        [0.95 + 0.03 * k, 1.05 - 0.02 * k, 1.2 - 0.04 * k],
+    ]
 }
 
 fn airspeed_kt(condition: usize) -> f64 {
@@ -82,7 +87,20 @@ fn physics_model(condition: usize) -> FileModel {
         -0.6,
         -1.5,
     );
-    let b = Matrix4x3::new(2.0, 0.3, 0.1, 0.2, 3.0 + 0.1 * k, 0.0, 0.1, 0.0, 1.5, 0.0, 0.4, 0.5);
+    let b = Matrix4x3::new(
+        2.0,
+        0.3,
+        0.1,
+        0.2,
+        3.0 + 0.1 * k,
+        0.0,
+        0.1,
+        0.0,
+        1.5,
+        0.0,
+        0.4,
+        0.5,
+    );
     let c = Matrix3x4::new(0.2, 1.0, 0.1, 0.0, 1.0, 0.1, 0.0, 0.2, 0.1, 0.0, 1.0, 0.4);
     let d = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.2);
     let owned = |names: [&str; CHANNELS]| names.map(str::to_owned).to_vec();
@@ -109,16 +127,34 @@ fn identified_model(condition: usize, has_delays: bool) -> FileModel {
     let [inputs, outputs] = ORDER;
     let physics = physics_model(condition);
     let into = DMatrix::from_fn(CHANNELS, CHANNELS, |row, column| {
-        if row == inputs[column] { input_gains[row] * input_factors[row] } else { 0.0 }
+        if row == inputs[column] {
+            input_gains[row] * input_factors[row]
+        } else {
+            0.0
+        }
     });
     let from = DMatrix::from_fn(CHANNELS, CHANNELS, |row, column| {
-        if column == outputs[row] { output_gains[column] / output_factors[column] } else { 0.0 }
+        if column == outputs[row] {
+            output_gains[column] / output_factors[column]
+        } else {
+            0.0
+        }
     });
     let [a, b, c, d] = physics.matrices;
     let in_order = |of: [[&str; CHANNELS]; 2]| {
-        [0, 1].map(|side| ORDER[side].iter().map(|channel| of[side][*channel].to_owned()).collect())
+        [0, 1].map(|side| {
+            ORDER[side]
+                .iter()
+                .map(|channel| of[side][*channel].to_owned())
+                .collect()
+        })
     };
-    let delays = [0, 1].map(|side| ORDER[side].iter().map(|channel| DELAYS_S[side][*channel]).collect());
+    let delays = [0, 1].map(|side| {
+        ORDER[side]
+            .iter()
+            .map(|channel| DELAYS_S[side][*channel])
+            .collect()
+    });
     FileModel {
         condition,
         is_identified: true,
@@ -131,12 +167,23 @@ fn identified_model(condition: usize, has_delays: bool) -> FileModel {
 
 /// The physics model and the identified one of every condition.
 fn models(has_delays: bool) -> Vec<FileModel> {
-    (0..CONDITIONS).flat_map(|condition| [physics_model(condition), identified_model(condition, has_delays)]).collect()
+    (0..CONDITIONS)
+        .flat_map(|condition| {
+            [
+                physics_model(condition),
+                identified_model(condition, has_delays),
+            ]
+        })
+        .collect()
 }
 
 impl FileModel {
     fn stem(&self) -> &'static str {
-        if self.is_identified { "identified" } else { "nominal" }
+        if self.is_identified {
+            "identified"
+        } else {
+            "nominal"
+        }
     }
 
     /// Response of an output to an input of the file at a frequency \[rad/s\], from its matrices.
@@ -145,20 +192,32 @@ impl FileModel {
         let s = Complex::new(0.0, omega);
         let complex = |matrix: &DMatrix<f64>| matrix.map(|value| Complex::new(value, 0.0));
         let resolvent = DMatrix::identity(a.nrows(), a.nrows()) * s - complex(a);
-        let states = resolvent.lu().solve(&complex(b)).expect("no pole on the imaginary axis");
+        let states = resolvent
+            .lu()
+            .solve(&complex(b))
+            .expect("no pole on the imaginary axis");
         let value = (complex(c) * states)[(output, input)] + d[(output, input)];
-        let delay_s = self.delays_s.as_ref().map_or(0.0, |[inputs, outputs]| inputs[input] + outputs[output]);
+        let delay_s = self
+            .delays_s
+            .as_ref()
+            .map_or(0.0, |[inputs, outputs]| inputs[input] + outputs[output]);
         value * Complex::from_polar(1.0, -omega * delay_s)
     }
 
     /// Fields of a struct of MATLAB.
     fn fields(&self) -> Vec<(&'static str, Value)> {
-        let mut fields: Vec<(&str, Value)> =
-            ["A", "B", "C", "D"].into_iter().zip(&self.matrices).map(|(name, matrix)| (name, array(matrix))).collect();
+        let mut fields: Vec<(&str, Value)> = ["A", "B", "C", "D"]
+            .into_iter()
+            .zip(&self.matrices)
+            .map(|(name, matrix)| (name, array(matrix)))
+            .collect();
         let [inputs, outputs] = &self.names;
         let [input_units, output_units] = &self.units;
         fields.extend([("InputName", cell(inputs)), ("OutputName", cell(outputs))]);
-        fields.extend([("InputUnit", cell(input_units)), ("OutputUnit", cell(output_units))]);
+        fields.extend([
+            ("InputUnit", cell(input_units)),
+            ("OutputUnit", cell(output_units)),
+        ]);
         if let Some([inputs, outputs]) = &self.delays_s {
             fields.extend([("InputDelay", row(inputs)), ("OutputDelay", row(outputs))]);
         }
@@ -168,7 +227,11 @@ impl FileModel {
 }
 
 fn array(matrix: &DMatrix<f64>) -> Value {
-    Value::Array(Array::matrix(matrix.nrows(), matrix.ncols(), matrix.as_slice().to_vec()))
+    Value::Array(Array::matrix(
+        matrix.nrows(),
+        matrix.ncols(),
+        matrix.as_slice().to_vec(),
+    ))
 }
 
 fn row(values: &[f64]) -> Value {
@@ -176,11 +239,17 @@ fn row(values: &[f64]) -> Value {
 }
 
 fn text(text: &str) -> Value {
-    Value::Text(TextArray { shape: vec![1, 1], texts: vec![text.to_owned()] })
+    Value::Text(TextArray {
+        shape: vec![1, 1],
+        texts: vec![text.to_owned()],
+    })
 }
 
 fn cell(texts: &[String]) -> Value {
-    Value::Cell(CellArray { shape: vec![texts.len(), 1], values: texts.iter().map(|of| text(of)).collect() })
+    Value::Cell(CellArray {
+        shape: vec![texts.len(), 1],
+        values: texts.iter().map(|of| text(of)).collect(),
+    })
 }
 
 /// A struct array, one element for each list of fields of the same names.
@@ -195,15 +264,25 @@ fn struct_array(elements: Vec<Vec<(&'static str, Value)>>) -> Value {
             }
         }
     }
-    Value::Struct(StructArray { shape: vec![1, count], fields })
+    Value::Struct(StructArray {
+        shape: vec![1, count],
+        fields,
+    })
 }
 
 fn variable(name: &str, value: Value) -> Variable {
-    Variable { name: name.to_owned(), value }
+    Variable {
+        name: name.to_owned(),
+        value,
+    }
 }
 
 fn condition_folder(root: &Path, condition: usize) -> std::path::PathBuf {
-    let folder = root.join(format!("c{}_{:03.0}kt", condition + 1, airspeed_kt(condition)));
+    let folder = root.join(format!(
+        "c{}_{:03.0}kt",
+        condition + 1,
+        airspeed_kt(condition)
+    ));
     std::fs::create_dir_all(&folder).unwrap();
     folder
 }
@@ -216,21 +295,38 @@ fn stacked(models: &[&FileModel], matrix: usize, pages_first: bool) -> Value {
     if pages_first {
         for column in 0..columns {
             for row in 0..rows {
-                values.extend(models.iter().map(|model| model.matrices[matrix][(row, column)]));
+                values.extend(
+                    models
+                        .iter()
+                        .map(|model| model.matrices[matrix][(row, column)]),
+                );
             }
         }
         let shape = vec![models.len(), rows, columns];
-        return Value::Array(Array { shape, kind: ElementKind::Float, re: values, im: None });
+        return Value::Array(Array {
+            shape,
+            kind: ElementKind::Float,
+            re: values,
+            im: None,
+        });
     }
     for model in models {
         values.extend_from_slice(model.matrices[matrix].as_slice());
     }
-    Value::Array(Array { shape: vec![rows, columns, models.len()], kind: ElementKind::Float, re: values, im: None })
+    Value::Array(Array {
+        shape: vec![rows, columns, models.len()],
+        kind: ElementKind::Float,
+        re: values,
+        im: None,
+    })
 }
 
 /// The models of one role in their order.
 fn of_role(models: &[FileModel], is_identified: bool) -> Vec<&FileModel> {
-    models.iter().filter(|model| model.is_identified == is_identified).collect()
+    models
+        .iter()
+        .filter(|model| model.is_identified == is_identified)
+        .collect()
 }
 
 // The forms, each written into a folder.
@@ -249,7 +345,11 @@ fn mat_struct_array(root: &Path) {
         let models = of_role(&all, is_identified);
         let elements = models.iter().map(|model| model.fields()).collect();
         let path = root.join(format!("{}.mat", models[0].stem()));
-        std::fs::write(path, write_mat(&[variable("models", struct_array(elements))]).unwrap()).unwrap();
+        std::fs::write(
+            path,
+            write_mat(&[variable("models", struct_array(elements))]).unwrap(),
+        )
+        .unwrap();
     }
 }
 
@@ -259,28 +359,55 @@ fn mat_one_struct(root: &Path) {
     for (condition, name) in ["c1", "c2", "c3", "c4", "c5"].into_iter().enumerate() {
         let nominal = struct_array(vec![physics_model(condition).fields()]);
         let identified = struct_array(vec![identified_model(condition, true).fields()]);
-        conditions.push((name, struct_array(vec![vec![("nominal", nominal), ("identified", identified)]])));
+        conditions.push((
+            name,
+            struct_array(vec![vec![("nominal", nominal), ("identified", identified)]]),
+        ));
     }
     let study = struct_array(vec![conditions]);
-    std::fs::write(root.join("study.mat"), write_mat(&[variable("study", study)]).unwrap()).unwrap();
+    std::fs::write(
+        root.join("study.mat"),
+        write_mat(&[variable("study", study)]).unwrap(),
+    )
+    .unwrap();
 }
 
 /// Matrices behind one another, with what all of them share once.
 fn stack(models: &[&FileModel], pages_first: bool) -> Vec<Variable> {
-    let mut variables: Vec<Variable> =
-        (0..4).map(|matrix| variable(["A", "B", "C", "D"][matrix], stacked(models, matrix, pages_first))).collect();
-    let texts = |texts: &[String]| Value::Text(TextArray { shape: vec![1, texts.len()], texts: texts.to_vec() });
+    let mut variables: Vec<Variable> = (0..4)
+        .map(|matrix| {
+            variable(
+                ["A", "B", "C", "D"][matrix],
+                stacked(models, matrix, pages_first),
+            )
+        })
+        .collect();
+    let texts = |texts: &[String]| {
+        Value::Text(TextArray {
+            shape: vec![1, texts.len()],
+            texts: texts.to_vec(),
+        })
+    };
     let [inputs, outputs] = &models[0].names;
     let [input_units, output_units] = &models[0].units;
     let lists = [("input_names", inputs), ("output_names", outputs)];
     let units = [("input_units", input_units), ("output_units", output_units)];
     for (name, list) in lists.into_iter().chain(units) {
-        variables.push(variable(name, if pages_first { texts(list) } else { cell(list) }));
+        variables.push(variable(
+            name,
+            if pages_first { texts(list) } else { cell(list) },
+        ));
     }
     if let Some([inputs, outputs]) = &models[0].delays_s {
-        variables.extend([variable("input_delays_s", row(inputs)), variable("output_delays_s", row(outputs))]);
+        variables.extend([
+            variable("input_delays_s", row(inputs)),
+            variable("output_delays_s", row(outputs)),
+        ]);
     }
-    let airspeeds: Vec<f64> = models.iter().map(|model| airspeed_kt(model.condition)).collect();
+    let airspeeds: Vec<f64> = models
+        .iter()
+        .map(|model| airspeed_kt(model.condition))
+        .collect();
     variables.push(variable("airspeed_kt", row(&airspeeds)));
     variables
 }
@@ -329,7 +456,10 @@ fn text_matrices(root: &Path) {
 fn json_models(root: &Path, names_are_objects: bool) {
     for model in models(true) {
         let rows = |matrix: &DMatrix<f64>| -> Vec<Vec<f64>> {
-            matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+            matrix
+                .row_iter()
+                .map(|row| row.iter().copied().collect())
+                .collect()
         };
         let [a, b, c, d] = &model.matrices;
         let mut file = json!({"A": rows(a), "B": rows(b), "C": rows(c), "D": rows(d)});
@@ -338,7 +468,10 @@ fn json_models(root: &Path, names_are_objects: bool) {
             let names = &model.names[of_side];
             let units = &model.units[of_side];
             if names_are_objects {
-                let objects = names.iter().zip(units).map(|(name, unit)| json!({"name": name, "unit": unit}));
+                let objects = names
+                    .iter()
+                    .zip(units)
+                    .map(|(name, unit)| json!({"name": name, "unit": unit}));
                 file[side] = objects.collect();
             } else {
                 file[side] = json!(names);
@@ -356,7 +489,9 @@ fn json_models(root: &Path, names_are_objects: bool) {
 
 /// The frequencies of the analysis, and one beyond each end of the band: the responses are compared as they were written.
 fn frequencies() -> Vec<f64> {
-    let points = Study::new(Arc::clone(&crate::EXAMPLE.dataset)).settings.points;
+    let points = Study::new(Arc::clone(&crate::EXAMPLE.dataset))
+        .settings
+        .points;
     let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), points);
     [&[0.3], grid.omega(), &[15.0]].concat()
 }
@@ -366,20 +501,31 @@ fn physics_beside(root: &Path, write: impl Fn(&Path, &FileModel)) {
     for condition in 0..CONDITIONS {
         let folder = condition_folder(root, condition);
         let sys = struct_array(vec![physics_model(condition).fields()]);
-        std::fs::write(folder.join("nominal.mat"), write_mat(&[variable("sys", sys)]).unwrap()).unwrap();
+        std::fs::write(
+            folder.join("nominal.mat"),
+            write_mat(&[variable("sys", sys)]).unwrap(),
+        )
+        .unwrap();
         write(&folder, &identified_model(condition, true));
     }
 }
 
 /// Names of the channels of flight in headings and names of files, in the order of the files.
-const SHORT_NAMES: [[&str; CHANNELS]; 2] = [["theta0", "lat_cyclic", "delta_lon"], ["nz", "pitch_rate", "p"]];
+const SHORT_NAMES: [[&str; CHANNELS]; 2] = [
+    ["theta0", "lat_cyclic", "delta_lon"],
+    ["nz", "pitch_rate", "p"],
+];
 
 fn frf_wide(root: &Path) {
     physics_beside(root, |folder, model| {
         let mut heading = "f [Hz]".to_owned();
         for output in SHORT_NAMES[1] {
             for input in SHORT_NAMES[0] {
-                write!(heading, ",mag {output}/{input} [dB],phase {output}/{input} [deg]").unwrap();
+                write!(
+                    heading,
+                    ",mag {output}/{input} [dB],phase {output}/{input} [deg]"
+                )
+                .unwrap();
             }
         }
         let mut table = format!("{heading}\n");
@@ -388,7 +534,13 @@ fn frf_wide(root: &Path) {
             for output in 0..CHANNELS {
                 for input in 0..CHANNELS {
                     let value = model.response(output, input, omega);
-                    write!(table, ",{:?},{:?}", 20.0 * value.norm().log10(), value.arg().to_degrees()).unwrap();
+                    write!(
+                        table,
+                        ",{:?},{:?}",
+                        20.0 * value.norm().log10(),
+                        value.arg().to_degrees()
+                    )
+                    .unwrap();
                 }
             }
             table.push('\n');
@@ -433,8 +585,18 @@ fn frd_npz(root: &Path, names: impl Fn(&FileModel) -> [Vec<String>; 2]) {
             }
         }
         let shape = vec![CHANNELS, CHANNELS, omega.len()];
-        let response = Value::Array(Array { shape, kind: ElementKind::Float, re, im: Some(im) });
-        let texts = |texts: &[String]| Value::Text(TextArray { shape: vec![1, texts.len()], texts: texts.to_vec() });
+        let response = Value::Array(Array {
+            shape,
+            kind: ElementKind::Float,
+            re,
+            im: Some(im),
+        });
+        let texts = |texts: &[String]| {
+            Value::Text(TextArray {
+                shape: vec![1, texts.len()],
+                texts: texts.to_vec(),
+            })
+        };
         let [inputs, outputs] = names(model);
         let [input_units, output_units] = &model.units;
         let variables = [
@@ -467,19 +629,34 @@ fn rules(_: &[FoundModel]) -> Rules {
         outputs: channels(1),
         on_axis: vec![pair("P", "LAT"), pair("Q", "LON"), pair("NZ", "COL")],
         band: (0.5, 12.0),
-        units: vec![UnitRule { channel: "LON".into(), from: "in".into(), factor: PERCENT_IN_AN_INCH }],
+        units: vec![UnitRule {
+            channel: "LON".into(),
+            from: "in".into(),
+            factor: PERCENT_IN_AN_INCH,
+        }],
         ..Rules::default()
     }
 }
 
 /// Besides, the units, the factor and the sign of identified files that say none.
 fn rules_of_role(found: &[FoundModel]) -> Rules {
-    let mut rules = Rules { units: Vec::new(), ..rules(found) };
+    let mut rules = Rules {
+        units: Vec::new(),
+        ..rules(found)
+    };
     let of_flight = rules.declarations_mut(FileScope::Identified);
-    for (channel, unit) in [("LAT", "%"), ("COL", "fraction"), ("P", "rad/s"), ("Q", "rad/s"), ("NZ", "g")] {
+    for (channel, unit) in [
+        ("LAT", "%"),
+        ("COL", "fraction"),
+        ("P", "rad/s"),
+        ("Q", "rad/s"),
+        ("NZ", "g"),
+    ] {
         of_flight.units.insert(channel.to_owned(), unit.to_owned());
     }
-    of_flight.factors.insert("LON".to_owned(), PERCENT_IN_AN_INCH);
+    of_flight
+        .factors
+        .insert("LON".to_owned(), PERCENT_IN_AN_INCH);
     of_flight.signs.insert("NZ".to_owned(), -1.0);
     rules
 }
@@ -490,8 +667,18 @@ fn rules_of_matrices(found: &[FoundModel]) -> Rules {
     for channel in rules.inputs.iter_mut().chain(&mut rules.outputs) {
         channel.unit_in_files = Some(channel.unit.clone());
     }
-    let in_order = |side: usize| Some(ORDER[side].iter().map(|channel| NAMES[side][*channel].to_owned()).collect());
-    for model in found.iter().filter(|model| model.file().ends_with("identified")) {
+    let in_order = |side: usize| {
+        Some(
+            ORDER[side]
+                .iter()
+                .map(|channel| NAMES[side][*channel].to_owned())
+                .collect(),
+        )
+    };
+    for model in found
+        .iter()
+        .filter(|model| model.file().ends_with("identified"))
+    {
         let row = rules.rows.entry(model.key()).or_default();
         row.inputs = in_order(0);
         row.outputs = in_order(1);
@@ -517,14 +704,21 @@ struct Form {
 /// Asserts that each response differs from the physics model by the known gain and delay.
 fn assert_known(name: &str, dataset: Dataset, has_delays: bool) {
     assert_eq!(dataset.conditions().len(), CONDITIONS, "{name}");
-    let airspeeds: BTreeMap<usize, f64> =
-        dataset.conditions().iter().map(|of| of.flight_state().airspeed_kt).enumerate().collect();
+    let airspeeds: BTreeMap<usize, f64> = dataset
+        .conditions()
+        .iter()
+        .map(|of| of.flight_state().airspeed_kt)
+        .enumerate()
+        .collect();
     for (condition, airspeed) in airspeeds {
         assert_eq!(airspeed, airspeed_kt(condition), "{name}");
     }
     let mut study = Study::new(Arc::new(dataset));
     for edit in [
-        setting::GAIN_BOUNDS.to(Some(GainBounds { lower: 0.3, upper: 3.0 })),
+        setting::GAIN_BOUNDS.to(Some(GainBounds {
+            lower: 0.3,
+            upper: 3.0,
+        })),
         setting::DELAY_UPPER.to(Some(0.1)),
         setting::ALPHA_GAIN.to(0.0),
         setting::ALPHA_DELAY.to(0.0),
@@ -533,21 +727,42 @@ fn assert_known(name: &str, dataset: Dataset, has_delays: bool) {
     }
     let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
     for (place, condition) in study.dataset.conditions().iter().enumerate() {
-        let result = analysis.condition(condition.id()).unwrap_or_else(|| panic!("{name}: condition {place}"));
+        let result = analysis
+            .condition(condition.id())
+            .unwrap_or_else(|| panic!("{name}: condition {place}"));
         let [input_gains, output_gains] = gains(place);
         for output in 0..CHANNELS {
             for input in 0..CHANNELS {
                 let pair = Pair::new(output, input);
                 let gain = input_gains[input] * output_gains[output];
-                let delay_s = if has_delays { DELAYS_S[0][input] + DELAYS_S[1][output] } else { 0.0 };
+                let delay_s = if has_delays {
+                    DELAYS_S[0][input] + DELAYS_S[1][output]
+                } else {
+                    0.0
+                };
                 let delta = &result.comparison.delta;
                 let found = (delta.gain[pair].unwrap(), delta.delay_s[pair].unwrap());
-                assert!((found.0 / gain - 1.0).abs() < 1e-6, "{name}, {place}, {pair:?}: {found:?}, not {gain}");
-                assert!((found.1 - delay_s).abs() < 1e-6, "{name}, {place}, {pair:?}: {found:?}, not {delay_s}");
+                assert!(
+                    (found.0 / gain - 1.0).abs() < 1e-6,
+                    "{name}, {place}, {pair:?}: {found:?}, not {gain}"
+                );
+                assert!(
+                    (found.1 - delay_s).abs() < 1e-6,
+                    "{name}, {place}, {pair:?}: {found:?}, not {delay_s}"
+                );
                 if study.dataset.header().on_axis[pair] {
-                    let net = (result.correction.net_gain(pair), result.correction.net_delay_s(pair));
-                    assert!((net.0 / gain - 1.0).abs() < 1e-6, "{name}, {place}, {pair:?}: {net:?}, not {gain}");
-                    assert!((net.1 - delay_s).abs() < 1e-6, "{name}, {place}, {pair:?}: {net:?}, not {delay_s}");
+                    let net = (
+                        result.correction.net_gain(pair),
+                        result.correction.net_delay_s(pair),
+                    );
+                    assert!(
+                        (net.0 / gain - 1.0).abs() < 1e-6,
+                        "{name}, {place}, {pair:?}: {net:?}, not {gain}"
+                    );
+                    assert!(
+                        (net.1 - delay_s).abs() < 1e-6,
+                        "{name}, {place}, {pair:?}: {net:?}, not {delay_s}"
+                    );
                 }
             }
         }
@@ -558,31 +773,96 @@ fn assert_known(name: &str, dataset: Dataset, has_delays: bool) {
 fn known_gains_and_delays_come_back_from_every_form_of_files_or_are_asked_about() {
     const KNOWN: Outcome = Outcome::Known { has_delays: true };
     let forms = [
-        Form { name: ".mat per model", write: mat_per_model, rules, outcome: KNOWN },
-        Form { name: "struct array", write: mat_struct_array, rules, outcome: KNOWN },
-        Form { name: "one struct", write: mat_one_struct, rules, outcome: KNOWN },
-        Form { name: "stacked arrays", write: mat_stack, rules, outcome: KNOWN },
-        Form { name: "npz stack", write: npz_stack, rules, outcome: KNOWN },
-        Form { name: "Octave -binary", write: |root| octave("binary", root), rules, outcome: KNOWN },
-        Form { name: "Octave -text", write: |root| octave("text", root), rules, outcome: KNOWN },
-        Form { name: "Octave -hdf5", write: |root| octave("hdf5", root), rules, outcome: KNOWN },
-        Form { name: "Octave -v7", write: |root| octave("v7", root), rules, outcome: KNOWN },
+        Form {
+            name: ".mat per model",
+            write: mat_per_model,
+            rules,
+            outcome: KNOWN,
+        },
+        Form {
+            name: "struct array",
+            write: mat_struct_array,
+            rules,
+            outcome: KNOWN,
+        },
+        Form {
+            name: "one struct",
+            write: mat_one_struct,
+            rules,
+            outcome: KNOWN,
+        },
+        Form {
+            name: "stacked arrays",
+            write: mat_stack,
+            rules,
+            outcome: KNOWN,
+        },
+        Form {
+            name: "npz stack",
+            write: npz_stack,
+            rules,
+            outcome: KNOWN,
+        },
+        Form {
+            name: "Octave -binary",
+            write: |root| octave("binary", root),
+            rules,
+            outcome: KNOWN,
+        },
+        Form {
+            name: "Octave -text",
+            write: |root| octave("text", root),
+            rules,
+            outcome: KNOWN,
+        },
+        Form {
+            name: "Octave -hdf5",
+            write: |root| octave("hdf5", root),
+            rules,
+            outcome: KNOWN,
+        },
+        Form {
+            name: "Octave -v7",
+            write: |root| octave("v7", root),
+            rules,
+            outcome: KNOWN,
+        },
         Form {
             name: "text matrices",
             write: text_matrices,
             rules: rules_of_matrices,
             outcome: Outcome::Known { has_delays: false },
         },
-        Form { name: "JSON, names", write: |root| json_models(root, false), rules, outcome: KNOWN },
-        Form { name: "JSON, objects", write: |root| json_models(root, true), rules, outcome: KNOWN },
-        Form { name: "FRF table, wide", write: frf_wide, rules: rules_of_role, outcome: KNOWN },
+        Form {
+            name: "JSON, names",
+            write: |root| json_models(root, false),
+            rules,
+            outcome: KNOWN,
+        },
+        Form {
+            name: "JSON, objects",
+            write: |root| json_models(root, true),
+            rules,
+            outcome: KNOWN,
+        },
+        Form {
+            name: "FRF table, wide",
+            write: frf_wide,
+            rules: rules_of_role,
+            outcome: KNOWN,
+        },
         Form {
             name: "FRF table per response",
             write: |root| frf_per_response(root, name_of_response),
             rules: rules_of_role,
             outcome: KNOWN,
         },
-        Form { name: "FRD npz", write: |root| frd_npz(root, |model| model.names.clone()), rules, outcome: KNOWN },
+        Form {
+            name: "FRD npz",
+            write: |root| frd_npz(root, |model| model.names.clone()),
+            rules,
+            outcome: KNOWN,
+        },
         // What is not said is asked about.
         Form {
             name: "text matrices without units",
@@ -593,25 +873,42 @@ fn known_gains_and_delays_come_back_from_every_form_of_files_or_are_asked_about(
         Form {
             name: "FRD npz whose labels match nothing",
             write: |root| {
-                frd_npz(root, |_| ["u", "y"].map(|letter| (1..=CHANNELS).map(|of| format!("{letter}{of}")).collect()))
+                frd_npz(root, |_| {
+                    ["u", "y"]
+                        .map(|letter| (1..=CHANNELS).map(|of| format!("{letter}{of}")).collect())
+                })
             },
             rules,
             outcome: Outcome::Asked("response-unmatched"),
         },
         Form {
             name: "FRF tables of unknown names",
-            write: |root| frf_per_response(root, |output, input| format!("{}{}.csv", output.len(), input.len())),
+            write: |root| {
+                frf_per_response(root, |output, input| {
+                    format!("{}{}.csv", output.len(), input.len())
+                })
+            },
             rules: rules_of_role,
             outcome: Outcome::Asked("response-unmatched"),
         },
         Form {
             name: "FRF tables of derivatives",
-            write: |root| frf_per_response(root, |output, input| format!("frf_{output}_dot_{input}.csv")),
+            write: |root| {
+                frf_per_response(root, |output, input| {
+                    format!("frf_{output}_dot_{input}.csv")
+                })
+            },
             rules: rules_of_role,
             outcome: Outcome::Asked("response-name"),
         },
     ];
-    for Form { name, write, rules, outcome } in forms {
+    for Form {
+        name,
+        write,
+        rules,
+        outcome,
+    } in forms
+    {
         let folder = tempfile::tempdir().unwrap();
         write(folder.path());
         let found = read_models(&[folder.path().to_owned()], &Headings::new(), &Silent).unwrap();
@@ -620,11 +917,19 @@ fn known_gains_and_delays_come_back_from_every_form_of_files_or_are_asked_about(
         let assembly = Assembly::new(found.models, rules);
         match outcome {
             Outcome::Known { has_delays } => {
-                assert!(assembly.problems().is_empty(), "{name}: {:#?}", assembly.told());
+                assert!(
+                    assembly.problems().is_empty(),
+                    "{name}: {:#?}",
+                    assembly.told()
+                );
                 assert_known(name, assembly.dataset("").unwrap(), has_delays);
             }
             Outcome::Asked(code) => {
-                let codes: Vec<&str> = assembly.problems().iter().map(|problem| problem.kind.code()).collect();
+                let codes: Vec<&str> = assembly
+                    .problems()
+                    .iter()
+                    .map(|problem| problem.kind.code())
+                    .collect();
                 assert!(codes.contains(&code), "{name}: {:#?}", assembly.told());
                 assert!(assembly.dataset("").is_none(), "{name}");
             }

@@ -2,22 +2,32 @@
 
 use gdcm_io::variables::ReadingBudget;
 use gdcm_io::{FoundModels, models_of_bytes};
-use gdcm_model::assembly::{Assembly, ChannelLabel, FoundModel, ProblemKind, Rules, proposed_rules};
+use gdcm_model::assembly::{
+    Assembly, ChannelLabel, FoundModel, ProblemKind, Rules, proposed_rules,
+};
 use gdcm_model::dataset::ResponseDraft;
 use nalgebra::DMatrix;
 
 use crate::program_folder;
 
 fn found(name: &str) -> FoundModels {
-    let bytes = std::fs::read(program_folder().join("tests/data/foreign").join(name)).expect("the file is there");
+    let bytes = std::fs::read(program_folder().join("tests/data/foreign").join(name))
+        .expect("the file is there");
     let name = name.rsplit('/').next().unwrap_or(name);
-    models_of_bytes(&bytes, name, &ReadingBudget::new(1 << 26)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    models_of_bytes(&bytes, name, &ReadingBudget::new(1 << 26))
+        .unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
 /// The only model of a file.
 fn model(name: &str) -> FoundModel {
     let mut found = found(name);
-    assert_eq!(found.models.len(), 1, "{name}: {:?} {:?}", found.faults, found.ignored);
+    assert_eq!(
+        found.models.len(),
+        1,
+        "{name}: {:?} {:?}",
+        found.faults,
+        found.ignored
+    );
     found.models.remove(0)
 }
 
@@ -41,7 +51,10 @@ fn assert_same_response(found: &ResponseDraft, [output, inputs, input]: [usize; 
     assert_eq!(found.omega.len(), count, "{name}");
     let start = (output * inputs + input) * count;
     for k in 0..count {
-        assert!((found.omega[k] / expected.omega[k] - 1.0).abs() < 1e-12, "{name}: frequency {k}");
+        assert!(
+            (found.omega[k] / expected.omega[k] - 1.0).abs() < 1e-12,
+            "{name}: frequency {k}"
+        );
         let [re, im] = [&found.re, &found.im].map(|part| part.values[start + k]);
         let difference = (re - expected.re.values[k]).hypot(im - expected.im.values[k]);
         assert!(difference < 1e-9 * re.hypot(im), "{name}, {k}: {re} {im}");
@@ -61,7 +74,11 @@ fn what_octave_saves_in_any_form_is_the_same_model_to_the_last_digit() {
         "ss_hdf5.h5.gz",
         "st_text.txt",
     ] {
-        assert_eq!(matrices(&model(&format!("octave/{name}"))), expected, "{name}");
+        assert_eq!(
+            matrices(&model(&format!("octave/{name}"))),
+            expected,
+            "{name}"
+        );
     }
     let object = model("octave/ss_text.txt");
     assert_eq!(object.inputs[0].name.as_deref(), Some("LON"));
@@ -71,7 +88,10 @@ fn what_octave_saves_in_any_form_is_the_same_model_to_the_last_digit() {
 #[test]
 fn a_discrete_model_of_octave_keeps_its_sample_time() {
     let discrete = model("octave/d_text.txt");
-    assert_eq!(matrices(&discrete), matrices(&model("octave/expected-discrete.mat")));
+    assert_eq!(
+        matrices(&discrete),
+        matrices(&model("octave/expected-discrete.mat"))
+    );
     assert_eq!(discrete.draft.timing.sample_time_s, Some(0.02));
 }
 
@@ -80,8 +100,17 @@ fn a_discrete_model_without_a_sample_time_is_asked_about_and_never_taken_as_cont
     let mut discrete = model("octave/d_text.txt");
     discrete.draft.timing.sample_time_s = None;
     let is_asked = |model: &FoundModel, sample_time_s: Option<f64>| {
-        let assembly = Assembly::new(vec![model.clone()], Rules { sample_time_s, ..Rules::default() });
-        assembly.problems().iter().any(|problem| matches!(problem.kind, ProblemKind::NoSampleTime { .. }))
+        let assembly = Assembly::new(
+            vec![model.clone()],
+            Rules {
+                sample_time_s,
+                ..Rules::default()
+            },
+        );
+        assembly
+            .problems()
+            .iter()
+            .any(|problem| matches!(problem.kind, ProblemKind::NoSampleTime { .. }))
     };
     assert!(is_asked(&discrete, None));
     assert!(!is_asked(&discrete, Some(0.02)) && !is_asked(&discrete, Some(0.0)));
@@ -92,11 +121,19 @@ fn a_discrete_model_without_a_sample_time_is_asked_about_and_never_taken_as_cont
 fn signs_are_said_of_all_of_a_role_and_of_one_file_and_go_before_the_mark_in_the_name() {
     let mut found = model("octave/ss_text.txt");
     found.outputs[5] = ChannelLabel::named("-NZ");
-    let factor =
-        |rules: Rules| Assembly::new(vec![found.clone()], rules).parts()[0].outputs.uses[5].clone().map(|of| of.factor);
+    let factor = |rules: Rules| {
+        Assembly::new(vec![found.clone()], rules).parts()[0]
+            .outputs
+            .uses[5]
+            .clone()
+            .map(|of| of.factor)
+    };
     let rules = || {
         let mut rules = proposed_rules("", std::slice::from_ref(&found));
-        rules.outputs.iter_mut().for_each(|channel| channel.unit_in_files = Some(channel.unit.clone()));
+        rules
+            .outputs
+            .iter_mut()
+            .for_each(|channel| channel.unit_in_files = Some(channel.unit.clone()));
         rules
     };
     assert_eq!(rules().outputs[5].name, "NZ");
@@ -104,7 +141,8 @@ fn signs_are_said_of_all_of_a_role_and_of_one_file_and_go_before_the_mark_in_the
     let mut said = rules();
     said.signs.insert("NZ".into(), 1.0);
     assert_eq!(factor(said.clone()), Some(1.0));
-    said.role_signs.insert("physics".into(), [("NZ".to_owned(), -1.0)].into());
+    said.role_signs
+        .insert("physics".into(), [("NZ".to_owned(), -1.0)].into());
     said.rows.entry(found.key()).or_default().role = Some(gdcm_model::assembly::RowRole::Nominal);
     assert_eq!(factor(said.clone()), Some(-1.0));
     said.rows.entry(found.key()).or_default().signs = Some([("NZ".to_owned(), 1.0)].into());
@@ -115,18 +153,35 @@ fn signs_are_said_of_all_of_a_role_and_of_one_file_and_go_before_the_mark_in_the
 fn a_transfer_function_of_octave_is_realised() {
     let found = model("octave/tf_v7.mat");
     let a = found.draft.matrices[0].as_ref().expect("matrices");
-    assert_eq!((a.nrows(), found.inputs.len(), found.outputs.len()), (8, 1, 1));
+    assert_eq!(
+        (a.nrows(), found.inputs.len(), found.outputs.len()),
+        (8, 1, 1)
+    );
     for name in ["kinds.txt", "kinds.bin", "kinds.h5.gz"] {
         let found = crate::foreign_files::found(&format!("octave/{name}"));
-        let of_t = found.models.iter().find(|model| model.variable() == "t").unwrap_or_else(|| panic!("{name}"));
-        assert_eq!(of_t.draft.matrices[0].as_ref().map(|a| a.as_slice().to_vec()), Some(vec![-3.0, 1.0, -4.0, 0.0]));
+        let of_t = found
+            .models
+            .iter()
+            .find(|model| model.variable() == "t")
+            .unwrap_or_else(|| panic!("{name}"));
+        assert_eq!(
+            of_t.draft.matrices[0]
+                .as_ref()
+                .map(|a| a.as_slice().to_vec()),
+            Some(vec![-3.0, 1.0, -4.0, 0.0])
+        );
     }
 }
 
 #[test]
 fn responses_of_octave_numpy_and_python_control_are_those_of_the_text() {
     // Outputs P, Q, R and three accelerations; inputs LON, LAT, PED, COL.
-    for name in ["octave/frd_text.txt.gz", "numpy/frd.npz", "numpy/frd2.npz", "numpy/frd3.npz"] {
+    for name in [
+        "octave/frd_text.txt.gz",
+        "numpy/frd.npz",
+        "numpy/frd2.npz",
+        "numpy/frd3.npz",
+    ] {
         let found = model(name);
         assert_eq!(response(&found).re.shape, [6, 4, 60], "{name}");
         assert_same_response(response(&found), [1, 4, 0], name);
@@ -139,15 +194,26 @@ fn a_stack_in_the_order_of_numpy_is_a_model_for_each_first_index() {
     assert_eq!(found.models.len(), 3, "{:?}", found.faults);
     let expected = matrices(&model("octave/expected-A-B-C-D.mat"));
     assert_eq!(found.models[0].variable(), "[0,:,:]");
-    assert!(found.models.iter().any(|model| matrices(model) == expected), "one of them is the model itself");
+    assert!(
+        found.models.iter().any(|model| matrices(model) == expected),
+        "one of them is the model itself"
+    );
 }
 
 #[test]
 fn responses_as_text_are_read_however_they_are_written() {
-    for name in ["cplx_Q_LON.csv", "desc_Q_LON.csv", "pd_Q_LON.csv", "cohp_Q_LON.csv"] {
+    for name in [
+        "cplx_Q_LON.csv",
+        "desc_Q_LON.csv",
+        "pd_Q_LON.csv",
+        "cohp_Q_LON.csv",
+    ] {
         let model = model(&format!("text/{name}")).with_names_of_file();
         assert_eq!(
-            (model.outputs[0].name.as_deref(), model.inputs[0].name.as_deref()),
+            (
+                model.outputs[0].name.as_deref(),
+                model.inputs[0].name.as_deref()
+            ),
             (Some("Q"), Some("LON")),
             "{name}"
         );
@@ -155,19 +221,32 @@ fn responses_as_text_are_read_however_they_are_written() {
     }
     let percent = model("text/cohp_Q_LON.csv");
     let coherence = response(&percent).coherence.as_ref().expect("coherence");
-    assert!((coherence.values[0] - 0.97).abs() < 1e-12, "{}", coherence.values[0]);
+    assert!(
+        (coherence.values[0] - 0.97).abs() < 1e-12,
+        "{}",
+        coherence.values[0]
+    );
 }
 
 #[test]
 fn a_table_whose_units_or_names_are_not_said_is_never_read_by_a_guess() {
     for (name, asked) in [
-        ("amb_Q_LON.csv", &["[rad/s] or [Hz]", "[dB] or [abs]", "[deg] or [rad]"][..]),
+        (
+            "amb_Q_LON.csv",
+            &["[rad/s] or [Hz]", "[dB] or [abs]", "[deg] or [rad]"][..],
+        ),
         ("frf_Q_LON.txt", &["no frequency"]),
         ("positive_Q_LON.csv", &["[dB] or [abs]"]),
     ] {
         let found = found(&format!("text/{name}"));
         assert!(found.models.is_empty(), "{name}");
         let words = [found.faults, found.ignored].concat().join("\n");
-        assert!(asked.iter().chain(&["--headings"]).all(|asked| words.contains(asked)), "{name}: {words}");
+        assert!(
+            asked
+                .iter()
+                .chain(&["--headings"])
+                .all(|asked| words.contains(asked)),
+            "{name}: {words}"
+        );
     }
 }

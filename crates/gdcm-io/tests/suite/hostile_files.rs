@@ -6,7 +6,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use gdcm_io::variables::ReadingBudget;
-use gdcm_io::{FileError, FolderProgress, load_any, load_dataset, models_of_bytes, read_models, records_of_bytes};
+use gdcm_io::{
+    FileError, FolderProgress, load_any, load_dataset, models_of_bytes, read_models,
+    records_of_bytes,
+};
 
 /// Memory that the variables of a file may take here.
 const MOST: u64 = 64 << 20;
@@ -26,10 +29,22 @@ fn refusals_within(most: u64, name: &str, bytes: &[u8]) -> [String; 2] {
 
 #[test]
 fn things_without_content_count_and_are_refused_in_one_sentence_with_the_limit() {
-    for name in ["npy-empty-records-hang.npy", "npy-empty-record-field-hang.npy", "mat5-struct-no-fields.mat"] {
-        let bytes = std::fs::read(crate::program_folder().join("tests/data/hostile").join(name)).unwrap();
+    for name in [
+        "npy-empty-records-hang.npy",
+        "npy-empty-record-field-hang.npy",
+        "mat5-struct-no-fields.mat",
+    ] {
+        let bytes = std::fs::read(
+            crate::program_folder()
+                .join("tests/data/hostile")
+                .join(name),
+        )
+        .unwrap();
         for words in refusals(name, &bytes) {
-            assert!(words.starts_with(name) && words.contains("would take more than 64 MiB of memory"), "{words}");
+            assert!(
+                words.starts_with(name) && words.contains("would take more than 64 MiB of memory"),
+                "{words}"
+            );
         }
     }
 }
@@ -40,7 +55,10 @@ fn json_of_any_shape_takes_no_more_memory_than_it_may() {
     for item in [chain.as_str(), "{\"\":0}", "[]", "\"\"", "[0]", "0"] {
         let text = format!("[{}]", vec![item; (3 << 20) / (item.len() + 1)].join(","));
         for words in refusals_within(16 << 20, "x.json", text.as_bytes()) {
-            assert!(words.contains("would take more than 16 MiB of memory"), "{item}: {words}");
+            assert!(
+                words.contains("would take more than 16 MiB of memory"),
+                "{item}: {words}"
+            );
         }
     }
 }
@@ -54,21 +72,57 @@ fn an_archive_of_many_entries_to_the_same_bytes_is_refused_as_one_that_holds_the
     writer.finish().unwrap();
     let mut sum = flate2::Crc::new();
     sum.update(&vec![b' '; 4 << 20]);
-    let sizes = [sum.sum(), bytes.len() as u32, 4 << 20].map(u32::to_le_bytes).concat();
-    let fields = |name: &str| [&[20, 0, 0, 0, 8, 0, 0, 0, 0, 0][..], &sizes, &[name.len() as u8, 0, 0, 0]].concat();
-    archive.extend([b"PK\x03\x04", fields("000.csv").as_slice(), b"000.csv", &bytes].concat());
+    let sizes = [sum.sum(), bytes.len() as u32, 4 << 20]
+        .map(u32::to_le_bytes)
+        .concat();
+    let fields = |name: &str| {
+        [
+            &[20, 0, 0, 0, 8, 0, 0, 0, 0, 0][..],
+            &sizes,
+            &[name.len() as u8, 0, 0, 0],
+        ]
+        .concat()
+    };
+    archive.extend(
+        [
+            b"PK\x03\x04",
+            fields("000.csv").as_slice(),
+            b"000.csv",
+            &bytes,
+        ]
+        .concat(),
+    );
     let directory = archive.len() as u32;
     for entry in 0..100 {
         let name = format!("{entry:03}.csv");
-        archive.extend([b"PK\x01\x02\x14\x00", fields(&name).as_slice(), &[0; 14], name.as_bytes()].concat());
+        archive.extend(
+            [
+                b"PK\x01\x02\x14\x00",
+                fields(&name).as_slice(),
+                &[0; 14],
+                name.as_bytes(),
+            ]
+            .concat(),
+        );
     }
     let length = archive.len() as u32 - directory;
     archive.extend(
-        [b"PK\x05\x06", &[0; 4][..], &[100, 0, 100, 0], &length.to_le_bytes(), &directory.to_le_bytes()].concat(),
+        [
+            b"PK\x05\x06",
+            &[0; 4][..],
+            &[100, 0, 100, 0],
+            &length.to_le_bytes(),
+            &directory.to_le_bytes(),
+        ]
+        .concat(),
     );
     archive.extend([0, 0]);
     for words in refusals("same.zip", &archive) {
-        assert!(words.starts_with("same.zip") && words.contains("would take more than 64 MiB of memory"), "{words}");
+        assert!(
+            words.starts_with("same.zip")
+                && words.contains("would take more than 64 MiB of memory"),
+            "{words}"
+        );
     }
 }
 
@@ -76,7 +130,10 @@ fn an_archive_of_many_entries_to_the_same_bytes_is_refused_as_one_that_holds_the
 fn objects_of_many_members_with_the_names_of_matrices_are_no_work_without_end() {
     let members: Vec<String> = (0..100_000).map(|at| format!("\"A{at}\":0")).collect();
     for words in refusals("x.json", format!("{{{}}}", members.join(",")).as_bytes()) {
-        assert!(words == "read" || words.contains("would take more than 4000 million steps of work"), "{words}");
+        assert!(
+            words == "read" || words.contains("would take more than 4000 million steps of work"),
+            "{words}"
+        );
     }
 }
 
@@ -89,7 +146,12 @@ fn every_reader_stops_when_it_is_asked_to() {
     let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
     packed.write_all(lines.as_bytes()).unwrap();
     let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (2000, 2000), }";
-    let head = [b"\x93NUMPY\x01\x00", &(header.len() as u16).to_le_bytes()[..], header.as_bytes()].concat();
+    let head = [
+        b"\x93NUMPY\x01\x00",
+        &(header.len() as u16).to_le_bytes()[..],
+        header.as_bytes(),
+    ]
+    .concat();
     let files: [(&str, Vec<u8>); 6] = [
         ("lines.csv", lines.into_bytes()),
         ("list.json", list.into_bytes()),
@@ -103,25 +165,54 @@ fn every_reader_stops_when_it_is_asked_to() {
         for most in [0, 1 << 20, 4 << 20] {
             let stop = Arc::new(AtomicBool::new(false));
             let tell = |taken| stop.store(taken >= most, Ordering::Relaxed);
-            let budget = ReadingBudget::new(1 << 30).stopped_by(Arc::clone(&stop)).telling(&tell);
-            let found = [models_of_bytes(bytes, name, &budget).err(), records_of_bytes(bytes, name, &budget).err()];
-            assert!(found.iter().flatten().all(|error| error.to_string().contains("stopped")), "{name}: {found:?}");
-            assert!(found.iter().all(Option::is_some), "{name}, after {most} bytes");
+            let budget = ReadingBudget::new(1 << 30)
+                .stopped_by(Arc::clone(&stop))
+                .telling(&tell);
+            let found = [
+                models_of_bytes(bytes, name, &budget).err(),
+                records_of_bytes(bytes, name, &budget).err(),
+            ];
+            assert!(
+                found
+                    .iter()
+                    .flatten()
+                    .all(|error| error.to_string().contains("stopped")),
+                "{name}: {found:?}"
+            );
+            assert!(
+                found.iter().all(Option::is_some),
+                "{name}, after {most} bytes"
+            );
         }
     }
 }
 
 /// Logs of ArduPilot: what its messages are, and so many of one.
 fn dataflash(messages: u64) -> Vec<u8> {
-    let padded = |text: &str, length: usize| [text.as_bytes(), &vec![0; length - text.len()]].concat();
+    let padded =
+        |text: &str, length: usize| [text.as_bytes(), &vec![0; length - text.len()]].concat();
     let format = |kind: u8, length: u8, name: &str, letters: &str, names: &str| {
-        [vec![0xa3, 0x95, 128, kind, length], padded(name, 4), padded(letters, 16), padded(names, 64)].concat()
+        [
+            vec![0xa3, 0x95, 128, kind, length],
+            padded(name, 4),
+            padded(letters, 16),
+            padded(names, 64),
+        ]
+        .concat()
     };
     let mut bytes = format(128, 89, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns");
     bytes.extend(format(140, 19, "RATE", "Qff", "TimeUS,R,ROut"));
     for at in 0..messages {
         let value = (at as f32 / 50.0).sin().to_le_bytes();
-        bytes.extend([&[0xa3, 0x95, 140][..], &(2500 * at).to_le_bytes(), &value, &value].concat());
+        bytes.extend(
+            [
+                &[0xa3, 0x95, 140][..],
+                &(2500 * at).to_le_bytes(),
+                &value,
+                &value,
+            ]
+            .concat(),
+        );
     }
     bytes
 }
@@ -129,7 +220,12 @@ fn dataflash(messages: u64) -> Vec<u8> {
 #[test]
 fn the_reader_of_every_format_ends_at_once_wherever_it_is_stopped() {
     let data = crate::program_folder().join("tests/data");
-    let of = |name: &str| (name.rsplit('/').next().unwrap().to_owned(), std::fs::read(data.join(name)).unwrap());
+    let of = |name: &str| {
+        (
+            name.rsplit('/').next().unwrap().to_owned(),
+            std::fs::read(data.join(name)).unwrap(),
+        )
+    };
     let mut files: Vec<(String, Vec<u8>)> = [
         "mat/scipy-4.mat",
         "mat/scipy-5.mat",
@@ -157,7 +253,10 @@ fn the_reader_of_every_format_ends_at_once_wherever_it_is_stopped() {
         |bytes, name, budget| models_of_bytes(bytes, name, budget).map(drop),
         |bytes, name, budget| records_of_bytes(bytes, name, budget).map(drop),
     ];
-    for ((name, bytes), read) in files.iter().flat_map(|file| readers.map(|read| (file, read))) {
+    for ((name, bytes), read) in files
+        .iter()
+        .flat_map(|file| readers.map(|read| (file, read)))
+    {
         // How often the reader takes memory, and how often after the flag was set at one of these times.
         let taken = |stopped_at: usize| {
             let (stop, count) = (Arc::new(AtomicBool::new(false)), Cell::new(0));
@@ -165,16 +264,27 @@ fn the_reader_of_every_format_ends_at_once_wherever_it_is_stopped() {
                 count.set(count.get() + 1);
                 stop.store(count.get() >= stopped_at, Ordering::Relaxed);
             };
-            let budget = ReadingBudget::default().stopped_by(Arc::clone(&stop)).telling(&tell);
+            let budget = ReadingBudget::default()
+                .stopped_by(Arc::clone(&stop))
+                .telling(&tell);
             (read(bytes, name, &budget), count.get())
         };
         let (_, all) = taken(usize::MAX);
         assert!(all > 0, "{name} is read without a budget");
         for stopped_at in (1..all).step_by((all / 20).max(1)) {
             let (outcome, count) = taken(stopped_at);
-            assert_eq!(count, stopped_at, "{name}: it takes memory after it was stopped");
-            let words = outcome.err().map(|error| error.to_string()).unwrap_or_default();
-            assert!(words.ends_with("stopped"), "{name}, stopped at {stopped_at} of {all}: {words}");
+            assert_eq!(
+                count, stopped_at,
+                "{name}: it takes memory after it was stopped"
+            );
+            let words = outcome
+                .err()
+                .map(|error| error.to_string())
+                .unwrap_or_default();
+            assert!(
+                words.ends_with("stopped"),
+                "{name}, stopped at {stopped_at} of {all}: {words}"
+            );
         }
     }
 }
@@ -184,8 +294,13 @@ fn a_dataset_and_its_study_are_read_within_a_budget_that_can_be_ended() {
     let path = crate::program_folder().join("tests/data/small-dataset.json");
     let stopped = ReadingBudget::default().stopped_by(Arc::new(true.into()));
     assert!(load_any(&path, &stopped).is_err_and(|error| error.is_stopped()));
-    let small = load_any(&path, &ReadingBudget::new(1 << 10)).unwrap_err().to_string();
-    assert!(small.contains("would take more than 0 MiB of memory"), "{small}");
+    let small = load_any(&path, &ReadingBudget::new(1 << 10))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        small.contains("would take more than 0 MiB of memory"),
+        "{small}"
+    );
     assert!(load_any(&path, &ReadingBudget::default().with_work(100)).is_err());
     assert!(load_any(&path, &ReadingBudget::default()).is_ok());
 }
@@ -198,16 +313,43 @@ impl FolderProgress for Silent {
 
 #[cfg(unix)]
 #[test]
-fn a_named_pipe_is_skipped_with_a_word_in_a_folder_and_refused_before_it_is_read_where_it_is_given() {
+fn a_named_pipe_is_skipped_with_a_word_in_a_folder_and_refused_before_it_is_read_where_it_is_given()
+{
     let folder = tempfile::tempdir().unwrap();
     let pipe = folder.path().join("p.csv");
-    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    assert!(
+        std::process::Command::new("mkfifo")
+            .arg(&pipe)
+            .status()
+            .unwrap()
+            .success()
+    );
     std::fs::write(folder.path().join("A.csv"), "1,2\n3,4\n").unwrap();
     let found = read_models(&[folder.path().to_owned()], &Default::default(), &Silent).unwrap();
-    assert_eq!((found.files, found.faults[0].as_str()), (1, "p.csv: skipped, for this is a named pipe, not a file"));
+    assert_eq!(
+        (found.files, found.faults[0].as_str()),
+        (1, "p.csv: skipped, for this is a named pipe, not a file")
+    );
     let given = read_models(std::slice::from_ref(&pipe), &Default::default(), &Silent).unwrap_err();
-    assert!(matches!(given, FileError::NotAFile { kind: "a named pipe", .. }), "{given}");
-    assert!(matches!(load_dataset(&pipe), Err(FileError::NotAFile { .. })));
-    let device = load_dataset(std::path::Path::new("/dev/zero")).unwrap_err().to_string();
-    assert_eq!(device, "/dev/zero: this is a device, not a file; save what it gives as a file, and give its name");
+    assert!(
+        matches!(
+            given,
+            FileError::NotAFile {
+                kind: "a named pipe",
+                ..
+            }
+        ),
+        "{given}"
+    );
+    assert!(matches!(
+        load_dataset(&pipe),
+        Err(FileError::NotAFile { .. })
+    ));
+    let device = load_dataset(std::path::Path::new("/dev/zero"))
+        .unwrap_err()
+        .to_string();
+    assert_eq!(
+        device,
+        "/dev/zero: this is a device, not a file; save what it gives as a file, and give its name"
+    );
 }

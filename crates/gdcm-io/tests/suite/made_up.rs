@@ -8,7 +8,11 @@ use serde_json::{Value, json};
 /// How often something is tried: `few` times, or `many` where the environment says `GDCM_THOROUGH`, as it does before a change is
 /// taken in.
 pub fn tries<N>(few: N, many: N) -> N {
-    if std::env::var_os("GDCM_THOROUGH").is_some() { many } else { few }
+    if std::env::var_os("GDCM_THOROUGH").is_some() {
+        many
+    } else {
+        few
+    }
 }
 
 /// What disturbs a flight; by default the air is still and the sensors are exact.
@@ -23,7 +27,10 @@ pub struct Gusts {
 impl Gusts {
     /// Light gusts and good sensors.
     pub fn light() -> Self {
-        Self { states: 0.01, sensors: 0.01 }
+        Self {
+            states: 0.01,
+            sensors: 0.01,
+        }
     }
 }
 
@@ -45,7 +52,13 @@ pub struct Flight {
 impl Flight {
     /// 40 s at 25 Hz with a light feedback.
     pub fn of(aircraft: StateSpace, gusts: Gusts) -> Self {
-        Self { aircraft, gusts, feedback: dmatrix![0.2, 0.1; -0.1, 0.3], length_s: 40.0, sample_time_s: 0.04 }
+        Self {
+            aircraft,
+            gusts,
+            feedback: dmatrix![0.2, 0.1; -0.1, 0.3],
+            length_s: 40.0,
+            sample_time_s: 0.04,
+        }
     }
 
     /// Records of it, all different, the same ones for the same seed.
@@ -59,16 +72,23 @@ impl Flight {
         let step_s = self.sample_time_s / FINER as f64;
         let (a, b, c) = (self.aircraft.a(), self.aircraft.b(), self.aircraft.c());
         let (order, inputs, outputs) = (a.nrows(), b.ncols(), c.nrows());
-        let mut random =
-            Random(seed.wrapping_mul(1000).wrapping_add(record as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        let mut random = Random(
+            seed.wrapping_mul(1000)
+                .wrapping_add(record as u64 + 1)
+                .wrapping_mul(0x9E37_79B9_7F4A_7C15),
+        );
         // Closed loop: dx/dt = (A - B K C) x + B sweep + gusts; over a step of length h with the midpoint of the sweep.
         let closed = a - b * &self.feedback * c;
         let transition = (&closed * step_s).exp();
         let mut both = DMatrix::zeros(order + inputs, order + inputs);
-        both.view_mut((0, 0), (order, order)).copy_from(&(&closed * step_s));
-        both.view_mut((0, order), (order, inputs)).copy_from(&(b * step_s));
+        both.view_mut((0, 0), (order, order))
+            .copy_from(&(&closed * step_s));
+        both.view_mut((0, order), (order, inputs))
+            .copy_from(&(b * step_s));
         let held = both.exp().view((0, order), (order, inputs)).into_owned();
-        let phases: Vec<f64> = (0..40 * inputs).map(|_| std::f64::consts::TAU * random.uniform()).collect();
+        let phases: Vec<f64> = (0..40 * inputs)
+            .map(|_| std::f64::consts::TAU * random.uniform())
+            .collect();
         let sweep = |time: f64, input: usize| {
             // One input of a record moves, the others a little.
             let size = if input == record % inputs { 1.0 } else { 0.3 };
@@ -82,7 +102,10 @@ impl Flight {
         let trim = DVector::from_fn(outputs, |output, _| 0.5 + output as f64 + record as f64);
         let mut x = DVector::from_fn(order, |_, _| random.normal());
         let mut gust = DVector::zeros(order);
-        let (mut u, mut y) = (DMatrix::zeros(samples, inputs), DMatrix::zeros(samples, outputs));
+        let (mut u, mut y) = (
+            DMatrix::zeros(samples, inputs),
+            DMatrix::zeros(samples, outputs),
+        );
         for sample in 0..samples {
             let time = sample as f64 * self.sample_time_s;
             let output = c * &x;
@@ -95,13 +118,17 @@ impl Flight {
                 let middle = time + (fine as f64 + 0.5) * step_s;
                 let command = DVector::from_fn(inputs, |input, _| sweep(middle, input));
                 // Gusts of a second.
-                gust.iter_mut().for_each(|gust| *gust += step_s * (4.0 * random.normal() / step_s.sqrt() - *gust));
+                gust.iter_mut().for_each(|gust| {
+                    *gust += step_s * (4.0 * random.normal() / step_s.sqrt() - *gust)
+                });
                 x = &transition * x + &held * command + &gust * (step_s * self.gusts.states);
             }
         }
         FlightRecord {
             name: format!("flight {}", record + 1),
-            time_s: (0..samples).map(|sample| sample as f64 * self.sample_time_s).collect(),
+            time_s: (0..samples)
+                .map(|sample| sample as f64 * self.sample_time_s)
+                .collect(),
             inputs: u,
             outputs: y,
         }

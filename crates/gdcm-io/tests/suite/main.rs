@@ -24,7 +24,8 @@ fn program_folder() -> PathBuf {
 
 /// The example's flight records as they were packed.
 fn records_archive() -> Vec<u8> {
-    std::fs::read(program_folder().join("assets/example-records.zip")).expect("the archive is there")
+    std::fs::read(program_folder().join("assets/example-records.zip"))
+        .expect("the archive is there")
 }
 
 /// The embedded example, read once.
@@ -43,6 +44,10 @@ struct EveryCore;
 
 impl Executor for EveryCore {
     fn carry_out(&self, tasks: Vec<Task<'_>>) {
-        rayon::scope_fifo(|scope| tasks.into_iter().for_each(|task| scope.spawn_fifo(move |_| task())));
+        rayon::scope_fifo(|scope| {
+            tasks
+                .into_iter()
+                .for_each(|task| scope.spawn_fifo(move |_| task()))
+        });
     }
 }

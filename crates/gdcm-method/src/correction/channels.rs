@@ -19,7 +19,9 @@ pub enum Channel {
 impl Channel {
     /// All inputs, then all outputs.
     pub fn all(inputs: usize, outputs: usize) -> impl Iterator<Item = Self> {
-        (0..inputs).map(Self::Input).chain((0..outputs).map(Self::Output))
+        (0..inputs)
+            .map(Self::Input)
+            .chain((0..outputs).map(Self::Output))
     }
 
     /// The output and the input of a response.
@@ -38,7 +40,10 @@ impl Channel {
             Channel::Input(index) => (inputs, index, "input"),
             Channel::Output(index) => (outputs, index, "output"),
         };
-        names.get(index).cloned().unwrap_or_else(|| format!("{kind} {}", index + 1))
+        names
+            .get(index)
+            .cloned()
+            .unwrap_or_else(|| format!("{kind} {}", index + 1))
     }
 
     /// All channels of a dataset, the inputs first.
@@ -61,7 +66,10 @@ pub fn pair_name(pair: Pair, inputs: &[String], outputs: &[String]) -> String {
 
 /// Several responses in words: "A, B and C".
 pub fn pair_names(pairs: &[Pair], inputs: &[String], outputs: &[String]) -> String {
-    let names: Vec<String> = pairs.iter().map(|&pair| pair_name(pair, inputs, outputs)).collect();
+    let names: Vec<String> = pairs
+        .iter()
+        .map(|&pair| pair_name(pair, inputs, outputs))
+        .collect();
     match names.split_last() {
         Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
         Some((last, _)) => last.clone(),
@@ -87,17 +95,31 @@ impl<T> Channels<T> {
     /// `all` is of the inputs, then of the outputs.
     fn split(mut all: Vec<T>, inputs: usize) -> Self {
         let outputs = all.split_off(inputs);
-        Self { inputs: all, outputs }
+        Self {
+            inputs: all,
+            outputs,
+        }
     }
 
     /// What `of` makes of each channel's.
     pub fn map<U>(&self, mut of: impl FnMut(Channel, &T) -> U) -> Channels<U> {
-        Channels::split(self.iter().map(|(channel, value)| of(channel, value)).collect(), self.inputs.len())
+        Channels::split(
+            self.iter()
+                .map(|(channel, value)| of(channel, value))
+                .collect(),
+            self.inputs.len(),
+        )
     }
 
     /// As [`Channels::map`], up to the first that fails.
-    pub fn try_map<U, E>(&self, mut of: impl FnMut(Channel, &T) -> Result<U, E>) -> Result<Channels<U>, E> {
-        let all = self.iter().map(|(channel, value)| of(channel, value)).collect::<Result<Vec<U>, E>>()?;
+    pub fn try_map<U, E>(
+        &self,
+        mut of: impl FnMut(Channel, &T) -> Result<U, E>,
+    ) -> Result<Channels<U>, E> {
+        let all = self
+            .iter()
+            .map(|(channel, value)| of(channel, value))
+            .collect::<Result<Vec<U>, E>>()?;
         Ok(Channels::split(all, self.inputs.len()))
     }
 
@@ -111,7 +133,8 @@ impl<T> Channels<T> {
 
     /// Each channel with what it has, the inputs first.
     pub fn iter(&self) -> impl Iterator<Item = (Channel, &T)> {
-        Channel::all(self.inputs.len(), self.outputs.len()).zip(self.inputs.iter().chain(&self.outputs))
+        Channel::all(self.inputs.len(), self.outputs.len())
+            .zip(self.inputs.iter().chain(&self.outputs))
     }
 }
 
@@ -157,7 +180,10 @@ impl ChannelCorrection {
     /// These gains with signed delays (M15).
     pub fn of_leads(gains: Channels<f64>, leads: ChannelLeads) -> Self {
         let delays_s = leads.delays_s();
-        Self { leads: Some(leads), ..Self::of_delays(gains, delays_s) }
+        Self {
+            leads: Some(leads),
+            ..Self::of_delays(gains, delays_s)
+        }
     }
 
     /// Net gain of a response, `k_o k_i` (M11).
@@ -181,7 +207,9 @@ impl ChannelCorrection {
 
     /// Delay of a channel \[s\]; a negative one is a lead (M15).
     pub fn delay_s(&self, channel: Channel) -> f64 {
-        self.leads.as_ref().map_or_else(|| self.pure_delay_s(channel), |leads| leads.taus_s[channel])
+        self.leads
+            .as_ref()
+            .map_or_else(|| self.pure_delay_s(channel), |leads| leads.taus_s[channel])
     }
 
     /// Delay of a channel without its lead \[s\].
@@ -209,7 +237,10 @@ impl ChannelCorrection {
 
     /// The same without its lead filters: its gains and what is positive of its delays.
     pub fn without_leads(self) -> Self {
-        Self { leads: None, ..self }
+        Self {
+            leads: None,
+            ..self
+        }
     }
 
     /// What the correction multiplies a response by; `None` where its net gain is not positive (a schedule of `k` itself can give

@@ -26,7 +26,10 @@ impl Held {
         Self {
             outputs: problem.delta.outputs(),
             inputs: problem.delta.inputs(),
-            entries: problem.held_entries().map(|(pair, delta)| (pair, coordinate.of(delta))).collect(),
+            entries: problem
+                .held_entries()
+                .map(|(pair, delta)| (pair, coordinate.of(delta)))
+                .collect(),
             range: problem.range(),
         }
     }
@@ -44,7 +47,11 @@ impl Held {
     /// Least and greatest value of a node.
     pub(crate) fn ends(&self, node: usize) -> (f64, f64) {
         let (low, high) = self.range;
-        if node < self.inputs { (low, high) } else { (-high, -low) }
+        if node < self.inputs {
+            (low, high)
+        } else {
+            (-high, -low)
+        }
     }
 }
 
@@ -62,7 +69,10 @@ impl Placement {
     /// Where the node at the other end of a held entry sits, `by` away.
     fn across(self, by: f64) -> Self {
         // A logarithm, or a time in another unit, is rounded once.
-        let mut offset = Rounded { value: by, error: f64::EPSILON * by.abs() };
+        let mut offset = Rounded {
+            value: by,
+            error: f64::EPSILON * by.abs(),
+        };
         offset.add(self.offset);
         Self { offset, ..self }
     }
@@ -97,7 +107,10 @@ impl Components {
         let mut count = 0;
         for node in 0..placed.len() {
             if placed[node].is_none() {
-                placed[node] = Some(Placement { component: count, offset: Rounded::default() });
+                placed[node] = Some(Placement {
+                    component: count,
+                    offset: Rounded::default(),
+                });
                 count += 1;
                 spread(&mut placed, held);
             }
@@ -145,7 +158,10 @@ impl Components {
         let value = |node: &Placement| node.offset.value + scales[node.component];
         let (inputs, outputs) = self.sides();
         // From zero, so that no zero is a negative one.
-        (inputs.iter().map(value).collect(), outputs.iter().map(|node| 0.0 - value(node)).collect())
+        (
+            inputs.iter().map(value).collect(),
+            outputs.iter().map(|node| 0.0 - value(node)).collect(),
+        )
     }
 
     /// Moves every scale's zero to the middle of its interval: no channel is then far outside the box at scale 0.
@@ -154,7 +170,10 @@ impl Components {
         let error = 2.0 * f64::EPSILON * low.abs().max(high.abs());
         for node in &mut self.nodes {
             let middle = 0.5 * (self.lower[node.component] + self.upper[node.component]);
-            node.offset.add(Rounded { value: middle, error });
+            node.offset.add(Rounded {
+                value: middle,
+                error,
+            });
         }
     }
 
@@ -164,7 +183,10 @@ impl Components {
         self.upper.fill(f64::INFINITY);
         for (index, node) in self.nodes.iter().enumerate() {
             let (least, most) = held.ends(index);
-            let (lower, upper) = (&mut self.lower[node.component], &mut self.upper[node.component]);
+            let (lower, upper) = (
+                &mut self.lower[node.component],
+                &mut self.upper[node.component],
+            );
             *lower = lower.max(least - node.offset.value);
             *upper = upper.min(most - node.offset.value);
         }
@@ -211,30 +233,73 @@ pub(crate) struct Reached {
 ///
 /// Components that are possible as asked keep what is asked, exactly. `minimise` returns the minimum of a sum of squares over
 /// a box; it is only called where something is out of reach.
-pub(crate) fn reach<E>(held: &Held, minimise: impl FnOnce(&Objective) -> Result<Vec<f64>, E>) -> Result<Reached, E> {
+pub(crate) fn reach<E>(
+    held: &Held,
+    minimise: impl FnOnce(&Objective) -> Result<Vec<f64>, E>,
+) -> Result<Reached, E> {
     let asked = Components::new(held);
     if asked.are_possible() {
-        return Ok(Reached { targets: held.entries.clone(), components: asked, point: None });
+        return Ok(Reached {
+            targets: held.entries.clone(),
+            components: asked,
+            point: None,
+        });
     }
     let strained = |pair: Pair| asked.strain[asked.nodes[pair.input].component] > STRAIN;
     let point = minimise(&nearest(held, strained))?;
     let target = |&(pair, delta): &(Pair, f64)| {
         let (input, output) = held.nodes_of(pair);
-        (pair, if strained(pair) { point[input] - point[output] } else { delta })
+        (
+            pair,
+            if strained(pair) {
+                point[input] - point[output]
+            } else {
+                delta
+            },
+        )
     };
     let targets: Vec<(Pair, f64)> = held.entries.iter().map(target).collect();
-    let components = Components::new(&Held { entries: targets.clone(), ..*held });
-    Ok(Reached { targets, components, point: Some(point) })
+    let components = Components::new(&Held {
+        entries: targets.clone(),
+        ..*held
+    });
+    Ok(Reached {
+        targets,
+        components,
+        point: Some(point),
+    })
 }
 
 /// The least squares problem of stage 1: one scale for each node, and the ground.
 fn nearest(held: &Held, strained: impl Fn(Pair) -> bool) -> Objective {
-    let ends = (0..held.nodes()).map(|node| held.ends(node)).chain([(0.0, 0.0)]);
+    let ends = (0..held.nodes())
+        .map(|node| held.ends(node))
+        .chain([(0.0, 0.0)]);
     let (lower, upper) = ends.unzip();
-    let terms = held.entries.iter().filter(|(pair, _)| strained(*pair)).map(|&(pair, delta)| {
-        let (to, from) = held.nodes_of(pair);
-        let centre = Rounded { value: delta, error: 0.0 };
-        Term { from, to, function: Function::Quadratic { weight: 1.0, centre, relative: 0.0 } }
-    });
-    Objective { lower, upper, terms: terms.collect(), constant: Rounded::default() }
+    let terms = held
+        .entries
+        .iter()
+        .filter(|(pair, _)| strained(*pair))
+        .map(|&(pair, delta)| {
+            let (to, from) = held.nodes_of(pair);
+            let centre = Rounded {
+                value: delta,
+                error: 0.0,
+            };
+            Term {
+                from,
+                to,
+                function: Function::Quadratic {
+                    weight: 1.0,
+                    centre,
+                    relative: 0.0,
+                },
+            }
+        });
+    Objective {
+        lower,
+        upper,
+        terms: terms.collect(),
+        constant: Rounded::default(),
+    }
 }

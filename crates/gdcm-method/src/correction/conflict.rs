@@ -66,10 +66,13 @@ impl Conflict {
     /// The channels whose bounds are in the way; none of a loop.
     pub fn channels(&self) -> Vec<Channel> {
         match self.kind {
-            ConflictKind::AboveUpper { channels, .. } | ConflictKind::BelowLower { channels, .. } => {
+            ConflictKind::AboveUpper { channels, .. }
+            | ConflictKind::BelowLower { channels, .. } => {
                 vec![channels.0, channels.1]
             }
-            ConflictKind::TooFarApart { greater, lesser, .. } => vec![greater, lesser],
+            ConflictKind::TooFarApart {
+                greater, lesser, ..
+            } => vec![greater, lesser],
             ConflictKind::Loop { .. } | ConflictKind::Unclear => Vec::new(),
         }
     }
@@ -91,13 +94,18 @@ impl Conflict {
         if self.quantity.is_gain() {
             ("ratios", format!("{} dB", telling(mismatch.abs(), 1)))
         } else {
-            ("delays", format!("{} ms", telling(s_to_ms(mismatch.abs()), 1)))
+            (
+                "delays",
+                format!("{} ms", telling(s_to_ms(mismatch.abs()), 1)),
+            )
         }
     }
 
     /// A loop that agrees within the tolerance, in words.
     pub fn agreement_words(&self, inputs: &[String], outputs: &[String]) -> String {
-        let ConflictKind::Loop { mismatch } = self.kind else { return String::new() };
+        let ConflictKind::Loop { mismatch } = self.kind else {
+            return String::new();
+        };
         let entries = pair_names(&self.entries, inputs, outputs);
         let (what, mismatch) = self.mismatch_words(mismatch);
         format!(
@@ -123,63 +131,152 @@ impl Conflict {
                 let lead_ms = telling(s_to_ms(-asked), 1);
                 format!("{entries} needs {lead_ms} ms of lead: a delay cannot give it; {release}.")
             }
-            _ => format!("{entries} {cannot}: {} {release}.", self.bounds_words(inputs, outputs)),
+            _ => format!(
+                "{entries} {cannot}: {} {release}.",
+                self.bounds_words(inputs, outputs)
+            ),
         }
     }
 
     /// Which bounds are in the way and what they would have to be, up to the word before what else would do.
     fn bounds_words(&self, inputs: &[String], outputs: &[String]) -> String {
         const HELP: &str = "a larger R_max or a smaller n gives more";
-        let name = |channel: Channel| format!("{}_{}", self.quantity.symbol(), channel.name(inputs, outputs));
+        let name = |channel: Channel| {
+            format!(
+                "{}_{}",
+                self.quantity.symbol(),
+                channel.name(inputs, outputs)
+            )
+        };
         let names = |(first, second): (Channel, Channel)| (name(first), name(second));
-        let apart_ms = |limit_s: f64, asked_s: f64| told_apart(s_to_ms(limit_s), s_to_ms(asked_s), 1);
-        let Bounds { lower: low, upper: high } = self.bounds;
-        let product = |channels, asked: f64, (sign, bound, end): (&str, f64, &str), (which, new): (&str, f64)| {
-            let ((first, second), (limit, asked)) = (names(channels), told_apart(bound.powi(2), asked, 3));
+        let apart_ms =
+            |limit_s: f64, asked_s: f64| told_apart(s_to_ms(limit_s), s_to_ms(asked_s), 1);
+        let Bounds {
+            lower: low,
+            upper: high,
+        } = self.bounds;
+        let product = |channels,
+                       asked: f64,
+                       (sign, bound, end): (&str, f64, &str),
+                       (which, new): (&str, f64)| {
+            let ((first, second), (limit, asked)) =
+                (names(channels), told_apart(bound.powi(2), asked, 3));
             format!(
                 "with gains {sign} {bound:.3} the product {first} {second} is at {end} {limit}, not {asked}; set the {which} \
                  bound to {new} or"
             )
         };
         match (self.kind, self.quantity) {
-            (ConflictKind::AboveUpper { channels, asked, upper }, Quantity::Gain(_)) => {
-                product(channels, asked, ("<=", high, "most"), ("upper", upper))
-            }
-            (ConflictKind::AboveUpper { channels, asked, upper }, delay) => {
-                let ((first, second), (most, asked)) = (names(channels), apart_ms(2.0 * high, asked));
-                let of_delay = if delay == Quantity::SignedDelay { " of delay" } else { "" };
+            (
+                ConflictKind::AboveUpper {
+                    channels,
+                    asked,
+                    upper,
+                },
+                Quantity::Gain(_),
+            ) => product(channels, asked, ("<=", high, "most"), ("upper", upper)),
+            (
+                ConflictKind::AboveUpper {
+                    channels,
+                    asked,
+                    upper,
+                },
+                delay,
+            ) => {
+                let ((first, second), (most, asked)) =
+                    (names(channels), apart_ms(2.0 * high, asked));
+                let of_delay = if delay == Quantity::SignedDelay {
+                    " of delay"
+                } else {
+                    ""
+                };
                 format!(
                     "{first} and {second} give at most {most} ms{of_delay} together, not {asked}; set the upper bound to \
                      {upper} s or"
                 )
             }
-            (ConflictKind::BelowLower { channels, asked, lower }, Quantity::Gain(_)) => {
-                product(channels, asked, (">=", low, "least"), ("lower", lower.unwrap_or(low)))
-            }
-            (ConflictKind::BelowLower { channels, asked, .. }, Quantity::Delay) => {
+            (
+                ConflictKind::BelowLower {
+                    channels,
+                    asked,
+                    lower,
+                },
+                Quantity::Gain(_),
+            ) => product(
+                channels,
+                asked,
+                (">=", low, "least"),
+                ("lower", lower.unwrap_or(low)),
+            ),
+            (
+                ConflictKind::BelowLower {
+                    channels, asked, ..
+                },
+                Quantity::Delay,
+            ) => {
                 let ((first, second), lead_ms) = (names(channels), telling(s_to_ms(-asked), 1));
-                format!("{first} and {second} would have to give {lead_ms} ms of lead together, and a delay cannot;")
+                format!(
+                    "{first} and {second} would have to give {lead_ms} ms of lead together, and a delay cannot;"
+                )
             }
-            (ConflictKind::BelowLower { channels, asked, .. }, Quantity::SignedDelay) => {
-                let ((first, second), (most, asked)) = (names(channels), apart_ms(-2.0 * low, -asked));
-                format!("R_max lets {first} and {second} give {most} ms of lead together, not {asked}: {HELP}, or")
+            (
+                ConflictKind::BelowLower {
+                    channels, asked, ..
+                },
+                Quantity::SignedDelay,
+            ) => {
+                let ((first, second), (most, asked)) =
+                    (names(channels), apart_ms(-2.0 * low, -asked));
+                format!(
+                    "R_max lets {first} and {second} give {most} ms of lead together, not {asked}: {HELP}, or"
+                )
             }
-            (ConflictKind::TooFarApart { greater, lesser, asked, upper, lower }, Quantity::Gain(_)) => {
-                let ((greater, lesser), (most, asked)) = (names((greater, lesser)), told_apart(high / low, asked, 3));
+            (
+                ConflictKind::TooFarApart {
+                    greater,
+                    lesser,
+                    asked,
+                    upper,
+                    lower,
+                },
+                Quantity::Gain(_),
+            ) => {
+                let ((greater, lesser), (most, asked)) =
+                    (names((greater, lesser)), told_apart(high / low, asked, 3));
                 let lower = lower.unwrap_or(low);
                 format!(
                     "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most}, not {asked}; set \
                      the upper bound to {upper}, or the lower bound to {lower}, or"
                 )
             }
-            (ConflictKind::TooFarApart { greater, lesser, asked, upper, .. }, Quantity::Delay) => {
-                let ((greater, lesser), (most, asked)) = (names((greater, lesser)), apart_ms(high, asked));
+            (
+                ConflictKind::TooFarApart {
+                    greater,
+                    lesser,
+                    asked,
+                    upper,
+                    ..
+                },
+                Quantity::Delay,
+            ) => {
+                let ((greater, lesser), (most, asked)) =
+                    (names((greater, lesser)), apart_ms(high, asked));
                 format!(
                     "{greater} cannot be {asked} ms above {lesser} with delays <= {most} ms; set the upper bound to {upper} s or"
                 )
             }
-            (ConflictKind::TooFarApart { greater, lesser, asked, upper, .. }, Quantity::SignedDelay) => {
-                let ((greater, lesser), (most, asked)) = (names((greater, lesser)), apart_ms(high - low, asked));
+            (
+                ConflictKind::TooFarApart {
+                    greater,
+                    lesser,
+                    asked,
+                    upper,
+                    ..
+                },
+                Quantity::SignedDelay,
+            ) => {
+                let ((greater, lesser), (most, asked)) =
+                    (names((greater, lesser)), apart_ms(high - low, asked));
                 let (lead_ms, delay_ms) = (telling(s_to_ms(-low), 1), telling(s_to_ms(high), 1));
                 format!(
                     "{greater} cannot be {asked} ms above {lesser}: with at most {lead_ms} ms of lead and {delay_ms} ms of delay a \
@@ -203,7 +300,12 @@ struct Pull {
 impl Pull {
     /// The same entry asked the other way round: it is an equation.
     fn reversed(&self) -> Self {
-        Self { from: self.to, to: self.from, weight: -self.weight, pair: self.pair }
+        Self {
+            from: self.to,
+            to: self.from,
+            weight: -self.weight,
+            pair: self.pair,
+        }
     }
 }
 
@@ -220,7 +322,9 @@ pub(crate) fn clashes(
     tolerance: f64,
     effort: &Effort<'_>,
 ) -> Result<Vec<(Pair, Conflict)>, SearchStopped> {
-    let Some(point) = &reached.point else { return Ok(Vec::new()) };
+    let Some(point) = &reached.point else {
+        return Ok(Vec::new());
+    };
     let flow = Flow::new(problem, held, reached, point);
     let missed = |pull: &&Pull| pull.weight - (point[pull.to] - point[pull.from]) > tolerance;
     let mut clashes = Vec::new();
@@ -251,14 +355,33 @@ impl<'a> Flow<'a> {
             if missing.abs() <= 1e-11 * (1.0 + delta.abs()) {
                 continue;
             }
-            let (from, to, weight) = if missing > 0.0 { (output, input, delta) } else { (input, output, -delta) };
+            let (from, to, weight) = if missing > 0.0 {
+                (output, input, delta)
+            } else {
+                (input, output, -delta)
+            };
             net[from] -= missing.abs();
             net[to] += missing.abs();
-            pulls.push(Pull { from, to, weight, pair });
+            pulls.push(Pull {
+                from,
+                to,
+                weight,
+                pair,
+            });
         }
-        let at_lower = (0..net.len()).map(|node| point[node] <= held.ends(node).0 && net[node] < 0.0).collect();
-        let at_upper = (0..net.len()).map(|node| point[node] >= held.ends(node).1 && net[node] > 0.0).collect();
-        Self { problem, held, pulls, at_lower, at_upper }
+        let at_lower = (0..net.len())
+            .map(|node| point[node] <= held.ends(node).0 && net[node] < 0.0)
+            .collect();
+        let at_upper = (0..net.len())
+            .map(|node| point[node] >= held.ends(node).1 && net[node] > 0.0)
+            .collect();
+        Self {
+            problem,
+            held,
+            pulls,
+            at_lower,
+            at_upper,
+        }
     }
 
     /// The shorter of the shortest loop and the shortest path from bound to bound through `pull`; a bound counts like an entry.
@@ -271,8 +394,13 @@ impl<'a> Flow<'a> {
             before.chain([*pull]).chain(onward).collect::<Vec<Pull>>()
         });
         match (around, path) {
-            (Some(around), Some(path)) if around.len() < path.len() + 2 => Some(self.round(pull, around)),
-            (_, Some(path)) => Some(self.smallest_part(&path, 0).unwrap_or_else(|| self.clash(&path))),
+            (Some(around), Some(path)) if around.len() < path.len() + 2 => {
+                Some(self.round(pull, around))
+            }
+            (_, Some(path)) => Some(
+                self.smallest_part(&path, 0)
+                    .unwrap_or_else(|| self.clash(&path)),
+            ),
             (around, None) => Some(self.round(pull, around?)),
         }
     }
@@ -282,10 +410,20 @@ impl<'a> Flow<'a> {
         if let Some(clash) = self.smallest_part(&pulls, pulls.len()) {
             return clash;
         }
-        let Problem { quantity, bounds, .. } = *self.problem;
-        let mismatch = quantity.difference(pulls.iter().map(|pull| pull.weight).sum(), self.problem.coordinate());
+        let Problem {
+            quantity, bounds, ..
+        } = *self.problem;
+        let mismatch = quantity.difference(
+            pulls.iter().map(|pull| pull.weight).sum(),
+            self.problem.coordinate(),
+        );
         let entries = pulls.iter().map(|pull| pull.pair).collect();
-        Conflict { quantity, entries, bounds, kind: ConflictKind::Loop { mismatch } }
+        Conflict {
+            quantity,
+            entries,
+            bounds,
+            kind: ConflictKind::Loop { mismatch },
+        }
     }
 
     /// The shortest run of the pulls, less than all of them, that the bounds of its two ends do not allow. Runs may begin at the
@@ -295,9 +433,14 @@ impl<'a> Flow<'a> {
         (1..count).find_map(|length| {
             let begins = if round > 0 { round } else { count - length + 1 };
             (0..begins).find_map(|begin| {
-                let run: Vec<Pull> = (begin..begin + length).map(|index| pulls[index % count]).collect();
+                let run: Vec<Pull> = (begin..begin + length)
+                    .map(|index| pulls[index % count])
+                    .collect();
                 let back: Vec<Pull> = run.iter().rev().map(Pull::reversed).collect();
-                [run, back].iter().find(|run| self.is_impossible(run)).map(|run| self.clash(run))
+                [run, back]
+                    .iter()
+                    .find(|run| self.is_impossible(run))
+                    .map(|run| self.clash(run))
             })
         })
     }
@@ -314,9 +457,20 @@ impl<'a> Flow<'a> {
     /// The clash of a path from a node at its least value to one at its greatest.
     fn clash(&self, path: &[Pull]) -> Conflict {
         let needed: f64 = path.iter().map(|pull| pull.weight).sum();
-        let (start, end) = (path.first().map_or(0, |pull| pull.from), path.last().map_or(0, |pull| pull.to));
-        let (quantity, bounds, coordinate) = (self.problem.quantity, self.problem.bounds, self.problem.coordinate());
-        let movable = |lower: f64| quantity.has_lower_bound().then(|| three_digits(lower, f64::floor));
+        let (start, end) = (
+            path.first().map_or(0, |pull| pull.from),
+            path.last().map_or(0, |pull| pull.to),
+        );
+        let (quantity, bounds, coordinate) = (
+            self.problem.quantity,
+            self.problem.bounds,
+            self.problem.coordinate(),
+        );
+        let movable = |lower: f64| {
+            quantity
+                .has_lower_bound()
+                .then(|| three_digits(lower, f64::floor))
+        };
         let kind = match (self.channel(start), self.channel(end)) {
             (first @ Channel::Output(_), last @ Channel::Input(_)) => ConflictKind::AboveUpper {
                 channels: (last, first),
@@ -331,22 +485,46 @@ impl<'a> Flow<'a> {
             (lesser @ Channel::Input(_), greater @ Channel::Input(_)) | (greater, lesser) => {
                 let asked = coordinate.value(needed);
                 let upper = three_digits(quantity.net(bounds.lower, asked), f64::ceil);
-                let lower = if quantity.is_gain() { bounds.upper / asked } else { bounds.upper - asked };
-                ConflictKind::TooFarApart { greater, lesser, asked, upper, lower: movable(lower) }
+                let lower = if quantity.is_gain() {
+                    bounds.upper / asked
+                } else {
+                    bounds.upper - asked
+                };
+                ConflictKind::TooFarApart {
+                    greater,
+                    lesser,
+                    asked,
+                    upper,
+                    lower: movable(lower),
+                }
             }
         };
         let mut entries: Vec<Pair> = path.iter().map(|pull| pull.pair).collect();
         entries.sort();
-        Conflict { quantity, entries, bounds, kind }
+        Conflict {
+            quantity,
+            entries,
+            bounds,
+            kind,
+        }
     }
 
     fn channel(&self, node: usize) -> Channel {
         let inputs = self.held.inputs;
-        if node < inputs { Channel::Input(node) } else { Channel::Output(node - inputs) }
+        if node < inputs {
+            Channel::Input(node)
+        } else {
+            Channel::Output(node - inputs)
+        }
     }
 
     /// Fewest pulls from `start` along (or against) their direction to a node that `ends`, in the order walked.
-    fn shortest(&self, start: usize, ends: impl Fn(usize) -> bool, against: bool) -> Option<Vec<Pull>> {
+    fn shortest(
+        &self,
+        start: usize,
+        ends: impl Fn(usize) -> bool,
+        against: bool,
+    ) -> Option<Vec<Pull>> {
         let mut came_by: Vec<Option<Pull>> = vec![None; self.held.nodes()];
         let mut queue = VecDeque::from([start]);
         while let Some(node) = queue.pop_front() {
@@ -362,7 +540,11 @@ impl<'a> Flow<'a> {
                 return Some(walked);
             }
             for pull in &self.pulls {
-                let (leaves, enters) = if against { (pull.to, pull.from) } else { (pull.from, pull.to) };
+                let (leaves, enters) = if against {
+                    (pull.to, pull.from)
+                } else {
+                    (pull.from, pull.to)
+                };
                 if leaves == node && enters != start && came_by[enters].is_none() {
                     came_by[enters] = Some(*pull);
                     queue.push_back(enters);
@@ -398,32 +580,65 @@ impl Remedy {
             return Ok(None);
         }
         let (quantity, coordinate) = (problem.quantity, problem.coordinate());
-        let suspects: BTreeSet<Pair> = conflicts.iter().flat_map(|conflict| conflict.entries.iter().copied()).collect();
+        let suspects: BTreeSet<Pair> = conflicts
+            .iter()
+            .flat_map(|conflict| conflict.entries.iter().copied())
+            .collect();
         let mut free = Vec::new();
         for pair in suspects {
             // Each channel is placed by a walk along the held entries.
             effort.spend((held.nodes() * held.entries.len()) as u64 / 8);
             effort.check()?;
-            let others = held.entries.iter().filter(|(other, _)| *other != pair).copied().collect();
-            if Components::new(&Held { entries: others, ..*held }).are_possible() {
+            let others = held
+                .entries
+                .iter()
+                .filter(|(other, _)| *other != pair)
+                .copied()
+                .collect();
+            if Components::new(&Held {
+                entries: others,
+                ..*held
+            })
+            .are_possible()
+            {
                 free.push(pair);
             }
         }
         let [lower, upper] = range_that_does(held);
         // A bound that is not the obstacle stays as it is.
-        let upper = upper.map(|upper| three_digits(coordinate.value(upper), f64::ceil).max(problem.bounds.upper));
-        let lower = lower.map(|lower| three_digits(coordinate.value(lower), f64::floor).min(problem.bounds.lower));
-        Ok(Some(Self { quantity, upper, lower: lower.filter(|_| quantity.has_lower_bound()), free }))
+        let upper = upper.map(|upper| {
+            three_digits(coordinate.value(upper), f64::ceil).max(problem.bounds.upper)
+        });
+        let lower = lower.map(|lower| {
+            three_digits(coordinate.value(lower), f64::floor).min(problem.bounds.lower)
+        });
+        Ok(Some(Self {
+            quantity,
+            upper,
+            lower: lower.filter(|_| quantity.has_lower_bound()),
+            free,
+        }))
     }
 
     /// The remedies in words; empty where there is none.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let unit = if self.quantity.is_gain() { "" } else { " s" };
-        let upper = self.upper.map(|upper| format!("an upper bound of {upper}{unit}"));
-        let lower = self.lower.map(|lower| format!("a lower bound of {lower}{unit}"));
-        let free = self.free.iter().map(|&pair| format!("freeing {}", pair_name(pair, inputs, outputs)));
+        let upper = self
+            .upper
+            .map(|upper| format!("an upper bound of {upper}{unit}"));
+        let lower = self
+            .lower
+            .map(|lower| format!("a lower bound of {lower}{unit}"));
+        let free = self
+            .free
+            .iter()
+            .map(|&pair| format!("freeing {}", pair_name(pair, inputs, outputs)));
         let ways: Vec<String> = upper.into_iter().chain(lower).chain(free).collect();
-        if ways.is_empty() { String::new() } else { format!("Any one of these lets all be held: {}.", ways.join("; ")) }
+        if ways.is_empty() {
+            String::new()
+        } else {
+            format!("Any one of these lets all be held: {}.", ways.join("; "))
+        }
     }
 }
 
@@ -431,7 +646,11 @@ impl Remedy {
 /// where a loop of held entries does not lead back to where it began.
 fn range_that_does(held: &Held) -> [Option<f64>; 2] {
     let ((low, high), components) = (held.range, Components::new(held));
-    if !held.entries.iter().all(|&(pair, sum)| (components.sum(pair) - sum).abs() <= STRAIN) {
+    if !held
+        .entries
+        .iter()
+        .all(|&(pair, sum)| (components.sum(pair) - sum).abs() <= STRAIN)
+    {
         return [None; 2];
     }
     let (inputs, outputs) = components.sides();
@@ -439,7 +658,9 @@ fn range_that_does(held: &Held) -> [Option<f64>; 2] {
     for component in 0..components.count() {
         // A component without inputs or outputs is a single channel, which is always possible.
         let ends = ends_of(inputs, component).zip(ends_of(outputs, component));
-        let Some(((least_input, most_input), (least_output, most_output))) = ends else { continue };
+        let Some(((least_input, most_input), (least_output, most_output))) = ends else {
+            continue;
+        };
         widest = widest.max((most_input - least_input).max(most_output - least_output));
         lowest = lowest.min(0.5 * (least_input - most_output));
         highest = highest.max(0.5 * (most_input - least_output));
@@ -453,6 +674,12 @@ fn range_that_does(held: &Held) -> [Option<f64>; 2] {
 
 /// Least and greatest offset of the nodes of one component.
 fn ends_of(nodes: &[Placement], component: usize) -> Option<(f64, f64)> {
-    let offsets = nodes.iter().filter(|node| node.component == component).map(|node| node.offset.value);
-    offsets.clone().reduce(f64::min).zip(offsets.reduce(f64::max))
+    let offsets = nodes
+        .iter()
+        .filter(|node| node.component == component)
+        .map(|node| node.offset.value);
+    offsets
+        .clone()
+        .reduce(f64::min)
+        .zip(offsets.reduce(f64::max))
 }

@@ -67,7 +67,11 @@ impl CorrectedModelError {
     /// The reason in words; channels have these names.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         match self {
-            Self::PartOfSample { channel, delay_s, sample_time_s } => format!(
+            Self::PartOfSample {
+                channel,
+                delay_s,
+                sample_time_s,
+            } => format!(
                 "the delay of {}, {} s, is {} samples of {} s; in discrete time only whole samples are exact",
                 channel.name(inputs, outputs),
                 number(*delay_s),
@@ -75,13 +79,18 @@ impl CorrectedModelError {
                 number((delay_s / sample_time_s * 1e6).round() / 1e6),
                 number(*sample_time_s)
             ),
-            Self::SlowSamples { sample_time_s, longest_s } => format!(
+            Self::SlowSamples {
+                sample_time_s,
+                longest_s,
+            } => format!(
                 "its sample time of {} s is too long for the lead filters; at most {} s, half of their lag, is allowed",
                 number(*sample_time_s),
                 number(*longest_s)
             ),
             Self::TooManyStates { states } => {
-                format!("with its delays as states it would have {states} of them; at most {MOST_STATES} are written")
+                format!(
+                    "with its delays as states it would have {states} of them; at most {MOST_STATES} are written"
+                )
             }
             Self::Matrices(error) => error.to_string(),
         }
@@ -94,29 +103,55 @@ impl CorrectedModel {
     /// # Errors
     /// [`CorrectedModelError`] where a discrete-time delay is no whole number of samples, or states or numbers become too many or
     /// too large.
-    pub fn of(model: &StateSpace, correction: &ChannelCorrection, pade: Pade) -> Result<Self, CorrectedModelError> {
+    pub fn of(
+        model: &StateSpace,
+        correction: &ChannelCorrection,
+        pade: Pade,
+    ) -> Result<Self, CorrectedModelError> {
         let timing = model.timing();
         let sampling = timing.sample_time_s;
         let delays_s = correction.channels(|channel| delay_s(channel, correction, timing));
-        let delays = delays_s.try_map(|channel, &delay_s| delay_model(channel, delay_s, sampling, pade))?;
-        let leads = correction.leads.as_ref().map(|leads| leads.filters().clone()).unwrap_or_default();
+        let delays =
+            delays_s.try_map(|channel, &delay_s| delay_model(channel, delay_s, sampling, pade))?;
+        let leads = correction
+            .leads
+            .as_ref()
+            .map(|leads| leads.filters().clone())
+            .unwrap_or_default();
         let lead_models = leads.try_map(|_, filter| lead_model(*filter, sampling))?;
-        let [delay_states, lead_states] = [&delays, &lead_models].map(|models| models.map(|_, model| model.order()));
-        let added = delay_states.iter().chain(lead_states.iter()).map(|(_, states)| states);
+        let [delay_states, lead_states] =
+            [&delays, &lead_models].map(|models| models.map(|_, model| model.order()));
+        let added = delay_states
+            .iter()
+            .chain(lead_states.iter())
+            .map(|(_, states)| states);
         let states = added.sum::<usize>() + model.order();
         if states > MOST_STATES {
             return Err(CorrectedModelError::TooManyStates { states });
         }
         let between = |models: &Channels<ChannelModel>, inner: &Blocks| {
-            Blocks::block_diagonal(&models.inputs).then(inner).then(&Blocks::block_diagonal(&models.outputs))
+            Blocks::block_diagonal(&models.inputs)
+                .then(inner)
+                .then(&Blocks::block_diagonal(&models.outputs))
         };
         let mut whole = between(&delays, &Blocks::of_gained(model, correction));
         if correction.leads.is_some() {
             whole = between(&lead_models, &whole);
         }
-        let timing = Timing { sample_time_s: sampling, ..Timing::default() };
+        let timing = Timing {
+            sample_time_s: sampling,
+            ..Timing::default()
+        };
         let model = StateSpace::new(whole.a, whole.b, whole.c, whole.d)?.timed(timing)?;
-        Ok(Self { model, delay_states, lead_states, leads, sample_time_s: sampling, delays_s, pade })
+        Ok(Self {
+            model,
+            delay_states,
+            lead_states,
+            leads,
+            sample_time_s: sampling,
+            delays_s,
+            pade,
+        })
     }
 
     /// The greatest phase error \[rad\] of its responses at `omega` \[rad/s\]: what the approximated delays lag too little, or what
@@ -126,7 +161,9 @@ impl CorrectedModel {
             // What the rule makes of omega.
             let warped = (0.5 * omega * sample_time_s).tan() * 2.0 / sample_time_s;
             let error = |filter: &LeadFilter| (filter.phase(warped) - filter.phase(omega)).abs();
-            let greatest = |filters: &[Option<LeadFilter>]| filters.iter().flatten().map(error).fold(0.0, f64::max);
+            let greatest = |filters: &[Option<LeadFilter>]| {
+                filters.iter().flatten().map(error).fold(0.0, f64::max)
+            };
             return greatest(&self.leads.inputs) + greatest(&self.leads.outputs);
         }
         // The error grows with the delay, and that of a response is the sum of its two channels'.
@@ -142,9 +179,17 @@ fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) ->
         Channel::Input(at) => (&timing.input_delays_s, at),
         Channel::Output(at) => (&timing.output_delays_s, at),
     };
-    let own_s = own_s.as_ref().and_then(|own_s| own_s.get(at)).copied().unwrap_or(0.0);
+    let own_s = own_s
+        .as_ref()
+        .and_then(|own_s| own_s.get(at))
+        .copied()
+        .unwrap_or(0.0);
     let delay_s = correction.pure_delay_s(channel) + own_s;
-    if delay_s < LEAST_DELAY_S { 0.0 } else { delay_s }
+    if delay_s < LEAST_DELAY_S {
+        0.0
+    } else {
+        delay_s
+    }
 }
 
 /// The delay of a channel as states.
@@ -155,27 +200,44 @@ fn delay_model(
     pade: Pade,
 ) -> Result<ChannelModel, CorrectedModelError> {
     let Some(sample_time_s) = sample_time_s else {
-        return Ok(if delay_s > 0.0 { pade.model(delay_s) } else { ChannelModel::samples(0) });
+        return Ok(if delay_s > 0.0 {
+            pade.model(delay_s)
+        } else {
+            ChannelModel::samples(0)
+        });
     };
     let samples = (delay_s / sample_time_s).round();
     if (delay_s / sample_time_s - samples).abs() > SAMPLE_TOLERANCE {
-        return Err(CorrectedModelError::PartOfSample { channel, delay_s, sample_time_s });
+        return Err(CorrectedModelError::PartOfSample {
+            channel,
+            delay_s,
+            sample_time_s,
+        });
     }
     // Refused before it takes memory.
     if samples > MOST_STATES as f64 {
-        return Err(CorrectedModelError::TooManyStates { states: samples as usize });
+        return Err(CorrectedModelError::TooManyStates {
+            states: samples as usize,
+        });
     }
     Ok(ChannelModel::samples(samples as usize))
 }
 
 /// The lead filter of a channel as states.
-fn lead_model(filter: Option<LeadFilter>, sample_time_s: Option<f64>) -> Result<ChannelModel, CorrectedModelError> {
+fn lead_model(
+    filter: Option<LeadFilter>,
+    sample_time_s: Option<f64>,
+) -> Result<ChannelModel, CorrectedModelError> {
     let (Some(filter), Some(sample_time_s)) = (filter, sample_time_s) else {
         return Ok(filter.map_or_else(|| ChannelModel::samples(0), ChannelModel::lead));
     };
     let longest_s = 0.5 * filter.lag_s;
-    let sampled = ChannelModel::sampled_lead(filter, sample_time_s).filter(|_| sample_time_s <= longest_s);
-    sampled.ok_or(CorrectedModelError::SlowSamples { sample_time_s, longest_s })
+    let sampled =
+        ChannelModel::sampled_lead(filter, sample_time_s).filter(|_| sample_time_s <= longest_s);
+    sampled.ok_or(CorrectedModelError::SlowSamples {
+        sample_time_s,
+        longest_s,
+    })
 }
 
 /// Four matrices, in continuous or discrete time.
@@ -189,8 +251,12 @@ struct Blocks {
 impl Blocks {
     /// A model between the gains of its channels, without any delay.
     fn of_gained(model: &StateSpace, correction: &ChannelCorrection) -> Self {
-        let mut blocks =
-            Self { a: model.a().clone(), b: model.b().clone(), c: model.c().clone(), d: model.d().clone() };
+        let mut blocks = Self {
+            a: model.a().clone(),
+            b: model.b().clone(),
+            c: model.c().clone(),
+            d: model.d().clone(),
+        };
         for (input, &gain) in correction.input_gains.iter().enumerate() {
             blocks.b.column_mut(input).scale_mut(gain);
             blocks.d.column_mut(input).scale_mut(gain);
@@ -204,7 +270,10 @@ impl Blocks {
 
     /// Channels beside one another, each with its own delay.
     fn block_diagonal(channels: &[ChannelModel]) -> Self {
-        let (states, count) = (channels.iter().map(ChannelModel::order).sum(), channels.len());
+        let (states, count) = (
+            channels.iter().map(ChannelModel::order).sum(),
+            channels.len(),
+        );
         let mut blocks = Self {
             a: DMatrix::zeros(states, states),
             b: DMatrix::zeros(states, count),
@@ -214,9 +283,18 @@ impl Blocks {
         let mut at = 0;
         for (channel, delay) in channels.iter().enumerate() {
             let order = delay.order();
-            blocks.a.view_mut((at, at), (order, order)).copy_from(&delay.a);
-            blocks.b.view_mut((at, channel), (order, 1)).copy_from(&delay.b);
-            blocks.c.view_mut((channel, at), (1, order)).copy_from(&delay.c);
+            blocks
+                .a
+                .view_mut((at, at), (order, order))
+                .copy_from(&delay.a);
+            blocks
+                .b
+                .view_mut((at, channel), (order, 1))
+                .copy_from(&delay.b);
+            blocks
+                .c
+                .view_mut((channel, at), (1, order))
+                .copy_from(&delay.c);
             blocks.d[(channel, channel)] = delay.d;
             at += order;
         }
@@ -229,15 +307,22 @@ impl Blocks {
         let states = first + second;
         let mut a = DMatrix::zeros(states, states);
         a.view_mut((0, 0), (first, first)).copy_from(&self.a);
-        a.view_mut((first, 0), (second, first)).copy_from(&(&next.b * &self.c));
-        a.view_mut((first, first), (second, second)).copy_from(&next.a);
+        a.view_mut((first, 0), (second, first))
+            .copy_from(&(&next.b * &self.c));
+        a.view_mut((first, first), (second, second))
+            .copy_from(&next.a);
         let mut b = DMatrix::zeros(states, self.b.ncols());
         b.rows_mut(0, first).copy_from(&self.b);
         b.rows_mut(first, second).copy_from(&(&next.b * &self.d));
         let mut c = DMatrix::zeros(next.c.nrows(), states);
         c.columns_mut(0, first).copy_from(&(&next.d * &self.c));
         c.columns_mut(first, second).copy_from(&next.c);
-        Self { a, b, c, d: &next.d * &self.d }
+        Self {
+            a,
+            b,
+            c,
+            d: &next.d * &self.d,
+        }
     }
 }
 
@@ -268,7 +353,9 @@ impl Default for Pade {
 impl Pade {
     /// The approximant of this order, where that is from 1 to [`HIGHEST_PADE_ORDER`].
     pub fn new(order: usize) -> Option<Self> {
-        (1..=HIGHEST_PADE_ORDER).contains(&order).then_some(Self { order })
+        (1..=HIGHEST_PADE_ORDER)
+            .contains(&order)
+            .then_some(Self { order })
     }
 
     /// Its order `N`, the number of its states.
@@ -283,13 +370,20 @@ impl Pade {
     /// `C = 2/sqrt(tau) e_1' K^-1`, `D = (-1)^N`.
     pub fn model(self, delay_s: f64) -> ChannelModel {
         let root = |place: usize| ((2 * place + 1) as f64).sqrt();
-        let inverse = |row: usize, column: usize| root(row) * root(column) * self.ladder_inverse(row, column);
+        let inverse =
+            |row: usize, column: usize| root(row) * root(column) * self.ladder_inverse(row, column);
         let gain = 2.0 / delay_s.sqrt();
         ChannelModel {
-            a: DMatrix::from_fn(self.order, self.order, |row, column| -2.0 / delay_s * inverse(row, column)),
+            a: DMatrix::from_fn(self.order, self.order, |row, column| {
+                -2.0 / delay_s * inverse(row, column)
+            }),
             b: DVector::from_fn(self.order, |row, _| gain * inverse(row, 0)),
             c: RowDVector::from_fn(self.order, |_, column| gain * inverse(0, column)),
-            d: if self.order.is_multiple_of(2) { 1.0 } else { -1.0 },
+            d: if self.order.is_multiple_of(2) {
+                1.0
+            } else {
+                -1.0
+            },
         }
     }
 
@@ -350,7 +444,11 @@ impl ChannelModel {
     /// w2)`, `D = R`.
     pub fn lead(filter: LeadFilter) -> Self {
         const ROOT: f64 = std::f64::consts::SQRT_2;
-        let (w1, w2, r) = (filter.zero_rad_s(), filter.lag_rad_s(), filter.gain_at_infinity());
+        let (w1, w2, r) = (
+            filter.zero_rad_s(),
+            filter.lag_rad_s(),
+            filter.gain_at_infinity(),
+        );
         match filter.order {
             LeadOrder::First => Self {
                 a: DMatrix::from_element(1, 1, -w2),
@@ -371,10 +469,18 @@ impl ChannelModel {
     /// T/2)^-1` it is `M (I + A T/2)`, `T M B`, `C M`, `D + C M B T/2`. None where `T` puts a pole of the filter on that of the rule.
     pub fn sampled_lead(filter: LeadFilter, sample_time_s: f64) -> Option<Self> {
         let Self { a, b, c, d } = Self::lead(filter);
-        let (one, half) = (DMatrix::identity(a.nrows(), a.nrows()), 0.5 * sample_time_s * &a);
+        let (one, half) = (
+            DMatrix::identity(a.nrows(), a.nrows()),
+            0.5 * sample_time_s * &a,
+        );
         let inverse = (&one - &half).try_inverse()?;
         let direct = (&c * &inverse * &b).sum() * 0.5 * sample_time_s;
-        Some(Self { a: &inverse * (&one + &half), b: sample_time_s * &inverse * b, c: &c * inverse, d: d + direct })
+        Some(Self {
+            a: &inverse * (&one + &half),
+            b: sample_time_s * &inverse * b,
+            c: &c * inverse,
+            d: d + direct,
+        })
     }
 
     /// Number of states.
@@ -395,7 +501,13 @@ mod tests {
         let a = DMatrix::from_row_slice(3, 3, &[-0.8, 2.0, 0.1, -1.5, -1.0, 0.3, 0.2, -0.4, -5.0]);
         let b = DMatrix::from_row_slice(3, 2, &[1.0, 0.2, 0.0, 1.0, 0.5, -0.3]);
         let c = DMatrix::from_row_slice(2, 3, &[1.0, 0.0, 0.4, 0.0, 2.0, -1.0]);
-        StateSpace::new(a, b, c, DMatrix::from_row_slice(2, 2, &[0.1, 0.0, 0.0, -0.2])).unwrap()
+        StateSpace::new(
+            a,
+            b,
+            c,
+            DMatrix::from_row_slice(2, 2, &[0.1, 0.0, 0.0, -0.2]),
+        )
+        .unwrap()
     }
 
     fn correction() -> ChannelCorrection {
@@ -409,7 +521,11 @@ mod tests {
     }
 
     /// The gain, the model's response and a factor for the delays of each channel, compared with the matrices.
-    fn assert_response(corrected: &CorrectedModel, plant: &StateSpace, delay: impl Fn(f64, f64) -> Complex<f64>) {
+    fn assert_response(
+        corrected: &CorrectedModel,
+        plant: &StateSpace,
+        delay: impl Fn(f64, f64) -> Complex<f64>,
+    ) {
         let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 12);
         let [found, plain] = [&corrected.model, plant]
             .map(|model| PreparedModel::of(&Dynamics::StateSpace(model.clone())).response(&grid));
@@ -420,7 +536,10 @@ mod tests {
                 let delays = delay(omega, corrected.delays_s.inputs[pair.input])
                     * delay(omega, corrected.delays_s.outputs[pair.output]);
                 let expected = plain[at] * delays * correction.net_gain(pair);
-                assert!((found[at] - expected).norm() <= 1e-10 * expected.norm(), "{pair:?} at {omega} rad/s");
+                assert!(
+                    (found[at] - expected).norm() <= 1e-10 * expected.norm(),
+                    "{pair:?} at {omega} rad/s"
+                );
             }
         }
     }
@@ -430,7 +549,10 @@ mod tests {
         for order in [1, 2, 3, 8] {
             let pade = Pade::new(order).unwrap();
             let corrected = CorrectedModel::of(&plant(), &correction(), pade).unwrap();
-            let states = (corrected.delay_states.inputs.as_slice(), corrected.delay_states.outputs.as_slice());
+            let states = (
+                corrected.delay_states.inputs.as_slice(),
+                corrected.delay_states.outputs.as_slice(),
+            );
             assert_eq!(states, ([order, 0].as_slice(), [0, order].as_slice()));
             assert_eq!(corrected.model.order(), 3 + 2 * order);
             // Of magnitude 1; its lag is that of the delay less the error.
@@ -446,49 +568,99 @@ mod tests {
 
     #[test]
     fn delays_of_the_model_itself_become_states_with_the_corrections() {
-        let own = Timing { input_delays_s: Some(vec![0.02, 0.0]), ..Timing::default() };
+        let own = Timing {
+            input_delays_s: Some(vec![0.02, 0.0]),
+            ..Timing::default()
+        };
         let pade = Pade::new(2).unwrap();
-        let corrected = CorrectedModel::of(&plant().timed(own).unwrap(), &correction(), pade).unwrap();
-        assert_eq!((corrected.delays_s.inputs.clone(), corrected.model.order()), (vec![0.05, 0.0], 7));
+        let corrected =
+            CorrectedModel::of(&plant().timed(own).unwrap(), &correction(), pade).unwrap();
+        assert_eq!(
+            (corrected.delays_s.inputs.clone(), corrected.model.order()),
+            (vec![0.05, 0.0], 7)
+        );
         assert!(corrected.model.timing().is_plain());
     }
 
     #[test]
     fn whole_samples_are_exact_and_parts_of_one_are_refused() {
         let sampled = |sample_time_s| {
-            let a = DMatrix::from_row_slice(3, 3, &[0.9, 0.02, 0.0, -0.01, 0.95, 0.0, 0.1, 0.0, 0.8]);
+            let a =
+                DMatrix::from_row_slice(3, 3, &[0.9, 0.02, 0.0, -0.01, 0.95, 0.0, 0.1, 0.0, 0.8]);
             let plant = plant();
-            let model = StateSpace::new(a, plant.b().clone(), plant.c().clone(), plant.d().clone()).unwrap();
-            model.timed(Timing { sample_time_s: Some(sample_time_s), ..Timing::default() }).unwrap()
+            let model = StateSpace::new(a, plant.b().clone(), plant.c().clone(), plant.d().clone())
+                .unwrap();
+            model
+                .timed(Timing {
+                    sample_time_s: Some(sample_time_s),
+                    ..Timing::default()
+                })
+                .unwrap()
         };
         let pade = Pade::new(2).unwrap();
         let corrected = CorrectedModel::of(&sampled(0.001), &correction(), pade).unwrap();
-        assert_eq!((corrected.model.order(), corrected.phase_error(12.0)), (3 + 30 + 11, 0.0));
+        assert_eq!(
+            (corrected.model.order(), corrected.phase_error(12.0)),
+            (3 + 30 + 11, 0.0)
+        );
         assert_eq!(corrected.model.timing().sample_time_s, Some(0.001));
-        assert_response(&corrected, &sampled(0.001), |omega, delay_s| Complex::new(0.0, -omega * delay_s).exp());
+        assert_response(&corrected, &sampled(0.001), |omega, delay_s| {
+            Complex::new(0.0, -omega * delay_s).exp()
+        });
         let refused = CorrectedModel::of(&sampled(0.01), &correction(), pade).unwrap_err();
         assert_eq!(
             refused,
-            CorrectedModelError::PartOfSample { channel: Channel::Output(1), delay_s: 0.011, sample_time_s: 0.01 }
+            CorrectedModelError::PartOfSample {
+                channel: Channel::Output(1),
+                delay_s: 0.011,
+                sample_time_s: 0.01
+            }
         );
         let refused = CorrectedModel::of(&sampled(1e-5), &correction(), pade).unwrap_err();
-        assert!(matches!(refused, CorrectedModelError::TooManyStates { .. }), "{refused}");
+        assert!(
+            matches!(refused, CorrectedModelError::TooManyStates { .. }),
+            "{refused}"
+        );
     }
 
     #[test]
     fn without_delays_there_are_no_states_besides_the_models() {
-        let none = ChannelCorrection { input_delays_s: vec![0.0; 2], output_delays_s: vec![0.0; 2], ..correction() };
+        let none = ChannelCorrection {
+            input_delays_s: vec![0.0; 2],
+            output_delays_s: vec![0.0; 2],
+            ..correction()
+        };
         let corrected = CorrectedModel::of(&plant(), &none, Pade::new(4).unwrap()).unwrap();
-        assert_eq!((corrected.model.a(), corrected.phase_error(12.0)), (plant().a(), 0.0));
+        assert_eq!(
+            (corrected.model.a(), corrected.phase_error(12.0)),
+            (plant().a(), 0.0)
+        );
     }
 
     /// The plant's correction with a lead of 30 ms on the first input and of 50 ms on the second output.
     fn led(order: LeadOrder) -> ChannelCorrection {
         let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 50);
-        let design = LeadDesign::new(LeadSettings { order, ..LeadSettings::default() }, grid.omega().into());
-        let leads = ChannelLeads::new(design.into(), Channels { inputs: vec![-0.03, 0.0], outputs: vec![0.0, -0.05] });
+        let design = LeadDesign::new(
+            LeadSettings {
+                order,
+                ..LeadSettings::default()
+            },
+            grid.omega().into(),
+        );
+        let leads = ChannelLeads::new(
+            design.into(),
+            Channels {
+                inputs: vec![-0.03, 0.0],
+                outputs: vec![0.0, -0.05],
+            },
+        );
         let none = || vec![0.0; 2];
-        ChannelCorrection { input_delays_s: none(), output_delays_s: none(), leads: Some(leads), ..correction() }
+        ChannelCorrection {
+            input_delays_s: none(),
+            output_delays_s: none(),
+            leads: Some(leads),
+            ..correction()
+        }
     }
 
     #[test]
@@ -497,22 +669,36 @@ mod tests {
             let correction = led(order);
             let corrected = CorrectedModel::of(&plant(), &correction, Pade::default()).unwrap();
             assert_eq!(
-                (corrected.lead_states.inputs.as_slice(), corrected.lead_states.outputs.as_slice()),
+                (
+                    corrected.lead_states.inputs.as_slice(),
+                    corrected.lead_states.outputs.as_slice()
+                ),
                 (&[states, 0][..], &[0, states][..])
             );
             let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 12);
-            let [found, plain] = [&corrected.model, &plant()]
-                .map(|model| PreparedModel::of(&Dynamics::StateSpace(model.clone())).response(&grid));
-            for pair in [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair { output, input }) {
+            let [found, plain] = [&corrected.model, &plant()].map(|model| {
+                PreparedModel::of(&Dynamics::StateSpace(model.clone())).response(&grid)
+            });
+            for pair in
+                [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair { output, input })
+            {
                 let filters = [Channel::Output(pair.output), Channel::Input(pair.input)];
                 for (at, &omega) in grid.omega().iter().enumerate() {
-                    let filters = filters.iter().filter_map(|channel| correction.lead(*channel));
+                    let filters = filters
+                        .iter()
+                        .filter_map(|channel| correction.lead(*channel));
                     let lead: Complex<f64> = filters.map(|filter| filter.at(omega)).product();
                     let expected = plain.curve(pair)[at] * lead * correction.net_gain(pair);
-                    assert!((found.curve(pair)[at] - expected).norm() <= 1e-12 * expected.norm(), "{pair:?}");
+                    assert!(
+                        (found.curve(pair)[at] - expected).norm() <= 1e-12 * expected.norm(),
+                        "{pair:?}"
+                    );
                 }
             }
-            let r = correction.lead(Channel::Input(0)).unwrap().gain_at_infinity();
+            let r = correction
+                .lead(Channel::Input(0))
+                .unwrap()
+                .gain_at_infinity();
             assert!((corrected.model.d()[(0, 0)] / (0.1 * 1.3 * 0.9) - r).abs() < 1e-12);
             assert_eq!(corrected.phase_error(12.0), 0.0);
         }
@@ -521,21 +707,38 @@ mod tests {
     #[test]
     fn lead_filters_of_a_sampled_model_follow_tustins_rule_and_say_how_far_off_they_are() {
         let sampled = |sample_time_s: f64| {
-            plant().timed(Timing { sample_time_s: Some(sample_time_s), ..Timing::default() }).unwrap()
+            plant()
+                .timed(Timing {
+                    sample_time_s: Some(sample_time_s),
+                    ..Timing::default()
+                })
+                .unwrap()
         };
         let correction = led(LeadOrder::Second);
         let corrected = CorrectedModel::of(&sampled(0.01), &correction, Pade::default()).unwrap();
         // 36 rad/s and a step of 10 ms: less than a quarter of a degree a channel at 12 rad/s.
-        assert!((0.01..0.5).contains(&corrected.phase_error(12.0).to_degrees()), "{}", corrected.phase_error(12.0));
+        assert!(
+            (0.01..0.5).contains(&corrected.phase_error(12.0).to_degrees()),
+            "{}",
+            corrected.phase_error(12.0)
+        );
         let refused = CorrectedModel::of(&sampled(0.02), &correction, Pade::default()).unwrap_err();
-        assert!(matches!(refused, CorrectedModelError::SlowSamples { .. }), "{refused}");
+        assert!(
+            matches!(refused, CorrectedModelError::SlowSamples { .. }),
+            "{refused}"
+        );
     }
 
     /// The approximant by its polynomials: `P(-x) / P(x)`, `P(x) = sum of (2N - k)! / (k! (N - k)!) x^k`.
     fn by_polynomials(order: usize, x: Complex<f64>) -> Complex<f64> {
         let factorial = |n: usize| (1..=n).map(|k| k as f64).product::<f64>();
-        let coefficient = |k: usize| factorial(2 * order - k) / (factorial(k) * factorial(order - k));
-        let value = |x: Complex<f64>| (0..=order).rev().fold(Complex::from(0.0), |sum, k| sum * x + coefficient(k));
+        let coefficient =
+            |k: usize| factorial(2 * order - k) / (factorial(k) * factorial(order - k));
+        let value = |x: Complex<f64>| {
+            (0..=order)
+                .rev()
+                .fold(Complex::from(0.0), |sum, k| sum * x + coefficient(k))
+        };
         value(-x) / value(x)
     }
 
@@ -556,8 +759,12 @@ mod tests {
                 let model = Pade::new(order).unwrap().model(delay_s);
                 for angle in [1e-3, 0.3, 1.0, 4.0, 15.0, 80.0] {
                     let s = Complex::new(0.0, angle / delay_s);
-                    let (found, expected) = (response(&model, s), by_polynomials(order, s * delay_s));
-                    assert!((found - expected).norm() < 1e-12, "{order}, {delay_s} s, {angle}: {found} {expected}");
+                    let (found, expected) =
+                        (response(&model, s), by_polynomials(order, s * delay_s));
+                    assert!(
+                        (found - expected).norm() < 1e-12,
+                        "{order}, {delay_s} s, {angle}: {found} {expected}"
+                    );
                 }
             }
         }
@@ -569,8 +776,14 @@ mod tests {
             let model = Pade::new(order).unwrap().model(0.07);
             let scale = model.a.amax();
             let left = &model.a + model.a.transpose();
-            assert!((&left + &model.b * model.b.transpose()).amax() < 1e-14 * scale, "{order}");
-            assert!((&left + model.c.transpose() * &model.c).amax() < 1e-14 * scale, "{order}");
+            assert!(
+                (&left + &model.b * model.b.transpose()).amax() < 1e-14 * scale,
+                "{order}"
+            );
+            assert!(
+                (&left + model.c.transpose() * &model.c).amax() < 1e-14 * scale,
+                "{order}"
+            );
         }
     }
 
@@ -582,10 +795,14 @@ mod tests {
             // Steps far below a half turn, up to where the approximant has long stopped to lag.
             for step in 1..=4000 {
                 let angle = f64::from(step) * 0.01;
-                let error = by_polynomials(order, Complex::new(0.0, angle)) * Complex::new(0.0, angle).exp();
+                let error = by_polynomials(order, Complex::new(0.0, angle))
+                    * Complex::new(0.0, angle).exp();
                 followed += (error / before).arg();
                 before = error;
-                assert!((pade.phase_error(angle) - followed).abs() < 1e-10, "{order}, {angle}");
+                assert!(
+                    (pade.phase_error(angle) - followed).abs() < 1e-10,
+                    "{order}, {angle}"
+                );
             }
         }
         assert_eq!((Pade::new(0), Pade::new(9)), (None, None));
@@ -602,7 +819,8 @@ mod tests {
                 out.push((&model.c * &x).sum() + model.d * u);
                 x = &model.a * &x + &model.b * u;
             }
-            let delayed: Vec<f64> = [0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0][3 - count..][..5].to_vec();
+            let delayed: Vec<f64> =
+                [0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0][3 - count..][..5].to_vec();
             assert_eq!(out, delayed, "{count} samples");
         }
     }

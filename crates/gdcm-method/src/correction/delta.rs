@@ -48,7 +48,8 @@ pub struct Delta {
 impl Delta {
     /// G and D of the mismatch of two representatives.
     pub fn of(mismatch: &PairTable<Option<Mismatch>>, omega: &[f64]) -> Self {
-        let phases = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.phase_difference(omega)));
+        let phases =
+            mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.phase_difference(omega)));
         let of_each = |value: fn(&Mismatch, &[f64], &[f64]) -> f64| {
             mismatch.map(|pair, entry| {
                 let (entry, phase) = (entry.as_ref()?, phases[pair].as_ref()?);
@@ -58,7 +59,9 @@ impl Delta {
         Self {
             gain: delta_gains(mismatch),
             delay_s: of_each(|entry, phase, omega| entry.median(&mut delays(phase, omega))),
-            band_delay_s: of_each(|entry, phase, omega| band_delay_s(phase.iter().copied(), omega, entry.weights())),
+            band_delay_s: of_each(|entry, phase, omega| {
+                band_delay_s(phase.iter().copied(), omega, entry.weights())
+            }),
         }
     }
 }
@@ -70,7 +73,11 @@ pub fn delta_gains(mismatch: &PairTable<Option<Mismatch>>) -> PairTable<Option<f
 
 /// `sum W omega phase / sum W omega^2` \[s\] of a phase \[rad\] at each frequency \[rad/s\]: the delay that leaves the least phase in
 /// the mean of squares (M15.2). Linear in the phase; W = 1 where there are no weights.
-pub(crate) fn band_delay_s(phase: impl Iterator<Item = f64>, omega: &[f64], weights: Option<&[f64]>) -> f64 {
+pub(crate) fn band_delay_s(
+    phase: impl Iterator<Item = f64>,
+    omega: &[f64],
+    weights: Option<&[f64]>,
+) -> f64 {
     let weight = |place: usize| weights.map_or(1.0, |weights| weights[place]);
     let (mut moment, mut square) = (0.0, 0.0);
     for (place, (phase, omega)) in phase.zip(omega).enumerate() {
@@ -92,20 +99,33 @@ pub fn mismatch_table(
 ) -> PairTable<Option<Mismatch>> {
     simulated.curves().map(|pair, simulated| {
         let mismatch = Mismatch::new(simulated.as_ref()?, reference.curves()[pair].as_ref()?);
-        let mismatch =
-            mismatch.coherence_weighted(coherence_weights.map(|coherence_weights| &coherence_weights[pair]))?;
-        mismatch.magnitude_db.iter().all(|error| error.abs() < LARGEST_GAIN_DB).then_some(mismatch)
+        let mismatch = mismatch.coherence_weighted(
+            coherence_weights.map(|coherence_weights| &coherence_weights[pair]),
+        )?;
+        mismatch
+            .magnitude_db
+            .iter()
+            .all(|error| error.abs() < LARGEST_GAIN_DB)
+            .then_some(mismatch)
     })
 }
 
 /// `|H_ref| / |H_sim|` at each frequency.
 fn ratios(mismatch: &Mismatch) -> Vec<f64> {
-    mismatch.magnitude_db.iter().map(|error| db_to_ratio(-error)).collect()
+    mismatch
+        .magnitude_db
+        .iter()
+        .map(|error| db_to_ratio(-error))
+        .collect()
 }
 
 /// `Delta phi(H_sim, H_ref) / omega` \[s\] at each frequency.
 fn delays(phase: &[f64], omega: &[f64]) -> Vec<f64> {
-    phase.iter().zip(omega).map(|(phase, omega)| phase / omega).collect()
+    phase
+        .iter()
+        .zip(omega)
+        .map(|(phase, omega)| phase / omega)
+        .collect()
 }
 
 /// The mismatches that are pooled: those marked in `measuring`, or all where none of the marked is defined.
@@ -113,13 +133,24 @@ fn pooled<'a>(
     mismatch: &'a PairTable<Option<Mismatch>>,
     measuring: &PairTable<bool>,
 ) -> impl Iterator<Item = &'a Mismatch> + use<'a> {
-    let marked: Vec<Pair> = measuring.marked().filter(|&pair| mismatch[pair].is_some()).collect();
-    let pairs = if marked.is_empty() { mismatch.pairs().collect() } else { marked };
+    let marked: Vec<Pair> = measuring
+        .marked()
+        .filter(|&pair| mismatch[pair].is_some())
+        .collect();
+    let pairs = if marked.is_empty() {
+        mismatch.pairs().collect()
+    } else {
+        marked
+    };
     pairs.into_iter().filter_map(|pair| mismatch[pair].as_ref())
 }
 
 /// `LB = min(1, q-quantile)`, `UB = max(1, (1-q)-quantile)` of `|H_ref| / |H_sim|` pooled over frequency and pairs.
-pub fn gain_bounds(mismatch: &PairTable<Option<Mismatch>>, measuring: &PairTable<bool>, q: f64) -> GainBounds {
+pub fn gain_bounds(
+    mismatch: &PairTable<Option<Mismatch>>,
+    measuring: &PairTable<bool>,
+    q: f64,
+) -> GainBounds {
     let mut pool: Vec<f64> = pooled(mismatch, measuring).flat_map(ratios).collect();
     let lower = quantile(&mut pool, q).min(1.0);
     let upper = quantile(&mut pool, 1.0 - q).max(1.0);

@@ -27,7 +27,11 @@ pub struct LeadSettings {
 impl Default for LeadSettings {
     /// Second order, n = 3, R_max = 10 (20 dB).
     fn default() -> Self {
-        Self { order: LeadOrder::Second, pole: 3.0, limit: 10.0 }
+        Self {
+            order: LeadOrder::Second,
+            pole: 3.0,
+            limit: 10.0,
+        }
     }
 }
 
@@ -42,7 +46,11 @@ pub struct LeadDesign {
 impl LeadDesign {
     /// The design over these frequencies \[rad/s\], rising and positive; at least one.
     pub fn new(settings: LeadSettings, omega: Arc<[f64]>) -> Self {
-        let mut design = Self { settings, omega, lower_s: 0.0 };
+        let mut design = Self {
+            settings,
+            omega,
+            lower_s: 0.0,
+        };
         design.lower_s = design.band_delay_s(design.longest_lead_s());
         design
     }
@@ -90,7 +98,11 @@ impl LeadDesign {
     /// falling.
     pub fn band_delay_s(&self, lead_s: f64) -> f64 {
         let filter = self.filter_of(lead_s);
-        -band_delay_s(self.omega.iter().map(|&omega| filter.phase(omega)), &self.omega, None)
+        -band_delay_s(
+            self.omega.iter().map(|&omega| filter.phase(omega)),
+            &self.omega,
+            None,
+        )
     }
 
     /// `-d d(l) / d l`, dimensionless: with `x = a omega` it is `(1 + x^2) / (1 + x^4)` in the mean, of first order
@@ -142,7 +154,11 @@ impl LeadDesign {
                 high = lead_s;
             }
             let newton_s = lead_s + miss_s / self.falling(lead_s);
-            let next_s = if (low..=high).contains(&newton_s) { newton_s } else { 0.5 * (low + high) };
+            let next_s = if (low..=high).contains(&newton_s) {
+                newton_s
+            } else {
+                0.5 * (low + high)
+            };
             let step_s = (next_s - lead_s).abs();
             lead_s = next_s;
             if step_s <= SMALL * lead_s {
@@ -176,12 +192,18 @@ impl PartialEq for ChannelLeads {
 impl ChannelLeads {
     /// Signed delays \[s\] with the filters of `design`.
     pub fn new(design: Arc<LeadDesign>, taus_s: Channels<f64>) -> Self {
-        Self { design, taus_s, filters: Arc::default(), curves: Arc::default() }
+        Self {
+            design,
+            taus_s,
+            filters: Arc::default(),
+            curves: Arc::default(),
+        }
     }
 
     /// The lead filter of each channel; none where its signed delay is not negative.
     pub fn filters(&self) -> &Channels<Option<LeadFilter>> {
-        self.filters.get_or_init(|| self.taus_s.map(|_, &tau_s| self.design.filter(tau_s)))
+        self.filters
+            .get_or_init(|| self.taus_s.map(|_, &tau_s| self.design.filter(tau_s)))
     }
 
     /// The part of each signed delay that is a pure delay \[s\].
@@ -192,7 +214,9 @@ impl ChannelLeads {
     /// What the filters of a response's two channels do to it at each frequency of the design's band; nothing where neither has one.
     pub fn curve(&self, pair: Pair) -> Option<LeadCurve> {
         let of_filter = |filter: LeadFilter| LeadCurve::of(filter, self.design.omega());
-        let curves = self.curves.get_or_init(|| self.filters().map(|_, filter| filter.map(of_filter)));
+        let curves = self
+            .curves
+            .get_or_init(|| self.filters().map(|_, filter| filter.map(of_filter)));
         match (&curves.inputs[pair.input], &curves.outputs[pair.output]) {
             (Some(input), Some(output)) => Some(input.in_series(output)),
             (one, other) => one.as_ref().or(other.as_ref()).cloned(),
@@ -212,14 +236,20 @@ pub struct LeadCurve {
 impl LeadCurve {
     fn of(filter: LeadFilter, omega: &[f64]) -> Self {
         Self {
-            magnitude_db: omega.iter().map(|&omega| filter.magnitude_db(omega)).collect(),
+            magnitude_db: omega
+                .iter()
+                .map(|&omega| filter.magnitude_db(omega))
+                .collect(),
             phase: omega.iter().map(|&omega| filter.phase(omega)).collect(),
         }
     }
 
     fn in_series(&self, other: &Self) -> Self {
         let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect();
-        Self { magnitude_db: sum(&self.magnitude_db, &other.magnitude_db), phase: sum(&self.phase, &other.phase) }
+        Self {
+            magnitude_db: sum(&self.magnitude_db, &other.magnitude_db),
+            phase: sum(&self.phase, &other.phase),
+        }
     }
 }
 
@@ -243,13 +273,18 @@ impl LeadPrice {
         let limit_rad_s = leads.design.band_top_rad_s();
         let gain_db = |filter: LeadFilter| filter.magnitude_db(ABOVE_BAND * limit_rad_s);
         let has_filter = leads.filters().iter().any(|(_, filter)| filter.is_some());
-        has_filter.then(|| Self { limit_rad_s, gains_db: leads.filters().map(|_, filter| filter.map_or(0.0, gain_db)) })
+        has_filter.then(|| Self {
+            limit_rad_s,
+            gains_db: leads.filters().map(|_, filter| filter.map_or(0.0, gain_db)),
+        })
     }
 
     /// The greater of both in every channel: of a schedule, whose leads follow the airspeed.
     #[must_use]
     pub fn or_more(self, other: &Self) -> Self {
-        let gains_db = self.gains_db.map(|channel, gain_db| gain_db.max(other.gains_db[channel]));
+        let gains_db = self
+            .gains_db
+            .map(|channel, gain_db| gain_db.max(other.gains_db[channel]));
         Self { gains_db, ..self }
     }
 
@@ -260,7 +295,10 @@ impl LeadPrice {
 
     /// What the filters of a response's two channels add there \[dB\].
     pub fn of_pair_db(&self, pair: Pair) -> f64 {
-        Channel::of(pair).map(|channel| self.gains_db[channel]).iter().sum()
+        Channel::of(pair)
+            .map(|channel| self.gains_db[channel])
+            .iter()
+            .sum()
     }
 
     /// "not valid above 12 rad/s".
@@ -271,9 +309,18 @@ impl LeadPrice {
     /// The limit, and what each channel with a filter adds: "not valid above 12 rad/s: at 120 rad/s the leads add +9.1 dB on LON, +11.3
     /// dB on LAT; a response gets that of its input and of its output".
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
-        let with_gain = self.gains_db.iter().filter(|(_, gain_db)| **gain_db > NOTHING_DB);
+        let with_gain = self
+            .gains_db
+            .iter()
+            .filter(|(_, gain_db)| **gain_db > NOTHING_DB);
         let gains: Vec<String> = with_gain
-            .map(|(channel, &gain_db)| format!("{} dB on {}", signed(gain_db, 1), channel.name(inputs, outputs)))
+            .map(|(channel, &gain_db)| {
+                format!(
+                    "{} dB on {}",
+                    signed(gain_db, 1),
+                    channel.name(inputs, outputs)
+                )
+            })
             .collect();
         if gains.is_empty() {
             return self.limit_words();
@@ -289,7 +336,13 @@ impl LeadPrice {
     /// "+18.9 dB at 120 rad/s" of a response; none where its channels add nothing.
     pub fn pair_words(&self, pair: Pair) -> Option<String> {
         let gain_db = self.of_pair_db(pair);
-        (gain_db > NOTHING_DB).then(|| format!("{} dB at {} rad/s", signed(gain_db, 1), number(self.above_rad_s())))
+        (gain_db > NOTHING_DB).then(|| {
+            format!(
+                "{} dB at {} rad/s",
+                signed(gain_db, 1),
+                number(self.above_rad_s())
+            )
+        })
     }
 }
 
@@ -304,7 +357,14 @@ mod tests {
 
     fn design(order: LeadOrder, pole: f64) -> LeadDesign {
         let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 200);
-        LeadDesign::new(LeadSettings { order, pole, limit: 10.0 }, grid.omega().into())
+        LeadDesign::new(
+            LeadSettings {
+                order,
+                pole,
+                limit: 10.0,
+            },
+            grid.omega().into(),
+        )
     }
 
     #[test]
@@ -313,7 +373,9 @@ mod tests {
         let design = design(LeadOrder::Second, 3.0);
         assert!((design.lower_s() + 0.095_616_050_448_4).abs() < 1e-12);
         assert!((design.longest_lead_s() - 0.084_942_288_684_1).abs() < 1e-12);
-        assert!((design.filter_of(design.longest_lead_s()).gain_at_infinity() - 10.0).abs() < 1e-13);
+        assert!(
+            (design.filter_of(design.longest_lead_s()).gain_at_infinity() - 10.0).abs() < 1e-13
+        );
         assert_eq!(design.lead_s(-1.0), design.longest_lead_s(), "beyond reach");
         assert_eq!((design.filter(0.0), design.filter(0.01)), (None, None));
     }
@@ -334,29 +396,54 @@ mod tests {
     }
 
     fn leads(input_s: f64, output_s: f64) -> ChannelLeads {
-        let design = LeadDesign::new(LeadSettings::default(), (1..=120).map(|tenth| 0.1 * f64::from(tenth)).collect());
-        ChannelLeads::new(Arc::new(design), Channels { inputs: vec![input_s], outputs: vec![output_s] })
+        let design = LeadDesign::new(
+            LeadSettings::default(),
+            (1..=120).map(|tenth| 0.1 * f64::from(tenth)).collect(),
+        );
+        ChannelLeads::new(
+            Arc::new(design),
+            Channels {
+                inputs: vec![input_s],
+                outputs: vec![output_s],
+            },
+        )
     }
 
     #[test]
     fn a_response_pays_for_the_filters_of_both_its_channels_at_ten_times_the_band() {
         let leads = leads(-0.04, -0.02);
         let price = LeadPrice::of(&leads).expect("both have a filter");
-        let pair = Pair { output: 0, input: 0 };
+        let pair = Pair {
+            output: 0,
+            input: 0,
+        };
         let of = |channel: Channel| leads.filters()[channel].expect("a lead").at(120.0).norm();
         let expected = 20.0 * (of(Channel::Input(0)) * of(Channel::Output(0))).log10();
         // Roundings of a response against the closed form of its magnitude.
-        assert!((price.of_pair_db(pair) - expected).abs() < 1e-9, "{price:?}");
-        assert!((price.limit_rad_s, price.above_rad_s()) == (12.0, 120.0), "{price:?}");
+        assert!(
+            (price.of_pair_db(pair) - expected).abs() < 1e-9,
+            "{price:?}"
+        );
+        assert!(
+            (price.limit_rad_s, price.above_rad_s()) == (12.0, 120.0),
+            "{price:?}"
+        );
         let words = price.words(&["LON".to_owned()], &["Q".to_owned()]);
-        assert!(words.starts_with("not valid above 12 rad/s: at 120 rad/s the leads add +"), "{words}");
-        assert!(words.contains(" dB on LON, +") && words.contains(" dB on Q;"), "{words}");
+        assert!(
+            words.starts_with("not valid above 12 rad/s: at 120 rad/s the leads add +"),
+            "{words}"
+        );
+        assert!(
+            words.contains(" dB on LON, +") && words.contains(" dB on Q;"),
+            "{words}"
+        );
     }
 
     #[test]
     fn delays_cost_nothing_and_a_schedule_costs_the_most_of_its_airspeeds() {
         assert_eq!(LeadPrice::of(&leads(0.01, 0.0)), None);
-        let [one, other] = [leads(-0.04, -0.01), leads(-0.02, -0.03)].map(|of| LeadPrice::of(&of).expect("leads"));
+        let [one, other] =
+            [leads(-0.04, -0.01), leads(-0.02, -0.03)].map(|of| LeadPrice::of(&of).expect("leads"));
         let most = one.clone().or_more(&other);
         assert_eq!(
             (most.gains_db.inputs[0], most.gains_db.outputs[0]),

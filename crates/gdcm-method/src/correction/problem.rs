@@ -131,7 +131,9 @@ fn bounds_words(quantity: Quantity, lower: f64, upper: f64) -> String {
             "the gain bounds {lower} and {upper} must be positive (1e-9 to 1e9), the lower one not above the upper one"
         ),
         Quantity::Delay => {
-            format!("the delays are bounded by {lower} s and {upper} s; it must be 0 and a number from 0 to 1e50 s")
+            format!(
+                "the delays are bounded by {lower} s and {upper} s; it must be 0 and a number from 0 to 1e50 s"
+            )
         }
         Quantity::SignedDelay => format!(
             "the signed delays are bounded by {lower} s and {upper} s; it must be a number from -1e50 to 0 and one from 0 to \
@@ -154,21 +156,50 @@ const GAIN_BOUNDS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 impl Problem {
     /// The problem of equation (7) that fits every entry: `alpha = 1`, the paper's objective, loops held to the last digit.
-    pub fn gains(delta: PairTable<Option<f64>>, constrained: PairTable<bool>, bounds: Bounds) -> Self {
+    pub fn gains(
+        delta: PairTable<Option<f64>>,
+        constrained: PairTable<bool>,
+        bounds: Bounds,
+    ) -> Self {
         let fitted = PairTable::filled(delta.outputs(), delta.inputs(), true);
         let quantity = Quantity::Gain(GainObjective::Ratio);
-        Self { quantity, delta, constrained, fitted, bounds, alpha: 1.0, agreement: 0.0 }
+        Self {
+            quantity,
+            delta,
+            constrained,
+            fitted,
+            bounds,
+            alpha: 1.0,
+            agreement: 0.0,
+        }
     }
 
     /// The problem of equation (11) that fits every entry, with `alpha = 1`; all times in seconds.
-    pub fn delays(delta_s: PairTable<Option<f64>>, constrained: PairTable<bool>, upper_s: f64) -> Self {
-        let bounds = Bounds { lower: 0.0, upper: upper_s };
-        Self { quantity: Quantity::Delay, ..Self::gains(delta_s, constrained, bounds) }
+    pub fn delays(
+        delta_s: PairTable<Option<f64>>,
+        constrained: PairTable<bool>,
+        upper_s: f64,
+    ) -> Self {
+        let bounds = Bounds {
+            lower: 0.0,
+            upper: upper_s,
+        };
+        Self {
+            quantity: Quantity::Delay,
+            ..Self::gains(delta_s, constrained, bounds)
+        }
     }
 
     /// The convex program of M15.4 that fits every entry, with `alpha = 1`; all times in seconds.
-    pub fn signed_delays(delta_s: PairTable<Option<f64>>, constrained: PairTable<bool>, bounds: Bounds) -> Self {
-        Self { quantity: Quantity::SignedDelay, ..Self::gains(delta_s, constrained, bounds) }
+    pub fn signed_delays(
+        delta_s: PairTable<Option<f64>>,
+        constrained: PairTable<bool>,
+        bounds: Bounds,
+    ) -> Self {
+        Self {
+            quantity: Quantity::SignedDelay,
+            ..Self::gains(delta_s, constrained, bounds)
+        }
     }
 
     /// Checks shapes and figures.
@@ -181,7 +212,12 @@ impl Problem {
         for (table, entries) in [("constrained", &self.constrained), ("fitted", &self.fitted)] {
             let found = (entries.outputs(), entries.inputs());
             if found != expected {
-                return Err(ProblemError::Shape { quantity, table, found, expected });
+                return Err(ProblemError::Shape {
+                    quantity,
+                    table,
+                    found,
+                    expected,
+                });
             }
         }
         for (pair, delta) in self.delta.iter() {
@@ -192,7 +228,9 @@ impl Problem {
                 (Some(gain), Quantity::Gain(_)) if !GAINS.contains(&gain) => {
                     return Err(ProblemError::Gain { pair, gain });
                 }
-                (Some(delay_s), Quantity::Delay | Quantity::SignedDelay) if !(-1e50..=1e50).contains(&delay_s) => {
+                (Some(delay_s), Quantity::Delay | Quantity::SignedDelay)
+                    if !(-1e50..=1e50).contains(&delay_s) =>
+                {
                     return Err(ProblemError::Delay { pair, delay_s });
                 }
                 _ => {}
@@ -200,19 +238,31 @@ impl Problem {
         }
         let (Bounds { lower, upper }, times) = (self.bounds, 0.0..=1e50);
         let are_bounds = match quantity {
-            Quantity::Gain(_) => GAIN_BOUNDS.contains(&lower) && GAIN_BOUNDS.contains(&upper) && lower <= upper,
+            Quantity::Gain(_) => {
+                GAIN_BOUNDS.contains(&lower) && GAIN_BOUNDS.contains(&upper) && lower <= upper
+            }
             Quantity::Delay => lower == 0.0 && times.contains(&upper),
             Quantity::SignedDelay => times.contains(&-lower) && times.contains(&upper),
         };
         if !are_bounds {
-            return Err(ProblemError::Bounds { quantity, bounds: self.bounds });
+            return Err(ProblemError::Bounds {
+                quantity,
+                bounds: self.bounds,
+            });
         }
-        if (0.0..=1e12).contains(&self.alpha) { Ok(()) } else { Err(ProblemError::Alpha { alpha: self.alpha }) }
+        if (0.0..=1e12).contains(&self.alpha) {
+            Ok(())
+        } else {
+            Err(ProblemError::Alpha { alpha: self.alpha })
+        }
     }
 
     /// The objective at these channels (inputs m, outputs p): of squared ratios, of squared dB, or in s².
     pub fn objective_at(&self, inputs: &[f64], outputs: &[f64]) -> f64 {
-        let miss = |(pair, delta): (Pair, f64)| self.quantity.miss(delta, outputs[pair.output], inputs[pair.input]);
+        let miss = |(pair, delta): (Pair, f64)| {
+            self.quantity
+                .miss(delta, outputs[pair.output], inputs[pair.input])
+        };
         let fit: f64 = self.fit_entries().map(|entry| miss(entry).powi(2)).sum();
         // Skipped at alpha = 0, where it would only add rounding.
         if self.alpha == 0.0 {
@@ -220,7 +270,11 @@ impl Problem {
         }
         let neutral = self.quantity.neutral();
         let departure = |output: &f64| self.quantity.miss(neutral, *output, neutral).powi(2);
-        let inputs = if self.quantity.regularises_inputs() { inputs } else { &[] };
+        let inputs = if self.quantity.regularises_inputs() {
+            inputs
+        } else {
+            &[]
+        };
         fit + self.alpha * outputs.iter().chain(inputs).map(departure).sum::<f64>()
     }
 
@@ -232,7 +286,9 @@ impl Problem {
 
     /// The held entries, with their delta.
     pub(crate) fn held_entries(&self) -> impl Iterator<Item = (Pair, f64)> + '_ {
-        self.constrained.marked().filter_map(|pair| self.delta[pair].map(|delta| (pair, delta)))
+        self.constrained
+            .marked()
+            .filter_map(|pair| self.delta[pair].map(|delta| (pair, delta)))
     }
 
     /// The coordinate in which the held entries are sums. Delays are homogeneous: in units of the greatest time of the problem
@@ -241,17 +297,29 @@ impl Problem {
         if let Quantity::Gain(_) = self.quantity {
             return Coordinate::Logarithm;
         }
-        let asked =
-            self.delta.iter().filter_map(|(_, delay)| *delay).fold(0.0_f64, |most, delay| most.max(delay.abs()));
+        let asked = self
+            .delta
+            .iter()
+            .filter_map(|(_, delay)| *delay)
+            .fold(0.0_f64, |most, delay| most.max(delay.abs()));
         // A bound far above what any channel could be asked for says nothing about the size of the answer.
-        let unit_s = if asked > 0.0 { asked } else { self.bounds.upper.max(-self.bounds.lower) };
-        Coordinate::Time { unit_s: if unit_s > 0.0 { unit_s } else { 1.0 } }
+        let unit_s = if asked > 0.0 {
+            asked
+        } else {
+            self.bounds.upper.max(-self.bounds.lower)
+        };
+        Coordinate::Time {
+            unit_s: if unit_s > 0.0 { unit_s } else { 1.0 },
+        }
     }
 
     /// Least and greatest coordinate of every channel.
     pub(crate) fn range(&self) -> (f64, f64) {
         let coordinate = self.coordinate();
-        let (low, high) = (coordinate.of(self.bounds.lower), coordinate.of(self.bounds.upper));
+        let (low, high) = (
+            coordinate.of(self.bounds.lower),
+            coordinate.of(self.bounds.upper),
+        );
         match coordinate {
             Coordinate::Logarithm => (low, high),
             // No path of held entries asks a channel for more than one unit each: a bound above that never acts.
@@ -316,7 +384,11 @@ impl Quantity {
 
     /// `k_o k_i` or `tau_o + tau_i`.
     pub(crate) fn net(self, output: f64, input: f64) -> f64 {
-        if self.is_gain() { output * input } else { output + input }
+        if self.is_gain() {
+            output * input
+        } else {
+            output + input
+        }
     }
 
     /// What an entry misses, whose square the objective sums: a ratio, dB or seconds.
@@ -340,12 +412,20 @@ impl Quantity {
 
     /// A difference of logarithms in dB, of delays in seconds.
     pub(crate) fn difference(self, difference: f64, coordinate: Coordinate) -> f64 {
-        if self.is_gain() { difference * DECIBEL } else { coordinate.value(difference) }
+        if self.is_gain() {
+            difference * DECIBEL
+        } else {
+            coordinate.value(difference)
+        }
     }
 
     /// A slope for each dB or for each millisecond, from one for each unit of the logarithm or each second.
     pub(crate) fn per_unit(self, slope: f64) -> f64 {
-        if self.is_gain() { slope / DECIBEL } else { 1e-3 * slope }
+        if self.is_gain() {
+            slope / DECIBEL
+        } else {
+            1e-3 * slope
+        }
     }
 
     /// The symbol of a channel's value.
@@ -406,27 +486,54 @@ pub(crate) fn three_digits(value: f64, round: fn(f64) -> f64) -> f64 {
     }
     let exponent = value.abs().log10().floor() as i32 - 2;
     // A value that is three digits up to rounding stays as it is. Negative powers are divided by: 1.87 is 187 / 100 exactly.
-    let digits = if exponent < 0 { value * 10f64.powi(-exponent) } else { value / 10f64.powi(exponent) };
+    let digits = if exponent < 0 {
+        value * 10f64.powi(-exponent)
+    } else {
+        value / 10f64.powi(exponent)
+    };
     let nearest = digits.round();
-    let digits = if (digits - nearest).abs() <= 1e-9 * nearest.abs() { nearest } else { round(digits) };
-    if exponent < 0 { digits / 10f64.powi(-exponent) } else { digits * 10f64.powi(exponent) }
+    let digits = if (digits - nearest).abs() <= 1e-9 * nearest.abs() {
+        nearest
+    } else {
+        round(digits)
+    };
+    if exponent < 0 {
+        digits / 10f64.powi(-exponent)
+    } else {
+        digits * 10f64.powi(exponent)
+    }
 }
 
 /// The objective of `problem` over the scales of `components`, in the problem's coordinate.
 pub(crate) fn objective(problem: &Problem, components: &Components) -> Objective {
     let ground = components.count();
-    let (quantity, coordinate, (inputs, outputs)) = (problem.quantity, problem.coordinate(), components.sides());
+    let (quantity, coordinate, (inputs, outputs)) =
+        (problem.quantity, problem.coordinate(), components.sides());
     let fit = problem.fit_entries().map(|(pair, delta)| {
         let (output, input) = (outputs[pair.output], inputs[pair.input]);
         let mut offset = -output.offset;
         offset.add(input.offset);
-        SquareEntry { output: output.component, input: input.component, weight: 1.0, delta, offset }
+        SquareEntry {
+            output: output.component,
+            input: input.component,
+            weight: 1.0,
+            delta,
+            offset,
+        }
     });
     let departure = |output: usize, input: usize, offset: Rounded| {
         let (weight, delta) = (problem.alpha, quantity.neutral());
-        SquareEntry { output, input, weight, delta, offset }
+        SquareEntry {
+            output,
+            input,
+            weight,
+            delta,
+            offset,
+        }
     };
-    let of_outputs = outputs.iter().map(|output| departure(output.component, ground, -output.offset));
+    let of_outputs = outputs
+        .iter()
+        .map(|output| departure(output.component, ground, -output.offset));
     let regularised = inputs.iter().filter(|_| quantity.regularises_inputs());
     let of_inputs = regularised.map(|input| departure(ground, input.component, input.offset));
     let departures = of_outputs.chain(of_inputs).filter(|_| problem.alpha > 0.0);
@@ -441,20 +548,34 @@ pub(crate) fn objective(problem: &Problem, components: &Components) -> Objective
     };
     let (terms, constant) = match quantity {
         Quantity::Gain(GainObjective::Ratio) => ratio_terms(&entries, ground + 1),
-        Quantity::Gain(GainObjective::Decibel) => quadratic_terms(&in_coordinate(SQUARED_DECIBEL), ground + 1),
+        Quantity::Gain(GainObjective::Decibel) => {
+            quadratic_terms(&in_coordinate(SQUARED_DECIBEL), ground + 1)
+        }
         Quantity::Delay | Quantity::SignedDelay => quadratic_terms(&in_coordinate(1.0), ground + 1),
     };
     let (mut lower, mut upper) = (components.lower.clone(), components.upper.clone());
     lower.push(0.0);
     upper.push(0.0);
-    Objective { lower, upper, terms, constant }
+    Objective {
+        lower,
+        upper,
+        terms,
+        constant,
+    }
 }
 
 /// One term for each two scales that share an entry: `forward` holds the entries whose input has the greater index.
 fn ratio_terms(entries: &[SquareEntry], scales: usize) -> (Vec<Term>, Rounded) {
     let mut groups: Vec<Vec<ProductEntry>> = vec![Vec::new(); scales * scales];
     let mut constant = Rounded::default();
-    for SquareEntry { output, input, weight, delta, offset } in entries {
+    for SquareEntry {
+        output,
+        input,
+        weight,
+        delta,
+        offset,
+    } in entries
+    {
         let entry = ProductEntry::new(*weight, *delta, *offset);
         if output == input {
             constant.add(entry.square());
@@ -470,7 +591,11 @@ fn ratio_terms(entries: &[SquareEntry], scales: usize) -> (Vec<Term>, Rounded) {
             constant.add(ahead);
             constant.add(behind);
             if !(forward.is_zero() && backward.is_zero()) {
-                terms.push(Term { from, to, function: Function::exponential(forward, backward) });
+                terms.push(Term {
+                    from,
+                    to,
+                    function: Function::exponential(forward, backward),
+                });
             }
         }
     }
@@ -497,15 +622,48 @@ mod tests {
 
     #[test]
     fn a_figure_is_rounded_to_three_digits_so_that_it_still_suffices() {
-        assert_eq!((three_digits(1.8681, f64::ceil), three_digits(1.8681, f64::floor)), (1.87, 1.86));
-        assert_eq!((three_digits(0.060_801, f64::ceil), three_digits(0.060_801, f64::floor)), (0.0609, 0.0608));
-        assert_eq!((three_digits(1234.0, f64::ceil), three_digits(1234.0, f64::floor)), (1240.0, 1230.0));
-        assert_eq!((three_digits(0.999_7, f64::ceil), three_digits(0.999_7, f64::floor)), (1.0, 0.999));
+        assert_eq!(
+            (
+                three_digits(1.8681, f64::ceil),
+                three_digits(1.8681, f64::floor)
+            ),
+            (1.87, 1.86)
+        );
+        assert_eq!(
+            (
+                three_digits(0.060_801, f64::ceil),
+                three_digits(0.060_801, f64::floor)
+            ),
+            (0.0609, 0.0608)
+        );
+        assert_eq!(
+            (
+                three_digits(1234.0, f64::ceil),
+                three_digits(1234.0, f64::floor)
+            ),
+            (1240.0, 1230.0)
+        );
+        assert_eq!(
+            (
+                three_digits(0.999_7, f64::ceil),
+                three_digits(0.999_7, f64::floor)
+            ),
+            (1.0, 0.999)
+        );
     }
 
     #[test]
     fn a_figure_of_three_digits_up_to_rounding_stays() {
-        assert_eq!((three_digits(0.7 * 2.5, f64::ceil), three_digits(1.4 / 2.5, f64::floor)), (1.75, 0.56));
-        assert_eq!((three_digits(0.0, f64::ceil), three_digits(0.0, f64::floor)), (0.0, 0.0));
+        assert_eq!(
+            (
+                three_digits(0.7 * 2.5, f64::ceil),
+                three_digits(1.4 / 2.5, f64::floor)
+            ),
+            (1.75, 0.56)
+        );
+        assert_eq!(
+            (three_digits(0.0, f64::ceil), three_digits(0.0, f64::floor)),
+            (0.0, 0.0)
+        );
     }
 }

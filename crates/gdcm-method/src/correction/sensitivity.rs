@@ -52,22 +52,39 @@ impl Sensitivity {
         let name = match self.restraint {
             ActiveConstraint::Held(pair) => pair_name(pair, inputs, outputs),
             ActiveConstraint::LowerBound(channel) | ActiveConstraint::UpperBound(channel) => {
-                format!("{}_{}", if gain { "k" } else { "τ" }, channel.name(inputs, outputs))
+                format!(
+                    "{}_{}",
+                    if gain { "k" } else { "τ" },
+                    channel.name(inputs, outputs)
+                )
             }
         };
         let change = if is_dear { "lowering" } else { "raising" };
         let way = match (self.quantity, self.restraint) {
-            (Quantity::Gain(_), ActiveConstraint::Held(_)) => format!("held: {change} its gain by {step} dB"),
+            (Quantity::Gain(_), ActiveConstraint::Held(_)) => {
+                format!("held: {change} its gain by {step} dB")
+            }
             (Quantity::Gain(_), bound) => {
-                let end = if matches!(bound, ActiveConstraint::LowerBound(_)) { "lower" } else { "upper" };
+                let end = if matches!(bound, ActiveConstraint::LowerBound(_)) {
+                    "lower"
+                } else {
+                    "upper"
+                };
                 format!("on its {end} bound: {change} the bound by {step} dB")
             }
             (_, ActiveConstraint::Held(_)) => {
-                format!("held: {step} ms {} delay", if is_dear { "less" } else { "more" })
+                format!(
+                    "held: {step} ms {} delay",
+                    if is_dear { "less" } else { "more" }
+                )
             }
             (Quantity::Delay, ActiveConstraint::LowerBound(_)) => format!("0: {step} ms of lead"),
-            (_, ActiveConstraint::LowerBound(_)) => format!("at its most lead: {step} ms more of it"),
-            (_, ActiveConstraint::UpperBound(_)) => format!("on its upper bound: raising the bound by {step} ms"),
+            (_, ActiveConstraint::LowerBound(_)) => {
+                format!("at its most lead: {step} ms more of it")
+            }
+            (_, ActiveConstraint::UpperBound(_)) => {
+                format!("on its upper bound: raising the bound by {step} ms")
+            }
         };
         format!("{name} is {way} would lower the objective by about {percent:.2} %.")
     }
@@ -81,17 +98,35 @@ pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity>
     let (of_entries, of_channels) = multipliers(&minimum);
     let sensitivity = |restraint: ActiveConstraint, slope: f64| {
         let per_unit = problem.quantity.per_unit(slope);
-        let share_per_unit = if solution.objective > 0.0 { per_unit / solution.objective } else { 0.0 };
-        Sensitivity { quantity: problem.quantity, restraint, per_unit, share_per_unit }
+        let share_per_unit = if solution.objective > 0.0 {
+            per_unit / solution.objective
+        } else {
+            0.0
+        };
+        Sensitivity {
+            quantity: problem.quantity,
+            restraint,
+            per_unit,
+            share_per_unit,
+        }
     };
-    let of_held =
-        minimum.held.iter().zip(&of_entries).map(|(pair, slope)| sensitivity(ActiveConstraint::Held(*pair), *slope));
+    let of_held = minimum
+        .held
+        .iter()
+        .zip(&of_entries)
+        .map(|(pair, slope)| sensitivity(ActiveConstraint::Held(*pair), *slope));
     let channels = Channel::all(minimum.inputs, solution.outputs.len()).zip(of_channels);
-    let of_bounds = channels.filter(|(_, slope)| *slope != 0.0).map(|(channel, slope)| {
-        // The objective falls as the upper bound is raised, or the lower one lowered.
-        let bound = if slope < 0.0 { ActiveConstraint::UpperBound } else { ActiveConstraint::LowerBound };
-        sensitivity(bound(channel), slope)
-    });
+    let of_bounds = channels
+        .filter(|(_, slope)| *slope != 0.0)
+        .map(|(channel, slope)| {
+            // The objective falls as the upper bound is raised, or the lower one lowered.
+            let bound = if slope < 0.0 {
+                ActiveConstraint::UpperBound
+            } else {
+                ActiveConstraint::LowerBound
+            };
+            sensitivity(bound(channel), slope)
+        });
     let mut all: Vec<Sensitivity> = of_held.chain(of_bounds).collect();
     all.sort_by(|a, b| b.per_unit.abs().total_cmp(&a.per_unit.abs()));
     all
@@ -102,12 +137,20 @@ fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
     let (quantity, inputs) = (problem.quantity, solution.inputs.len());
     let mut slopes = vec![0.0; inputs + solution.outputs.len()];
     for (pair, delta) in problem.fit_entries() {
-        let slope = quantity.slope(delta, solution.outputs[pair.output], solution.inputs[pair.input]);
+        let slope = quantity.slope(
+            delta,
+            solution.outputs[pair.output],
+            solution.inputs[pair.input],
+        );
         slopes[pair.input] += slope;
         slopes[inputs + pair.output] += slope;
     }
     let neutral = quantity.neutral();
-    let first = if quantity.regularises_inputs() { 0 } else { inputs };
+    let first = if quantity.regularises_inputs() {
+        0
+    } else {
+        inputs
+    };
     let values = solution.inputs.iter().chain(&solution.outputs);
     for (slope, value) in slopes.iter_mut().zip(values).skip(first) {
         *slope += problem.alpha * quantity.slope(neutral, *value, neutral);
@@ -122,8 +165,13 @@ fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
 /// ([`super::solve`]).
 pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
     let minimum = Restrained::of(problem, solution);
-    let pushes = minimum.pieces().into_iter().map(|piece| minimum.push(&piece));
-    pushes.filter(|(_, stopping)| stopping.is_empty()).fold(0.0, |most, (push, _)| most.max(push.abs()))
+    let pushes = minimum
+        .pieces()
+        .into_iter()
+        .map(|piece| minimum.push(&piece));
+    pushes
+        .filter(|(_, stopping)| stopping.is_empty())
+        .fold(0.0, |most, (push, _)| most.max(push.abs()))
 }
 
 /// A minimum seen from its channels: inputs first, then outputs.
@@ -140,15 +188,35 @@ struct Restrained {
 
 impl Restrained {
     fn of(problem: &Problem, solution: &Solution) -> Self {
-        let on = |value: &f64| (*value == problem.bounds.lower, *value == problem.bounds.upper);
-        let at_bounds = solution.inputs.iter().chain(&solution.outputs).map(on).collect();
+        let on = |value: &f64| {
+            (
+                *value == problem.bounds.lower,
+                *value == problem.bounds.upper,
+            )
+        };
+        let at_bounds = solution
+            .inputs
+            .iter()
+            .chain(&solution.outputs)
+            .map(on)
+            .collect();
         let held = problem.held_entries().map(|(pair, _)| pair).collect();
-        Self { inputs: solution.inputs.len(), slopes: slopes(problem, solution), at_bounds, held }
+        Self {
+            inputs: solution.inputs.len(),
+            slopes: slopes(problem, solution),
+            at_bounds,
+            held,
+        }
     }
 
     /// The channels that held entries tie together.
     fn pieces(&self) -> Vec<Vec<usize>> {
-        pieces(self.slopes.len(), self.held.iter().map(|pair| (pair.input, self.inputs + pair.output)))
+        pieces(
+            self.slopes.len(),
+            self.held
+                .iter()
+                .map(|pair| (pair.input, self.inputs + pair.output)),
+        )
     }
 
     /// 1 of an input, -1 of an output: an output falls where the inputs tied to it rise.
@@ -158,11 +226,18 @@ impl Restrained {
 
     /// The slope of the objective along which a piece of tied channels moves, and the channels whose bounds stop it.
     fn push(&self, piece: &[usize]) -> (f64, Vec<usize>) {
-        let push: f64 = piece.iter().map(|&channel| self.sign(channel) * self.slopes[channel]).sum();
+        let push: f64 = piece
+            .iter()
+            .map(|&channel| self.sign(channel) * self.slopes[channel])
+            .sum();
         // The piece would move against the slope: an input on its upper bound stops a rise, an output on its lower one too.
         let stops = |channel: &&usize| {
             let rises = self.sign(**channel) * push < 0.0;
-            if rises { self.at_bounds[**channel].1 } else { self.at_bounds[**channel].0 }
+            if rises {
+                self.at_bounds[**channel].1
+            } else {
+                self.at_bounds[**channel].0
+            }
         };
         (push, piece.iter().filter(stops).copied().collect())
     }
@@ -182,10 +257,16 @@ fn multipliers(minimum: &Restrained) -> (Vec<f64>, Vec<f64>) {
             bounds[channel] = minimum.sign(channel) * push / stopping.len() as f64;
         }
     }
-    let left = DVector::from_fn(channels, |channel, _| minimum.slopes[channel] - bounds[channel]);
+    let left = DVector::from_fn(channels, |channel, _| {
+        minimum.slopes[channel] - bounds[channel]
+    });
     let ties = DMatrix::from_fn(channels, minimum.held.len(), |channel, entry| {
         let pair = minimum.held[entry];
-        if channel == pair.input || channel == minimum.inputs + pair.output { 1.0 } else { 0.0 }
+        if channel == pair.input || channel == minimum.inputs + pair.output {
+            1.0
+        } else {
+            0.0
+        }
     });
     let held = if minimum.held.is_empty() {
         Vec::new()
@@ -193,7 +274,9 @@ fn multipliers(minimum: &Restrained) -> (Vec<f64>, Vec<f64>) {
         // Squared, the singular values are the Laplacian's of a bipartite graph of n channels: 0, or at least 4 / n^2 (Mohar,
         // "Eigenvalues, diameter and mean distance in graphs", 1991). This is half of that root.
         let solved = ties.svd(true, true).solve(&left, 1.0 / channels as f64);
-        solved.map(|held| held.iter().copied().collect()).unwrap_or_default()
+        solved
+            .map(|held| held.iter().copied().collect())
+            .unwrap_or_default()
     };
     (held, bounds)
 }
@@ -221,7 +304,11 @@ impl Toggle {
     /// Change of the objective as a share of the objective now; infinite where that is 0 and something changes.
     pub fn share(&self) -> f64 {
         let change = self.after - self.before;
-        if change == 0.0 { 0.0 } else { change / self.before }
+        if change == 0.0 {
+            0.0
+        } else {
+            change / self.before
+        }
     }
 
     /// The cost in words: what is held costs something, what is free would.
@@ -231,14 +318,23 @@ impl Toggle {
         let percent = 100.0 * self.share() + 0.0;
         match (self.held_now, self.matched_after) {
             (true, _) if self.after <= self.before => {
-                format!("holding {pair} costs {:.1} % of the objective", 0.0 - percent)
+                format!(
+                    "holding {pair} costs {:.1} % of the objective",
+                    0.0 - percent
+                )
             }
             (true, _) => {
-                format!("freeing {pair} would raise the objective by {percent:.1} %: others are then held better")
+                format!(
+                    "freeing {pair} would raise the objective by {percent:.1} %: others are then held better"
+                )
             }
-            (false, true) => format!("holding {pair} would change the objective by {percent:+.1} %"),
+            (false, true) => {
+                format!("holding {pair} would change the objective by {percent:+.1} %")
+            }
             (false, false) => {
-                format!("{pair} cannot be held besides what is held; trying changes the objective by {percent:+.1} %")
+                format!(
+                    "{pair} cannot be held besides what is held; trying changes the objective by {percent:+.1} %"
+                )
             }
         }
     }

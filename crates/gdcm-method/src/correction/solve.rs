@@ -37,7 +37,8 @@ impl Outcome {
     pub fn words(self) -> String {
         match self {
             Outcome::Proven { .. } => {
-                "Proven: no gains within the bounds that hold the held responses are better.".to_owned()
+                "Proven: no gains within the bounds that hold the held responses are better."
+                    .to_owned()
             }
             Outcome::NotProven { gap, limit } => {
                 let ended = match limit {
@@ -46,7 +47,9 @@ impl Outcome {
                     Limit::Rounding => "where rounding decides",
                 };
                 let percent = 100.0 * gap;
-                format!("Not proven: gains that are up to {percent:.2} % better may exist; the search ended {ended}.")
+                format!(
+                    "Not proven: gains that are up to {percent:.2} % better may exist; the search ended {ended}."
+                )
             }
         }
     }
@@ -109,7 +112,10 @@ impl Unmatched {
         if let Quantity::Gain(_) = self.quantity {
             let (target, delta) = told_apart(self.target, self.delta, 3);
             let sign = if self.excess > 0.0 { "+" } else { "" };
-            return format!("{pair} is held at {target} instead of {delta} ({sign}{} dB).", telling(self.excess, 1));
+            return format!(
+                "{pair} is held at {target} instead of {delta} ({sign}{} dB).",
+                telling(self.excess, 1)
+            );
         }
         if self.quantity == Quantity::SignedDelay && self.delta < 0.0 {
             let (target, delta) = told_apart(s_to_ms(-self.target), s_to_ms(-self.delta), 1);
@@ -121,9 +127,15 @@ impl Unmatched {
         let lead_ms = 1e3 * self.excess;
         let left = telling(self.phase_left_deg(omega_top).abs(), 0);
         let why = if self.why.is_lone_lead() && self.why.entries == [self.pair] {
-            format!("{pair} needs {} ms of lead: a delay cannot give it", telling(lead_ms, 1))
+            format!(
+                "{pair} needs {} ms of lead: a delay cannot give it",
+                telling(lead_ms, 1)
+            )
         } else if lead_ms > 0.0 {
-            format!("{pair} gets {} ms more delay than it needs", telling(lead_ms, 1))
+            format!(
+                "{pair} gets {} ms more delay than it needs",
+                telling(lead_ms, 1)
+            )
         } else {
             format!("{pair} lacks {} ms of delay", telling(-lead_ms, 1))
         };
@@ -162,7 +174,10 @@ pub struct Solution {
 impl Solution {
     /// Gain, delay or signed delay of each channel.
     pub fn channels(&self) -> Channels<f64> {
-        Channels { inputs: self.inputs.clone(), outputs: self.outputs.clone() }
+        Channels {
+            inputs: self.inputs.clone(),
+            outputs: self.outputs.clone(),
+        }
     }
 }
 
@@ -205,11 +220,17 @@ fn matched_within(coordinate: Coordinate) -> f64 {
 /// # Errors
 /// [`ProblemError`] where the problem is not well posed ([`Problem::check`]), and [`ProblemError::Stopped`] as soon as `stop`,
 /// asked every half millisecond or so, says so.
-pub fn solve(problem: &Problem, budget: ProofBudget, stop: &dyn Fn() -> bool) -> Result<Solution, ProblemError> {
+pub fn solve(
+    problem: &Problem,
+    budget: ProofBudget,
+    stop: &dyn Fn() -> bool,
+) -> Result<Solution, ProblemError> {
     problem.check()?;
     let effort = Effort::new(stop);
     let (held, coordinate) = (Held::of(problem), problem.coordinate());
-    let reached = reach(&held, |nearest| minimise(nearest, problem.quantity, &effort))?;
+    let reached = reach(&held, |nearest| {
+        minimise(nearest, problem.quantity, &effort)
+    })?;
     let objective = objective(problem, &reached.components);
     let start = start(&objective, problem.quantity)?;
     let mut found = search(&objective, &start, budget, floor(problem), &effort)?;
@@ -217,16 +238,28 @@ pub fn solve(problem: &Problem, budget: ProofBudget, stop: &dyn Fn() -> bool) ->
         settle(problem.quantity, &reached.components, &objective, scales);
     }
     let proof = proof(problem, &reached.components, found);
-    let (agreeing, unmatched): (Vec<Unmatched>, Vec<Unmatched>) = misses(problem, &held, &reached, &effort)?
-        .into_iter()
-        .partition(|miss| miss.why.agrees_within(problem.agreement) && miss.excess.abs() <= problem.agreement);
+    let (agreeing, unmatched): (Vec<Unmatched>, Vec<Unmatched>) =
+        misses(problem, &held, &reached, &effort)?
+            .into_iter()
+            .partition(|miss| {
+                miss.why.agrees_within(problem.agreement) && miss.excess.abs() <= problem.agreement
+            });
     let conflicts = conflicts_of(&unmatched);
-    let remedy = Remedy::new(problem, &settled_loops(&held, &reached, &agreeing), &conflicts, &effort)?;
+    let remedy = Remedy::new(
+        problem,
+        &settled_loops(&held, &reached, &agreeing),
+        &conflicts,
+        &effort,
+    )?;
     let mut targets = PairTable::filled(held.outputs, held.inputs, None);
     for (pair, target) in &reached.targets {
         targets[*pair] = Some(coordinate.value(*target));
     }
-    let LocalMinimum { inputs, outputs, objective } = proof.local_minima[0].clone();
+    let LocalMinimum {
+        inputs,
+        outputs,
+        objective,
+    } = proof.local_minima[0].clone();
     Ok(Solution {
         quantity: problem.quantity,
         inputs,
@@ -244,11 +277,19 @@ pub fn solve(problem: &Problem, budget: ProofBudget, stop: &dyn Fn() -> bool) ->
 
 /// Where Newton's method begins: of delays next to the minimum, which it then reaches exactly, bounds and all.
 fn start(objective: &Objective, quantity: Quantity) -> Result<Vec<f64>, ProblemError> {
-    if quantity.is_gain() { Ok(objective.nearest_to_zero()) } else { interior_point(objective) }
+    if quantity.is_gain() {
+        Ok(objective.nearest_to_zero())
+    } else {
+        interior_point(objective)
+    }
 }
 
 /// The minimum of a sum of squares.
-fn minimise(objective: &Objective, quantity: Quantity, effort: &Effort<'_>) -> Result<Vec<f64>, ProblemError> {
+fn minimise(
+    objective: &Objective,
+    quantity: Quantity,
+    effort: &Effort<'_>,
+) -> Result<Vec<f64>, ProblemError> {
     let mut scales = start(objective, quantity)?;
     let bounds = (objective.lower.as_slice(), objective.upper.as_slice());
     Newton::new(objective.scales(), effort).minimise(objective, bounds, &mut scales, |_, _| false);
@@ -263,10 +304,16 @@ fn settle(quantity: Quantity, components: &Components, objective: &Objective, sc
         let (inputs, outputs) = components.channels(scales);
         let of_piece = |nodes: &[Placement], values: &[f64]| -> Vec<f64> {
             let pairs = nodes.iter().zip(values);
-            pairs.filter(|(node, _)| piece.contains(&node.component)).map(|(_, value)| *value).collect()
+            pairs
+                .filter(|(node, _)| piece.contains(&node.component))
+                .map(|(_, value)| *value)
+                .collect()
         };
         let (input_nodes, output_nodes) = components.sides();
-        let (inputs, outputs) = (of_piece(input_nodes, &inputs), of_piece(output_nodes, &outputs));
+        let (inputs, outputs) = (
+            of_piece(input_nodes, &inputs),
+            of_piece(output_nodes, &outputs),
+        );
         if quantity.regularises_inputs() {
             let apart = outputs.iter().sum::<f64>() - inputs.iter().sum::<f64>();
             return apart / (inputs.len() + outputs.len()).max(1) as f64;
@@ -275,8 +322,9 @@ fn settle(quantity: Quantity, components: &Components, objective: &Objective, sc
             (_, true, true) => 0.0,
             (_, true, false) => -mean(&inputs),
             (Quantity::Gain(GainObjective::Ratio), false, _) => {
-                let (sum, square) =
-                    outputs.iter().fold((0.0, 0.0), |(sum, square), x| (sum + x.exp(), square + (2.0 * x).exp()));
+                let (sum, square) = outputs.iter().fold((0.0, 0.0), |(sum, square), x| {
+                    (sum + x.exp(), square + (2.0 * x).exp())
+                });
                 (square / sum).ln()
             }
             (_, false, _) => mean(&outputs),
@@ -300,7 +348,10 @@ fn channels_at(problem: &Problem, components: &Components, scales: &[f64]) -> (V
         }
     };
     let (inputs, outputs) = components.channels(scales);
-    (inputs.iter().map(value).collect(), outputs.iter().map(value).collect())
+    (
+        inputs.iter().map(value).collect(),
+        outputs.iter().map(value).collect(),
+    )
 }
 
 /// What the search found, in gains or delays.
@@ -308,15 +359,31 @@ fn proof(problem: &Problem, components: &Components, found: Minima) -> Proof {
     let minimum = |(scales, _): &(Vec<f64>, f64)| {
         let (inputs, outputs) = channels_at(problem, components, scales);
         let objective = problem.objective_at(&inputs, &outputs);
-        LocalMinimum { inputs, outputs, objective }
+        LocalMinimum {
+            inputs,
+            outputs,
+            objective,
+        }
     };
     let local_minima: Vec<LocalMinimum> = found.minima.iter().map(minimum).collect();
     let outcome = match found.limit {
         None => Outcome::Proven { gap: found.gap },
-        Some(limit) => Outcome::NotProven { gap: found.gap, limit },
+        Some(limit) => Outcome::NotProven {
+            gap: found.gap,
+            limit,
+        },
     };
-    let lower_bound = problem.coordinate().objective(found.lower_bound).min(local_minima[0].objective);
-    Proof { lower_bound, outcome, nodes: found.nodes, local_minima, all_minima: found.all_minima }
+    let lower_bound = problem
+        .coordinate()
+        .objective(found.lower_bound)
+        .min(local_minima[0].objective);
+    Proof {
+        lower_bound,
+        outcome,
+        nodes: found.nodes,
+        local_minima,
+        all_minima: found.all_minima,
+    }
 }
 
 /// The held entries that stage 1 could not match, each with what is in the way.
@@ -342,9 +409,19 @@ fn misses(
     let missed = entries.filter(|((_, delta), (_, target))| (target - delta).abs() > tolerance);
     let missed = missed.map(|((pair, delta_at), (_, target_at))| {
         let (delta, target) = (coordinate.value(*delta_at), coordinate.value(*target_at));
-        let excess =
-            if quantity.is_gain() { quantity.difference(target_at - delta_at, coordinate) } else { target - delta };
-        Unmatched { quantity, pair: *pair, delta, target, excess, why: why(*pair) }
+        let excess = if quantity.is_gain() {
+            quantity.difference(target_at - delta_at, coordinate)
+        } else {
+            target - delta
+        };
+        Unmatched {
+            quantity,
+            pair: *pair,
+            delta,
+            target,
+            excess,
+            why: why(*pair),
+        }
     });
     Ok(missed.collect())
 }
@@ -354,7 +431,10 @@ fn settled_loops(held: &Held, reached: &Reached, agreeing: &[Unmatched]) -> Held
     let is_settled = |pair: Pair| agreeing.iter().any(|miss| miss.pair == pair);
     let entries = held.entries.iter().zip(&reached.targets);
     let entries = entries.map(|(asked, target)| if is_settled(asked.0) { *target } else { *asked });
-    Held { entries: entries.collect(), ..*held }
+    Held {
+        entries: entries.collect(),
+        ..*held
+    }
 }
 
 /// The distinct conflicts behind the misses.
@@ -363,13 +443,21 @@ fn conflicts_of(unmatched: &[Unmatched]) -> Vec<Conflict> {
     for miss in unmatched {
         let same = |known: &Conflict| {
             known.entries.len() == miss.why.entries.len()
-                && known.entries.iter().all(|pair| miss.why.entries.contains(pair))
+                && known
+                    .entries
+                    .iter()
+                    .all(|pair| miss.why.entries.contains(pair))
         };
         if !conflicts.iter().any(same) {
             conflicts.push(miss.why.clone());
         }
     }
-    conflicts.sort_by_key(|conflict| (!matches!(conflict.kind, ConflictKind::Loop { .. }), conflict.entries.len()));
+    conflicts.sort_by_key(|conflict| {
+        (
+            !matches!(conflict.kind, ConflictKind::Loop { .. }),
+            conflict.entries.len(),
+        )
+    });
     conflicts
 }
 
@@ -379,8 +467,9 @@ fn conflicts_of(unmatched: &[Unmatched]) -> Vec<Conflict> {
 /// [`ProblemError::Program`] where clarabel does not report the problem as solved ("almost solved" is not).
 pub(crate) fn interior_point(objective: &Objective) -> Result<Vec<f64>, ProblemError> {
     let mut scales = objective.lower.clone();
-    let free: Vec<usize> =
-        (0..objective.scales()).filter(|&index| objective.lower[index] < objective.upper[index]).collect();
+    let free: Vec<usize> = (0..objective.scales())
+        .filter(|&index| objective.lower[index] < objective.upper[index])
+        .collect();
     if !free.is_empty() {
         for (position, value) in solve_program(objective, &free)?.into_iter().enumerate() {
             let index = free[position];
@@ -400,13 +489,26 @@ fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, Prob
     objective.expand(&origin, Curvature::True, &mut at);
     let slope: Vec<f64> = free.iter().map(|&index| at.gradient[index]).collect();
     let row = |row: usize| free.iter().map(move |column| row * scales + column);
-    let quadratic = CscMatrix::from(free.iter().map(|&index| row(index).map(|entry| &at.hessian[entry]))).to_triu();
+    let quadratic = CscMatrix::from(
+        free.iter()
+            .map(|&index| row(index).map(|entry| &at.hessian[entry])),
+    )
+    .to_triu();
     let columns = (0..=size).map(|column| 2 * column).collect();
-    let rows = (0..size).flat_map(|column| [column, size + column]).collect();
+    let rows = (0..size)
+        .flat_map(|column| [column, size + column])
+        .collect();
     let signs = (0..size).flat_map(|_| [1.0, -1.0]).collect();
     let sides = CscMatrix::new(2 * size, size, columns, rows, signs);
     let upper = free.iter().map(|&index| objective.upper[index]);
-    let ends: Vec<f64> = upper.chain(free.iter().map(|&index| -objective.lower[index])).collect();
-    let settings = DefaultSettings { verbose: false, presolve_enable: false, ..DefaultSettings::default() };
-    convex_program(&quadratic, &slope, &sides, &ends, settings).map_err(|reason| ProblemError::Program { reason })
+    let ends: Vec<f64> = upper
+        .chain(free.iter().map(|&index| -objective.lower[index]))
+        .collect();
+    let settings = DefaultSettings {
+        verbose: false,
+        presolve_enable: false,
+        ..DefaultSettings::default()
+    };
+    convex_program(&quadratic, &slope, &sides, &ends, settings)
+        .map_err(|reason| ProblemError::Program { reason })
 }

@@ -30,15 +30,29 @@ pub struct FeedbackShare {
 }
 
 /// The share of every entry of `K`, the largest first; none of an output of which flight tells nothing.
-pub fn feedback_shares(problem: &CouplingProblem, couplings: &CouplingMatrices) -> Vec<FeedbackShare> {
-    let largest: Vec<_> = (0..problem.outputs()).map(|output| largest_response(problem, output)).collect();
+pub fn feedback_shares(
+    problem: &CouplingProblem,
+    couplings: &CouplingMatrices,
+) -> Vec<FeedbackShare> {
+    let largest: Vec<_> = (0..problem.outputs())
+        .map(|output| largest_response(problem, output))
+        .collect();
     let (inputs, feedback) = (problem.inputs(), couplings.feedback());
     let share = |(input, output): (usize, usize)| {
         let (magnitude, moved, condition, omega_rad_s) = largest[output]?;
         let entry = feedback[(input, output)];
-        Some(FeedbackShare { input, output, entry, share: entry.abs() * magnitude, moved, condition, omega_rad_s })
+        Some(FeedbackShare {
+            input,
+            output,
+            entry,
+            share: entry.abs() * magnitude,
+            moved,
+            condition,
+            omega_rad_s,
+        })
     };
-    let entries = (0..inputs).flat_map(|input| (0..largest.len()).map(move |output| (input, output)));
+    let entries =
+        (0..inputs).flat_map(|input| (0..largest.len()).map(move |output| (input, output)));
     let mut shares: Vec<FeedbackShare> = entries.filter_map(share).collect();
     shares.sort_by(|a, b| b.share.total_cmp(&a.share));
     shares
@@ -46,11 +60,21 @@ pub fn feedback_shares(problem: &CouplingProblem, couplings: &CouplingMatrices) 
 
 /// The largest `|R'_jl|` of one output over all inputs, conditions and frequencies, and the first input, condition and frequency
 /// \[rad/s\] that have it.
-fn largest_response(problem: &CouplingProblem, output: usize) -> Option<(f64, usize, ConditionId, f64)> {
+fn largest_response(
+    problem: &CouplingProblem,
+    output: usize,
+) -> Option<(f64, usize, ConditionId, f64)> {
     let mut largest: Option<(f64, usize, ConditionId, f64)> = None;
     for condition in &problem.conditions {
-        for moved in (0..problem.inputs()).filter(|&input| condition.usable[Pair::new(output, input)]) {
-            for (value, &omega_rad_s) in condition.flight.curve(Pair::new(output, moved)).iter().zip(&*problem.omega) {
+        for moved in
+            (0..problem.inputs()).filter(|&input| condition.usable[Pair::new(output, input)])
+        {
+            for (value, &omega_rad_s) in condition
+                .flight
+                .curve(Pair::new(output, moved))
+                .iter()
+                .zip(&*problem.omega)
+            {
                 let magnitude = value.norm();
                 if magnitude.is_finite() && largest.is_none_or(|(most, ..)| magnitude > most) {
                     largest = Some((magnitude, moved, condition.id, omega_rad_s));
@@ -75,13 +99,21 @@ pub struct MixingShare {
 }
 
 /// The entries of a normalised mixing off its diagonal, the largest first; `cyclic` are the two cyclic inputs.
-pub fn mixing_shares(normalised_mixing: &DMatrix<f64>, cyclic: Option<[usize; 2]>) -> Vec<MixingShare> {
+pub fn mixing_shares(
+    normalised_mixing: &DMatrix<f64>,
+    cyclic: Option<[usize; 2]>,
+) -> Vec<MixingShare> {
     let inputs = normalised_mixing.nrows();
     let entries = (0..inputs).flat_map(|to| (0..inputs).map(move |from| (to, from)));
     let share = |(to, from): (usize, usize)| {
         let share = normalised_mixing[(to, from)];
         let is_cyclic = cyclic.is_some_and(|pair| pair.contains(&to) && pair.contains(&from));
-        MixingShare { to, from, share, swashplate_phase_deg: is_cyclic.then(|| share.atan().to_degrees()) }
+        MixingShare {
+            to,
+            from,
+            share,
+            swashplate_phase_deg: is_cyclic.then(|| share.atan().to_degrees()),
+        }
     };
     let mut shares: Vec<MixingShare> = entries.filter(|(to, from)| to != from).map(share).collect();
     shares.sort_by(|a, b| b.share.abs().total_cmp(&a.share.abs()));
@@ -90,10 +122,16 @@ pub fn mixing_shares(normalised_mixing: &DMatrix<f64>, cyclic: Option<[usize; 2]
 
 /// The two cyclic inputs: those whose only on-axis response is that of a rate; none where they are not two. A pedal has a lateral
 /// acceleration beside its rate, or is a third: then nothing is told of a swashplate.
-pub fn cyclic_inputs(on_axis: &PairTable<bool>, is_rate: impl Fn(usize) -> bool) -> Option<[usize; 2]> {
+pub fn cyclic_inputs(
+    on_axis: &PairTable<bool>,
+    is_rate: impl Fn(usize) -> bool,
+) -> Option<[usize; 2]> {
     let is_cyclic = |input: &usize| {
-        let outputs: Vec<usize> =
-            on_axis.marked().filter(|pair| pair.input == *input).map(|pair| pair.output).collect();
+        let outputs: Vec<usize> = on_axis
+            .marked()
+            .filter(|pair| pair.input == *input)
+            .map(|pair| pair.output)
+            .collect();
         matches!(outputs[..], [output] if is_rate(output))
     };
     let found: Vec<usize> = (0..on_axis.inputs()).filter(is_cyclic).collect();
@@ -115,7 +153,10 @@ impl LoopMargin {
 
     /// The least of these singular values at `omega` \[rad/s\]; none where no value is finite.
     pub fn of(singular_values: &[f64], omega: &[f64]) -> Option<Self> {
-        let known = singular_values.iter().zip(omega).filter(|(least, _)| least.is_finite());
+        let known = singular_values
+            .iter()
+            .zip(omega)
+            .filter(|(least, _)| least.is_finite());
         let (&least, &omega_rad_s) = known.min_by(|a, b| a.0.total_cmp(b.0))?;
         Some(Self { least, omega_rad_s })
     }
@@ -131,7 +172,9 @@ impl CouplingMatrices {
     /// number where `H` lacks a response of an output that is fed back.
     pub fn least_singular_values(&self, physics: &FrequencyResponse) -> Vec<f64> {
         let points = physics.curve(Pair::new(0, 0)).len();
-        (0..points).map(|k| self.least_singular_value(physics, k)).collect()
+        (0..points)
+            .map(|k| self.least_singular_value(physics, k))
+            .collect()
     }
 
     fn least_singular_value(&self, physics: &FrequencyResponse, k: usize) -> f64 {
@@ -140,10 +183,14 @@ impl CouplingMatrices {
             let terms = (0..outputs).map(|output| (self.feedback()[(input, output)], output));
             // A response that is not fed back need not be there.
             let terms = terms.filter(|(entry, _)| *entry != 0.0);
-            terms.map(|(entry, output)| physics.curve(Pair::new(output, of))[k] * entry).sum()
+            terms
+                .map(|(entry, output)| physics.curve(Pair::new(output, of))[k] * entry)
+                .sum()
         };
         let unit = |input: usize, of: usize| if input == of { 1.0 } else { 0.0 };
-        let difference = DMatrix::from_fn(inputs, inputs, |input, of| -fed(input, of) + unit(input, of));
+        let difference = DMatrix::from_fn(inputs, inputs, |input, of| {
+            -fed(input, of) + unit(input, of)
+        });
         if !difference.iter().all(|entry| entry.is_finite()) {
             return f64::NAN;
         }
@@ -209,7 +256,10 @@ impl CouplingMatrices {
         airspeed_kt: f64,
         pade: Pade,
     ) -> Result<Vec<PoleShift>, PoleShiftError> {
-        let (before, after) = (modes(physics)?, modes(&self.model(physics, airspeed_kt, pade)?)?);
+        let (before, after) = (
+            modes(physics)?,
+            modes(&self.model(physics, airspeed_kt, pade)?)?,
+        );
         let tracks = mode_tracks(&[&before, &after], 1);
         let shift = |track: ModeTrack| PoleShift {
             before: track.modes[0].map(|mode| before[mode].pole),
@@ -230,9 +280,14 @@ mod tests {
         // Outputs P, Q, R, NY; inputs LON, LAT, PED.
         let axes = [(1, 0), (0, 1), (2, 2), (3, 2)];
         let table = |axes: &[(usize, usize)]| {
-            PairTable::from_fn(4, 3, |Pair { output, input }| axes.contains(&(output, input)))
+            PairTable::from_fn(4, 3, |Pair { output, input }| {
+                axes.contains(&(output, input))
+            })
         };
-        assert_eq!(cyclic_inputs(&table(&axes), |output| output < 3), Some([0, 1]));
+        assert_eq!(
+            cyclic_inputs(&table(&axes), |output| output < 3),
+            Some([0, 1])
+        );
         assert_eq!(
             cyclic_inputs(&table(&axes[..3]), |output| output < 3),
             None,
@@ -243,9 +298,23 @@ mod tests {
 
     #[test]
     fn only_cyclic_inputs_have_a_swashplate_phase() {
-        let shares = mixing_shares(&dmatrix![1.0, -0.02, 0.03; 0.047, 1.0, 0.0; 0.0, 0.1, 1.0], Some([0, 1]));
-        assert_eq!((shares.len(), shares[0].to, shares[0].from, shares[0].swashplate_phase_deg), (6, 2, 1, None));
+        let shares = mixing_shares(
+            &dmatrix![1.0, -0.02, 0.03; 0.047, 1.0, 0.0; 0.0, 0.1, 1.0],
+            Some([0, 1]),
+        );
+        assert_eq!(
+            (
+                shares.len(),
+                shares[0].to,
+                shares[0].from,
+                shares[0].swashplate_phase_deg
+            ),
+            (6, 2, 1, None)
+        );
         // M16.4: 4.7 % are 2.7 degrees.
-        assert!((shares[1].swashplate_phase_deg.unwrap() - 2.7).abs() < 0.05 && shares[1].share == 0.047);
+        assert!(
+            (shares[1].swashplate_phase_deg.unwrap() - 2.7).abs() < 0.05
+                && shares[1].share == 0.047
+        );
     }
 }

@@ -34,8 +34,9 @@ impl CouplingMatrices {
     /// `M = I`, `K = 0`, of m inputs and p outputs.
     pub fn none(airspeeds: Airspeeds, inputs: usize, outputs: usize) -> Self {
         let unit = |to: usize, from: usize| if to == from { 1.0 } else { 0.0 };
-        let polynomial =
-            |entry: usize| Regression::Polynomial { coefficients: vec![unit(entry / inputs, entry % inputs)] };
+        let polynomial = |entry: usize| Regression::Polynomial {
+            coefficients: vec![unit(entry / inputs, entry % inputs)],
+        };
         Self {
             airspeeds,
             mixing: (0..inputs * inputs).map(polynomial).collect(),
@@ -57,7 +58,11 @@ impl CouplingMatrices {
             }
         }
         let polynomial = |coefficients| Regression::Polynomial { coefficients };
-        Self { airspeeds: self.airspeeds.clone(), mixing: mixing.into_iter().map(polynomial).collect(), feedback }
+        Self {
+            airspeeds: self.airspeeds.clone(),
+            mixing: mixing.into_iter().map(polynomial).collect(),
+            feedback,
+        }
     }
 
     /// Whether every input goes through the mixing with its own sign at the airspeeds of the conditions.
@@ -67,8 +72,15 @@ impl CouplingMatrices {
     pub(super) fn check(&self) -> Result<(), CouplingError> {
         for &airspeed_kt in &self.airspeeds.values_kt {
             let diagonal = self.mixing(airspeed_kt).diagonal();
-            if let Some(input) = diagonal.iter().position(|factor| factor.is_nan() || *factor <= 0.0) {
-                return Err(CouplingError::ReversedInput { input: input + 1, airspeed_kt, factor: diagonal[input] });
+            if let Some(input) = diagonal
+                .iter()
+                .position(|factor| factor.is_nan() || *factor <= 0.0)
+            {
+                return Err(CouplingError::ReversedInput {
+                    input: input + 1,
+                    airspeed_kt,
+                    factor: diagonal[input],
+                });
             }
         }
         Ok(())
@@ -87,14 +99,20 @@ impl CouplingMatrices {
     /// `M(V)`, m x m, `[to, from]`; outside the conditions' airspeeds that of the nearer end.
     pub fn mixing(&self, airspeed_kt: f64) -> DMatrix<f64> {
         let inputs = self.feedback.nrows();
-        DMatrix::from_fn(inputs, inputs, |to, from| self.mixing[to * inputs + from].at(&self.airspeeds, airspeed_kt))
+        DMatrix::from_fn(inputs, inputs, |to, from| {
+            self.mixing[to * inputs + from].at(&self.airspeeds, airspeed_kt)
+        })
     }
 
     /// `M~(V) = M(V) diag(M(V))^-1`, m x m: ones on the diagonal, so that the level stays with the channels.
     pub fn normalised_mixing(&self, airspeed_kt: f64) -> DMatrix<f64> {
         let mixing = self.mixing(airspeed_kt);
         DMatrix::from_fn(mixing.nrows(), mixing.ncols(), |to, from| {
-            if to == from { 1.0 } else { mixing[(to, from)] / mixing[(from, from)] }
+            if to == from {
+                1.0
+            } else {
+                mixing[(to, from)] / mixing[(from, from)]
+            }
         })
     }
 
@@ -118,9 +136,14 @@ impl CouplingMatrices {
             let lacking = self.fill(physics, k, &mut f);
             let is_closed = closed_loop.close(&mut f);
             for (pair, curve) in coupled.iter_mut() {
-                let terms = (0..inputs).map(|to| f[to * outputs + pair.output] * mixing[(to, pair.input)]);
+                let terms =
+                    (0..inputs).map(|to| f[to * outputs + pair.output] * mixing[(to, pair.input)]);
                 let is_known = is_closed && !lacking.contains(&pair.output);
-                curve[k] = if is_known { terms.sum() } else { Complex::new(f64::NAN, f64::NAN) };
+                curve[k] = if is_known {
+                    terms.sum()
+                } else {
+                    Complex::new(f64::NAN, f64::NAN)
+                };
             }
         }
         FrequencyResponse::new(coupled)
@@ -128,15 +151,28 @@ impl CouplingMatrices {
 
     /// `H` at a frequency, column by column; returns the outputs that lack a response and are not fed back, which stand as zeros: they
     /// change nothing of the others.
-    fn fill(&self, physics: &FrequencyResponse, k: usize, columns: &mut [Complex<f64>]) -> Vec<usize> {
+    fn fill(
+        &self,
+        physics: &FrequencyResponse,
+        k: usize,
+        columns: &mut [Complex<f64>],
+    ) -> Vec<usize> {
         let outputs = physics.outputs();
         let mut lacking = Vec::new();
         for output in 0..outputs {
             let row = (0..physics.inputs()).map(|input| physics.curve(Pair::new(output, input))[k]);
-            let is_free = self.feedback.column(output).iter().all(|entry| *entry == 0.0);
+            let is_free = self
+                .feedback
+                .column(output)
+                .iter()
+                .all(|entry| *entry == 0.0);
             let is_lacking = is_free && row.clone().any(|value| !value.is_finite());
             for (input, value) in row.enumerate() {
-                columns[input * outputs + output] = if is_lacking { Complex::new(0.0, 0.0) } else { value };
+                columns[input * outputs + output] = if is_lacking {
+                    Complex::new(0.0, 0.0)
+                } else {
+                    value
+                };
             }
             if is_lacking {
                 lacking.push(output);
@@ -160,7 +196,11 @@ impl<'a> ClosedLoop<'a> {
     pub(super) fn new(feedback: &'a DMatrix<f64>) -> Self {
         let inputs = feedback.nrows();
         let is_open = feedback.iter().all(|entry| *entry == 0.0);
-        Self { feedback, is_open, difference: vec![Complex::new(0.0, 0.0); inputs * inputs] }
+        Self {
+            feedback,
+            is_open,
+            difference: vec![Complex::new(0.0, 0.0); inputs * inputs],
+        }
     }
 
     /// Makes `H` (p x m, column by column) into `F = (I - H K)^-1 H`; false where that is not finite.
@@ -178,8 +218,11 @@ impl<'a> ClosedLoop<'a> {
         let (inputs, outputs) = self.feedback.shape();
         for (column, of_input) in response.chunks_exact(outputs).enumerate() {
             for row in 0..inputs {
-                let sum: Complex<f64> =
-                    of_input.iter().enumerate().map(|(output, value)| value * self.feedback[(row, output)]).sum();
+                let sum: Complex<f64> = of_input
+                    .iter()
+                    .enumerate()
+                    .map(|(output, value)| value * self.feedback[(row, output)])
+                    .sum();
                 let unit = if row == column { 1.0 } else { 0.0 };
                 self.difference[column * inputs + row] = Complex::from(unit) - sum;
             }
@@ -190,10 +233,13 @@ impl<'a> ClosedLoop<'a> {
     fn eliminate(&mut self, at: usize, response: &mut [Complex<f64>]) -> bool {
         let (inputs, outputs) = self.feedback.shape();
         let size = |column: &usize| self.difference[column * inputs + at].norm_sqr();
-        let Some(pivot) = (at..inputs).max_by(|a, b| size(a).total_cmp(&size(b))) else { return false };
+        let Some(pivot) = (at..inputs).max_by(|a, b| size(a).total_cmp(&size(b))) else {
+            return false;
+        };
         let is_usable = size(&pivot).is_finite() && size(&pivot) > 0.0;
         for row in 0..inputs {
-            self.difference.swap(at * inputs + row, pivot * inputs + row);
+            self.difference
+                .swap(at * inputs + row, pivot * inputs + row);
         }
         for output in 0..outputs {
             response.swap(at * outputs + output, pivot * outputs + output);
@@ -212,7 +258,9 @@ impl<'a> ClosedLoop<'a> {
         let (inputs, outputs) = self.feedback.shape();
         for column in (0..inputs).rev() {
             let divisor = self.difference[column * inputs + column].inv();
-            response[column * outputs..][..outputs].iter_mut().for_each(|value| *value *= divisor);
+            response[column * outputs..][..outputs]
+                .iter_mut()
+                .for_each(|value| *value *= divisor);
             for before in 0..column {
                 let factor = self.difference[before * inputs + column];
                 subtract(response, outputs, (before, column), factor);
@@ -223,7 +271,12 @@ impl<'a> ClosedLoop<'a> {
 }
 
 /// Takes `factor` times column `of` from column `from`; columns of `rows` entries.
-fn subtract(columns: &mut [Complex<f64>], rows: usize, (from, of): (usize, usize), factor: Complex<f64>) {
+fn subtract(
+    columns: &mut [Complex<f64>],
+    rows: usize,
+    (from, of): (usize, usize),
+    factor: Complex<f64>,
+) {
     for row in 0..rows {
         let part = columns[of * rows + row] * factor;
         columns[from * rows + row] -= part;
@@ -287,7 +340,12 @@ impl CouplingMatrices {
     /// # Errors
     /// [`CoupledModelError`] where the condition number of `I - D K` is over 1e6, the channels are others, or delays or numbers are not
     /// those of a model.
-    pub fn model(&self, physics: &StateSpace, airspeed_kt: f64, pade: Pade) -> Result<StateSpace, CoupledModelError> {
+    pub fn model(
+        &self,
+        physics: &StateSpace,
+        airspeed_kt: f64,
+        pade: Pade,
+    ) -> Result<StateSpace, CoupledModelError> {
         let (inputs, outputs) = self.feedback.shape();
         let (found, expected) = ((physics.outputs(), physics.inputs()), (outputs, inputs));
         if found != expected {
@@ -297,7 +355,9 @@ impl CouplingMatrices {
         let (a, b, c, d) = (physics.a(), physics.b(), physics.c(), physics.d());
         let (k, mixing) = (self.feedback(), self.normalised_mixing(airspeed_kt));
         let algebraic = algebraic_loop(d, k)?;
-        let refused = || CoupledModelError::AlgebraicLoop { condition_number: f64::INFINITY };
+        let refused = || CoupledModelError::AlgebraicLoop {
+            condition_number: f64::INFINITY,
+        };
         let c_closed = algebraic.solve(c).ok_or_else(refused)?;
         let d_closed = algebraic.solve(d).ok_or_else(refused)?;
         // K~ C = K (I - D K)^-1 C, and likewise with D.
@@ -309,7 +369,10 @@ impl CouplingMatrices {
 }
 
 /// `I - D K` with its factors.
-fn algebraic_loop(d: &DMatrix<f64>, k: &DMatrix<f64>) -> Result<LU<f64, Dyn, Dyn>, CoupledModelError> {
+fn algebraic_loop(
+    d: &DMatrix<f64>,
+    k: &DMatrix<f64>,
+) -> Result<LU<f64, Dyn, Dyn>, CoupledModelError> {
     let difference = DMatrix::identity(d.nrows(), d.nrows()) - d * k;
     let singular = difference.clone().svd(false, false).singular_values;
     let condition_number = singular.max() / singular.min();
@@ -325,7 +388,10 @@ fn algebraic_loop(d: &DMatrix<f64>, k: &DMatrix<f64>) -> Result<LU<f64, Dyn, Dyn
 /// # Errors
 /// A Padé approximant with more states than a model may have.
 pub fn without_delays(physics: &StateSpace, pade: Pade) -> Result<StateSpace, CorrectedModelError> {
-    let timing = Timing { sample_time_s: physics.timing().sample_time_s, ..Timing::default() };
+    let timing = Timing {
+        sample_time_s: physics.timing().sample_time_s,
+        ..Timing::default()
+    };
     if *physics.timing() == timing {
         return Ok(physics.clone());
     }
@@ -354,7 +420,11 @@ mod tests {
         let loop_gain = &h * k.map(Complex::from);
         let expected = (DMatrix::identity(3, 3) - loop_gain).try_inverse().unwrap() * &h;
         // Two eliminations of matrices of a condition number below ten.
-        assert!(f.iter().zip(&expected).all(|(found, expected)| (found - expected).norm() < 1e-13));
+        assert!(
+            f.iter()
+                .zip(&expected)
+                .all(|(found, expected)| (found - expected).norm() < 1e-13)
+        );
     }
 
     #[test]

@@ -10,8 +10,8 @@
 use nalgebra::DMatrix;
 
 use super::{
-    ConditionBlocks, CouplingError, CouplingMatrices, CouplingProblem, NormalEquations, Unknown, UnknownLayout,
-    WeightedCondition,
+    ConditionBlocks, CouplingError, CouplingMatrices, CouplingProblem, NormalEquations, Unknown,
+    UnknownLayout, WeightedCondition,
 };
 use crate::uncertainty::student_quantile;
 use gdcm_model::dataset::ConditionId;
@@ -55,9 +55,13 @@ pub fn fit_couplings(
     problem.check()?;
     let (airspeeds, fed_back) = (problem.airspeeds()?, problem.fed_back());
     let unknowns = Unknown::all(problem, &airspeeds, &fed_back);
-    let conditions = each(executor, &problem.conditions, |of| WeightedCondition::new(problem, of, &fed_back));
+    let conditions = each(executor, &problem.conditions, |of| {
+        WeightedCondition::new(problem, of, &fed_back)
+    });
     if !conditions.iter().any(WeightedCondition::counts) {
-        return Err(CouplingError::NothingToFit { conditions: conditions.len() });
+        return Err(CouplingError::NothingToFit {
+            conditions: conditions.len(),
+        });
     }
     let solves = problem.options.solves.max(1);
     let fitting = Fitting {
@@ -71,7 +75,9 @@ pub fn fit_couplings(
     let mut matrices = CouplingMatrices::none(airspeeds, problem.inputs(), problem.outputs());
     let (mut coefficients, mut residual, mut undetermined) = (Vec::new(), 0.0, Vec::new());
     for _ in 0..solves {
-        let pass = fitting.equations(&matrices, executor)?.solve(&unknowns, problem.options.ridge)?;
+        let pass = fitting
+            .equations(&matrices, executor)?
+            .solve(&unknowns, problem.options.ridge)?;
         matrices = matrices.with(&unknowns, pass.coefficients.as_slice());
         coefficients.push(pass.coefficients.as_slice().to_vec());
         (residual, undetermined) = (pass.residual, pass.undetermined);
@@ -85,7 +91,10 @@ pub fn fit_couplings(
         coefficients,
         residual,
         not_fed_back: (0..problem.outputs()).filter(is_left_out).collect(),
-        undetermined: undetermined.into_iter().map(|place| unknowns[place]).collect(),
+        undetermined: undetermined
+            .into_iter()
+            .map(|place| unknowns[place])
+            .collect(),
         unknowns,
     })
 }
@@ -113,11 +122,13 @@ impl Fitting<'_> {
         executor: &dyn Executor,
     ) -> Result<NormalEquations<'_>, CouplingError> {
         let (inputs, airspeeds) = (last.feedback().nrows(), last.airspeeds());
-        let together = (BLOCK_MEMORY / ConditionBlocks::bytes(inputs, self.fed_back.len()).max(1)).max(1);
+        let together =
+            (BLOCK_MEMORY / ConditionBlocks::bytes(inputs, self.fed_back.len()).max(1)).max(1);
         let mut equations = NormalEquations::zeros(&self.layout, inputs, self.fed_back.len());
         for conditions in self.conditions.chunks(together) {
             let blocks = each(executor, conditions, |condition| {
-                let blocks = ConditionBlocks::new(condition, last, self.fed_back, self.shares.progress())?;
+                let blocks =
+                    ConditionBlocks::new(condition, last, self.fed_back, self.shares.progress())?;
                 self.advance()?;
                 Ok::<_, CouplingError>(blocks)
             });
@@ -159,7 +170,11 @@ pub fn left_out_fits(
     let shares = Shares::new(progress);
     let fits = each(executor, 0..count, |place| {
         let condition = problem.conditions[place].id;
-        let portion = Portion::new(&shares, 1.0 / count as f64, "mixing and feedback without each condition");
+        let portion = Portion::new(
+            &shares,
+            1.0 / count as f64,
+            "mixing and feedback without each condition",
+        );
         let fit = fit_couplings(&problem.without(place), &Sequential, &portion)?;
         portion.finish()?;
         Ok(LeftOutFit { condition, fit })
@@ -169,7 +184,11 @@ pub fn left_out_fits(
 
 fn check_count(found: usize) -> Result<(), CouplingError> {
     let needed = LEAST_CONDITIONS;
-    if found < needed { Err(CouplingError::TooFewConditions { needed, found }) } else { Ok(()) }
+    if found < needed {
+        Err(CouplingError::TooFewConditions { needed, found })
+    } else {
+        Ok(())
+    }
 }
 
 /// Half-widths of the error bars of mixing and feedback.
@@ -192,9 +211,15 @@ impl CouplingBars {
         check_count(fits.len())?;
         let quantile = student_quantile(level, fits.len() as f64 - 1.0);
         let matrices = || fits.iter().map(|of| &of.fit.matrices);
-        let mixing: Vec<_> = matrices().map(|of| of.normalised_mixing(airspeed_kt)).collect();
+        let mixing: Vec<_> = matrices()
+            .map(|of| of.normalised_mixing(airspeed_kt))
+            .collect();
         let feedback: Vec<_> = matrices().map(|of| of.feedback().clone()).collect();
-        Ok(Self { mixing: jackknife(&mixing) * quantile, feedback: jackknife(&feedback) * quantile, quantile })
+        Ok(Self {
+            mixing: jackknife(&mixing) * quantile,
+            feedback: jackknife(&feedback) * quantile,
+            quantile,
+        })
     }
 }
 
@@ -204,7 +229,10 @@ fn jackknife(without: &[DMatrix<f64>]) -> DMatrix<f64> {
     let (rows, columns) = without[0].shape();
     DMatrix::from_fn(rows, columns, |row, column| {
         let mean = without.iter().map(|of| of[(row, column)]).sum::<f64>() / count;
-        let square: f64 = without.iter().map(|of| (of[(row, column)] - mean).powi(2)).sum();
+        let square: f64 = without
+            .iter()
+            .map(|of| (of[(row, column)] - mean).powi(2))
+            .sum();
         ((count - 1.0) / count * square).sqrt()
     })
 }

@@ -72,15 +72,26 @@ struct FeedbackPlace {
 impl UnknownLayout {
     /// The layout of these unknowns of so many inputs; `fed_back` are the outputs of which `K` has a column.
     pub(super) fn new(unknowns: &[Unknown], inputs: usize, fed_back: &[usize]) -> Self {
-        let mut layout = Self { mixing: (0..inputs).map(|_| Vec::new()).collect(), feedback: Vec::new() };
+        let mut layout = Self {
+            mixing: (0..inputs).map(|_| Vec::new()).collect(),
+            feedback: Vec::new(),
+        };
         for (place, unknown) in unknowns.iter().enumerate() {
             match *unknown {
                 Unknown::Mixing { to, from, power } => {
-                    layout.mixing[from].push(MixingPlace { place, to, power: power as i32 });
+                    layout.mixing[from].push(MixingPlace {
+                        place,
+                        to,
+                        power: power as i32,
+                    });
                 }
                 Unknown::Feedback { input, output } => {
                     if let Some(number) = fed_back.iter().position(|&of| of == output) {
-                        layout.feedback.push(FeedbackPlace { place, input, number });
+                        layout.feedback.push(FeedbackPlace {
+                            place,
+                            input,
+                            number,
+                        });
                     }
                 }
             }
@@ -112,7 +123,11 @@ struct Products {
 impl Products {
     fn zeros(rows: usize, inputs: usize) -> Self {
         let zeros = DMatrix::zeros(rows, pair_count(inputs));
-        Self { inputs, real: zeros.clone(), imaginary: zeros }
+        Self {
+            inputs,
+            real: zeros.clone(),
+            imaginary: zeros,
+        }
     }
 
     /// The sum of one pair of numbers for inputs j, l in any order.
@@ -132,12 +147,19 @@ impl Products {
         if rows == 0 || chunk.filled == 0 {
             return;
         }
-        for (sums, numbers, weighted) in
-            [(&mut self.real, &chunk.t_re, &chunk.p_re), (&mut self.imaginary, &chunk.t_im, &chunk.p_im)]
-        {
+        for (sums, numbers, weighted) in [
+            (&mut self.real, &chunk.t_re, &chunk.p_re),
+            (&mut self.imaginary, &chunk.t_im, &chunk.p_im),
+        ] {
             let numbers = numbers.view((first, 0), (rows, chunk.filled));
             // The transpose, read where it lies.
-            let weighted = DMatrixView::from_slice_with_strides(weighted.as_slice(), chunk.filled, columns, columns, 1);
+            let weighted = DMatrixView::from_slice_with_strides(
+                weighted.as_slice(),
+                chunk.filled,
+                columns,
+                columns,
+                1,
+            );
             sums.gemm(1.0, &numbers, &weighted, 1.0);
         }
     }
@@ -203,10 +225,17 @@ impl ConditionBlocks {
         fed_back: &[usize],
         progress: &dyn Progress,
     ) -> Result<Self, CouplingError> {
-        let last = LastPass { mixing: last.mixing(condition.airspeed_kt), feedback: last.feedback(), fed_back };
+        let last = LastPass {
+            mixing: last.mixing(condition.airspeed_kt),
+            feedback: last.feedback(),
+            fed_back,
+        };
         let (inputs, outputs) = last.feedback.shape();
         let numbers = fed_back.len() + 1;
-        let column = ColumnBlocks { products: Products::zeros(numbers, inputs), right: DVector::zeros(inputs) };
+        let column = ColumnBlocks {
+            products: Products::zeros(numbers, inputs),
+            right: DVector::zeros(inputs),
+        };
         let mut blocks = Self {
             columns: vec![column; inputs],
             feedback: Products::zeros(pair_count(fed_back.len()), inputs),
@@ -215,7 +244,9 @@ impl ConditionBlocks {
         let mut scratch = Scratch::new(inputs, outputs, numbers);
         let mut chunk = Chunk::new(inputs, numbers);
         let mut closed_loop = ClosedLoop::new(last.feedback);
-        let counting: Vec<usize> = (0..condition.omega.len()).filter(|&k| condition.counts_at(k)).collect();
+        let counting: Vec<usize> = (0..condition.omega.len())
+            .filter(|&k| condition.counts_at(k))
+            .collect();
         for frequencies in counting.chunks(CHUNK) {
             if progress.cancelled() {
                 return Err(CouplingError::Cancelled(Cancelled));
@@ -228,7 +259,11 @@ impl ConditionBlocks {
                 chunk.filled = 0;
                 for at in &closed {
                     scratch.mix(&at.f, &last, input);
-                    if condition.squared_weights((at.k, input), &scratch.coupled, &mut scratch.squared) {
+                    if condition.squared_weights(
+                        (at.k, input),
+                        &scratch.coupled,
+                        &mut scratch.squared,
+                    ) {
                         scratch.weigh(at, condition.flight(at.k, input), &last, &mut chunk);
                         blocks.add_right(&scratch, input);
                     }
@@ -265,7 +300,10 @@ impl Closed {
     ) -> Result<Self, CouplingError> {
         let mut f = condition.physics(k).to_vec();
         if !closed_loop.close(&mut f) {
-            return Err(CouplingError::SingularLoop { condition: condition.id, omega_rad_s: condition.omega[k] });
+            return Err(CouplingError::SingularLoop {
+                condition: condition.id,
+                omega_rad_s: condition.omega[k],
+            });
         }
         let (inputs, outputs) = (condition.inputs(), condition.outputs());
         let (mut re, mut im) = (Vec::with_capacity(f.len()), Vec::with_capacity(f.len()));
@@ -284,7 +322,13 @@ impl Chunk {
     fn new(inputs: usize, numbers: usize) -> Self {
         let of_numbers = DMatrix::zeros(pair_count(numbers), CHUNK);
         let of_inputs = DMatrix::zeros(pair_count(inputs), CHUNK);
-        Self { filled: 0, t_re: of_numbers.clone(), t_im: of_numbers, p_re: of_inputs.clone(), p_im: of_inputs }
+        Self {
+            filled: 0,
+            t_re: of_numbers.clone(),
+            t_im: of_numbers,
+            p_re: of_inputs.clone(),
+            p_im: of_inputs,
+        }
     }
 
     /// The next column of each, from the numbers `t` and from `F` with its weights.
@@ -348,7 +392,10 @@ impl Scratch {
     /// The input column of `H_c = F M`.
     fn mix(&mut self, f: &[Complex<f64>], last: &LastPass<'_>, input: usize) {
         self.coupled.fill(Complex::new(0.0, 0.0));
-        for (of_input, factor) in f.chunks_exact(self.coupled.len()).zip(last.mixing.column(input).iter()) {
+        for (of_input, factor) in f
+            .chunks_exact(self.coupled.len())
+            .zip(last.mixing.column(input).iter())
+        {
             for (sum, value) in self.coupled.iter_mut().zip(of_input) {
                 *sum += value * *factor;
             }
@@ -356,7 +403,13 @@ impl Scratch {
     }
 
     /// `t` and `z` of an input column of `R'`, and the factors of its products. `S R' = R' + F K R'`, for `S = I + F K`.
-    fn weigh(&mut self, at: &Closed, flight: &[Complex<f64>], last: &LastPass<'_>, chunk: &mut Chunk) {
+    fn weigh(
+        &mut self,
+        at: &Closed,
+        flight: &[Complex<f64>],
+        last: &LastPass<'_>,
+        chunk: &mut Chunk,
+    ) {
         self.t[0] = Complex::new(1.0, 0.0);
         for (number, &output) in self.t[1..].iter_mut().zip(last.fed_back) {
             *number = flight[output];
@@ -364,15 +417,20 @@ impl Scratch {
         self.target.copy_from_slice(flight);
         let outputs = flight.len();
         for (row, of_input) in at.f.chunks_exact(outputs).enumerate() {
-            let fed: Complex<f64> =
-                last.fed_back.iter().map(|&output| flight[output] * last.feedback[(row, output)]).sum();
+            let fed: Complex<f64> = last
+                .fed_back
+                .iter()
+                .map(|&output| flight[output] * last.feedback[(row, output)])
+                .sum();
             for (sum, value) in self.target.iter_mut().zip(of_input) {
                 *sum += value * fed;
             }
         }
         for (z, of_input) in self.z.iter_mut().zip(at.f.chunks_exact(outputs)) {
             let terms = of_input.iter().zip(&self.target).zip(&self.squared);
-            *z = terms.map(|((value, target), squared)| value.conj() * target * *squared).sum();
+            *z = terms
+                .map(|((value, target), squared)| value.conj() * target * *squared)
+                .sum();
         }
         chunk.push(&self.t, at, &self.squared);
     }
@@ -425,7 +483,12 @@ impl<'a> NormalEquations<'a> {
 
     /// Adds a condition of scaled airspeed `v`.
     pub(super) fn add(&mut self, blocks: &ConditionBlocks, v: f64) {
-        for ((equations, column), mixing) in self.columns.iter_mut().zip(&blocks.columns).zip(&self.layout.mixing) {
+        for ((equations, column), mixing) in self
+            .columns
+            .iter_mut()
+            .zip(&blocks.columns)
+            .zip(&self.layout.mixing)
+        {
             for (row, unknown) in mixing.iter().enumerate() {
                 let factor = v.powi(unknown.power);
                 equations.right[row] += factor * column.right[unknown.to];
@@ -448,9 +511,17 @@ impl<'a> NormalEquations<'a> {
     fn feedback_entry(&self, row: &FeedbackPlace, column: &FeedbackPlace) -> f64 {
         let fed_back = self.right.nrows();
         if row.number <= column.number {
-            self.feedback.entry(pair_place(row.number, column.number, fed_back), row.input, column.input)
+            self.feedback.entry(
+                pair_place(row.number, column.number, fed_back),
+                row.input,
+                column.input,
+            )
         } else {
-            self.feedback.entry(pair_place(column.number, row.number, fed_back), column.input, row.input)
+            self.feedback.entry(
+                pair_place(column.number, row.number, fed_back),
+                column.input,
+                row.input,
+            )
         }
     }
 
@@ -460,8 +531,14 @@ impl<'a> NormalEquations<'a> {
     ///
     /// # Errors
     /// [`CouplingError::SingularNormalMatrix`] where there are no Cholesky factors.
-    pub(super) fn solve(&self, unknowns: &[Unknown], ridge: f64) -> Result<PassOptimum, CouplingError> {
-        let singular = || CouplingError::SingularNormalMatrix { unknowns: unknowns.len() };
+    pub(super) fn solve(
+        &self,
+        unknowns: &[Unknown],
+        ridge: f64,
+    ) -> Result<PassOptimum, CouplingError> {
+        let singular = || CouplingError::SingularNormalMatrix {
+            unknowns: unknowns.len(),
+        };
         let mut scaling = Scaling::new(unknowns, ridge);
         for (equations, mixing) in self.columns.iter().zip(&self.layout.mixing) {
             for (row, unknown) in mixing.iter().enumerate() {
@@ -486,26 +563,43 @@ impl<'a> NormalEquations<'a> {
         if !residual.is_finite() || !coefficients.iter().all(|of| of.is_finite()) {
             return Err(singular());
         }
-        Ok(PassOptimum { coefficients, residual, undetermined: scaling.undetermined() })
+        Ok(PassOptimum {
+            coefficients,
+            residual,
+            undetermined: scaling.undetermined(),
+        })
     }
 
     /// The equations with the roots of the diagonal divided out, and drawn to no couplings.
     fn scaled(&self, scaling: &Scaling<'_>) -> ScaledEquations {
         let place_of_feedback = |column: usize| self.layout.feedback[column].place;
-        let columns = self.columns.iter().zip(&self.layout.mixing).map(|(equations, mixing)| {
-            let scale = |row: usize| scaling.scale[mixing[row].place];
-            let mut block = DMatrix::from_fn(mixing.len(), mixing.len(), |row, column| {
-                scale(row) * equations.block[(row, column)] * scale(column)
+        let columns = self
+            .columns
+            .iter()
+            .zip(&self.layout.mixing)
+            .map(|(equations, mixing)| {
+                let scale = |row: usize| scaling.scale[mixing[row].place];
+                let mut block = DMatrix::from_fn(mixing.len(), mixing.len(), |row, column| {
+                    scale(row) * equations.block[(row, column)] * scale(column)
+                });
+                for (row, unknown) in mixing.iter().enumerate() {
+                    block[(row, row)] += scaling.draw(unknown.place);
+                }
+                let border =
+                    DMatrix::from_fn(mixing.len(), self.layout.feedback.len(), |row, column| {
+                        scale(row)
+                            * equations.border[(row, column)]
+                            * scaling.scale[place_of_feedback(column)]
+                    });
+                let right = DVector::from_fn(mixing.len(), |row, _| {
+                    scaling.right(mixing[row].place, equations.right[row])
+                });
+                ColumnEquations {
+                    block,
+                    border,
+                    right,
+                }
             });
-            for (row, unknown) in mixing.iter().enumerate() {
-                block[(row, row)] += scaling.draw(unknown.place);
-            }
-            let border = DMatrix::from_fn(mixing.len(), self.layout.feedback.len(), |row, column| {
-                scale(row) * equations.border[(row, column)] * scaling.scale[place_of_feedback(column)]
-            });
-            let right = DVector::from_fn(mixing.len(), |row, _| scaling.right(mixing[row].place, equations.right[row]));
-            ColumnEquations { block, border, right }
-        });
         let feedback = &self.layout.feedback;
         let mut corner = DMatrix::from_fn(feedback.len(), feedback.len(), |row, column| {
             let entry = self.feedback_entry(&feedback[row], &feedback[column]);
@@ -515,9 +609,16 @@ impl<'a> NormalEquations<'a> {
             corner[(row, row)] += scaling.draw(unknown.place);
         }
         let right = DVector::from_fn(feedback.len(), |row, _| {
-            scaling.right(feedback[row].place, self.right[(feedback[row].number, feedback[row].input)])
+            scaling.right(
+                feedback[row].place,
+                self.right[(feedback[row].number, feedback[row].input)],
+            )
         });
-        ScaledEquations { columns: columns.collect(), corner, right }
+        ScaledEquations {
+            columns: columns.collect(),
+            corner,
+            right,
+        }
     }
 }
 
@@ -532,7 +633,12 @@ struct Scaling<'a> {
 impl<'a> Scaling<'a> {
     fn new(unknowns: &'a [Unknown], ridge: f64) -> Self {
         let count = unknowns.len();
-        Self { unknowns, ridge, scale: vec![1.0; count], is_determined: vec![false; count] }
+        Self {
+            unknowns,
+            ridge,
+            scale: vec![1.0; count],
+            is_determined: vec![false; count],
+        }
     }
 
     fn set(&mut self, place: usize, diagonal: f64) {
@@ -544,7 +650,11 @@ impl<'a> Scaling<'a> {
 
     /// What is added to the diagonal.
     fn draw(&self, place: usize) -> f64 {
-        if self.is_determined[place] { self.ridge } else { 1.0 }
+        if self.is_determined[place] {
+            self.ridge
+        } else {
+            1.0
+        }
     }
 
     /// The right side `b`, scaled and drawn.
@@ -554,7 +664,9 @@ impl<'a> Scaling<'a> {
     }
 
     fn undetermined(&self) -> Vec<usize> {
-        (0..self.unknowns.len()).filter(|&place| !self.is_determined[place]).collect()
+        (0..self.unknowns.len())
+            .filter(|&place| !self.is_determined[place])
+            .collect()
     }
 }
 
@@ -597,8 +709,15 @@ impl ScaledEquations {
             }
             eliminated.push(column);
         }
-        let feedback = if corner.is_empty() { right } else { corner.cholesky()?.solve(&right) };
-        let mixing = eliminated.iter().map(|column| column.substitute(&feedback)).collect::<Option<_>>()?;
+        let feedback = if corner.is_empty() {
+            right
+        } else {
+            corner.cholesky()?.solve(&right)
+        };
+        let mixing = eliminated
+            .iter()
+            .map(|column| column.substitute(&feedback))
+            .collect::<Option<_>>()?;
         Some(ScaledSolution { mixing, feedback })
     }
 
@@ -607,7 +726,8 @@ impl ScaledEquations {
         let (mut largest, mut most_right) = (0.0_f64, self.right.amax());
         let mut of_feedback = &self.corner * &solution.feedback - &self.right;
         for (equations, mixing) in self.columns.iter().zip(&solution.mixing) {
-            let left = &equations.block * mixing + &equations.border * &solution.feedback - &equations.right;
+            let left = &equations.block * mixing + &equations.border * &solution.feedback
+                - &equations.right;
             of_feedback += equations.border.tr_mul(mixing);
             largest = largest.max(left.amax());
             most_right = most_right.max(equations.right.amax());
@@ -622,7 +742,11 @@ impl EliminatedColumn {
         let lower = factors.l_dirty();
         let border = lower.solve_lower_triangular(&equations.border)?;
         let right = lower.solve_lower_triangular(&equations.right)?;
-        Some(Self { factors, border, right })
+        Some(Self {
+            factors,
+            border,
+            right,
+        })
     }
 
     /// The unknowns of M, once those of K are known.

@@ -82,7 +82,12 @@ pub struct CouplingOptions {
 
 impl Default for CouplingOptions {
     fn default() -> Self {
-        Self { ridge: 1e-3, solves: 5, degree: 2, airspeed_tolerance_kt: 2.0 }
+        Self {
+            ridge: 1e-3,
+            solves: 5,
+            degree: 2,
+            airspeed_tolerance_kt: 2.0,
+        }
     }
 }
 
@@ -109,7 +114,11 @@ impl CouplingProblem {
     /// # Errors
     /// [`CouplingError::NothingToFit`] where there is no condition.
     pub(super) fn airspeeds(&self) -> Result<Airspeeds, CouplingError> {
-        let airspeeds_kt = self.conditions.iter().map(|condition| condition.airspeed_kt).collect();
+        let airspeeds_kt = self
+            .conditions
+            .iter()
+            .map(|condition| condition.airspeed_kt)
+            .collect();
         let airspeeds = Airspeeds::new(airspeeds_kt, self.options.airspeed_tolerance_kt);
         airspeeds.ok_or(CouplingError::NothingToFit { conditions: 0 })
     }
@@ -122,9 +131,17 @@ impl CouplingProblem {
         if !self.kind.feeds_back() {
             return Vec::new();
         }
-        let inputs: Vec<usize> = (0..self.inputs()).filter(|&input| self.has_data(input)).collect();
-        let is_known = |output: usize| inputs.iter().all(|&input| self.is_known(Pair::new(output, input)));
-        (0..self.outputs()).filter(|&output| is_known(output)).collect()
+        let inputs: Vec<usize> = (0..self.inputs())
+            .filter(|&input| self.has_data(input))
+            .collect();
+        let is_known = |output: usize| {
+            inputs
+                .iter()
+                .all(|&input| self.is_known(Pair::new(output, input)))
+        };
+        (0..self.outputs())
+            .filter(|&output| is_known(output))
+            .collect()
     }
 
     /// Whether flight tells anything of an input.
@@ -136,7 +153,9 @@ impl CouplingProblem {
     fn is_known(&self, pair: Pair) -> bool {
         self.conditions.iter().any(|condition| {
             let has_row = |k: usize| {
-                (0..self.inputs()).all(|input| condition.physics.curve(Pair::new(pair.output, input))[k].is_finite())
+                (0..self.inputs()).all(|input| {
+                    condition.physics.curve(Pair::new(pair.output, input))[k].is_finite()
+                })
             };
             let flight = condition.flight.curve(pair);
             (0..flight.len()).any(|k| flight[k].is_finite() && has_row(k))
@@ -155,11 +174,18 @@ impl CouplingProblem {
                 Some(shape_of(condition.physics.curves(), points)),
                 Some(shape_of(condition.flight.curves(), points)),
                 Some([usable.outputs(), usable.inputs(), points]),
-                condition.deviation.as_ref().map(|deviation| shape_of(deviation, points)),
+                condition
+                    .deviation
+                    .as_ref()
+                    .map(|deviation| shape_of(deviation, points)),
                 coherence.map(|coherence| [coherence.outputs(), coherence.inputs(), points]),
             ];
             if let Some(found) = found.into_iter().flatten().find(|found| *found != expected) {
-                return Err(CouplingError::Shape { condition: condition.id, expected, found });
+                return Err(CouplingError::Shape {
+                    condition: condition.id,
+                    expected,
+                    found,
+                });
             }
         }
         Ok(())
@@ -169,7 +195,10 @@ impl CouplingProblem {
 /// Outputs, inputs and frequencies of a table: as many of these as `expected` where every curve has them, else as many as the first that
 /// has not.
 fn shape_of<T>(curves: &PairTable<Vec<T>>, expected: usize) -> [usize; 3] {
-    let other = curves.iter().map(|(_, curve)| curve.len()).find(|&points| points != expected);
+    let other = curves
+        .iter()
+        .map(|(_, curve)| curve.len())
+        .find(|&points| points != expected);
     [curves.outputs(), curves.inputs(), other.unwrap_or(expected)]
 }
 
@@ -205,14 +234,26 @@ impl Unknown {
 
     /// Every unknown of a problem, row by row of `M`, then of `K`: the diagonal of `M` is a polynomial of degree
     /// `min(degree, distinct airspeeds - 1)`, everything else a constant (M16.1).
-    pub(super) fn all(problem: &CouplingProblem, airspeeds: &Airspeeds, fed_back: &[usize]) -> Vec<Self> {
+    pub(super) fn all(
+        problem: &CouplingProblem,
+        airspeeds: &Airspeeds,
+        fed_back: &[usize],
+    ) -> Vec<Self> {
         let inputs = problem.inputs();
-        let degree = problem.options.degree.min(airspeeds.clusters.len().saturating_sub(1));
+        let degree = problem
+            .options
+            .degree
+            .min(airspeeds.clusters.len().saturating_sub(1));
         let highest = |to: usize, from: usize| if to == from { degree } else { 0 };
-        let of_entry = |to, from| (0..=highest(to, from)).map(move |power| Self::Mixing { to, from, power });
-        let mixing = (0..inputs).flat_map(|to| (0..inputs).flat_map(move |from| of_entry(to, from)));
-        let feedback =
-            (0..inputs).flat_map(|input| fed_back.iter().map(move |&output| Self::Feedback { input, output }));
+        let of_entry =
+            |to, from| (0..=highest(to, from)).map(move |power| Self::Mixing { to, from, power });
+        let mixing =
+            (0..inputs).flat_map(|to| (0..inputs).flat_map(move |from| of_entry(to, from)));
+        let feedback = (0..inputs).flat_map(|input| {
+            fed_back
+                .iter()
+                .map(move |&output| Self::Feedback { input, output })
+        });
         mixing.chain(feedback).collect()
     }
 }
@@ -221,7 +262,9 @@ impl Unknown {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CouplingError {
     /// There is no condition, or none has a response that both representatives have.
-    #[error("no response of the {conditions} conditions is known of both the physics model and flight")]
+    #[error(
+        "no response of the {conditions} conditions is known of both the physics model and flight"
+    )]
     NothingToFit {
         /// Number of conditions.
         conditions: usize,
@@ -264,7 +307,9 @@ pub enum CouplingError {
         omega_rad_s: f64,
     },
     /// The normal matrix has no Cholesky factors.
-    #[error("the responses do not tell the {unknowns} entries of the mixing and the feedback apart")]
+    #[error(
+        "the responses do not tell the {unknowns} entries of the mixing and the feedback apart"
+    )]
     SingularNormalMatrix {
         /// Number of unknowns.
         unknowns: usize,
@@ -294,7 +339,8 @@ impl CouplingError {
         match self {
             Self::ReversedInput { input, .. } => {
                 let name = inputs.get(input - 1).map_or("", String::as_str);
-                self.to_string().replace(&format!("input {input}"), &format!("input {name}"))
+                self.to_string()
+                    .replace(&format!("input {input}"), &format!("input {name}"))
             }
             other => other.to_string(),
         }
@@ -304,7 +350,12 @@ impl CouplingError {
 /// The mean signed delay of each channel \[s\] over the conditions; none of no condition.
 pub fn mean_delays_s(conditions: &[Channels<f64>]) -> Option<Channels<f64>> {
     let count = conditions.len() as f64;
-    let sum_s = |channel: Channel| conditions.iter().filter_map(|delays_s| delays_s.get(channel)).sum::<f64>();
+    let sum_s = |channel: Channel| {
+        conditions
+            .iter()
+            .filter_map(|delays_s| delays_s.get(channel))
+            .sum::<f64>()
+    };
     Some(conditions.first()?.map(|channel, _| sum_s(channel) / count))
 }
 
@@ -322,13 +373,20 @@ pub fn without_channels(
     let of_channel = |tau_s: f64| -> Vec<Complex<f64>> {
         match design.and_then(|design| design.filter(tau_s)) {
             Some(filter) => omega.iter().map(|&omega| filter.at(omega)).collect(),
-            None => omega.iter().map(|omega| Complex::from_polar(1.0, -omega * tau_s)).collect(),
+            None => omega
+                .iter()
+                .map(|omega| Complex::from_polar(1.0, -omega * tau_s))
+                .collect(),
         }
     };
     let channels = delays_s.map(|_, &tau_s| of_channel(tau_s));
     FrequencyResponse::new(flight.curves().map(|pair, curve| {
         let (output, input) = (&channels.outputs[pair.output], &channels.inputs[pair.input]);
-        curve.iter().zip(output.iter().zip(input)).map(|(value, (output, input))| value / (output * input)).collect()
+        curve
+            .iter()
+            .zip(output.iter().zip(input))
+            .map(|(value, (output, input))| value / (output * input))
+            .collect()
     }))
 }
 
@@ -338,15 +396,25 @@ pub fn response_deviation(bands: &ModelBands, omega: &[f64]) -> PairTable<Vec<f6
     let on_grid = |values: &[f64]| interpolate_values(bands.omega(), values, omega);
     bands.sd_db().map(|pair, sd_db| {
         let (sd_db, sd_deg) = (on_grid(sd_db), on_grid(&bands.sd_deg()[pair]));
-        let both = |(db, deg): (&f64, &f64)| (0.5 * ((db * LN_10 / 20.0).powi(2) + deg.to_radians().powi(2))).sqrt();
+        let both = |(db, deg): (&f64, &f64)| {
+            (0.5 * ((db * LN_10 / 20.0).powi(2) + deg.to_radians().powi(2))).sqrt()
+        };
         sd_db.iter().zip(&sd_deg).map(both).collect()
     })
 }
 
 /// Standard deviation of `ln H` that coherence `gamma^2` tells, p x m curves (M13.2):
 /// `C sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`.
-pub fn coherence_deviation(coherence: &PairTable<Vec<f64>>, measurement: &Measurement) -> PairTable<Vec<f64>> {
-    coherence.map(|_, curve| curve.iter().map(|&coherence| measurement.deviation(coherence)).collect())
+pub fn coherence_deviation(
+    coherence: &PairTable<Vec<f64>>,
+    measurement: &Measurement,
+) -> PairTable<Vec<f64>> {
+    coherence.map(|_, curve| {
+        curve
+            .iter()
+            .map(|&coherence| measurement.deviation(coherence))
+            .collect()
+    })
 }
 
 #[cfg(test)]
@@ -356,18 +424,31 @@ mod tests {
 
     #[test]
     fn an_input_that_is_turned_around_is_named() {
-        let error = CouplingError::ReversedInput { input: 2, airspeed_kt: 40.0, factor: -0.598_742_4 };
+        let error = CouplingError::ReversedInput {
+            input: 2,
+            airspeed_kt: 40.0,
+            factor: -0.598_742_4,
+        };
         let words = error.words(&["LON".to_owned(), "LAT".to_owned()]);
-        assert!(words.starts_with("the mixing multiplies input LAT by -0.599 at 40 kt"), "{words}");
+        assert!(
+            words.starts_with("the mixing multiplies input LAT by -0.599 at 40 kt"),
+            "{words}"
+        );
     }
 
     fn signed_delays() -> Channels<f64> {
-        Channels { inputs: vec![0.04, -0.03], outputs: vec![-0.02] }
+        Channels {
+            inputs: vec![0.04, -0.03],
+            outputs: vec![-0.02],
+        }
     }
 
     #[test]
     fn the_mean_delay_of_each_channel_is_over_the_conditions() {
-        let other = Channels { inputs: vec![0.0, -0.05], outputs: vec![0.02] };
+        let other = Channels {
+            inputs: vec![0.0, -0.05],
+            outputs: vec![0.02],
+        };
         let mean = mean_delays_s(&[signed_delays(), other]).unwrap();
         assert_eq!((mean.inputs, mean.outputs), (vec![0.02, -0.04], vec![0.0]));
         assert_eq!(mean_delays_s(&[]), None);
@@ -380,26 +461,59 @@ mod tests {
         let [second, output] = [-0.03, -0.02].map(|tau_s| design.filter(tau_s).unwrap());
         let delayed = |omega: f64| Complex::from_polar(1.0, -0.04 * omega);
         let flight = PairTable::from_fn(1, 2, |pair| {
-            let input = |omega| if pair.input == 0 { delayed(omega) } else { second.at(omega) };
-            omega.iter().map(|&omega| 3.0 * input(omega) * output.at(omega)).collect()
+            let input = |omega| {
+                if pair.input == 0 {
+                    delayed(omega)
+                } else {
+                    second.at(omega)
+                }
+            };
+            omega
+                .iter()
+                .map(|&omega| 3.0 * input(omega) * output.at(omega))
+                .collect()
         });
-        let left = without_channels(&FrequencyResponse::new(flight), &omega, &signed_delays(), Some(&design));
+        let left = without_channels(
+            &FrequencyResponse::new(flight),
+            &omega,
+            &signed_delays(),
+            Some(&design),
+        );
         for (_, curve) in left.curves().iter() {
-            assert!(curve.iter().all(|value| (value - 3.0).norm() < 1e-14), "{curve:?}");
+            assert!(
+                curve.iter().all(|value| (value - 3.0).norm() < 1e-14),
+                "{curve:?}"
+            );
         }
         let ones = FrequencyResponse::new(PairTable::filled(1, 2, vec![Complex::from(1.0); 3]));
         let turned = without_channels(&ones, &omega, &signed_delays(), None);
         let expected = Complex::from_polar(1.0, -0.05 * omega[2]);
-        assert!((turned.curve(Pair::new(0, 1))[2] - expected).norm() < 1e-15, "pure delays where there is no design");
+        assert!(
+            (turned.curve(Pair::new(0, 1))[2] - expected).norm() < 1e-15,
+            "pure delays where there is no design"
+        );
     }
 
     #[test]
     fn a_deviation_is_the_mean_square_of_its_magnitude_and_its_phase() {
         let table = |value: f64| PairTable::filled(1, 1, vec![value; 2]);
-        let bands = ModelBands::new(vec![1.0, 10.0], table(20.0 / LN_10 * 0.03), table(0.04_f64.to_degrees())).unwrap();
+        let bands = ModelBands::new(
+            vec![1.0, 10.0],
+            table(20.0 / LN_10 * 0.03),
+            table(0.04_f64.to_degrees()),
+        )
+        .unwrap();
         let deviation = &response_deviation(&bands, &[0.5, 3.0])[Pair::new(0, 0)];
-        assert!(deviation.iter().all(|sd| (sd - (0.5 * (0.0009_f64 + 0.0016)).sqrt()).abs() < 1e-15));
-        let measurement = Measurement { averages: 8.0, window_s: None, factor: 1.0 };
+        assert!(
+            deviation
+                .iter()
+                .all(|sd| (sd - (0.5 * (0.0009_f64 + 0.0016)).sqrt()).abs() < 1e-15)
+        );
+        let measurement = Measurement {
+            averages: 8.0,
+            window_s: None,
+            factor: 1.0,
+        };
         let deviation = coherence_deviation(&PairTable::filled(1, 1, vec![0.5, 1.0]), &measurement);
         assert_eq!(deviation[Pair::new(0, 0)], [0.25, 0.0]);
     }

@@ -17,11 +17,17 @@ use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Progress, Unobserved};
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 
-static REFERENCE: LazyLock<Value> =
-    LazyLock::new(|| serde_json::from_str(include_str!("../../../../tests/data/reference/mixing.json")).unwrap());
+static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
+    serde_json::from_str(include_str!("../../../../tests/data/reference/mixing.json")).unwrap()
+});
 
 fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect()
+    value
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|value| value.as_f64().unwrap())
+        .collect()
 }
 
 fn matrix(value: &Value) -> DMatrix<f64> {
@@ -31,11 +37,18 @@ fn matrix(value: &Value) -> DMatrix<f64> {
 
 /// `[part][frequency][output][input]`
 fn response(value: &Value) -> FrequencyResponse {
-    let part = |part: usize, k: usize, pair: Pair| value[part][k][pair.output][pair.input].as_f64().unwrap();
+    let part = |part: usize, k: usize, pair: Pair| {
+        value[part][k][pair.output][pair.input].as_f64().unwrap()
+    };
     let points = value[0].as_array().unwrap().len();
-    let (outputs, inputs) = (value[0][0].as_array().unwrap().len(), value[0][0][0].as_array().unwrap().len());
+    let (outputs, inputs) = (
+        value[0][0].as_array().unwrap().len(),
+        value[0][0][0].as_array().unwrap().len(),
+    );
     let value = |pair, k| Complex::new(part(0, k, pair), part(1, k, pair));
-    FrequencyResponse::new(PairTable::from_fn(outputs, inputs, |pair| (0..points).map(|k| value(pair, k)).collect()))
+    FrequencyResponse::new(PairTable::from_fn(outputs, inputs, |pair| {
+        (0..points).map(|k| value(pair, k)).collect()
+    }))
 }
 
 /// The made-up aircraft of three outputs and two inputs, `flight` its flight responses.
@@ -43,7 +56,11 @@ fn made_up(flight: &str, options: CouplingOptions) -> CouplingProblem {
     let toy = &REFERENCE["toy"];
     let omega: Arc<[f64]> = numbers(&toy["omega_rad_s"]).into();
     let table = |pair: Pair, k: usize| toy["sd"][k][pair.output][pair.input].as_f64().unwrap();
-    let deviation = PairTable::from_fn(3, 2, |pair| (0..omega.len()).map(|k| table(pair, k)).collect::<Vec<f64>>());
+    let deviation = PairTable::from_fn(3, 2, |pair| {
+        (0..omega.len())
+            .map(|k| table(pair, k))
+            .collect::<Vec<f64>>()
+    });
     let condition = |(place, airspeed_kt): (usize, f64)| CouplingCondition {
         id: ConditionId(place as i64 + 1),
         airspeed_kt,
@@ -55,8 +72,14 @@ fn made_up(flight: &str, options: CouplingOptions) -> CouplingProblem {
     };
     CouplingProblem {
         kind: CouplingKind::MixingAndFeedback,
-        on_axis: PairTable::from_fn(3, 2, |pair| toy["on_axis"][pair.output][pair.input].as_bool().unwrap()),
-        conditions: numbers(&toy["airspeeds_kt"]).into_iter().enumerate().map(condition).collect(),
+        on_axis: PairTable::from_fn(3, 2, |pair| {
+            toy["on_axis"][pair.output][pair.input].as_bool().unwrap()
+        }),
+        conditions: numbers(&toy["airspeeds_kt"])
+            .into_iter()
+            .enumerate()
+            .map(condition)
+            .collect(),
         omega,
         options,
     }
@@ -74,8 +97,15 @@ fn named(value: &Value) -> Vec<Unknown> {
     let of = |name: &Value| {
         let at = |place: usize| name[place].as_u64().unwrap() as usize;
         match name[0].as_str().unwrap() {
-            "M" => Unknown::Mixing { to: at(1), from: at(2), power: at(3) },
-            _ => Unknown::Feedback { input: at(1), output: at(2) },
+            "M" => Unknown::Mixing {
+                to: at(1),
+                from: at(2),
+                power: at(3),
+            },
+            _ => Unknown::Feedback {
+                input: at(1),
+                output: at(2),
+            },
         }
     };
     value.as_array().unwrap().iter().map(of).collect()
@@ -86,10 +116,21 @@ fn the_made_up_aircraft_is_recovered() {
     let toy = &REFERENCE["toy"];
     let tolerance = toy["recovered"]["tolerance"].as_f64().unwrap();
     let solves = toy["recovered"]["solves"].as_u64().unwrap() as usize;
-    let problem = made_up("R", CouplingOptions { ridge: 1e-9, solves, ..CouplingOptions::default() });
+    let problem = made_up(
+        "R",
+        CouplingOptions {
+            ridge: 1e-9,
+            solves,
+            ..CouplingOptions::default()
+        },
+    );
     let found = fit(&problem);
     assert!((found.matrices.feedback() - matrix(&toy["true_K"])).amax() < tolerance);
-    for (condition, expected) in problem.conditions.iter().zip(toy["true_M"].as_array().unwrap()) {
+    for (condition, expected) in problem
+        .conditions
+        .iter()
+        .zip(toy["true_M"].as_array().unwrap())
+    {
         let miss = (found.matrices.mixing(condition.airspeed_kt) - matrix(expected)).amax();
         assert!(miss < tolerance, "{} kt: {miss:e}", condition.airspeed_kt);
     }
@@ -107,7 +148,10 @@ fn every_solve_of_the_disturbed_aircraft_agrees() {
     for (solve, (coefficients, expected)) in found.coefficients.iter().zip(solves).enumerate() {
         for (place, expected) in numbers(expected).into_iter().enumerate() {
             let miss = (coefficients[place] - expected).abs();
-            assert!(miss < known["tolerance"].as_f64().unwrap(), "solve {solve}, {place}: {miss:e}");
+            assert!(
+                miss < known["tolerance"].as_f64().unwrap(),
+                "solve {solve}, {place}: {miss:e}"
+            );
         }
     }
 }
@@ -116,11 +160,18 @@ fn every_solve_of_the_disturbed_aircraft_agrees() {
 fn constant(mixing: &DMatrix<f64>, feedback: &DMatrix<f64>) -> CouplingMatrices {
     let (inputs, outputs) = feedback.shape();
     let entries = (0..inputs).flat_map(|to| (0..inputs).map(move |from| (to, from)));
-    let of_mixing = entries.map(|(to, from)| (Unknown::Mixing { to, from, power: 0 }, mixing[(to, from)]));
+    let of_mixing =
+        entries.map(|(to, from)| (Unknown::Mixing { to, from, power: 0 }, mixing[(to, from)]));
     let entries = (0..inputs).flat_map(|input| (0..outputs).map(move |output| (input, output)));
-    let of_feedback = entries.map(|(input, output)| (Unknown::Feedback { input, output }, feedback[(input, output)]));
+    let of_feedback = entries.map(|(input, output)| {
+        (
+            Unknown::Feedback { input, output },
+            feedback[(input, output)],
+        )
+    });
     let (unknowns, values): (Vec<Unknown>, Vec<f64>) = of_mixing.chain(of_feedback).unzip();
-    CouplingMatrices::none(Airspeeds::new(vec![60.0], 2.0).unwrap(), inputs, outputs).with(&unknowns, &values)
+    CouplingMatrices::none(Airspeeds::new(vec![60.0], 2.0).unwrap(), inputs, outputs)
+        .with(&unknowns, &values)
 }
 
 #[test]
@@ -128,9 +179,14 @@ fn a_state_space_with_feed_through_is_coupled_exactly() {
     let known = &REFERENCE["state_space"];
     let of = |name: &str| matrix(&known[name]);
     let physics = StateSpace::new(of("A"), of("B"), of("C"), of("D")).unwrap();
-    let coupled = constant(&of("M"), &of("K")).model(&physics, 60.0, Pade::new(4).unwrap()).unwrap();
+    let coupled = constant(&of("M"), &of("K"))
+        .model(&physics, 60.0, Pade::new(4).unwrap())
+        .unwrap();
     let found = [coupled.a(), coupled.b(), coupled.c(), coupled.d()];
-    for (found, expected) in found.into_iter().zip(known["renovated"].as_array().unwrap()) {
+    for (found, expected) in found
+        .into_iter()
+        .zip(known["renovated"].as_array().unwrap())
+    {
         assert!((found - matrix(expected)).amax() < known["tolerance"].as_f64().unwrap());
     }
 }
@@ -144,7 +200,10 @@ fn small_aircraft() -> StateSpace {
 }
 
 fn small_couplings() -> CouplingMatrices {
-    constant(&dmatrix![1.1, 0.2; -0.1, 0.9], &dmatrix![0.1, -0.3, 0.2; 0.05, 0.2, -0.1])
+    constant(
+        &dmatrix![1.1, 0.2; -0.1, 0.9],
+        &dmatrix![0.1, -0.3, 0.2; 0.05, 0.2, -0.1],
+    )
 }
 
 fn grid() -> FrequencyGrid {
@@ -161,31 +220,66 @@ fn pade() -> Pade {
 
 /// The largest difference of two responses.
 fn apart(one: &FrequencyResponse, other: &FrequencyResponse) -> f64 {
-    let values = |of: &FrequencyResponse| of.curves().iter().flat_map(|(_, curve)| curve.clone()).collect::<Vec<_>>();
-    values(one).iter().zip(values(other)).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+    let values = |of: &FrequencyResponse| {
+        of.curves()
+            .iter()
+            .flat_map(|(_, curve)| curve.clone())
+            .collect::<Vec<_>>()
+    };
+    values(one)
+        .iter()
+        .zip(values(other))
+        .map(|(a, b)| (a - b).norm())
+        .fold(0.0, f64::max)
 }
 
 #[test]
 fn without_couplings_nothing_changes() {
-    let (physics, none) = (small_aircraft(), constant(&DMatrix::identity(2, 2), &DMatrix::zeros(2, 3)));
+    let (physics, none) = (
+        small_aircraft(),
+        constant(&DMatrix::identity(2, 2), &DMatrix::zeros(2, 3)),
+    );
     assert_eq!(none.model(&physics, 60.0, pade()).unwrap(), physics);
-    assert_eq!(none.response(&response_of(&physics), 60.0), response_of(&physics));
+    assert_eq!(
+        none.response(&response_of(&physics), 60.0),
+        response_of(&physics)
+    );
     let shifts = none.pole_shifts(&physics, 60.0, pade()).unwrap();
-    assert!(shifts.iter().all(|shift| shift.distance_rad_s() == Some(0.0) && !shift.is_newly_unstable()));
-    let margin = LoopMargin::of(&none.least_singular_values(&response_of(&physics)), grid().omega()).unwrap();
+    assert!(
+        shifts
+            .iter()
+            .all(|shift| shift.distance_rad_s() == Some(0.0) && !shift.is_newly_unstable())
+    );
+    let margin = LoopMargin::of(
+        &none.least_singular_values(&response_of(&physics)),
+        grid().omega(),
+    )
+    .unwrap();
     assert!((margin.least - 1.0).abs() < 1e-15 && !margin.is_close_to_ringing());
 }
 
 #[test]
 fn the_matrices_have_the_response_of_the_loop() {
-    let timing = |sample_time_s| Timing { sample_time_s, ..Timing::default() };
+    let timing = |sample_time_s| Timing {
+        sample_time_s,
+        ..Timing::default()
+    };
     // The same numbers as those of a sampled model: stable, for its poles are within the unit circle after a scaling by 0.5.
     let slow = small_aircraft();
-    let sampled = StateSpace::new(slow.a() * 0.5, slow.b().clone(), slow.c().clone(), slow.d().clone()).unwrap();
+    let sampled = StateSpace::new(
+        slow.a() * 0.5,
+        slow.b().clone(),
+        slow.c().clone(),
+        slow.d().clone(),
+    )
+    .unwrap();
     for physics in [slow, sampled.timed(timing(Some(0.2))).unwrap()] {
         let coupled = small_couplings().model(&physics, 60.0, pade()).unwrap();
         assert_eq!(coupled.timing(), physics.timing());
-        let miss = apart(&response_of(&coupled), &small_couplings().response(&response_of(&physics), 60.0));
+        let miss = apart(
+            &response_of(&coupled),
+            &small_couplings().response(&response_of(&physics), 60.0),
+        );
         // Two ways of some dozen operations with numbers of about one.
         assert!(miss < 1e-12, "{miss:e}");
     }
@@ -197,23 +291,41 @@ fn the_response_of_the_loop_is_that_of_its_formula() {
     let coupled = couplings.response(&h, 60.0);
     let mixing = couplings.normalised_mixing(60.0).map(Complex::from);
     for k in 0..grid().len() {
-        let at = |of: &FrequencyResponse| DMatrix::from_fn(3, 2, |output, input| of.curve(Pair::new(output, input))[k]);
+        let at = |of: &FrequencyResponse| {
+            DMatrix::from_fn(3, 2, |output, input| of.curve(Pair::new(output, input))[k])
+        };
         let difference = DMatrix::identity(3, 3) - at(&h) * couplings.feedback().map(Complex::from);
         let expected = difference.try_inverse().unwrap() * at(&h) * &mixing;
-        assert!((at(&coupled) - expected).iter().all(|miss| miss.norm() < 1e-13));
+        assert!(
+            (at(&coupled) - expected)
+                .iter()
+                .all(|miss| miss.norm() < 1e-13)
+        );
     }
 }
 
 #[test]
 fn delays_of_channels_stand_inside_the_loop() {
     let delayed = |input_s: f64, output_s: f64| {
-        let (input_delays_s, output_delays_s) = (Some(vec![input_s, 0.0]), Some(vec![0.0, output_s, 0.0]));
-        small_aircraft().timed(Timing { sample_time_s: None, input_delays_s, output_delays_s }).unwrap()
+        let (input_delays_s, output_delays_s) =
+            (Some(vec![input_s, 0.0]), Some(vec![0.0, output_s, 0.0]));
+        small_aircraft()
+            .timed(Timing {
+                sample_time_s: None,
+                input_delays_s,
+                output_delays_s,
+            })
+            .unwrap()
     };
     let physics = delayed(0.02, 0.03);
-    let coupled = small_couplings().model(&physics, 60.0, Pade::new(6).unwrap()).unwrap();
+    let coupled = small_couplings()
+        .model(&physics, 60.0, Pade::new(6).unwrap())
+        .unwrap();
     assert!(coupled.timing().is_plain() && coupled.order() > physics.order());
-    let miss = apart(&response_of(&coupled), &small_couplings().response(&response_of(&physics), 60.0));
+    let miss = apart(
+        &response_of(&coupled),
+        &small_couplings().response(&response_of(&physics), 60.0),
+    );
     // Approximants of sixth order of delays of 0.03 s up to 8 rad/s.
     assert!(miss < 1e-10, "{miss:e}");
 }
@@ -221,29 +333,51 @@ fn delays_of_channels_stand_inside_the_loop() {
 #[test]
 fn a_loop_through_the_feed_through_that_cannot_be_closed_is_refused() {
     let feedback = dmatrix![0.0, 0.0, 0.0; 0.0, 0.0, 2.5 - 1e-9];
-    let error = constant(&DMatrix::identity(2, 2), &feedback).model(&small_aircraft(), 60.0, pade()).unwrap_err();
+    let error = constant(&DMatrix::identity(2, 2), &feedback)
+        .model(&small_aircraft(), 60.0, pade())
+        .unwrap_err();
     assert!(
         matches!(error, CoupledModelError::AlgebraicLoop { condition_number } if condition_number > 1e6),
         "{error}"
     );
-    let other = constant(&DMatrix::identity(2, 2), &DMatrix::zeros(2, 2)).model(&small_aircraft(), 60.0, pade());
-    assert!(matches!(other, Err(CoupledModelError::Channels { found: (3, 2), expected: (2, 2) })));
+    let other = constant(&DMatrix::identity(2, 2), &DMatrix::zeros(2, 2)).model(
+        &small_aircraft(),
+        60.0,
+        pade(),
+    );
+    assert!(matches!(
+        other,
+        Err(CoupledModelError::Channels {
+            found: (3, 2),
+            expected: (2, 2)
+        })
+    ));
 }
 
 #[test]
 fn a_pole_that_the_loop_makes_unstable_is_told() {
     let lag = StateSpace::new(dmatrix![-1.0], dmatrix![1.0], dmatrix![1.0], dmatrix![0.0]).unwrap();
-    let shifts = constant(&dmatrix![1.0], &dmatrix![1.5]).pole_shifts(&lag, 60.0, pade()).unwrap();
+    let shifts = constant(&dmatrix![1.0], &dmatrix![1.5])
+        .pole_shifts(&lag, 60.0, pade())
+        .unwrap();
     assert!(shifts[0].is_newly_unstable() && (shifts[0].after.re - 0.5).abs() < 1e-15);
     assert_eq!(shifts[0].distance_rad_s(), Some(1.5));
     let response = FrequencyResponse::of(&Dynamics::StateSpace(lag), &grid());
     let couplings = constant(&dmatrix![1.0], &dmatrix![0.9]);
-    let margin = LoopMargin::of(&couplings.least_singular_values(&response), grid().omega()).unwrap();
+    let margin =
+        LoopMargin::of(&couplings.least_singular_values(&response), grid().omega()).unwrap();
     // |1 - 0.9 / (1 + j 0.2)| at the lowest frequency.
     let expected = (Complex::from(1.0) - Complex::from(0.9) / Complex::new(1.0, 0.2)).norm();
-    assert!((margin.least - expected).abs() < 1e-14 && margin.omega_rad_s == 0.2 && margin.is_close_to_ringing());
+    assert!(
+        (margin.least - expected).abs() < 1e-14
+            && margin.omega_rad_s == 0.2
+            && margin.is_close_to_ringing()
+    );
     let change = relative_change_db(&response, &couplings.response(&response, 60.0), 39);
-    assert!(change[Pair::new(0, 0)].unwrap() < -17.0, "the loop does little at 8 rad/s: {change:?}");
+    assert!(
+        change[Pair::new(0, 0)].unwrap() < -17.0,
+        "the loop does little at 8 rad/s: {change:?}"
+    );
 }
 
 /// Columns and weights of the last pass, one complex row for each response and frequency, with nothing left out by structure.
@@ -255,13 +389,21 @@ struct DenseProblem {
 
 impl DenseProblem {
     fn of(problem: &CouplingProblem, unknowns: &[Unknown], last: &CouplingMatrices) -> Self {
-        let mut dense = Self { columns: vec![Vec::new(); unknowns.len()], target: Vec::new(), squared: Vec::new() };
+        let mut dense = Self {
+            columns: vec![Vec::new(); unknowns.len()],
+            target: Vec::new(),
+            squared: Vec::new(),
+        };
         for condition in &problem.conditions {
             let v: f64 = last.airspeeds().scaled(condition.airspeed_kt);
             for k in 0..problem.omega.len() {
-                let at = |of: &FrequencyResponse| DMatrix::from_fn(3, 2, |o, i| of.curve(Pair::new(o, i))[k]);
+                let at = |of: &FrequencyResponse| {
+                    DMatrix::from_fn(3, 2, |o, i| of.curve(Pair::new(o, i))[k])
+                };
                 let (h, r) = (at(&condition.physics), at(&condition.flight));
-                let s = (DMatrix::identity(3, 3) - &h * last.feedback().map(Complex::from)).try_inverse().unwrap();
+                let s = (DMatrix::identity(3, 3) - &h * last.feedback().map(Complex::from))
+                    .try_inverse()
+                    .unwrap();
                 let (f, target) = (&s * &h, &s * &r);
                 let coupled = &f * last.mixing(condition.airspeed_kt).map(Complex::from);
                 for pair in problem.on_axis.pairs() {
@@ -278,9 +420,15 @@ impl DenseProblem {
                     dense.target.push(target[place]);
                     for (column, unknown) in dense.columns.iter_mut().zip(unknowns) {
                         column.push(match *unknown {
-                            Unknown::Mixing { from, .. } if from != pair.input => Complex::new(0.0, 0.0),
-                            Unknown::Mixing { to, power, .. } => f[(pair.output, to)] * v.powi(power as i32),
-                            Unknown::Feedback { input, output } => f[(pair.output, input)] * r[(output, pair.input)],
+                            Unknown::Mixing { from, .. } if from != pair.input => {
+                                Complex::new(0.0, 0.0)
+                            }
+                            Unknown::Mixing { to, power, .. } => {
+                                f[(pair.output, to)] * v.powi(power as i32)
+                            }
+                            Unknown::Feedback { input, output } => {
+                                f[(pair.output, input)] * r[(output, pair.input)]
+                            }
                         });
                     }
                 }
@@ -294,26 +442,41 @@ impl DenseProblem {
 fn the_gradient_of_the_weighted_problem_vanishes() {
     let problem = disturbed();
     let found = fit(&problem);
-    let [.., before, optimum] = &found.coefficients[..] else { panic!("five solves were asked for") };
+    let [.., before, optimum] = &found.coefficients[..] else {
+        panic!("five solves were asked for")
+    };
     let last = found.matrices.with(&found.unknowns, before);
     let dense = DenseProblem::of(&problem, &found.unknowns, &last);
     let rows = 0..dense.target.len();
     let left: Vec<Complex<f64>> = rows
         .clone()
         .map(|row| {
-            let fitted: Complex<f64> =
-                dense.columns.iter().zip(optimum).map(|(column, theta)| column[row] * theta).sum();
+            let fitted: Complex<f64> = dense
+                .columns
+                .iter()
+                .zip(optimum)
+                .map(|(column, theta)| column[row] * theta)
+                .sum();
             dense.target[row] - fitted
         })
         .collect();
     let product = |column: &[Complex<f64>], of: &[Complex<f64>]| -> f64 {
-        rows.clone().map(|row| dense.squared[row] * (column[row].conj() * of[row]).re).sum()
+        rows.clone()
+            .map(|row| dense.squared[row] * (column[row].conj() * of[row]).re)
+            .sum()
     };
     for (place, column) in dense.columns.iter().enumerate() {
-        let drawn = 1e-3 * product(column, column) * (optimum[place] - found.unknowns[place].uncoupled());
+        let drawn =
+            1e-3 * product(column, column) * (optimum[place] - found.unknowns[place].uncoupled());
         let gradient = drawn - product(column, &left);
-        let size = product(column, &dense.target).abs().max(product(column, column));
-        assert!(gradient.abs() < 1e-12 * size, "{:?}: {gradient:e} of {size:e}", found.unknowns[place]);
+        let size = product(column, &dense.target)
+            .abs()
+            .max(product(column, column));
+        assert!(
+            gradient.abs() < 1e-12 * size,
+            "{:?}: {gradient:e} of {size:e}",
+            found.unknowns[place]
+        );
     }
     assert!(found.residual < 1e-14);
 }
@@ -327,9 +490,15 @@ fn permuted(problem: &CouplingProblem, outputs: &[usize], inputs: &[usize]) -> C
     let mut moved_problem = problem.clone();
     moved_problem.on_axis = moved(&problem.on_axis, &old);
     for condition in &mut moved_problem.conditions {
-        condition.physics = Arc::new(FrequencyResponse::new(moved(condition.physics.curves(), &old)));
+        condition.physics = Arc::new(FrequencyResponse::new(moved(
+            condition.physics.curves(),
+            &old,
+        )));
         condition.flight = FrequencyResponse::new(moved(condition.flight.curves(), &old));
-        condition.deviation = condition.deviation.as_ref().map(|deviation| moved(deviation, &old));
+        condition.deviation = condition
+            .deviation
+            .as_ref()
+            .map(|deviation| moved(deviation, &old));
     }
     moved_problem
 }
@@ -337,7 +506,10 @@ fn permuted(problem: &CouplingProblem, outputs: &[usize], inputs: &[usize]) -> C
 #[test]
 fn permuting_the_channels_permutes_the_answer() {
     let (outputs, inputs) = ([2, 0, 1], [1, 0]);
-    let (found, moved) = (fit(&disturbed()), fit(&permuted(&disturbed(), &outputs, &inputs)));
+    let (found, moved) = (
+        fit(&disturbed()),
+        fit(&permuted(&disturbed(), &outputs, &inputs)),
+    );
     let (m, k) = (found.matrices.mixing(70.0), found.matrices.feedback());
     let expected_m = DMatrix::from_fn(2, 2, |to, from| m[(inputs[to], inputs[from])]);
     let expected_k = DMatrix::from_fn(2, 3, |input, output| k[(inputs[input], outputs[output])]);
@@ -350,10 +522,20 @@ fn permuting_the_channels_permutes_the_answer() {
 fn bars_need_three_conditions_and_are_those_of_the_jackknife() {
     let fits = left_out_fits(&disturbed(), &Sequential, &Unobserved).unwrap();
     let places: Vec<_> = fits.iter().map(|of| of.condition).collect();
-    assert_eq!(places, disturbed().conditions.iter().map(|condition| condition.id).collect::<Vec<_>>());
+    assert_eq!(
+        places,
+        disturbed()
+            .conditions
+            .iter()
+            .map(|condition| condition.id)
+            .collect::<Vec<_>>()
+    );
     assert_eq!(fits[1].fit, fit(&disturbed().without(1)));
     let bars = CouplingBars::of(&fits, 80.0, 0.9).unwrap();
-    let entries: Vec<f64> = fits.iter().map(|of| of.fit.matrices.feedback()[(1, 2)]).collect();
+    let entries: Vec<f64> = fits
+        .iter()
+        .map(|of| of.fit.matrices.feedback()[(1, 2)])
+        .collect();
     let mean = entries.iter().sum::<f64>() / 4.0;
     let square: f64 = entries.iter().map(|entry| (entry - mean).powi(2)).sum();
     // Student's quantile of 3 degrees of freedom at 0.95, from tables.
@@ -362,7 +544,13 @@ fn bars_need_three_conditions_and_are_those_of_the_jackknife() {
     let mut two = disturbed();
     two.conditions.truncate(2);
     let error = left_out_fits(&two, &Sequential, &Unobserved).unwrap_err();
-    assert_eq!(error, CouplingError::TooFewConditions { needed: 3, found: 2 });
+    assert_eq!(
+        error,
+        CouplingError::TooFewConditions {
+            needed: 3,
+            found: 2
+        }
+    );
     // Two airspeeds bear a straight line.
     assert_eq!(fit(&two).unknowns.len(), 12);
 }
@@ -371,13 +559,29 @@ fn bars_need_three_conditions_and_are_those_of_the_jackknife() {
 fn a_fit_without_any_response_and_tables_of_another_shape_are_refused() {
     let fit = |problem: &CouplingProblem| fit_couplings(problem, &Sequential, &Unobserved);
     let mut problem = disturbed();
-    problem.conditions.iter_mut().for_each(|condition| condition.usable = PairTable::filled(3, 2, false));
-    assert_eq!(fit(&problem).unwrap_err(), CouplingError::NothingToFit { conditions: 4 });
+    problem
+        .conditions
+        .iter_mut()
+        .for_each(|condition| condition.usable = PairTable::filled(3, 2, false));
+    assert_eq!(
+        fit(&problem).unwrap_err(),
+        CouplingError::NothingToFit { conditions: 4 }
+    );
     problem.conditions.clear();
-    assert_eq!(fit(&problem).unwrap_err(), CouplingError::NothingToFit { conditions: 0 });
+    assert_eq!(
+        fit(&problem).unwrap_err(),
+        CouplingError::NothingToFit { conditions: 0 }
+    );
     let mut problem = disturbed();
     problem.omega = problem.omega[1..].into();
-    assert!(matches!(fit(&problem).unwrap_err(), CouplingError::Shape { expected: [.., 11], found: [.., 12], .. }));
+    assert!(matches!(
+        fit(&problem).unwrap_err(),
+        CouplingError::Shape {
+            expected: [.., 11],
+            found: [.., 12],
+            ..
+        }
+    ));
 }
 
 /// Wants the work to end.
@@ -394,7 +598,10 @@ impl Progress for Impatient {
 #[test]
 fn work_that_is_no_longer_wanted_ends() {
     let stopped = Err(CouplingError::Cancelled(gdcm_model::progress::Cancelled));
-    assert_eq!(fit_couplings(&disturbed(), &Sequential, &Impatient), stopped);
+    assert_eq!(
+        fit_couplings(&disturbed(), &Sequential, &Impatient),
+        stopped
+    );
     assert!(left_out_fits(&disturbed(), &Sequential, &Impatient).is_err());
 }
 
@@ -406,14 +613,19 @@ struct Listener {
 
 impl Listener {
     fn patient_for(questions: usize) -> Self {
-        Self { questions_left: AtomicUsize::new(questions), heard: Mutex::default() }
+        Self {
+            questions_left: AtomicUsize::new(questions),
+            heard: Mutex::default(),
+        }
     }
 }
 
 impl Progress for Listener {
     fn cancelled(&self) -> bool {
         let next = |left: usize| left.checked_sub(1);
-        self.questions_left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, next).is_err()
+        self.questions_left
+            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, next)
+            .is_err()
     }
 
     fn advanced(&self, done: usize, total: usize) {
@@ -428,7 +640,11 @@ fn a_fit_reports_every_condition_of_every_pass_and_never_goes_back() {
     fit_couplings(&disturbed(), &Sequential, &listener).unwrap();
     let heard = listener.heard.into_inner().unwrap();
     // Four conditions and the solution, five times, and the end.
-    assert_eq!((heard.len(), heard[0], heard[4], *heard.last().unwrap()), (26, 40, 200, 1000), "{heard:?}");
+    assert_eq!(
+        (heard.len(), heard[0], heard[4], *heard.last().unwrap()),
+        (26, 40, 200, 1000),
+        "{heard:?}"
+    );
     assert!(heard.is_sorted());
 }
 
@@ -437,8 +653,14 @@ fn a_fit_of_one_large_condition_can_be_stopped_within_a_pass() {
     let problem = many_channels(2, 1, 200);
     let listener = Listener::patient_for(3);
     let stopped = fit_couplings(&problem, &Sequential, &listener);
-    assert_eq!(stopped, Err(CouplingError::Cancelled(gdcm_model::progress::Cancelled)));
-    assert!(listener.heard.into_inner().unwrap().is_empty(), "before the first condition of the first pass was done");
+    assert_eq!(
+        stopped,
+        Err(CouplingError::Cancelled(gdcm_model::progress::Cancelled))
+    );
+    assert!(
+        listener.heard.into_inner().unwrap().is_empty(),
+        "before the first condition of the first pass was done"
+    );
 }
 
 #[test]
@@ -446,14 +668,20 @@ fn the_fits_without_each_condition_are_reported_step_by_step() {
     let listener = Listener::patient_for(usize::MAX);
     left_out_fits(&disturbed(), &Sequential, &listener).unwrap();
     let heard = listener.heard.into_inner().unwrap();
-    assert!(heard.len() >= 4 * 20 && heard.is_sorted() && *heard.last().unwrap() >= 999, "{heard:?}");
+    assert!(
+        heard.len() >= 4 * 20 && heard.is_sorted() && *heard.last().unwrap() >= 999,
+        "{heard:?}"
+    );
 }
 
 /// The problem with outputs and inputs in other units: so many of the new ones to one of the old.
 fn in_other_units(problem: &CouplingProblem, outputs: &[f64], inputs: &[f64]) -> CouplingProblem {
     let scaled = |of: &FrequencyResponse| {
         let scale = |pair: Pair| outputs[pair.output] / inputs[pair.input];
-        FrequencyResponse::new(of.curves().map(|pair, curve| curve.iter().map(|value| value * scale(pair)).collect()))
+        FrequencyResponse::new(
+            of.curves()
+                .map(|pair, curve| curve.iter().map(|value| value * scale(pair)).collect()),
+        )
     };
     let mut problem = problem.clone();
     for condition in &mut problem.conditions {
@@ -471,7 +699,10 @@ fn flown_with(mixing: &DMatrix<f64>, share: &DMatrix<f64>) -> (CouplingProblem, 
             .conditions
             .iter()
             .flat_map(|of| (0..2).map(move |input| of.physics.curve(Pair::new(output, input))));
-        values.flatten().map(|value| value.norm()).fold(0.0, f64::max)
+        values
+            .flatten()
+            .map(|value| value.norm())
+            .fold(0.0, f64::max)
     };
     let peaks: Vec<f64> = (0..3).map(largest).collect();
     let feedback = DMatrix::from_fn(2, 3, |input, output| share[(input, output)] / peaks[output]);
@@ -537,7 +768,8 @@ const NOT_KNOWN: Complex<f64> = Complex::new(f64::NAN, f64::NAN);
 /// A response without the values at these pairs and frequencies.
 fn without(response: &FrequencyResponse, lacks: impl Fn(Pair, usize) -> bool) -> FrequencyResponse {
     FrequencyResponse::new(response.curves().map(|pair, curve| {
-        let value = |(k, value): (usize, &Complex<f64>)| if lacks(pair, k) { NOT_KNOWN } else { *value };
+        let value =
+            |(k, value): (usize, &Complex<f64>)| if lacks(pair, k) { NOT_KNOWN } else { *value };
         curve.iter().enumerate().map(value).collect()
     }))
 }
@@ -546,7 +778,9 @@ fn without(response: &FrequencyResponse, lacks: impl Fn(Pair, usize) -> bool) ->
 fn two_outputs() -> CouplingProblem {
     let mut smaller = disturbed();
     let first_two = |response: &FrequencyResponse| {
-        FrequencyResponse::new(PairTable::from_fn(2, 2, |pair| response.curve(pair).to_vec()))
+        FrequencyResponse::new(PairTable::from_fn(2, 2, |pair| {
+            response.curve(pair).to_vec()
+        }))
     };
     smaller.on_axis = PairTable::from_fn(2, 2, |pair| smaller.on_axis[pair]);
     for condition in &mut smaller.conditions {
@@ -572,8 +806,17 @@ fn an_output_that_one_side_lacks_everywhere_is_not_fed_back_and_changes_nothing_
         let found = fit(&lacking);
         assert_eq!(found.not_fed_back, [2]);
         assert!((found.matrices.mixing(70.0) - expected.matrices.mixing(70.0)).amax() < 1e-13);
-        assert!((found.matrices.feedback().columns(0, 2) - expected.matrices.feedback()).amax() < 1e-13);
-        assert!(found.matrices.feedback().column(2).iter().all(|entry| *entry == 0.0));
+        assert!(
+            (found.matrices.feedback().columns(0, 2) - expected.matrices.feedback()).amax() < 1e-13
+        );
+        assert!(
+            found
+                .matrices
+                .feedback()
+                .column(2)
+                .iter()
+                .all(|entry| *entry == 0.0)
+        );
     }
 }
 
@@ -581,24 +824,33 @@ fn an_output_that_one_side_lacks_everywhere_is_not_fed_back_and_changes_nothing_
 fn an_input_column_is_skipped_where_flight_lacks_an_output_that_is_fed_back() {
     let (mut lacking, mut unusable) = (disturbed(), disturbed());
     // The first condition lacks one response; the same as if none of that input counted there.
-    lacking.conditions[0].flight = without(&lacking.conditions[0].flight, |pair, _| pair == Pair::new(2, 1));
+    lacking.conditions[0].flight = without(&lacking.conditions[0].flight, |pair, _| {
+        pair == Pair::new(2, 1)
+    });
     for output in 0..3 {
         unusable.conditions[0].usable[Pair::new(output, 1)] = false;
     }
     let (found, expected) = (fit(&lacking), fit(&unusable));
-    assert_eq!((found.coefficients, found.not_fed_back), (expected.coefficients, vec![]));
+    assert_eq!(
+        (found.coefficients, found.not_fed_back),
+        (expected.coefficients, vec![])
+    );
     // A mixing alone needs no other response of the column.
     (lacking.kind, unusable.kind) = (CouplingKind::Mixing, CouplingKind::Mixing);
     unusable.conditions[0].usable = PairTable::from_fn(3, 2, |pair| pair != Pair::new(2, 1));
     let (found, expected) = (fit(&lacking), fit(&unusable));
-    assert_eq!((found.coefficients, found.not_fed_back), (expected.coefficients, vec![]));
+    assert_eq!(
+        (found.coefficients, found.not_fed_back),
+        (expected.coefficients, vec![])
+    );
 }
 
 #[test]
 fn a_frequency_is_skipped_where_the_physics_model_lacks_an_output_that_is_fed_back() {
     let (mut lacking, mut shorter) = (disturbed(), disturbed());
-    lacking.conditions[2].physics =
-        Arc::new(without(&lacking.conditions[2].physics, |pair, k| pair.output == 1 && k == 4));
+    lacking.conditions[2].physics = Arc::new(without(&lacking.conditions[2].physics, |pair, k| {
+        pair.output == 1 && k == 4
+    }));
     shorter.conditions[2].flight = without(&shorter.conditions[2].flight, |_, k| k == 4);
     assert_eq!(fit(&lacking).coefficients, fit(&shorter).coefficients);
 }
@@ -612,8 +864,14 @@ fn an_input_that_flight_never_moved_stays_as_it_is() {
     let found = fit(&problem);
     let of_input = |unknown: &&Unknown| matches!(unknown, Unknown::Mixing { from: 1, .. });
     let expected: Vec<Unknown> = found.unknowns.iter().filter(of_input).copied().collect();
-    assert_eq!((&found.undetermined, found.not_fed_back.len()), (&expected, 0));
-    assert_eq!(found.matrices.mixing(70.0).column(1), DVector::from_vec(vec![0.0, 1.0]));
+    assert_eq!(
+        (&found.undetermined, found.not_fed_back.len()),
+        (&expected, 0)
+    );
+    assert_eq!(
+        found.matrices.mixing(70.0).column(1),
+        DVector::from_vec(vec![0.0, 1.0])
+    );
 }
 
 #[test]
@@ -628,7 +886,12 @@ fn what_was_not_measured_coherently_does_not_count() {
         other.usable[Pair::new(2, 0)] = false;
     }
     let (found, expected) = (fit(&measured), fit(&unusable));
-    for (found, expected) in found.coefficients.iter().flatten().zip(expected.coefficients.iter().flatten()) {
+    for (found, expected) in found
+        .coefficients
+        .iter()
+        .flatten()
+        .zip(expected.coefficients.iter().flatten())
+    {
         // One weight for all that counts changes nothing but roundings.
         assert!((found - expected).abs() < 1e-12);
     }
@@ -646,11 +909,24 @@ fn a_response_that_a_physics_model_lacks_is_lacking_once_coupled_and_only_what_d
         for (k, expected) in curve.iter().enumerate() {
             let value = found.curve(pair)[k];
             let is_lacking = pair.output == 2 && k == 3;
-            assert!(if is_lacking { !value.is_finite() } else { value == *expected }, "{pair:?} {k}");
+            assert!(
+                if is_lacking {
+                    !value.is_finite()
+                } else {
+                    value == *expected
+                },
+                "{pair:?} {k}"
+            );
         }
     }
-    let fed_back = constant(&mixing, &dmatrix![0.0, 0.0, 0.1; 0.0, 0.0, 0.0]).response(&lacking, 60.0);
-    assert!(fed_back.curves().iter().all(|(_, curve)| !curve[3].is_finite() && curve[4].is_finite()));
+    let fed_back =
+        constant(&mixing, &dmatrix![0.0, 0.0, 0.1; 0.0, 0.0, 0.0]).response(&lacking, 60.0);
+    assert!(
+        fed_back
+            .curves()
+            .iter()
+            .all(|(_, curve)| !curve[3].is_finite() && curve[4].is_finite())
+    );
 }
 
 /// A synthetic problem of as many inputs as outputs, each response a lag of its own, flown with small couplings.
@@ -662,20 +938,32 @@ fn many_channels(channels: usize, conditions: usize, points: usize) -> CouplingP
         state ^= state << 17;
         (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
     };
-    let omega = FrequencyGrid::logarithmic(Band::new(0.3, 12.0).unwrap(), points).omega().to_vec();
+    let omega = FrequencyGrid::logarithmic(Band::new(0.3, 12.0).unwrap(), points)
+        .omega()
+        .to_vec();
     let couplings = {
         let mut small = |row: usize, column: usize| {
             let unit = if row == column { 1.0 } else { 0.0 };
             unit + 0.1 * random()
         };
         let mixing = DMatrix::from_fn(channels, channels, &mut small);
-        constant(&mixing, &DMatrix::from_fn(channels, channels, |_, _| 0.02 * small(0, 1)))
+        constant(
+            &mixing,
+            &DMatrix::from_fn(channels, channels, |_, _| 0.02 * small(0, 1)),
+        )
     };
     let conditions = (0..conditions).map(|place| {
         let physics = FrequencyResponse::new(PairTable::from_fn(channels, channels, |pair| {
-            let gain = if pair.output == pair.input { 3.0 } else { 0.6 * random() };
+            let gain = if pair.output == pair.input {
+                3.0
+            } else {
+                0.6 * random()
+            };
             let lag = 1.5 + random();
-            omega.iter().map(|&omega| Complex::from(gain) / Complex::new(lag, omega)).collect()
+            omega
+                .iter()
+                .map(|&omega| Complex::from(gain) / Complex::new(lag, omega))
+                .collect()
         }));
         let airspeed_kt = 20.0 * place as f64;
         CouplingCondition {
@@ -706,7 +994,12 @@ fn twenty_inputs_and_outputs_are_fitted_within_ten_seconds() {
         let found = fit(&problem);
         let took_s = started.elapsed().as_secs_f64();
         let residual = found.residual;
-        println!("{channels} x {channels}, {conditions} conditions, one core: {took_s:.2} s; residual {residual:.1e}");
-        assert!(residual < 1e-12 && (channels > 20 || took_s < 10.0), "{took_s} s");
+        println!(
+            "{channels} x {channels}, {conditions} conditions, one core: {took_s:.2} s; residual {residual:.1e}"
+        );
+        assert!(
+            residual < 1e-12 && (channels > 20 || took_s < 10.0),
+            "{took_s} s"
+        );
     }
 }

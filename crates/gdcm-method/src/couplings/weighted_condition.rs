@@ -41,14 +41,25 @@ impl<'a> WeightedCondition<'a> {
     ///
     /// What a representative lacks has weight 0 and the value 0. Where flight lacks a response that is fed back its input column does
     /// not count, where the physics model lacks one its frequency does not: the value 0 is then never used.
-    pub(super) fn new(problem: &'a CouplingProblem, condition: &CouplingCondition, fed_back: &[usize]) -> Self {
+    pub(super) fn new(
+        problem: &'a CouplingProblem,
+        condition: &CouplingCondition,
+        fed_back: &[usize],
+    ) -> Self {
         let (outputs, inputs) = (problem.outputs(), problem.inputs());
         let weights = fixed_weights(problem, condition, fed_back);
         let columns = |of: &PairTable<Vec<Complex<f64>>>| {
             let mut values = Vec::with_capacity(problem.omega.len() * inputs * outputs);
             for k in 0..problem.omega.len() {
-                let entries = (0..inputs).flat_map(|input| (0..outputs).map(move |output| Pair::new(output, input)));
-                let finite = |value: Complex<f64>| if value.is_finite() { value } else { Complex::new(0.0, 0.0) };
+                let entries = (0..inputs)
+                    .flat_map(|input| (0..outputs).map(move |output| Pair::new(output, input)));
+                let finite = |value: Complex<f64>| {
+                    if value.is_finite() {
+                        value
+                    } else {
+                        Complex::new(0.0, 0.0)
+                    }
+                };
                 values.extend(entries.map(|pair| finite(of[pair][k])));
             }
             values
@@ -83,7 +94,9 @@ impl<'a> WeightedCondition<'a> {
     /// Whether any response counts at a frequency.
     pub(super) fn counts_at(&self, k: usize) -> bool {
         let size = self.inputs * self.outputs;
-        self.weights[k * size..][..size].iter().any(|weight| weight.s > 0.0)
+        self.weights[k * size..][..size]
+            .iter()
+            .any(|weight| weight.s > 0.0)
     }
 
     /// `H` at a frequency, p x m, column by column.
@@ -113,7 +126,11 @@ impl<'a> WeightedCondition<'a> {
         let mut counts = false;
         for (output, squared) in squared.iter_mut().enumerate() {
             let weight = fixed[output];
-            *squared = if weight.s > 0.0 { weight.squared(coupled[output], flight[output]) } else { 0.0 };
+            *squared = if weight.s > 0.0 {
+                weight.squared(coupled[output], flight[output])
+            } else {
+                0.0
+            };
             counts |= *squared > 0.0;
         }
         counts
@@ -133,7 +150,11 @@ impl FixedWeight {
     }
 }
 
-fn fixed_weights(problem: &CouplingProblem, condition: &CouplingCondition, fed_back: &[usize]) -> Vec<FixedWeight> {
+fn fixed_weights(
+    problem: &CouplingProblem,
+    condition: &CouplingCondition,
+    fed_back: &[usize],
+) -> Vec<FixedWeight> {
     let (outputs, inputs, points) = (problem.outputs(), problem.inputs(), problem.omega.len());
     let coherence = condition.coherence.as_ref();
     let coherence = coherence.map(|table| table.map(|_, of| of.spread(&of.weights, points)));
@@ -144,20 +165,30 @@ fn fixed_weights(problem: &CouplingProblem, condition: &CouplingCondition, fed_b
         let has_row = |output: usize| (0..inputs).all(|input| physics(output, input).is_finite());
         let has_loop = fed_back.iter().all(|&output| has_row(output));
         for input in 0..inputs {
-            let has_column = has_loop && fed_back.iter().all(|&output| flight(output, input).is_finite());
+            let has_column = has_loop
+                && fed_back
+                    .iter()
+                    .all(|&output| flight(output, input).is_finite());
             weights.extend((0..outputs).map(|output| {
                 let pair = Pair::new(output, input);
-                let counts =
-                    has_column && condition.usable[pair] && has_row(output) && flight(output, input).is_finite();
+                let counts = has_column
+                    && condition.usable[pair]
+                    && has_row(output)
+                    && flight(output, input).is_finite();
                 if !counts {
                     return FixedWeight::default();
                 }
                 let axis = if problem.on_axis[pair] { ON_AXIS } else { 1.0 };
-                let deviation = condition.deviation.as_ref().map_or(0.0, |table| table[pair][k]);
+                let deviation = condition
+                    .deviation
+                    .as_ref()
+                    .map_or(0.0, |table| table[pair][k]);
                 let s = axis / (1.0 + (deviation / DEVIATION).powi(2)).sqrt();
                 FixedWeight {
                     s: s.max(0.0),
-                    coherence: coherence.as_ref().map_or(1.0, |table| table[pair][k].max(0.0)),
+                    coherence: coherence
+                        .as_ref()
+                        .map_or(1.0, |table| table[pair][k].max(0.0)),
                 }
             }));
         }

@@ -47,15 +47,26 @@ pub fn least_absolute_deviations(
     let mut best = best_vertex(&fit, start, cancelled)?;
     if best.is_degenerate(&fit) {
         let weights = solve_linear_program(x, &scaled, unknowns)?;
-        let other = Vertex::nearest(&fit, &weights).map(|vertex| best_vertex(&fit, vertex, cancelled)).transpose()?;
-        let better = other.filter(|other| fit.deviations(&other.weights) < fit.deviations(&best.weights));
+        let other = Vertex::nearest(&fit, &weights)
+            .map(|vertex| best_vertex(&fit, vertex, cancelled))
+            .transpose()?;
+        let better =
+            other.filter(|other| fit.deviations(&other.weights) < fit.deviations(&best.weights));
         best = better.unwrap_or(best);
     }
-    Ok(best.weights.iter().map(|weight| weight.max(0.0) * scale).collect())
+    Ok(best
+        .weights
+        .iter()
+        .map(|weight| weight.max(0.0) * scale)
+        .collect())
 }
 
 /// Goes along descending edges to the optimum, then over all equally good vertices.
-fn best_vertex(fit: &Fit<'_>, start: Vertex, cancelled: &dyn Fn() -> bool) -> Result<Vertex, FitError> {
+fn best_vertex(
+    fit: &Fit<'_>,
+    start: Vertex,
+    cancelled: &dyn Fn() -> bool,
+) -> Result<Vertex, FitError> {
     /// Far more than the vertices of a face in a few unknowns; only a bound on time.
     const MOST_VERTICES: usize = 300;
     let misfit = |vertex: &Vertex| fit.squared_root_deviations(&vertex.weights);
@@ -109,8 +120,16 @@ fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Ve
         entry(2 * rows + column, column, -1.0);
     }
     let a = CscMatrix::new_from_triplets(2 * rows + unknowns, unknowns + rows, i, j, v);
-    let b: Vec<f64> = y.iter().copied().chain(y.iter().map(|y| -y)).chain(vec![0.0; unknowns]).collect();
-    let q: Vec<f64> = vec![0.0; unknowns].into_iter().chain(vec![1.0; rows]).collect();
+    let b: Vec<f64> = y
+        .iter()
+        .copied()
+        .chain(y.iter().map(|y| -y))
+        .chain(vec![0.0; unknowns])
+        .collect();
+    let q: Vec<f64> = vec![0.0; unknowns]
+        .into_iter()
+        .chain(vec![1.0; rows])
+        .collect();
     // Close enough that the nearest vertex is an optimal one, or one edge from it.
     let settings = DefaultSettings {
         verbose: false,
@@ -121,7 +140,9 @@ fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Ve
         ..DefaultSettings::default()
     };
     let solution = convex_program(&CscMatrix::zeros((q.len(), q.len())), &q, &a, &b, settings);
-    solution.map(|x| x[..unknowns].to_vec()).map_err(|status| FitError::NotSolved { status })
+    solution
+        .map(|x| x[..unknowns].to_vec())
+        .map_err(|status| FitError::NotSolved { status })
 }
 
 /// A deviation or a weight below this is zero; the right-hand sides are scaled to at most 1.
@@ -157,7 +178,11 @@ enum Neighbours {
 impl<'a> Fit<'a> {
     /// The constraints of the fit of `y` by `x`.
     fn new(x: &[Vec<f64>], y: &'a [f64]) -> Self {
-        Self { x: x.concat(), unknowns: x.first().map_or(0, Vec::len), y }
+        Self {
+            x: x.concat(),
+            unknowns: x.first().map_or(0, Vec::len),
+            y,
+        }
     }
 
     fn count(&self) -> usize {
@@ -190,30 +215,39 @@ impl<'a> Fit<'a> {
 
     /// The left-hand sides of some constraints: a row of `x`, or one of the identity.
     fn matrix(&self, constraints: &[usize]) -> DMatrix<f64> {
-        DMatrix::from_fn(constraints.len(), self.unknowns, |row, column| {
-            match constraints[row].checked_sub(self.y.len()) {
+        DMatrix::from_fn(
+            constraints.len(),
+            self.unknowns,
+            |row, column| match constraints[row].checked_sub(self.y.len()) {
                 None => self.row(constraints[row])[column],
                 Some(weight) => f64::from(weight == column),
-            }
-        })
+            },
+        )
     }
 
     /// `sum_i |x_i w - y_i|`.
     fn deviations(&self, w: &[f64]) -> f64 {
-        (0..self.y.len()).map(|row| self.deviation(row, w).abs()).sum()
+        (0..self.y.len())
+            .map(|row| self.deviation(row, w).abs())
+            .sum()
     }
 
     /// The weights of least squares, those below zero set to zero: not far from the vertex sought.
     fn least_squares(&self) -> Vec<f64> {
         let x = DMatrix::from_row_slice(self.y.len(), self.unknowns, &self.x);
         let normal = x.tr_mul(&x).cholesky();
-        let solution = normal.map(|normal| normal.solve(&x.tr_mul(&DVector::from_column_slice(self.y))));
-        solution.map_or(vec![0.0; self.unknowns], |w| w.iter().map(|weight| weight.max(0.0)).collect())
+        let solution =
+            normal.map(|normal| normal.solve(&x.tr_mul(&DVector::from_column_slice(self.y))));
+        solution.map_or(vec![0.0; self.unknowns], |w| {
+            w.iter().map(|weight| weight.max(0.0)).collect()
+        })
     }
 
     /// `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
     fn squared_root_deviations(&self, w: &[f64]) -> f64 {
-        (0..self.y.len()).map(|row| (self.left(row, w).max(0.0).sqrt() - self.y[row].sqrt()).powi(2)).sum()
+        (0..self.y.len())
+            .map(|row| (self.left(row, w).max(0.0).sqrt() - self.y[row].sqrt()).powi(2))
+            .sum()
     }
 }
 
@@ -230,7 +264,11 @@ struct Edge {
 
 impl Edge {
     fn relative_slope(&self) -> f64 {
-        if self.scale > 0.0 { self.slope / self.scale } else { 0.0 }
+        if self.scale > 0.0 {
+            self.slope / self.scale
+        } else {
+            0.0
+        }
     }
 }
 
@@ -246,11 +284,18 @@ struct Crossing {
 /// The constraint of the first crossing at which the doubled changes so far come to `rise`: a weighted median, found by halving
 /// what is left rather than by sorting it.
 fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
-    let by_step = |a: &Crossing, b: &Crossing| a.step.total_cmp(&b.step).then(a.constraint.cmp(&b.constraint));
+    let by_step = |a: &Crossing, b: &Crossing| {
+        a.step
+            .total_cmp(&b.step)
+            .then(a.constraint.cmp(&b.constraint))
+    };
     let (mut left, mut risen) = (crossings.as_mut_slice(), 0.0);
     loop {
         if left.len() <= 1 {
-            return left.first().filter(|last| risen + 2.0 * last.change >= rise).map(|last| last.constraint);
+            return left
+                .first()
+                .filter(|last| risen + 2.0 * last.change >= rise)
+                .map(|last| last.constraint);
         }
         let (near, _, _) = left.select_nth_unstable_by(left.len() / 2, by_step);
         let middle = near.len();
@@ -287,7 +332,10 @@ impl Vertex {
     /// The vertex in which every weight is zero.
     fn origin(fit: &Fit<'_>) -> Self {
         let basis = (fit.y.len()..fit.count()).collect();
-        Self { weights: vec![0.0; fit.unknowns], basis }
+        Self {
+            weights: vec![0.0; fit.unknowns],
+            basis,
+        }
     }
 
     fn of(fit: &Fit<'_>, basis: Vec<usize>) -> Option<Self> {
@@ -295,14 +343,23 @@ impl Vertex {
         if !matrix.is_square() {
             return None;
         }
-        let right = DVector::from_iterator(basis.len(), basis.iter().map(|&constraint| fit.right(constraint)));
+        let right = DVector::from_iterator(
+            basis.len(),
+            basis.iter().map(|&constraint| fit.right(constraint)),
+        );
         let weights: Vec<f64> = matrix.lu().solve(&right)?.iter().copied().collect();
-        weights.iter().all(|&weight| weight > -ZERO).then_some(Self { weights, basis })
+        weights
+            .iter()
+            .all(|&weight| weight > -ZERO)
+            .then_some(Self { weights, basis })
     }
 
     /// Whether two vertices are one place.
     fn is_at(&self, other: &Self) -> bool {
-        self.weights.iter().zip(&other.weights).all(|(a, b)| (a - b).abs() <= ZERO)
+        self.weights
+            .iter()
+            .zip(&other.weights)
+            .all(|(a, b)| (a - b).abs() <= ZERO)
     }
 
     /// The vertices at the ends of this one's edges, where the deviations do not grow on the way: of those that fall the
@@ -330,10 +387,19 @@ impl Vertex {
         for leaving in 0..self.basis.len() {
             let upwards: Vec<f64> = inverse.column(leaving).iter().copied().collect();
             let (slopes, scale) = slopes(fit, deviations, &upwards);
-            let sides = if fit.is_weight(self.basis[leaving]) { &[1.0][..] } else { &[1.0, -1.0] };
+            let sides = if fit.is_weight(self.basis[leaving]) {
+                &[1.0][..]
+            } else {
+                &[1.0, -1.0]
+            };
             for (side, slope) in sides.iter().zip(slopes) {
                 let direction = upwards.iter().map(|entry| side * entry).collect();
-                edges.push(Edge { leaving, direction, slope, scale });
+                edges.push(Edge {
+                    leaving,
+                    direction,
+                    slope,
+                    scale,
+                });
             }
         }
         edges
@@ -341,8 +407,9 @@ impl Vertex {
 
     /// Deviation of each constraint, those that meet here exactly zero.
     fn all_deviations(&self, fit: &Fit<'_>) -> Vec<f64> {
-        let mut deviations: Vec<f64> =
-            (0..fit.count()).map(|constraint| fit.deviation(constraint, &self.weights)).collect();
+        let mut deviations: Vec<f64> = (0..fit.count())
+            .map(|constraint| fit.deviation(constraint, &self.weights))
+            .collect();
         for &constraint in &self.basis {
             deviations[constraint] = 0.0;
         }
@@ -354,13 +421,24 @@ impl Vertex {
     /// Each row whose deviation changes its sign on the way adds twice its change to the rate; a weight that reaches zero ends
     /// the edge.
     fn end_of_edge(&self, fit: &Fit<'_>, edge: &Edge, deviations: &[f64]) -> Option<Self> {
-        let met = deviations.iter().enumerate().filter(|(constraint, _)| !self.basis.contains(constraint));
+        let met = deviations
+            .iter()
+            .enumerate()
+            .filter(|(constraint, _)| !self.basis.contains(constraint));
         let met = met.filter_map(|(constraint, deviation)| {
             let slope = fit.left(constraint, &edge.direction);
             let step = -deviation / slope;
             // A weight ends the edge, however the rate stands.
-            let change = if fit.is_weight(constraint) { f64::INFINITY } else { slope.abs() };
-            (slope.abs() > ZERO && step > ZERO).then_some(Crossing { constraint, step, change })
+            let change = if fit.is_weight(constraint) {
+                f64::INFINITY
+            } else {
+                slope.abs()
+            };
+            (slope.abs() > ZERO && step > ZERO).then_some(Crossing {
+                constraint,
+                step,
+                change,
+            })
         });
         let entering = crossing_at(met.collect(), -FLAT * edge.scale - edge.slope)?;
         let mut basis = self.basis.clone();
@@ -398,7 +476,9 @@ mod tests {
     #[test]
     fn least_absolute_deviations_ignore_an_outlying_row() {
         // y = 2 x1 + 3 x2, one row far off: the exact weights come back.
-        let x: Vec<Vec<f64>> = (0..9).map(|k| vec![f64::from(k % 3), f64::from(k / 3)]).collect();
+        let x: Vec<Vec<f64>> = (0..9)
+            .map(|k| vec![f64::from(k % 3), f64::from(k / 3)])
+            .collect();
         let mut y: Vec<f64> = x.iter().map(|x| 2.0 * x[0] + 3.0 * x[1]).collect();
         y[8] = 100.0;
         let weights = least_absolute_deviations(&x, &y, &|| false).unwrap();
@@ -434,7 +514,10 @@ mod tests {
     #[test]
     fn a_cancelled_fit_ends_without_a_result() {
         let x = vec![vec![1.0], vec![2.0], vec![3.0]];
-        assert_eq!(least_absolute_deviations(&x, &[1.0, 2.0, 4.0], &|| true), Err(FitError::Cancelled));
+        assert_eq!(
+            least_absolute_deviations(&x, &[1.0, 2.0, 4.0], &|| true),
+            Err(FitError::Cancelled)
+        );
     }
 
     #[test]

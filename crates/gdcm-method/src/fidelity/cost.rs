@@ -40,7 +40,10 @@ impl CostAverage {
             (CostAverage::Median, Some(weights)) => weighted_median(squares, weights),
             // Over the number of frequencies, not over the sum of weights: Tischler's form.
             (CostAverage::Mean, Some(weights)) => {
-                squares.iter_mut().zip(weights).for_each(|(square, weight)| *square *= weight);
+                squares
+                    .iter_mut()
+                    .zip(weights)
+                    .for_each(|(square, weight)| *square *= weight);
                 mean(squares)
             }
         }
@@ -84,7 +87,10 @@ impl Cost {
 
     /// The averages of the squared errors \[dB^2, deg^2\].
     pub fn averages(self) -> [f64; 2] {
-        [self.magnitude / (COST_SCALE * MAGNITUDE_WEIGHT), self.phase / (COST_SCALE * PHASE_WEIGHT)]
+        [
+            self.magnitude / (COST_SCALE * MAGNITUDE_WEIGHT),
+            self.phase / (COST_SCALE * PHASE_WEIGHT),
+        ]
     }
 
     /// `J = J_mag + J_phase`.
@@ -99,9 +105,13 @@ impl Cost {
 /// It is [`super::Mismatch::cost`] with the mean, without gain or delay: distances within a bundle of `n` models take
 /// `n (n - 1) / 2` of these for each response, and a dozen operations for each frequency.
 pub(super) fn mean_cost(simulated: &PolarCurve, reference: &PolarCurve) -> f64 {
-    let [magnitude, phase] = Arch::new().dispatch(SquaredDifferences { simulated, reference });
+    let [magnitude, phase] = Arch::new().dispatch(SquaredDifferences {
+        simulated,
+        reference,
+    });
     let squared_degrees = 180.0 / PI * 180.0 / PI * phase;
-    COST_SCALE / simulated.phase.len() as f64 * (MAGNITUDE_WEIGHT * magnitude + PHASE_WEIGHT * squared_degrees)
+    COST_SCALE / simulated.phase.len() as f64
+        * (MAGNITUDE_WEIGHT * magnitude + PHASE_WEIGHT * squared_degrees)
 }
 
 /// The sums over the frequencies of the squared differences of two curves, as many frequencies at once as the processor's
@@ -117,14 +127,28 @@ impl WithSimd for SquaredDifferences<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [f64; 2] {
         let [mut magnitude, mut phase] = [simd.splat_f64s(0.0); 2];
-        let Self { simulated, reference } = self;
-        for (a, b) in simulated.magnitude_db.chunks(S::F64_LANES).zip(reference.magnitude_db.chunks(S::F64_LANES)) {
+        let Self {
+            simulated,
+            reference,
+        } = self;
+        for (a, b) in simulated
+            .magnitude_db
+            .chunks(S::F64_LANES)
+            .zip(reference.magnitude_db.chunks(S::F64_LANES))
+        {
             let error = simd.sub_f64s(simd.partial_load_f64s(a), simd.partial_load_f64s(b));
             magnitude = simd.mul_add_e_f64s(error, error, magnitude);
         }
-        for (a, b) in simulated.phase.chunks(S::F64_LANES).zip(reference.phase.chunks(S::F64_LANES)) {
+        for (a, b) in simulated
+            .phase
+            .chunks(S::F64_LANES)
+            .zip(reference.phase.chunks(S::F64_LANES))
+        {
             // Lanes past the end hold zero, which adds nothing.
-            let error = principal(simd, simd.sub_f64s(simd.partial_load_f64s(a), simd.partial_load_f64s(b)));
+            let error = principal(
+                simd,
+                simd.sub_f64s(simd.partial_load_f64s(a), simd.partial_load_f64s(b)),
+            );
             phase = simd.mul_add_e_f64s(error, error, phase);
         }
         [simd.reduce_sum_f64s(magnitude), simd.reduce_sum_f64s(phase)]
@@ -147,7 +171,13 @@ mod tests {
 
     #[test]
     fn a_constant_error_has_the_cost_of_the_definition() {
-        let cost = Cost::of([2.0; 5].into_iter(), [0.1; 5].into_iter(), None, CostAverage::Median, &mut Vec::new());
+        let cost = Cost::of(
+            [2.0; 5].into_iter(),
+            [0.1; 5].into_iter(),
+            None,
+            CostAverage::Median,
+            &mut Vec::new(),
+        );
         assert_eq!(cost.magnitude, 80.0);
         // 20 * 0.0175 * (18 / pi)^2, by hand: 11.48966...; a few roundings.
         assert!((cost.phase - 0.35 * (18.0 / std::f64::consts::PI).powi(2)).abs() < 1e-12);
@@ -157,15 +187,28 @@ mod tests {
     fn the_median_ignores_one_bad_frequency_and_the_mean_does_not() {
         let error = || [1.0, 1.0, 10.0].into_iter();
         let none = || [0.0; 3].into_iter();
-        assert_eq!(Cost::of(error(), none(), None, CostAverage::Median, &mut Vec::new()).total(), 20.0);
-        assert_eq!(Cost::of(error(), none(), None, CostAverage::Mean, &mut Vec::new()).total(), 680.0);
+        assert_eq!(
+            Cost::of(error(), none(), None, CostAverage::Median, &mut Vec::new()).total(),
+            20.0
+        );
+        assert_eq!(
+            Cost::of(error(), none(), None, CostAverage::Mean, &mut Vec::new()).total(),
+            680.0
+        );
     }
 
     #[test]
     fn weights_are_tischlers_in_the_mean_and_a_weighted_median_in_the_median() {
         let cost = |average| {
             let (magnitude, phase) = ([1.0, 3.0, 2.0].into_iter(), [0.0; 3].into_iter());
-            Cost::of(magnitude, phase, Some(&[0.5, 1.0, 0.25]), average, &mut Vec::new()).total()
+            Cost::of(
+                magnitude,
+                phase,
+                Some(&[0.5, 1.0, 0.25]),
+                average,
+                &mut Vec::new(),
+            )
+            .total()
         };
         // 20 / 3 (0.5 + 9 + 1); half of the weight of 1.75 is passed at the last of the squares 1, 4, 9.
         assert!((cost(CostAverage::Mean) - 70.0).abs() < 1e-13);
@@ -182,14 +225,25 @@ mod mean_cost_tests {
     #[test]
     fn it_is_the_cost_of_the_mismatch_with_the_mean() {
         let curve = |seed: f64| PolarCurve {
-            magnitude_db: (0..53).map(|k| 20.0 * (seed + 0.3 * f64::from(k)).sin()).collect(),
-            phase: (0..53).map(|k| wrap(seed - 0.4 * seed * f64::from(k))).collect(),
+            magnitude_db: (0..53)
+                .map(|k| 20.0 * (seed + 0.3 * f64::from(k)).sin())
+                .collect(),
+            phase: (0..53)
+                .map(|k| wrap(seed - 0.4 * seed * f64::from(k)))
+                .collect(),
         };
-        for (a, b) in [(0.1, 0.2), (-3.0, 2.0), (1.0, 1.0), (3.1, -3.1)].map(|(a, b)| (curve(a), curve(b))) {
-            let expected = Mismatch::new(&a, &b).cost(&[0.0; 53], GainDelay::NONE, CostAverage::Mean).total();
+        for (a, b) in
+            [(0.1, 0.2), (-3.0, 2.0), (1.0, 1.0), (3.1, -3.1)].map(|(a, b)| (curve(a), curve(b)))
+        {
+            let expected = Mismatch::new(&a, &b)
+                .cost(&[0.0; 53], GainDelay::NONE, CostAverage::Mean)
+                .total();
             let found = mean_cost(&a, &b);
             // The same sums of 53 squares in another order.
-            assert!((found - expected).abs() <= 1e-13 * expected, "{found} {expected}");
+            assert!(
+                (found - expected).abs() <= 1e-13 * expected,
+                "{found} {expected}"
+            );
         }
     }
 }

@@ -20,10 +20,18 @@ pub struct MeasuredPairs {
 impl MeasuredPairs {
     /// What the models of a bundle have and lack of the responses marked in `measuring`.
     pub fn of(responses: &[PolarResponse], measuring: &PairTable<bool>) -> Self {
-        let some_has = |pair: &Pair| responses.iter().any(|response| response.curves()[*pair].is_some());
+        let some_has = |pair: &Pair| {
+            responses
+                .iter()
+                .any(|response| response.curves()[*pair].is_some())
+        };
         let compared: Vec<Pair> = measuring.marked().filter(some_has).collect();
         let lacking = |response: &PolarResponse| {
-            compared.iter().copied().filter(|pair| response.curves()[*pair].is_none()).collect()
+            compared
+                .iter()
+                .copied()
+                .filter(|pair| response.curves()[*pair].is_none())
+                .collect()
         };
         let lacks = responses.iter().map(lacking).collect();
         Self { compared, lacks }
@@ -31,7 +39,9 @@ impl MeasuredPairs {
 
     /// Indices of the models that are not set aside, in bundle order.
     pub fn compared_models(&self) -> Vec<usize> {
-        (0..self.lacks.len()).filter(|&model| !self.is_set_aside(model)).collect()
+        (0..self.lacks.len())
+            .filter(|&model| !self.is_set_aside(model))
+            .collect()
     }
 
     /// Whether a model is set aside.
@@ -60,7 +70,12 @@ impl BundleDistance {
         for (place, model) in measured.compared_models().into_iter().enumerate() {
             places[model] = Some(place);
         }
-        Self { measured, count, places, distances: rows.into_iter().flatten().collect() }
+        Self {
+            measured,
+            count,
+            places,
+            distances: rows.into_iter().flatten().collect(),
+        }
     }
 
     /// `d(a, b)`, zero where `a = b`; `None` where one of them is set aside.
@@ -70,7 +85,9 @@ impl BundleDistance {
         if low == high {
             return Some(0.0);
         }
-        self.distances.get(low * (2 * self.count - low - 1) / 2 + high - low - 1).copied()
+        self.distances
+            .get(low * (2 * self.count - low - 1) / 2 + high - low - 1)
+            .copied()
     }
 
     /// What was compared, and which models are set aside.
@@ -91,9 +108,22 @@ pub struct ComparedModel<'a> {
 impl ComparedModel<'_> {
     /// J with this model as the reference, by its coherence; none where it says nothing.
     fn cost_as_reference(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> Option<f64> {
-        let mismatch = Mismatch::new(a, b).coherence_weighted(Some(&self.coherence_weights?[pair]))?;
-        let (magnitude_db, phase) = (mismatch.magnitude_db.iter().copied(), mismatch.phase.iter().copied());
-        Some(Cost::of(magnitude_db, phase, mismatch.weights(), CostAverage::Mean, &mut Vec::new()).total())
+        let mismatch =
+            Mismatch::new(a, b).coherence_weighted(Some(&self.coherence_weights?[pair]))?;
+        let (magnitude_db, phase) = (
+            mismatch.magnitude_db.iter().copied(),
+            mismatch.phase.iter().copied(),
+        );
+        Some(
+            Cost::of(
+                magnitude_db,
+                phase,
+                mismatch.weights(),
+                CostAverage::Mean,
+                &mut Vec::new(),
+            )
+            .total(),
+        )
     }
 }
 
@@ -104,7 +134,10 @@ impl ComparedModel<'_> {
 /// no frequency counts is compared over all of them, for models that were hardly measured must not look alike.
 pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
     let of_pair = |b: &ComparedModel<'_>, pair: Pair| {
-        let (from, to) = (models[a].responses.curves()[pair].as_ref()?, b.responses.curves()[pair].as_ref()?);
+        let (from, to) = (
+            models[a].responses.curves()[pair].as_ref()?,
+            b.responses.curves()[pair].as_ref()?,
+        );
         if models[a].coherence_weights.is_none() && b.coherence_weights.is_none() {
             return Some(mean_cost(from, to));
         }
@@ -132,7 +165,11 @@ pub struct Representative {
 impl Representative {
     /// The kept model of least score (ties: the first in file order), or `pinned`; `None` where every model is rejected or set
     /// aside. A pinned model that is set aside does not count.
-    pub fn of(distance: &BundleDistance, rejected: &BTreeSet<usize>, pinned: Option<usize>) -> Option<Self> {
+    pub fn of(
+        distance: &BundleDistance,
+        rejected: &BTreeSet<usize>,
+        pinned: Option<usize>,
+    ) -> Option<Self> {
         let mut kept = distance.measured.compared_models();
         kept.retain(|model| !rejected.contains(model));
         let mut scores = vec![None; distance.places.len()];
@@ -140,9 +177,16 @@ impl Representative {
             let sum: f64 = kept.iter().filter_map(|&b| distance.between(a, b)).sum();
             scores[a] = Some(sum / kept.len().saturating_sub(1).max(1) as f64);
         }
-        let by_score = |&&a: &&usize, &&b: &&usize| scores[a].partial_cmp(&scores[b]).unwrap_or(Ordering::Equal);
+        let by_score = |&&a: &&usize, &&b: &&usize| {
+            scores[a].partial_cmp(&scores[b]).unwrap_or(Ordering::Equal)
+        };
         let medoid = *kept.iter().min_by(by_score)?;
-        Some(Self { model: pinned.filter(|model| kept.contains(model)).unwrap_or(medoid), scores })
+        Some(Self {
+            model: pinned
+                .filter(|model| kept.contains(model))
+                .unwrap_or(medoid),
+            scores,
+        })
     }
 }
 
@@ -175,7 +219,9 @@ pub struct CoordinateWeight {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DiscontinuityError {
     /// The bundle is too small for a fit.
-    #[error("outliers are suggested from {LEAST_MODELS} physics models on, this bundle has {found}")]
+    #[error(
+        "outliers are suggested from {LEAST_MODELS} physics models on, this bundle has {found}"
+    )]
     TooFewModels {
         /// Number of models.
         found: usize,
@@ -210,7 +256,9 @@ impl Discontinuity {
     ) -> Result<Self, DiscontinuityError> {
         let models = distance.measured().compared_models();
         if models.len() < LEAST_MODELS {
-            return Err(DiscontinuityError::TooFewModels { found: models.len() });
+            return Err(DiscontinuityError::TooFewModels {
+                found: models.len(),
+            });
         }
         let perturbations: Vec<_> = models.iter().map(|&model| perturbations[model]).collect();
         let (largest, coordinates) = scaled_coordinates(&perturbations)?;
@@ -224,31 +272,47 @@ impl Discontinuity {
         let weights = least_absolute_deviations(&rows, &squares, cancelled)?;
         let ratio = |a: usize, b: usize| {
             let offsets = squared_offsets(&coordinates[a], &coordinates[b]);
-            let fitted: f64 = offsets.iter().zip(&weights).map(|(offset, weight)| offset * weight).sum();
+            let fitted: f64 = offsets
+                .iter()
+                .zip(&weights)
+                .map(|(offset, weight)| offset * weight)
+                .sum();
             let distance = distance.between(models[a], models[b])?;
             (fitted > 0.0).then(|| distance / fitted.sqrt())
         };
         let mut ratios = vec![None; distance.measured().lacks.len()];
         for (a, &model) in models.iter().enumerate() {
-            let mut others: Vec<f64> = (0..models.len()).filter(|&b| b != a).filter_map(|b| ratio(a, b)).collect();
+            let mut others: Vec<f64> = (0..models.len())
+                .filter(|&b| b != a)
+                .filter_map(|b| ratio(a, b))
+                .collect();
             ratios[model] = (!others.is_empty()).then(|| median(&mut others));
         }
         let named = largest.into_iter().zip(weights);
-        let weights =
-            named.map(|((name, largest), weight)| CoordinateWeight { name: name.to_owned(), largest, weight });
-        Ok(Self { ratios, weights: weights.collect() })
+        let weights = named.map(|((name, largest), weight)| CoordinateWeight {
+            name: name.to_owned(),
+            largest,
+            weight,
+        });
+        Ok(Self {
+            ratios,
+            weights: weights.collect(),
+        })
     }
 
     /// `sqrt(sum_k w_k (p_ak - p_bk)^2)` of two trims: the distance that their perturbations explain.
     pub fn fitted_distance(&self, a: &BTreeMap<String, f64>, b: &BTreeMap<String, f64>) -> f64 {
         let at = |of: &BTreeMap<String, f64>, name: &str| of.get(name).copied().unwrap_or_default();
-        let square = |of: &CoordinateWeight| of.weight * ((at(a, &of.name) - at(b, &of.name)) / of.largest).powi(2);
+        let square = |of: &CoordinateWeight| {
+            of.weight * ((at(a, &of.name) - at(b, &of.name)) / of.largest).powi(2)
+        };
         self.weights.iter().map(square).sum::<f64>().sqrt()
     }
 
     /// Models whose ratio exceeds [`SUGGESTION_RATIO`], in bundle order.
     pub fn suggested(&self) -> Vec<usize> {
-        let above = |model: &usize| self.ratios[*model].is_some_and(|ratio| ratio > SUGGESTION_RATIO);
+        let above =
+            |model: &usize| self.ratios[*model].is_some_and(|ratio| ratio > SUGGESTION_RATIO);
         (0..self.ratios.len()).filter(above).collect()
     }
 }
@@ -266,7 +330,9 @@ fn scaled_coordinates<'a>(
     let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
     for (model, perturbation) in perturbations {
         let Some(perturbation) = perturbation else {
-            return Err(DiscontinuityError::NoPerturbation { model: (*model).to_owned() });
+            return Err(DiscontinuityError::NoPerturbation {
+                model: (*model).to_owned(),
+            });
         };
         for (name, value) in *perturbation {
             let entry = largest.entry(name).or_default();
@@ -278,9 +344,19 @@ fn scaled_coordinates<'a>(
         return Err(DiscontinuityError::AllZero);
     }
     let scaled = |perturbation: &BTreeMap<String, f64>| {
-        largest.iter().map(|(name, magnitude)| perturbation.get(*name).map_or(0.0, |value| value / magnitude)).collect()
+        largest
+            .iter()
+            .map(|(name, magnitude)| {
+                perturbation
+                    .get(*name)
+                    .map_or(0.0, |value| value / magnitude)
+            })
+            .collect()
     };
-    let scaled = perturbations.iter().filter_map(|(_, perturbation)| perturbation.map(scaled)).collect();
+    let scaled = perturbations
+        .iter()
+        .filter_map(|(_, perturbation)| perturbation.map(scaled))
+        .collect();
     Ok((largest, scaled))
 }
 
@@ -299,15 +375,20 @@ mod tests {
         let table = |low: f64, high: f64| PairTable::filled(1, 1, vec![low, low, high, high]);
         let coherence = Some(table(1.0, coherence));
         let omega = vec![1.0, 2.99, 3.01, 9.0];
-        Dynamics::Measured(MeasuredResponse::new(omega, &table(1.0, upper), &table(0.0, 0.0), coherence).unwrap())
+        Dynamics::Measured(
+            MeasuredResponse::new(omega, &table(1.0, upper), &table(0.0, 0.0), coherence).unwrap(),
+        )
     }
 
     fn distances(models: &[Dynamics], threshold: Option<f64>) -> Vec<f64> {
-        let grid = FrequencyGrid::logarithmic(gdcm_model::dataset::Band::new(1.0, 9.0).unwrap(), 100);
+        let grid =
+            FrequencyGrid::logarithmic(gdcm_model::dataset::Band::new(1.0, 9.0).unwrap(), 100);
         let of = |model| PolarResponse::of(&FrequencyResponse::of(model, &grid));
         let responses: Vec<PolarResponse> = models.iter().map(of).collect();
-        let coherence_weights: Vec<_> =
-            models.iter().map(|model| CoherenceWeights::of_model(model, grid.omega(), threshold)).collect();
+        let coherence_weights: Vec<_> = models
+            .iter()
+            .map(|model| CoherenceWeights::of_model(model, grid.omega(), threshold))
+            .collect();
         let models: Vec<ComparedModel<'_>> = responses
             .iter()
             .zip(&coherence_weights)
@@ -316,19 +397,29 @@ mod tests {
                 coherence_weights: coherence_weights.as_ref(),
             })
             .collect();
-        (0..models.len()).flat_map(|a| distances_from(a, &models, &[Pair::new(0, 0)])).collect()
+        (0..models.len())
+            .flat_map(|a| distances_from(a, &models, &[Pair::new(0, 0)]))
+            .collect()
     }
 
     #[test]
     fn what_was_not_measured_counts_in_a_distance_one_way_only_where_the_other_model_has_it() {
         let (good, bad) = (measured(1.0, 0.9), measured(2.0, 0.1));
-        let [apart] = distances(&[good.clone(), bad.clone()], None)[..] else { panic!("one distance") };
-        let [weighed] = distances(&[good.clone(), bad.clone()], Some(0.6))[..] else { panic!("one distance") };
-        let [turned] = distances(&[bad.clone(), good.clone()], Some(0.6))[..] else { panic!("one distance") };
+        let [apart] = distances(&[good.clone(), bad.clone()], None)[..] else {
+            panic!("one distance")
+        };
+        let [weighed] = distances(&[good.clone(), bad.clone()], Some(0.6))[..] else {
+            panic!("one distance")
+        };
+        let [turned] = distances(&[bad.clone(), good.clone()], Some(0.6))[..] else {
+            panic!("one distance")
+        };
         assert_eq!(weighed, turned, "whichever comes first");
         assert!(weighed > 0.0 && weighed < apart);
         // Half of J at the weight 0.879 of the one, and none of it by the other.
-        assert!((weighed / apart - (0.5 * crate::fidelity::coherence_weight(0.9)).sqrt()).abs() < 0.01);
+        assert!(
+            (weighed / apart - (0.5 * crate::fidelity::coherence_weight(0.9)).sqrt()).abs() < 0.01
+        );
     }
 }
 
@@ -346,6 +437,11 @@ mod discontinuity_tests {
     #[test]
     fn a_model_without_perturbation_is_named() {
         let error = scaled_coordinates(&[("V+5kt", None)]).unwrap_err();
-        assert_eq!(error, DiscontinuityError::NoPerturbation { model: "V+5kt".to_owned() });
+        assert_eq!(
+            error,
+            DiscontinuityError::NoPerturbation {
+                model: "V+5kt".to_owned()
+            }
+        );
     }
 }

@@ -6,7 +6,9 @@ use nalgebra::Complex;
 
 use super::{Cost, CostAverage};
 use gdcm_model::dataset::{Dynamics, Pair, PairTable};
-use gdcm_model::response::{GainDelay, PolarCurve, centred_unwrap, coherence_at, median, weighted_median, wrap};
+use gdcm_model::response::{
+    GainDelay, PolarCurve, centred_unwrap, coherence_at, median, weighted_median, wrap,
+};
 
 /// What a gain and a delay have to act upon: the difference of a simulated response from its reference.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,9 +28,15 @@ pub struct Mismatch {
 impl Mismatch {
     /// The difference of `simulated` from `reference`, on the same frequencies.
     pub fn new(simulated: &PolarCurve, reference: &PolarCurve) -> Self {
-        let differences = |a: &[f64], b: &[f64], of: fn(f64) -> f64| a.iter().zip(b).map(|(a, b)| of(a - b)).collect();
+        let differences = |a: &[f64], b: &[f64], of: fn(f64) -> f64| {
+            a.iter().zip(b).map(|(a, b)| of(a - b)).collect()
+        };
         Self {
-            magnitude_db: differences(&simulated.magnitude_db, &reference.magnitude_db, |difference| difference),
+            magnitude_db: differences(
+                &simulated.magnitude_db,
+                &reference.magnitude_db,
+                |difference| difference,
+            ),
             phase: differences(&simulated.phase, &reference.phase, wrap),
             coherence_weights: None,
             turn: 0.0,
@@ -38,8 +46,13 @@ impl Mismatch {
     /// What is left of it at the frequencies that count, as if there were no others: all, where coherence does not say; none
     /// where none counts (M4a).
     pub fn coherence_weighted(self, coherence_weights: Option<&CoherenceWeights>) -> Option<Self> {
-        let Some(coherence_weights) = coherence_weights else { return Some(self) };
-        let (magnitude_db, phase) = (coherence_weights.pick(&self.magnitude_db), coherence_weights.pick(&self.phase));
+        let Some(coherence_weights) = coherence_weights else {
+            return Some(self);
+        };
+        let (magnitude_db, phase) = (
+            coherence_weights.pick(&self.magnitude_db),
+            coherence_weights.pick(&self.phase),
+        );
         (!coherence_weights.omega.is_empty()).then(|| Self {
             magnitude_db,
             phase,
@@ -50,7 +63,9 @@ impl Mismatch {
 
     /// The frequencies \[rad/s\] at which it stands: all of the grid, or those that count.
     pub fn omega<'a>(&'a self, grid: &'a [f64]) -> &'a [f64] {
-        self.coherence_weights.as_ref().map_or(grid, |weights| &weights.omega)
+        self.coherence_weights
+            .as_ref()
+            .map_or(grid, |weights| &weights.omega)
     }
 
     /// The median of a figure of each frequency, weighted where not all count alike (M6, M4a).
@@ -71,7 +86,9 @@ impl Mismatch {
 
     /// What each frequency at which it stands counts, where not all count alike (M4a).
     pub fn weights(&self) -> Option<&[f64]> {
-        self.coherence_weights.as_ref().map(|weights| weights.weights.as_slice())
+        self.coherence_weights
+            .as_ref()
+            .map(|weights| weights.weights.as_slice())
     }
 
     /// J after a correction of the simulated response (M4, M10). The correction takes `omega tau` from the phase, of which the
@@ -80,7 +97,13 @@ impl Mismatch {
         let omega = self.omega(omega);
         let phase = correction.phases(&self.phase, omega).map(wrap);
         let magnitude = correction.magnitudes_db(&self.magnitude_db, omega);
-        Cost::of(magnitude, phase, self.weights(), average, &mut Vec::with_capacity(omega.len()))
+        Cost::of(
+            magnitude,
+            phase,
+            self.weights(),
+            average,
+            &mut Vec::with_capacity(omega.len()),
+        )
     }
 
     /// What is left of it after the simulated response has been multiplied by a factor of these magnitudes \[dB\] and phases \[rad\]
@@ -88,7 +111,12 @@ impl Mismatch {
     pub fn multiplied(&self, magnitude_db: &[f64], phase: &[f64]) -> Self {
         let weights = self.coherence_weights.as_ref();
         let on = |own: &[f64], factor: &[f64], of: fn(f64) -> f64| -> Vec<f64> {
-            let sums = |factor: &[f64]| own.iter().zip(factor).map(|(own, factor)| of(own + factor)).collect();
+            let sums = |factor: &[f64]| {
+                own.iter()
+                    .zip(factor)
+                    .map(|(own, factor)| of(own + factor))
+                    .collect()
+            };
             weights.map_or_else(|| sums(factor), |weights| sums(&weights.pick(factor)))
         };
         Self {
@@ -151,13 +179,25 @@ fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
     const STEP_S: f64 = 1e-3;
     const COARSE: i32 = 16;
     let delay_s = |step: i32| STEP_S * f64::from(step);
-    let coarse: Vec<i32> = (-STEPS..=STEPS + COARSE / 2).step_by(COARSE as usize).collect();
-    let known = likenesses(phase, omega, [delay_s(-STEPS), delay_s(COARSE)], coarse.len());
+    let coarse: Vec<i32> = (-STEPS..=STEPS + COARSE / 2)
+        .step_by(COARSE as usize)
+        .collect();
+    let known = likenesses(
+        phase,
+        omega,
+        [delay_s(-STEPS), delay_s(COARSE)],
+        coarse.len(),
+    );
     let greatest = known.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     // Half a coarse step away; a part of 1e-9 is more than what rounding makes of the sums.
-    let rise = delay_s(COARSE / 2) * omega.iter().map(|omega| omega.abs()).sum::<f64>() + 1e-9 * phase.len() as f64;
+    let rise = delay_s(COARSE / 2) * omega.iter().map(|omega| omega.abs()).sum::<f64>()
+        + 1e-9 * phase.len() as f64;
     let mut best = (f64::NEG_INFINITY, 0.0);
-    for (step, _) in coarse.into_iter().zip(known).filter(|(_, known)| known + rise >= greatest) {
+    for (step, _) in coarse
+        .into_iter()
+        .zip(known)
+        .filter(|(_, known)| known + rise >= greatest)
+    {
         let from = (step - COARSE / 2).max(-STEPS);
         let count = (step + COARSE / 2).min(STEPS + 1) - from;
         let near = likenesses(phase, omega, [delay_s(from), STEP_S], count as usize);
@@ -175,11 +215,16 @@ fn likenesses(phase: &[f64], omega: &[f64], [first_s, step_s]: [f64; 2], count: 
     // Turned on from one delay to the next: a sum of cosines takes a dozen times as long.
     let turned = |(phase, omega): (&f64, &f64)| Complex::from_polar(1.0, phase - omega * first_s);
     let mut left: Vec<Complex<f64>> = phase.iter().zip(omega).map(turned).collect();
-    let turns: Vec<Complex<f64>> = omega.iter().map(|omega| Complex::from_polar(1.0, -omega * step_s)).collect();
+    let turns: Vec<Complex<f64>> = omega
+        .iter()
+        .map(|omega| Complex::from_polar(1.0, -omega * step_s))
+        .collect();
     let mut found = Vec::with_capacity(count);
     for _ in 0..count {
         found.push(left.iter().map(|left| left.re).sum());
-        left.iter_mut().zip(&turns).for_each(|(left, turn)| *left *= turn);
+        left.iter_mut()
+            .zip(&turns)
+            .for_each(|(left, turn)| *left *= turn);
     }
     found
 }
@@ -203,9 +248,19 @@ pub fn coherence_weight(coherence: f64) -> f64 {
 
 impl CoherenceWeights {
     /// Those `omega` \[rad/s\] whose coherence is not under `threshold` and that lie in the response's valid band.
-    pub fn of(omega: &[f64], coherence: &[f64], threshold: f64, valid_band: Option<[f64; 2]>) -> Self {
-        let mut coherence_weights = Self { places: Vec::new(), omega: Vec::new(), weights: Vec::new() };
-        let is_valid = |omega: f64| valid_band.is_none_or(|[low, high]| (low..=high).contains(&omega));
+    pub fn of(
+        omega: &[f64],
+        coherence: &[f64],
+        threshold: f64,
+        valid_band: Option<[f64; 2]>,
+    ) -> Self {
+        let mut coherence_weights = Self {
+            places: Vec::new(),
+            omega: Vec::new(),
+            weights: Vec::new(),
+        };
+        let is_valid =
+            |omega: f64| valid_band.is_none_or(|[low, high]| (low..=high).contains(&omega));
         for (place, (&omega, &coherence)) in omega.iter().zip(coherence).enumerate() {
             let weight = coherence_weight(coherence);
             // A weight of zero would count in N' and nowhere else.
@@ -219,17 +274,29 @@ impl CoherenceWeights {
     }
 
     /// Those of every response of a model; none where it has no coherence, so that all frequencies count alike.
-    pub fn of_model(dynamics: &Dynamics, omega: &[f64], threshold: Option<f64>) -> Option<PairTable<Self>> {
-        let (Dynamics::Measured(response), Some(threshold)) = (dynamics, threshold) else { return None };
+    pub fn of_model(
+        dynamics: &Dynamics,
+        omega: &[f64],
+        threshold: Option<f64>,
+    ) -> Option<PairTable<Self>> {
+        let (Dynamics::Measured(response), Some(threshold)) = (dynamics, threshold) else {
+            return None;
+        };
         let valid_band = |pair: Pair| response.valid_bands().map(|bands| bands[pair]);
         let coherence = coherence_at(response, omega)?;
-        Some(coherence.map(|pair, coherence| Self::of(omega, coherence, threshold, valid_band(pair))))
+        Some(
+            coherence
+                .map(|pair, coherence| Self::of(omega, coherence, threshold, valid_band(pair))),
+        )
     }
 
     /// What stands at these frequencies in their places among `points` of the grid, not a number elsewhere.
     pub fn spread(&self, values: &[f64], points: usize) -> Vec<f64> {
         let mut spread = vec![f64::NAN; points];
-        self.places.iter().zip(values).for_each(|(&place, &value)| spread[place] = value);
+        self.places
+            .iter()
+            .zip(values)
+            .for_each(|(&place, &value)| spread[place] = value);
         spread
     }
 
@@ -255,9 +322,23 @@ mod tests {
     fn the_right_gain_and_delay_leave_no_cost() {
         let omega: Vec<f64> = (1..60).map(|k| 0.2 * f64::from(k)).collect();
         let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &curve(2.0, 0.4, &omega));
-        assert!(mismatch.cost(&omega, GainDelay::NONE, CostAverage::Mean).total() > 100.0);
+        assert!(
+            mismatch
+                .cost(&omega, GainDelay::NONE, CostAverage::Mean)
+                .total()
+                > 100.0
+        );
         // Squares of rounding errors of angles up to 12 * 0.4 rad.
-        assert!(mismatch.cost(&omega, GainDelay::new(db_to_ratio(2.0), 0.4), CostAverage::Mean).total() < 1e-20);
+        assert!(
+            mismatch
+                .cost(
+                    &omega,
+                    GainDelay::new(db_to_ratio(2.0), 0.4),
+                    CostAverage::Mean
+                )
+                .total()
+                < 1e-20
+        );
     }
 
     #[test]
@@ -265,7 +346,12 @@ mod tests {
         let omega = [1.0, 2.0];
         let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &curve(0.0, 0.1, &omega));
         let phase = mismatch.phase_difference(&omega);
-        assert!(phase.iter().zip(omega).all(|(phase, omega)| (phase - 0.1 * omega).abs() < 1e-15));
+        assert!(
+            phase
+                .iter()
+                .zip(omega)
+                .all(|(phase, omega)| (phase - 0.1 * omega).abs() < 1e-15)
+        );
     }
 
     #[test]
@@ -273,12 +359,24 @@ mod tests {
         // 70 ms of lag, and from 2 rad/s on a turn to the other side within a few frequencies.
         let omega: Vec<f64> = (1..=120).map(|k| 0.1 * f64::from(k)).collect();
         let turn = |omega: f64| TAU / (1.0 + (-40.0 * (omega - 2.0)).exp());
-        let phase = omega.iter().map(|omega| wrap(-0.07 * omega + turn(*omega))).collect();
-        let mismatch = Mismatch { magnitude_db: vec![0.0; 120], phase, coherence_weights: None, turn: 0.0 };
+        let phase = omega
+            .iter()
+            .map(|omega| wrap(-0.07 * omega + turn(*omega)))
+            .collect();
+        let mismatch = Mismatch {
+            magnitude_db: vec![0.0; 120],
+            phase,
+            coherence_weights: None,
+            turn: 0.0,
+        };
         let cost = mismatch.cost(&omega, GainDelay::new(1.0, -0.07), CostAverage::Median);
         // Squares of what is left of the turn at 6 rad/s: e^-160.
         assert!(cost.phase < 1e-20, "{cost:?}");
-        let delays = mismatch.phase_difference(&omega).into_iter().zip(&omega).map(|(phase, omega)| phase / omega);
+        let delays = mismatch
+            .phase_difference(&omega)
+            .into_iter()
+            .zip(&omega)
+            .map(|(phase, omega)| phase / omega);
         let mut delays: Vec<f64> = delays.collect();
         assert!((gdcm_model::response::median(&mut delays) + 0.07).abs() < 1e-12);
     }
@@ -292,13 +390,21 @@ mod tests {
             *phase = wrap(2.3 * (k * k) as f64);
             reference.magnitude_db[k] = 40.0;
         }
-        let coherence: Vec<f64> = (0..240).map(|k| if (50..80).contains(&k) { 0.1 } else { 0.8 }).collect();
+        let coherence: Vec<f64> = (0..240)
+            .map(|k| if (50..80).contains(&k) { 0.1 } else { 0.8 })
+            .collect();
         let coherence_weights = CoherenceWeights::of(&omega, &coherence, 0.6, None);
-        let mismatch =
-            Mismatch::new(&curve(0.0, 0.0, &omega), &reference).coherence_weighted(Some(&coherence_weights)).unwrap();
+        let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &reference)
+            .coherence_weighted(Some(&coherence_weights))
+            .unwrap();
         let (phase, left) = (mismatch.phase_difference(&omega), mismatch.omega(&omega));
         assert_eq!((phase.len(), left.len()), (210, 210));
-        assert!(phase.iter().zip(left).all(|(phase, omega)| (phase - 0.3 * omega).abs() < 1e-13));
+        assert!(
+            phase
+                .iter()
+                .zip(left)
+                .all(|(phase, omega)| (phase - 0.3 * omega).abs() < 1e-13)
+        );
         let right = GainDelay::new(db_to_ratio(1.0), 0.3);
         assert!(mismatch.cost(&omega, right, CostAverage::Mean).total() < 1e-20);
         let nothing = CoherenceWeights::of(&omega, &[0.0; 240], 0.6, None);
@@ -334,7 +440,10 @@ mod tests {
             let phase = mismatch.phase_difference(&omega);
             // A handful of roundings of angles up to 0.6 * 24 rad.
             assert!(
-                phase.iter().zip(&omega).all(|(phase, omega)| (phase - delay_s * omega).abs() < 1e-13),
+                phase
+                    .iter()
+                    .zip(&omega)
+                    .all(|(phase, omega)| (phase - delay_s * omega).abs() < 1e-13),
                 "{delay_s}"
             );
         }
@@ -351,10 +460,26 @@ mod counted_tests {
         let coherence = [1.0, 0.59, 0.6, 0.9, f64::NAN];
         let coherence_weights = CoherenceWeights::of(&omega, &coherence, 0.6, Some([1.5, 4.0]));
         assert_eq!(coherence_weights.omega, [3.0, 4.0]);
-        assert_eq!(coherence_weights.weights, [coherence_weight(0.6), coherence_weight(0.9)]);
-        assert_eq!(coherence_weights.pick(&[10.0, 20.0, 30.0, 40.0, 50.0]), [30.0, 40.0]);
+        assert_eq!(
+            coherence_weights.weights,
+            [coherence_weight(0.6), coherence_weight(0.9)]
+        );
+        assert_eq!(
+            coherence_weights.pick(&[10.0, 20.0, 30.0, 40.0, 50.0]),
+            [30.0, 40.0]
+        );
         let spread = coherence_weights.spread(&[30.0, 40.0], 5);
-        assert!(spread[2..4] == [30.0, 40.0] && [0, 1, 4].iter().all(|place: &usize| spread[*place].is_nan()));
-        assert!(CoherenceWeights::of(&omega, &[0.0; 5], 0.0, None).omega.is_empty(), "nothing was measured");
+        assert!(
+            spread[2..4] == [30.0, 40.0]
+                && [0, 1, 4]
+                    .iter()
+                    .all(|place: &usize| spread[*place].is_nan())
+        );
+        assert!(
+            CoherenceWeights::of(&omega, &[0.0; 5], 0.0, None)
+                .omega
+                .is_empty(),
+            "nothing was measured"
+        );
     }
 }

@@ -43,9 +43,15 @@ pub struct ModeTrack {
 /// Each model's poles are matched to those of the reference so that the sum of the distances in the s-plane is least
 /// (an assignment problem). There are none where the reference has no modes.
 pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
-    let Some(of_reference) = models.get(reference).copied() else { return Vec::new() };
-    let matches: Vec<Vec<Option<usize>>> = models.iter().map(|model| matched(of_reference, model)).collect();
-    let pole = |model: usize, track: usize| matches[model][track].map(|mode| models[model][mode].pole);
+    let Some(of_reference) = models.get(reference).copied() else {
+        return Vec::new();
+    };
+    let matches: Vec<Vec<Option<usize>>> = models
+        .iter()
+        .map(|model| matched(of_reference, model))
+        .collect();
+    let pole =
+        |model: usize, track: usize| matches[model][track].map(|mode| models[model][mode].pole);
     let is_mirror = |track: usize| {
         of_reference[track].pole.im < 0.0
             && (0..models.len()).all(|model| pole(model, track).is_none_or(|pole| pole.im < 0.0))
@@ -53,16 +59,28 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
     let tracks = (0..of_reference.len()).filter(|&track| !is_mirror(track));
     tracks
         .map(|track| {
-            let poles: Vec<Option<Complex<f64>>> = (0..models.len()).map(|model| pole(model, track)).collect();
+            let poles: Vec<Option<Complex<f64>>> =
+                (0..models.len()).map(|model| pole(model, track)).collect();
             let modes = matches.iter().map(|matched| matched[track]).collect();
             let known: Vec<Complex<f64>> = poles.iter().flatten().copied().collect();
-            let middle = |part: fn(&Complex<f64>) -> f64| median(&mut known.iter().map(part).collect::<Vec<f64>>());
+            let middle = |part: fn(&Complex<f64>) -> f64| {
+                median(&mut known.iter().map(part).collect::<Vec<f64>>())
+            };
             let centre = Complex::new(middle(|pole| pole.re), middle(|pole| pole.im));
             let distance = |pole: &Complex<f64>| (pole - centre).norm();
             let spread_rad_s = median(&mut known.iter().map(distance).collect::<Vec<f64>>());
             let far = (JUMP_SPREADS * spread_rad_s).max(LEAST_JUMP_RAD_S);
-            let jumps = poles.iter().enumerate().filter(|(_, pole)| pole.is_some_and(|pole| distance(&pole) > far));
-            ModeTrack { reference: track, modes, centre, spread_rad_s, jumps: jumps.map(|(model, _)| model).collect() }
+            let jumps = poles
+                .iter()
+                .enumerate()
+                .filter(|(_, pole)| pole.is_some_and(|pole| distance(&pole) > far));
+            ModeTrack {
+                reference: track,
+                modes,
+                centre,
+                spread_rad_s,
+                jumps: jumps.map(|(model, _)| model).collect(),
+            }
         })
         .collect()
 }
@@ -71,10 +89,16 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
 fn matched(reference: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
     let distance = |a: usize, b: usize| (reference[a].pole - model[b].pole).norm();
     if reference.len() <= model.len() {
-        return least_total(reference.len(), model.len(), distance).into_iter().map(Some).collect();
+        return least_total(reference.len(), model.len(), distance)
+            .into_iter()
+            .map(Some)
+            .collect();
     }
     let mut places = vec![None; reference.len()];
-    for (mode, place) in least_total(model.len(), reference.len(), |b, a| distance(a, b)).into_iter().enumerate() {
+    for (mode, place) in least_total(model.len(), reference.len(), |b, a| distance(a, b))
+        .into_iter()
+        .enumerate()
+    {
         places[place] = Some(mode);
     }
     places
@@ -82,7 +106,11 @@ fn matched(reference: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
 
 /// The column of each row, each column taken once at most, with the least total cost; there are at least as many columns as
 /// rows, and all costs are finite.
-pub(crate) fn least_total(rows: usize, columns: usize, cost: impl Fn(usize, usize) -> f64) -> Vec<usize> {
+pub(crate) fn least_total(
+    rows: usize,
+    columns: usize,
+    cost: impl Fn(usize, usize) -> f64,
+) -> Vec<usize> {
     let mut potentials = (vec![0.0; rows], vec![0.0; columns]);
     let mut row_of: Vec<Option<usize>> = vec![None; columns];
     for row in 0..rows {
@@ -118,7 +146,9 @@ fn augment(
             }
         }
         let open = (0..columns).filter(|&column| !in_tree[column]);
-        let Some(next) = open.min_by(|&a, &b| distance[a].total_cmp(&distance[b])) else { return };
+        let Some(next) = open.min_by(|&a, &b| distance[a].total_cmp(&distance[b])) else {
+            return;
+        };
         let step = distance[next];
         of_row[new] += step;
         for (column, owner) in row_of.iter().enumerate() {
@@ -152,7 +182,16 @@ mod tests {
 
     fn of(a: DMatrix<f64>) -> Vec<Mode> {
         let n = a.nrows();
-        modes(&StateSpace::new(a, DMatrix::zeros(n, 1), DMatrix::zeros(1, n), DMatrix::zeros(1, 1)).unwrap()).unwrap()
+        modes(
+            &StateSpace::new(
+                a,
+                DMatrix::zeros(n, 1),
+                DMatrix::zeros(1, n),
+                DMatrix::zeros(1, 1),
+            )
+            .unwrap(),
+        )
+        .unwrap()
     }
 
     /// A lag of `rate` and an oscillator of `frequency` damped 0.2.
@@ -175,10 +214,17 @@ mod tests {
         let tracks = mode_tracks(&models, 4);
         assert_eq!(tracks.len(), 2, "the pair is one track");
         for track in &tracks {
-            let poles: Vec<Complex<f64>> =
-                track.modes.iter().zip(&bundle).map(|(mode, of)| of[mode.unwrap()].pole).collect();
+            let poles: Vec<Complex<f64>> = track
+                .modes
+                .iter()
+                .zip(&bundle)
+                .map(|(mode, of)| of[mode.unwrap()].pole)
+                .collect();
             let oscillates = bundle[4][track.reference].oscillates();
-            assert!(poles.iter().all(|pole| (pole.im > 1.0) == oscillates), "{poles:?}");
+            assert!(
+                poles.iter().all(|pole| (pole.im > 1.0) == oscillates),
+                "{poles:?}"
+            );
             assert_eq!(track.jumps, if oscillates { vec![7] } else { vec![] });
             assert!(track.spread_rad_s < 0.05);
         }
@@ -196,9 +242,18 @@ mod tests {
     #[test]
     fn models_of_other_orders_leave_gaps() {
         let (small, large) = (of(dmatrix![-1.0]), of(dmatrix![-9.0, 0.0; 0.0, -1.1]));
-        assert_eq!(mode_tracks(&[&small, &large], 0)[0].modes, [Some(0), Some(0)]);
+        assert_eq!(
+            mode_tracks(&[&small, &large], 0)[0].modes,
+            [Some(0), Some(0)]
+        );
         let from_large = mode_tracks(&[&small, &large], 1);
-        assert_eq!(from_large.iter().map(|track| track.modes[0]).collect::<Vec<_>>(), [Some(0), None]);
+        assert_eq!(
+            from_large
+                .iter()
+                .map(|track| track.modes[0])
+                .collect::<Vec<_>>(),
+            [Some(0), None]
+        );
         assert_eq!(mode_tracks(&[&[], &large], 0), []);
     }
 }

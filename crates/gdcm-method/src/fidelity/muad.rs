@@ -24,14 +24,26 @@ struct Factor {
     delay_s: f64,
 }
 
-const UPPER_MAGNITUDE: Factor =
-    Factor { numerator: [3.16, 31.61, 22.79], denominator: [1.0, 27.14, 1.84], delay_s: 0.0 };
-const LOWER_MAGNITUDE: Factor =
-    Factor { numerator: [0.0955, 9.92, 2.15], denominator: [1.0, 11.6, 4.96], delay_s: 0.0 };
-const UPPER_PHASE: Factor =
-    Factor { numerator: [68.89, 1100.12, -275.22], denominator: [1.0, 39.94, 9.99], delay_s: -0.0059 };
-const LOWER_PHASE: Factor =
-    Factor { numerator: [475.32, 184_100.0, 29_456.1], denominator: [1.0, 11.66, 0.0389], delay_s: 0.0072 };
+const UPPER_MAGNITUDE: Factor = Factor {
+    numerator: [3.16, 31.61, 22.79],
+    denominator: [1.0, 27.14, 1.84],
+    delay_s: 0.0,
+};
+const LOWER_MAGNITUDE: Factor = Factor {
+    numerator: [0.0955, 9.92, 2.15],
+    denominator: [1.0, 11.6, 4.96],
+    delay_s: 0.0,
+};
+const UPPER_PHASE: Factor = Factor {
+    numerator: [68.89, 1100.12, -275.22],
+    denominator: [1.0, 39.94, 9.99],
+    delay_s: -0.0059,
+};
+const LOWER_PHASE: Factor = Factor {
+    numerator: [475.32, 184_100.0, 29_456.1],
+    denominator: [1.0, 11.66, 0.0389],
+    delay_s: 0.0072,
+};
 
 impl Factor {
     fn ratio(&self, omega: f64) -> Complex<f64> {
@@ -63,7 +75,10 @@ impl Muad {
     /// The envelopes at `omega` \[rad/s\], greater than zero. They come from trials between 0.1 and some 10 rad/s.
     pub fn at(omega: f64) -> Self {
         Self {
-            magnitude_db: [LOWER_MAGNITUDE.magnitude_db(omega), UPPER_MAGNITUDE.magnitude_db(omega)],
+            magnitude_db: [
+                LOWER_MAGNITUDE.magnitude_db(omega),
+                UPPER_MAGNITUDE.magnitude_db(omega),
+            ],
             phase_deg: [LOWER_PHASE.phase_deg(omega), UPPER_PHASE.phase_deg(omega)],
         }
     }
@@ -71,7 +86,10 @@ impl Muad {
     /// How far an error is outside \[dB and deg\], negative inside: the distance to the nearer envelope.
     fn outside(&self, error_db: f64, error_deg: f64) -> [f64; 2] {
         let beyond = |[least, most]: [f64; 2], error: f64| (least - error).max(error - most);
-        [beyond(self.magnitude_db, error_db), beyond(self.phase_deg, error_deg)]
+        [
+            beyond(self.magnitude_db, error_db),
+            beyond(self.phase_deg, error_deg),
+        ]
     }
 }
 
@@ -81,10 +99,21 @@ impl Muad {
 /// frequencies the distance from the envelope is linear in `ln omega`.
 pub fn leaves(omega: &[f64], error_db: &[f64], error_deg: &[f64]) -> Vec<(f64, f64)> {
     let errors = error_db.iter().zip(error_deg);
-    let outside: Vec<[f64; 2]> =
-        omega.iter().zip(errors).map(|(&omega, (&db, &deg))| Muad::at(omega).outside(db, deg)).collect();
+    let outside: Vec<[f64; 2]> = omega
+        .iter()
+        .zip(errors)
+        .map(|(&omega, (&db, &deg))| Muad::at(omega).outside(db, deg))
+        .collect();
     let mut ranges: Vec<(f64, f64)> = (0..2)
-        .flat_map(|part| ranges_above_zero(omega, &outside.iter().map(|outside| outside[part]).collect::<Vec<_>>()))
+        .flat_map(|part| {
+            ranges_above_zero(
+                omega,
+                &outside
+                    .iter()
+                    .map(|outside| outside[part])
+                    .collect::<Vec<_>>(),
+            )
+        })
         .collect();
     ranges.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut merged: Vec<(f64, f64)> = Vec::new();
@@ -131,12 +160,17 @@ mod tests {
     #[test]
     fn a_constant_error_leaves_where_the_envelope_is_narrower() {
         // 2 dB: the upper magnitude is 2.74 dB at 1 rad/s, 1.31 at 3 and 2.39 at 7.
-        let omega: Vec<f64> = (0..=200).map(|k| 10.0_f64.powf(-1.0 + 0.01 * f64::from(k))).collect();
+        let omega: Vec<f64> = (0..=200)
+            .map(|k| 10.0_f64.powf(-1.0 + 0.01 * f64::from(k)))
+            .collect();
         let ranges = leaves(&omega, &[2.0; 201], &[0.0; 201]);
         assert_eq!(ranges.len(), 1);
         for end in [ranges[0].0, ranges[0].1] {
             // The envelope turns by some 1e-4 dB from linear between two frequencies.
-            assert!((Muad::at(end).magnitude_db[1] - 2.0).abs() < 1e-3, "{ranges:?}");
+            assert!(
+                (Muad::at(end).magnitude_db[1] - 2.0).abs() < 1e-3,
+                "{ranges:?}"
+            );
         }
         assert!((1.0..3.0).contains(&ranges[0].0) && (3.0..7.0).contains(&ranges[0].1));
     }
@@ -144,7 +178,11 @@ mod tests {
     #[test]
     fn ranges_of_magnitude_and_phase_are_told_as_one_where_they_meet() {
         let omega = [1.0, 2.0, 3.0, 4.0, 5.0];
-        let ranges = leaves(&omega, &[9.0, 9.0, 0.0, 0.0, 0.0], &[0.0, 0.0, -90.0, -90.0, 0.0]);
+        let ranges = leaves(
+            &omega,
+            &[9.0, 9.0, 0.0, 0.0, 0.0],
+            &[0.0, 0.0, -90.0, -90.0, 0.0],
+        );
         assert_eq!((ranges.len(), ranges[0].0), (1, 1.0), "{ranges:?}");
         assert!((4.0..5.0).contains(&ranges[0].1));
         let to_the_end = leaves(&omega, &[0.0; 5], &[0.0, 0.0, 0.0, 0.0, 60.0]);

@@ -8,7 +8,9 @@ use nalgebra::Complex;
 use gdcm_model::assembly::PhysicalUnit;
 use gdcm_model::dataset::{Band, Channel, Dynamics, Pair};
 use gdcm_model::message_text::quoted;
-use gdcm_model::response::{FrequencyResponse, GainDelay, PreparedModel, between, log_spaced, unwrap, wrap};
+use gdcm_model::response::{
+    FrequencyResponse, GainDelay, PreparedModel, between, log_spaced, unwrap, wrap,
+};
 use gdcm_model::units::{number, ratio_to_db};
 
 /// Frequencies on which sign changes are looked for.
@@ -59,7 +61,10 @@ impl AttitudeOutput {
         match PhysicalUnit::of(&output.unit).map(|unit| unit.name) {
             Some("deg/s" | "rad/s") => Ok(Self::Rate),
             Some("deg" | "rad") => Ok(Self::Attitude),
-            _ => Err(AttitudeResponseError::NotAnAttitude { output: output.name.clone(), unit: output.unit.clone() }),
+            _ => Err(AttitudeResponseError::NotAnAttitude {
+                output: output.name.clone(),
+                unit: output.unit.clone(),
+            }),
         }
     }
 
@@ -77,7 +82,11 @@ pub type ResponseAt<'a> = dyn Fn(&[f64]) -> Vec<Complex<f64>> + 'a;
 
 /// The frequencies \[rad/s\] on which a model is searched for crossings: 400, logarithmic, of `band / 4` to `4 band`.
 pub fn search_frequencies(band: Band) -> Vec<f64> {
-    log_spaced(band.min() / SEARCH_BEYOND_BAND, band.max() * SEARCH_BEYOND_BAND, SEARCH_POINTS)
+    log_spaced(
+        band.min() / SEARCH_BEYOND_BAND,
+        band.max() * SEARCH_BEYOND_BAND,
+        SEARCH_POINTS,
+    )
 }
 
 /// `Theta(j omega)`: magnitude and continuous phase on a grid, and between.
@@ -113,21 +122,41 @@ impl<'a> AttitudeResponse<'a> {
         band: Band,
     ) -> Result<Self, AttitudeResponseError> {
         let polar: Vec<Option<(f64, f64)>> = polar(response, output, omega);
-        let from = polar.iter().position(Option::is_some).unwrap_or(omega.len());
+        let from = polar
+            .iter()
+            .position(Option::is_some)
+            .unwrap_or(omega.len());
         let run: Vec<(f64, f64)> = polar[from..].iter().map_while(|polar| *polar).collect();
         if run.len() < 2 {
             let end = |omega: Option<&f64>| omega.copied().unwrap_or(f64::NAN);
-            return Err(AttitudeResponseError::NoResponse { from: end(omega.first()), to: end(omega.last()) });
+            return Err(AttitudeResponseError::NoResponse {
+                from: end(omega.first()),
+                to: end(omega.last()),
+            });
         }
         let (magnitude_db, mut phase): (Vec<f64>, Vec<f64>) = run.into_iter().unzip();
         unwrap(&mut phase);
         let omega = omega[from..from + phase.len()].to_vec();
-        let lowest_of_band = omega.partition_point(|omega| *omega < band.min()).min(omega.len() - 1);
+        let lowest_of_band = omega
+            .partition_point(|omega| *omega < band.min())
+            .min(omega.len() - 1);
         let principal = wrap(phase[lowest_of_band]);
-        let on_branch = if principal > FRAC_PI_2 { principal - TAU } else { principal };
+        let on_branch = if principal > FRAC_PI_2 {
+            principal - TAU
+        } else {
+            principal
+        };
         let turns = on_branch - phase[lowest_of_band];
         phase.iter_mut().for_each(|phase| *phase += turns);
-        Ok(Self { response, samples: response, output, omega, magnitude_db, phase, lowest_of_band })
+        Ok(Self {
+            response,
+            samples: response,
+            output,
+            omega,
+            magnitude_db,
+            phase,
+            lowest_of_band,
+        })
     }
 
     /// The same response, of which many points in a row are read from samples of it.
@@ -162,8 +191,10 @@ impl<'a> AttitudeResponse<'a> {
         let (last, before) = omega.split_last()?;
         let mut found = polar(self.samples, self.output, before);
         found.extend(polar(self.response, self.output, &[*last]));
-        let mut phases: Vec<f64> =
-            found.into_iter().map(|polar| polar.map(|(_, phase)| phase)).collect::<Option<_>>()?;
+        let mut phases: Vec<f64> = found
+            .into_iter()
+            .map(|polar| polar.map(|(_, phase)| phase))
+            .collect::<Option<_>>()?;
         unwrap(&mut phases);
         let turns = TAU * ((first - phases.first()?) / TAU).round();
         phases.iter_mut().for_each(|phase| *phase += turns);
@@ -172,10 +203,19 @@ impl<'a> AttitudeResponse<'a> {
 }
 
 /// Magnitude \[dB\] and principal phase \[rad\] of the attitude; none where it is zero or not finite.
-fn polar(response: &ResponseAt<'_>, output: AttitudeOutput, omega: &[f64]) -> Vec<Option<(f64, f64)>> {
-    let values = response(omega).into_iter().zip(omega).map(|(value, &omega)| value * output.factor(omega));
+fn polar(
+    response: &ResponseAt<'_>,
+    output: AttitudeOutput,
+    omega: &[f64],
+) -> Vec<Option<(f64, f64)>> {
+    let values = response(omega)
+        .into_iter()
+        .zip(omega)
+        .map(|(value, &omega)| value * output.factor(omega));
     let polar = values.map(|value| (ratio_to_db(value.norm()), value.arg()));
-    polar.map(|(db, phase)| (db.is_finite() && phase.is_finite()).then_some((db, phase))).collect()
+    polar
+        .map(|(db, phase)| (db.is_finite() && phase.is_finite()).then_some((db, phase)))
+        .collect()
 }
 
 /// A model with its response on the search frequencies and on to twice the highest, at equal ratios: a phase delay needs
@@ -199,14 +239,27 @@ impl SampledModel {
         // One more than needed, for the interpolation to have a neighbour.
         omega.extend(beyond.take(1 + (2f64.ln() / ratio.ln()).ceil() as usize));
         let values = prepared.at(&omega);
-        Self { prepared, omega, values, searched }
+        Self {
+            prepared,
+            omega,
+            values,
+            searched,
+        }
     }
 
     /// Its response under `correction`, exact at any frequency (M2, M10).
-    pub fn exact(&self, pair: Pair, correction: GainDelay) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
+    pub fn exact(
+        &self,
+        pair: Pair,
+        correction: GainDelay,
+    ) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
         move |omega| {
             let corrected = |values: &[Complex<f64>]| {
-                values.iter().zip(omega).map(|(value, omega)| value * correction.at(*omega)).collect()
+                values
+                    .iter()
+                    .zip(omega)
+                    .map(|(value, omega)| value * correction.at(*omega))
+                    .collect()
             };
             if *omega == self.omega[..self.searched] {
                 return corrected(&self.values.curve(pair)[..self.searched]);
@@ -216,7 +269,11 @@ impl SampledModel {
     }
 
     /// The same, between the samples by the cubic through four of them over ln omega; not a number outside.
-    pub fn interpolated(&self, pair: Pair, correction: GainDelay) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
+    pub fn interpolated(
+        &self,
+        pair: Pair,
+        correction: GainDelay,
+    ) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
         let (curve, start) = (self.values.curve(pair), self.omega[0].ln());
         let step = (self.omega[1] / self.omega[0]).ln();
         let between = move |omega: f64| {

@@ -170,7 +170,11 @@ impl PhaseLine {
 
     /// The phase delay \[s\]: of the two points where the phase is straight, else of the line.
     pub fn phase_delay_s(&self) -> f64 {
-        if self.is_straight() { self.two_points_s } else { self.least_squares_s }
+        if self.is_straight() {
+            self.two_points_s
+        } else {
+            self.least_squares_s
+        }
     }
 }
 
@@ -195,8 +199,16 @@ pub struct Bandwidth {
 
 impl Bandwidth {
     /// Bandwidth and phase delay of `attitude`, with standard deviations where its band is known.
-    pub fn of(attitude: &AttitudeResponse<'_>, settings: &BandwidthSettings, deviation: Option<PairBand<'_>>) -> Self {
-        let reading = Reading { attitude, settings, deviation };
+    pub fn of(
+        attitude: &AttitudeResponse<'_>,
+        settings: &BandwidthSettings,
+        deviation: Option<PairBand<'_>>,
+    ) -> Self {
+        let reading = Reading {
+            attitude,
+            settings,
+            deviation,
+        };
         let omega_180 = reading.phase_crossing(NEUTRAL_DEG);
         let omega_phase = reading.phase_crossing(PHASE_MARGIN_DEG);
         let omega_gain = omega_180.and_then(|omega_180| reading.gain_crossing(omega_180));
@@ -228,48 +240,90 @@ struct Reading<'a> {
 
 impl Reading<'_> {
     /// A number read from these frequencies, or why there is none.
-    fn metric(&self, value: f64, read_at: [f64; 2], deviation: Option<f64>) -> Result<Metric, NoMetric> {
+    fn metric(
+        &self,
+        value: f64,
+        read_at: [f64; 2],
+        deviation: Option<f64>,
+    ) -> Result<Metric, NoMetric> {
         let (band, [lowest, highest]) = (self.settings.band, read_at);
         let rests_above_band = highest > band.max();
         if rests_above_band && self.settings.above_band == AboveBand::Refused {
-            return Err(NoMetric::AboveBand { needed: highest, top: band.max() });
+            return Err(NoMetric::AboveBand {
+                needed: highest,
+                top: band.max(),
+            });
         }
         let deviation = deviation.filter(|deviation| deviation.is_finite());
-        Ok(Metric { value, deviation, read_at, rests_above_band, rests_below_band: lowest < band.min() })
+        Ok(Metric {
+            value,
+            deviation,
+            read_at,
+            rests_above_band,
+            rests_below_band: lowest < band.min(),
+        })
     }
 
     /// The frequency at which the phase falls through a level: of the band the lowest, unless it has fallen through below and stayed there.
     fn phase_crossing(&self, level_deg: f64) -> Result<Metric, NoMetric> {
-        let (omega, phase, level) = (&self.attitude.omega, &self.attitude.phase, level_deg.to_radians());
+        let (omega, phase, level) = (
+            &self.attitude.omega,
+            &self.attitude.phase,
+            level_deg.to_radians(),
+        );
         let falls = |k: &usize| phase[*k] > level && phase[k + 1] <= level;
         let (first, last) = (self.attitude.lowest_of_band, phase.len() - 1);
         let is_below = phase[first] <= level;
         let below = (0..first).rev().find(|k| is_below && falls(k));
         let Some(k) = below.or_else(|| (first..last).find(falls)) else {
             return Err(if is_below {
-                NoMetric::BelowFromStart { level_deg, from: omega[first] }
+                NoMetric::BelowFromStart {
+                    level_deg,
+                    from: omega[first],
+                }
             } else {
-                NoMetric::NoCrossing { level_deg, up_to: omega[last] }
+                NoMetric::NoCrossing {
+                    level_deg,
+                    up_to: omega[last],
+                }
             });
         };
-        let root =
-            root_between([omega[k], omega[k + 1]], |omega| self.attitude.phase_at(omega).map(|phase| level - phase));
-        self.metric(root, [root, root], self.deviation.and_then(|of| of.of_phase_crossing(self.attitude, root)))
+        let root = root_between([omega[k], omega[k + 1]], |omega| {
+            self.attitude.phase_at(omega).map(|phase| level - phase)
+        });
+        self.metric(
+            root,
+            [root, root],
+            self.deviation
+                .and_then(|of| of.of_phase_crossing(self.attitude, root)),
+        )
     }
 
     /// The greatest frequency below `omega_180` at which the magnitude is 6 dB above that at `omega_180`.
     fn gain_crossing(&self, omega_180: Metric) -> Result<Metric, NoMetric> {
         let (grid, top) = (&self.attitude.omega, omega_180.value);
-        let none = NoMetric::NoGainCrossing { omega_180: top, down_to: self.attitude.omega[0] };
+        let none = NoMetric::NoGainCrossing {
+            omega_180: top,
+            down_to: self.attitude.omega[0],
+        };
         let level = self.attitude.magnitude_db_at(top).ok_or(none)? + GAIN_MARGIN_DB;
         let below = grid.partition_point(|omega| *omega < top);
         let is_above = |k: usize| self.attitude.magnitude_db[k] >= level;
         // The magnitude at omega_180 itself is below the level: the first grid point above it, from the top, brackets the crossing.
         let k = (0..below).rev().find(|&k| is_above(k)).ok_or(none)?;
         let upper = if k + 1 < below { grid[k + 1] } else { top };
-        let excess = |omega: f64| self.attitude.magnitude_db_at(omega).map(|magnitude| level - magnitude);
+        let excess = |omega: f64| {
+            self.attitude
+                .magnitude_db_at(omega)
+                .map(|magnitude| level - magnitude)
+        };
         let root = root_between([grid[k], upper], excess);
-        self.metric(root, [root, top], self.deviation.and_then(|of| of.of_gain_crossing(self.attitude, root, top)))
+        self.metric(
+            root,
+            [root, top],
+            self.deviation
+                .and_then(|of| of.of_gain_crossing(self.attitude, root, top)),
+        )
     }
 
     /// The bandwidth, and which margin it is.
@@ -283,11 +337,17 @@ impl Reading<'_> {
             (_, Err(why), _) => (Err(why), None),
             (CommandType::Attitude, phase, _) => (phase, Some(BandwidthRule::Phase)),
             (CommandType::Rate, Ok(phase), Ok(gain)) => {
-                let (least, rule) =
-                    if gain.value < phase.value { (gain, BandwidthRule::Gain) } else { (phase, BandwidthRule::Phase) };
+                let (least, rule) = if gain.value < phase.value {
+                    (gain, BandwidthRule::Gain)
+                } else {
+                    (phase, BandwidthRule::Phase)
+                };
                 // That the other margin comes later was read from its frequencies too.
                 let read_at = [phase.read_at[0].min(gain.read_at[0]), gain.read_at[1]];
-                (self.metric(least.value, read_at, least.deviation), Some(rule))
+                (
+                    self.metric(least.value, read_at, least.deviation),
+                    Some(rule),
+                )
             }
             (CommandType::Rate, Ok(phase), Err(why)) => match omega_180 {
                 // The gain margin is 6 dB nowhere above the lowest frequency, so the bandwidth lies below it.
@@ -302,14 +362,20 @@ impl Reading<'_> {
     fn phase_delay(&self, omega_180: Metric) -> Result<(Metric, PhaseLine), NoMetric> {
         let (from, to) = (omega_180.value, 2.0 * omega_180.value);
         let omega = log_spaced(from, to, LINE_POINTS);
-        let phase = self.attitude.phases_from(-PI, &omega).ok_or(NoMetric::ResponseEnds { needed: to })?;
+        let phase = self
+            .attitude
+            .phases_from(-PI, &omega)
+            .ok_or(NoMetric::ResponseEnds { needed: to })?;
         let line = PhaseLine {
             departure_deg: chord_departure(&omega, &phase).to_degrees(),
             two_points_s: -(phase[LINE_POINTS - 1] + PI) / to,
             least_squares_s: -0.5 * slope(&omega, &phase),
         };
         let deviation = self.deviation.and_then(|of| of.of_phase_delay(from));
-        Ok((self.metric(line.phase_delay_s(), [from, to], deviation)?, line))
+        Ok((
+            self.metric(line.phase_delay_s(), [from, to], deviation)?,
+            line,
+        ))
     }
 }
 
@@ -331,7 +397,11 @@ fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> f6
     loop {
         let at = a.0 + part * (b.0 - a.0);
         let new = (at, sided(at));
-        let c = if (new.1 > 0.0) == (a.1 > 0.0) { a } else { std::mem::replace(&mut b, a) };
+        let c = if (new.1 > 0.0) == (a.1 > 0.0) {
+            a
+        } else {
+            std::mem::replace(&mut b, a)
+        };
         a = new;
         let best = if a.1.abs() < b.1.abs() { a } else { b };
         let least = ROOT_TOLERANCE * best.0 / (b.0 - a.0).abs();
@@ -340,9 +410,13 @@ fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> f6
         }
         let (xi, phi) = ((a.0 - b.0) / (c.0 - b.0), (a.1 - b.1) / (c.1 - b.1));
         let is_monotonic = phi.powi(2) < xi && (1.0 - phi).powi(2) < 1.0 - xi;
-        let quadratic =
-            a.1 / (b.1 - a.1) * c.1 / (b.1 - c.1) + (c.0 - a.0) / (b.0 - a.0) * a.1 / (c.1 - a.1) * b.1 / (c.1 - b.1);
-        part = if is_monotonic { quadratic.clamp(least, 1.0 - least) } else { 0.5 };
+        let quadratic = a.1 / (b.1 - a.1) * c.1 / (b.1 - c.1)
+            + (c.0 - a.0) / (b.0 - a.0) * a.1 / (c.1 - a.1) * b.1 / (c.1 - b.1);
+        part = if is_monotonic {
+            quadratic.clamp(least, 1.0 - least)
+        } else {
+            0.5
+        };
     }
 }
 
@@ -350,15 +424,25 @@ fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> f6
 fn chord_departure(omega: &[f64], phase: &[f64]) -> f64 {
     let last = omega.len() - 1;
     let slope = (phase[last] - phase[0]) / (omega[last] - omega[0]);
-    let departure = |(omega_k, phase_k): (&f64, &f64)| (phase_k - phase[0] - slope * (omega_k - omega[0])).abs();
+    let departure = |(omega_k, phase_k): (&f64, &f64)| {
+        (phase_k - phase[0] - slope * (omega_k - omega[0])).abs()
+    };
     omega.iter().zip(phase).map(departure).fold(0.0, f64::max)
 }
 
 /// The slope \[s\] of the least-squares line of `phase` over `omega`.
 fn slope(omega: &[f64], phase: &[f64]) -> f64 {
     let (centre, level) = (mean(omega), mean(phase));
-    let product: f64 = omega.iter().zip(phase).map(|(omega, phase)| (omega - centre) * (phase - level)).sum();
-    product / omega.iter().map(|omega| (omega - centre).powi(2)).sum::<f64>()
+    let product: f64 = omega
+        .iter()
+        .zip(phase)
+        .map(|(omega, phase)| (omega - centre) * (phase - level))
+        .sum();
+    product
+        / omega
+            .iter()
+            .map(|omega| (omega - centre).powi(2))
+            .sum::<f64>()
 }
 
 /// Half the step of a difference quotient, relative to the frequency.
@@ -377,12 +461,21 @@ pub struct PairBand<'a> {
 impl PairBand<'_> {
     /// Standard deviation of the magnitude \[dB\] at `omega` \[rad/s\].
     fn magnitude_db(&self, omega: f64) -> Option<f64> {
-        between(self.bands.omega(), self.bands.sd_db().get(self.pair)?, omega)
+        between(
+            self.bands.omega(),
+            self.bands.sd_db().get(self.pair)?,
+            omega,
+        )
     }
 
     /// Standard deviation of the phase \[rad\] at `omega` \[rad/s\].
     fn phase(&self, omega: f64) -> Option<f64> {
-        between(self.bands.omega(), self.bands.sd_deg().get(self.pair)?, omega).map(f64::to_radians)
+        between(
+            self.bands.omega(),
+            self.bands.sd_deg().get(self.pair)?,
+            omega,
+        )
+        .map(f64::to_radians)
     }
 
     /// Of a frequency \[rad/s\] at which the phase crosses a level.
@@ -392,10 +485,19 @@ impl PairBand<'_> {
     }
 
     /// Of the frequency \[rad/s\] at which the magnitude is 6 dB above that at `omega_180`.
-    fn of_gain_crossing(&self, attitude: &AttitudeResponse<'_>, omega: f64, omega_180: f64) -> Option<f64> {
-        let slope = |omega: f64| difference_quotient(omega, |omega| attitude.magnitude_db_at(omega));
+    fn of_gain_crossing(
+        &self,
+        attitude: &AttitudeResponse<'_>,
+        omega: f64,
+        omega_180: f64,
+    ) -> Option<f64> {
+        let slope =
+            |omega: f64| difference_quotient(omega, |omega| attitude.magnitude_db_at(omega));
         let moved = slope(omega_180)? * self.of_phase_crossing(attitude, omega_180)?;
-        let level = self.magnitude_db(omega)?.hypot(self.magnitude_db(omega_180)?).hypot(moved);
+        let level = self
+            .magnitude_db(omega)?
+            .hypot(self.magnitude_db(omega_180)?)
+            .hypot(moved);
         Some(level / slope(omega)?.abs())
     }
 
@@ -424,7 +526,11 @@ pub fn substitution_bar(value: f64, physics: &[Option<f64>], identified: &[Optio
         trim: part(physics),
         identification: part(identified),
         source: IdentificationSource::Spread,
-        left_out: physics.iter().chain(identified).filter(|other| other.is_none()).count(),
+        left_out: physics
+            .iter()
+            .chain(identified)
+            .filter(|other| other.is_none())
+            .count(),
         range: [0.0, f64::INFINITY],
     }
 }
@@ -440,24 +546,39 @@ mod tests {
     use gdcm_model::dataset::{Channel, Dynamics, MeasuredResponse, PairTable, StateSpace, Timing};
     use gdcm_model::response::GainDelay;
 
-    const ONLY: Pair = Pair { output: 0, input: 0 };
+    const ONLY: Pair = Pair {
+        output: 0,
+        input: 0,
+    };
 
     fn band() -> Band {
         Band::new(0.5, 12.0).unwrap()
     }
 
     fn settings(command: CommandType) -> BandwidthSettings {
-        BandwidthSettings { command, band: band(), above_band: AboveBand::Marked }
+        BandwidthSettings {
+            command,
+            band: band(),
+            above_band: AboveBand::Marked,
+        }
     }
 
     /// Of a rate response, which is `s` times an attitude.
-    fn of_attitude(attitude: impl Fn(Complex<f64>) -> Complex<f64>, settings: &BandwidthSettings) -> Bandwidth {
+    fn of_attitude(
+        attitude: impl Fn(Complex<f64>) -> Complex<f64>,
+        settings: &BandwidthSettings,
+    ) -> Bandwidth {
         let rate = |omega: &[f64]| -> Vec<Complex<f64>> {
-            omega.iter().map(|omega| Complex::new(0.0, *omega)).map(|s| s * attitude(s)).collect()
+            omega
+                .iter()
+                .map(|omega| Complex::new(0.0, *omega))
+                .map(|s| s * attitude(s))
+                .collect()
         };
         let frequencies = search_frequencies(settings.band);
         Bandwidth::of(
-            &AttitudeResponse::new(&rate, AttitudeOutput::Rate, &frequencies, settings.band).unwrap(),
+            &AttitudeResponse::new(&rate, AttitudeOutput::Rate, &frequencies, settings.band)
+                .unwrap(),
             settings,
             None,
         )
@@ -470,7 +591,12 @@ mod tests {
     #[test]
     fn bandwidths_and_phase_delays_are_the_known_ones() {
         let answers = answers();
-        for (case, attitude) in answers["bandwidth"].as_array().unwrap().iter().zip(attitudes()) {
+        for (case, attitude) in answers["bandwidth"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .zip(attitudes())
+        {
             let found = of_attitude(attitude, &settings(CommandType::Rate));
             let line = found.phase_line.unwrap();
             for (found, name) in [
@@ -483,27 +609,51 @@ mod tests {
                 (line.departure_deg, "departure_deg"),
             ] {
                 let expected = number(case, name);
-                assert!((found - expected).abs() < 1e-9 * expected, "{} {name}: {found} {expected}", case["name"]);
+                assert!(
+                    (found - expected).abs() < 1e-9 * expected,
+                    "{} {name}: {found} {expected}",
+                    case["name"]
+                );
             }
             let by_line = number(case, "departure_deg") > 10.0;
             assert_eq!(
                 (line.is_straight(), value(found.phase_delay_s)),
-                (!by_line, if by_line { line.least_squares_s } else { line.two_points_s })
+                (
+                    !by_line,
+                    if by_line {
+                        line.least_squares_s
+                    } else {
+                        line.two_points_s
+                    }
+                )
             );
             let gain_first = number(case, "omega_gain") < number(case, "omega_phase");
             assert_eq!(found.is_gain_limited(), gain_first);
-            assert_eq!(found.rule, Some(if gain_first { BandwidthRule::Gain } else { BandwidthRule::Phase }));
+            assert_eq!(
+                found.rule,
+                Some(if gain_first {
+                    BandwidthRule::Gain
+                } else {
+                    BandwidthRule::Phase
+                })
+            );
         }
     }
 
     #[test]
     fn the_gain_margin_rules_where_it_comes_first_and_never_of_attitude_command() {
         let [_, light, ..] = attitudes();
-        let [rate, attitude] =
-            [CommandType::Rate, CommandType::Attitude].map(|command| of_attitude(light, &settings(command)));
+        let [rate, attitude] = [CommandType::Rate, CommandType::Attitude]
+            .map(|command| of_attitude(light, &settings(command)));
         assert_eq!(rate.omega_bw.unwrap().value, rate.omega_gain.unwrap().value);
-        assert_eq!((attitude.omega_bw, attitude.rule), (attitude.omega_phase, Some(BandwidthRule::Phase)));
-        assert!(attitude.is_gain_limited(), "the standard warns of it whatever the bandwidth is");
+        assert_eq!(
+            (attitude.omega_bw, attitude.rule),
+            (attitude.omega_phase, Some(BandwidthRule::Phase))
+        );
+        assert!(
+            attitude.is_gain_limited(),
+            "the standard warns of it whatever the bandwidth is"
+        );
     }
 
     #[test]
@@ -518,31 +668,65 @@ mod tests {
                 Ok(AttitudeOutput::Attitude),
             ]
         );
-        assert!(unit("rpm").is_err(), "a rotor speed is no rate of the fuselage");
-        let acceleration = AttitudeOutput::of(&Channel::new("NZ", "m/s^2")).unwrap_err().to_string();
+        assert!(
+            unit("rpm").is_err(),
+            "a rotor speed is no rate of the fuselage"
+        );
+        let acceleration = AttitudeOutput::of(&Channel::new("NZ", "m/s^2"))
+            .unwrap_err()
+            .to_string();
         assert_eq!(
             acceleration,
             "\"NZ\" in \"m/s^2\" has no bandwidth: it is neither a rate (deg/s, rad/s) nor an attitude (deg, rad)"
         );
 
         let [attitude, ..] = attitudes();
-        let at = |omega: &[f64]| omega.iter().map(|omega| attitude(Complex::new(0.0, *omega))).collect();
-        let response =
-            AttitudeResponse::new(&at, AttitudeOutput::Attitude, &search_frequencies(band()), band()).unwrap();
+        let at = |omega: &[f64]| {
+            omega
+                .iter()
+                .map(|omega| attitude(Complex::new(0.0, *omega)))
+                .collect()
+        };
+        let response = AttitudeResponse::new(
+            &at,
+            AttitudeOutput::Attitude,
+            &search_frequencies(band()),
+            band(),
+        )
+        .unwrap();
         let found = Bandwidth::of(&response, &settings(CommandType::Rate), None);
         assert!(
-            (value(found.omega_bw) - value(of_attitude(attitude, &settings(CommandType::Rate)).omega_bw)).abs() < 1e-10
+            (value(found.omega_bw)
+                - value(of_attitude(attitude, &settings(CommandType::Rate)).omega_bw))
+            .abs()
+                < 1e-10
         );
     }
 
     #[test]
     fn a_phase_that_never_falls_through_has_no_crossing_and_says_up_to_where() {
         let found = of_attitude(|s| 1.0 / (s * (s + 1.0)), &settings(CommandType::Rate));
-        assert_eq!(found.omega_180.unwrap_err().to_string(), "no crossing of -180 deg up to 48 rad/s");
-        assert_eq!((found.phase_delay_s.is_err(), found.omega_gain.is_err(), found.phase_line), (true, true, None));
-        assert!((value(found.omega_bw) - 1.0).abs() < 1e-10, "45 deg of margin at the pole");
+        assert_eq!(
+            found.omega_180.unwrap_err().to_string(),
+            "no crossing of -180 deg up to 48 rad/s"
+        );
+        assert_eq!(
+            (
+                found.phase_delay_s.is_err(),
+                found.omega_gain.is_err(),
+                found.phase_line
+            ),
+            (true, true, None)
+        );
+        assert!(
+            (value(found.omega_bw) - 1.0).abs() < 1e-10,
+            "45 deg of margin at the pole"
+        );
         assert_eq!(found.rule, Some(BandwidthRule::PhaseGainUnknown));
-        let late = of_attitude(|s| (-0.05 * s).exp() / (s * s), &settings(CommandType::Rate));
+        let late = of_attitude(
+            |s| (-0.05 * s).exp() / (s * s),
+            &settings(CommandType::Rate),
+        );
         assert_eq!(
             late.omega_phase.unwrap_err().to_string(),
             "no crossing of -135 deg: the phase is below it from 0.500 rad/s on"
@@ -554,30 +738,47 @@ mod tests {
     fn slow_modes_below_the_band_move_neither_branch_nor_crossings() {
         // An unstable phugoid of 0.2 rad/s turns the phase by a turn below the band, and a pair of zeros near it back.
         let [.., short] = attitudes();
-        let turned = |s: Complex<f64>| short(s) * (s * s + 0.1 * s + 0.03) / (s * s - 0.04 * s + 0.04);
+        let turned =
+            |s: Complex<f64>| short(s) * (s * s + 0.1 * s + 0.03) / (s * s - 0.04 * s + 0.04);
         let rate = settings(CommandType::Rate);
         let (plain, found) = (of_attitude(short, &rate), of_attitude(turned, &rate));
         assert!((value(found.omega_180) / value(plain.omega_180) - 1.0).abs() < 0.1);
         assert!((value(found.omega_bw) / value(plain.omega_bw) - 1.0).abs() < 0.2);
         // A phase that dips through -135 deg below the band only has its crossing within.
-        let dips = |s: Complex<f64>| short(s) * (s * s + 0.001 * s + 0.04) / (s * s + 0.001 * s + 0.0225);
+        let dips =
+            |s: Complex<f64>| short(s) * (s * s + 0.001 * s + 0.04) / (s * s + 0.001 * s + 0.0225);
         assert!(value(of_attitude(dips, &settings(CommandType::Rate)).omega_phase) > 1.9);
         // A slow aircraft crosses below the band and stays there.
         let slow = of_attitude(|s| 1.0 / (s * (s + 0.2)), &settings(CommandType::Rate));
         let omega_phase = slow.omega_phase.unwrap();
         assert!((omega_phase.value - 0.2).abs() < 1e-10 && omega_phase.rests_below_band);
         // Also where a lightly damped pair of zeros and poles at some 1.5 rad/s lifts the phase for a while, so that it falls through once more.
-        let lifted = |s: Complex<f64>| (s * s + 0.002 * s + 1.96) / (s * s + 0.002 * s + 2.56) / (s * (s + 0.2));
+        let lifted = |s: Complex<f64>| {
+            (s * s + 0.002 * s + 1.96) / (s * s + 0.002 * s + 2.56) / (s * (s + 0.2))
+        };
         let again = value(of_attitude(lifted, &settings(CommandType::Rate)).omega_phase);
-        assert!((again - 0.2).abs() < 1e-3, "{again}: the fall below the band comes first");
+        assert!(
+            (again - 0.2).abs() < 1e-3,
+            "{again}: the fall below the band comes first"
+        );
     }
 
     #[test]
     fn a_stick_that_counts_the_other_way_round_is_suspected() {
         let [.., short] = attitudes();
         let phase_deg = |sign: f64| {
-            let at = |omega: &[f64]| omega.iter().map(|omega| sign * short(Complex::new(0.0, *omega))).collect();
-            let response = AttitudeResponse::new(&at, AttitudeOutput::Attitude, &search_frequencies(band()), band());
+            let at = |omega: &[f64]| {
+                omega
+                    .iter()
+                    .map(|omega| sign * short(Complex::new(0.0, *omega)))
+                    .collect()
+            };
+            let response = AttitudeResponse::new(
+                &at,
+                AttitudeOutput::Attitude,
+                &search_frequencies(band()),
+                band(),
+            );
             response.unwrap().reversed_phase_deg()
         };
         assert_eq!(phase_deg(1.0), None);
@@ -589,8 +790,17 @@ mod tests {
         // A flat magnitude: the delay alone turns the phase.
         let delay = |s: Complex<f64>| (-0.2 * s).exp();
         let found = of_attitude(delay, &settings(CommandType::Rate));
-        assert!(matches!(found.omega_bw, Err(NoMetric::NoGainCrossing { .. })));
-        assert!(found.omega_gain.unwrap_err().to_string().ends_with("down to 0.125 rad/s"));
+        assert!(matches!(
+            found.omega_bw,
+            Err(NoMetric::NoGainCrossing { .. })
+        ));
+        assert!(
+            found
+                .omega_gain
+                .unwrap_err()
+                .to_string()
+                .ends_with("down to 0.125 rad/s")
+        );
         let commanded = of_attitude(delay, &settings(CommandType::Attitude));
         // -135 deg of 0.2 s.
         assert!((value(commanded.omega_bw) - 0.75 * PI / 0.2).abs() < 1e-9);
@@ -601,18 +811,38 @@ mod tests {
         // omega_180 8 rad/s: 16 is above the band.
         let attitude = |s: Complex<f64>| (-PI / 16.0 * s).exp() / s;
         let marked = of_attitude(attitude, &settings(CommandType::Rate));
-        assert!((value(marked.omega_180) - 8.0).abs() < 1e-9 && !marked.omega_180.unwrap().rests_above_band);
-        assert!(marked.phase_delay_s.unwrap().rests_above_band && !marked.omega_bw.unwrap().rests_above_band);
-        let refused = BandwidthSettings { above_band: AboveBand::Refused, ..settings(CommandType::Rate) };
+        assert!(
+            (value(marked.omega_180) - 8.0).abs() < 1e-9
+                && !marked.omega_180.unwrap().rests_above_band
+        );
+        assert!(
+            marked.phase_delay_s.unwrap().rests_above_band
+                && !marked.omega_bw.unwrap().rests_above_band
+        );
+        let refused = BandwidthSettings {
+            above_band: AboveBand::Refused,
+            ..settings(CommandType::Rate)
+        };
         let led = of_attitude(attitude, &refused);
         assert_eq!((led.omega_bw, led.phase_line), (marked.omega_bw, None));
         let words = led.phase_delay_s.unwrap_err().to_string();
-        assert_eq!(words, "rests on the leads above the band: 16.000 rad/s, beyond 12 rad/s");
+        assert_eq!(
+            words,
+            "rests on the leads above the band: 16.000 rad/s, beyond 12 rad/s"
+        );
         // omega_180 15.7 rad/s: what the gain margin is rests on the model, and the bandwidth with it.
         let fast = |s: Complex<f64>| (-0.1 * s).exp() / s;
-        assert!(of_attitude(fast, &settings(CommandType::Rate)).omega_bw.unwrap().rests_above_band);
+        assert!(
+            of_attitude(fast, &settings(CommandType::Rate))
+                .omega_bw
+                .unwrap()
+                .rests_above_band
+        );
         let led = of_attitude(fast, &refused);
-        assert_eq!((led.rule, led.omega_bw), (Some(BandwidthRule::PhaseGainUnknown), led.omega_phase));
+        assert_eq!(
+            (led.rule, led.omega_bw),
+            (Some(BandwidthRule::PhaseGainUnknown), led.omega_phase)
+        );
     }
 
     #[test]
@@ -620,55 +850,98 @@ mod tests {
         let [.., short] = attitudes();
         let found = |to: f64| {
             let omega = log_spaced(0.5, to, 60);
-            let values: Vec<Complex<f64>> =
-                omega.iter().map(|omega| Complex::new(0.0, *omega)).map(|s| s * short(s)).collect();
-            let table =
-                |part: fn(&Complex<f64>) -> f64| PairTable::filled(1, 1, values.iter().map(part).collect::<Vec<f64>>());
-            let measured =
-                MeasuredResponse::new(omega, &table(|value| value.re), &table(|value| value.im), None).unwrap();
+            let values: Vec<Complex<f64>> = omega
+                .iter()
+                .map(|omega| Complex::new(0.0, *omega))
+                .map(|s| s * short(s))
+                .collect();
+            let table = |part: fn(&Complex<f64>) -> f64| {
+                PairTable::filled(1, 1, values.iter().map(part).collect::<Vec<f64>>())
+            };
+            let measured = MeasuredResponse::new(
+                omega,
+                &table(|value| value.re),
+                &table(|value| value.im),
+                None,
+            )
+            .unwrap();
             let omega = measured.omega().to_vec();
             let model = SampledModel::of(&Dynamics::Measured(measured), band());
             let response = model.exact(ONLY, GainDelay::NONE);
-            let attitude = AttitudeResponse::new(&response, AttitudeOutput::Rate, &omega, band()).unwrap();
+            let attitude =
+                AttitudeResponse::new(&response, AttitudeOutput::Rate, &omega, band()).unwrap();
             Bandwidth::of(&attitude, &settings(CommandType::Rate), None)
         };
         // omega_180 is 3.79 rad/s.
         let whole = found(12.0);
-        assert!((value(whole.omega_180) / 3.7928490126513252 - 1.0).abs() < 1e-3, "as far as 60 points tell it");
+        assert!(
+            (value(whole.omega_180) / 3.7928490126513252 - 1.0).abs() < 1e-3,
+            "as far as 60 points tell it"
+        );
         assert!((value(whole.phase_delay_s) / 0.12206651443391653 - 1.0).abs() < 1e-2);
         let part = found(6.0);
         let words = part.phase_delay_s.unwrap_err().to_string();
-        assert!(words.starts_with("the response has no value at 7.5"), "{words}");
+        assert!(
+            words.starts_with("the response has no value at 7.5"),
+            "{words}"
+        );
         let less = found(3.0);
-        assert_eq!(less.omega_180.unwrap_err().to_string(), "no crossing of -180 deg up to 3 rad/s");
-        assert_eq!((less.rule, less.omega_bw), (Some(BandwidthRule::PhaseGainUnknown), less.omega_phase));
+        assert_eq!(
+            less.omega_180.unwrap_err().to_string(),
+            "no crossing of -180 deg up to 3 rad/s"
+        );
+        assert_eq!(
+            (less.rule, less.omega_bw),
+            (Some(BandwidthRule::PhaseGainUnknown), less.omega_phase)
+        );
     }
 
     #[test]
     fn a_response_that_is_nowhere_is_refused() {
         let nothing = |omega: &[f64]| vec![Complex::new(0.0, 0.0); omega.len()];
-        let refused =
-            AttitudeResponse::new(&nothing, AttitudeOutput::Rate, &search_frequencies(band()), band()).err().unwrap();
-        assert_eq!(refused.to_string(), "there is no response between 0.125 and 48 rad/s");
+        let refused = AttitudeResponse::new(
+            &nothing,
+            AttitudeOutput::Rate,
+            &search_frequencies(band()),
+            band(),
+        )
+        .err()
+        .unwrap();
+        assert_eq!(
+            refused.to_string(),
+            "there is no response between 0.125 and 48 rad/s"
+        );
         assert!(AttitudeResponse::new(&nothing, AttitudeOutput::Rate, &[], band()).is_err());
     }
 
     #[test]
     fn a_model_and_its_correction_are_taken_exactly() {
         // 5 / (s + 3) is the rate of the third known answer without its servo; 60 ms of delay are the correction's and the model's.
-        let lag = StateSpace::new(dmatrix![-3.0], dmatrix![5.0], dmatrix![1.0], dmatrix![0.0]).unwrap();
-        let timing = Timing { input_delays_s: Some(vec![0.02]), ..Timing::default() };
+        let lag =
+            StateSpace::new(dmatrix![-3.0], dmatrix![5.0], dmatrix![1.0], dmatrix![0.0]).unwrap();
+        let timing = Timing {
+            input_delays_s: Some(vec![0.02]),
+            ..Timing::default()
+        };
         let model = SampledModel::of(&Dynamics::StateSpace(lag.timed(timing).unwrap()), band());
         let correction = GainDelay::new(1.7, 0.04);
         let of = |response: &ResponseAt<'_>| {
-            let attitude = AttitudeResponse::new(response, AttitudeOutput::Rate, &search_frequencies(band()), band());
+            let attitude = AttitudeResponse::new(
+                response,
+                AttitudeOutput::Rate,
+                &search_frequencies(band()),
+                band(),
+            );
             Bandwidth::of(&attitude.unwrap(), &settings(CommandType::Rate), None)
         };
         let found = of(&model.exact(ONLY, correction));
         let near = of(&model.interpolated(ONLY, correction));
         let error = AttitudeOutput::of(&Channel::new("NZ", "g")).unwrap_err();
         assert!(error.to_string().contains("has no bandwidth"));
-        let expected = of_attitude(|s| 5.0 * (-0.06 * s).exp() / (s * (s + 3.0)), &settings(CommandType::Rate));
+        let expected = of_attitude(
+            |s| 5.0 * (-0.06 * s).exp() / (s * (s + 3.0)),
+            &settings(CommandType::Rate),
+        );
         for (found, expected) in [
             (found.omega_bw, expected.omega_bw),
             (found.omega_180, expected.omega_180),
@@ -701,26 +974,50 @@ mod tests {
         let rate = |turn_deg: f64| {
             move |omega: &[f64]| -> Vec<Complex<f64>> {
                 let turn = Complex::from_polar(1.0, turn_deg.to_radians());
-                omega.iter().map(|omega| Complex::new(0.0, *omega)).map(|s| s * short(s) * turn).collect()
+                omega
+                    .iter()
+                    .map(|omega| Complex::new(0.0, *omega))
+                    .map(|s| s * short(s) * turn)
+                    .collect()
             }
         };
         let of = |turn_deg: f64, bands: &ModelBands| {
             let at = rate(turn_deg);
-            let response =
-                AttitudeResponse::new(&at, AttitudeOutput::Rate, &search_frequencies(band()), band()).unwrap();
-            Bandwidth::of(&response, &settings(CommandType::Rate), Some(PairBand { bands, pair: ONLY }))
+            let response = AttitudeResponse::new(
+                &at,
+                AttitudeOutput::Rate,
+                &search_frequencies(band()),
+                band(),
+            )
+            .unwrap();
+            Bandwidth::of(
+                &response,
+                &settings(CommandType::Rate),
+                Some(PairBand { bands, pair: ONLY }),
+            )
         };
         let phase_only = bands(0.0, sd_deg);
-        let (low, middle, high) = (of(-sd_deg, &phase_only), of(0.0, &phase_only), of(sd_deg, &phase_only));
+        let (low, middle, high) = (
+            of(-sd_deg, &phase_only),
+            of(0.0, &phase_only),
+            of(sd_deg, &phase_only),
+        );
         let half = |metric: fn(&Bandwidth) -> Result<Metric, NoMetric>| {
             0.5 * (value(metric(&high)) - value(metric(&low))).abs()
         };
-        for metric in
-            [|of: &Bandwidth| of.omega_180, |of| of.omega_phase, |of| of.omega_gain] as [fn(&Bandwidth) -> _; 3]
+        for metric in [
+            |of: &Bandwidth| of.omega_180,
+            |of| of.omega_phase,
+            |of| of.omega_gain,
+        ] as [fn(&Bandwidth) -> _; 3]
         {
             let deviation = metric(&middle).unwrap().deviation.unwrap();
             // First order: what is left is the curvature of the phase over 0.3 deg.
-            assert!((deviation / half(metric) - 1.0).abs() < 1e-2, "{deviation} {}", half(metric));
+            assert!(
+                (deviation / half(metric) - 1.0).abs() < 1e-2,
+                "{deviation} {}",
+                half(metric)
+            );
         }
         let twice = 2.0 * value(middle.omega_180);
         let expected = 2.0_f64.sqrt() * sd_deg.to_radians() / twice;
@@ -729,7 +1026,10 @@ mod tests {
         assert_eq!(magnitude_only.omega_180.unwrap().deviation, Some(0.0));
         // At 2.4 rad/s |Theta| falls by some 20 dB a decade and more: 0.05 sqrt(2) dB are below a hundredth of the frequency.
         let deviation = magnitude_only.omega_gain.unwrap().deviation.unwrap();
-        assert!(deviation > 0.0 && deviation < 0.01 * value(magnitude_only.omega_gain), "{deviation}");
+        assert!(
+            deviation > 0.0 && deviation < 0.01 * value(magnitude_only.omega_gain),
+            "{deviation}"
+        );
     }
 
     #[test]
@@ -738,12 +1038,31 @@ mod tests {
         let table = || PairTable::filled(1, 1, vec![0.1, 0.1]);
         let bands = ModelBands::new(vec![0.5, 5.0], table(), table()).unwrap();
         let rate = |omega: &[f64]| -> Vec<Complex<f64>> {
-            omega.iter().map(|omega| Complex::new(0.0, *omega)).map(|s| s * short(s)).collect()
+            omega
+                .iter()
+                .map(|omega| Complex::new(0.0, *omega))
+                .map(|s| s * short(s))
+                .collect()
         };
-        let response = AttitudeResponse::new(&rate, AttitudeOutput::Rate, &search_frequencies(band()), band()).unwrap();
-        let found =
-            Bandwidth::of(&response, &settings(CommandType::Rate), Some(PairBand { bands: &bands, pair: ONLY }));
-        assert!(found.omega_180.unwrap().deviation.is_some() && found.phase_delay_s.unwrap().deviation.is_none());
+        let response = AttitudeResponse::new(
+            &rate,
+            AttitudeOutput::Rate,
+            &search_frequencies(band()),
+            band(),
+        )
+        .unwrap();
+        let found = Bandwidth::of(
+            &response,
+            &settings(CommandType::Rate),
+            Some(PairBand {
+                bands: &bands,
+                pair: ONLY,
+            }),
+        );
+        assert!(
+            found.omega_180.unwrap().deviation.is_some()
+                && found.phase_delay_s.unwrap().deviation.is_none()
+        );
     }
 
     #[test]

@@ -33,7 +33,10 @@ pub enum LevelBoundaryError {
         entry: usize,
     },
     /// A boundary has no axis.
-    #[error("boundary {entry}, {}: expected the name of an output as its axis, found none", quoted(name))]
+    #[error(
+        "boundary {entry}, {}: expected the name of an output as its axis, found none",
+        quoted(name)
+    )]
     NoAxis {
         /// Which, counted from 1.
         entry: usize,
@@ -41,7 +44,10 @@ pub enum LevelBoundaryError {
         name: String,
     },
     /// A boundary has fewer than two points.
-    #[error("boundary {entry}, {}: expected at least 2 points, found {found}", quoted(name))]
+    #[error(
+        "boundary {entry}, {}: expected at least 2 points, found {found}",
+        quoted(name)
+    )]
     TooFewPoints {
         /// Which, counted from 1.
         entry: usize,
@@ -77,11 +83,21 @@ impl LevelBoundary {
             return Err(LevelBoundaryError::NoAxis { entry, name });
         }
         if self.points.len() < 2 {
-            return Err(LevelBoundaryError::TooFewPoints { entry, name, found: self.points.len() });
+            return Err(LevelBoundaryError::TooFewPoints {
+                entry,
+                name,
+                found: self.points.len(),
+            });
         }
-        let is_wrong = |point: &[f64; 2]| point.iter().any(|value| !value.is_finite() || *value < 0.0);
+        let is_wrong =
+            |point: &[f64; 2]| point.iter().any(|value| !value.is_finite() || *value < 0.0);
         match self.points.iter().position(is_wrong) {
-            Some(at) => Err(LevelBoundaryError::Point { entry, name, point: at + 1, found: self.points[at] }),
+            Some(at) => Err(LevelBoundaryError::Point {
+                entry,
+                name,
+                point: at + 1,
+                found: self.points[at],
+            }),
             None => Ok(()),
         }
     }
@@ -91,7 +107,10 @@ impl TryFrom<Vec<LevelBoundary>> for LevelBoundaries {
     type Error = LevelBoundaryError;
 
     fn try_from(boundaries: Vec<LevelBoundary>) -> Result<Self, LevelBoundaryError> {
-        boundaries.iter().enumerate().try_for_each(|(index, boundary)| boundary.check(index + 1))?;
+        boundaries
+            .iter()
+            .enumerate()
+            .try_for_each(|(index, boundary)| boundary.check(index + 1))?;
         Ok(Self(boundaries))
     }
 }
@@ -110,7 +129,11 @@ impl LevelBoundaries {
     /// Axes of the file that are no outputs of the dataset, each once.
     pub fn unknown_axes(&self, outputs: &[String]) -> Vec<&str> {
         let mut unknown: Vec<&str> = Vec::new();
-        for boundary in self.0.iter().filter(|boundary| !outputs.contains(&boundary.axis)) {
+        for boundary in self
+            .0
+            .iter()
+            .filter(|boundary| !outputs.contains(&boundary.axis))
+        {
             if !unknown.contains(&boundary.axis.as_str()) {
                 unknown.push(&boundary.axis);
             }
@@ -132,7 +155,10 @@ mod tests {
         let text = r#"[{"name":"Level 1","axis":"P","points":[[2.0,0.0],[2.0,0.15],[3.0,0.25]]},{"name":"Level 1","axis":"Q","points":[[1.0,0.0],[1.0,0.2]]}]"#;
         let boundaries = read(text).unwrap();
         assert_eq!(boundaries.all().len(), 2);
-        assert_eq!(boundaries.of_axis("Q").next().unwrap().points[1], [1.0, 0.2]);
+        assert_eq!(
+            boundaries.of_axis("Q").next().unwrap().points[1],
+            [1.0, 0.2]
+        );
         assert_eq!(boundaries.unknown_axes(&["P".to_owned()]), ["Q"]);
         assert_eq!(serde_json::to_string(&boundaries).unwrap(), text);
     }
@@ -140,12 +166,21 @@ mod tests {
     #[test]
     fn a_wrong_boundary_is_refused_with_its_place() {
         let of = |name: &str, axis: &str, points: &str| {
-            read(&format!(r#"[{{"name":"{name}","axis":"{axis}","points":{points}}}]"#)).unwrap_err()
+            read(&format!(
+                r#"[{{"name":"{name}","axis":"{axis}","points":{points}}}]"#
+            ))
+            .unwrap_err()
         };
         for (error, words) in [
             (of(" ", "P", "[[1,0],[1,1]]"), "boundary 1: expected a name"),
-            (of("L", "", "[[1,0],[1,1]]"), "boundary 1, \"L\": expected the name of an output"),
-            (of("L", "P", "[[1,0]]"), "boundary 1, \"L\": expected at least 2 points, found 1"),
+            (
+                of("L", "", "[[1,0],[1,1]]"),
+                "boundary 1, \"L\": expected the name of an output",
+            ),
+            (
+                of("L", "P", "[[1,0]]"),
+                "boundary 1, \"L\": expected at least 2 points, found 1",
+            ),
             (
                 of("L", "P", "[[1,0],[1,-0.1]]"),
                 "boundary 1, \"L\", point 2: expected a bandwidth (rad/s) and a phase delay (s) not below zero, found 1 and -0.1",
@@ -153,8 +188,19 @@ mod tests {
         ] {
             assert!(error.starts_with(words), "{error}");
         }
-        let not_finite = LevelBoundary { name: "L".into(), axis: "P".into(), points: vec![[f64::NAN, 0.0]; 2] };
+        let not_finite = LevelBoundary {
+            name: "L".into(),
+            axis: "P".into(),
+            points: vec![[f64::NAN, 0.0]; 2],
+        };
         let error = LevelBoundaries::try_from(vec![not_finite]).unwrap_err();
-        assert!(matches!(error, LevelBoundaryError::Point { entry: 1, point: 1, .. }));
+        assert!(matches!(
+            error,
+            LevelBoundaryError::Point {
+                entry: 1,
+                point: 1,
+                ..
+            }
+        ));
     }
 }

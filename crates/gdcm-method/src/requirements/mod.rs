@@ -32,9 +32,13 @@ pub use test_input::*;
 pub use tolerance::*;
 
 /// The first of some named numbers that is not finite, or not above zero.
-fn not_positive<const N: usize>(values: [(&'static str, Option<f64>); N]) -> Option<(&'static str, f64)> {
+fn not_positive<const N: usize>(
+    values: [(&'static str, Option<f64>); N],
+) -> Option<(&'static str, f64)> {
     let is_wrong = |value: &f64| !value.is_finite() || *value <= 0.0;
-    values.into_iter().find_map(|(name, value)| Some((name, value.filter(is_wrong)?)))
+    values
+        .into_iter()
+        .find_map(|(name, value)| Some((name, value.filter(is_wrong)?)))
 }
 
 /// Known answers of M17, by independent code.
@@ -45,7 +49,10 @@ mod known_answers {
 
     /// The whole file.
     pub(super) fn answers() -> Value {
-        serde_json::from_str(include_str!("../../../../tests/data/reference/requirements.json")).unwrap()
+        serde_json::from_str(include_str!(
+            "../../../../tests/data/reference/requirements.json"
+        ))
+        .unwrap()
     }
 
     /// A number of a case.
@@ -55,8 +62,15 @@ mod known_answers {
 
     /// The attitude response of each case, as its words say it.
     pub(super) fn attitudes() -> [fn(Complex<f64>) -> Complex<f64>; 4] {
-        fn second_order(gain: f64, omega: f64, damping: f64, delay_s: f64, s: Complex<f64>) -> Complex<f64> {
-            gain * omega * omega * (-delay_s * s).exp() / (s * (s * s + 2.0 * damping * omega * s + omega * omega))
+        fn second_order(
+            gain: f64,
+            omega: f64,
+            damping: f64,
+            delay_s: f64,
+            s: Complex<f64>,
+        ) -> Complex<f64> {
+            gain * omega * omega * (-delay_s * s).exp()
+                / (s * (s * s + 2.0 * damping * omega * s + omega * omega))
         }
         [
             |s| second_order(1.2, 2.5, 0.5, 0.09, s),

@@ -64,7 +64,9 @@ impl ModeValues {
         let damping = (im * im * pole.sd_re).hypot(re * im * pole.sd_im) / size.powi(3);
         Self {
             period_s: values.period_s.map(|period_s| period_s * pole.sd_im / im),
-            time_to_half_s: values.time_to_half_s.map(|time_s| time_s.abs() * pole.sd_re / re),
+            time_to_half_s: values
+                .time_to_half_s
+                .map(|time_s| time_s.abs() * pole.sd_re / re),
             damping_ratio: values.damping_ratio.map(|_| damping),
         }
     }
@@ -130,14 +132,22 @@ pub fn compare_modes(
     band: Band,
     tolerances: &ModeToleranceTable,
 ) -> Vec<ModeRow> {
-    let pairs: Vec<Vec<Option<ModePair>>> =
-        models.iter().map(|model| mode_pairs(flown.modes, model.modes, band.min())).collect();
+    let pairs: Vec<Vec<Option<ModePair>>> = models
+        .iter()
+        .map(|model| mode_pairs(flown.modes, model.modes, band.min()))
+        .collect();
     let flown_modes = single_modes(flown.modes);
     let mut namings: Vec<Naming> = Vec::new();
     for (row, &mode) in flown_modes.iter().enumerate() {
-        let of_models = models.iter().zip(&pairs).filter_map(|(model, pairs)| Some((*model, pairs[row]?)));
+        let of_models = models
+            .iter()
+            .zip(&pairs)
+            .filter_map(|(model, pairs)| Some((*model, pairs[row]?)));
         let itself = (flown, ModePair { mode, cost: 0.0 });
-        namings.push(Naming::of(&flown.modes[mode], std::iter::once(itself).chain(of_models)));
+        namings.push(Naming::of(
+            &flown.modes[mode],
+            std::iter::once(itself).chain(of_models),
+        ));
     }
     keep_surest_names(&mut namings);
     let row = |(row, naming): (usize, Naming)| {
@@ -148,15 +158,29 @@ pub fn compare_modes(
         let flown = compared(mode, flown_modes[row]);
         let is_determined = mode.frequency_rad_s >= band.min()
             && estimate.is_none_or(|estimate| estimate.determined)
-            && tolerance.as_ref().zip(deviation.as_ref()).is_none_or(|(of, sd)| of.is_known(&flown.values, sd));
+            && tolerance
+                .as_ref()
+                .zip(deviation.as_ref())
+                .is_none_or(|(of, sd)| of.is_known(&flown.values, sd));
         let in_place = |(model, pairs): (&ModelModes<'_>, &Vec<Option<ModePair>>)| {
             pairs[row].map(|pair| compared(&model.modes[pair.mode], pair.mode))
         };
         let models: Vec<Option<ComparedMode>> = models.iter().zip(&pairs).map(in_place).collect();
-        let verdicts =
-            models.iter().map(|model| verdict(&flown, model.as_ref(), is_determined, tolerance.as_ref())).collect();
+        let verdicts = models
+            .iter()
+            .map(|model| verdict(&flown, model.as_ref(), is_determined, tolerance.as_ref()))
+            .collect();
         let Naming { name, named_by, .. } = naming;
-        ModeRow { name, named_by, flown, deviation, is_determined, tolerance, models, verdicts }
+        ModeRow {
+            name,
+            named_by,
+            flown,
+            deviation,
+            is_determined,
+            tolerance,
+            models,
+            verdicts,
+        }
     };
     namings.into_iter().enumerate().map(row).collect()
 }
@@ -175,11 +199,19 @@ impl Naming {
     fn of<'a>(flown: &Mode, places: impl Iterator<Item = (ModelModes<'a>, ModePair)>) -> Self {
         for (model, pair) in places {
             if let (name, NamedBy::States) = ModeName::of(&model.modes[pair.mode], model.states) {
-                return Self { name, named_by: NamedBy::States, doubt: pair.cost };
+                return Self {
+                    name,
+                    named_by: NamedBy::States,
+                    doubt: pair.cost,
+                };
             }
         }
         let (name, named_by) = ModeName::of(flown, &[]);
-        Self { name, named_by, doubt: f64::INFINITY }
+        Self {
+            name,
+            named_by,
+            doubt: f64::INFINITY,
+        }
     }
 }
 
@@ -189,7 +221,9 @@ fn keep_surest_names(namings: &mut [Naming]) {
     by_doubt.sort_by(|&a, &b| namings[a].doubt.total_cmp(&namings[b].doubt));
     let mut taken: Vec<ModeName> = Vec::new();
     for row in by_doubt {
-        let Some(name) = namings[row].name else { continue };
+        let Some(name) = namings[row].name else {
+            continue;
+        };
         if taken.contains(&name) {
             namings[row].name = None;
         } else {
@@ -208,19 +242,27 @@ fn verdict(
         (None, _) => ModeVerdict::NotPaired,
         _ if !is_determined => ModeVerdict::NotDetermined,
         (_, None) => ModeVerdict::NoTolerance,
-        (Some(model), Some(tolerance)) if tolerance.holds(&flown.values, &model.values) => ModeVerdict::Within,
+        (Some(model), Some(tolerance)) if tolerance.holds(&flown.values, &model.values) => {
+            ModeVerdict::Within
+        }
         _ => ModeVerdict::Outside,
     }
 }
 
 fn compared(mode: &Mode, at: usize) -> ComparedMode {
-    ComparedMode { mode: at, pole: mode.pole, values: ModeValues::of(mode) }
+    ComparedMode {
+        mode: at,
+        pole: mode.pole,
+        values: ModeValues::of(mode),
+    }
 }
 
 /// The estimate of a mode's pole.
 fn estimate_of<'a>(mode: &Mode, estimates: &'a [PoleEstimate]) -> Option<&'a PoleEstimate> {
     let distance = |estimate: &PoleEstimate| (estimate.pole - mode.pole).norm();
-    let nearest = estimates.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+    let nearest = estimates
+        .iter()
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
     (distance(nearest) <= SAME_POLE * mode.frequency_rad_s).then_some(nearest)
 }
 
@@ -272,18 +314,29 @@ impl ModeTolerance {
 
     /// Whether `model` is within the tolerance about `flown`: period, and time to half or double amplitude or damping ratio.
     pub fn holds(&self, flown: &ModeValues, model: &ModeValues) -> bool {
-        let differs = |of: fn(&ModeValues) -> Option<f64>| Some(((of(model)? - of(flown)?).abs(), of(flown)?.abs()));
-        let period = differs(|values| values.period_s).is_some_and(|(by, of)| by <= self.of_period_s(of));
-        let amplitude = differs(|values| values.time_to_half_s).is_some_and(|(by, of)| by <= self.amplitude_time * of);
-        let damping = differs(|values| values.damping_ratio).is_some_and(|(by, _)| by <= self.damping_ratio);
+        let differs = |of: fn(&ModeValues) -> Option<f64>| {
+            Some(((of(model)? - of(flown)?).abs(), of(flown)?.abs()))
+        };
+        let period =
+            differs(|values| values.period_s).is_some_and(|(by, of)| by <= self.of_period_s(of));
+        let amplitude = differs(|values| values.time_to_half_s)
+            .is_some_and(|(by, of)| by <= self.amplitude_time * of);
+        let damping =
+            differs(|values| values.damping_ratio).is_some_and(|(by, _)| by <= self.damping_ratio);
         period && (amplitude || damping)
     }
 
     /// Whether the flown mode is known to within the tolerance itself.
     pub fn is_known(&self, flown: &ModeValues, deviation: &ModeValues) -> bool {
-        let within = |of: fn(&ModeValues) -> Option<f64>, most: f64| of(deviation).is_some_and(|sd| sd <= most);
-        let period_s = flown.period_s.map_or(0.0, |period_s| self.of_period_s(period_s));
-        let amplitude_s = flown.time_to_half_s.map_or(0.0, |time_s| self.amplitude_time * time_s.abs());
+        let within = |of: fn(&ModeValues) -> Option<f64>, most: f64| {
+            of(deviation).is_some_and(|sd| sd <= most)
+        };
+        let period_s = flown
+            .period_s
+            .map_or(0.0, |period_s| self.of_period_s(period_s));
+        let amplitude_s = flown
+            .time_to_half_s
+            .map_or(0.0, |time_s| self.amplitude_time * time_s.abs());
         let amplitude = within(|values| values.time_to_half_s, amplitude_s);
         within(|values| values.period_s, period_s)
             && (amplitude || within(|values| values.damping_ratio, self.damping_ratio))
@@ -297,7 +350,12 @@ impl ModeTolerance {
             ("damping_ratio", Some(self.damping_ratio)),
         ];
         match not_positive(values) {
-            Some((name, found)) => Err(ModeToleranceError { row, response: self.response.clone(), name, found }),
+            Some((name, found)) => Err(ModeToleranceError {
+                row,
+                response: self.response.clone(),
+                name,
+                found,
+            }),
             None => Ok(()),
         }
     }
@@ -319,7 +377,9 @@ impl TryFrom<Vec<ModeTolerance>> for ModeToleranceTable {
     type Error = ModeToleranceError;
 
     fn try_from(rows: Vec<ModeTolerance>) -> Result<Self, ModeToleranceError> {
-        rows.iter().enumerate().try_for_each(|(index, row)| row.check(index + 1))?;
+        rows.iter()
+            .enumerate()
+            .try_for_each(|(index, row)| row.check(index + 1))?;
         Ok(Self(rows))
     }
 }
@@ -338,7 +398,12 @@ impl Default for ModeToleranceTable {
         };
         Self(vec![
             row("long term", ModeName::Phugoid, None, "2.c.3.a"),
-            row("lateral-directional oscillation", ModeName::DutchRoll, Some(0.5), "2.d.3.a"),
+            row(
+                "lateral-directional oscillation",
+                ModeName::DutchRoll,
+                Some(0.5),
+                "2.d.3.a",
+            ),
         ])
     }
 }
@@ -358,7 +423,16 @@ mod tests {
 
     fn of(a: DMatrix<f64>) -> Vec<Mode> {
         let n = a.nrows();
-        modes(&StateSpace::new(a, DMatrix::zeros(n, 1), DMatrix::zeros(1, n), DMatrix::zeros(1, 1)).unwrap()).unwrap()
+        modes(
+            &StateSpace::new(
+                a,
+                DMatrix::zeros(n, 1),
+                DMatrix::zeros(1, n),
+                DMatrix::zeros(1, 1),
+            )
+            .unwrap(),
+        )
+        .unwrap()
     }
 
     fn band() -> Band {
@@ -372,14 +446,28 @@ mod tests {
     /// Verdict of a Dutch roll against a flown one of -0.4 + 2j.
     fn verdict(re: f64, im: f64, estimates: &[PoleEstimate]) -> ModeVerdict {
         let (flown, model) = (pair(-0.4, 2.0), pair(re, im));
-        let rows =
-            compare_modes(unnamed(&flown), &[unnamed(&model)], estimates, band(), &ModeToleranceTable::default());
-        assert_eq!((rows.len(), rows[0].name), (1, Some(ModeName::DutchRoll)), "a conjugate pair is one row");
+        let rows = compare_modes(
+            unnamed(&flown),
+            &[unnamed(&model)],
+            estimates,
+            band(),
+            &ModeToleranceTable::default(),
+        );
+        assert_eq!(
+            (rows.len(), rows[0].name),
+            (1, Some(ModeName::DutchRoll)),
+            "a conjugate pair is one row"
+        );
         rows[0].verdicts[0]
     }
 
     fn estimate(sd_re: f64, sd_im: f64) -> PoleEstimate {
-        PoleEstimate { pole: Complex::new(-0.4, 2.0), sd_re, sd_im, determined: true }
+        PoleEstimate {
+            pole: Complex::new(-0.4, 2.0),
+            sd_re,
+            sd_im,
+            determined: true,
+        }
     }
 
     #[test]
@@ -389,7 +477,10 @@ mod tests {
         assert!((values.time_to_half_s.unwrap() - LN_2 / 0.4).abs() < 1e-14);
         assert!((values.damping_ratio.unwrap() - 0.4 / 4.16_f64.sqrt()).abs() < 1e-14);
         let growing = ModeValues::of(&of(dmatrix![0.1])[0]);
-        assert!(growing.period_s.is_none() && (growing.time_to_half_s.unwrap() + LN_2 / 0.1).abs() < 1e-14);
+        assert!(
+            growing.period_s.is_none()
+                && (growing.time_to_half_s.unwrap() + LN_2 / 0.1).abs() < 1e-14
+        );
     }
 
     #[test]
@@ -401,18 +492,40 @@ mod tests {
         // Time to half 15 % off; the damping ratio by 0.0195 or by 0.029.
         assert_eq!(verdict(-0.36, 1.99, &[]), ModeVerdict::Within);
         assert_eq!(verdict(-0.34, 2.0, &[]), ModeVerdict::Outside);
-        assert_eq!(verdict(0.4, 2.0, &[]), ModeVerdict::Outside, "as fast, but growing");
+        assert_eq!(
+            verdict(0.4, 2.0, &[]),
+            ModeVerdict::Outside,
+            "as fast, but growing"
+        );
     }
 
     #[test]
     fn a_mode_that_is_known_less_well_than_the_tolerance_is_not_determined() {
-        assert_eq!(verdict(-0.4, 2.0, &[estimate(0.01, 0.01)]), ModeVerdict::Within);
+        assert_eq!(
+            verdict(-0.4, 2.0, &[estimate(0.01, 0.01)]),
+            ModeVerdict::Within
+        );
         // A period of 3.14 s to 0.31 s is within 0.5 s; time to half to 25 %, damping to 0.045.
-        assert_eq!(verdict(-0.4, 2.0, &[estimate(0.1, 0.2)]), ModeVerdict::NotDetermined);
-        assert_eq!(verdict(-0.4, 2.0, &[estimate(0.01, 0.4)]), ModeVerdict::NotDetermined);
-        let by_records = PoleEstimate { determined: false, ..estimate(0.0, 0.0) };
-        assert_eq!(verdict(-0.4, 2.0, &[by_records]), ModeVerdict::NotDetermined);
-        let of_another = PoleEstimate { pole: Complex::new(-0.4, 3.0), ..by_records };
+        assert_eq!(
+            verdict(-0.4, 2.0, &[estimate(0.1, 0.2)]),
+            ModeVerdict::NotDetermined
+        );
+        assert_eq!(
+            verdict(-0.4, 2.0, &[estimate(0.01, 0.4)]),
+            ModeVerdict::NotDetermined
+        );
+        let by_records = PoleEstimate {
+            determined: false,
+            ..estimate(0.0, 0.0)
+        };
+        assert_eq!(
+            verdict(-0.4, 2.0, &[by_records]),
+            ModeVerdict::NotDetermined
+        );
+        let of_another = PoleEstimate {
+            pole: Complex::new(-0.4, 3.0),
+            ..by_records
+        };
         assert_eq!(verdict(-0.4, 2.0, &[of_another]), ModeVerdict::Within);
     }
 
@@ -421,10 +534,16 @@ mod tests {
         let (sd_re, sd_im) = (1e-4, 2e-4);
         let deviation = ModeValues::deviation(&pair(-0.4, 2.0)[0], &estimate(sd_re, sd_im));
         let half = |values: fn(&ModeValues) -> Option<f64>, re: f64, im: f64| {
-            let at = |sign: f64| values(&ModeValues::of(&pair(-0.4 + sign * re, 2.0 + sign * im)[0])).unwrap();
+            let at = |sign: f64| {
+                values(&ModeValues::of(&pair(-0.4 + sign * re, 2.0 + sign * im)[0])).unwrap()
+            };
             0.5 * (at(1.0) - at(-1.0))
         };
-        for values in [|of: &ModeValues| of.period_s, |of| of.time_to_half_s, |of| of.damping_ratio] as [fn(&_) -> _; 3]
+        for values in [
+            |of: &ModeValues| of.period_s,
+            |of| of.time_to_half_s,
+            |of| of.damping_ratio,
+        ] as [fn(&_) -> _; 3]
         {
             let expected = half(values, sd_re, 0.0).hypot(half(values, 0.0, sd_im));
             // Third order of 1e-4.
@@ -435,27 +554,69 @@ mod tests {
     #[test]
     fn a_mode_below_the_band_is_not_determined_and_one_without_a_tolerance_is_only_shown() {
         let flown = of(dmatrix![-0.02, 0.2, 0.0; -0.2, -0.02, 0.0; 0.0, 0.0, -3.0]);
-        let rows = compare_modes(unnamed(&flown), &[unnamed(&flown)], &[], band(), &ModeToleranceTable::default());
-        let said: Vec<_> = rows.iter().map(|row| (row.name, row.is_determined, row.verdicts[0])).collect();
+        let rows = compare_modes(
+            unnamed(&flown),
+            &[unnamed(&flown)],
+            &[],
+            band(),
+            &ModeToleranceTable::default(),
+        );
+        let said: Vec<_> = rows
+            .iter()
+            .map(|row| (row.name, row.is_determined, row.verdicts[0]))
+            .collect();
         let expected = [
             (Some(ModeName::Phugoid), false, ModeVerdict::NotDetermined),
-            (Some(ModeName::RollSubsidence), true, ModeVerdict::NoTolerance),
+            (
+                Some(ModeName::RollSubsidence),
+                true,
+                ModeVerdict::NoTolerance,
+            ),
         ];
         assert_eq!(said, expected);
     }
 
     #[test]
     fn rows_are_named_by_the_physics_model_and_gaps_are_said() {
-        let (flown, physics) = (of(dmatrix![-0.4, 2.0, 0.0; -2.0, -0.4, 0.0; 0.0, 0.0, -3.0]), pair(-0.5, 2.1));
+        let (flown, physics) = (
+            of(dmatrix![-0.4, 2.0, 0.0; -2.0, -0.4, 0.0; 0.0, 0.0, -3.0]),
+            pair(-0.5, 2.1),
+        );
         let states = ["w".to_owned(), "q".to_owned()];
-        let physics = ModelModes { modes: &physics, states: &states };
-        let rows =
-            compare_modes(unnamed(&flown), &[physics, unnamed(&[])], &[], band(), &ModeToleranceTable::default());
-        assert_eq!((rows[0].name, rows[0].named_by), (Some(ModeName::ShortPeriod), NamedBy::States));
-        assert_eq!(rows[0].verdicts, [ModeVerdict::NoTolerance, ModeVerdict::NotPaired]);
-        assert_eq!((rows[1].name, rows[1].named_by), (Some(ModeName::RollSubsidence), NamedBy::Frequency));
+        let physics = ModelModes {
+            modes: &physics,
+            states: &states,
+        };
+        let rows = compare_modes(
+            unnamed(&flown),
+            &[physics, unnamed(&[])],
+            &[],
+            band(),
+            &ModeToleranceTable::default(),
+        );
+        assert_eq!(
+            (rows[0].name, rows[0].named_by),
+            (Some(ModeName::ShortPeriod), NamedBy::States)
+        );
+        assert_eq!(
+            rows[0].verdicts,
+            [ModeVerdict::NoTolerance, ModeVerdict::NotPaired]
+        );
+        assert_eq!(
+            (rows[1].name, rows[1].named_by),
+            (Some(ModeName::RollSubsidence), NamedBy::Frequency)
+        );
         assert_eq!(rows[1].models, [None, None]);
-        assert_eq!(compare_modes(unnamed(&[]), &[physics], &[], band(), &ModeToleranceTable::default()), []);
+        assert_eq!(
+            compare_modes(
+                unnamed(&[]),
+                &[physics],
+                &[],
+                band(),
+                &ModeToleranceTable::default()
+            ),
+            []
+        );
     }
 
     #[test]
@@ -463,32 +624,65 @@ mod tests {
         // An overdamped flown pole, and a physics phugoid of two poles: they were two rows named phugoid.
         let flown = of(dmatrix![-0.26, 0.0; 0.0, -2.8]);
         let (physics, states) = (pair(-0.26, 0.1), ["u".to_owned(), "theta".to_owned()]);
-        let physics = ModelModes { modes: &physics, states: &states };
+        let physics = ModelModes {
+            modes: &physics,
+            states: &states,
+        };
         let table = ModeToleranceTable::default();
         let rows = compare_modes(unnamed(&flown), &[physics], &[], band(), &table);
-        let found: Vec<_> = rows.iter().map(|row| (row.name, row.named_by, row.verdicts[0])).collect();
+        let found: Vec<_> = rows
+            .iter()
+            .map(|row| (row.name, row.named_by, row.verdicts[0]))
+            .collect();
         let expected = [
-            (Some(ModeName::Phugoid), NamedBy::States, ModeVerdict::NotDetermined),
-            (Some(ModeName::RollSubsidence), NamedBy::Frequency, ModeVerdict::NotPaired),
+            (
+                Some(ModeName::Phugoid),
+                NamedBy::States,
+                ModeVerdict::NotDetermined,
+            ),
+            (
+                Some(ModeName::RollSubsidence),
+                NamedBy::Frequency,
+                ModeVerdict::NotPaired,
+            ),
         ];
         assert_eq!(found, expected);
         // Of two flown poles with a partner of the same name the nearer one keeps it.
         let split = of(dmatrix![-0.26, 0.0; 0.0, -0.6]);
-        let (physics, flown) = (ModelModes { modes: &split, states: &states }, of(dmatrix![-0.27, 0.0; 0.0, -0.8]));
+        let (physics, flown) = (
+            ModelModes {
+                modes: &split,
+                states: &states,
+            },
+            of(dmatrix![-0.27, 0.0; 0.0, -0.8]),
+        );
         let rows = compare_modes(unnamed(&flown), &[physics], &[], band(), &table);
-        assert_eq!(rows.iter().map(|row| row.name).collect::<Vec<_>>(), [Some(ModeName::Phugoid), None]);
+        assert_eq!(
+            rows.iter().map(|row| row.name).collect::<Vec<_>>(),
+            [Some(ModeName::Phugoid), None]
+        );
         assert!(rows.iter().all(|row| row.models[0].is_some()));
     }
 
     #[test]
     fn a_table_of_modes_comes_back_as_it_was_and_a_wrong_row_is_refused() {
         let text = serde_json::to_string(&ModeToleranceTable::default()).unwrap();
-        assert_eq!(serde_json::from_str::<ModeToleranceTable>(&text).unwrap(), ModeToleranceTable::default());
-        assert!(text.contains(r#""modes":["dutch-roll"],"period":0.1,"period_s":0.5"#), "{text}");
-        let wrong = text.replace("\"damping_ratio\":0.02", "\"damping_ratio\":0.0");
-        let words = serde_json::from_str::<ModeToleranceTable>(&wrong).unwrap_err().to_string();
+        assert_eq!(
+            serde_json::from_str::<ModeToleranceTable>(&text).unwrap(),
+            ModeToleranceTable::default()
+        );
         assert!(
-            words.starts_with("tolerance of modes 1, \"long term\": expected damping_ratio above zero, found 0"),
+            text.contains(r#""modes":["dutch-roll"],"period":0.1,"period_s":0.5"#),
+            "{text}"
+        );
+        let wrong = text.replace("\"damping_ratio\":0.02", "\"damping_ratio\":0.0");
+        let words = serde_json::from_str::<ModeToleranceTable>(&wrong)
+            .unwrap_err()
+            .to_string();
+        assert!(
+            words.starts_with(
+                "tolerance of modes 1, \"long term\": expected damping_ratio above zero, found 0"
+            ),
             "{words}"
         );
     }

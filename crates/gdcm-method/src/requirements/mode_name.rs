@@ -82,7 +82,10 @@ fn state_kind(name: &str) -> Option<&'static str> {
         return Some("flap");
     }
     let end = lower.find([' ', '[', '(']).unwrap_or(lower.len());
-    let word: String = lower[..end].chars().filter(|letter| *letter != '_').collect();
+    let word: String = lower[..end]
+        .chars()
+        .filter(|letter| *letter != '_')
+        .collect();
     Some(match word.trim_end_matches("dot") {
         "u" | "ub" | "vx" => "u",
         "v" | "vb" | "vy" | "beta" => "v",
@@ -93,7 +96,9 @@ fn state_kind(name: &str) -> Option<&'static str> {
         "phi" | "bank" => "phi",
         "theta" => "theta",
         "psi" | "heading" => "psi",
-        "a1" | "b1" | "a1s" | "b1s" | "a1c" | "b1c" | "beta1c" | "beta1s" | "betac" | "betas" => "flap",
+        "a1" | "b1" | "a1s" | "b1s" | "a1c" | "b1c" | "beta1c" | "beta1s" | "betac" | "betas" => {
+            "flap"
+        }
         _ => return None,
     })
 }
@@ -112,8 +117,18 @@ impl ModeName {
     fn by_states(mode: &Mode, shares: &[(usize, f64)], states: &[String]) -> Option<Self> {
         let kinds: Vec<Option<&str>> = states.iter().map(|name| state_kind(name)).collect();
         let share = |of: &[&str]| -> f64 {
-            let is_of = |state: usize| kinds.get(state).copied().flatten().is_some_and(|kind| of.contains(&kind));
-            shares.iter().filter(|(state, _)| is_of(*state)).map(|(_, share)| share).sum()
+            let is_of = |state: usize| {
+                kinds
+                    .get(state)
+                    .copied()
+                    .flatten()
+                    .is_some_and(|kind| of.contains(&kind))
+            };
+            shares
+                .iter()
+                .filter(|(state, _)| is_of(*state))
+                .map(|(_, share)| share)
+                .sum()
         };
         let is_slow_enough = mode.frequency_rad_s < FASTEST_REGRESSING_RAD_S;
         if share(&["flap"]) >= FLAP_SHARE && mode.oscillates() && is_slow_enough {
@@ -160,12 +175,24 @@ mod tests {
 
     fn modes_of(a: DMatrix<f64>) -> Vec<Mode> {
         let n = a.nrows();
-        modes(&StateSpace::new(a, DMatrix::zeros(n, 1), DMatrix::zeros(1, n), DMatrix::zeros(1, 1)).unwrap()).unwrap()
+        modes(
+            &StateSpace::new(
+                a,
+                DMatrix::zeros(n, 1),
+                DMatrix::zeros(1, n),
+                DMatrix::zeros(1, 1),
+            )
+            .unwrap(),
+        )
+        .unwrap()
     }
 
     fn named(a: DMatrix<f64>, states: &[&str]) -> Vec<(Option<ModeName>, NamedBy)> {
         let states: Vec<String> = states.iter().map(|name| (*name).to_owned()).collect();
-        modes_of(a).iter().map(|mode| ModeName::of(mode, &states)).collect()
+        modes_of(a)
+            .iter()
+            .map(|mode| ModeName::of(mode, &states))
+            .collect()
     }
 
     #[test]
@@ -180,20 +207,42 @@ mod tests {
             0.0, 0.0, 0.0, 0.0, -4.0, 0.0;
             0.0, 0.0, 0.0, 0.0, 0.0, -0.02];
         let found = named(a, &["u [m/s]", "theta", "w", "q (rad/s)", "p", "phi"]);
-        let names = [Spiral, Phugoid, Phugoid, ShortPeriod, ShortPeriod, RollSubsidence];
+        let names = [
+            Spiral,
+            Phugoid,
+            Phugoid,
+            ShortPeriod,
+            ShortPeriod,
+            RollSubsidence,
+        ];
         assert_eq!(found, names.map(|name| (Some(name), NamedBy::States)));
     }
 
     #[test]
     fn states_of_actuators_leave_a_mode_without_a_name() {
         let pair = || dmatrix![-16.0, 14.0; -14.0, -16.0];
-        assert_eq!(named(pair(), &["act_lon", "act_lon_dot"])[0], (None, NamedBy::States));
+        assert_eq!(
+            named(pair(), &["act_lon", "act_lon_dot"])[0],
+            (None, NamedBy::States)
+        );
         // Two of one make cannot be told apart; their frequency says nothing where their states are known.
         let twice = dmatrix![-6.0, 5.0, 1.0, 0.0; -5.0, -6.0, 0.0, 1.0; 0.0, 0.0, -6.0, 5.0; 0.0, 0.0, -5.0, -6.0];
-        assert_eq!(named(twice, &["act_lon", "act_lon_dot", "act_lat", "act_lat_dot"])[0], (None, NamedBy::States));
-        assert_eq!(named(pair() * 0.4, &["b1s", "p"])[0].0, Some(ModeName::RegressingFlap));
-        assert_eq!(named(pair() * 0.1, &["v", "r"])[0].0, Some(ModeName::DutchRoll));
-        assert_eq!(named(pair() * 0.4, &["a (lon flap)", "beta_1s_dot"])[0].0, Some(ModeName::RegressingFlap));
+        assert_eq!(
+            named(twice, &["act_lon", "act_lon_dot", "act_lat", "act_lat_dot"])[0],
+            (None, NamedBy::States)
+        );
+        assert_eq!(
+            named(pair() * 0.4, &["b1s", "p"])[0].0,
+            Some(ModeName::RegressingFlap)
+        );
+        assert_eq!(
+            named(pair() * 0.1, &["v", "r"])[0].0,
+            Some(ModeName::DutchRoll)
+        );
+        assert_eq!(
+            named(pair() * 0.4, &["a (lon flap)", "beta_1s_dot"])[0].0,
+            Some(ModeName::RegressingFlap)
+        );
     }
 
     #[test]

@@ -37,16 +37,24 @@ pub(super) struct ModePair {
 
 /// One mode of each conjugate pair, by index.
 pub(super) fn single_modes(modes: &[Mode]) -> Vec<usize> {
-    (0..modes.len()).filter(|&index| modes[index].pole.im >= 0.0).collect()
+    (0..modes.len())
+        .filter(|&index| modes[index].pole.im >= 0.0)
+        .collect()
 }
 
 /// The partner among `model` of each of [`single_modes`] of `flown`; none where it is unpaired. No mode is a partner twice.
-pub(super) fn mode_pairs(flown: &[Mode], model: &[Mode], least_rad_s: f64) -> Vec<Option<ModePair>> {
+pub(super) fn mode_pairs(
+    flown: &[Mode],
+    model: &[Mode],
+    least_rad_s: f64,
+) -> Vec<Option<ModePair>> {
     let rows = single_modes(flown);
     let columns = single_modes(model);
     let scales = output_scales(flown, least_rad_s);
     let cost = |row: usize, column: usize| {
-        let Some(&mode) = columns.get(column) else { return UNPAIRED_COST };
+        let Some(&mode) = columns.get(column) else {
+            return UNPAIRED_COST;
+        };
         pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s).unwrap_or(BARRED_COST)
     };
     // Each flown mode has a column of its own besides: to be unpaired.
@@ -61,12 +69,19 @@ pub(super) fn mode_pairs(flown: &[Mode], model: &[Mode], least_rad_s: f64) -> Ve
 
 /// `d + 1 - c` of two modes; none where they are no pair.
 fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Option<f64> {
-    let largest = flown.frequency_rad_s.max(model.frequency_rad_s).max(least_rad_s);
+    let largest = flown
+        .frequency_rad_s
+        .max(model.frequency_rad_s)
+        .max(least_rad_s);
     let distance = (flown.pole - model.pole).norm() / largest;
     // Where a shape is not known, the distance decides.
     let likeness = likeness(flown, model, scales).unwrap_or(LEAST_PAIR_LIKENESS);
     let is_pair = distance <= LARGEST_PAIR_DISTANCE && likeness >= LEAST_PAIR_LIKENESS;
-    if is_pair { Some(distance + 1.0 - likeness) } else { None }
+    if is_pair {
+        Some(distance + 1.0 - likeness)
+    } else {
+        None
+    }
 }
 
 /// `s_i` of each output; zero where no flown mode reaches it.
@@ -113,13 +128,22 @@ mod tests {
     /// The modes of lags `-rate`, each seen by the outputs as its row says.
     fn lags(rates: &[f64], shapes: &[[f64; 2]]) -> Vec<Mode> {
         let n = rates.len();
-        let a = DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(n, rates.iter().map(|rate| -rate)));
+        let a = DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(
+            n,
+            rates.iter().map(|rate| -rate),
+        ));
         let c = DMatrix::from_fn(2, n, |output, state| shapes[state][output]);
-        modes(&StateSpace::new(a, DMatrix::from_element(n, 1, 1.0), c, DMatrix::zeros(2, 1)).unwrap()).unwrap()
+        modes(
+            &StateSpace::new(a, DMatrix::from_element(n, 1, 1.0), c, DMatrix::zeros(2, 1)).unwrap(),
+        )
+        .unwrap()
     }
 
     fn partners(flown: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
-        mode_pairs(flown, model, 0.5).into_iter().map(|pair| pair.map(|pair| pair.mode)).collect()
+        mode_pairs(flown, model, 0.5)
+            .into_iter()
+            .map(|pair| pair.map(|pair| pair.mode))
+            .collect()
     }
 
     #[test]
@@ -127,8 +151,14 @@ mod tests {
         let (roll, pitch) = ([1.0, 0.0], [0.0, 1.0]);
         let flown = lags(&[2.0, 3.0], &[pitch, roll]);
         // By distance alone the first would go with the first.
-        assert_eq!(partners(&flown, &lags(&[2.1, 2.9], &[roll, pitch])), [Some(1), Some(0)]);
-        assert_eq!(partners(&flown, &lags(&[2.1, 2.9], &[pitch, roll])), [Some(0), Some(1)]);
+        assert_eq!(
+            partners(&flown, &lags(&[2.1, 2.9], &[roll, pitch])),
+            [Some(1), Some(0)]
+        );
+        assert_eq!(
+            partners(&flown, &lags(&[2.1, 2.9], &[pitch, roll])),
+            [Some(0), Some(1)]
+        );
     }
 
     #[test]
@@ -136,31 +166,62 @@ mod tests {
         let (roll, pitch) = ([1.0, 0.2], [0.1, 1.0]);
         let in_other_units = |[first, second]: [f64; 2]| [first, 1e-3 * second];
         let [flown, model] = [[2.0, 3.0], [2.4, 2.6]];
-        let before = mode_pairs(&lags(&flown, &[roll, pitch]), &lags(&model, &[pitch, roll]), 0.5);
+        let before = mode_pairs(
+            &lags(&flown, &[roll, pitch]),
+            &lags(&model, &[pitch, roll]),
+            0.5,
+        );
         let [roll, pitch] = [roll, pitch].map(in_other_units);
-        let after = mode_pairs(&lags(&flown, &[roll, pitch]), &lags(&model, &[pitch, roll]), 0.5);
+        let after = mode_pairs(
+            &lags(&flown, &[roll, pitch]),
+            &lags(&model, &[pitch, roll]),
+            0.5,
+        );
         assert_eq!(before.iter().flatten().count(), 2);
         for (before, after) in before.iter().flatten().zip(after.iter().flatten()) {
-            assert!(before.mode == after.mode && (before.cost - after.cost).abs() < 1e-12, "{before:?} {after:?}");
+            assert!(
+                before.mode == after.mode && (before.cost - after.cost).abs() < 1e-12,
+                "{before:?} {after:?}"
+            );
         }
     }
 
     #[test]
     fn what_is_farther_than_half_the_larger_modulus_is_unpaired() {
         let shape = [[1.0, 0.5]];
-        assert_eq!(partners(&lags(&[2.8], &shape), &lags(&[0.28], &shape)), [None]);
-        assert_eq!(partners(&lags(&[2.0], &shape), &lags(&[1.01], &shape)), [Some(0)]);
-        assert_eq!(partners(&lags(&[2.0], &shape), &lags(&[0.99], &shape)), [None]);
+        assert_eq!(
+            partners(&lags(&[2.8], &shape), &lags(&[0.28], &shape)),
+            [None]
+        );
+        assert_eq!(
+            partners(&lags(&[2.0], &shape), &lags(&[1.01], &shape)),
+            [Some(0)]
+        );
+        assert_eq!(
+            partners(&lags(&[2.0], &shape), &lags(&[0.99], &shape)),
+            [None]
+        );
         // Below the band by its lower end, 0.5 rad/s.
-        assert_eq!(partners(&lags(&[0.2], &shape), &lags(&[0.01], &shape)), [Some(0)]);
+        assert_eq!(
+            partners(&lags(&[0.2], &shape), &lags(&[0.01], &shape)),
+            [Some(0)]
+        );
     }
 
     #[test]
     fn a_conjugate_pair_is_the_partner_of_one_mode() {
         let pair = |re: f64, im: f64| {
             let a = dmatrix![re, im; -im, re];
-            modes(&StateSpace::new(a, dmatrix![1.0; 0.0], dmatrix![1.0, 0.0; 0.0, 1.0], DMatrix::zeros(2, 1)).unwrap())
-                .unwrap()
+            modes(
+                &StateSpace::new(
+                    a,
+                    dmatrix![1.0; 0.0],
+                    dmatrix![1.0, 0.0; 0.0, 1.0],
+                    DMatrix::zeros(2, 1),
+                )
+                .unwrap(),
+            )
+            .unwrap()
         };
         let shape = [1.0, 1.0];
         let found = partners(&lags(&[0.26, 0.3], &[shape, shape]), &pair(-0.28, 0.05));
@@ -171,6 +232,9 @@ mod tests {
     #[test]
     fn a_mode_that_no_input_moves_is_no_partner() {
         let flown = lags(&[2.0], &[[1.0, 0.0]]);
-        assert_eq!(partners(&flown, &lags(&[2.0, 2.6], &[[0.0, 0.0], [1.0, 0.0]])), [Some(1)]);
+        assert_eq!(
+            partners(&flown, &lags(&[2.0, 2.6], &[[0.0, 0.0], [1.0, 0.0]])),
+            [Some(1)]
+        );
     }
 }

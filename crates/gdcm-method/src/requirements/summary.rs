@@ -34,7 +34,10 @@ impl OnAxisAndAll {
             let defined: Vec<f64> = counted.filter_map(|(_, value)| *value).collect();
             (!defined.is_empty()).then(|| mean(&defined))
         };
-        Self { on_axis: mean_of(&|pair| on_axis.get(pair) == Some(&true)), all: mean_of(&|_| true) }
+        Self {
+            on_axis: mean_of(&|pair| on_axis.get(pair) == Some(&true)),
+            all: mean_of(&|_| true),
+        }
     }
 }
 
@@ -51,19 +54,30 @@ impl RmsCost {
     /// Over all samples of `windows`; none where there are no samples, or no output has a weight.
     pub fn of(windows: &[ValidationWindow], outputs: &[Channel]) -> Option<Self> {
         let weights: Vec<Option<f64>> = outputs.iter().map(|output| factor(&output.unit)).collect();
-        let counted: Vec<(usize, f64)> =
-            weights.iter().enumerate().filter_map(|(output, weight)| Some((output, (*weight)?))).collect();
+        let counted: Vec<(usize, f64)> = weights
+            .iter()
+            .enumerate()
+            .filter_map(|(output, weight)| Some((output, (*weight)?)))
+            .collect();
         let (mut sum, mut samples) = (0.0, 0);
         for window in windows {
             samples += window.measured.nrows();
-            for &(output, factor) in counted.iter().filter(|(output, _)| *output < window.measured.ncols()) {
+            for &(output, factor) in counted
+                .iter()
+                .filter(|(output, _)| *output < window.measured.ncols())
+            {
                 let error = window.measured.column(output) - window.simulated.column(output);
                 sum += factor * factor * error.norm_squared();
             }
         }
-        let left_out = (0..outputs.len()).filter(|&output| weights[output].is_none()).collect();
+        let left_out = (0..outputs.len())
+            .filter(|&output| weights[output].is_none())
+            .collect();
         let count = samples * counted.len();
-        (count > 0).then(|| Self { value: (sum / count as f64).sqrt(), left_out })
+        (count > 0).then(|| Self {
+            value: (sum / count as f64).sqrt(),
+            left_out,
+        })
     }
 }
 
@@ -83,10 +97,21 @@ fn factor(unit: &str) -> Option<f64> {
 /// it stands at fewer than two frequencies.
 pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> Option<f64> {
     let omega = mismatch.omega(omega);
-    let (&first, &last) = omega.first().zip(omega.last()).filter(|(first, last)| first < last)?;
-    let error_db: Vec<f64> = correction.magnitudes_db(&mismatch.magnitude_db, omega).collect();
-    let error_deg: Vec<f64> = correction.phases(&mismatch.phase, omega).map(|phase| wrap(phase).to_degrees()).collect();
-    let outside: f64 = leaves(omega, &error_db, &error_deg).iter().map(|(from, to)| (to / from).ln()).sum();
+    let (&first, &last) = omega
+        .first()
+        .zip(omega.last())
+        .filter(|(first, last)| first < last)?;
+    let error_db: Vec<f64> = correction
+        .magnitudes_db(&mismatch.magnitude_db, omega)
+        .collect();
+    let error_deg: Vec<f64> = correction
+        .phases(&mismatch.phase, omega)
+        .map(|phase| wrap(phase).to_degrees())
+        .collect();
+    let outside: f64 = leaves(omega, &error_db, &error_deg)
+        .iter()
+        .map(|(from, to)| (to / from).ln())
+        .sum();
     Some((1.0 - outside / (last / first).ln()).clamp(0.0, 1.0))
 }
 
@@ -125,15 +150,28 @@ pub struct Summary {
 impl Summary {
     /// The summary costs of a model.
     pub fn of(source: &SummarySource<'_>) -> Self {
-        let SummarySource { mismatch, correction, on_axis, omega, average, validation, outputs } = *source;
+        let SummarySource {
+            mismatch,
+            correction,
+            on_axis,
+            omega,
+            average,
+            validation,
+            outputs,
+        } = *source;
         let of_each = |value: &dyn Fn(&Mismatch, GainDelay) -> Option<f64>| {
-            let values = mismatch.map(|pair, mismatch| value(mismatch.as_ref()?, correction(pair)?));
+            let values =
+                mismatch.map(|pair, mismatch| value(mismatch.as_ref()?, correction(pair)?));
             OnAxisAndAll::of(&values, on_axis)
         };
         Self {
-            cost: of_each(&|mismatch, correction| Some(mismatch.cost(omega, correction, average).total())),
+            cost: of_each(&|mismatch, correction| {
+                Some(mismatch.cost(omega, correction, average).total())
+            }),
             rms: validation.and_then(|validation| RmsCost::of(&validation.windows, outputs)),
-            theil: validation.map(|validation| validation.theil.clone()).unwrap_or_default(),
+            theil: validation
+                .map(|validation| validation.theil.clone())
+                .unwrap_or_default(),
             muad: of_each(&|mismatch, correction| muad_share(mismatch, omega, correction)),
         }
     }
@@ -152,13 +190,24 @@ mod tests {
 
     fn mismatch(magnitude_db: f64, delay_s: f64) -> Mismatch {
         let phase = omega().iter().map(|omega| wrap(-omega * delay_s)).collect();
-        Mismatch { magnitude_db: vec![magnitude_db; 200], phase, coherence_weights: None, turn: 0.0 }
+        Mismatch {
+            magnitude_db: vec![magnitude_db; 200],
+            phase,
+            coherence_weights: None,
+            turn: 0.0,
+        }
     }
 
     fn window(measured: &[f64], simulated: &[f64]) -> ValidationWindow {
         let columns = |values: &[f64]| DMatrix::from_column_slice(values.len() / 3, 3, values);
         let (measured, simulated) = (columns(measured), columns(simulated));
-        ValidationWindow { record: 0, start_s: 0.0, sample_time_s: 0.1, measured, simulated }
+        ValidationWindow {
+            record: 0,
+            start_s: 0.0,
+            sample_time_s: 0.1,
+            measured,
+            simulated,
+        }
     }
 
     fn outputs() -> [Channel; 3] {
@@ -168,19 +217,32 @@ mod tests {
     #[test]
     fn a_degree_counts_as_a_foot_a_second_squared() {
         // Errors of 3 deg/s and of 1 ft/s^2 in both samples; the force has no weight.
-        let windows = [window(&[3.0, -3.0, 0.3048, 0.0, 9.0, 9.0], &[0.0, 0.0, 0.0, 0.3048, 0.0, 0.0])];
+        let windows = [window(
+            &[3.0, -3.0, 0.3048, 0.0, 9.0, 9.0],
+            &[0.0, 0.0, 0.0, 0.3048, 0.0, 0.0],
+        )];
         let cost = RmsCost::of(&windows, &outputs()).unwrap();
-        assert!((cost.value - 5.0_f64.sqrt()).abs() < 1e-13, "the root of (9 + 1) / 2: {cost:?}");
+        assert!(
+            (cost.value - 5.0_f64.sqrt()).abs() < 1e-13,
+            "the root of (9 + 1) / 2: {cost:?}"
+        );
         assert_eq!(cost.left_out, [2]);
         assert_eq!(RmsCost::of(&[], &outputs()), None);
         assert_eq!(RmsCost::of(&windows, &outputs()[2..]), None);
         let twice = [windows[0].clone(), windows[0].clone()];
-        assert_eq!(RmsCost::of(&twice, &outputs()).unwrap(), cost, "more of the same is the same");
+        assert_eq!(
+            RmsCost::of(&twice, &outputs()).unwrap(),
+            cost,
+            "more of the same is the same"
+        );
     }
 
     #[test]
     fn a_model_without_error_is_wholly_inside_and_costs_nothing() {
-        let (table, on_axis) = (PairTable::filled(1, 1, Some(mismatch(0.0, 0.0))), PairTable::filled(1, 1, true));
+        let (table, on_axis) = (
+            PairTable::filled(1, 1, Some(mismatch(0.0, 0.0))),
+            PairTable::filled(1, 1, true),
+        );
         let source = SummarySource {
             mismatch: &table,
             correction: &|_| Some(GainDelay::NONE),
@@ -191,7 +253,10 @@ mod tests {
             outputs: &outputs(),
         };
         let summary = Summary::of(&source);
-        assert_eq!((summary.cost.all, summary.muad.on_axis, summary.rms), (Some(0.0), Some(1.0), None));
+        assert_eq!(
+            (summary.cost.all, summary.muad.on_axis, summary.rms),
+            (Some(0.0), Some(1.0), None)
+        );
         assert!(summary.theil.is_empty());
     }
 
@@ -202,23 +267,44 @@ mod tests {
         let ranges = leaves(&omega, &[2.0; 200], &[0.0; 200]);
         let expected = 1.0 - (ranges[0].1 / ranges[0].0).ln() / 24.0_f64.ln();
         assert!((muad_share(&two_db, &omega, GainDelay::NONE).unwrap() - expected).abs() < 1e-14);
-        assert_eq!(muad_share(&two_db, &omega, GainDelay::new(db_to_ratio(-2.0), 0.0)), Some(1.0));
-        assert_eq!(muad_share(&mismatch(60.0, 0.0), &omega, GainDelay::NONE), Some(0.0));
+        assert_eq!(
+            muad_share(&two_db, &omega, GainDelay::new(db_to_ratio(-2.0), 0.0)),
+            Some(1.0)
+        );
+        assert_eq!(
+            muad_share(&mismatch(60.0, 0.0), &omega, GainDelay::NONE),
+            Some(0.0)
+        );
         // A delay of a quarter of a second that the correction takes off, turns and all.
         let lead = mismatch(0.0, -0.25);
         let share = muad_share(&lead, &omega, GainDelay::NONE).unwrap();
         assert!(share < 0.5, "{share}");
-        assert_eq!(muad_share(&lead, &omega, GainDelay::new(1.0, 0.25)), Some(1.0));
-        let one = Mismatch { magnitude_db: vec![0.0], phase: vec![0.0], coherence_weights: None, turn: 0.0 };
+        assert_eq!(
+            muad_share(&lead, &omega, GainDelay::new(1.0, 0.25)),
+            Some(1.0)
+        );
+        let one = Mismatch {
+            magnitude_db: vec![0.0],
+            phase: vec![0.0],
+            coherence_weights: None,
+            turn: 0.0,
+        };
         assert_eq!(muad_share(&one, &[1.0], GainDelay::NONE), None);
     }
 
     #[test]
     fn means_leave_out_what_is_not_defined() {
-        let values =
-            PairTable::from_fn(2, 2, |pair| [[Some(1.0), Some(5.0)], [None, Some(3.0)]][pair.output][pair.input]);
+        let values = PairTable::from_fn(2, 2, |pair| {
+            [[Some(1.0), Some(5.0)], [None, Some(3.0)]][pair.output][pair.input]
+        });
         let on_axis = PairTable::from_fn(2, 2, |pair| pair.output == pair.input);
-        assert_eq!(OnAxisAndAll::of(&values, &on_axis), OnAxisAndAll { on_axis: Some(2.0), all: Some(3.0) });
+        assert_eq!(
+            OnAxisAndAll::of(&values, &on_axis),
+            OnAxisAndAll {
+                on_axis: Some(2.0),
+                all: Some(3.0)
+            }
+        );
         let nothing = OnAxisAndAll::of(&PairTable::filled(2, 2, None), &on_axis);
         assert_eq!(nothing, OnAxisAndAll::default());
     }

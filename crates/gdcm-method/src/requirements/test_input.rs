@@ -62,7 +62,11 @@ const LONGEST_S: f64 = 600.0;
 impl Default for TestInput {
     /// A step of one unit of the stick, held for two seconds.
     fn default() -> Self {
-        Self { shape: TestInputShape::Step, size: 1.0, duration_s: 2.0 }
+        Self {
+            shape: TestInputShape::Step,
+            size: 1.0,
+            duration_s: 2.0,
+        }
     }
 }
 
@@ -77,8 +81,19 @@ struct TestInputText {
 impl TryFrom<TestInputText> for TestInput {
     type Error = TestInputError;
 
-    fn try_from(TestInputText { shape, size, duration_s }: TestInputText) -> Result<Self, TestInputError> {
-        Self { shape, size, duration_s }.checked()
+    fn try_from(
+        TestInputText {
+            shape,
+            size,
+            duration_s,
+        }: TestInputText,
+    ) -> Result<Self, TestInputError> {
+        Self {
+            shape,
+            size,
+            duration_s,
+        }
+        .checked()
     }
 }
 
@@ -88,9 +103,15 @@ impl TestInput {
     /// # Errors
     /// [`TestInputError::Numbers`].
     pub fn checked(self) -> Result<Self, TestInputError> {
-        let Self { size, duration_s, .. } = self;
+        let Self {
+            size, duration_s, ..
+        } = self;
         let is_duration = duration_s.is_finite() && duration_s > 0.0 && duration_s <= LONGEST_S;
-        if size.is_finite() && is_duration { Ok(self) } else { Err(TestInputError::Numbers { size, duration_s }) }
+        if size.is_finite() && is_duration {
+            Ok(self)
+        } else {
+            Err(TestInputError::Numbers { size, duration_s })
+        }
     }
 
     /// The input at `t = 0, dt, ...`, `samples` of them.
@@ -119,16 +140,25 @@ impl TestInput {
     ) -> Result<DMatrix<f64>, TestInputError> {
         self.checked()?;
         if input >= model.inputs() {
-            return Err(TestInputError::NoInput { input, inputs: model.inputs() });
+            return Err(TestInputError::NoInput {
+                input,
+                inputs: model.inputs(),
+            });
         }
         if !model.timing().is_plain() {
             return Err(TestInputError::Timing);
         }
         let held = FirstOrderHold::of(model, sample_time_s).ok_or(TestInputError::NotFinite)?;
         let mut moved = DMatrix::zeros(samples, model.inputs());
-        moved.column_mut(input).copy_from_slice(&self.signal(sample_time_s, samples));
+        moved
+            .column_mut(input)
+            .copy_from_slice(&self.signal(sample_time_s, samples));
         let answer = held.simulate(&DVector::zeros(model.order()), &moved);
-        answer.iter().all(|value| value.is_finite()).then_some(answer).ok_or(TestInputError::NotFinite)
+        answer
+            .iter()
+            .all(|value| value.is_finite())
+            .then_some(answer)
+            .ok_or(TestInputError::NotFinite)
     }
 }
 
@@ -139,23 +169,41 @@ mod tests {
     use nalgebra::dmatrix;
 
     fn test(shape: TestInputShape) -> TestInput {
-        TestInput { shape, size: 10.0, duration_s: 1.0 }
+        TestInput {
+            shape,
+            size: 10.0,
+            duration_s: 1.0,
+        }
     }
 
     fn lag() -> StateSpace {
-        StateSpace::new(dmatrix![-2.0], dmatrix![0.0, 1.0], dmatrix![1.0], dmatrix![0.0, 0.0]).unwrap()
+        StateSpace::new(
+            dmatrix![-2.0],
+            dmatrix![0.0, 1.0],
+            dmatrix![1.0],
+            dmatrix![0.0, 0.0],
+        )
+        .unwrap()
     }
 
     #[test]
     fn a_step_is_held_and_a_doublet_turns_in_its_middle() {
         let signal = |shape| test(shape).signal(0.25, 6);
-        assert_eq!(signal(TestInputShape::Step), [10.0, 10.0, 10.0, 10.0, 0.0, 0.0]);
-        assert_eq!(signal(TestInputShape::Doublet), [10.0, 10.0, -10.0, -10.0, 0.0, 0.0]);
+        assert_eq!(
+            signal(TestInputShape::Step),
+            [10.0, 10.0, 10.0, 10.0, 0.0, 0.0]
+        );
+        assert_eq!(
+            signal(TestInputShape::Doublet),
+            [10.0, 10.0, -10.0, -10.0, 0.0, 0.0]
+        );
     }
 
     #[test]
     fn the_answer_of_a_lag_to_a_step_is_its_known_one() {
-        let answer = test(TestInputShape::Step).answer(&lag(), 1, 0.1, 10).unwrap();
+        let answer = test(TestInputShape::Step)
+            .answer(&lag(), 1, 0.1, 10)
+            .unwrap();
         for (n, y) in answer.iter().enumerate() {
             // 10 / 2 (1 - e^(-2 t)); rounding of ten steps.
             let expected = 5.0 * (1.0 - (-0.2 * n as f64).exp());
@@ -165,24 +213,56 @@ mod tests {
 
     #[test]
     fn what_cannot_be_simulated_is_refused_in_words() {
-        let refused = |test: &TestInput, model: &StateSpace| test.answer(model, 1, 0.1, 5).unwrap_err().to_string();
+        let refused = |test: &TestInput, model: &StateSpace| {
+            test.answer(model, 1, 0.1, 5).unwrap_err().to_string()
+        };
         let step = test(TestInputShape::Step);
         let third = step.answer(&lag(), 2, 0.1, 5).unwrap_err().to_string();
         assert_eq!(third, "the model has 2 inputs, none of number 3");
-        assert!(refused(&TestInput { duration_s: 0.0, ..step }, &lag()).contains("found 10 and 0 s"));
-        let delayed = lag().timed(Timing { output_delays_s: Some(vec![0.1]), ..Timing::default() }).unwrap();
+        assert!(
+            refused(
+                &TestInput {
+                    duration_s: 0.0,
+                    ..step
+                },
+                &lag()
+            )
+            .contains("found 10 and 0 s")
+        );
+        let delayed = lag()
+            .timed(Timing {
+                output_delays_s: Some(vec![0.1]),
+                ..Timing::default()
+            })
+            .unwrap();
         assert!(refused(&step, &delayed).contains("write its delays as states"));
-        let diverging =
-            StateSpace::new(dmatrix![2000.0], dmatrix![0.0, 1.0], dmatrix![1.0], dmatrix![0.0, 0.0]).unwrap();
+        let diverging = StateSpace::new(
+            dmatrix![2000.0],
+            dmatrix![0.0, 1.0],
+            dmatrix![1.0],
+            dmatrix![0.0, 0.0],
+        )
+        .unwrap();
         assert!(refused(&step, &diverging).contains("not finite"));
     }
 
     #[test]
     fn a_test_is_read_as_it_is_written() {
         let text = r#"{"shape":"doublet","size":10.0,"duration_s":1.0}"#;
-        assert_eq!(serde_json::from_str::<TestInput>(text).unwrap(), test(TestInputShape::Doublet));
-        assert_eq!(serde_json::to_string(&test(TestInputShape::Doublet)).unwrap(), text);
-        let endless = serde_json::from_str::<TestInput>(&text.replace("1.0", "1e9")).unwrap_err().to_string();
-        assert!(endless.contains("a duration above 0 s up to 600 s"), "{endless}");
+        assert_eq!(
+            serde_json::from_str::<TestInput>(text).unwrap(),
+            test(TestInputShape::Doublet)
+        );
+        assert_eq!(
+            serde_json::to_string(&test(TestInputShape::Doublet)).unwrap(),
+            text
+        );
+        let endless = serde_json::from_str::<TestInput>(&text.replace("1.0", "1e9"))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            endless.contains("a duration above 0 s up to 600 s"),
+            "{endless}"
+        );
     }
 }

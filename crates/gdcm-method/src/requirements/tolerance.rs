@@ -71,7 +71,10 @@ struct ToleranceRows {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ToleranceError {
     /// A row names no channel.
-    #[error("tolerance {row}, {}: expected the name of an output as its channel, found none", quoted(quantity))]
+    #[error(
+        "tolerance {row}, {}: expected the name of an output as its channel, found none",
+        quoted(quantity)
+    )]
     NoChannelName {
         /// Which, counted from 1.
         row: usize,
@@ -91,7 +94,11 @@ pub enum ToleranceError {
         found: f64,
     },
     /// The dataset has no such output.
-    #[error("{} is not compared: there is no output {}", quoted(quantity), quoted(channel))]
+    #[error(
+        "{} is not compared: there is no output {}",
+        quoted(quantity),
+        quoted(channel)
+    )]
     NoChannel {
         /// What was to be compared.
         quantity: String,
@@ -152,17 +159,30 @@ impl Tolerance {
     fn check(&self, row: usize) -> Result<(), ToleranceError> {
         let quantity = || self.quantity.clone();
         if self.channel.trim().is_empty() {
-            return Err(ToleranceError::NoChannelName { row, quantity: quantity() });
+            return Err(ToleranceError::NoChannelName {
+                row,
+                quantity: quantity(),
+            });
         }
-        match not_positive([("absolute", Some(self.absolute)), ("relative", self.relative)]) {
-            Some((name, found)) => Err(ToleranceError::NotPositive { row, quantity: quantity(), name, found }),
+        match not_positive([
+            ("absolute", Some(self.absolute)),
+            ("relative", self.relative),
+        ]) {
+            Some((name, found)) => Err(ToleranceError::NotPositive {
+                row,
+                quantity: quantity(),
+                name,
+                found,
+            }),
             None => Ok(()),
         }
     }
 
     /// "±10 % or ±3 deg/s".
     pub fn words(&self) -> String {
-        let relative = self.relative.map_or_else(String::new, |part| format!("±{} % or ", number(100.0 * part)));
+        let relative = self.relative.map_or_else(String::new, |part| {
+            format!("±{} % or ", number(100.0 * part))
+        });
         format!("{relative}±{} {}", number(self.absolute), self.unit)
     }
 
@@ -172,17 +192,33 @@ impl Tolerance {
     /// [`ToleranceError`] where there is no such output, it is no rate whose integral is an attitude, or units do not fit.
     pub fn of_outputs(&self, outputs: &[Channel]) -> Result<ChannelTolerance, ToleranceError> {
         let (quantity, channel) = (self.quantity.clone(), self.channel.clone());
-        let Some(output) = outputs.iter().position(|output| output.name == self.channel) else {
+        let Some(output) = outputs
+            .iter()
+            .position(|output| output.name == self.channel)
+        else {
             return Err(ToleranceError::NoChannel { quantity, channel });
         };
         let unit = &outputs[output].unit;
-        let of_channel = if self.integrated { integral_unit(unit) } else { Some(unit.as_str()) };
+        let of_channel = if self.integrated {
+            integral_unit(unit)
+        } else {
+            Some(unit.as_str())
+        };
         let Some(of_channel) = of_channel else {
-            return Err(ToleranceError::NotARate { quantity, channel, unit: unit.clone() });
+            return Err(ToleranceError::NotARate {
+                quantity,
+                channel,
+                unit: unit.clone(),
+            });
         };
         let Some(factor) = conversion_factor(&self.unit, of_channel) else {
             let of_channel = of_channel.to_owned();
-            return Err(ToleranceError::Unit { quantity, channel, unit: self.unit.clone(), of_channel });
+            return Err(ToleranceError::Unit {
+                quantity,
+                channel,
+                unit: self.unit.clone(),
+                of_channel,
+            });
         };
         Ok(ChannelTolerance {
             output,
@@ -197,7 +233,9 @@ impl Tolerance {
 /// The unit of the integral over time of an angular rate; none of anything else.
 fn integral_unit(rate: &str) -> Option<&'static str> {
     let unit = PhysicalUnit::of(rate).filter(|unit| unit.dimension == Dimension::AngularRate)?;
-    ["deg", "rad"].into_iter().find(|angle| PhysicalUnit::of(angle).is_some_and(|angle| angle.size == unit.size))
+    ["deg", "rad"]
+        .into_iter()
+        .find(|angle| PhysicalUnit::of(angle).is_some_and(|angle| angle.size == unit.size))
 }
 
 impl ToleranceTable {
@@ -206,8 +244,13 @@ impl ToleranceTable {
     /// # Errors
     /// [`ToleranceError`] with its row where a row names no channel, or a tolerance is not above zero.
     pub fn new(source: impl Into<String>, rows: Vec<Tolerance>) -> Result<Self, ToleranceError> {
-        rows.iter().enumerate().try_for_each(|(index, tolerance)| tolerance.check(index + 1))?;
-        Ok(Self { source: source.into(), rows })
+        rows.iter()
+            .enumerate()
+            .try_for_each(|(index, tolerance)| tolerance.check(index + 1))?;
+        Ok(Self {
+            source: source.into(),
+            rows,
+        })
     }
 
     /// Where it comes from.
@@ -232,7 +275,11 @@ impl TryFrom<ToleranceRows> for ToleranceTable {
 impl Default for ToleranceTable {
     /// 14 CFR part 60, appendix C, table C2A: hover and low speed (2.b), longitudinal (2.c), lateral and directional (2.d).
     fn default() -> Self {
-        let row = |quantity: &str, channel: &str, (absolute, unit): (f64, &str), relative, entry: &str| Tolerance {
+        let row = |quantity: &str,
+                   channel: &str,
+                   (absolute, unit): (f64, &str),
+                   relative,
+                   entry: &str| Tolerance {
             quantity: quantity.to_owned(),
             channel: channel.to_owned(),
             integrated: unit == "deg",
@@ -242,17 +289,68 @@ impl Default for ToleranceTable {
             entry: entry.to_owned(),
         };
         let rows = vec![
-            row("roll rate", "P", (3.0, "deg/s"), TEN_PERCENT, "2.b.3.b, 2.d.1"),
-            row("bank angle", "P", (3.0, "deg"), TEN_PERCENT, "2.b.3.b, 2.d.1"),
-            row("pitch rate", "Q", (2.0, "deg/s"), TEN_PERCENT, "2.b.3.a, 2.c.1"),
-            row("pitch attitude", "Q", (1.5, "deg"), TEN_PERCENT, "2.b.3.a, 2.c.1"),
-            row("yaw rate", "R", (2.0, "deg/s"), TEN_PERCENT, "2.b.3.c, 2.d.1"),
+            row(
+                "roll rate",
+                "P",
+                (3.0, "deg/s"),
+                TEN_PERCENT,
+                "2.b.3.b, 2.d.1",
+            ),
+            row(
+                "bank angle",
+                "P",
+                (3.0, "deg"),
+                TEN_PERCENT,
+                "2.b.3.b, 2.d.1",
+            ),
+            row(
+                "pitch rate",
+                "Q",
+                (2.0, "deg/s"),
+                TEN_PERCENT,
+                "2.b.3.a, 2.c.1",
+            ),
+            row(
+                "pitch attitude",
+                "Q",
+                (1.5, "deg"),
+                TEN_PERCENT,
+                "2.b.3.a, 2.c.1",
+            ),
+            row(
+                "yaw rate",
+                "R",
+                (2.0, "deg/s"),
+                TEN_PERCENT,
+                "2.b.3.c, 2.d.1",
+            ),
             row("heading", "R", (2.0, "deg"), TEN_PERCENT, "2.b.3.c, 2.d.1"),
-            row("normal acceleration", "NZ", (0.1, "g"), None, "2.b.3.d, 2.c.3.b"),
-            row("short term: pitch attitude", "Q", (1.5, "deg"), None, "2.c.3.b"),
-            row("short term: pitch rate", "Q", (2.0, "deg/s"), None, "2.c.3.b"),
+            row(
+                "normal acceleration",
+                "NZ",
+                (0.1, "g"),
+                None,
+                "2.b.3.d, 2.c.3.b",
+            ),
+            row(
+                "short term: pitch attitude",
+                "Q",
+                (1.5, "deg"),
+                None,
+                "2.c.3.b",
+            ),
+            row(
+                "short term: pitch rate",
+                "Q",
+                (2.0, "deg/s"),
+                None,
+                "2.c.3.b",
+            ),
         ];
-        Self { source: DEFAULT_SOURCE.to_owned(), rows }
+        Self {
+            source: DEFAULT_SOURCE.to_owned(),
+            rows,
+        }
     }
 }
 
@@ -329,8 +427,17 @@ impl ToleranceCheck {
     ///
     /// # Errors
     /// [`ToleranceCheckError`] where there is no such output, there are no samples, not as many of both, or one is not finite.
-    pub fn of(window: &ValidationWindow, tolerance: &ChannelTolerance) -> Result<Self, ToleranceCheckError> {
-        let ValidationWindow { start_s, sample_time_s, ref measured, ref simulated, .. } = *window;
+    pub fn of(
+        window: &ValidationWindow,
+        tolerance: &ChannelTolerance,
+    ) -> Result<Self, ToleranceCheckError> {
+        let ValidationWindow {
+            start_s,
+            sample_time_s,
+            ref measured,
+            ref simulated,
+            ..
+        } = *window;
         let output = tolerance.output;
         if output >= measured.ncols().min(simulated.ncols()) {
             return Err(ToleranceCheckError::NoOutput { output });
@@ -339,24 +446,41 @@ impl ToleranceCheck {
             return Err(ToleranceCheckError::NoSamples);
         }
         if measured.nrows() != simulated.nrows() {
-            return Err(ToleranceCheckError::Lengths { flown: measured.nrows(), simulated: simulated.nrows() });
+            return Err(ToleranceCheckError::Lengths {
+                flown: measured.nrows(),
+                simulated: simulated.nrows(),
+            });
         }
         let compared = |of: &'static str, samples: &DMatrix<f64>| {
             let samples: Vec<f64> = samples.column(output).iter().copied().collect();
             match samples.iter().position(|sample| !sample.is_finite()) {
-                Some(n) => Err(ToleranceCheckError::NotFinite { of, time_s: start_s + sample_time_s * n as f64 }),
+                Some(n) => Err(ToleranceCheckError::NotFinite {
+                    of,
+                    time_s: start_s + sample_time_s * n as f64,
+                }),
                 None if tolerance.integrated => Ok(integral(&samples, sample_time_s)),
                 None => Ok(samples),
             }
         };
-        let (flown, simulated) = (compared("flown", measured)?, compared("simulated", simulated)?);
+        let (flown, simulated) = (
+            compared("flown", measured)?,
+            compared("simulated", simulated)?,
+        );
         let start = flown[0];
-        let wider = |flown: &f64| tolerance.absolute.max(tolerance.relative * (flown - start).abs());
+        let wider = |flown: &f64| {
+            tolerance
+                .absolute
+                .max(tolerance.relative * (flown - start).abs())
+        };
         let width: Vec<f64> = flown.iter().map(wider).collect();
         let excess: Vec<f64> = excesses(&flown, &simulated, &width).collect();
         // The first of equal ones.
-        let (largest, &largest_excess) =
-            excess.iter().enumerate().rev().max_by(|a, b| a.1.total_cmp(b.1)).ok_or(ToleranceCheckError::NoSamples)?;
+        let (largest, &largest_excess) = excess
+            .iter()
+            .enumerate()
+            .rev()
+            .max_by(|a, b| a.1.total_cmp(b.1))
+            .ok_or(ToleranceCheckError::NoSamples)?;
         Ok(Self {
             start_s,
             sample_time_s,
@@ -403,8 +527,16 @@ impl ToleranceCheck {
     }
 }
 
-fn excesses<'a>(flown: &'a [f64], simulated: &'a [f64], width: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-    flown.iter().zip(simulated).zip(width).map(|((flown, simulated), width)| (simulated - flown).abs() - width)
+fn excesses<'a>(
+    flown: &'a [f64],
+    simulated: &'a [f64],
+    width: &'a [f64],
+) -> impl Iterator<Item = f64> + 'a {
+    flown
+        .iter()
+        .zip(simulated)
+        .zip(width)
+        .map(|((flown, simulated), width)| (simulated - flown).abs() - width)
 }
 
 /// The integral over time from the first sample, by the trapezoidal rule; there is at least one sample.
@@ -441,7 +573,10 @@ impl RecordCheck {
             let check = ToleranceCheck::of(window, tolerance)?;
             match records.iter_mut().find(|of| of.record == window.record) {
                 Some(of) => of.windows.push(check),
-                None => records.push(Self { record: window.record, windows: vec![check] }),
+                None => records.push(Self {
+                    record: window.record,
+                    windows: vec![check],
+                }),
             }
         }
         Ok(records)
@@ -450,12 +585,19 @@ impl RecordCheck {
     /// Share of the samples that are inside, from 0 to 1.
     pub fn share_inside(&self) -> f64 {
         let inside: usize = self.windows.iter().map(|window| window.inside).sum();
-        inside as f64 / self.windows.iter().map(ToleranceCheck::samples).sum::<usize>() as f64
+        inside as f64
+            / self
+                .windows
+                .iter()
+                .map(ToleranceCheck::samples)
+                .sum::<usize>() as f64
     }
 
     /// The window in which the excess is largest.
     pub fn worst(&self) -> Option<&ToleranceCheck> {
-        self.windows.iter().max_by(|a, b| a.largest_excess.total_cmp(&b.largest_excess))
+        self.windows
+            .iter()
+            .max_by(|a, b| a.largest_excess.total_cmp(&b.largest_excess))
     }
 
     /// Correlation of simulated and flown, each about its mean in its window; none where one of them does not move.
@@ -478,7 +620,13 @@ mod tests {
     const SAMPLE_TIME_S: f64 = 0.02;
 
     fn tolerance(absolute: f64, relative: f64) -> ChannelTolerance {
-        ChannelTolerance { output: 0, integrated: false, absolute, relative, unit: "deg/s".into() }
+        ChannelTolerance {
+            output: 0,
+            integrated: false,
+            absolute,
+            relative,
+            unit: "deg/s".into(),
+        }
     }
 
     fn check_of(
@@ -488,7 +636,13 @@ mod tests {
     ) -> Result<ToleranceCheck, ToleranceCheckError> {
         let column = |samples: &[f64]| DMatrix::from_column_slice(samples.len(), 1, samples);
         let (measured, simulated) = (column(flown), column(simulated));
-        let window = ValidationWindow { record: 0, start_s: 0.0, sample_time_s: SAMPLE_TIME_S, measured, simulated };
+        let window = ValidationWindow {
+            record: 0,
+            start_s: 0.0,
+            sample_time_s: SAMPLE_TIME_S,
+            measured,
+            simulated,
+        };
         ToleranceCheck::of(&window, tolerance)
     }
 
@@ -496,22 +650,41 @@ mod tests {
     fn made_up() -> (Vec<f64>, Vec<f64>) {
         let time = || (0..500).map(|n| SAMPLE_TIME_S * f64::from(n));
         let flown = time().map(|t| 8.0 * (0.9 * t).sin() + 2.0).collect();
-        (flown, time().map(|t| 8.6 * (0.9 * t - 0.12).sin() + 2.3).collect())
+        (
+            flown,
+            time().map(|t| 8.6 * (0.9 * t - 0.12).sin() + 2.3).collect(),
+        )
     }
 
     fn outputs() -> Vec<Channel> {
-        [("P", "deg/s"), ("Q", "rad/s"), ("R", "deg/s"), ("NZ", "m/s^2")]
-            .map(|(name, unit)| Channel::new(name, unit))
-            .to_vec()
+        [
+            ("P", "deg/s"),
+            ("Q", "rad/s"),
+            ("R", "deg/s"),
+            ("NZ", "m/s^2"),
+        ]
+        .map(|(name, unit)| Channel::new(name, unit))
+        .to_vec()
     }
 
     #[test]
     fn shares_and_excesses_are_the_known_ones() {
         let ((flown, simulated), answers) = (made_up(), answers());
         for case in answers["tolerance"]["cases"].as_array().unwrap() {
-            let check = check_of(&flown, &simulated, &tolerance(number(case, "absolute"), 0.1)).unwrap();
-            assert!((check.share_inside() - number(case, "share_inside")).abs() < 1e-12, "{case}");
-            assert!((check.largest_excess - number(case, "largest_excess")).abs() < 1e-12, "{case}");
+            let check = check_of(
+                &flown,
+                &simulated,
+                &tolerance(number(case, "absolute"), 0.1),
+            )
+            .unwrap();
+            assert!(
+                (check.share_inside() - number(case, "share_inside")).abs() < 1e-12,
+                "{case}"
+            );
+            assert!(
+                (check.largest_excess - number(case, "largest_excess")).abs() < 1e-12,
+                "{case}"
+            );
             let n = (check.largest_excess_at_s / SAMPLE_TIME_S).round() as usize;
             let width = check.width[n];
             assert!(((simulated[n] - flown[n]).abs() - width - check.largest_excess).abs() < 1e-12);
@@ -524,14 +697,26 @@ mod tests {
         let simulated = [0.0, 2.0, 3.0, 0.0, -2.0, 1.0, 0.0, 5.0];
         let check = check_of(&flown, &simulated, &tolerance(1.0, 0.1)).unwrap();
         assert_eq!(check.outside(), [[0.02, 0.04], [0.08, 0.08], [0.14, 0.14]]);
-        assert_eq!((check.inside, check.largest_excess, check.largest_excess_at_s), (4, 4.0, 0.14));
+        assert_eq!(
+            (
+                check.inside,
+                check.largest_excess,
+                check.largest_excess_at_s
+            ),
+            (4, 4.0, 0.14)
+        );
     }
 
     #[test]
     fn an_attitude_is_the_integral_of_its_rate_from_the_start() {
-        let rate: Vec<f64> = (0..101).map(|n| 3.0 * SAMPLE_TIME_S * f64::from(n)).collect();
+        let rate: Vec<f64> = (0..101)
+            .map(|n| 3.0 * SAMPLE_TIME_S * f64::from(n))
+            .collect();
         let none = vec![0.0; 101];
-        let attitude = ChannelTolerance { integrated: true, ..tolerance(1.0, 0.0) };
+        let attitude = ChannelTolerance {
+            integrated: true,
+            ..tolerance(1.0, 0.0)
+        };
         let check = check_of(&rate, &none, &attitude).unwrap();
         // 3 t^2 / 2: the trapezoidal rule is exact on straight lines.
         assert!((check.flown[100] - 6.0).abs() < 1e-12 && check.flown[0] == 0.0);
@@ -542,7 +727,11 @@ mod tests {
     fn the_trend_is_the_sign_of_the_correlation_and_none_where_nothing_moves() {
         let (flown, simulated) = made_up();
         let turned: Vec<f64> = simulated.iter().map(|y| -y).collect();
-        let of = |simulated: &[f64]| check_of(&flown, simulated, &tolerance(1.0, 0.1)).unwrap().correlation();
+        let of = |simulated: &[f64]| {
+            check_of(&flown, simulated, &tolerance(1.0, 0.1))
+                .unwrap()
+                .correlation()
+        };
         assert!(of(&simulated).unwrap() > 0.9 && of(&turned).unwrap() < -0.9);
         assert_eq!(of(&[4.0; 500]), None);
     }
@@ -557,57 +746,126 @@ mod tests {
             simulated: DMatrix::from_column_slice(4, 1, &simulated),
         };
         let inside = [0.0, 1.0, 0.0, -1.0];
-        let windows = [window(0, 0.0, inside), window(2, 0.0, inside), window(0, 4.0, [0.0, 5.0, 0.0, -1.0])];
+        let windows = [
+            window(0, 0.0, inside),
+            window(2, 0.0, inside),
+            window(0, 4.0, [0.0, 5.0, 0.0, -1.0]),
+        ];
         let records = RecordCheck::of_windows(&windows, &tolerance(0.5, 0.1)).unwrap();
-        assert_eq!(records.iter().map(|of| (of.record, of.windows.len())).collect::<Vec<_>>(), [(0, 2), (2, 1)]);
-        assert_eq!((records[0].share_inside(), records[1].share_inside()), (7.0 / 8.0, 1.0));
+        assert_eq!(
+            records
+                .iter()
+                .map(|of| (of.record, of.windows.len()))
+                .collect::<Vec<_>>(),
+            [(0, 2), (2, 1)]
+        );
+        assert_eq!(
+            (records[0].share_inside(), records[1].share_inside()),
+            (7.0 / 8.0, 1.0)
+        );
         let worst = records[0].worst().unwrap();
-        assert_eq!((worst.largest_excess, worst.largest_excess_at_s), (3.5, 5.0));
-        assert!(records[1].correlation().unwrap() > 0.999 && records[0].correlation().unwrap() < 0.999);
-        let other = ChannelTolerance { output: 1, ..tolerance(0.5, 0.1) };
+        assert_eq!(
+            (worst.largest_excess, worst.largest_excess_at_s),
+            (3.5, 5.0)
+        );
+        assert!(
+            records[1].correlation().unwrap() > 0.999 && records[0].correlation().unwrap() < 0.999
+        );
+        let other = ChannelTolerance {
+            output: 1,
+            ..tolerance(0.5, 0.1)
+        };
         let refused = RecordCheck::of_windows(&windows, &other).unwrap_err();
-        assert_eq!(refused.to_string(), "there is no output number 2 in the record");
+        assert_eq!(
+            refused.to_string(),
+            "there is no output number 2 in the record"
+        );
     }
 
     #[test]
     fn the_model_that_flew_is_inside_and_one_of_half_its_gain_is_not() {
-        let model = |gain: f64| StateSpace::new(dmatrix![-2.0], dmatrix![gain], dmatrix![1.0], dmatrix![0.0]).unwrap();
-        let stick = DMatrix::from_fn(1000, 1, |n, _| 10.0 * (0.8 * SAMPLE_TIME_S * n as f64).sin());
+        let model = |gain: f64| {
+            StateSpace::new(dmatrix![-2.0], dmatrix![gain], dmatrix![1.0], dmatrix![0.0]).unwrap()
+        };
+        let stick = DMatrix::from_fn(1000, 1, |n, _| {
+            10.0 * (0.8 * SAMPLE_TIME_S * n as f64).sin()
+        });
         let held = FirstOrderHold::of(&model(2.0), SAMPLE_TIME_S).unwrap();
         let flown = held.simulate(&dvector![1.0], &stick);
-        let segment = Segment { record: 0, start_s: 0.0, sample_time_s: SAMPLE_TIME_S, inputs: stick, outputs: flown };
+        let segment = Segment {
+            record: 0,
+            start_s: 0.0,
+            sample_time_s: SAMPLE_TIME_S,
+            inputs: stick,
+            outputs: flown,
+        };
         let record = |gain: f64| {
             let settings = ValidationSettings::unfiltered();
-            let validation = validate(&model(gain), std::slice::from_ref(&segment), &settings, &Sequential).unwrap();
-            RecordCheck::of_windows(&validation.windows, &tolerance(1.0, 0.1)).unwrap().remove(0)
+            let validation = validate(
+                &model(gain),
+                std::slice::from_ref(&segment),
+                &settings,
+                &Sequential,
+            )
+            .unwrap();
+            RecordCheck::of_windows(&validation.windows, &tolerance(1.0, 0.1))
+                .unwrap()
+                .remove(0)
         };
         let (right, wrong) = (record(2.0), record(1.0));
         assert_eq!((right.windows.len(), right.share_inside()), (2, 1.0));
         assert!(right.correlation().unwrap() > 0.999_999);
         assert!(wrong.share_inside() < 0.5 && wrong.worst().unwrap().largest_excess > 1.0);
-        assert!(wrong.correlation().unwrap() > 0.9, "too small, but the right trend");
+        assert!(
+            wrong.correlation().unwrap() > 0.9,
+            "too small, but the right trend"
+        );
     }
 
     #[test]
     fn samples_that_are_missing_are_refused_in_words() {
         let words = |flown: &[f64], simulated: &[f64]| {
-            check_of(flown, simulated, &tolerance(1.0, 0.1)).unwrap_err().to_string()
+            check_of(flown, simulated, &tolerance(1.0, 0.1))
+                .unwrap_err()
+                .to_string()
         };
         assert_eq!(words(&[], &[]), "there are no samples to compare");
-        assert_eq!(words(&[1.0, 2.0], &[1.0]), "expected as many simulated samples as flown ones, 2, found 1");
-        assert_eq!(words(&[1.0, f64::NAN], &[1.0, 2.0]), "the flown sample at 0.02 s is missing or not finite");
+        assert_eq!(
+            words(&[1.0, 2.0], &[1.0]),
+            "expected as many simulated samples as flown ones, 2, found 1"
+        );
+        assert_eq!(
+            words(&[1.0, f64::NAN], &[1.0, 2.0]),
+            "the flown sample at 0.02 s is missing or not finite"
+        );
     }
 
     #[test]
     fn the_default_table_is_in_the_units_of_the_dataset() {
         let table = ToleranceTable::default();
         let of = |quantity: &str| {
-            table.rows().iter().find(|row| row.quantity == quantity).unwrap().of_outputs(&outputs()).unwrap()
+            table
+                .rows()
+                .iter()
+                .find(|row| row.quantity == quantity)
+                .unwrap()
+                .of_outputs(&outputs())
+                .unwrap()
         };
-        assert_eq!((of("roll rate").absolute, of("roll rate").relative), (3.0, 0.1));
-        assert_eq!((of("bank angle").integrated, of("bank angle").unit.as_str()), (true, "deg"));
+        assert_eq!(
+            (of("roll rate").absolute, of("roll rate").relative),
+            (3.0, 0.1)
+        );
+        assert_eq!(
+            (of("bank angle").integrated, of("bank angle").unit.as_str()),
+            (true, "deg")
+        );
         let pitch = of("pitch attitude");
-        assert!((pitch.absolute - 1.5_f64.to_radians()).abs() < 1e-15 && pitch.unit == "rad" && pitch.output == 1);
+        assert!(
+            (pitch.absolute - 1.5_f64.to_radians()).abs() < 1e-15
+                && pitch.unit == "rad"
+                && pitch.output == 1
+        );
         let normal = of("normal acceleration");
         assert!((normal.absolute - 0.980_665).abs() < 1e-12 && normal.relative == 0.0);
     }
@@ -616,22 +874,35 @@ mod tests {
     fn a_tolerance_without_its_channel_is_refused_in_words() {
         let bank = ToleranceTable::default().rows()[1].clone();
         let words = |outputs: &[Channel]| bank.of_outputs(outputs).unwrap_err().to_string();
-        assert_eq!(words(&outputs()[1..]), "\"bank angle\" is not compared: there is no output \"P\"");
+        assert_eq!(
+            words(&outputs()[1..]),
+            "\"bank angle\" is not compared: there is no output \"P\""
+        );
         let acceleration = [Channel::new("P", "deg/s^2")];
         assert_eq!(
             words(&acceleration),
             "\"bank angle\" is not compared: it is the integral of a rate, and \"P\" in \"deg/s^2\" is none (deg/s, rad/s)"
         );
-        let in_g = Tolerance { unit: "g".into(), integrated: false, ..bank.clone() };
+        let in_g = Tolerance {
+            unit: "g".into(),
+            integrated: false,
+            ..bank.clone()
+        };
         let words = in_g.of_outputs(&outputs()).unwrap_err().to_string();
-        assert_eq!(words, "\"bank angle\" is not compared: a tolerance in \"g\" does not fit \"P\" in \"deg/s\"");
+        assert_eq!(
+            words,
+            "\"bank angle\" is not compared: a tolerance in \"g\" does not fit \"P\" in \"deg/s\""
+        );
     }
 
     #[test]
     fn a_table_comes_back_as_it_was_and_a_wrong_row_is_refused_with_its_place() {
         let table = ToleranceTable::default();
         let text = serde_json::to_string(&table).unwrap();
-        assert_eq!(serde_json::from_str::<ToleranceTable>(&text).unwrap(), table);
+        assert_eq!(
+            serde_json::from_str::<ToleranceTable>(&text).unwrap(),
+            table
+        );
         assert!(text.contains(r#"{"quantity":"normal acceleration","channel":"NZ","integrated":false,"absolute":0.1,"unit":"g","entry":"2.b.3.d, 2.c.3.b"}"#), "{text}");
         for (from, to, words) in [
             (
@@ -650,7 +921,9 @@ mod tests {
                 "tolerance 7, \"normal acceleration\": expected the name of an output",
             ),
         ] {
-            let error = serde_json::from_str::<ToleranceTable>(&text.replacen(from, to, 1)).unwrap_err().to_string();
+            let error = serde_json::from_str::<ToleranceTable>(&text.replacen(from, to, 1))
+                .unwrap_err()
+                .to_string();
             assert!(error.starts_with(words), "{error}");
         }
     }

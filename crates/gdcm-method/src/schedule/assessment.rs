@@ -30,7 +30,10 @@ impl Residual {
     fn of(own: f64, scheduled: f64) -> Option<Self> {
         (scheduled > 0.0).then(|| {
             let ln = (own / scheduled).ln();
-            Self { ln, percent: 100.0 * ln.exp_m1() }
+            Self {
+                ln,
+                percent: 100.0 * ln.exp_m1(),
+            }
         })
     }
 }
@@ -57,7 +60,9 @@ impl FitResiduals {
 }
 
 fn rms(residuals: &[Option<Residual>]) -> Option<f64> {
-    let squares = residuals.iter().map(|residual| residual.map(|residual| residual.ln * residual.ln));
+    let squares = residuals
+        .iter()
+        .map(|residual| residual.map(|residual| residual.ln * residual.ln));
     let sum: f64 = squares.sum::<Option<f64>>()?;
     (!residuals.is_empty()).then(|| (sum / residuals.len() as f64).sqrt())
 }
@@ -76,7 +81,9 @@ pub struct FormFit {
 impl FormFit {
     /// Leave-one-condition-out error of `ln k_o k_i`, root mean square over these responses; none where one is missing.
     pub fn left_out_rms_ln(&self, pairs: impl IntoIterator<Item = Pair>) -> Option<f64> {
-        let squares = pairs.into_iter().map(|pair| self.pairs[pair].left_out_rms_ln().map(|rms| rms * rms));
+        let squares = pairs
+            .into_iter()
+            .map(|pair| self.pairs[pair].left_out_rms_ln().map(|rms| rms * rms));
         let squares: Vec<f64> = squares.collect::<Option<_>>()?;
         (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
     }
@@ -111,20 +118,50 @@ pub fn compare_forms(
     settings: ScheduleSettings,
 ) -> Result<FormComparison, ScheduleError> {
     let of_kind = |kind| {
-        let Predicted { degree, scheduled, unseen } =
-            Predicted::of(points, ScheduleSettings { kind, delays: false, ..settings })?;
+        let Predicted {
+            degree,
+            scheduled,
+            unseen,
+        } = Predicted::of(
+            points,
+            ScheduleSettings {
+                kind,
+                delays: false,
+                ..settings
+            },
+        )?;
         let residual = |pair: Pair, point: &ScheduledPoint<'_>, predicted: &ChannelCorrection| {
             Residual::of(point.correction.net_gain(pair), predicted.net_gain(pair))
         };
         let first = points[0].correction;
-        let pairs = PairTable::from_fn(first.output_gains.len(), first.input_gains.len(), |pair| FitResiduals {
-            residuals: points.iter().zip(&scheduled).map(|(point, said)| residual(pair, point, said)).collect(),
-            left_out: points.iter().zip(&unseen).map(|(point, said)| residual(pair, point, said.as_ref()?)).collect(),
+        let pairs = PairTable::from_fn(first.output_gains.len(), first.input_gains.len(), |pair| {
+            FitResiduals {
+                residuals: points
+                    .iter()
+                    .zip(&scheduled)
+                    .map(|(point, said)| residual(pair, point, said))
+                    .collect(),
+                left_out: points
+                    .iter()
+                    .zip(&unseen)
+                    .map(|(point, said)| residual(pair, point, said.as_ref()?))
+                    .collect(),
+            }
         });
-        Ok(FormFit { kind, degree, pairs })
+        Ok(FormFit {
+            kind,
+            degree,
+            pairs,
+        })
     };
-    let kinds = SCHEDULE_KINDS.into_iter().map(of_kind).collect::<Result<Vec<_>, _>>()?;
-    Ok(FormComparison { airspeeds_kt: points.iter().map(|point| point.airspeed_kt).collect(), kinds })
+    let kinds = SCHEDULE_KINDS
+        .into_iter()
+        .map(of_kind)
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(FormComparison {
+        airspeeds_kt: points.iter().map(|point| point.airspeed_kt).collect(),
+        kinds,
+    })
 }
 
 /// What the schedule says at each condition, and what that of the others says there.
@@ -135,12 +172,19 @@ struct Predicted {
 }
 
 impl Predicted {
-    fn of(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Result<Self, ScheduleError> {
+    fn of(
+        points: &[ScheduledPoint<'_>],
+        settings: ScheduleSettings,
+    ) -> Result<Self, ScheduleError> {
         let schedule = Schedule::fitted(points, settings)?;
-        let at = |schedule: &Schedule, point: &ScheduledPoint<'_>| schedule.evaluate(point.airspeed_kt, point.second);
+        let at = |schedule: &Schedule, point: &ScheduledPoint<'_>| {
+            schedule.evaluate(point.airspeed_kt, point.second)
+        };
         let unseen = (0..points.len()).map(|left_out| {
             let others = [&points[..left_out], &points[left_out + 1..]].concat();
-            Schedule::fitted(&others, settings).ok().map(|schedule| at(&schedule, &points[left_out]))
+            Schedule::fitted(&others, settings)
+                .ok()
+                .map(|schedule| at(&schedule, &points[left_out]))
         });
         Ok(Self {
             degree: schedule.degree(),
@@ -169,27 +213,44 @@ pub struct LeadDegreeFit {
 }
 
 /// How well each degree fits, from 0 to [`HIGHEST_DEGREE`]; none at all where the conditions' corrections have no leads.
-pub fn compare_lead_degrees(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Vec<LeadDegreeFit> {
+pub fn compare_lead_degrees(
+    points: &[ScheduledPoint<'_>],
+    settings: ScheduleSettings,
+) -> Vec<LeadDegreeFit> {
     if points.iter().any(|point| point.correction.leads.is_none()) {
         return Vec::new();
     }
     let of_degree = |tau_degree| {
         // The signed delays go by airspeed alone, whatever is made of the gains.
         let kind = ScheduleKind::Polynomial { degree: 0 };
-        let settings = ScheduleSettings { kind, tau_degree, second: None, ..settings };
-        let Predicted { scheduled, unseen, .. } = Predicted::of(points, settings).ok()?;
+        let settings = ScheduleSettings {
+            kind,
+            tau_degree,
+            second: None,
+            ..settings
+        };
+        let Predicted {
+            scheduled, unseen, ..
+        } = Predicted::of(points, settings).ok()?;
         let unseen: Option<Vec<ChannelCorrection>> = unseen.into_iter().collect();
         let fit = |pair: Pair| {
             let rms_s = |said: &[ChannelCorrection]| {
                 let both = points.iter().zip(said);
-                let misses_s = both.map(|(own, said)| own.correction.net_delay_s(pair) - said.net_delay_s(pair));
+                let misses_s = both
+                    .map(|(own, said)| own.correction.net_delay_s(pair) - said.net_delay_s(pair));
                 (misses_s.map(|miss_s| miss_s.powi(2)).sum::<f64>() / points.len() as f64).sqrt()
             };
-            LeadFit { rms_s: rms_s(&scheduled), left_out_rms_s: unseen.as_deref().map(rms_s) }
+            LeadFit {
+                rms_s: rms_s(&scheduled),
+                left_out_rms_s: unseen.as_deref().map(rms_s),
+            }
         };
         let first = points[0].correction;
         let pairs = PairTable::from_fn(first.output_gains.len(), first.input_gains.len(), fit);
-        Some(LeadDegreeFit { degree: tau_degree, pairs })
+        Some(LeadDegreeFit {
+            degree: tau_degree,
+            pairs,
+        })
     };
     (0..=HIGHEST_DEGREE).filter_map(of_degree).collect()
 }
@@ -231,7 +292,12 @@ pub fn assess(
     average: CostAverage,
 ) -> PairTable<Option<CostChange>> {
     let corrected = corrected_cost(mismatch, correction, omega, average);
-    corrected.map(|pair, corrected| Some(CostChange { uncorrected: uncorrected[pair]?, corrected: (*corrected)? }))
+    corrected.map(|pair, corrected| {
+        Some(CostChange {
+            uncorrected: uncorrected[pair]?,
+            corrected: (*corrected)?,
+        })
+    })
 }
 
 /// J of every response of a model after `correction`, against the model it was compared with in `mismatch`; none where [`assess`]
@@ -242,7 +308,9 @@ pub fn corrected_cost(
     omega: &[f64],
     average: CostAverage,
 ) -> PairTable<Option<Cost>> {
-    mismatch.map(|pair, mismatch| corrected_cost_on(mismatch.as_ref()?, correction, pair, omega, average))
+    mismatch.map(|pair, mismatch| {
+        corrected_cost_on(mismatch.as_ref()?, correction, pair, omega, average)
+    })
 }
 
 /// J of one response of a model after `correction`; none where its net gain is not positive.
@@ -253,9 +321,16 @@ pub fn corrected_cost_on(
     omega: &[f64],
     average: CostAverage,
 ) -> Option<Cost> {
-    let led = correction.leads.as_ref().and_then(|leads| leads.curve(pair));
+    let led = correction
+        .leads
+        .as_ref()
+        .and_then(|leads| leads.curve(pair));
     let led = led.map(|lead| mismatch.multiplied(&lead.magnitude_db, &lead.phase));
-    Some(led.as_ref().unwrap_or(mismatch).cost(omega, correction.without_leads_on(pair)?, average))
+    Some(
+        led.as_ref()
+            .unwrap_or(mismatch)
+            .cost(omega, correction.without_leads_on(pair)?, average),
+    )
 }
 
 #[cfg(test)]
@@ -283,11 +358,18 @@ mod tests {
             (0.1 * v + 0.05 * v * v).exp()
         });
         let corrections = corrections(&gains);
-        let found = compare_forms(&points(&airspeeds, &corrections, 0.0), ScheduleSettings::default()).unwrap();
-        let of = |degree| &found.of(ScheduleKind::Polynomial { degree }).unwrap().pairs[Pair::new(1, 0)];
+        let found = compare_forms(
+            &points(&airspeeds, &corrections, 0.0),
+            ScheduleSettings::default(),
+        )
+        .unwrap();
+        let of =
+            |degree| &found.of(ScheduleKind::Polynomial { degree }).unwrap().pairs[Pair::new(1, 0)];
         // Least squares of five points, condition number below 5.
         assert!(of(2).rms_ln().unwrap() < 1e-14 && of(3).rms_ln().unwrap() < 1e-14);
-        assert!(of(1).rms_ln().unwrap() > 0.01 && of(0).rms_ln().unwrap() > of(1).rms_ln().unwrap());
+        assert!(
+            of(1).rms_ln().unwrap() > 0.01 && of(0).rms_ln().unwrap() > of(1).rms_ln().unwrap()
+        );
         // Inside; beyond the range of the others the end value holds, whatever the degree.
         assert!(of(2).left_out[2].unwrap().ln.abs() < 1e-14);
         let step = gains[4] / gains[3];
@@ -305,14 +387,25 @@ mod tests {
     #[test]
     fn a_response_whose_net_gain_never_changes_is_left_no_residual() {
         let corrections = corrections(&[1.0, 1.2, 0.9, 1.4]);
-        let found = compare_forms(&points(&[50.0, 80.0, 110.0, 140.0], &corrections, 0.0), ScheduleSettings::default())
-            .unwrap();
+        let found = compare_forms(
+            &points(&[50.0, 80.0, 110.0, 140.0], &corrections, 0.0),
+            ScheduleSettings::default(),
+        )
+        .unwrap();
         for kind in &found.kinds {
             for condition in 0..4 {
                 // k_0 k_i = 2 in every condition.
-                assert!(kind.pairs[Pair::new(0, 0)].residuals[condition].unwrap().ln.abs() < 1e-14);
+                assert!(
+                    kind.pairs[Pair::new(0, 0)].residuals[condition]
+                        .unwrap()
+                        .ln
+                        .abs()
+                        < 1e-14
+                );
             }
-            let both = kind.left_out_rms_ln([Pair::new(0, 0), Pair::new(1, 0)]).unwrap();
+            let both = kind
+                .left_out_rms_ln([Pair::new(0, 0), Pair::new(1, 0)])
+                .unwrap();
             let one = kind.pairs[Pair::new(1, 0)].left_out_rms_ln().unwrap();
             assert!((both - one / 2.0_f64.sqrt()).abs() < 1e-14);
         }
@@ -321,10 +414,20 @@ mod tests {
     #[test]
     fn a_single_condition_cannot_be_left_out() {
         let corrections = corrections(&[1.3]);
-        let found = compare_forms(&points(&[80.0], &corrections, 0.0), ScheduleSettings::default()).unwrap();
+        let found = compare_forms(
+            &points(&[80.0], &corrections, 0.0),
+            ScheduleSettings::default(),
+        )
+        .unwrap();
         let fit = &found.kinds[0].pairs[Pair::new(1, 0)];
-        assert_eq!((fit.rms_ln(), fit.left_out_rms_ln(), fit.left_out.as_slice()), (Some(0.0), None, &[None][..]));
-        assert_eq!(compare_forms(&[], ScheduleSettings::default()), Err(ScheduleError::NoCondition));
+        assert_eq!(
+            (fit.rms_ln(), fit.left_out_rms_ln(), fit.left_out.as_slice()),
+            (Some(0.0), None, &[None][..])
+        );
+        assert_eq!(
+            compare_forms(&[], ScheduleSettings::default()),
+            Err(ScheduleError::NoCondition)
+        );
     }
 }
 
@@ -336,7 +439,10 @@ mod lead_tests {
 
     #[test]
     fn a_mean_leaves_out_worse_than_it_fits_by_the_number_of_conditions() {
-        let design = std::sync::Arc::new(LeadDesign::new(LeadSettings::default(), [0.5, 3.0, 12.0].into()));
+        let design = std::sync::Arc::new(LeadDesign::new(
+            LeadSettings::default(),
+            [0.5, 3.0, 12.0].into(),
+        ));
         let taus_s = [-0.02, -0.03, -0.05];
         let corrections = taus_s.map(|tau_s| ChannelCorrection {
             input_gains: vec![1.0],
@@ -345,7 +451,10 @@ mod lead_tests {
             output_delays_s: vec![0.0],
             leads: Some(ChannelLeads::new(
                 std::sync::Arc::clone(&design),
-                Channels { inputs: vec![tau_s], outputs: vec![0.01] },
+                Channels {
+                    inputs: vec![tau_s],
+                    outputs: vec![0.01],
+                },
             )),
         });
         let points = points(&[60.0, 90.0, 120.0], &corrections, 0.02);
@@ -356,7 +465,10 @@ mod lead_tests {
         assert!((mean.left_out_rms_s.unwrap() / mean.rms_s - 1.5).abs() < 1e-12);
         // The output's is the same everywhere, so that the sum is missed like the input's: sqrt((40^2 + 10^2 + 50^2) / 3) / 3 ms.
         assert!((mean.rms_s - 0.0042_f64.sqrt() / 3.0 / 3_f64.sqrt()).abs() < 1e-12);
-        assert!(found[2].pairs[Pair::new(0, 0)].rms_s < 1e-15, "a parabola goes through three points");
+        assert!(
+            found[2].pairs[Pair::new(0, 0)].rms_s < 1e-15,
+            "a parabola goes through three points"
+        );
         assert!(compare_lead_degrees(&[], ScheduleSettings::default()).is_empty());
     }
 }

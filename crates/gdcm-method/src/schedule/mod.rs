@@ -11,7 +11,9 @@ use std::fmt;
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::correction::{Channel, ChannelCorrection, ChannelLeads, Channels, LeadDesign, LeadPrice};
+use crate::correction::{
+    Channel, ChannelCorrection, ChannelLeads, Channels, LeadDesign, LeadPrice,
+};
 use gdcm_model::dataset::{ConditionId, FlightState};
 use gdcm_model::units::{s_to_ms, signed, told_apart};
 use gdcm_model::whole_number::{whole, whole_or_none};
@@ -160,16 +162,33 @@ impl TryFrom<ScheduleEntry> for ScheduleSettings {
     fn try_from(entry: ScheduleEntry) -> Result<Self, String> {
         let kind = match (entry.kind, entry.degree) {
             (FormEntry::Table, _) => ScheduleKind::Table,
-            (FormEntry::Polynomial, Some(degree)) if degree <= HIGHEST_DEGREE => ScheduleKind::Polynomial { degree },
+            (FormEntry::Polynomial, Some(degree)) if degree <= HIGHEST_DEGREE => {
+                ScheduleKind::Polynomial { degree }
+            }
             (FormEntry::Polynomial, Some(degree)) => {
-                return Err(format!("degree: expected a whole number from 0 to {HIGHEST_DEGREE}, found {degree}"));
+                return Err(format!(
+                    "degree: expected a whole number from 0 to {HIGHEST_DEGREE}, found {degree}"
+                ));
             }
             // As serde itself says it, so that readers tell it alike.
             (FormEntry::Polynomial, None) => return Err("missing field `degree`".to_owned()),
         };
-        let ScheduleEntry { of: quantity, delays, airspeed_tolerance_kt, second_variable: second, tau_degree, .. } =
-            entry;
-        Ok(Self { kind, quantity, delays, tau_degree, airspeed_tolerance_kt, second })
+        let ScheduleEntry {
+            of: quantity,
+            delays,
+            airspeed_tolerance_kt,
+            second_variable: second,
+            tau_degree,
+            ..
+        } = entry;
+        Ok(Self {
+            kind,
+            quantity,
+            delays,
+            tau_degree,
+            airspeed_tolerance_kt,
+            second,
+        })
     }
 }
 
@@ -179,8 +198,23 @@ impl From<ScheduleSettings> for ScheduleEntry {
             ScheduleKind::Polynomial { degree } => (FormEntry::Polynomial, Some(degree)),
             ScheduleKind::Table => (FormEntry::Table, None),
         };
-        let ScheduleSettings { quantity: of, delays, airspeed_tolerance_kt, tau_degree, second, .. } = settings;
-        Self { kind, degree, of, delays, airspeed_tolerance_kt, second_variable: second, tau_degree }
+        let ScheduleSettings {
+            quantity: of,
+            delays,
+            airspeed_tolerance_kt,
+            tau_degree,
+            second,
+            ..
+        } = settings;
+        Self {
+            kind,
+            degree,
+            of,
+            delays,
+            airspeed_tolerance_kt,
+            second_variable: second,
+            tau_degree,
+        }
     }
 }
 
@@ -344,13 +378,20 @@ impl ScheduleCaution {
                      where the conditions' gains go from {least:.3} to {most:.3}; lower the degree or take a table"
                 )
             }
-            ScheduleCaution::SignedDelayApart { channel, condition, tau_s, elsewhere_s } => format!(
+            ScheduleCaution::SignedDelayApart {
+                channel,
+                condition,
+                tau_s,
+                elsewhere_s,
+            } => format!(
                 "{}: {} ms in condition {condition} against {} ms elsewhere: not schedulable over airspeed",
                 channel.name(inputs, outputs),
                 signed(s_to_ms(*tau_s), 0),
                 signed(s_to_ms(*elsewhere_s), 0)
             ),
-            ScheduleCaution::NotPositive => "a scheduled gain is not positive somewhere in this range".to_owned(),
+            ScheduleCaution::NotPositive => {
+                "a scheduled gain is not positive somewhere in this range".to_owned()
+            }
             ScheduleCaution::CostsMore(cost) => {
                 let (scheduled, own) = told_apart(cost.scheduled, cost.own, 0);
                 format!(
@@ -372,25 +413,37 @@ pub enum ScheduleError {
     #[error("no schedule with {0}: a condition that is chosen for it does not say its {0}")]
     NoSecondValue(SecondVariable),
     /// The second variable is a function of airspeed in these conditions, or the same in all of them.
-    #[error("no schedule with {0}: these conditions cannot tell its effect and that of airspeed apart")]
+    #[error(
+        "no schedule with {0}: these conditions cannot tell its effect and that of airspeed apart"
+    )]
     NotToldApart(SecondVariable),
 }
 
 impl Schedule {
     /// The schedule of these conditions' corrections.
-    pub fn of(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Result<Self, ScheduleError> {
+    pub fn of(
+        points: &[ScheduledPoint<'_>],
+        settings: ScheduleSettings,
+    ) -> Result<Self, ScheduleError> {
         let mut schedule = Self::fitted(points, settings)?;
         schedule.cautions = schedule.find_cautions(points);
         Ok(schedule)
     }
 
     /// [`Schedule::of`] without a look between the conditions.
-    pub(super) fn fitted(points: &[ScheduledPoint<'_>], settings: ScheduleSettings) -> Result<Self, ScheduleError> {
-        let airspeeds =
-            Airspeeds::new(points.iter().map(|point| point.airspeed_kt).collect(), settings.airspeed_tolerance_kt);
+    pub(super) fn fitted(
+        points: &[ScheduledPoint<'_>],
+        settings: ScheduleSettings,
+    ) -> Result<Self, ScheduleError> {
+        let airspeeds = Airspeeds::new(
+            points.iter().map(|point| point.airspeed_kt).collect(),
+            settings.airspeed_tolerance_kt,
+        );
         let airspeeds = airspeeds.ok_or(ScheduleError::NoCondition)?;
         let fit = |figures: &[f64]| match settings.kind {
-            ScheduleKind::Polynomial { degree } => Regression::polynomial(&airspeeds, figures, degree),
+            ScheduleKind::Polynomial { degree } => {
+                Regression::polynomial(&airspeeds, figures, degree)
+            }
             ScheduleKind::Table => Regression::table(&airspeeds, figures),
         };
         let quantity = |gain: f64| match settings.quantity {
@@ -401,7 +454,8 @@ impl Schedule {
         let figures = |of: &dyn Fn(&ChannelCorrection) -> f64| -> Vec<f64> {
             points.iter().map(|point| of(point.correction)).collect()
         };
-        let gains = first.channels(|channel| figures(&|correction| quantity(correction.gain(channel))));
+        let gains =
+            first.channels(|channel| figures(&|correction| quantity(correction.gain(channel))));
         let second = settings.second.map(|variable| {
             let values: Option<Vec<f64>> = points.iter().map(|point| point.second).collect();
             let values = values.ok_or(ScheduleError::NoSecondValue(variable))?;
@@ -409,16 +463,36 @@ impl Schedule {
         });
         let second = second.transpose()?;
         let gains = gains.map(|channel, figures| {
-            let Some(SecondTerm { scaled, slopes, .. }) = &second else { return fit(figures) };
-            let left = figures.iter().zip(scaled).map(|(figure, scaled)| figure - slopes[channel] * scaled);
+            let Some(SecondTerm { scaled, slopes, .. }) = &second else {
+                return fit(figures);
+            };
+            let left = figures
+                .iter()
+                .zip(scaled)
+                .map(|(figure, scaled)| figure - slopes[channel] * scaled);
             fit(&left.collect::<Vec<f64>>())
         });
         let leads = LeadSchedule::of(points, &airspeeds, settings.tau_degree);
         let delays = (settings.delays && leads.is_none()).then(|| DelaySchedule {
-            taus_s: first.channels(|channel| fit(&figures(&|correction| correction.pure_delay_s(channel)))),
-            upper_s: Regression::table(&airspeeds, &points.iter().map(|point| point.delay_upper_s).collect::<Vec<_>>()),
+            taus_s: first
+                .channels(|channel| fit(&figures(&|correction| correction.pure_delay_s(channel)))),
+            upper_s: Regression::table(
+                &airspeeds,
+                &points
+                    .iter()
+                    .map(|point| point.delay_upper_s)
+                    .collect::<Vec<_>>(),
+            ),
         });
-        Ok(Self { settings, airspeeds, gains, second, delays, leads, cautions: Vec::new() })
+        Ok(Self {
+            settings,
+            airspeeds,
+            gains,
+            second,
+            delays,
+            leads,
+            cautions: Vec::new(),
+        })
     }
 
     /// Whether delays, or delays and leads, are scheduled.
@@ -430,7 +504,8 @@ impl Schedule {
     pub fn lead_price(&self) -> Option<LeadPrice> {
         let leads = self.leads.as_ref()?;
         let steps = if leads.degree() == 0 { 0 } else { STEPS };
-        let prices = (0..=steps).filter_map(|step| LeadPrice::of(&leads.at(&self.airspeeds, self.step_kt(step))));
+        let prices = (0..=steps)
+            .filter_map(|step| LeadPrice::of(&leads.at(&self.airspeeds, self.step_kt(step))));
         prices.reduce(|most, other| most.or_more(&other))
     }
 
@@ -443,7 +518,9 @@ impl Schedule {
     /// Degree of the polynomial, which may be less than was asked for; `None` for a table.
     pub fn degree(&self) -> Option<usize> {
         match self.settings.kind {
-            ScheduleKind::Polynomial { degree } => Some(degree.min(self.airspeeds.clusters.len().saturating_sub(1))),
+            ScheduleKind::Polynomial { degree } => {
+                Some(degree.min(self.airspeeds.clusters.len().saturating_sub(1)))
+            }
             ScheduleKind::Table => None,
         }
     }
@@ -451,7 +528,10 @@ impl Schedule {
     /// Whether it is nothing to go by between the conditions: a gain overshoots there, or is not positive.
     pub fn interpolation_fails(&self) -> bool {
         let fails = |caution: &ScheduleCaution| {
-            matches!(caution, ScheduleCaution::Overshoot { .. } | ScheduleCaution::NotPositive)
+            matches!(
+                caution,
+                ScheduleCaution::Overshoot { .. } | ScheduleCaution::NotPositive
+            )
         };
         self.cautions.iter().any(fails)
     }
@@ -468,7 +548,11 @@ impl Schedule {
         cautions.extend(channels.filter_map(|channel| self.overshoot(points, channel)));
         let is_positive = |step: u32| {
             let correction = self.at(self.step_kt(step));
-            correction.input_gains.iter().chain(&correction.output_gains).all(|gain| *gain > 0.0)
+            correction
+                .input_gains
+                .iter()
+                .chain(&correction.output_gains)
+                .all(|gain| *gain > 0.0)
         };
         if !(0..=STEPS).all(is_positive) {
             cautions.push(ScheduleCaution::NotPositive);
@@ -477,22 +561,34 @@ impl Schedule {
     }
 
     /// Where a channel's gain is farthest outside the range of the conditions' gains, between two clusters.
-    fn overshoot(&self, points: &[ScheduledPoint<'_>], channel: Channel) -> Option<ScheduleCaution> {
+    fn overshoot(
+        &self,
+        points: &[ScheduledPoint<'_>],
+        channel: Channel,
+    ) -> Option<ScheduleCaution> {
         let gains = points.iter().map(|point| point.correction.gain(channel));
-        let range =
-            gains.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], gain| [least.min(gain), most.max(gain)]);
+        let range = gains.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], gain| {
+            [least.min(gain), most.max(gain)]
+        });
         // Where all gains are one, rounding is no overshoot.
         let mut farthest = 0.5 * (range[1] - range[0]) + 1e-9 * range[1];
         let (mut found, clusters) = (None, self.airspeeds.clusters_kt());
         for between in clusters.windows(2) {
             for step in 1..STEPS {
-                let airspeed_kt = between[0] + (between[1] - between[0]) * f64::from(step) / f64::from(STEPS);
+                let airspeed_kt =
+                    between[0] + (between[1] - between[0]) * f64::from(step) / f64::from(STEPS);
                 let gain = self.at(airspeed_kt).gain(channel);
                 let outside = (range[0] - gain).max(gain - range[1]);
                 if outside > farthest {
                     let between_kt = [between[0], between[1]];
                     farthest = outside;
-                    found = Some(ScheduleCaution::Overshoot { channel, between_kt, airspeed_kt, gain, range });
+                    found = Some(ScheduleCaution::Overshoot {
+                        channel,
+                        between_kt,
+                        airspeed_kt,
+                        gain,
+                        range,
+                    });
                 }
             }
         }
@@ -509,12 +605,21 @@ impl Schedule {
 
     /// The scheduled correction at the airspeed and the second variable of a condition.
     pub fn at_state(&self, state: &FlightState) -> ChannelCorrection {
-        self.evaluate(state.airspeed_kt, self.settings.second.and_then(|variable| variable.value(state)))
+        self.evaluate(
+            state.airspeed_kt,
+            self.settings
+                .second
+                .and_then(|variable| variable.value(state)),
+        )
     }
 
     /// As [`Schedule::at`], at a value of the second variable; beyond the range of the conditions' the end value holds.
     pub fn evaluate(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
-        let scaled = self.second.as_ref().zip(second).map(|(term, value)| (term, term.scale(value)));
+        let scaled = self
+            .second
+            .as_ref()
+            .zip(second)
+            .map(|(term, value)| (term, term.scale(value)));
         let gains = self.gains.map(|channel, regression| {
             let beside = scaled.map_or(0.0, |(term, scaled)| term.slopes[channel] * scaled);
             let value = regression.at(&self.airspeeds, airspeed_kt) + beside;
@@ -553,34 +658,66 @@ pub struct LeadSchedule {
 
 impl LeadSchedule {
     /// The schedule of these conditions' signed delays; none where one of them has none.
-    pub(super) fn of(points: &[ScheduledPoint<'_>], airspeeds: &Airspeeds, degree: usize) -> Option<Self> {
+    pub(super) fn of(
+        points: &[ScheduledPoint<'_>],
+        airspeeds: &Airspeeds,
+        degree: usize,
+    ) -> Option<Self> {
         let leads = points.iter().map(|point| point.correction.leads.as_ref());
         let leads = leads.collect::<Option<Vec<&ChannelLeads>>>()?;
-        let figures = |channel| leads.iter().map(|leads| leads.taus_s[channel]).collect::<Vec<f64>>();
-        let taus_s =
-            leads.first()?.taus_s.map(|channel, _| Regression::polynomial(airspeeds, &figures(channel), degree));
+        let figures = |channel| {
+            leads
+                .iter()
+                .map(|leads| leads.taus_s[channel])
+                .collect::<Vec<f64>>()
+        };
+        let taus_s = leads
+            .first()?
+            .taus_s
+            .map(|channel, _| Regression::polynomial(airspeeds, &figures(channel), degree));
         let design = Arc::clone(&leads.first()?.design);
-        let upper_s = points.iter().map(|point| point.delay_upper_s).fold(0.0, f64::max);
-        let lower_s = leads.iter().map(|leads| leads.design.lower_s()).fold(0.0, f64::min);
-        let mut schedule = Self { design, taus_s, bounds_s: [lower_s, upper_s], constant: None };
-        schedule.constant = (schedule.degree() == 0).then(|| schedule.made_at(airspeeds, airspeeds.mean_kt));
+        let upper_s = points
+            .iter()
+            .map(|point| point.delay_upper_s)
+            .fold(0.0, f64::max);
+        let lower_s = leads
+            .iter()
+            .map(|leads| leads.design.lower_s())
+            .fold(0.0, f64::min);
+        let mut schedule = Self {
+            design,
+            taus_s,
+            bounds_s: [lower_s, upper_s],
+            constant: None,
+        };
+        schedule.constant =
+            (schedule.degree() == 0).then(|| schedule.made_at(airspeeds, airspeeds.mean_kt));
         Some(schedule)
     }
 
     /// Degree of its polynomials.
     pub fn degree(&self) -> usize {
-        let degrees = self.taus_s.iter().map(|(_, regression)| regression.figures().len().saturating_sub(1));
+        let degrees = self
+            .taus_s
+            .iter()
+            .map(|(_, regression)| regression.figures().len().saturating_sub(1));
         degrees.max().unwrap_or(0)
     }
 
     /// The signed delays at an airspeed \[kt\], cut to the bounds.
     pub fn at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> ChannelLeads {
-        self.constant.clone().unwrap_or_else(|| self.made_at(airspeeds, airspeed_kt))
+        self.constant
+            .clone()
+            .unwrap_or_else(|| self.made_at(airspeeds, airspeed_kt))
     }
 
     fn made_at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> ChannelLeads {
         let [lower_s, upper_s] = self.bounds_s;
-        let cut = |_, regression: &Regression| regression.at(airspeeds, airspeed_kt).clamp(lower_s, upper_s);
+        let cut = |_, regression: &Regression| {
+            regression
+                .at(airspeeds, airspeed_kt)
+                .clamp(lower_s, upper_s)
+        };
         ChannelLeads::new(Arc::clone(&self.design), self.taus_s.map(cut))
     }
 }
@@ -607,8 +744,12 @@ mod tests {
         delay_upper_s: f64,
     ) -> Vec<ScheduledPoint<'a>> {
         let pairs = airspeeds_kt.iter().zip(corrections);
-        let point =
-            |(&airspeed_kt, correction)| ScheduledPoint { airspeed_kt, correction, delay_upper_s, second: None };
+        let point = |(&airspeed_kt, correction)| ScheduledPoint {
+            airspeed_kt,
+            correction,
+            delay_upper_s,
+            second: None,
+        };
         pairs.map(point).collect()
     }
 
@@ -618,7 +759,10 @@ mod tests {
         let airspeeds_kt = [40.0, 70.0, 100.0, 140.0];
         let points = points(&airspeeds_kt, &corrections, 1.0);
         let schedule = Schedule::of(&points, ScheduleSettings::default()).unwrap();
-        let products: Vec<f64> = corrections.iter().map(|c| c.net_gain(Pair::new(0, 0)).ln()).collect();
+        let products: Vec<f64> = corrections
+            .iter()
+            .map(|c| c.net_gain(Pair::new(0, 0)).ln())
+            .collect();
         let direct = Regression::polynomial(&schedule.airspeeds, &products, 2);
         for airspeed in [40.0, 88.0, 140.0] {
             let product = schedule.at(airspeed).net_gain(Pair::new(0, 0));
@@ -629,7 +773,10 @@ mod tests {
 
     #[test]
     fn without_a_condition_there_is_no_schedule() {
-        assert_eq!(Schedule::of(&[], ScheduleSettings::default()), Err(ScheduleError::NoCondition));
+        assert_eq!(
+            Schedule::of(&[], ScheduleSettings::default()),
+            Err(ScheduleError::NoCondition)
+        );
     }
 
     #[test]
@@ -637,53 +784,123 @@ mod tests {
         let corrections: Vec<_> = [1.0, 1.1, 1.0].into_iter().map(correction).collect();
         let of = |airspeeds_kt: [f64; 3], airspeed_tolerance_kt| {
             let points = points(&airspeeds_kt, &corrections, 1.0);
-            Schedule::of(&points, ScheduleSettings { airspeed_tolerance_kt, ..ScheduleSettings::default() }).unwrap()
+            Schedule::of(
+                &points,
+                ScheduleSettings {
+                    airspeed_tolerance_kt,
+                    ..ScheduleSettings::default()
+                },
+            )
+            .unwrap()
         };
-        assert_eq!(of([60.0, 90.0, 120.0], 2.0).cautions, [], "through its points, in the range between");
+        assert_eq!(
+            of([60.0, 90.0, 120.0], 2.0).cautions,
+            [],
+            "through its points, in the range between"
+        );
         // 1 at 60 and 120 kt, 1.1 at 63 kt: ln k = ln 1.1 (v^2 - 1) / (0.9^2 - 1), 1.65 at 90 kt.
         let wild = of([60.0, 63.0, 120.0], 2.0);
-        let ScheduleCaution::Overshoot { channel, between_kt, airspeed_kt, gain, range } = &wild.cautions[0] else {
+        let ScheduleCaution::Overshoot {
+            channel,
+            between_kt,
+            airspeed_kt,
+            gain,
+            range,
+        } = &wild.cautions[0]
+        else {
             panic!("{:?}", wild.cautions);
         };
-        assert_eq!((*channel, *between_kt, *range), (Channel::Input(0), [63.0, 120.0], [1.0, 1.1]));
-        assert!((airspeed_kt - 90.0).abs() < 1.0 && (gain / 1.1_f64.powf(1.0 / 0.19) - 1.0).abs() < 0.01);
+        assert_eq!(
+            (*channel, *between_kt, *range),
+            (Channel::Input(0), [63.0, 120.0], [1.0, 1.1])
+        );
+        assert!(
+            (airspeed_kt - 90.0).abs() < 1.0
+                && (gain / 1.1_f64.powf(1.0 / 0.19) - 1.0).abs() < 0.01
+        );
         assert!(wild.interpolation_fails());
         let lowered = of([60.0, 61.0, 120.0], 2.0);
-        assert_eq!(lowered.cautions, [ScheduleCaution::DegreeLowered { asked: 2, clusters: 2 }]);
-        assert_eq!((lowered.degree(), lowered.interpolation_fails()), (Some(1), false));
+        assert_eq!(
+            lowered.cautions,
+            [ScheduleCaution::DegreeLowered {
+                asked: 2,
+                clusters: 2
+            }]
+        );
+        assert_eq!(
+            (lowered.degree(), lowered.interpolation_fails()),
+            (Some(1), false)
+        );
     }
 
     #[test]
     fn delays_are_scheduled_only_where_asked_for() {
         let own = correction(1.0);
-        let points = [ScheduledPoint { airspeed_kt: 60.0, correction: &own, delay_upper_s: 1.0, second: None }];
-        assert_eq!(Schedule::of(&points, ScheduleSettings::default()).unwrap().at(60.0).input_delays_s, [0.0]);
-        let settings = ScheduleSettings { delays: true, ..ScheduleSettings::default() };
-        assert_eq!(Schedule::of(&points, settings).unwrap().at(60.0).input_delays_s, [0.01]);
+        let points = [ScheduledPoint {
+            airspeed_kt: 60.0,
+            correction: &own,
+            delay_upper_s: 1.0,
+            second: None,
+        }];
+        assert_eq!(
+            Schedule::of(&points, ScheduleSettings::default())
+                .unwrap()
+                .at(60.0)
+                .input_delays_s,
+            [0.0]
+        );
+        let settings = ScheduleSettings {
+            delays: true,
+            ..ScheduleSettings::default()
+        };
+        assert_eq!(
+            Schedule::of(&points, settings)
+                .unwrap()
+                .at(60.0)
+                .input_delays_s,
+            [0.01]
+        );
     }
     #[test]
     fn a_scheduled_delay_stays_within_the_bounds_of_the_conditions() {
         // Delays of 0, 0, 30 and 30 ms: a cubic through them swings to both sides. Bounds of 10, 20, 30 and 30 ms.
         let delays_s = [0.0, 0.0, 0.03, 0.03];
-        let corrections = delays_s.map(|delay| ChannelCorrection { input_delays_s: vec![delay], ..correction(1.0) });
+        let corrections = delays_s.map(|delay| ChannelCorrection {
+            input_delays_s: vec![delay],
+            ..correction(1.0)
+        });
         let points: Vec<_> = [60.0, 80.0, 100.0, 120.0]
             .into_iter()
             .zip(&corrections)
             .zip([0.01, 0.02, 0.03, 0.03])
-            .map(|((airspeed_kt, correction), delay_upper_s)| ScheduledPoint {
-                airspeed_kt,
-                correction,
-                delay_upper_s,
-                second: None,
-            })
+            .map(
+                |((airspeed_kt, correction), delay_upper_s)| ScheduledPoint {
+                    airspeed_kt,
+                    correction,
+                    delay_upper_s,
+                    second: None,
+                },
+            )
             .collect();
         let kind = ScheduleKind::Polynomial { degree: 3 };
-        let settings = ScheduleSettings { kind, delays: true, ..ScheduleSettings::default() };
+        let settings = ScheduleSettings {
+            kind,
+            delays: true,
+            ..ScheduleSettings::default()
+        };
         let schedule = Schedule::of(&points, settings).unwrap();
         let delay_at = |airspeed_kt: f64| schedule.at(airspeed_kt).input_delays_s[0];
-        assert_eq!((delay_at(70.0), delay_at(110.0)), (0.0, 0.03), "cut to 0 and to the bound");
-        assert!((delay_at(90.0) - 0.015).abs() < 1e-15, "half way, by symmetry");
-        let uncut = schedule.delays.as_ref().unwrap().taus_s.inputs[0].at(&schedule.airspeeds, 70.0);
+        assert_eq!(
+            (delay_at(70.0), delay_at(110.0)),
+            (0.0, 0.03),
+            "cut to 0 and to the bound"
+        );
+        assert!(
+            (delay_at(90.0) - 0.015).abs() < 1e-15,
+            "half way, by symmetry"
+        );
+        let uncut =
+            schedule.delays.as_ref().unwrap().taus_s.inputs[0].at(&schedule.airspeeds, 70.0);
         assert!(uncut < -0.001, "{uncut}");
     }
 }
@@ -695,7 +912,10 @@ mod lead_schedule_tests {
     use crate::correction::{ChannelCorrection, LeadSettings};
 
     fn corrections(taus_s: &[[f64; 2]]) -> Vec<ChannelCorrection> {
-        let design = Arc::new(LeadDesign::new(LeadSettings::default(), [0.5, 3.0, 12.0].into()));
+        let design = Arc::new(LeadDesign::new(
+            LeadSettings::default(),
+            [0.5, 3.0, 12.0].into(),
+        ));
         let of = |&[input_s, output_s]: &[f64; 2]| ChannelCorrection {
             input_gains: vec![1.0],
             output_gains: vec![1.0],
@@ -703,7 +923,10 @@ mod lead_schedule_tests {
             output_delays_s: vec![0.0],
             leads: Some(ChannelLeads::new(
                 Arc::clone(&design),
-                Channels { inputs: vec![input_s], outputs: vec![output_s] },
+                Channels {
+                    inputs: vec![input_s],
+                    outputs: vec![output_s],
+                },
             )),
         };
         taus_s.iter().map(of).collect()
@@ -712,26 +935,44 @@ mod lead_schedule_tests {
     #[test]
     fn the_sum_of_two_channels_is_the_regression_of_the_sums() {
         let airspeeds_kt = [60.0, 80.0, 100.0, 130.0];
-        let taus_s = [[-0.02, -0.03], [-0.04, 0.004], [-0.01, -0.02], [-0.03, -0.05]];
+        let taus_s = [
+            [-0.02, -0.03],
+            [-0.04, 0.004],
+            [-0.01, -0.02],
+            [-0.03, -0.05],
+        ];
         let corrections = corrections(&taus_s);
         let airspeeds = Airspeeds::new(airspeeds_kt.to_vec(), 2.0).unwrap();
         for degree in 0..=2 {
-            let schedule = LeadSchedule::of(&points(&airspeeds_kt, &corrections, 0.01), &airspeeds, degree).unwrap();
-            let sums: Vec<f64> = taus_s.iter().map(|[input, output]| input + output).collect();
+            let schedule = LeadSchedule::of(
+                &points(&airspeeds_kt, &corrections, 0.01),
+                &airspeeds,
+                degree,
+            )
+            .unwrap();
+            let sums: Vec<f64> = taus_s
+                .iter()
+                .map(|[input, output]| input + output)
+                .collect();
             let direct = Regression::polynomial(&airspeeds, &sums, degree);
             let at = schedule.at(&airspeeds, 93.0);
             // Least squares in another order of rounding.
-            assert!((at.taus_s.inputs[0] + at.taus_s.outputs[0] - direct.at(&airspeeds, 93.0)).abs() < 1e-15);
+            assert!(
+                (at.taus_s.inputs[0] + at.taus_s.outputs[0] - direct.at(&airspeeds, 93.0)).abs()
+                    < 1e-15
+            );
             assert_eq!(schedule.degree(), degree);
         }
     }
 
     #[test]
     fn a_scheduled_signed_delay_stays_within_the_widest_bounds() {
-        let corrections = corrections(&[[-0.09, 0.01], [-0.09, 0.01], [0.01, -0.05], [0.01, -0.05]]);
+        let corrections =
+            corrections(&[[-0.09, 0.01], [-0.09, 0.01], [0.01, -0.05], [0.01, -0.05]]);
         let airspeeds_kt = [60.0, 80.0, 100.0, 120.0];
         let airspeeds = Airspeeds::new(airspeeds_kt.to_vec(), 2.0).unwrap();
-        let schedule = LeadSchedule::of(&points(&airspeeds_kt, &corrections, 0.01), &airspeeds, 3).unwrap();
+        let schedule =
+            LeadSchedule::of(&points(&airspeeds_kt, &corrections, 0.01), &airspeeds, 3).unwrap();
         let uncut_s = schedule.taus_s.inputs[0].at(&airspeeds, 110.0);
         assert!(uncut_s > 0.011, "the cubic swings over: {uncut_s}");
         assert_eq!(schedule.at(&airspeeds, 110.0).taus_s.inputs, [0.01]);

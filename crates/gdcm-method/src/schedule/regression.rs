@@ -31,9 +31,18 @@ impl Airspeeds {
         let (min_kt, max_kt) = (values_kt[*rising.first()?], values_kt[*rising.last()?]);
         let near = |a: &usize, b: &usize| values_kt[*b] - values_kt[*a] <= tolerance_kt;
         let mut clusters: Vec<Vec<usize>> = rising.chunk_by(near).map(<[usize]>::to_vec).collect();
-        clusters.iter_mut().for_each(|cluster| cluster.sort_unstable());
+        clusters
+            .iter_mut()
+            .for_each(|cluster| cluster.sort_unstable());
         let mean_kt = values_kt.iter().sum::<f64>() / values_kt.len() as f64;
-        Some(Self { values_kt, mean_kt, half_range_kt: 0.5 * (max_kt - min_kt), min_kt, max_kt, clusters })
+        Some(Self {
+            values_kt,
+            mean_kt,
+            half_range_kt: 0.5 * (max_kt - min_kt),
+            min_kt,
+            max_kt,
+            clusters,
+        })
     }
 
     /// The scaled airspeed `v`; outside the conditions' range, that of the nearer end. Zero where there is no range.
@@ -55,7 +64,11 @@ impl Airspeeds {
             let first = figures[cluster[0]];
             let same = cluster.iter().all(|&place| figures[place] == first);
             // A sum would round it.
-            if same { first } else { cluster.iter().map(|&place| figures[place]).sum::<f64>() / cluster.len() as f64 }
+            if same {
+                first
+            } else {
+                cluster.iter().map(|&place| figures[place]).sum::<f64>() / cluster.len() as f64
+            }
         };
         self.clusters.iter().map(mean).collect()
     }
@@ -86,13 +99,21 @@ impl Regression {
         let qr = DMatrix::from_fn(rows.len(), degree + 1, |row, power| rows[row][power]).qr();
         // Full column rank: at least as many distinct v in [-1, 1] as there are columns, so R has no zero on its diagonal.
         let projected = qr.q().transpose() * DVector::from_column_slice(figures);
-        let coefficients = qr.r().solve_upper_triangular(&projected).unwrap_or(projected);
-        Self::Polynomial { coefficients: coefficients.iter().copied().collect() }
+        let coefficients = qr
+            .r()
+            .solve_upper_triangular(&projected)
+            .unwrap_or(projected);
+        Self::Polynomial {
+            coefficients: coefficients.iter().copied().collect(),
+        }
     }
 
     /// The mean figure of each cluster of airspeeds.
     pub fn table(airspeeds: &Airspeeds, figures: &[f64]) -> Self {
-        Self::Table { airspeeds_kt: airspeeds.clusters_kt(), values: airspeeds.cluster_means(figures) }
+        Self::Table {
+            airspeeds_kt: airspeeds.clusters_kt(),
+            values: airspeeds.cluster_means(figures),
+        }
     }
 
     /// Its coefficients, lowest power first, or the figures of its table.
@@ -108,9 +129,15 @@ impl Regression {
         match self {
             Regression::Polynomial { coefficients } => {
                 let v = airspeeds.scaled(airspeed_kt);
-                coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * v + coefficient)
+                coefficients
+                    .iter()
+                    .rev()
+                    .fold(0.0, |sum, coefficient| sum * v + coefficient)
             }
-            Regression::Table { airspeeds_kt, values } => {
+            Regression::Table {
+                airspeeds_kt,
+                values,
+            } => {
                 let (before, after, fraction) = bracket(airspeeds_kt, airspeed_kt);
                 values[before] + fraction * (values[after] - values[before])
             }
@@ -124,7 +151,9 @@ impl Schedule {
     pub fn design(&self) -> Vec<Vec<f64>> {
         let mut rows = self.airspeed_design();
         if let Some(term) = &self.second {
-            rows.iter_mut().zip(&term.scaled).for_each(|(row, scaled)| row.push(*scaled));
+            rows.iter_mut()
+                .zip(&term.scaled)
+                .for_each(|(row, scaled)| row.push(*scaled));
         }
         rows
     }
@@ -153,7 +182,11 @@ pub(super) fn design(airspeeds: &Airspeeds, kind: ScheduleKind) -> Vec<Vec<f64>>
     match kind {
         ScheduleKind::Polynomial { degree } => {
             let degree = degree.min(airspeeds.clusters.len().saturating_sub(1));
-            airspeeds.values_kt.iter().map(|&kt| powers(airspeeds.scaled(kt), degree)).collect()
+            airspeeds
+                .values_kt
+                .iter()
+                .map(|&kt| powers(airspeeds.scaled(kt), degree))
+                .collect()
         }
         ScheduleKind::Table => indicators(airspeeds),
     }
@@ -165,8 +198,15 @@ fn powers(v: f64, degree: usize) -> Vec<f64> {
 
 /// One column for each cluster of airspeeds: 1 in the rows of its conditions, else 0.
 fn indicators(airspeeds: &Airspeeds) -> Vec<Vec<f64>> {
-    let is_in = |place: usize, cluster: &Vec<usize>| if cluster.contains(&place) { 1.0 } else { 0.0 };
-    let row = |place| airspeeds.clusters.iter().map(|cluster| is_in(place, cluster)).collect();
+    let is_in =
+        |place: usize, cluster: &Vec<usize>| if cluster.contains(&place) { 1.0 } else { 0.0 };
+    let row = |place| {
+        airspeeds
+            .clusters
+            .iter()
+            .map(|cluster| is_in(place, cluster))
+            .collect()
+    };
     (0..airspeeds.values_kt.len()).map(row).collect()
 }
 
@@ -177,7 +217,11 @@ fn bracket(places: &[f64], x: f64) -> (usize, usize, f64) {
     if after == 0 || after > end {
         return (after.min(end), after.min(end), 0.0);
     }
-    (after - 1, after, (x - places[after - 1]) / (places[after] - places[after - 1]))
+    (
+        after - 1,
+        after,
+        (x - places[after - 1]) / (places[after] - places[after - 1]),
+    )
 }
 
 /// The share of each of these rising places in the linear interpolation at `x`.
@@ -191,7 +235,9 @@ fn between(places: &[f64], x: f64) -> Vec<f64> {
 
 /// Conditions (by place) whose airspeeds \[kt\] lie within `tolerance_kt` of the next one: a row of indicators for each condition.
 pub fn airspeed_indicators(airspeeds_kt: Vec<f64>, tolerance_kt: f64) -> Vec<Vec<f64>> {
-    Airspeeds::new(airspeeds_kt, tolerance_kt).map(|airspeeds| indicators(&airspeeds)).unwrap_or_default()
+    Airspeeds::new(airspeeds_kt, tolerance_kt)
+        .map(|airspeeds| indicators(&airspeeds))
+        .unwrap_or_default()
 }
 
 /// The figures of one channel.
@@ -223,13 +269,25 @@ impl Schedule {
         let (columns, scale): (Vec<String>, String) = match self.degree() {
             Some(degree) => {
                 let degree = degree.max(self.leads.as_ref().map_or(0, LeadSchedule::degree));
-                let columns = POWERS[..=degree].iter().map(|&power| power.to_owned()).collect();
+                let columns = POWERS[..=degree]
+                    .iter()
+                    .map(|&power| power.to_owned())
+                    .collect();
                 let (mean_kt, half_kt) = (self.airspeeds.mean_kt, self.airspeeds.half_range_kt);
-                (columns, format!("v = (V − {mean_kt:.2} kt) / {half_kt:.2} kt"))
+                (
+                    columns,
+                    format!("v = (V − {mean_kt:.2} kt) / {half_kt:.2} kt"),
+                )
             }
             None => {
                 let airspeeds_kt = self.airspeeds.clusters_kt();
-                (airspeeds_kt.into_iter().map(|airspeed_kt| format!("{airspeed_kt:.1} kt")).collect(), String::new())
+                (
+                    airspeeds_kt
+                        .into_iter()
+                        .map(|airspeed_kt| format!("{airspeed_kt:.1} kt"))
+                        .collect(),
+                    String::new(),
+                )
             }
         };
         let symbol = match self.settings.quantity {
@@ -237,28 +295,37 @@ impl Schedule {
             ScheduledQuantity::Gain => "k",
         };
         let count = columns.len();
-        let row = |(channel, regression): (Channel, &Regression), symbol: &str, unit: &str| CoefficientRow {
-            channel,
-            name: format!("{symbol}_{}{unit}", channel.name(inputs, outputs)),
-            figures: match (self.degree(), regression) {
-                // Signed delays are a polynomial beside a table of gains.
-                (None, Regression::Polynomial { .. }) => {
-                    self.airspeeds.clusters_kt().iter().map(|&kt| regression.at(&self.airspeeds, kt)).collect()
-                }
-                // The power of which there is none has the coefficient 0.
-                _ => {
-                    let none = std::iter::repeat(0.0);
-                    let figures = regression.figures().iter().copied().chain(none);
-                    figures.take(count).collect()
-                }
-            },
+        let row = |(channel, regression): (Channel, &Regression), symbol: &str, unit: &str| {
+            CoefficientRow {
+                channel,
+                name: format!("{symbol}_{}{unit}", channel.name(inputs, outputs)),
+                figures: match (self.degree(), regression) {
+                    // Signed delays are a polynomial beside a table of gains.
+                    (None, Regression::Polynomial { .. }) => self
+                        .airspeeds
+                        .clusters_kt()
+                        .iter()
+                        .map(|&kt| regression.at(&self.airspeeds, kt))
+                        .collect(),
+                    // The power of which there is none has the coefficient 0.
+                    _ => {
+                        let none = std::iter::repeat(0.0);
+                        let figures = regression.figures().iter().copied().chain(none);
+                        figures.take(count).collect()
+                    }
+                },
+            }
         };
         let gains = self.gains.iter().map(|of| row(of, symbol, ""));
         let delays = self.delays.iter().flat_map(|delays| delays.taus_s.iter());
         let leads = self.leads.iter().flat_map(|leads| leads.taus_s.iter());
         let delays = delays.chain(leads).map(|of| row(of, "τ", " [s]"));
         let rows = gains.chain(delays).collect();
-        CoefficientTable { columns, rows, scale }
+        CoefficientTable {
+            columns,
+            rows,
+            scale,
+        }
     }
 }
 
@@ -275,12 +342,22 @@ mod tests {
     fn a_parabola_is_found_exactly() {
         let airspeeds = airspeeds();
         let figure = |airspeed: f64| 1.0 + 0.02 * airspeed - 1e-4 * airspeed * airspeed;
-        let figures: Vec<f64> = airspeeds.values_kt.iter().map(|&airspeed| figure(airspeed)).collect();
+        let figures: Vec<f64> = airspeeds
+            .values_kt
+            .iter()
+            .map(|&airspeed| figure(airspeed))
+            .collect();
         let regression = Regression::polynomial(&airspeeds, &figures, 2);
         // Least squares with a condition number of about 5.
         assert!((regression.at(&airspeeds, 120.0) - figure(120.0)).abs() < 1e-13);
-        assert!((regression.at(&airspeeds, 200.0) - figure(140.0)).abs() < 1e-13, "the end value holds");
-        assert!((regression.at(&airspeeds, 0.0) - figure(45.0)).abs() < 1e-13, "the end value holds");
+        assert!(
+            (regression.at(&airspeeds, 200.0) - figure(140.0)).abs() < 1e-13,
+            "the end value holds"
+        );
+        assert!(
+            (regression.at(&airspeeds, 0.0) - figure(45.0)).abs() < 1e-13,
+            "the end value holds"
+        );
     }
 
     #[test]
@@ -293,21 +370,47 @@ mod tests {
     #[test]
     fn airspeeds_within_the_tolerance_of_the_next_are_one_cluster() {
         let airspeeds = Airspeeds::new(vec![60.0, 90.1, 63.9, 62.0, 90.0], 2.0).unwrap();
-        assert_eq!(airspeeds.clusters, [vec![0, 2, 3], vec![1, 4]], "62 is within 2 kt of 60, and 63.9 of 62");
-        assert_eq!(airspeeds.clusters_kt(), [(60.0 + 63.9 + 62.0) / 3.0, (90.1 + 90.0) / 2.0]);
-        let Regression::Polynomial { coefficients } = Regression::polynomial(&airspeeds, &[1.0; 5], 3) else {
+        assert_eq!(
+            airspeeds.clusters,
+            [vec![0, 2, 3], vec![1, 4]],
+            "62 is within 2 kt of 60, and 63.9 of 62"
+        );
+        assert_eq!(
+            airspeeds.clusters_kt(),
+            [(60.0 + 63.9 + 62.0) / 3.0, (90.1 + 90.0) / 2.0]
+        );
+        let Regression::Polynomial { coefficients } =
+            Regression::polynomial(&airspeeds, &[1.0; 5], 3)
+        else {
             panic!("a polynomial was asked for");
         };
         assert_eq!(coefficients.len(), 2, "two clusters bear a straight line");
-        assert_eq!(Airspeeds::new(vec![60.0, 60.0 + 1e-9], 0.0).unwrap().clusters.len(), 2);
+        assert_eq!(
+            Airspeeds::new(vec![60.0, 60.0 + 1e-9], 0.0)
+                .unwrap()
+                .clusters
+                .len(),
+            2
+        );
     }
 
     #[test]
     fn a_table_takes_means_and_is_linear_between_them() {
         let airspeeds = airspeeds();
         let regression = Regression::table(&airspeeds, &[1.0, 2.0, 4.0, 6.0, 5.0]);
-        for (airspeed, expected) in [(30.0, 1.0), (45.0, 1.0), (52.5, 2.0), (60.0, 3.0), (115.0, 5.5), (150.0, 5.0)] {
-            assert_eq!(regression.at(&airspeeds, airspeed), expected, "{airspeed} kt");
+        for (airspeed, expected) in [
+            (30.0, 1.0),
+            (45.0, 1.0),
+            (52.5, 2.0),
+            (60.0, 3.0),
+            (115.0, 5.5),
+            (150.0, 5.0),
+        ] {
+            assert_eq!(
+                regression.at(&airspeeds, airspeed),
+                expected,
+                "{airspeed} kt"
+            );
         }
     }
 
@@ -365,8 +468,15 @@ mod coefficients_tests {
         });
         let points = points(&[60.0, 90.0, 120.0], &corrections, 0.1);
         let names = (["LON".to_owned()], ["Q".to_owned()]);
-        let of = |settings| Schedule::of(&points, settings).unwrap().coefficients(&names.0, &names.1);
-        let table = of(ScheduleSettings { delays: true, ..ScheduleSettings::default() });
+        let of = |settings| {
+            Schedule::of(&points, settings)
+                .unwrap()
+                .coefficients(&names.0, &names.1)
+        };
+        let table = of(ScheduleSettings {
+            delays: true,
+            ..ScheduleSettings::default()
+        });
         let rows: Vec<&str> = table.rows.iter().map(|row| row.name.as_str()).collect();
         assert_eq!(rows, ["ln k_LON", "ln k_Q", "τ_LON [s]", "τ_Q [s]"]);
         assert_eq!(
@@ -380,7 +490,16 @@ mod coefficients_tests {
             quantity: ScheduledQuantity::Gain,
             ..ScheduleSettings::default()
         });
-        assert_eq!((table.columns.join(" ").as_str(), table.scale.as_str()), ("60.0 kt 90.0 kt 120.0 kt", ""));
-        assert_eq!((table.rows[0].name.as_str(), table.rows[0].figures.as_slice()), ("k_LON", &[1.0, 1.1, 1.3][..]));
+        assert_eq!(
+            (table.columns.join(" ").as_str(), table.scale.as_str()),
+            ("60.0 kt 90.0 kt 120.0 kt", "")
+        );
+        assert_eq!(
+            (
+                table.rows[0].name.as_str(),
+                table.rows[0].figures.as_slice()
+            ),
+            ("k_LON", &[1.0, 1.1, 1.3][..])
+        );
     }
 }

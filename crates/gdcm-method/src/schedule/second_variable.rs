@@ -63,7 +63,10 @@ impl SecondVariable {
     pub fn values(self, states: &[&FlightState]) -> Option<Vec<f64>> {
         let numbers: Option<Vec<f64>> = states.iter().map(|state| self.value(state)).collect();
         numbers.or_else(|| {
-            let labels: Vec<&str> = states.iter().map(|state| self.label(state)).collect::<Option<_>>()?;
+            let labels: Vec<&str> = states
+                .iter()
+                .map(|state| self.label(state))
+                .collect::<Option<_>>()?;
             let mut distinct = labels.clone();
             distinct.sort_unstable();
             distinct.dedup();
@@ -106,9 +109,14 @@ impl SecondTerm {
     ) -> Result<Self, ScheduleError> {
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let scaled: Vec<f64> = values.iter().map(|value| scaled(*value, [least, greatest])).collect();
+        let scaled: Vec<f64> = values
+            .iter()
+            .map(|value| scaled(*value, [least, greatest]))
+            .collect();
         let columns = rows.first().map_or(0, Vec::len);
-        let q = DMatrix::from_fn(rows.len(), columns, |row, column| rows[row][column]).qr().q();
+        let q = DMatrix::from_fn(rows.len(), columns, |row, column| rows[row][column])
+            .qr()
+            .q();
         let whole = DVector::from_column_slice(&scaled);
         // The scaled values less what the columns of airspeed make of them.
         let beside = &whole - &q * (q.transpose() * &whole);
@@ -116,8 +124,14 @@ impl SecondTerm {
             return Err(ScheduleError::NotToldApart(variable));
         }
         let square = beside.norm_squared();
-        let slopes = figures.map(|_, figures| beside.dot(&DVector::from_column_slice(figures)) / square);
-        Ok(Self { variable, range: [least, greatest], scaled, slopes })
+        let slopes =
+            figures.map(|_, figures| beside.dot(&DVector::from_column_slice(figures)) / square);
+        Ok(Self {
+            variable,
+            range: [least, greatest],
+            scaled,
+            slopes,
+        })
     }
 
     /// A value of the variable on the scale from -1 to 1; beyond the range of the conditions' the end holds.
@@ -163,20 +177,35 @@ mod tests {
         flown: &[(f64, Option<f64>)],
         gain: impl Fn(f64, f64) -> f64,
     ) -> Result<Schedule, ScheduleError> {
-        let gains: Vec<f64> = flown.iter().map(|(kt, feet)| gain(*kt, feet.unwrap_or_default())).collect();
+        let gains: Vec<f64> = flown
+            .iter()
+            .map(|(kt, feet)| gain(*kt, feet.unwrap_or_default()))
+            .collect();
         let corrections = corrections(&gains);
-        let points = flown.iter().zip(&corrections).map(|(&(airspeed_kt, second), correction)| ScheduledPoint {
-            airspeed_kt,
-            correction,
-            delay_upper_s: 0.0,
-            second,
-        });
-        let settings = ScheduleSettings { kind, second: Some(SecondVariable::Altitude), ..ScheduleSettings::default() };
+        let points = flown
+            .iter()
+            .zip(&corrections)
+            .map(|(&(airspeed_kt, second), correction)| ScheduledPoint {
+                airspeed_kt,
+                correction,
+                delay_upper_s: 0.0,
+                second,
+            });
+        let settings = ScheduleSettings {
+            kind,
+            second: Some(SecondVariable::Altitude),
+            ..ScheduleSettings::default()
+        };
         Schedule::of(&points.collect::<Vec<_>>(), settings)
     }
 
-    const FLOWN: [(f64, Option<f64>); 5] =
-        [(60.0, Some(2e3)), (60.0, Some(8e3)), (90.0, Some(2e3)), (120.0, Some(8e3)), (120.0, Some(2e3))];
+    const FLOWN: [(f64, Option<f64>); 5] = [
+        (60.0, Some(2e3)),
+        (60.0, Some(8e3)),
+        (90.0, Some(2e3)),
+        (120.0, Some(8e3)),
+        (120.0, Some(2e3)),
+    ];
 
     #[test]
     fn the_effects_of_airspeed_and_altitude_are_found_apart() {
@@ -186,24 +215,50 @@ mod tests {
             for (kt, feet) in [(60.0, 8e3), (75.0, 5e3), (120.0, 2e3)] {
                 let found = schedule.evaluate(kt, Some(feet)).input_gains[0];
                 // Least squares with a condition number of about 5.
-                assert!((found / gain(kt, feet) - 1.0).abs() < 1e-13, "{kind:?} at {kt} kt, {feet} ft: {found}");
+                assert!(
+                    (found / gain(kt, feet) - 1.0).abs() < 1e-13,
+                    "{kind:?} at {kt} kt, {feet} ft: {found}"
+                );
             }
             let beyond = schedule.evaluate(90.0, Some(20e3)).input_gains[0];
-            assert!((beyond / gain(90.0, 8e3) - 1.0).abs() < 1e-13, "the end value holds");
-            assert_eq!(schedule.at(90.0), schedule.evaluate(90.0, Some(5e3)), "the middle, where nothing is said");
+            assert!(
+                (beyond / gain(90.0, 8e3) - 1.0).abs() < 1e-13,
+                "the end value holds"
+            );
+            assert_eq!(
+                schedule.at(90.0),
+                schedule.evaluate(90.0, Some(5e3)),
+                "the middle, where nothing is said"
+            );
         }
     }
 
     #[test]
     fn conditions_that_cannot_tell_two_variables_apart_are_refused() {
-        let climbing: Vec<_> = [60.0, 90.0, 120.0].map(|kt| (kt, Some(100.0 * kt))).to_vec();
-        let refusal = schedule(ScheduleKind::Polynomial { degree: 1 }, &climbing, |_, _| 1.0).unwrap_err();
-        assert_eq!(refusal, ScheduleError::NotToldApart(SecondVariable::Altitude));
+        let climbing: Vec<_> = [60.0, 90.0, 120.0]
+            .map(|kt| (kt, Some(100.0 * kt)))
+            .to_vec();
+        let refusal = schedule(ScheduleKind::Polynomial { degree: 1 }, &climbing, |_, _| {
+            1.0
+        })
+        .unwrap_err();
+        assert_eq!(
+            refusal,
+            ScheduleError::NotToldApart(SecondVariable::Altitude)
+        );
         let level: Vec<_> = FLOWN.map(|(kt, _)| (kt, Some(2e3))).to_vec();
         let refusal = schedule(ScheduleKind::Table, &level, |_, _| 1.0).unwrap_err();
-        assert_eq!(refusal, ScheduleError::NotToldApart(SecondVariable::Altitude));
-        let silent: Vec<_> = FLOWN.map(|(kt, feet)| (kt, feet.filter(|_| kt > 60.0))).to_vec();
+        assert_eq!(
+            refusal,
+            ScheduleError::NotToldApart(SecondVariable::Altitude)
+        );
+        let silent: Vec<_> = FLOWN
+            .map(|(kt, feet)| (kt, feet.filter(|_| kt > 60.0)))
+            .to_vec();
         let refusal = schedule(ScheduleKind::Table, &silent, |_, _| 1.0).unwrap_err();
-        assert_eq!(refusal, ScheduleError::NoSecondValue(SecondVariable::Altitude));
+        assert_eq!(
+            refusal,
+            ScheduleError::NoSecondValue(SecondVariable::Altitude)
+        );
     }
 }

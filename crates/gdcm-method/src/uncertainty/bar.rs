@@ -58,7 +58,8 @@ impl Bar {
 
     /// Returns the half-width `h = t(max(nu, 1)) u` of the whole bar; `None` without a known spread.
     pub fn half_width(&self, level: f64) -> Option<f64> {
-        self.degrees_of_freedom().map(|degrees| student_quantile(level, degrees) * self.deviation())
+        self.degrees_of_freedom()
+            .map(|degrees| student_quantile(level, degrees) * self.deviation())
     }
 
     /// Returns the half-width `t(nu_id) s_id` of the inner bar, which holds for the chosen physics model.
@@ -79,7 +80,10 @@ impl Bar {
 
     fn about(&self, half: f64) -> [f64; 2] {
         let [least, greatest] = self.range;
-        [(self.value - half).clamp(least, greatest), (self.value + half).clamp(least, greatest)]
+        [
+            (self.value - half).clamp(least, greatest),
+            (self.value + half).clamp(least, greatest),
+        ]
     }
 
     /// Returns the share of the trim in the variance, from 0 to 1; `None` without spread.
@@ -103,7 +107,9 @@ impl Bar {
         match self.source {
             IdentificationSource::Spread => {}
             IdentificationSource::Coherence => remarks.push("identification from the coherence"),
-            IdentificationSource::ModelBand => remarks.push("identification from the model's own band"),
+            IdentificationSource::ModelBand => {
+                remarks.push("identification from the model's own band")
+            }
         }
         remarks
     }
@@ -132,12 +138,18 @@ impl VarianceComponent {
         let degrees = changes.len() as f64;
         let beyond_rounding = changes.iter().filter(|change| change.abs() > ROUNDING);
         let square: f64 = beyond_rounding.map(|change| change * change).sum();
-        (!changes.is_empty()).then(|| Self { variance: square / degrees, degrees_of_freedom: degrees })
+        (!changes.is_empty()).then(|| Self {
+            variance: square / degrees,
+            degrees_of_freedom: degrees,
+        })
     }
 
     /// Multiplies the variance and keeps the degrees of freedom.
     pub fn scaled(self, factor: f64) -> Self {
-        Self { variance: factor * self.variance, ..self }
+        Self {
+            variance: factor * self.variance,
+            ..self
+        }
     }
 }
 
@@ -145,7 +157,10 @@ impl VarianceComponent {
 ///
 /// F. E. Satterthwaite, "An approximate distribution of estimates of variance components", Biometrics Bulletin 2 (1946).
 pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Option<f64> {
-    let parts: Vec<VarianceComponent> = parts.into_iter().filter(|part| part.variance > 0.0).collect();
+    let parts: Vec<VarianceComponent> = parts
+        .into_iter()
+        .filter(|part| part.variance > 0.0)
+        .collect();
     // Relative to the largest, because squares of small variances underflow.
     let greatest = parts.iter().map(|part| part.variance).fold(0.0, f64::max);
     let (mut sum, mut spread) = (0.0, 0.0);
@@ -161,9 +176,20 @@ pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Opti
 /// `d_0 = min(prior, sum of the others' n)`. `None` where no condition has two identified models.
 ///
 /// `own` holds the mean square of each condition. A condition with one identified model has `None` and takes the pooled variance.
-pub fn pooled(own: &[Option<VarianceComponent>], prior_degrees: f64) -> Vec<Option<VarianceComponent>> {
-    let count: f64 = own.iter().flatten().map(|part| part.degrees_of_freedom).sum();
-    let square: f64 = own.iter().flatten().map(|part| part.degrees_of_freedom * part.variance).sum();
+pub fn pooled(
+    own: &[Option<VarianceComponent>],
+    prior_degrees: f64,
+) -> Vec<Option<VarianceComponent>> {
+    let count: f64 = own
+        .iter()
+        .flatten()
+        .map(|part| part.degrees_of_freedom)
+        .sum();
+    let square: f64 = own
+        .iter()
+        .flatten()
+        .map(|part| part.degrees_of_freedom * part.variance)
+        .sum();
     let of_condition = |own: &Option<VarianceComponent>| {
         let (n, variance) = own.map_or((0.0, 0.0), |own| (own.degrees_of_freedom, own.variance));
         let borrowed = prior_degrees.min(count - n);
@@ -198,17 +224,35 @@ pub struct UncertaintySettings {
 
 impl Default for UncertaintySettings {
     fn default() -> Self {
-        Self { level: 0.9, prior_degrees: 4.0, averages: None, window_s: None, half_overlap: false }
+        Self {
+            level: 0.9,
+            prior_degrees: 4.0,
+            averages: None,
+            window_s: None,
+            half_overlap: false,
+        }
     }
 }
 
 impl UncertaintySettings {
     /// Combines the data of a measured response with these defaults; `None` without a number of averages.
     pub fn measurement(&self, averages: Option<f64>, window_s: Option<f64>) -> Option<Measurement> {
-        let averages = averages.or(self.averages).filter(|averages| *averages > 0.0)?;
-        let window_s = window_s.or(self.window_s).filter(|window_s| *window_s > 0.0);
-        let factor = if self.half_overlap { 0.55_f64.sqrt() } else { 1.0 };
-        Some(Measurement { averages, window_s, factor })
+        let averages = averages
+            .or(self.averages)
+            .filter(|averages| *averages > 0.0)?;
+        let window_s = window_s
+            .or(self.window_s)
+            .filter(|window_s| *window_s > 0.0);
+        let factor = if self.half_overlap {
+            0.55_f64.sqrt()
+        } else {
+            1.0
+        };
+        Some(Measurement {
+            averages,
+            window_s,
+            factor,
+        })
     }
 }
 
@@ -236,7 +280,8 @@ impl Difference {
 
     /// Returns `|delta| / u_delta`, the multiple of the expected difference; `None` without spread.
     pub fn ratio(&self) -> Option<f64> {
-        self.degrees_of_freedom.map(|_| self.delta.abs() / self.deviation)
+        self.degrees_of_freedom
+            .map(|_| self.delta.abs() / self.deviation)
     }
 
     /// Returns the probability of a ratio this large without a true difference.
@@ -254,7 +299,9 @@ pub fn holm(probabilities: &[f64]) -> Vec<f64> {
     let mut corrected = vec![0.0; probabilities.len()];
     let mut most = 0.0_f64;
     for (rank, place) in rising.into_iter().enumerate() {
-        most = most.max((probabilities.len() - rank) as f64 * probabilities[place]).min(1.0);
+        most = most
+            .max((probabilities.len() - rank) as f64 * probabilities[place])
+            .min(1.0);
         corrected[place] = most;
     }
     corrected
@@ -284,9 +331,14 @@ fn expanded(z: f64, degrees: f64) -> f64 {
         (square + 1.0) / 4.0,
         ((5.0 * square + 16.0) * square + 3.0) / 96.0,
         (((3.0 * square + 19.0) * square + 17.0) * square - 15.0) / 384.0,
-        ((((79.0 * square + 776.0) * square + 1482.0) * square - 1920.0) * square - 945.0) / 92160.0,
+        ((((79.0 * square + 776.0) * square + 1482.0) * square - 1920.0) * square - 945.0)
+            / 92160.0,
     ];
-    z * terms.iter().rev().fold(0.0, |sum, term| (sum + term) / degrees) + z
+    z * terms
+        .iter()
+        .rev()
+        .fold(0.0, |sum, term| (sum + term) / degrees)
+        + z
 }
 
 /// Computes the two-sided probability `2 (1 - T_nu(|ratio|))` of Student's distribution.
@@ -314,7 +366,10 @@ mod tests {
     fn bar(trim: f64, identification: f64) -> Bar {
         Bar {
             value: 0.1,
-            trim: Some(VarianceComponent { variance: trim * trim, degrees_of_freedom: 4.0 }),
+            trim: Some(VarianceComponent {
+                variance: trim * trim,
+                degrees_of_freedom: 4.0,
+            }),
             identification: Some(VarianceComponent {
                 variance: identification * identification,
                 degrees_of_freedom: 5.0,
@@ -329,7 +384,9 @@ mod tests {
     #[test]
     fn a_bar_is_student_s_quantile_of_both_parts() {
         let bar = bar(0.0316227766017, 0.0206881608656);
-        let near = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+        let near = |found: f64, expected: f64| {
+            assert!((found - expected).abs() < 1e-9, "{found} {expected}")
+        };
         near(bar.deviation(), 0.0377888872554);
         near(bar.degrees_of_freedom().unwrap(), 7.11417375578);
         near(bar.half_width(0.9).unwrap(), 0.071421529124);
@@ -340,21 +397,38 @@ mod tests {
     #[test]
     fn identical_models_have_no_bar_and_one_model_says_what_is_missing() {
         let none = bar(0.0, 0.0);
-        assert_eq!((none.half_width(0.9), none.remarks()), (None, vec!["the bundle has no spread"]));
-        let alone = Bar { trim: None, identification: None, ..none };
-        assert_eq!(alone.remarks(), ["trim not included", "identification not included"]);
+        assert_eq!(
+            (none.half_width(0.9), none.remarks()),
+            (None, vec!["the bundle has no spread"])
+        );
+        let alone = Bar {
+            trim: None,
+            identification: None,
+            ..none
+        };
+        assert_eq!(
+            alone.remarks(),
+            ["trim not included", "identification not included"]
+        );
         assert_eq!(alone.interval(0.9), None);
     }
 
     #[test]
     fn a_delay_s_bar_ends_at_its_bounds() {
-        let cut = Bar { value: 0.0, range: [0.0, 0.01], ..bar(0.03, 0.02) };
+        let cut = Bar {
+            value: 0.0,
+            range: [0.0, 0.01],
+            ..bar(0.03, 0.02)
+        };
         assert_eq!(cut.interval(0.9), Some([0.0, 0.01]));
     }
 
     fn own(variances: &[f64], counts: &[f64]) -> Vec<Option<VarianceComponent>> {
         let part = |(&variance, &degrees): (&f64, &f64)| {
-            (degrees > 0.0).then_some(VarianceComponent { variance, degrees_of_freedom: degrees })
+            (degrees > 0.0).then_some(VarianceComponent {
+                variance,
+                degrees_of_freedom: degrees,
+            })
         };
         variances.iter().zip(counts).map(part).collect()
     }
@@ -362,16 +436,39 @@ mod tests {
     /// Case E of the reference (independent numpy code).
     #[test]
     fn few_identified_models_borrow_from_the_other_conditions() {
-        let five = pooled(&own(&[0.0009, 0.0001, 0.0, 0.0004, 0.0025], &[2.0, 2.0, 0.0, 1.0, 3.0]), 4.0);
-        let expected =
-            [(0.001125, 6.0), (0.000858333333333, 6.0), (0.0012375, 4.0), (0.00107, 5.0), (0.00177857142857, 7.0)];
+        let five = pooled(
+            &own(
+                &[0.0009, 0.0001, 0.0, 0.0004, 0.0025],
+                &[2.0, 2.0, 0.0, 1.0, 3.0],
+            ),
+            4.0,
+        );
+        let expected = [
+            (0.001125, 6.0),
+            (0.000858333333333, 6.0),
+            (0.0012375, 4.0),
+            (0.00107, 5.0),
+            (0.00177857142857, 7.0),
+        ];
         for (part, (variance, degrees)) in five.iter().zip(expected) {
             let part = part.unwrap();
             // The reference has twelve digits.
-            assert!((part.variance - variance).abs() < 1e-14 && part.degrees_of_freedom == degrees, "{part:?}");
+            assert!(
+                (part.variance - variance).abs() < 1e-14 && part.degrees_of_freedom == degrees,
+                "{part:?}"
+            );
         }
         let two = pooled(&own(&[0.0009, 0.0], &[2.0, 0.0]), 4.0);
-        assert_eq!(two, vec![Some(VarianceComponent { variance: 0.0009, degrees_of_freedom: 2.0 }); 2]);
+        assert_eq!(
+            two,
+            vec![
+                Some(VarianceComponent {
+                    variance: 0.0009,
+                    degrees_of_freedom: 2.0
+                });
+                2
+            ]
+        );
     }
 
     #[test]
@@ -382,16 +479,36 @@ mod tests {
     #[test]
     fn a_prior_of_nothing_trusts_the_condition_alone() {
         let alone = pooled(&own(&[0.0009, 0.0001, 0.0], &[2.0, 2.0, 0.0]), 0.0);
-        assert_eq!(alone[1], Some(VarianceComponent { variance: 0.0001, degrees_of_freedom: 2.0 }));
+        assert_eq!(
+            alone[1],
+            Some(VarianceComponent {
+                variance: 0.0001,
+                degrees_of_freedom: 2.0
+            })
+        );
         assert_eq!(alone[2], None, "one model says nothing by itself");
     }
 
     #[test]
     fn parts_of_nothing_have_no_degrees() {
-        assert_eq!(satterthwaite([VarianceComponent { variance: 0.0, degrees_of_freedom: 4.0 }; 2]), None);
+        assert_eq!(
+            satterthwaite(
+                [VarianceComponent {
+                    variance: 0.0,
+                    degrees_of_freedom: 4.0
+                }; 2]
+            ),
+            None
+        );
         let only = satterthwaite([
-            VarianceComponent { variance: 0.0, degrees_of_freedom: 4.0 },
-            VarianceComponent { variance: 1e-200, degrees_of_freedom: 5.0 },
+            VarianceComponent {
+                variance: 0.0,
+                degrees_of_freedom: 4.0,
+            },
+            VarianceComponent {
+                variance: 1e-200,
+                degrees_of_freedom: 5.0,
+            },
         ]);
         assert!((only.unwrap() - 5.0).abs() < 1e-12);
     }
@@ -424,18 +541,35 @@ mod tests {
         ];
         for (degrees, expected) in t_95 {
             // The reference has twelve digits.
-            assert!((student_quantile(0.9, degrees) - expected).abs() < 1e-9, "t of {degrees}");
+            assert!(
+                (student_quantile(0.9, degrees) - expected).abs() < 1e-9,
+                "t of {degrees}"
+            );
         }
-        assert_eq!(student_quantile(0.9, 0.3), student_quantile(0.9, 1.0), "never fewer than one degree");
-        for (ratio, degrees, expected) in
-            [(2.1, 6.0, 0.0804776876047), (5.4, 26.3, 1.13128376312e-05), (-0.4, 3.2, 0.714374785591)]
-        {
-            assert!((student_two_sided(ratio, degrees) / expected - 1.0).abs() < 1e-9, "p of {ratio}");
+        assert_eq!(
+            student_quantile(0.9, 0.3),
+            student_quantile(0.9, 1.0),
+            "never fewer than one degree"
+        );
+        for (ratio, degrees, expected) in [
+            (2.1, 6.0, 0.0804776876047),
+            (5.4, 26.3, 1.13128376312e-05),
+            (-0.4, 3.2, 0.714374785591),
+        ] {
+            assert!(
+                (student_two_sided(ratio, degrees) / expected - 1.0).abs() < 1e-9,
+                "p of {ratio}"
+            );
         }
-        for (ratio, above, below, expected) in
-            [(2.31, 6.0, 72.5, 0.0426460967923), (0.9, 8.0, 100.0, 0.51965499353), (7.4, 6.0, 40.2, 2.2368214366e-05)]
-        {
-            assert!((fisher_upper(ratio, above, below).unwrap() / expected - 1.0).abs() < 1e-8, "F of {ratio}");
+        for (ratio, above, below, expected) in [
+            (2.31, 6.0, 72.5, 0.0426460967923),
+            (0.9, 8.0, 100.0, 0.51965499353),
+            (7.4, 6.0, 40.2, 2.2368214366e-05),
+        ] {
+            assert!(
+                (fisher_upper(ratio, above, below).unwrap() / expected - 1.0).abs() < 1e-8,
+                "F of {ratio}"
+            );
         }
         for (p, degrees, expected) in [
             (0.05, 1.0, 0.00393214000002),
@@ -447,7 +581,10 @@ mod tests {
             (0.95, 6.0, 12.5915872437),
             (0.95, 8.0, 15.5073130559),
         ] {
-            assert!((chi_squared_quantile(p, degrees).unwrap() / expected - 1.0).abs() < 1e-8, "chi of {p}, {degrees}");
+            assert!(
+                (chi_squared_quantile(p, degrees).unwrap() / expected - 1.0).abs() < 1e-8,
+                "chi of {p}, {degrees}"
+            );
         }
     }
 }

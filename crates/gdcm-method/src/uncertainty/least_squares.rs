@@ -6,7 +6,8 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::{
-    Bar, VarianceComponent, chi_squared_quantile, fisher_upper, satterthwaite, student_quantile, student_two_sided,
+    Bar, VarianceComponent, chi_squared_quantile, fisher_upper, satterthwaite, student_quantile,
+    student_two_sided,
 };
 
 /// A column is linearly dependent if less than this fraction of its norm is orthogonal to the columns before it.
@@ -43,7 +44,8 @@ impl Design {
         let lengths: Vec<f64> = matrix.column_iter().map(|column| column.norm()).collect();
         let qr = matrix.qr();
         let (q, r) = (qr.q(), qr.r());
-        let depends = (0..columns).any(|column| r[(column, column)].abs() <= DEPENDENT * lengths[column]);
+        let depends =
+            (0..columns).any(|column| r[(column, column)].abs() <= DEPENDENT * lengths[column]);
         (!depends).then_some(Self { q, r })
     }
 
@@ -64,13 +66,18 @@ impl Design {
 
     /// Returns the hat value `h_c` of each condition: derivative of its fitted value by its own value.
     pub fn hat_values(&self) -> Vec<f64> {
-        (0..self.conditions()).map(|row| self.q.row(row).norm_squared().min(1.0)).collect()
+        (0..self.conditions())
+            .map(|row| self.q.row(row).norm_squared().min(1.0))
+            .collect()
     }
 
     /// Computes `x' (X'X)^-1 x` for any row `x`.
     pub fn leverage(&self, row: &[f64]) -> f64 {
         let row = DVector::from_column_slice(row);
-        self.r.transpose().solve_lower_triangular(&row).map_or(f64::NAN, |solved| solved.norm_squared())
+        self.r
+            .transpose()
+            .solve_lower_triangular(&row)
+            .map_or(f64::NAN, |solved| solved.norm_squared())
     }
 
     /// Returns the last diagonal entry of `(X'X)^-1`.
@@ -85,15 +92,22 @@ impl Design {
         let figures = DVector::from_column_slice(figures);
         let projected = self.q.transpose() * &figures;
         let residuals = &figures - &self.q * &projected;
-        let coefficients = self.r.solve_upper_triangular(&projected).unwrap_or(projected);
-        Fit { coefficients: coefficients.iter().copied().collect(), residuals: residuals.iter().copied().collect() }
+        let coefficients = self
+            .r
+            .solve_upper_triangular(&projected)
+            .unwrap_or(projected);
+        Fit {
+            coefficients: coefficients.iter().copied().collect(),
+            residuals: residuals.iter().copied().collect(),
+        }
     }
 
     /// Computes the leave-one-out error `e_c / (1 - h_c)` of each condition; `None` where the fit interpolates it, `h_c = 1`.
     pub fn left_out_errors(&self, figures: &[f64]) -> Vec<Option<f64>> {
         let residuals = self.fit(figures).residuals;
         let hats = self.hat_values();
-        let error = |(residual, hat): (f64, f64)| (1.0 - hat > DEPENDENT).then(|| residual / (1.0 - hat));
+        let error =
+            |(residual, hat): (f64, f64)| (1.0 - hat > DEPENDENT).then(|| residual / (1.0 - hat));
         residuals.into_iter().zip(hats).map(error).collect()
     }
 }
@@ -119,13 +133,19 @@ impl ScheduleBand {
     /// Computes the bands from the design and the split of the scatter about its fit.
     pub fn of(design: &Arc<Design>, split: &VarianceDecomposition, level: f64) -> Self {
         let deviation = split.scatter.max(split.explained()).sqrt();
-        Self { design: Arc::clone(design), half: student_quantile(level, split.freedom as f64) * deviation }
+        Self {
+            design: Arc::clone(design),
+            half: student_quantile(level, split.freedom as f64) * deviation,
+        }
     }
 
     /// Returns the half-widths for one row of the design.
     pub fn at(&self, row: &[f64]) -> BandWidths {
         let h = self.design.leverage(row);
-        BandWidths { confidence: self.half * h.sqrt(), scatter: self.half * (1.0 + h).sqrt() }
+        BandWidths {
+            confidence: self.half * h.sqrt(),
+            scatter: self.half * (1.0 + h).sqrt(),
+        }
     }
 }
 
@@ -153,7 +173,12 @@ impl VarianceDecomposition {
         }
         let figures: Vec<f64> = bars.iter().map(|bar| bar.value).collect();
         let f = freedom as f64;
-        let square: f64 = design.fit(&figures).residuals.iter().map(|residual| residual * residual).sum();
+        let square: f64 = design
+            .fit(&figures)
+            .residuals
+            .iter()
+            .map(|residual| residual * residual)
+            .sum();
         let hats = design.hat_values();
         let expected = |part: fn(&Bar) -> Option<VarianceComponent>| -> Vec<VarianceComponent> {
             let of_bar = |(bar, hat): (&Bar, &f64)| Some(part(bar)?.scaled((1.0 - hat) / f));
@@ -183,17 +208,23 @@ impl VarianceDecomposition {
     /// Returns the shares of trim, identification and rest in `max(S^2, B)`; `None` without scatter and spread.
     pub fn shares(&self) -> Option<[f64; 3]> {
         let whole = self.scatter.max(self.explained());
-        (whole > 0.0).then(|| [self.trim, self.identification, self.unexplained()].map(|part| part / whole))
+        (whole > 0.0)
+            .then(|| [self.trim, self.identification, self.unexplained()].map(|part| part / whole))
     }
 
     /// Returns `sqrt(S^2 / B)`, the multiple of the expected scatter; `None` without spread.
     pub fn ratio(&self) -> Option<f64> {
-        self.degrees_of_freedom.map(|_| (self.scatter / self.explained()).sqrt())
+        self.degrees_of_freedom
+            .map(|_| (self.scatter / self.explained()).sqrt())
     }
 
     /// Returns the probability of a scatter this large if the bundles explain all of it.
     pub fn p(&self) -> Option<f64> {
-        fisher_upper(self.scatter / self.explained(), self.freedom as f64, self.degrees_of_freedom?)
+        fisher_upper(
+            self.scatter / self.explained(),
+            self.freedom as f64,
+            self.degrees_of_freedom?,
+        )
     }
 
     /// Returns the confidence interval of the rest, as a standard deviation: `sqrt(max(0, f S^2 / chi^2_f(p) - B))` at `p = (1 +- level) / 2`.
@@ -201,7 +232,11 @@ impl VarianceDecomposition {
         let f = self.freedom as f64;
         let end = |p: f64| {
             let quantile = chi_squared_quantile(p, f).filter(|quantile| *quantile > 0.0)?;
-            Some((f * self.scatter / quantile - self.explained()).max(0.0).sqrt())
+            Some(
+                (f * self.scatter / quantile - self.explained())
+                    .max(0.0)
+                    .sqrt(),
+            )
         };
         Some([end(0.5 * (1.0 + level))?, end(0.5 * (1.0 - level))?])
     }
@@ -241,8 +276,12 @@ pub fn scaled(values: &[f64]) -> Option<Vec<f64>> {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let greatest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let width = greatest - least;
-    (width > 0.0 && width.is_finite())
-        .then(|| values.iter().map(|value| (2.0 * value - least - greatest) / width).collect())
+    (width > 0.0 && width.is_finite()).then(|| {
+        values
+            .iter()
+            .map(|value| (2.0 * value - least - greatest) / width)
+            .collect()
+    })
 }
 
 /// Designs of a schedule without and with a second variable.
@@ -259,8 +298,11 @@ impl SecondVariableDesign {
     /// [`SecondVariableError`] where the effect cannot be estimated.
     pub fn of(rows: &[Vec<f64>], values: &[f64]) -> Result<Self, SecondVariableError> {
         let scaled = scaled(values).ok_or(SecondVariableError::NotVaried)?;
-        let extended: Vec<Vec<f64>> =
-            rows.iter().zip(scaled).map(|(row, value)| row.iter().copied().chain([value]).collect()).collect();
+        let extended: Vec<Vec<f64>> = rows
+            .iter()
+            .zip(scaled)
+            .map(|(row, value)| row.iter().copied().chain([value]).collect())
+            .collect();
         let without = Design::new(rows).ok_or(SecondVariableError::NotToldApart)?;
         if without.freedom() < 2 {
             return Err(SecondVariableError::TooFewConditions);
@@ -274,13 +316,30 @@ impl SecondVariableDesign {
         let Self { without, with } = self;
         let fit = with.fit(figures);
         let freedom = with.freedom() as f64;
-        let variance = fit.residuals.iter().map(|residual| residual * residual).sum::<f64>() / freedom;
+        let variance = fit
+            .residuals
+            .iter()
+            .map(|residual| residual * residual)
+            .sum::<f64>()
+            / freedom;
         let error = (variance * with.last_variance()).sqrt();
         let coefficient = fit.coefficients.last().copied().unwrap_or_default();
         // An exact fit without effect would give 0/0.
-        let ratio = if coefficient == 0.0 { 0.0 } else { coefficient / error };
-        let errors = (without.left_out_errors(figures), with.left_out_errors(figures));
-        let both: Vec<(f64, f64)> = errors.0.iter().zip(&errors.1).filter_map(|(a, b)| Some(((*a)?, (*b)?))).collect();
+        let ratio = if coefficient == 0.0 {
+            0.0
+        } else {
+            coefficient / error
+        };
+        let errors = (
+            without.left_out_errors(figures),
+            with.left_out_errors(figures),
+        );
+        let both: Vec<(f64, f64)> = errors
+            .0
+            .iter()
+            .zip(&errors.1)
+            .filter_map(|(a, b)| Some(((*a)?, (*b)?)))
+            .collect();
         let rms = |of: fn(&(f64, f64)) -> f64| {
             let square: f64 = both.iter().map(|pair| of(pair).powi(2)).sum();
             (!both.is_empty()).then(|| (square / both.len() as f64).sqrt())
@@ -319,7 +378,10 @@ mod tests {
         let (places, figures) = ([0.0, 1.0, 2.0, 4.0], [1.0, 1.5, 3.0, 3.5]);
         let design = Design::new(&line(&places)).unwrap();
         assert!((design.hat_values().iter().sum::<f64>() - 2.0).abs() < 1e-14);
-        let without_last = Design::new(&line(&places[..3])).unwrap().fit(&figures[..3]).coefficients;
+        let without_last = Design::new(&line(&places[..3]))
+            .unwrap()
+            .fit(&figures[..3])
+            .coefficients;
         let foreseen = without_last[0] + 4.0 * without_last[1];
         // Two solutions of the same small problem.
         assert!((design.left_out_errors(&figures)[3].unwrap() - (3.5 - foreseen)).abs() < 1e-13);
@@ -327,7 +389,9 @@ mod tests {
 
     #[test]
     fn a_column_that_is_a_combination_of_the_others_is_no_design() {
-        let rows: Vec<Vec<f64>> = [0.0, 1.0, 2.0, 3.0].map(|x| vec![1.0, x, 2.0 - 3.0 * x]).to_vec();
+        let rows: Vec<Vec<f64>> = [0.0, 1.0, 2.0, 3.0]
+            .map(|x| vec![1.0, x, 2.0 - 3.0 * x])
+            .to_vec();
         assert_eq!(Design::new(&rows), None);
         assert_eq!(Design::new(&line(&[1.0])), None);
         assert_eq!(Design::new(&[]), None);

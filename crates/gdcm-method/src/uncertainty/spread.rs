@@ -39,11 +39,20 @@ pub struct ConditionSpread {
 impl ConditionSpread {
     /// Computes the mean squares about the scalars of the representatives. `trim` has an entry for each other kept physics model,
     /// `own` for each other kept identified model; `None` where the analysis of that pair failed.
-    pub fn of(representatives: &Figures, trim: &[Option<&Figures>], own: &[Option<&Figures>]) -> Self {
+    pub fn of(
+        representatives: &Figures,
+        trim: &[Option<&Figures>],
+        own: &[Option<&Figures>],
+    ) -> Self {
         let changes = representatives.map(|scalar, base| {
-            let Some(base) = base else { return Changes::default() };
+            let Some(base) = base else {
+                return Changes::default();
+            };
             let changed = |swaps: &[Option<&Figures>]| -> Vec<f64> {
-                swaps.iter().filter_map(|figures| Some((*figures)?[scalar]? - base)).collect()
+                swaps
+                    .iter()
+                    .filter_map(|figures| Some((*figures)?[scalar]? - base))
+                    .collect()
             };
             let (by_trim, by_own) = (changed(trim), changed(own));
             let left_out = trim.len() + own.len() - by_trim.len() - by_own.len();
@@ -73,9 +82,14 @@ pub struct BarSource<'a> {
 /// Computes the bars of all conditions of an analysis (M13.2, M13.3). The identification part of each scalar is pooled over the
 /// conditions. A scalar that does not exist has no bar.
 pub fn bars(conditions: &[BarSource<'_>], prior_degrees: f64) -> Vec<ScalarTable<Option<Bar>>> {
-    let Some(first) = conditions.first() else { return Vec::new() };
+    let Some(first) = conditions.first() else {
+        return Vec::new();
+    };
     let identification = first.figures.map(|scalar, _| {
-        let own: Vec<Option<VarianceComponent>> = conditions.iter().map(|of| of.spread.changes[scalar].own).collect();
+        let own: Vec<Option<VarianceComponent>> = conditions
+            .iter()
+            .map(|of| of.spread.changes[scalar].own)
+            .collect();
         pooled(&own, prior_degrees)
     });
     let of_condition = |(place, of): (usize, &BarSource<'_>)| {
@@ -127,7 +141,10 @@ pub enum Scalar {
 impl Scalar {
     /// Whether the scalar is a time in s; otherwise it is the natural logarithm of a gain.
     pub fn is_delay(self) -> bool {
-        matches!(self, Self::Delay(_) | Self::BandDelay(_) | Self::ChannelDelay(_))
+        matches!(
+            self,
+            Self::Delay(_) | Self::BandDelay(_) | Self::ChannelDelay(_)
+        )
     }
 }
 
@@ -138,7 +155,11 @@ pub struct ScalarTable<T>(BTreeMap<Scalar, T>);
 impl<T> ScalarTable<T> {
     /// Builds the table by calling `entry` for each scalar.
     pub fn from_fn(outputs: usize, inputs: usize, mut entry: impl FnMut(Scalar) -> T) -> Self {
-        Self(scalars(outputs, inputs).map(|scalar| (scalar, entry(scalar))).collect())
+        Self(
+            scalars(outputs, inputs)
+                .map(|scalar| (scalar, entry(scalar)))
+                .collect(),
+        )
     }
 
     /// Iterates over the scalars with their entries.
@@ -148,7 +169,11 @@ impl<T> ScalarTable<T> {
 
     /// Applies `f` to each entry.
     pub fn map<U>(&self, mut f: impl FnMut(Scalar, &T) -> U) -> ScalarTable<U> {
-        ScalarTable(self.iter().map(|(scalar, entry)| (scalar, f(scalar, entry))).collect())
+        ScalarTable(
+            self.iter()
+                .map(|(scalar, entry)| (scalar, f(scalar, entry)))
+                .collect(),
+        )
     }
 }
 
@@ -162,13 +187,22 @@ impl<T> Index<Scalar> for ScalarTable<T> {
 
 /// Iterates over all scalars of a condition.
 fn scalars(outputs: usize, inputs: usize) -> impl Iterator<Item = Scalar> {
-    let of_pair: [fn(Pair) -> Scalar; 4] = [Scalar::Gain, Scalar::Delay, Scalar::BandDelay, Scalar::NetGain];
+    let of_pair: [fn(Pair) -> Scalar; 4] = [
+        Scalar::Gain,
+        Scalar::Delay,
+        Scalar::BandDelay,
+        Scalar::NetGain,
+    ];
     let of_channel: [fn(Channel) -> Scalar; 2] = [Scalar::ChannelGain, Scalar::ChannelDelay];
     let pairs = move |of: fn(Pair) -> Scalar| {
-        (0..outputs).flat_map(move |output| (0..inputs).map(move |input| of(Pair::new(output, input))))
+        (0..outputs)
+            .flat_map(move |output| (0..inputs).map(move |input| of(Pair::new(output, input))))
     };
     let channels = move |of| Channel::all(inputs, outputs).map(of);
-    of_pair.into_iter().flat_map(pairs).chain(of_channel.into_iter().flat_map(channels))
+    of_pair
+        .into_iter()
+        .flat_map(pairs)
+        .chain(of_channel.into_iter().flat_map(channels))
 }
 
 /// Data of a measured response for the Bendat-Piersol error.
@@ -207,24 +241,47 @@ impl Measurement {
     /// Computes `kappa = sqrt(min(1, (pi/2) sum f_j^2))` with `f_j` the share of the frequencies \[rad/s\] with
     /// `floor(omega T_w / (4 pi)) = j`: errors of frequencies closer than `4 pi / T_w` are one error.
     fn averaging(&self, omega: &[f64]) -> f64 {
-        let Some(window_s) = self.window_s else { return 1.0 };
+        let Some(window_s) = self.window_s else {
+            return 1.0;
+        };
         let cell = |omega: &f64| (omega * window_s / (4.0 * PI)).floor();
-        let shares = omega.chunk_by(|a, b| cell(a) == cell(b)).map(|chunk| chunk.len() as f64 / omega.len() as f64);
-        (0.5 * PI * shares.map(|share| share * share).sum::<f64>()).min(1.0).sqrt()
+        let shares = omega
+            .chunk_by(|a, b| cell(a) == cell(b))
+            .map(|chunk| chunk.len() as f64 / omega.len() as f64);
+        (0.5 * PI * shares.map(|share| share * share).sum::<f64>())
+            .min(1.0)
+            .sqrt()
     }
 
     /// Computes the error over a band from the coherence at ascending frequencies `omega` in rad/s. Frequencies with a coherence of
     /// zero or below `threshold` are left out; `None` where no frequency remains.
-    pub fn error(&self, omega: &[f64], coherence: &[f64], threshold: f64) -> Option<CoherenceError> {
+    pub fn error(
+        &self,
+        omega: &[f64],
+        coherence: &[f64],
+        threshold: f64,
+    ) -> Option<CoherenceError> {
         let is_measured = |coherence: f64| coherence > 0.0 && coherence >= threshold;
-        let measured = || omega.iter().zip(coherence).filter(|(_, coherence)| is_measured(**coherence));
-        let mut gains: Vec<f64> = measured().map(|(_, &coherence)| self.deviation(coherence)).collect();
-        let mut delays: Vec<f64> = measured().map(|(omega, &coherence)| self.deviation(coherence) / omega).collect();
+        let measured = || {
+            omega
+                .iter()
+                .zip(coherence)
+                .filter(|(_, coherence)| is_measured(**coherence))
+        };
+        let mut gains: Vec<f64> = measured()
+            .map(|(_, &coherence)| self.deviation(coherence))
+            .collect();
+        let mut delays: Vec<f64> = measured()
+            .map(|(omega, &coherence)| self.deviation(coherence) / omega)
+            .collect();
         if gains.is_empty() || self.averages.is_nan() || self.averages <= 0.0 {
             return None;
         }
         let kappa = self.averaging(omega);
-        Some(CoherenceError { ln_gain: kappa * median(&mut gains), delay_s: kappa * median(&mut delays) })
+        Some(CoherenceError {
+            ln_gain: kappa * median(&mut gains),
+            delay_s: kappa * median(&mut delays),
+        })
     }
 }
 
@@ -234,9 +291,18 @@ mod tests {
 
     #[test]
     fn the_larger_of_the_spread_and_of_what_a_model_says_of_itself_counts() {
-        let part = |variance: f64| VarianceComponent { variance, degrees_of_freedom: 3.0 };
-        for source in [IdentificationSource::ModelBand, IdentificationSource::Coherence] {
-            let told = ReportedUncertainty { part: part(0.04), source };
+        let part = |variance: f64| VarianceComponent {
+            variance,
+            degrees_of_freedom: 3.0,
+        };
+        for source in [
+            IdentificationSource::ModelBand,
+            IdentificationSource::Coherence,
+        ] {
+            let told = ReportedUncertainty {
+                part: part(0.04),
+                source,
+            };
             assert!(told.replaces(None) && told.replaces(Some(part(0.01))));
             assert!(!told.replaces(Some(part(0.09))));
         }
@@ -250,7 +316,11 @@ mod scalar_tests {
     #[test]
     fn every_figure_has_a_place_of_its_own() {
         let table = ScalarTable::from_fn(3, 2, |scalar| scalar);
-        assert!(table.iter().all(|(scalar, entry)| scalar == *entry && table[scalar] == scalar));
+        assert!(
+            table
+                .iter()
+                .all(|(scalar, entry)| scalar == *entry && table[scalar] == scalar)
+        );
         assert_eq!(table.iter().count(), 4 * 6 + 2 * 5);
     }
 }

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::dataset::{
-    BandsDraft, Channel, ConditionDraft, ConditionId, Dataset, DatasetDraft, FlightState, Provenance, ResponseArray,
-    Timing,
+    BandsDraft, Channel, ConditionDraft, ConditionId, Dataset, DatasetDraft, FlightState,
+    Provenance, ResponseArray, Timing,
 };
 use nalgebra::DMatrix;
 
@@ -28,7 +28,10 @@ impl Part {
     /// The sides whose channels have no names in the file.
     pub fn sides_by_position(&self) -> Vec<ChannelSide> {
         let sides = [ChannelSide::Input, ChannelSide::Output];
-        sides.into_iter().filter(|side| side.of(&self.inputs, &self.outputs).by_position).collect()
+        sides
+            .into_iter()
+            .filter(|side| side.of(&self.inputs, &self.outputs).by_position)
+            .collect()
     }
 }
 
@@ -68,15 +71,24 @@ impl Assembly {
     pub fn new(models: Vec<FoundModel>, rules: Rules) -> Self {
         let rows = proposed_rows(&models, &rules);
         let with_row = models.into_iter().zip(rows);
-        let parts = with_row.map(|(found, row)| part_of(found, row, &rules)).collect();
-        let mut assembly = Self { rules, parts, problems: Vec::new() };
+        let parts = with_row
+            .map(|(found, row)| part_of(found, row, &rules))
+            .collect();
+        let mut assembly = Self {
+            rules,
+            parts,
+            problems: Vec::new(),
+        };
         assembly.problems = assembly.find_problems();
         assembly
     }
 
     /// The same models under other rules.
     pub fn with_rules(&self, rules: Rules) -> Self {
-        Self::new(self.parts.iter().map(|part| part.found.clone()).collect(), rules)
+        Self::new(
+            self.parts.iter().map(|part| part.found.clone()).collect(),
+            rules,
+        )
     }
 
     /// The rules.
@@ -96,7 +108,9 @@ impl Assembly {
 
     /// A problem in words, with the model that has it.
     pub fn words(&self, problem: &Problem) -> String {
-        let option = problem.option().map_or_else(String::new, |option| format!(" ({option})"));
+        let option = problem
+            .option()
+            .map_or_else(String::new, |option| format!(" ({option})"));
         match problem.part {
             Some(part) => format!("{}: {}{option}", self.parts[part].found.key(), problem.kind),
             None => format!("{}{option}", problem.kind),
@@ -107,7 +121,8 @@ impl Assembly {
     pub fn told(&self) -> Vec<(Option<usize>, String)> {
         let mut kinds: Vec<(&Problem, usize)> = Vec::new();
         for problem in &self.problems {
-            let is_same = |known: &Problem| known.kind == problem.kind && known.scope == problem.scope;
+            let is_same =
+                |known: &Problem| known.kind == problem.kind && known.scope == problem.scope;
             match kinds.iter_mut().find(|(known, _)| is_same(known)) {
                 Some((_, count)) => *count += 1,
                 None => kinds.push((problem, 1)),
@@ -132,10 +147,15 @@ impl Assembly {
         }
         let mut draft = merged(&self.rules, &self.parts);
         for condition in &mut draft.conditions {
-            let models = condition.physics.iter_mut().chain(&mut condition.identified);
+            let models = condition
+                .physics
+                .iter_mut()
+                .chain(&mut condition.identified);
             let of_models = models.filter_map(|model| model.source.as_mut()?.file.as_mut());
             let of_records = condition.records.iter_mut().map(|record| &mut record.file);
-            for file in of_models.chain(of_records).filter(|file| !folder.is_empty() && !Path::new(file).is_absolute())
+            for file in of_models
+                .chain(of_records)
+                .filter(|file| !folder.is_empty() && !Path::new(file).is_absolute())
             {
                 *file = format!("{folder}/{file}");
             }
@@ -146,13 +166,20 @@ impl Assembly {
     /// The conditions that have no identified model, in the order of their ids.
     pub fn without_reference(&self) -> Vec<i64> {
         let mut conditions = by_condition(&self.parts);
-        conditions.retain(|_, parts| parts.iter().all(|(_, part)| part.row.role != Some(RowRole::Identified)));
+        conditions.retain(|_, parts| {
+            parts
+                .iter()
+                .all(|(_, part)| part.row.role != Some(RowRole::Identified))
+        });
         conditions.into_keys().collect()
     }
 
     /// The models that are taken.
     fn taken(&self) -> impl Iterator<Item = (usize, &Part)> {
-        self.parts.iter().enumerate().filter(|(_, part)| !part.row.left_out)
+        self.parts
+            .iter()
+            .enumerate()
+            .filter(|(_, part)| !part.row.left_out)
     }
 
     fn find_problems(&self) -> Vec<Problem> {
@@ -162,12 +189,22 @@ impl Assembly {
         }
         for (index, part) in self.taken() {
             let said = self.rules.rows.get(&part.found.key());
-            if part.row.role != Some(RowRole::Identified) && said.is_none_or(|said| said.perturbation.is_none()) {
+            if part.row.role != Some(RowRole::Identified)
+                && said.is_none_or(|said| said.perturbation.is_none())
+            {
                 let unread = part.row.unread.iter().cloned();
                 problems.extend(unread.map(|part| Problem::of(index, ProblemKind::TrimPart(part))));
             }
-            problems.extend(self.name_contradictions(part).into_iter().map(|kind| Problem::of(index, kind)));
-            problems.extend(row_problems(part).into_iter().map(|kind| Problem::of(index, kind)));
+            problems.extend(
+                self.name_contradictions(part)
+                    .into_iter()
+                    .map(|kind| Problem::of(index, kind)),
+            );
+            problems.extend(
+                row_problems(part)
+                    .into_iter()
+                    .map(|kind| Problem::of(index, kind)),
+            );
             let of_channels = part.inputs.problems.iter().chain(&part.outputs.problems);
             problems.extend(of_channels.map(|kind| Problem::of(index, kind.clone())));
         }
@@ -179,7 +216,10 @@ impl Assembly {
         if problems.is_empty()
             && let Err(error) = merged(&self.rules, &self.parts).checked()
         {
-            problems.push(Problem::of_all(ProblemKind::Dataset(format!("{}: {}", error.place, error.fault))));
+            problems.push(Problem::of_all(ProblemKind::Dataset(format!(
+                "{}: {}",
+                error.place, error.fault
+            ))));
         }
         problems
     }
@@ -188,9 +228,18 @@ impl Assembly {
     fn name_contradictions(&self, part: &Part) -> Vec<ProblemKind> {
         let said = self.rules.rows.get(&part.found.key());
         let mut problems = Vec::new();
-        for NameContradiction { field, of_file, of_name } in part.row.contradictions.clone() {
+        for NameContradiction {
+            field,
+            of_file,
+            of_name,
+        } in part.row.contradictions.clone()
+        {
             if said.is_none_or(|said| !said.settles(&field)) {
-                problems.push(ProblemKind::NameContradiction { field, of_file, of_name });
+                problems.push(ProblemKind::NameContradiction {
+                    field,
+                    of_file,
+                    of_name,
+                });
             }
         }
         problems
@@ -206,7 +255,10 @@ impl Assembly {
             }
             match cautions.iter_mut().find(|caution| caution.sides == sides) {
                 Some(known) => known.parts.push(index),
-                None => cautions.push(AssemblyCaution { sides, parts: vec![index] }),
+                None => cautions.push(AssemblyCaution {
+                    sides,
+                    parts: vec![index],
+                }),
             }
         }
         cautions
@@ -216,7 +268,11 @@ impl Assembly {
     pub fn caution_words(&self, caution: &AssemblyCaution) -> String {
         /// Files that are named.
         const NAMED: usize = 3;
-        let keys = caution.parts.iter().take(NAMED).map(|part| self.parts[*part].found.key());
+        let keys = caution
+            .parts
+            .iter()
+            .take(NAMED)
+            .map(|part| self.parts[*part].found.key());
         let rest = caution.parts.len().saturating_sub(NAMED);
         let more = (rest > 0).then(|| format!("{rest} more"));
         let files: Vec<String> = keys.chain(more).collect();
@@ -225,7 +281,10 @@ impl Assembly {
             .iter()
             .map(|side| {
                 let channels = side.of(&self.rules.inputs, &self.rules.outputs);
-                let names: Vec<&str> = channels.iter().map(|channel| channel.name.as_str()).collect();
+                let names: Vec<&str> = channels
+                    .iter()
+                    .map(|channel| channel.name.as_str())
+                    .collect();
                 format!("{side}s taken as {}", names.join(", "))
             })
             .collect();
@@ -239,12 +298,19 @@ impl Assembly {
 
     fn channel_problems(&self) -> Vec<Problem> {
         let mut problems = Vec::new();
-        for (side, channels) in [("inputs", &self.rules.inputs), ("outputs", &self.rules.outputs)] {
+        for (side, channels) in [
+            ("inputs", &self.rules.inputs),
+            ("outputs", &self.rules.outputs),
+        ] {
             if channels.is_empty() {
                 problems.push(Problem::of_all(ProblemKind::NoChannels(side)));
             }
-            let without = channels.iter().filter(|channel| channel.unit.trim().is_empty());
-            problems.extend(without.map(|channel| Problem::of_all(ProblemKind::NoUnit(channel.name.clone()))));
+            let without = channels
+                .iter()
+                .filter(|channel| channel.unit.trim().is_empty());
+            problems.extend(
+                without.map(|channel| Problem::of_all(ProblemKind::NoUnit(channel.name.clone()))),
+            );
         }
         problems
     }
@@ -255,34 +321,58 @@ fn part_of(found: FoundModel, row: Row, rules: &Rules) -> Part {
     // A measured response may be one of several files that belong together.
     let partial = found.draft.response.is_some();
     let declared = rules.declared(&found, row.role);
-    let known = KnownChannels::Dataset { inputs: &rules.inputs, outputs: &rules.outputs };
+    let known = KnownChannels::Dataset {
+        inputs: &rules.inputs,
+        outputs: &rules.outputs,
+    };
     let named = found.labels_with_name(known);
     let mut labels = named.labels;
-    let [of_inputs, of_outputs] = said.map_or([None, None], |said| [said.inputs.as_ref(), said.outputs.as_ref()]);
+    let [of_inputs, of_outputs] = said.map_or([None, None], |said| {
+        [said.inputs.as_ref(), said.outputs.as_ref()]
+    });
     for (labels, names) in labels.iter_mut().zip([of_inputs, of_outputs]) {
         for (label, name) in labels.iter_mut().zip(names.into_iter().flatten()) {
             label.name = Some(name.clone());
         }
     }
-    let matched = |side, labels: &[ChannelLabel], names: Option<&Vec<String>>, channels: &[ChannelRule]| {
-        let mut matched = ChannelMatch::of(side, labels, channels, &declared, partial);
-        if let Some(names) = names.filter(|names| names.len() != labels.len()) {
-            matched.problems.push(ProblemKind::Names { side, said: names.len(), found: labels.len() });
-        }
-        matched
-    };
+    let matched =
+        |side, labels: &[ChannelLabel], names: Option<&Vec<String>>, channels: &[ChannelRule]| {
+            let mut matched = ChannelMatch::of(side, labels, channels, &declared, partial);
+            if let Some(names) = names.filter(|names| names.len() != labels.len()) {
+                matched.problems.push(ProblemKind::Names {
+                    side,
+                    said: names.len(),
+                    found: labels.len(),
+                });
+            }
+            matched
+        };
     let mut inputs = matched(ChannelSide::Input, &labels[0], of_inputs, &rules.inputs);
     let mut outputs = matched(ChannelSide::Output, &labels[1], of_outputs, &rules.outputs);
-    if let Some(problem) = named.problem.filter(|_| of_inputs.is_none() || of_outputs.is_none()) {
+    if let Some(problem) = named
+        .problem
+        .filter(|_| of_inputs.is_none() || of_outputs.is_none())
+    {
         // It says why the channels below match nothing.
-        let is_unmatched = |kind: &ProblemKind| matches!(kind, ProblemKind::ResponseUnmatched { .. });
+        let is_unmatched =
+            |kind: &ProblemKind| matches!(kind, ProblemKind::ResponseUnmatched { .. });
         inputs.problems.retain(|kind| !is_unmatched(kind));
         outputs.problems.retain(|kind| !is_unmatched(kind));
         inputs.problems.push(problem);
     }
-    let sample_time_s = said.and_then(|said| said.sample_time_s).or(rules.sample_time_s);
-    let sample_time_s = sample_time_s.filter(|_| found.draft.timing.sample_time_s.is_none() && !partial);
-    Part { found, row, labels, inputs, outputs, sample_time_s }
+    let sample_time_s = said
+        .and_then(|said| said.sample_time_s)
+        .or(rules.sample_time_s);
+    let sample_time_s =
+        sample_time_s.filter(|_| found.draft.timing.sample_time_s.is_none() && !partial);
+    Part {
+        found,
+        row,
+        labels,
+        inputs,
+        outputs,
+        sample_time_s,
+    }
 }
 
 // The unchecked dataset of models that are said to be what, each in the channels and units of the dataset.
@@ -297,14 +387,21 @@ pub(super) fn merged(rules: &Rules, parts: &[Part]) -> DatasetDraft {
         outputs: rules.outputs.iter().map(channel).collect(),
         on_axis: rules.on_axis.clone(),
         band: rules.band,
-        conditions: by_condition(parts).into_iter().map(|(id, parts)| condition_of(id, &parts, rules)).collect(),
+        conditions: by_condition(parts)
+            .into_iter()
+            .map(|(id, parts)| condition_of(id, &parts, rules))
+            .collect(),
     }
 }
 
 /// The models that are taken, each with its place among all, by their conditions.
 fn by_condition(parts: &[Part]) -> BTreeMap<i64, Vec<(usize, &Part)>> {
     let mut conditions: BTreeMap<i64, Vec<(usize, &Part)>> = BTreeMap::new();
-    for (index, part) in parts.iter().enumerate().filter(|(_, part)| !part.row.left_out) {
+    for (index, part) in parts
+        .iter()
+        .enumerate()
+        .filter(|(_, part)| !part.row.left_out)
+    {
         if let Some(condition) = part.row.condition {
             conditions.entry(condition).or_default().push((index, part));
         }
@@ -335,10 +432,16 @@ fn condition_of(id: i64, parts: &[(usize, &Part)], rules: &Rules) -> ConditionDr
     let mut physics = of_role(&[RowRole::Nominal, RowRole::Perturbed]);
     // The nominal model first, as a dataset is read.
     physics.sort_by_key(|part| part.row.role);
-    let coordinates: BTreeSet<&String> = physics.iter().flat_map(|part| part.row.perturbation.keys()).collect();
+    let coordinates: BTreeSet<&String> = physics
+        .iter()
+        .flat_map(|part| part.row.perturbation.keys())
+        .collect();
     ConditionDraft {
         flight_state: state,
-        physics: physics.iter().map(|part| physics_model(part, &coordinates)).collect(),
+        physics: physics
+            .iter()
+            .map(|part| physics_model(part, &coordinates))
+            .collect(),
         identified: identified_models(&of_role(&[RowRole::Identified]), rules),
         records: records_of(parts),
     }
@@ -353,7 +456,10 @@ fn records_of(parts: &[&Part]) -> Vec<ConditionRecord> {
         let key = (&record.name, &record.file, &record.variable);
         if let Some(place) = known.iter().position(|other| *other == key) {
             if records[place].used_s.is_empty() {
-                records[place] = ConditionRecord { name: records[place].name.clone(), ..record.clone() };
+                records[place] = ConditionRecord {
+                    name: records[place].name.clone(),
+                    ..record.clone()
+                };
             }
             continue;
         }
@@ -362,15 +468,20 @@ fn records_of(parts: &[&Part]) -> Vec<ConditionRecord> {
         let names = numbers.map(|number| format!("{} ({number})", record.name));
         let free = |name: &String| records.iter().all(|other| other.name != *name);
         let name = std::iter::once(record.name.clone()).chain(names).find(free);
-        records.push(ConditionRecord { name: name.unwrap_or_default(), ..record.clone() });
+        records.push(ConditionRecord {
+            name: name.unwrap_or_default(),
+            ..record.clone()
+        });
     }
     records
 }
 
 /// "45 kt, high altitude, low weight".
 fn condition_name(state: &FlightState) -> String {
-    let class = |class: &Option<String>, of: &str| class.as_ref().map(|class| format!("{class} {of}"));
-    let figure = |value: Option<f64>, unit: &str| value.map(|value| format!("{} {unit}", number(value)));
+    let class =
+        |class: &Option<String>, of: &str| class.as_ref().map(|class| format!("{class} {of}"));
+    let figure =
+        |value: Option<f64>, unit: &str| value.map(|value| format!("{} {unit}", number(value)));
     let altitude = class(&state.altitude, "altitude").or_else(|| figure(state.altitude_ft, "ft"));
     let weight = class(&state.weight, "weight").or_else(|| figure(state.mass_kg, "kg"));
     let parts = [figure(Some(state.airspeed_kt), "kt"), altitude, weight];
@@ -380,38 +491,57 @@ fn condition_name(state: &FlightState) -> String {
 /// Coordinates that others of the bundle name are at rest in this model.
 fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> ModelDraft {
     let offset = |coordinate: &&String| {
-        let offset = part.row.perturbation.get(*coordinate).copied().unwrap_or(0.0);
+        let offset = part
+            .row
+            .perturbation
+            .get(*coordinate)
+            .copied()
+            .unwrap_or(0.0);
         ((*coordinate).clone(), offset)
     };
-    let perturbation =
-        Some(coordinates.iter().map(offset).collect()).filter(|offsets: &BTreeMap<_, _>| !offsets.is_empty());
+    let perturbation = Some(coordinates.iter().map(offset).collect())
+        .filter(|offsets: &BTreeMap<_, _>| !offsets.is_empty());
     let origin = match part.row.role {
         Some(RowRole::Nominal) => Origin::Nominal { perturbation },
         _ => Origin::Perturbed { perturbation },
     };
-    ModelDraft { origin, ..model_of(part) }
+    ModelDraft {
+        origin,
+        ..model_of(part)
+    }
 }
 
 /// Measured responses of one name are one model.
 fn identified_models(parts: &[&Part], rules: &Rules) -> Vec<ModelDraft> {
     let mut models: Vec<ModelDraft> = Vec::new();
     for part in parts {
-        let model = ModelDraft { origin: identified_origin(part), ..model_of(part) };
-        let same = models.iter_mut().find(|other| other.name == model.name && other.response.is_some());
+        let model = ModelDraft {
+            origin: identified_origin(part),
+            ..model_of(part)
+        };
+        let same = models
+            .iter_mut()
+            .find(|other| other.name == model.name && other.response.is_some());
         match (same, &model.response) {
             (Some(earlier), Some(response)) => join(earlier, response, part),
             _ => models.push(model),
         }
     }
-    models.iter_mut().for_each(|model| note_unmeasured(model, rules));
+    models
+        .iter_mut()
+        .for_each(|model| note_unmeasured(model, rules));
     models
 }
 
 /// Notes the responses that no file of a measured model gives; where all are given over all frequencies, valid bands say nothing.
 fn note_unmeasured(model: &mut ModelDraft, rules: &Rules) {
-    let Some(response) = &mut model.response else { return };
+    let Some(response) = &mut model.response else {
+        return;
+    };
     let last = response.omega.last().copied().unwrap_or(0.0);
-    let Some(bands) = response.valid_bands.as_ref() else { return };
+    let Some(bands) = response.valid_bands.as_ref() else {
+        return;
+    };
     if bands.values.chunks(2).all(|band| band == [0.0, last]) {
         response.valid_bands = None;
         return;
@@ -428,7 +558,11 @@ fn note_unmeasured(model: &mut ModelDraft, rules: &Rules) {
     }
     if !unmeasured.is_empty() {
         let source = model.source.get_or_insert_with(Provenance::default);
-        let note = source.note.take().map(|note| format!("{note}; ")).unwrap_or_default();
+        let note = source
+            .note
+            .take()
+            .map(|note| format!("{note}; "))
+            .unwrap_or_default();
         source.note = Some(format!("{note}not measured: {}", unmeasured.join(", ")));
     }
 }
@@ -438,7 +572,10 @@ fn identified_origin(part: &Part) -> Origin {
         Origin::Identified { order, .. } => *order,
         Origin::Nominal { .. } | Origin::Perturbed { .. } => None,
     };
-    Origin::Identified { method: part.row.method.clone(), order: order.filter(|_| part.found.response().is_some()) }
+    Origin::Identified {
+        method: part.row.method.clone(),
+        order: order.filter(|_| part.found.response().is_some()),
+    }
 }
 
 /// The valid band of a response that was not measured \[rad/s\]: no frequency lies in it.
@@ -448,19 +585,25 @@ const NOT_MEASURED: [f64; 2] = [0.0, 0.0];
 fn bands_or_whole(response: &ResponseDraft) -> ResponseArray {
     let [outputs, inputs, _] = response.re.shape;
     let last = response.omega.last().copied().unwrap_or(0.0);
-    let whole = || ResponseArray { shape: [outputs, inputs, 2], values: [0.0, last].repeat(outputs * inputs) };
+    let whole = || ResponseArray {
+        shape: [outputs, inputs, 2],
+        values: [0.0, last].repeat(outputs * inputs),
+    };
     response.valid_bands.clone().unwrap_or_else(whole)
 }
 
 /// Puts the responses that `response` has, and the earlier model has not, into it.
 fn join(earlier: &mut ModelDraft, response: &ResponseDraft, part: &Part) {
-    let Some(into) = &mut earlier.response else { return };
+    let Some(into) = &mut earlier.response else {
+        return;
+    };
     let count = into.omega.len();
     let given = bands_or_whole(response);
     let mut known = bands_or_whole(into);
     for place in 0..into.re.shape[0] * into.re.shape[1] {
         let band = 2 * place..2 * place + 2;
-        if given.values[band.clone()] == NOT_MEASURED || known.values[band.clone()] != NOT_MEASURED {
+        if given.values[band.clone()] == NOT_MEASURED || known.values[band.clone()] != NOT_MEASURED
+        {
             continue;
         }
         let range = place * count..(place + 1) * count;
@@ -471,9 +614,18 @@ fn join(earlier: &mut ModelDraft, response: &ResponseDraft, part: &Part) {
     }
     into.valid_bands = Some(known);
     if let Some(source) = &mut earlier.source {
-        let note = source.note.take().map(|note| format!("{note}; ")).unwrap_or_default();
+        let note = source
+            .note
+            .take()
+            .map(|note| format!("{note}; "))
+            .unwrap_or_default();
         source.note = Some(format!("{note}with {}", part.found.key()));
-        let of_part = part.found.draft.source.iter().flat_map(|source| &source.unused);
+        let of_part = part
+            .found
+            .draft
+            .source
+            .iter()
+            .flat_map(|source| &source.unused);
         source.unused.extend(of_part.cloned());
         source.by_position.extend(part.sides_by_position());
         source.by_position.dedup();
@@ -481,12 +633,19 @@ fn join(earlier: &mut ModelDraft, response: &ResponseDraft, part: &Part) {
 }
 
 /// A part without coherence is trusted as it is where others have one.
-fn join_coherence(into: &mut ResponseDraft, response: &ResponseDraft, range: std::ops::Range<usize>) {
+fn join_coherence(
+    into: &mut ResponseDraft,
+    response: &ResponseDraft,
+    range: std::ops::Range<usize>,
+) {
     let shape = into.re.shape;
     if into.coherence.is_none() && response.coherence.is_none() {
         return;
     }
-    let full = || ResponseArray { shape, values: vec![1.0; shape.iter().product()] };
+    let full = || ResponseArray {
+        shape,
+        values: vec![1.0; shape.iter().product()],
+    };
     let coherence = into.coherence.get_or_insert_with(full);
     match &response.coherence {
         Some(of) => coherence.values[range.clone()].copy_from_slice(&of.values[range]),
@@ -503,8 +662,16 @@ fn model_of(part: &Part) -> ModelDraft {
     }
     let uses = part.inputs.uses.iter().chain(&part.outputs.uses).flatten();
     let conversions = uses.filter_map(|used| used.words.clone());
-    let sampled = part.sample_time_s.map(|step| format!("sample time {} s, as is said", number(step)));
-    let notes = part.inputs.notes.iter().chain(&part.outputs.notes).cloned().chain(sampled);
+    let sampled = part
+        .sample_time_s
+        .map(|step| format!("sample time {} s, as is said", number(step)));
+    let notes = part
+        .inputs
+        .notes
+        .iter()
+        .chain(&part.outputs.notes)
+        .cloned()
+        .chain(sampled);
     let said = model.source.as_ref().and_then(|source| source.note.clone());
     let words: Vec<String> = said.into_iter().chain(notes).chain(conversions).collect();
     if !words.is_empty() {
@@ -513,7 +680,10 @@ fn model_of(part: &Part) -> ModelDraft {
     }
     let by_position = part.sides_by_position();
     if !by_position.is_empty() {
-        model.source.get_or_insert_with(Provenance::default).by_position = by_position;
+        model
+            .source
+            .get_or_insert_with(Provenance::default)
+            .by_position = by_position;
     }
     model
 }
@@ -530,7 +700,11 @@ pub(super) fn converted(
     let is_whole = inputs.iter().chain(outputs).all(Option::is_some);
     let response = model.response.as_ref().map(|response| {
         // A response that was not measured is valid nowhere: its zeros are no numbers of the model.
-        let valid_bands = if is_whole { response.valid_bands.clone() } else { Some(bands_or_whole(response)) };
+        let valid_bands = if is_whole {
+            response.valid_bands.clone()
+        } else {
+            Some(bands_or_whole(response))
+        };
         ResponseDraft {
             omega: response.omega.clone(),
             re: table(&response.re, true),
@@ -542,8 +716,16 @@ pub(super) fn converted(
     });
     let timing = Timing {
         sample_time_s: model.timing.sample_time_s,
-        input_delays_s: model.timing.input_delays_s.as_ref().map(|delays| chosen(delays, inputs)),
-        output_delays_s: model.timing.output_delays_s.as_ref().map(|delays| chosen(delays, outputs)),
+        input_delays_s: model
+            .timing
+            .input_delays_s
+            .as_ref()
+            .map(|delays| chosen(delays, inputs)),
+        output_delays_s: model
+            .timing
+            .output_delays_s
+            .as_ref()
+            .map(|delays| chosen(delays, outputs)),
     };
     let b = b.as_ref().map(|b| columns(b, inputs));
     let c = c.as_ref().map(|c| rows(c, outputs));
@@ -554,33 +736,53 @@ pub(super) fn converted(
         sd_db: table(&bands.sd_db, false),
         sd_deg: table(&bands.sd_deg, false),
     });
-    ModelDraft { matrices: [a.clone(), b, c, d], response, timing, bands, ..model.clone() }
+    ModelDraft {
+        matrices: [a.clone(), b, c, d],
+        response,
+        timing,
+        bands,
+        ..model.clone()
+    }
 }
 
 fn chosen(delays: &[f64], uses: &[Option<ChannelUse>]) -> Vec<f64> {
-    let delay =
-        |used: &Option<ChannelUse>| used.as_ref().and_then(|used| delays.get(used.index)).copied().unwrap_or(0.0);
+    let delay = |used: &Option<ChannelUse>| {
+        used.as_ref()
+            .and_then(|used| delays.get(used.index))
+            .copied()
+            .unwrap_or(0.0)
+    };
     uses.iter().map(delay).collect()
 }
 
 /// The columns of inputs, each over its factor.
 fn columns(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f64> {
-    DMatrix::from_fn(matrix.nrows(), uses.len(), |row, column| match &uses[column] {
-        Some(used) if used.index < matrix.ncols() => scaled(matrix[(row, used.index)], 1.0, used.factor),
-        _ => 0.0,
+    DMatrix::from_fn(matrix.nrows(), uses.len(), |row, column| {
+        match &uses[column] {
+            Some(used) if used.index < matrix.ncols() => {
+                scaled(matrix[(row, used.index)], 1.0, used.factor)
+            }
+            _ => 0.0,
+        }
     })
 }
 
 /// The rows of outputs, each times its factor.
 fn rows(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f64> {
     DMatrix::from_fn(uses.len(), matrix.ncols(), |row, column| match &uses[row] {
-        Some(used) if used.index < matrix.nrows() => scaled(matrix[(used.index, column)], used.factor, 1.0),
+        Some(used) if used.index < matrix.nrows() => {
+            scaled(matrix[(used.index, column)], used.factor, 1.0)
+        }
         _ => 0.0,
     })
 }
 
 fn scaled(value: f64, times: f64, over: f64) -> f64 {
-    if times == over { value } else { value * times / over }
+    if times == over {
+        value
+    } else {
+        value * times / over
+    }
 }
 
 /// The table of the dataset's channels, converted or as it is; zero where a channel is missing.
@@ -593,17 +795,31 @@ fn picked(
     let mut values = Vec::with_capacity(outputs.len() * inputs.len() * count);
     for output in outputs {
         for input in inputs {
-            let of = output.as_ref().zip(input.as_ref()).filter(|(output, input)| output.index < p && input.index < m);
+            let of = output
+                .as_ref()
+                .zip(input.as_ref())
+                .filter(|(output, input)| output.index < p && input.index < m);
             let Some((output, input)) = of else {
                 values.extend(std::iter::repeat_n(0.0, count));
                 continue;
             };
             let start = (output.index * m + input.index) * count;
-            let (times, over) = if convert { (output.factor, input.factor) } else { (1.0, 1.0) };
-            values.extend(array.values[start..start + count].iter().map(|value| scaled(*value, times, over)));
+            let (times, over) = if convert {
+                (output.factor, input.factor)
+            } else {
+                (1.0, 1.0)
+            };
+            values.extend(
+                array.values[start..start + count]
+                    .iter()
+                    .map(|value| scaled(*value, times, over)),
+            );
         }
     }
-    ResponseArray { shape: [outputs.len(), inputs.len(), count], values }
+    ResponseArray {
+        shape: [outputs.len(), inputs.len(), count],
+        values,
+    }
 }
 
 #[cfg(test)]
@@ -611,12 +827,17 @@ mod tests {
     use super::*;
 
     fn used(index: usize, factor: f64) -> Option<ChannelUse> {
-        Some(ChannelUse { index, factor, words: None })
+        Some(ChannelUse {
+            index,
+            factor,
+            words: None,
+        })
     }
 
     #[test]
     fn a_response_is_multiplied_by_the_output_s_factor_over_the_input_s() {
-        let matrix = |rows, columns, values: &[f64]| Some(DMatrix::from_row_slice(rows, columns, values));
+        let matrix =
+            |rows, columns, values: &[f64]| Some(DMatrix::from_row_slice(rows, columns, values));
         let model = ModelDraft {
             name: "m".into(),
             origin: Origin::Perturbed { perturbation: None },
@@ -626,7 +847,10 @@ mod tests {
                 matrix(2, 1, &[3.0, 5.0]),
                 matrix(2, 2, &[0.0, 1.0, 2.0, 3.0]),
             ],
-            timing: Timing { input_delays_s: Some(vec![0.1, 0.2]), ..Timing::default() },
+            timing: Timing {
+                input_delays_s: Some(vec![0.1, 0.2]),
+                ..Timing::default()
+            },
             response: None,
             source: None,
             states: Vec::new(),
@@ -634,15 +858,25 @@ mod tests {
         };
         let turned = converted(&model, &[used(1, 2.0), used(0, 1.0)], &[used(1, 10.0)]);
         let [_, b, c, d] = turned.matrices.map(Option::unwrap);
-        assert_eq!((b.as_slice(), c.as_slice(), d.as_slice()), (&[1.0, 1.0][..], &[50.0][..], &[15.0, 20.0][..]));
+        assert_eq!(
+            (b.as_slice(), c.as_slice(), d.as_slice()),
+            (&[1.0, 1.0][..], &[50.0][..], &[15.0, 20.0][..])
+        );
         assert_eq!(turned.timing.input_delays_s, Some(vec![0.2, 0.1]));
-        let same = converted(&model, &[used(0, 1.0), used(1, 1.0)], &[used(0, 1.0), used(1, 1.0)]);
+        let same = converted(
+            &model,
+            &[used(0, 1.0), used(1, 1.0)],
+            &[used(0, 1.0), used(1, 1.0)],
+        );
         assert_eq!(same, model);
     }
 
     /// A measured response of 2 outputs and 1 input at 2 frequencies.
     fn measured(values: &[f64]) -> ModelDraft {
-        let array = |values: &[f64]| ResponseArray { shape: [values.len() / 2, 1, 2], values: values.to_vec() };
+        let array = |values: &[f64]| ResponseArray {
+            shape: [values.len() / 2, 1, 2],
+            values: values.to_vec(),
+        };
         let response = ResponseDraft {
             omega: vec![1.0, 5.0],
             re: array(values),
@@ -653,7 +887,10 @@ mod tests {
         };
         ModelDraft {
             name: "measured".into(),
-            origin: Origin::Identified { method: None, order: None },
+            origin: Origin::Identified {
+                method: None,
+                order: None,
+            },
             matrices: [None, None, None, None],
             timing: Timing::default(),
             response: Some(response),
@@ -670,28 +907,59 @@ mod tests {
             outputs: vec![ChannelRule::named("Q"), ChannelRule::named("P")],
             ..Rules::default()
         };
-        let mut of_one = converted(&measured(&[3.0, 4.0]), &[used(0, 1.0)], &[None, used(0, 1.0)]);
+        let mut of_one = converted(
+            &measured(&[3.0, 4.0]),
+            &[used(0, 1.0)],
+            &[None, used(0, 1.0)],
+        );
         note_unmeasured(&mut of_one, &rules);
-        assert_eq!(of_one.response.unwrap().valid_bands.unwrap().values, [0.0, 0.0, 0.0, 5.0]);
-        assert_eq!(of_one.source.unwrap().note.as_deref(), Some("not measured: Q/LON"));
-        let mut whole = converted(&measured(&[1.0, 2.0, 3.0, 4.0]), &[used(0, 1.0)], &[used(0, 1.0), used(1, 1.0)]);
+        assert_eq!(
+            of_one.response.unwrap().valid_bands.unwrap().values,
+            [0.0, 0.0, 0.0, 5.0]
+        );
+        assert_eq!(
+            of_one.source.unwrap().note.as_deref(),
+            Some("not measured: Q/LON")
+        );
+        let mut whole = converted(
+            &measured(&[1.0, 2.0, 3.0, 4.0]),
+            &[used(0, 1.0)],
+            &[used(0, 1.0), used(1, 1.0)],
+        );
         note_unmeasured(&mut whole, &rules);
-        assert_eq!((whole.response.unwrap().valid_bands, whole.source), (None, None));
+        assert_eq!(
+            (whole.response.unwrap().valid_bands, whole.source),
+            (None, None)
+        );
     }
 
     #[test]
     fn two_files_that_give_the_same_response_of_one_model_are_a_problem() {
-        let rule =
-            |name: &str| ChannelRule { unit: "%".into(), unit_in_files: Some("%".into()), ..ChannelRule::named(name) };
-        let rules = Rules { inputs: vec![rule("LON")], outputs: vec![rule("Q"), rule("P")], ..Rules::default() };
+        let rule = |name: &str| ChannelRule {
+            unit: "%".into(),
+            unit_in_files: Some("%".into()),
+            ..ChannelRule::named(name)
+        };
+        let rules = Rules {
+            inputs: vec![rule("LON")],
+            outputs: vec![rule("Q"), rule("P")],
+            ..Rules::default()
+        };
         let measured_in = |file: &str| {
             let mut model = found(file, None, Facts::default());
-            model.draft = ModelDraft { source: model.draft.source, ..measured(&[3.0, 4.0]) };
+            model.draft = ModelDraft {
+                source: model.draft.source,
+                ..measured(&[3.0, 4.0])
+            };
             model
         };
         let codes = |files: [&str; 2]| -> Vec<&str> {
             let assembly = Assembly::new(files.map(measured_in).to_vec(), rules.clone());
-            assembly.problems().iter().map(|problem| problem.kind.code()).collect()
+            assembly
+                .problems()
+                .iter()
+                .map(|problem| problem.kind.code())
+                .collect()
         };
         assert!(codes(["c1/frf_q_lon.csv", "c1/frf_q_lon_run2.csv"]).contains(&"response-twice"));
         assert!(!codes(["c1/frf_q_lon.csv", "c1/frf_p_lon.csv"]).contains(&"response-twice"));
@@ -701,8 +969,11 @@ mod tests {
     /// A model of one input and one output in a file, with matrices.
     fn found(file: &str, variable: Option<&str>, facts: Facts) -> FoundModel {
         let scalar = |value: f64| Some(DMatrix::from_element(1, 1, value));
-        let source =
-            Provenance { file: Some(file.to_owned()), variable: variable.map(str::to_owned), ..Provenance::default() };
+        let source = Provenance {
+            file: Some(file.to_owned()),
+            variable: variable.map(str::to_owned),
+            ..Provenance::default()
+        };
         FoundModel {
             draft: ModelDraft {
                 name: String::new(),
@@ -722,45 +993,84 @@ mod tests {
     }
 
     fn at(airspeed_kt: f64) -> Facts {
-        Facts { airspeed_kt: Some(airspeed_kt), ..Facts::default() }
+        Facts {
+            airspeed_kt: Some(airspeed_kt),
+            ..Facts::default()
+        }
     }
 
     #[test]
     fn an_airspeed_of_the_folder_that_is_not_the_file_s_is_a_problem_until_it_is_said() {
         let contradictions = |assembly: &Assembly| -> Vec<ProblemKind> {
-            let kinds = assembly.problems().iter().map(|problem| problem.kind.clone());
-            kinds.filter(|kind| matches!(kind, ProblemKind::NameContradiction { .. })).collect()
+            let kinds = assembly
+                .problems()
+                .iter()
+                .map(|problem| problem.kind.clone());
+            kinds
+                .filter(|kind| matches!(kind, ProblemKind::NameContradiction { .. }))
+                .collect()
         };
         let models = vec![found("c1_090kt/nominal.mat", None, at(70.0))];
         let assembly = Assembly::new(models, Rules::default());
-        let expected = ProblemKind::NameContradiction { field: "airspeed_kt".into(), of_file: 70.0, of_name: 90.0 };
+        let expected = ProblemKind::NameContradiction {
+            field: "airspeed_kt".into(),
+            of_file: 70.0,
+            of_name: 90.0,
+        };
         assert_eq!(contradictions(&assembly), [expected]);
         let mut rules = Rules::default();
-        rules.rows.entry("c1_090kt/nominal.mat".into()).or_default().airspeed_kt = Some(70.0);
+        rules
+            .rows
+            .entry("c1_090kt/nominal.mat".into())
+            .or_default()
+            .airspeed_kt = Some(70.0);
         assert_eq!(contradictions(&assembly.with_rules(rules)), []);
-        let rounded = Assembly::new(vec![found("c1_090kt/nominal.mat", None, at(90.3))], Rules::default());
+        let rounded = Assembly::new(
+            vec![found("c1_090kt/nominal.mat", None, at(90.3))],
+            Rules::default(),
+        );
         assert_eq!(contradictions(&rounded), []);
     }
 
     #[test]
     fn models_of_several_airspeeds_in_one_file_are_several_conditions_in_every_file() {
         let mut models = Vec::new();
-        for (file, airspeeds) in [("physics.mat", [60.0, 80.0]), ("flight/identified.npz", [80.0, 60.0])] {
+        for (file, airspeeds) in [
+            ("physics.mat", [60.0, 80.0]),
+            ("flight/identified.npz", [80.0, 60.0]),
+        ] {
             for (page, airspeed_kt) in airspeeds.into_iter().enumerate() {
-                models.push(found(file, Some(&format!("(:,:,{})", page + 1)), at(airspeed_kt)));
+                models.push(found(
+                    file,
+                    Some(&format!("(:,:,{})", page + 1)),
+                    at(airspeed_kt),
+                ));
             }
         }
         let assembly = Assembly::new(models, Rules::default());
-        let rows: Vec<(Option<i64>, Option<RowRole>)> =
-            assembly.parts().iter().map(|part| (part.row.condition, part.row.role)).collect();
+        let rows: Vec<(Option<i64>, Option<RowRole>)> = assembly
+            .parts()
+            .iter()
+            .map(|part| (part.row.condition, part.row.role))
+            .collect();
         let (nominal, identified) = (Some(RowRole::Nominal), Some(RowRole::Identified));
-        assert_eq!(rows, [(Some(1), nominal), (Some(2), nominal), (Some(2), identified), (Some(1), identified)]);
+        assert_eq!(
+            rows,
+            [
+                (Some(1), nominal),
+                (Some(2), nominal),
+                (Some(2), identified),
+                (Some(1), identified)
+            ]
+        );
     }
 
     #[test]
     fn channels_taken_by_position_are_a_caution_and_marked_in_the_dataset() {
-        let models =
-            vec![found("c1_90kt/nominal.mat", None, at(90.0)), found("c1_90kt/identified.mat", None, at(90.0))];
+        let models = vec![
+            found("c1_90kt/nominal.mat", None, at(90.0)),
+            found("c1_90kt/identified.mat", None, at(90.0)),
+        ];
         let mut rules = proposed_rules("", &models);
         for channel in rules.inputs.iter_mut().chain(&mut rules.outputs) {
             (channel.unit, channel.unit_in_files) = ("deg".into(), Some("deg".into()));
@@ -768,14 +1078,24 @@ mod tests {
         let assembly = Assembly::new(models, rules.clone());
         let cautions = assembly.cautions();
         let both = vec![ChannelSide::Input, ChannelSide::Output];
-        assert_eq!(cautions, [AssemblyCaution { sides: both.clone(), parts: vec![0, 1] }]);
+        assert_eq!(
+            cautions,
+            [AssemblyCaution {
+                sides: both.clone(),
+                parts: vec![0, 1]
+            }]
+        );
         assert_eq!(cautions[0].code(), "channels-by-position");
         let dataset = assembly.dataset("").unwrap();
-        let source = dataset.conditions()[0].bundle(crate::dataset::BundleKind::Physics)[0].source.clone().unwrap();
+        let source = dataset.conditions()[0].bundle(crate::dataset::BundleKind::Physics)[0]
+            .source
+            .clone()
+            .unwrap();
         assert_eq!(source.by_position, both);
         for key in ["c1_90kt/nominal.mat", "c1_90kt/identified.mat"] {
             let row = rules.rows.entry(key.into()).or_default();
-            (row.inputs, row.outputs) = (Some(vec!["input 1".into()]), Some(vec!["output 1".into()]));
+            (row.inputs, row.outputs) =
+                (Some(vec!["input 1".into()]), Some(vec!["output 1".into()]));
         }
         assert_eq!(assembly.with_rules(rules).cautions(), []);
     }

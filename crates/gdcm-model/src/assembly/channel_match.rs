@@ -40,7 +40,11 @@ impl ChannelMatch {
         if unnamed && labels.len() != rules.len() {
             found.problems.push(match partial {
                 true => unmatched(side, labels, rules),
-                false => ProblemKind::Unnamed { side, expected: rules.len(), found: labels.len() },
+                false => ProblemKind::Unnamed {
+                    side,
+                    expected: rules.len(),
+                    found: labels.len(),
+                },
             });
             found.uses = vec![None; rules.len()];
             return found;
@@ -49,10 +53,19 @@ impl ChannelMatch {
             found.by_position = true;
         }
         for (place, rule) in rules.iter().enumerate() {
-            let index = if unnamed { Some(place) } else { found.find(side, labels, rule, partial) };
+            let index = if unnamed {
+                Some(place)
+            } else {
+                found.find(side, labels, rule, partial)
+            };
             let used = index.map(|index| {
                 let used = found.used(index, &labels[index], rule, declared);
-                found.signed(used, labels[index].name.as_deref(), rule, declared.sign_of(&rule.name))
+                found.signed(
+                    used,
+                    labels[index].name.as_deref(),
+                    rule,
+                    declared.sign_of(&rule.name),
+                )
             });
             found.uses.push(used);
         }
@@ -64,7 +77,10 @@ impl ChannelMatch {
             .filter_map(|(_, label)| label.name.as_deref())
             .collect();
         if found.problems.is_empty() && !unused.is_empty() {
-            found.notes.push(format!("{side}s of the file that the dataset does not have: {}", unused.join(", ")));
+            found.notes.push(format!(
+                "{side}s of the file that the dataset does not have: {}",
+                unused.join(", ")
+            ));
         }
         if partial && found.problems.is_empty() && found.uses.iter().all(Option::is_none) {
             found.problems.push(unmatched(side, labels, rules));
@@ -73,10 +89,19 @@ impl ChannelMatch {
     }
 
     /// The channel of the file that is `rule`'s: of its very name, or else one that the field, or the rule, calls the same.
-    fn find(&mut self, side: ChannelSide, labels: &[ChannelLabel], rule: &ChannelRule, partial: bool) -> Option<usize> {
+    fn find(
+        &mut self,
+        side: ChannelSide,
+        labels: &[ChannelLabel],
+        rule: &ChannelRule,
+        partial: bool,
+    ) -> Option<usize> {
         let named = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
             let indices = labels.iter().enumerate();
-            indices.filter(|(_, label)| label.name.as_deref().is_some_and(is_it)).map(|(index, _)| index).collect()
+            indices
+                .filter(|(_, label)| label.name.as_deref().is_some_and(is_it))
+                .map(|(index, _)| index)
+                .collect()
         };
         let is_alias = |is_it: &dyn Fn(&str) -> bool| rule.aliases.iter().any(|alias| is_it(alias));
         let plain = |name: &str| SignedName::of(name).name;
@@ -84,42 +109,77 @@ impl ChannelMatch {
         let ways: [&dyn Fn(&str) -> bool; 4] = [
             &|name| name == rule.name,
             &|name| is_alias(&|alias| alias == name),
-            &|name| plain(name) == plain(&rule.name) || is_alias(&|alias| plain(alias) == plain(name)),
+            &|name| {
+                plain(name) == plain(&rule.name) || is_alias(&|alias| plain(alias) == plain(name))
+            },
             &|name| {
                 same_channel(&plain(name), &plain(&rule.name))
                     || is_alias(&|alias| same_channel(&plain(name), &plain(alias)))
             },
         ];
-        let candidates = ways.into_iter().map(named).find(|found| !found.is_empty()).unwrap_or_default();
+        let candidates = ways
+            .into_iter()
+            .map(named)
+            .find(|found| !found.is_empty())
+            .unwrap_or_default();
         let names = |indices: &mut dyn Iterator<Item = usize>| {
-            let names: Vec<&str> = indices.filter_map(|index| labels[index].name.as_deref()).collect();
-            if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+            let names: Vec<&str> = indices
+                .filter_map(|index| labels[index].name.as_deref())
+                .collect();
+            if names.is_empty() {
+                "none".to_owned()
+            } else {
+                names.join(", ")
+            }
         };
         let channel = rule.name.clone();
         match candidates.as_slice() {
             [index] => Some(*index),
             [] => {
                 if !partial {
-                    self.problems.push(ProblemKind::NoChannel { side, channel, found: names(&mut (0..labels.len())) });
+                    self.problems.push(ProblemKind::NoChannel {
+                        side,
+                        channel,
+                        found: names(&mut (0..labels.len())),
+                    });
                 }
                 None
             }
             several => {
                 let found = names(&mut several.iter().copied());
-                self.problems.push(ProblemKind::AmbiguousChannel { side, channel, found });
+                self.problems.push(ProblemKind::AmbiguousChannel {
+                    side,
+                    channel,
+                    found,
+                });
                 None
             }
         }
     }
 
     /// The channel with the sign that is said, or that its name says; where neither says it, it is asked.
-    fn signed(&mut self, used: ChannelUse, name: Option<&str>, rule: &ChannelRule, said: Option<f64>) -> ChannelUse {
+    fn signed(
+        &mut self,
+        used: ChannelUse,
+        name: Option<&str>,
+        rule: &ChannelRule,
+        said: Option<f64>,
+    ) -> ChannelUse {
         let of_name = || {
             let Some(name) = name else { return Some(1.0) };
             let plain = |name: &str| SignedName::of(name).name;
             let alias = rule.aliases.iter().find(|alias| *alias == name);
-            let alias = alias.or_else(|| rule.aliases.iter().find(|alias| plain(alias) == plain(name)));
-            sign_between(name, alias.filter(|_| name != rule.name).map_or(&rule.name, |alias| alias))
+            let alias = alias.or_else(|| {
+                rule.aliases
+                    .iter()
+                    .find(|alias| plain(alias) == plain(name))
+            });
+            sign_between(
+                name,
+                alias
+                    .filter(|_| name != rule.name)
+                    .map_or(&rule.name, |alias| alias),
+            )
         };
         let Some(sign) = said.or_else(of_name) else {
             let (channel, found) = (rule.name.clone(), name.unwrap_or_default().to_owned());
@@ -130,11 +190,23 @@ impl ChannelMatch {
             return used;
         }
         let why = match (said, name) {
-            (None, Some(name)) => format!("{}: turned, as its name in the file, \"{name}\", says", rule.name),
+            (None, Some(name)) => format!(
+                "{}: turned, as its name in the file, \"{name}\", says",
+                rule.name
+            ),
             _ => format!("{}: turned (× -1), as is said", rule.name),
         };
-        let words = used.words.into_iter().chain([why]).collect::<Vec<_>>().join("; ");
-        ChannelUse { factor: -used.factor, words: Some(words), ..used }
+        let words = used
+            .words
+            .into_iter()
+            .chain([why])
+            .collect::<Vec<_>>()
+            .join("; ");
+        ChannelUse {
+            factor: -used.factor,
+            words: Some(words),
+            ..used
+        }
     }
 
     fn used(
@@ -146,43 +218,75 @@ impl ChannelMatch {
     ) -> ChannelUse {
         if let Some(factor) = declared.channels.factors.get(&rule.name) {
             let words = Some(format!("{} × {}, as declared", rule.name, number(*factor)));
-            return ChannelUse { index, factor: *factor, words };
+            return ChannelUse {
+                index,
+                factor: *factor,
+                words,
+            };
         }
         let of_file = label.unit.as_deref().filter(|unit| !unit.trim().is_empty());
         let of_rules = declared.channels.units.get(&rule.name).map(String::as_str);
         if let (Some(of_rules), Some(of_file)) = (of_rules, of_file)
             && of_rules != of_file
         {
-            self.notes.push(format!("{}: declared to be in {of_rules}, although the file says {of_file}", rule.name));
+            self.notes.push(format!(
+                "{}: declared to be in {of_rules}, although the file says {of_file}",
+                rule.name
+            ));
         }
         let said = of_rules.or(of_file);
         let from = said.or(rule.unit_in_files.as_deref());
         let Some(from) = from else {
-            self.problems.push(ProblemKind::UnitOfFile(rule.name.clone()));
-            return ChannelUse { index, factor: 1.0, words: None };
+            self.problems
+                .push(ProblemKind::UnitOfFile(rule.name.clone()));
+            return ChannelUse {
+                index,
+                factor: 1.0,
+                words: None,
+            };
         };
         let mut conversions = declared.conversions.iter();
-        let by_rule =
-            conversions.find(|of| of.channel == rule.name && of.from.trim() == from.trim()).map(|of| of.factor);
+        let by_rule = conversions
+            .find(|of| of.channel == rule.name && of.from.trim() == from.trim())
+            .map(|of| of.factor);
         let Some(factor) = by_rule.or_else(|| conversion_factor(from, &rule.unit)) else {
             let (channel, to) = (rule.name.clone(), rule.unit.clone());
-            self.problems.push(ProblemKind::Conversion { channel, from: from.to_owned(), to });
-            return ChannelUse { index, factor: 1.0, words: None };
+            self.problems.push(ProblemKind::Conversion {
+                channel,
+                from: from.to_owned(),
+                to,
+            });
+            return ChannelUse {
+                index,
+                factor: 1.0,
+                words: None,
+            };
         };
         let words = match (factor == 1.0, of_file) {
             (true, Some(_)) => None,
             (true, None) => Some(format!("{} taken to be in {from}", rule.name)),
             (false, _) => Some(format!("{} {from} → {} (× {factor})", rule.name, rule.unit)),
         };
-        ChannelUse { index, factor, words }
+        ChannelUse {
+            index,
+            factor,
+            words,
+        }
     }
 }
 
 /// A measured response none of whose channels on a side is one of the dataset.
 fn unmatched(side: ChannelSide, labels: &[ChannelLabel], rules: &[ChannelRule]) -> ProblemKind {
-    let found: Vec<&str> = labels.iter().filter_map(|label| label.name.as_deref()).collect();
+    let found: Vec<&str> = labels
+        .iter()
+        .filter_map(|label| label.name.as_deref())
+        .collect();
     let known: Vec<&str> = rules.iter().map(|rule| rule.name.as_str()).collect();
-    ProblemKind::ResponseUnmatched { side, found: found.join(", "), known: known.join(", ") }
+    ProblemKind::ResponseUnmatched {
+        side,
+        found: found.join(", "),
+        known: known.join(", "),
+    }
 }
 
 // Names of channels, of the time and of the sample time, however files write them.
@@ -238,7 +342,9 @@ pub fn folded_name(name: &str) -> String {
 /// The name that stands for all that call the same channel.
 pub(super) fn canonical(name: &str) -> String {
     let name = folded_name(name);
-    let first = field_names().find(|row| row.clone().any(|other| other == name)).and_then(|mut row| row.next());
+    let first = field_names()
+        .find(|row| row.clone().any(|other| other == name))
+        .and_then(|mut row| row.next());
     first.map_or_else(|| name.clone(), str::to_owned)
 }
 
@@ -267,26 +373,44 @@ impl SignedName {
     /// Reads the marks of a name.
     pub fn of(text: &str) -> Self {
         let text = text.trim();
-        let begins_name =
-            |rest: &str| rest.trim_start().starts_with(|letter: char| letter.is_alphabetic() || letter == '#');
-        let (minus, rest) = match text.strip_prefix(['-', '\u{2212}']).filter(|rest| begins_name(rest)) {
-            Some(rest) => (true, rest.trim_start()),
-            None => (false, text.strip_prefix('+').filter(|rest| begins_name(rest)).unwrap_or(text)),
+        let begins_name = |rest: &str| {
+            rest.trim_start()
+                .starts_with(|letter: char| letter.is_alphabetic() || letter == '#')
         };
-        let marked = [('(', ')'), ('[', ']'), ('{', '}')].into_iter().find_map(|(open, close)| {
-            let (name, mark) = rest.strip_suffix(close)?.rsplit_once(open)?;
-            Some((name.trim(), direction_of(mark)?))
-        });
+        let (minus, rest) = match text
+            .strip_prefix(['-', '\u{2212}'])
+            .filter(|rest| begins_name(rest))
+        {
+            Some(rest) => (true, rest.trim_start()),
+            None => (
+                false,
+                text.strip_prefix('+')
+                    .filter(|rest| begins_name(rest))
+                    .unwrap_or(text),
+            ),
+        };
+        let marked = [('(', ')'), ('[', ']'), ('{', '}')]
+            .into_iter()
+            .find_map(|(open, close)| {
+                let (name, mark) = rest.strip_suffix(close)?.rsplit_once(open)?;
+                Some((name.trim(), direction_of(mark)?))
+            });
         let (name, direction) = match marked.filter(|(name, _)| !name.is_empty()) {
             Some((name, direction)) => (name, Some(direction)),
             None => (rest, None),
         };
-        Self { name: name.to_owned(), minus, direction }
+        Self {
+            name: name.to_owned(),
+            minus,
+            direction,
+        }
     }
 
     /// The direction that is said, or that the name stands for.
     fn known_direction(&self) -> Option<f64> {
-        self.direction.or(LOAD_FACTOR.contains(&folded_name(&self.name).as_str()).then_some(1.0))
+        self.direction.or(LOAD_FACTOR
+            .contains(&folded_name(&self.name).as_str())
+            .then_some(1.0))
     }
 }
 
@@ -297,8 +421,15 @@ pub fn direction_of(mark: &str) -> Option<f64> {
         Some(word) => (-1.0, word),
         None => (1.0, mark.trim_start_matches('+')),
     };
-    let word = word.trim().trim_start_matches("positive").trim_start_matches("pos").trim_start_matches(['.', ' ']);
-    let word = word.trim_end_matches("positive").trim_end_matches('+').trim();
+    let word = word
+        .trim()
+        .trim_start_matches("positive")
+        .trim_start_matches("pos")
+        .trim_start_matches(['.', ' ']);
+    let word = word
+        .trim_end_matches("positive")
+        .trim_end_matches('+')
+        .trim();
     match word {
         "up" | "right" | "forward" | "fwd" => Some(sign),
         "down" | "dn" | "left" | "aft" | "rearward" => Some(-sign),
@@ -316,15 +447,24 @@ pub fn sign_between(label: &str, channel: &str) -> Option<f64> {
         return Some(1.0);
     }
     let (of_label, of_channel) = (SignedName::of(label), SignedName::of(channel));
-    let minus = if of_label.minus == of_channel.minus { 1.0 } else { -1.0 };
+    let minus = if of_label.minus == of_channel.minus {
+        1.0
+    } else {
+        -1.0
+    };
     match (of_label.direction, of_channel.direction) {
         (None, None) => {
             let family = |name: &SignedName| {
                 let name = folded_name(&name.name);
-                (ALONG_Z.contains(&name.as_str()), LOAD_FACTOR.contains(&name.as_str()))
+                (
+                    ALONG_Z.contains(&name.as_str()),
+                    LOAD_FACTOR.contains(&name.as_str()),
+                )
             };
-            let is_open =
-                matches!((family(&of_label), family(&of_channel)), ((true, _), (_, true)) | ((_, true), (true, _)));
+            let is_open = matches!(
+                (family(&of_label), family(&of_channel)),
+                ((true, _), (_, true)) | ((_, true), (true, _))
+            );
             (!is_open || of_label.minus || of_channel.minus).then_some(minus)
         }
         _ => Some(minus * of_label.known_direction()? * of_channel.known_direction()?),
@@ -332,24 +472,41 @@ pub fn sign_between(label: &str, channel: &str) -> Option<f64> {
 }
 
 /// Names of the time between two samples \[s\], as they are usually written.
-pub const SAMPLE_TIME_NAMES: [&str; 7] =
-    ["Ts", "dt", "tsam", "sample_time_s", "sample_time", "sampling_time", "Tsample"];
+pub const SAMPLE_TIME_NAMES: [&str; 7] = [
+    "Ts",
+    "dt",
+    "tsam",
+    "sample_time_s",
+    "sample_time",
+    "sampling_time",
+    "Tsample",
+];
 
 /// How surely a name is that of the time of samples, 0 the surest; none where it is not. A unit of time at its end says nothing more:
 /// `time_s`, `t [ms]`.
 pub fn time_name_rank(name: &str) -> Option<u8> {
-    let words: Vec<String> =
-        name.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).map(str::to_lowercase).collect();
+    let words: Vec<String> = name
+        .split(|c: char| !c.is_alphanumeric())
+        .filter(|word| !word.is_empty())
+        .map(str::to_lowercase)
+        .collect();
     let mut words: Vec<&str> = words.iter().map(String::as_str).collect();
     let is_time = |unit: PhysicalUnit| unit.dimension == Dimension::Time;
-    if words.len() > 1 && words.last().is_some_and(|word| PhysicalUnit::of(word).is_some_and(is_time)) {
+    if words.len() > 1
+        && words
+            .last()
+            .is_some_and(|word| PhysicalUnit::of(word).is_some_and(is_time))
+    {
         words.pop();
     }
     match words.concat().as_str() {
         "time" | "t" | "times" => Some(0),
-        "tout" | "timestamp" | "timestamps" | "elapsed" | "seconds" | "tsec" | "timesec" | "zeit" | "temps"
-        | "tempo" => Some(1),
-        _ => words.iter().any(|word| matches!(*word, "time" | "timestamp")).then_some(2),
+        "tout" | "timestamp" | "timestamps" | "elapsed" | "seconds" | "tsec" | "timesec"
+        | "zeit" | "temps" | "tempo" => Some(1),
+        _ => words
+            .iter()
+            .any(|word| matches!(*word, "time" | "timestamp"))
+            .then_some(2),
     }
 }
 
@@ -358,25 +515,45 @@ mod tests {
     use super::*;
 
     /// The channels of one side under rules that declare nothing else.
-    fn matched(side: ChannelSide, labels: &[ChannelLabel], rules: &[ChannelRule], partial: bool) -> ChannelMatch {
+    fn matched(
+        side: ChannelSide,
+        labels: &[ChannelLabel],
+        rules: &[ChannelRule],
+        partial: bool,
+    ) -> ChannelMatch {
         ChannelMatch::of(side, labels, rules, &DeclaredChannels::default(), partial)
     }
 
     fn rule(name: &str, unit: &str) -> ChannelRule {
-        ChannelRule { unit: unit.to_owned(), ..ChannelRule::named(name) }
+        ChannelRule {
+            unit: unit.to_owned(),
+            ..ChannelRule::named(name)
+        }
     }
 
     fn label(name: &str, unit: &str) -> ChannelLabel {
-        ChannelLabel { name: Some(name.to_owned()), unit: Some(unit.to_owned()).filter(|unit| !unit.is_empty()) }
+        ChannelLabel {
+            name: Some(name.to_owned()),
+            unit: Some(unit.to_owned()).filter(|unit| !unit.is_empty()),
+        }
     }
 
     #[test]
     fn channels_are_found_by_name_in_whatever_order_and_converted() {
         let rules = [rule("P", "deg/s"), rule("NZ", "m/s^2")];
-        let labels = [label("nz", "g"), label("roll rate", "rad/s"), label("q", "rad/s")];
+        let labels = [
+            label("nz", "g"),
+            label("roll rate", "rad/s"),
+            label("q", "rad/s"),
+        ];
         let found = matched(ChannelSide::Output, &labels, &rules, false);
         assert!(found.problems.is_empty(), "{:?}", found.problems);
-        let uses: Vec<(usize, f64)> = found.uses.iter().flatten().map(|used| (used.index, used.factor)).collect();
+        let uses: Vec<(usize, f64)> = found
+            .uses
+            .iter()
+            .flatten()
+            .map(|used| (used.index, used.factor))
+            .collect();
         assert_eq!(uses, [(1, 180.0 / std::f64::consts::PI), (0, 9.806_65)]);
     }
 
@@ -385,23 +562,57 @@ mod tests {
         let rules = [rule("LON", "%")];
         let found = matched(ChannelSide::Input, &[label("lon", "")], &rules, false);
         assert_eq!(found.problems, [ProblemKind::UnitOfFile("LON".into())]);
-        let said = [ChannelRule { unit_in_files: Some("in".into()), ..rule("LON", "%") }];
+        let said = [ChannelRule {
+            unit_in_files: Some("in".into()),
+            ..rule("LON", "%")
+        }];
         let found = matched(ChannelSide::Input, &[label("lon", "")], &said, false);
-        assert!(matches!(&found.problems[..], [ProblemKind::Conversion { .. }]));
-        let factor = UnitRule { channel: "LON".into(), from: "in".into(), factor: 8.5 };
-        let declared = DeclaredChannels { conversions: &[factor], ..DeclaredChannels::default() };
-        let found = ChannelMatch::of(ChannelSide::Input, &[label("lon", "")], &said, &declared, false);
+        assert!(matches!(
+            &found.problems[..],
+            [ProblemKind::Conversion { .. }]
+        ));
+        let factor = UnitRule {
+            channel: "LON".into(),
+            from: "in".into(),
+            factor: 8.5,
+        };
+        let declared = DeclaredChannels {
+            conversions: &[factor],
+            ..DeclaredChannels::default()
+        };
+        let found = ChannelMatch::of(
+            ChannelSide::Input,
+            &[label("lon", "")],
+            &said,
+            &declared,
+            false,
+        );
         assert_eq!(found.uses[0].as_ref().map(|used| used.factor), Some(8.5));
     }
 
     #[test]
     fn channels_without_names_are_taken_in_order_only_if_there_are_as_many() {
         let rules = [rule("LON", "%"), rule("LAT", "%")];
-        let unnamed = |count| vec![ChannelLabel { name: None, unit: Some("%".into()) }; count];
+        let unnamed = |count| {
+            vec![
+                ChannelLabel {
+                    name: None,
+                    unit: Some("%".into())
+                };
+                count
+            ]
+        };
         let found = matched(ChannelSide::Input, &unnamed(2), &rules, false);
         assert!(found.problems.is_empty() && found.by_position);
         let found = matched(ChannelSide::Input, &unnamed(3), &rules, false);
-        assert_eq!(found.problems, [ProblemKind::Unnamed { side: ChannelSide::Input, expected: 2, found: 3 }]);
+        assert_eq!(
+            found.problems,
+            [ProblemKind::Unnamed {
+                side: ChannelSide::Input,
+                expected: 2,
+                found: 3
+            }]
+        );
     }
 
     #[test]
@@ -409,25 +620,61 @@ mod tests {
         let rules = [rule("P", "deg/s")];
         let both = [label("p", "deg/s"), label("roll rate", "deg/s")];
         let found = matched(ChannelSide::Output, &both, &rules, false);
-        assert!(matches!(&found.problems[..], [ProblemKind::AmbiguousChannel { .. }]));
+        assert!(matches!(
+            &found.problems[..],
+            [ProblemKind::AmbiguousChannel { .. }]
+        ));
         let exact = [label("P", "deg/s"), label("roll rate", "deg/s")];
-        assert!(matched(ChannelSide::Output, &exact, &rules, false).problems.is_empty());
+        assert!(
+            matched(ChannelSide::Output, &exact, &rules, false)
+                .problems
+                .is_empty()
+        );
     }
 
     #[test]
     fn the_sign_is_that_of_the_mark_or_is_said_or_asked_for() {
-        let rules = [rule("NZ", "m/s2"), ChannelRule { aliases: vec!["-yaw".into()], ..rule("R", "deg/s") }];
+        let rules = [
+            rule("NZ", "m/s2"),
+            ChannelRule {
+                aliases: vec!["-yaw".into()],
+                ..rule("R", "deg/s")
+            },
+        ];
         let factors = |name: &str, said: &[(&str, f64)]| {
             let labels = [label(name, "m/s2"), label("yaw", "deg/s")];
-            let signs = said.iter().map(|(name, sign)| ((*name).to_owned(), *sign)).collect();
-            let channels = ChannelDeclarations { signs, ..ChannelDeclarations::default() };
-            let declared = DeclaredChannels { channels, ..DeclaredChannels::default() };
+            let signs = said
+                .iter()
+                .map(|(name, sign)| ((*name).to_owned(), *sign))
+                .collect();
+            let channels = ChannelDeclarations {
+                signs,
+                ..ChannelDeclarations::default()
+            };
+            let declared = DeclaredChannels {
+                channels,
+                ..DeclaredChannels::default()
+            };
             let found = ChannelMatch::of(ChannelSide::Output, &labels, &rules, &declared, false);
-            (found.uses.iter().flatten().map(|used| used.factor).collect::<Vec<_>>(), found.problems)
+            (
+                found
+                    .uses
+                    .iter()
+                    .flatten()
+                    .map(|used| used.factor)
+                    .collect::<Vec<_>>(),
+                found.problems,
+            )
         };
-        let asked = ProblemKind::Sign { channel: "NZ".into(), found: "az".into() };
+        let asked = ProblemKind::Sign {
+            channel: "NZ".into(),
+            found: "az".into(),
+        };
         assert_eq!(factors("az", &[]), (vec![1.0, -1.0], vec![asked]));
-        assert_eq!(factors("az", &[("NZ", -1.0), ("R", 1.0)]), (vec![-1.0, 1.0], vec![]));
+        assert_eq!(
+            factors("az", &[("NZ", -1.0), ("R", 1.0)]),
+            (vec![-1.0, 1.0], vec![])
+        );
         assert_eq!(factors("-az", &[]), (vec![-1.0, -1.0], vec![]));
         assert_eq!(factors("nz (down)", &[]), (vec![-1.0, -1.0], vec![]));
         assert_eq!(factors("NZ", &[]), (vec![1.0, -1.0], vec![]));
@@ -435,9 +682,15 @@ mod tests {
 
     #[test]
     fn a_declared_unit_or_factor_goes_before_the_file_s_and_a_factor_is_all_that_is_done() {
-        let rules = [ChannelRule { unit_in_files: Some("deg/s".into()), ..rule("R", "deg/s") }];
+        let rules = [ChannelRule {
+            unit_in_files: Some("deg/s".into()),
+            ..rule("R", "deg/s")
+        }];
         let factor_of = |label: ChannelLabel, channels: ChannelDeclarations| {
-            let declared = DeclaredChannels { channels, ..DeclaredChannels::default() };
+            let declared = DeclaredChannels {
+                channels,
+                ..DeclaredChannels::default()
+            };
             let found = ChannelMatch::of(ChannelSide::Output, &[label], &rules, &declared, false);
             assert!(found.problems.is_empty(), "{:?}", found.problems);
             found.uses[0].as_ref().map(|used| used.factor)
@@ -448,46 +701,96 @@ mod tests {
         };
         let factor = |factor: f64, sign: Option<f64>| ChannelDeclarations {
             factors: [("R".to_owned(), factor)].into(),
-            signs: sign.map(|sign| ("R".to_owned(), sign)).into_iter().collect(),
+            signs: sign
+                .map(|sign| ("R".to_owned(), sign))
+                .into_iter()
+                .collect(),
             ..ChannelDeclarations::default()
         };
         let per_radian = Some(180.0 / std::f64::consts::PI);
-        assert_eq!(factor_of(label("r", ""), ChannelDeclarations::default()), Some(1.0));
+        assert_eq!(
+            factor_of(label("r", ""), ChannelDeclarations::default()),
+            Some(1.0)
+        );
         assert_eq!(factor_of(label("r", ""), unit("rad/s")), per_radian);
         assert_eq!(factor_of(label("r", "deg/s"), unit("rad/s")), per_radian);
-        assert_eq!(factor_of(label("-r", "rad/s"), factor(25.0, None)), Some(25.0), "the factor has the sign");
-        assert_eq!(factor_of(label("r", "rad/s"), factor(25.0, Some(-1.0))), Some(-25.0));
+        assert_eq!(
+            factor_of(label("-r", "rad/s"), factor(25.0, None)),
+            Some(25.0),
+            "the factor has the sign"
+        );
+        assert_eq!(
+            factor_of(label("r", "rad/s"), factor(25.0, Some(-1.0))),
+            Some(-25.0)
+        );
     }
 
     #[test]
     fn a_response_whose_channels_match_nothing_is_a_problem_and_one_that_lacks_some_is_none() {
         let rules = [rule("LON", "%"), rule("LAT", "%")];
-        let part = matched(ChannelSide::Input, &[label("lat", "%"), label("latt", "%")], &rules, true);
+        let part = matched(
+            ChannelSide::Input,
+            &[label("lat", "%"), label("latt", "%")],
+            &rules,
+            true,
+        );
         assert!(part.problems.is_empty(), "{:?}", part.problems);
-        assert_eq!(part.notes, ["inputs of the file that the dataset does not have: latt"]);
-        for labels in [vec![label("delta", "%"), label("run2", "%")], vec![ChannelLabel::default()]] {
+        assert_eq!(
+            part.notes,
+            ["inputs of the file that the dataset does not have: latt"]
+        );
+        for labels in [
+            vec![label("delta", "%"), label("run2", "%")],
+            vec![ChannelLabel::default()],
+        ] {
             let nothing = matched(ChannelSide::Input, &labels, &rules, true);
-            assert!(matches!(&nothing.problems[..], [ProblemKind::ResponseUnmatched { .. }]), "{labels:?}");
+            assert!(
+                matches!(
+                    &nothing.problems[..],
+                    [ProblemKind::ResponseUnmatched { .. }]
+                ),
+                "{labels:?}"
+            );
         }
     }
 
     #[test]
     fn the_time_is_known_by_its_name_with_or_without_marks_and_unit() {
-        let ranks = [("t [ms]", 0), ("Time_s", 0), ("time_stamps", 1), ("t_out", 1), ("real,_time", 2)];
+        let ranks = [
+            ("t [ms]", 0),
+            ("Time_s", 0),
+            ("time_stamps", 1),
+            ("t_out", 1),
+            ("real,_time", 2),
+        ];
         for (name, rank) in ranks {
             assert_eq!(time_name_rank(name), Some(rank), "{name}");
         }
-        assert!(["theta", "Ts", "tail rotor"].iter().all(|name| time_name_rank(name).is_none()));
+        assert!(
+            ["theta", "Ts", "tail rotor"]
+                .iter()
+                .all(|name| time_name_rank(name).is_none())
+        );
     }
 
     #[test]
     fn the_names_of_the_field_are_one_another() {
-        for (a, b) in
-            [("LAT", "δ_a"), ("lat", "Xa"), ("P", "roll rate"), ("q", "Pitch_Rate"), ("PED", "pedals"), ("NZ", "az")]
-        {
+        for (a, b) in [
+            ("LAT", "δ_a"),
+            ("lat", "Xa"),
+            ("P", "roll rate"),
+            ("q", "Pitch_Rate"),
+            ("PED", "pedals"),
+            ("NZ", "az"),
+        ] {
             assert!(same_channel(a, b), "{a} {b}");
         }
-        for (a, b) in [("LON", "LAT"), ("P", "PED"), ("roll", "roll rate"), ("P", "Q")] {
+        for (a, b) in [
+            ("LON", "LAT"),
+            ("P", "PED"),
+            ("roll", "roll rate"),
+            ("P", "Q"),
+        ] {
             assert!(!same_channel(a, b), "{a} {b}");
         }
     }
@@ -511,7 +814,11 @@ mod tests {
             assert_eq!(sign_between(label, channel), sign, "{label} as {channel}");
         }
         assert_eq!(SignedName::of("-az").name, "az");
-        assert_eq!(SignedName::of("az (g)").name, "az (g)", "a unit is no direction");
+        assert_eq!(
+            SignedName::of("az (g)").name,
+            "az (g)",
+            "a unit is no direction"
+        );
     }
 
     #[test]
@@ -519,6 +826,9 @@ mod tests {
         let names: Vec<&str> = ALIASES.iter().flat_map(|row| row.split(' ')).collect();
         let unique: BTreeSet<&str> = names.iter().copied().collect();
         assert_eq!(unique.len(), names.len());
-        assert!(names.iter().all(|name| folded_name(name) == **name), "they are folded");
+        assert!(
+            names.iter().all(|name| folded_name(name) == **name),
+            "they are folded"
+        );
     }
 }

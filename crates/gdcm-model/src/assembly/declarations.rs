@@ -33,7 +33,12 @@ impl ChannelDeclarations {
             self.units.remove(channel);
             self.factors.insert(channel.clone(), *factor);
         }
-        self.signs.extend(other.signs.iter().map(|(channel, sign)| (channel.clone(), *sign)));
+        self.signs.extend(
+            other
+                .signs
+                .iter()
+                .map(|(channel, sign)| (channel.clone(), *sign)),
+        );
     }
 
     /// Calls a channel otherwise.
@@ -116,7 +121,9 @@ impl FileScope {
     pub fn holds(&self, found: &FoundModel, role: Option<RowRole>) -> bool {
         match self {
             Self::All => true,
-            Self::Physics | Self::Identified => role.is_some_and(|role| Self::of_role(role) == *self),
+            Self::Physics | Self::Identified => {
+                role.is_some_and(|role| Self::of_role(role) == *self)
+            }
             Self::Files(pattern) => *pattern == found.key() || matches_path(pattern, found.file()),
         }
     }
@@ -138,7 +145,10 @@ pub(super) fn declared_of<'d>(
     found: &FoundModel,
     role: Option<RowRole>,
 ) -> Vec<&'d ScopedDeclarations> {
-    let mut holding: Vec<&ScopedDeclarations> = declarations.iter().filter(|of| of.of.holds(found, role)).collect();
+    let mut holding: Vec<&ScopedDeclarations> = declarations
+        .iter()
+        .filter(|of| of.of.holds(found, role))
+        .collect();
     holding.sort_by_key(|of| of.of.rank(found));
     holding
 }
@@ -168,7 +178,9 @@ fn matches_path(pattern: &str, file: &str) -> bool {
     if !pattern.contains('/') {
         return names.any(|name| matches_name(pattern, name));
     }
-    pattern.split('/').all(|part| names.next().is_some_and(|name| matches_name(part, name)))
+    pattern
+        .split('/')
+        .all(|part| names.next().is_some_and(|name| matches_name(part, name)))
 }
 
 /// Whether a pattern matches a whole name. Goes back to the last star only, so that the time grows with the product of the lengths.
@@ -189,7 +201,9 @@ fn matches_name(pattern: &str, name: &str) -> bool {
                 at_name += 1;
             }
             _ => {
-                let Some((star, taken)) = last_star else { return false };
+                let Some((star, taken)) = last_star else {
+                    return false;
+                };
                 last_star = Some((star, taken + 1));
                 at_pattern = star + 1;
                 at_name = taken + 1;
@@ -220,7 +234,11 @@ mod tests {
             ("c03/flight_1/model.mat/more", false),
             ("*a*b*c", false),
         ] {
-            assert_eq!(matches_path(pattern, "c03/flight_1/model.mat"), matches, "{pattern}");
+            assert_eq!(
+                matches_path(pattern, "c03/flight_1/model.mat"),
+                matches,
+                "{pattern}"
+            );
         }
         let long = "*a".repeat(500);
         assert!(!matches_path(&long, &"a".repeat(499)));
@@ -232,8 +250,10 @@ mod tests {
             units: [("LON".to_owned(), "in".to_owned())].into(),
             ..ChannelDeclarations::default()
         };
-        let factor =
-            ChannelDeclarations { factors: [("LON".to_owned(), 8.0)].into(), ..ChannelDeclarations::default() };
+        let factor = ChannelDeclarations {
+            factors: [("LON".to_owned(), 8.0)].into(),
+            ..ChannelDeclarations::default()
+        };
         let mut both = unit.clone();
         both.override_by(&factor);
         assert_eq!(both, factor);

@@ -14,7 +14,10 @@ pub struct ChannelLabel {
 impl ChannelLabel {
     /// A channel of this name, without a unit.
     pub fn named(name: impl Into<String>) -> Self {
-        Self { name: Some(name.into()), unit: None }
+        Self {
+            name: Some(name.into()),
+            unit: None,
+        }
     }
 }
 
@@ -55,12 +58,20 @@ pub struct FoundModel {
 impl FoundModel {
     /// The file that it comes from; empty where it comes from none.
     pub fn file(&self) -> &str {
-        self.draft.source.as_ref().and_then(|source| source.file.as_deref()).unwrap_or_default()
+        self.draft
+            .source
+            .as_ref()
+            .and_then(|source| source.file.as_deref())
+            .unwrap_or_default()
     }
 
     /// The variable in the file; empty where the file holds one model without a name.
     pub fn variable(&self) -> &str {
-        self.draft.source.as_ref().and_then(|source| source.variable.as_deref()).unwrap_or_default()
+        self.draft
+            .source
+            .as_ref()
+            .and_then(|source| source.variable.as_deref())
+            .unwrap_or_default()
     }
 
     /// What it is called in messages and in rules: "c03/roll+5.mat#sys".
@@ -74,11 +85,18 @@ impl FoundModel {
     /// What its channels are called. Where the file says nothing of the channels of one measured response, its variable does, or else
     /// its name, as far as they name channels that are known.
     pub fn labels_with_name(&self, known: KnownChannels<'_>) -> NamedLabels {
-        let mut named = NamedLabels { labels: [self.inputs.clone(), self.outputs.clone()], problem: None };
+        let mut named = NamedLabels {
+            labels: [self.inputs.clone(), self.outputs.clone()],
+            problem: None,
+        };
         if self.response().is_none() || self.inputs.len() != 1 || self.outputs.len() != 1 {
             return named;
         }
-        let stem = without_extension(self.file()).rsplit('/').next().unwrap_or_default().to_owned();
+        let stem = without_extension(self.file())
+            .rsplit('/')
+            .next()
+            .unwrap_or_default()
+            .to_owned();
         for text in [self.variable(), stem.as_str()] {
             if named.labels.iter().all(|labels| labels[0].name.is_some()) {
                 break;
@@ -86,7 +104,10 @@ impl FoundModel {
             let of_name = ResponseName::find(text, known).and_then(|found| {
                 // A channel of the field that the dataset does not have is no other one.
                 let of_field = ResponseName::find(text, KnownChannels::Field).unwrap_or_default();
-                Ok(ResponseName { output: found.output.or(of_field.output), input: found.input.or(of_field.input) })
+                Ok(ResponseName {
+                    output: found.output.or(of_field.output),
+                    input: found.input.or(of_field.input),
+                })
             });
             match of_name {
                 Ok(ResponseName { output, input }) => {
@@ -96,7 +117,9 @@ impl FoundModel {
                 }
                 Err(error) => {
                     let name = text.to_owned();
-                    named.problem = named.problem.or(Some(ProblemKind::ResponseName { name, error }));
+                    named.problem = named
+                        .problem
+                        .or(Some(ProblemKind::ResponseName { name, error }));
                 }
             }
         }
@@ -121,9 +144,16 @@ impl FoundModel {
     pub fn words(&self) -> String {
         let channels = format!("{} in, {} out", self.inputs.len(), self.outputs.len());
         let timing = self.draft.timing.words();
-        let timing = if timing.is_empty() { timing } else { format!(", {timing}") };
+        let timing = if timing.is_empty() {
+            timing
+        } else {
+            format!(", {timing}")
+        };
         match (&self.draft.response, &self.draft.matrices[0]) {
-            (Some(response), _) => format!("measured at {} frequencies, {channels}", response.omega.len()),
+            (Some(response), _) => format!(
+                "measured at {} frequencies, {channels}",
+                response.omega.len()
+            ),
             (None, Some(a)) => format!("{} states, {channels}{timing}", a.nrows()),
             (None, None) => channels,
         }
@@ -215,26 +245,41 @@ pub struct NameContradiction {
 impl Row {
     /// "45 kt"; none where it is not said.
     pub fn airspeed_words(&self) -> Option<String> {
-        self.airspeed_kt.map(|airspeed| format!("{} kt", number(airspeed)))
+        self.airspeed_kt
+            .map(|airspeed| format!("{} kt", number(airspeed)))
     }
 
     /// "high", or else "2000 ft"; nothing where neither is said.
     pub fn altitude_words(&self) -> String {
-        self.altitude.clone().or(self.altitude_ft.map(|feet| format!("{} ft", number(feet)))).unwrap_or_default()
+        self.altitude
+            .clone()
+            .or(self.altitude_ft.map(|feet| format!("{} ft", number(feet))))
+            .unwrap_or_default()
     }
 
     /// "low", or else "6600 kg"; nothing where neither is said.
     pub fn weight_words(&self) -> String {
-        self.weight.clone().or(self.mass_kg.map(|mass| format!("{} kg", number(mass)))).unwrap_or_default()
+        self.weight
+            .clone()
+            .or(self.mass_kg.map(|mass| format!("{} kg", number(mass))))
+            .unwrap_or_default()
     }
 }
 
 /// The responses that matter in a helicopter, output and input (the paper's Table 2).
-const ON_AXIS: [(&str, &str); 5] = [("P", "LAT"), ("Q", "LON"), ("R", "PED"), ("NY", "PED"), ("NZ", "COL")];
+const ON_AXIS: [(&str, &str); 5] = [
+    ("P", "LAT"),
+    ("Q", "LON"),
+    ("R", "PED"),
+    ("NY", "PED"),
+    ("NZ", "COL"),
+];
 
 /// Whether a response is one of those that matter in a helicopter, by the names of its output and its input.
 pub fn standard_on_axis(output: &str, input: &str) -> bool {
-    ON_AXIS.iter().any(|(of_output, of_input)| same_channel(output, of_output) && same_channel(input, of_input))
+    ON_AXIS.iter().any(|(of_output, of_input)| {
+        same_channel(output, of_output) && same_channel(input, of_input)
+    })
 }
 
 /// Rules with the channels that the models have, by their own names and units, the standard patterns, and the on-axis responses of
@@ -244,11 +289,22 @@ pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
     let inputs = channels(&models, ChannelSide::Input);
     let outputs = channels(&models, ChannelSide::Output);
     let find = |channels: &[ChannelRule], name: &str| {
-        channels.iter().find(|channel| same_channel(&channel.name, name)).map(|channel| channel.name.clone())
+        channels
+            .iter()
+            .find(|channel| same_channel(&channel.name, name))
+            .map(|channel| channel.name.clone())
     };
-    let on_axis =
-        ON_AXIS.iter().filter_map(|(output, input)| Some((find(&outputs, output)?, find(&inputs, input)?))).collect();
-    Rules { name: name.to_owned(), inputs, outputs, on_axis, ..Rules::default() }
+    let on_axis = ON_AXIS
+        .iter()
+        .filter_map(|(output, input)| Some((find(&outputs, output)?, find(&inputs, input)?)))
+        .collect();
+    Rules {
+        name: name.to_owned(),
+        inputs,
+        outputs,
+        on_axis,
+        ..Rules::default()
+    }
 }
 
 /// A model and what its channels are called, by the file or by its name.
@@ -259,7 +315,10 @@ struct LabelledModel<'m> {
 
 impl<'m> LabelledModel<'m> {
     fn of(found: &'m FoundModel) -> Self {
-        Self { found, labels: found.labels_with_name(KnownChannels::Field).labels }
+        Self {
+            found,
+            labels: found.labels_with_name(KnownChannels::Field).labels,
+        }
     }
 
     fn labels(&self, side: ChannelSide) -> &[ChannelLabel] {
@@ -269,26 +328,41 @@ impl<'m> LabelledModel<'m> {
 
     /// Whether the file itself names a channel of a side.
     fn names_itself(&self, side: ChannelSide) -> bool {
-        side.of(&self.found.inputs, &self.found.outputs).iter().any(|label| label.name.is_some())
+        side.of(&self.found.inputs, &self.found.outputs)
+            .iter()
+            .any(|label| label.name.is_some())
     }
 }
 
 /// Channels with names of their own, in the order of the model that has most of them; those of other models that it lacks behind.
 fn channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule> {
-    let named = |model: &LabelledModel<'_>| model.labels(side).iter().filter(|label| label.name.is_some()).count();
+    let named = |model: &LabelledModel<'_>| {
+        model
+            .labels(side)
+            .iter()
+            .filter(|label| label.name.is_some())
+            .count()
+    };
     let mut order: Vec<&LabelledModel<'_>> = models.iter().collect();
     // Names of files say less than what stands in files.
     order.sort_by_key(|model| (std::cmp::Reverse(named(model)), !model.names_itself(side)));
-    let first_is_measured = order.first().is_some_and(|model| model.found.response().is_some());
+    let first_is_measured = order
+        .first()
+        .is_some_and(|model| model.found.response().is_some());
     let mut channels: Vec<ChannelRule> = Vec::new();
     let mut units: Vec<ProposedUnits> = Vec::new();
     for model in order {
         // Models with matrices have all channels of the dataset; measured responses may have one each.
-        let is_open = channels.is_empty() || (model.found.response().is_some() && first_is_measured);
+        let is_open =
+            channels.is_empty() || (model.found.response().is_some() && first_is_measured);
         for label in model.labels(side) {
             // The dataset's channel has the name without the marks of a sign.
-            let Some(name) = label.name.as_ref().map(|name| SignedName::of(name).name) else { continue };
-            let known = channels.iter().position(|channel| same_channel(&channel.name, &name));
+            let Some(name) = label.name.as_ref().map(|name| SignedName::of(name).name) else {
+                continue;
+            };
+            let known = channels
+                .iter()
+                .position(|channel| same_channel(&channel.name, &name));
             let index = known.unwrap_or(channels.len());
             if known.is_none() {
                 if !is_open {
@@ -306,9 +380,16 @@ fn channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule>
         channel.unit = units.of_most_files();
     }
     // Matrices without names have all channels of the dataset, whatever a measured response beside them is called.
-    let all_unnamed = models.iter().filter(|model| model.found.response().is_none()).all(|model| named(model) == 0);
+    let all_unnamed = models
+        .iter()
+        .filter(|model| model.found.response().is_none())
+        .all(|model| named(model) == 0);
     if channels.is_empty() || all_unnamed {
-        let count = models.iter().map(|model| model.labels(side).len()).max().unwrap_or(0);
+        let count = models
+            .iter()
+            .map(|model| model.labels(side).len())
+            .max()
+            .unwrap_or(0);
         let missing = channels.len() + 1..=count;
         channels.extend(missing.map(|number| ChannelRule::named(format!("{side} {number}"))));
     }
@@ -324,7 +405,10 @@ struct ProposedUnits<'m> {
 impl<'m> ProposedUnits<'m> {
     fn count(&mut self, unit: &'m str, file: &'m str) {
         // "deg/s" and "°/s" are one unit.
-        let same = self.units.iter_mut().find(|(known, _)| conversion_factor(known, unit) == Some(1.0));
+        let same = self
+            .units
+            .iter_mut()
+            .find(|(known, _)| conversion_factor(known, unit) == Some(1.0));
         match same {
             Some((_, files)) => drop(files.insert(file)),
             None => self.units.push((unit, [file].into())),
@@ -334,14 +418,20 @@ impl<'m> ProposedUnits<'m> {
     /// The unit of most files, the first of those of as many; empty where no file says one.
     fn of_most_files(&self) -> String {
         let most = self.units.iter().map(|(_, files)| files.len()).max();
-        let unit = self.units.iter().find(|(_, files)| Some(files.len()) == most);
+        let unit = self
+            .units
+            .iter()
+            .find(|(_, files)| Some(files.len()) == most);
         unit.map(|(unit, _)| (*unit).to_owned()).unwrap_or_default()
     }
 }
 
 /// What names, contents and rules say of each model.
 pub(super) fn proposed_rows(models: &[FoundModel], rules: &Rules) -> Vec<Row> {
-    let mut rows: Vec<Row> = models.iter().map(|model| proposed_row(model, models, rules)).collect();
+    let mut rows: Vec<Row> = models
+        .iter()
+        .map(|model| proposed_row(model, models, rules))
+        .collect();
     number_conditions(models, &mut rows);
     propose_nominal(&mut rows);
     for (model, row) in models.iter().zip(&mut rows) {
@@ -365,7 +455,11 @@ fn proposed_row(model: &FoundModel, all: &[FoundModel], rules: &Rules) -> Row {
         ..Row::default()
     };
     let path = without_extension(model.file());
-    let name = if model.variable().is_empty() { path.clone() } else { format!("{path}#{}", model.variable()) };
+    let name = if model.variable().is_empty() {
+        path.clone()
+    } else {
+        format!("{path}#{}", model.variable())
+    };
     let mut of_name = Row::default();
     for pattern in &rules.patterns {
         pattern.read(&name, &mut row);
@@ -414,28 +508,50 @@ fn offsets_of(origin: &Origin) -> BTreeMap<String, f64> {
 
 /// What a file says otherwise than its name and its folders. A name is rounded: airspeeds differ by more than 1 kt then, the rest by more
 /// than a hundredth. The name of a file with models of several airspeeds says none of them.
-fn contradictions_of_name(model: &FoundModel, all: &[FoundModel], of_name: &Row) -> Vec<NameContradiction> {
+fn contradictions_of_name(
+    model: &FoundModel,
+    all: &[FoundModel],
+    of_name: &Row,
+) -> Vec<NameContradiction> {
     let facts = &model.facts;
     if facts.is_of_dataset {
         return Vec::new();
     }
     let mut contradictions = Vec::new();
     if !has_several_airspeeds(all, model.file()) {
-        let condition = (facts.condition.map(|id| id as f64), of_name.condition.map(|id| id as f64));
+        let condition = (
+            facts.condition.map(|id| id as f64),
+            of_name.condition.map(|id| id as f64),
+        );
         contradictions.extend(contradiction("condition", condition.0, condition.1, 0.0));
-        contradictions.extend(contradiction("airspeed_kt", facts.airspeed_kt, of_name.airspeed_kt, 1.0));
+        contradictions.extend(contradiction(
+            "airspeed_kt",
+            facts.airspeed_kt,
+            of_name.airspeed_kt,
+            1.0,
+        ));
         contradictions.extend(contradiction(
             "altitude_ft",
             facts.altitude_ft,
             of_name.altitude_ft,
             hundredth(facts.altitude_ft),
         ));
-        contradictions.extend(contradiction("mass_kg", facts.mass_kg, of_name.mass_kg, hundredth(facts.mass_kg)));
+        contradictions.extend(contradiction(
+            "mass_kg",
+            facts.mass_kg,
+            of_name.mass_kg,
+            hundredth(facts.mass_kg),
+        ));
     }
     for (coordinate, offset) in offsets_of(&model.draft.origin) {
         let of_name = of_name.perturbation.get(&coordinate).copied();
         let field = format!("perturbation, {coordinate}");
-        contradictions.extend(contradiction(&field, Some(offset), of_name, hundredth(Some(offset))));
+        contradictions.extend(contradiction(
+            &field,
+            Some(offset),
+            of_name,
+            hundredth(Some(offset)),
+        ));
     }
     contradictions
 }
@@ -445,17 +561,29 @@ fn hundredth(value: Option<f64>) -> f64 {
 }
 
 /// The contradiction of a number in the file and one in its names, where they differ by more than a tolerance.
-fn contradiction(field: &str, of_file: Option<f64>, of_name: Option<f64>, tolerance: f64) -> Option<NameContradiction> {
+fn contradiction(
+    field: &str,
+    of_file: Option<f64>,
+    of_name: Option<f64>,
+    tolerance: f64,
+) -> Option<NameContradiction> {
     let (of_file, of_name) = (of_file?, of_name?);
     if (of_file - of_name).abs() <= tolerance {
         return None;
     }
-    Some(NameContradiction { field: field.to_owned(), of_file, of_name })
+    Some(NameContradiction {
+        field: field.to_owned(),
+        of_file,
+        of_name,
+    })
 }
 
 /// Whether a file holds models of several airspeeds, and so of several conditions.
 fn has_several_airspeeds(models: &[FoundModel], file: &str) -> bool {
-    let mut airspeeds = models.iter().filter(|model| model.file() == file).filter_map(|model| model.facts.airspeed_kt);
+    let mut airspeeds = models
+        .iter()
+        .filter(|model| model.file() == file)
+        .filter_map(|model| model.facts.airspeed_kt);
     let first = airspeeds.next();
     airspeeds.any(|airspeed| Some(airspeed) != first)
 }
@@ -463,7 +591,8 @@ fn has_several_airspeeds(models: &[FoundModel], file: &str) -> bool {
 /// The file's name without its folder; the variable beside it where the file holds several models; "measured" of a response that
 /// is one part of a model.
 fn usual_name(model: &FoundModel, all: &[FoundModel], rules: &Rules, path: &str) -> String {
-    let is_part = model.inputs.len() * model.outputs.len() < rules.inputs.len() * rules.outputs.len();
+    let is_part =
+        model.inputs.len() * model.outputs.len() < rules.inputs.len() * rules.outputs.len();
     if model.response().is_some() && is_part {
         return "measured".to_owned();
     }
@@ -471,7 +600,11 @@ fn usual_name(model: &FoundModel, all: &[FoundModel], rules: &Rules, path: &str)
         return name.clone();
     }
     let stem = path.rsplit('/').next().unwrap_or(path);
-    let several = all.iter().filter(|other| other.file() == model.file()).count() > 1;
+    let several = all
+        .iter()
+        .filter(|other| other.file() == model.file())
+        .count()
+        > 1;
     match (several, model.variable()) {
         (true, variable) if !variable.is_empty() => variable.to_owned(),
         _ if stem.is_empty() => model.draft.name.clone(),
@@ -482,7 +615,10 @@ fn usual_name(model: &FoundModel, all: &[FoundModel], rules: &Rules, path: &str)
 fn without_extension(file: &str) -> String {
     let file = file.replace('\\', "/");
     let file = file.strip_suffix(".gz").unwrap_or(&file);
-    Path::new(file).with_extension("").to_string_lossy().into_owned()
+    Path::new(file)
+        .with_extension("")
+        .to_string_lossy()
+        .into_owned()
 }
 
 /// Where no name says a number, each folder is a condition, in the order of their names; where one file holds models of several
@@ -492,7 +628,10 @@ fn number_conditions(models: &[FoundModel], rows: &mut [Row]) {
         return;
     }
     let files: BTreeSet<&str> = models.iter().map(FoundModel::file).collect();
-    if files.into_iter().any(|file| has_several_airspeeds(models, file)) {
+    if files
+        .into_iter()
+        .any(|file| has_several_airspeeds(models, file))
+    {
         return number_airspeeds(rows);
     }
     let folder = |model: &FoundModel| match without_extension(model.file()).rsplit_once('/') {
@@ -501,7 +640,10 @@ fn number_conditions(models: &[FoundModel], rows: &mut [Row]) {
     };
     let folders: BTreeSet<String> = models.iter().map(folder).collect();
     for (model, row) in models.iter().zip(rows) {
-        row.condition = folders.iter().position(|of| *of == folder(model)).map(|index| index as i64 + 1);
+        row.condition = folders
+            .iter()
+            .position(|of| *of == folder(model))
+            .map(|index| index as i64 + 1);
     }
 }
 
@@ -518,7 +660,11 @@ fn number_airspeeds(rows: &mut [Row]) {
 
 /// Airspeed, altitude and mass; below all others where the latter are not said.
 fn state_of(row: &Row) -> Option<[f64; 3]> {
-    Some([row.airspeed_kt?, row.altitude_ft.unwrap_or(f64::MIN), row.mass_kg.unwrap_or(f64::MIN)])
+    Some([
+        row.airspeed_kt?,
+        row.altitude_ft.unwrap_or(f64::MIN),
+        row.mass_kg.unwrap_or(f64::MIN),
+    ])
 }
 
 /// The only physics model of a condition at no perturbed trim is nominal.
@@ -526,8 +672,15 @@ fn propose_nominal(rows: &mut [Row]) {
     let conditions: BTreeSet<i64> = rows.iter().filter_map(|row| row.condition).collect();
     for condition in conditions {
         let of = |row: &&mut Row| row.condition == Some(condition);
-        let has_nominal = rows.iter_mut().filter(of).any(|row| row.role == Some(RowRole::Nominal));
-        let mut open: Vec<&mut Row> = rows.iter_mut().filter(of).filter(|row| row.role.is_none()).collect();
+        let has_nominal = rows
+            .iter_mut()
+            .filter(of)
+            .any(|row| row.role == Some(RowRole::Nominal));
+        let mut open: Vec<&mut Row> = rows
+            .iter_mut()
+            .filter(of)
+            .filter(|row| row.role.is_none())
+            .collect();
         if let ([row], false) = (open.as_mut_slice(), has_nominal) {
             row.role = Some(RowRole::Nominal);
         }

@@ -6,7 +6,10 @@
 //!                                -> problems, or the draft of a dataset, which is checked once
 //! ```
 
-#[expect(clippy::module_inception, reason = "the folder is named for its noun, and so is the file that holds it")]
+#[expect(
+    clippy::module_inception,
+    reason = "the folder is named for its noun, and so is the file that holds it"
+)]
 mod assembly;
 mod channel_match;
 mod declarations;

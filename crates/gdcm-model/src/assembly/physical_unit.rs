@@ -77,7 +77,19 @@ const UNITS: &[(Dimension, f64, &[&str])] = {
         (Acceleration, FOOT, &["ft/s2", "fps2"]),
         (Acceleration, GRAVITY, &["g", "gs", "g's", "gee"]),
         (Part, 0.01, &["%", "pct", "percent"]),
-        (Part, 1.0, &["1", "-", "part", "fraction", "frac", "normalized", "normalised"]),
+        (
+            Part,
+            1.0,
+            &[
+                "1",
+                "-",
+                "part",
+                "fraction",
+                "frac",
+                "normalized",
+                "normalised",
+            ],
+        ),
         (Force, 1.0, &["N", "n", "newton"]),
         (Force, POUND_FORCE, &["lb", "lbf", "lbs"]),
         (Time, 1.0, &["s"]),
@@ -87,7 +99,11 @@ const UNITS: &[(Dimension, f64, &[&str])] = {
         (Time, 60.0, &["min"]),
         (Time, 3600.0, &["h", "hr", "hour", "hours"]),
         (Time, 86_400.0, &["days", "day", "d"]),
-        (Frequency, 1.0, &["Hz", "hz", "hertz", "cps", "cycle/s", "cycles/s"]),
+        (
+            Frequency,
+            1.0,
+            &["Hz", "hz", "hertz", "cps", "cycle/s", "cycles/s"],
+        ),
         (Frequency, 1e3, &["kHz", "khz"]),
         (Level, 1.0, &["dB", "db", "decibel"]),
     ]
@@ -99,16 +115,28 @@ impl PhysicalUnit {
         let spelled = |text: &str| UNITS.iter().find(|(_, _, names)| names.contains(&text));
         // Most are spelt as usual: of each column of each record this is asked for many units.
         let (dimension, size, names) = spelled(text).or_else(|| spelled(&folded_unit(text)))?;
-        Some(Self { dimension: *dimension, size: *size, name: names[0] })
+        Some(Self {
+            dimension: *dimension,
+            size: *size,
+            name: names[0],
+        })
     }
 }
 
 /// A unit without case, blanks, brackets and other ways of writing the same.
 fn folded_unit(text: &str) -> String {
-    let text = text.trim().trim_matches(['[', ']', '(', ')']).trim_end_matches('.').to_lowercase();
-    let text =
-        ["of stick", "of travel", "of full travel", "stick"].iter().fold(text, |text, word| text.replace(word, ""));
-    let text: String = text.chars().filter(|letter| !letter.is_whitespace()).collect();
+    let text = text
+        .trim()
+        .trim_matches(['[', ']', '(', ')'])
+        .trim_end_matches('.')
+        .to_lowercase();
+    let text = ["of stick", "of travel", "of full travel", "stick"]
+        .iter()
+        .fold(text, |text, word| text.replace(word, ""));
+    let text: String = text
+        .chars()
+        .filter(|letter| !letter.is_whitespace())
+        .collect();
     let same = [
         ("°", "deg"),
         ("degrees", "deg"),
@@ -133,7 +161,8 @@ fn folded_unit(text: &str) -> String {
     if matches!(text.as_str(), "percent" | "percentage") {
         return "percent".to_owned();
     }
-    same.iter().fold(text, |text, (from, to)| text.replace(from, to))
+    same.iter()
+        .fold(text, |text, (from, to)| text.replace(from, to))
 }
 
 /// How many of `to` one of `from` is; none where either is unknown or they measure different things. 1 exactly for the same unit.
@@ -143,7 +172,13 @@ pub fn conversion_factor(from: &str, to: &str) -> Option<f64> {
     }
     let (from, to) = (PhysicalUnit::of(from)?, PhysicalUnit::of(to)?);
     let same = from.dimension == to.dimension;
-    same.then(|| if from.size == to.size { 1.0 } else { from.size / to.size })
+    same.then(|| {
+        if from.size == to.size {
+            1.0
+        } else {
+            from.size / to.size
+        }
+    })
 }
 
 #[cfg(test)]
@@ -161,18 +196,34 @@ mod tests {
         ] {
             assert_eq!(conversion_factor(a, b), Some(1.0), "{a} {b}");
         }
-        assert_eq!(conversion_factor("% of stick", "fraction of stick"), Some(0.01));
+        assert_eq!(
+            conversion_factor("% of stick", "fraction of stick"),
+            Some(0.01)
+        );
     }
 
     #[test]
     fn every_spelling_is_folded_and_stands_once() {
-        let names: Vec<&str> = UNITS.iter().flat_map(|(_, _, names)| names.iter().copied()).collect();
+        let names: Vec<&str> = UNITS
+            .iter()
+            .flat_map(|(_, _, names)| names.iter().copied())
+            .collect();
         for (place, name) in names.iter().enumerate() {
             assert!(!names[..place].contains(name), "{name} stands twice");
             assert!(PhysicalUnit::of(name).is_some(), "{name}");
         }
-        for (text, name) in [("secs", "s"), ("msecs", "ms"), ("Milliseconds", "ms"), ("usec", "µs"), ("Hertz", "Hz")] {
-            assert_eq!(PhysicalUnit::of(text).map(|unit| unit.name), Some(name), "{text}");
+        for (text, name) in [
+            ("secs", "s"),
+            ("msecs", "ms"),
+            ("Milliseconds", "ms"),
+            ("usec", "µs"),
+            ("Hertz", "Hz"),
+        ] {
+            assert_eq!(
+                PhysicalUnit::of(text).map(|unit| unit.name),
+                Some(name),
+                "{text}"
+            );
         }
     }
 
@@ -181,7 +232,10 @@ mod tests {
         let near = |from, to, expected: f64| {
             let factor = conversion_factor(from, to).unwrap();
             // One division of two rounded sizes.
-            assert!((factor / expected - 1.0).abs() < 4e-16, "{from} {to} {factor}");
+            assert!(
+                (factor / expected - 1.0).abs() < 4e-16,
+                "{from} {to} {factor}"
+            );
         };
         near("rad/s", "deg/s", 180.0 / PI);
         near("g", "m/s^2", 9.806_65);
@@ -192,9 +246,17 @@ mod tests {
 
     #[test]
     fn what_measures_different_things_has_no_factor() {
-        assert_eq!(conversion_factor("in", "%"), None, "travel of a stick is no property of the units");
+        assert_eq!(
+            conversion_factor("in", "%"),
+            None,
+            "travel of a stick is no property of the units"
+        );
         assert_eq!(conversion_factor("deg", "deg/s"), None);
         assert_eq!(conversion_factor("furlong", "m"), None);
-        assert_eq!(conversion_factor("furlong", "furlong"), Some(1.0), "what is not known is not converted");
+        assert_eq!(
+            conversion_factor("furlong", "furlong"),
+            Some(1.0),
+            "what is not known is not converted"
+        );
     }
 }

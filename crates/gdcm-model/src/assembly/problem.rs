@@ -74,7 +74,9 @@ pub enum ProblemKind {
         found: String,
     },
     /// Channels without names, and another number of them than the dataset has.
-    #[error("the model has {found} {side}s without names, the dataset has {expected}; say their names")]
+    #[error(
+        "the model has {found} {side}s without names, the dataset has {expected}; say their names"
+    )]
     Unnamed {
         /// Input or output.
         side: ChannelSide,
@@ -124,7 +126,9 @@ pub enum ProblemKind {
         first: String,
     },
     /// More or fewer names are said of a model's channels than it has.
-    #[error("{said} names are said for the {found} {side}s of the model; say one for each, in the file's order")]
+    #[error(
+        "{said} names are said for the {found} {side}s of the model; say one for each, in the file's order"
+    )]
     Names {
         /// Input or output.
         side: ChannelSide,
@@ -254,7 +258,11 @@ impl ProblemKind {
             Self::Conversion { channel, .. } => (channel, "--factor", "X"),
             _ => return None,
         };
-        Some(Question { channel: channel.clone(), option, value })
+        Some(Question {
+            channel: channel.clone(),
+            option,
+            value,
+        })
     }
 }
 
@@ -280,20 +288,37 @@ pub struct Problem {
 impl Problem {
     /// A problem of the whole.
     pub fn of_all(kind: ProblemKind) -> Self {
-        Self { part: None, kind, scope: None }
+        Self {
+            part: None,
+            kind,
+            scope: None,
+        }
     }
 
     /// A problem of one model.
     pub fn of(part: usize, kind: ProblemKind) -> Self {
-        Self { part: Some(part), kind, scope: None }
+        Self {
+            part: Some(part),
+            kind,
+            scope: None,
+        }
     }
 
     /// The option of `gdcm assemble` that answers the question for the models that ask it: "--sign NZ=-1:identified".
     pub fn option(&self) -> Option<String> {
-        let Question { channel, option, value } = self.kind.question()?;
+        let Question {
+            channel,
+            option,
+            value,
+        } = self.kind.question()?;
         let said = format!("{channel}={value}:{}", self.scope.as_ref()?);
-        let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "=-+_./:#,%".contains(letter);
-        if said.chars().all(is_plain) { Some(format!("{option} {said}")) } else { Some(format!("{option} '{said}'")) }
+        let is_plain =
+            |letter: char| letter.is_ascii_alphanumeric() || "=-+_./:#,%".contains(letter);
+        if said.chars().all(is_plain) {
+            Some(format!("{option} {said}"))
+        } else {
+            Some(format!("{option} '{said}'"))
+        }
     }
 }
 
@@ -310,11 +335,16 @@ pub(super) fn find_scopes(problems: &mut [Problem], parts: &[Part], rules: &Rule
     let mut asked_by: BTreeMap<&Question, Vec<FileScope>> = BTreeMap::new();
     for (question, asking) in &asking {
         let having: Vec<usize> = (0..parts.len())
-            .filter(|index| !parts[*index].row.left_out && has_channel(&parts[*index], &question.channel, rules))
+            .filter(|index| {
+                !parts[*index].row.left_out && has_channel(&parts[*index], &question.channel, rules)
+            })
             .collect();
         let whole = asked_by.entry(question).or_default();
         for scope in [FileScope::Physics, FileScope::Identified] {
-            let mut of_role = having.iter().filter(|index| scope_of(**index) == Some(scope.clone())).peekable();
+            let mut of_role = having
+                .iter()
+                .filter(|index| scope_of(**index) == Some(scope.clone()))
+                .peekable();
             if of_role.peek().is_some() && of_role.all(|index| asking.contains(index)) {
                 whole.push(scope);
             }
@@ -324,11 +354,22 @@ pub(super) fn find_scopes(problems: &mut [Problem], parts: &[Part], rules: &Rule
         }
     }
     for problem in problems {
-        let (Some(part), Some(question)) = (problem.part, problem.kind.question()) else { continue };
-        let whole = asked_by.get(&question).map(Vec::as_slice).unwrap_or_default();
+        let (Some(part), Some(question)) = (problem.part, problem.kind.question()) else {
+            continue;
+        };
+        let whole = asked_by
+            .get(&question)
+            .map(Vec::as_slice)
+            .unwrap_or_default();
         let own = scope_of(part);
-        let found = whole.iter().find(|scope| **scope == FileScope::All || Some(*scope) == own.as_ref());
-        problem.scope = Some(found.cloned().unwrap_or_else(|| FileScope::Files(parts[part].found.key())));
+        let found = whole
+            .iter()
+            .find(|scope| **scope == FileScope::All || Some(*scope) == own.as_ref());
+        problem.scope = Some(
+            found
+                .cloned()
+                .unwrap_or_else(|| FileScope::Files(parts[part].found.key())),
+        );
     }
 }
 
@@ -352,7 +393,12 @@ pub(super) fn row_problems(part: &Part) -> Vec<ProblemKind> {
         }
         Some(_) => {}
     }
-    problems.extend(part.sample_time_s.is_none().then(|| missing_sample_time(part)).flatten());
+    problems.extend(
+        part.sample_time_s
+            .is_none()
+            .then(|| missing_sample_time(part))
+            .flatten(),
+    );
     problems
 }
 
@@ -363,29 +409,49 @@ fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
     /// Real part of a pole near 1, and the magnitude of one that is outside by little.
     const NEAR: f64 = 0.5;
     const OUTSIDE: f64 = 1.05;
-    let a =
-        part.found.draft.matrices[0].as_ref().filter(|a| a.is_square() && a.iter().all(|entry| entry.is_finite()))?;
+    let a = part.found.draft.matrices[0]
+        .as_ref()
+        .filter(|a| a.is_square() && a.iter().all(|entry| entry.is_finite()))?;
     // The sum of such poles is positive, that of a damped model in continuous time is not: it costs nothing to know.
     if part.found.draft.timing.sample_time_s.is_some() || a.nrows() < 2 || a.trace() <= 0.0 {
         return None;
     }
     let poles = a.complex_eigenvalues();
     let near = poles.iter().filter(|pole| pole.re > NEAR).count();
-    let is_discrete = poles.iter().all(|pole| pole.norm() <= OUTSIDE) && near >= 2 && 2 * near >= poles.len();
-    is_discrete.then_some(ProblemKind::NoSampleTime { near, poles: poles.len() })
+    let is_discrete =
+        poles.iter().all(|pole| pole.norm() <= OUTSIDE) && near >= 2 && 2 * near >= poles.len();
+    is_discrete.then_some(ProblemKind::NoSampleTime {
+        near,
+        poles: poles.len(),
+    })
 }
 
-pub(super) fn problems_of_condition(condition: i64, parts: &[(usize, &Part)], rules: &Rules) -> Vec<Problem> {
+pub(super) fn problems_of_condition(
+    condition: i64,
+    parts: &[(usize, &Part)],
+    rules: &Rules,
+) -> Vec<Problem> {
     let first = parts[0].0;
     let mut kinds = contradictions(condition, parts);
     if parts.iter().all(|(_, part)| part.row.airspeed_kt.is_none()) {
         kinds.push(ProblemKind::NoAirspeed);
     }
-    let count = |role: RowRole| parts.iter().filter(|(_, part)| part.row.role == Some(role)).count();
+    let count = |role: RowRole| {
+        parts
+            .iter()
+            .filter(|(_, part)| part.row.role == Some(role))
+            .count()
+    };
     if count(RowRole::Nominal) != 1 {
-        kinds.push(ProblemKind::Nominal { condition, found: count(RowRole::Nominal) });
+        kinds.push(ProblemKind::Nominal {
+            condition,
+            found: count(RowRole::Nominal),
+        });
     }
-    let mut problems: Vec<Problem> = kinds.into_iter().map(|kind| Problem::of(first, kind)).collect();
+    let mut problems: Vec<Problem> = kinds
+        .into_iter()
+        .map(|kind| Problem::of(first, kind))
+        .collect();
     problems.extend(name_problems(condition, parts, rules));
     problems
 }
@@ -406,7 +472,12 @@ fn contradictions(condition: i64, parts: &[(usize, &Part)]) -> Vec<ProblemKind> 
         let mut values = parts.iter().filter_map(|(_, part)| of(&part.row));
         let first = values.next()?;
         let second = values.find(|value| *value != first)?;
-        Some(ProblemKind::Contradiction { condition, field, first, second })
+        Some(ProblemKind::Contradiction {
+            condition,
+            field,
+            first,
+            second,
+        })
     };
     fields.into_iter().filter_map(contradiction).collect()
 }
@@ -421,18 +492,36 @@ fn name_problems(condition: i64, parts: &[(usize, &Part)], rules: &Rules) -> Vec
         let last = earlier.last().copied();
         let kind = match last.map(|last| (last, last.found.response(), part.found.response())) {
             None => None,
-            Some((_, Some(a), Some(b))) if a.omega == b.omega => twice_measured(part, earlier, rules),
+            Some((_, Some(a), Some(b))) if a.omega == b.omega => {
+                twice_measured(part, earlier, rules)
+            }
             Some((last, Some(a), Some(b))) => {
                 let grid = |of: &ResponseDraft| {
                     let end = |omega: Option<&f64>| omega.copied().unwrap_or(f64::NAN);
-                    (of.omega.len(), [end(of.omega.first()), end(of.omega.last())])
+                    (
+                        of.omega.len(),
+                        [end(of.omega.first()), end(of.omega.last())],
+                    )
                 };
                 let (first, second) = (last.found.key(), part.found.key());
-                Some(ProblemKind::Grids { first, first_grid: grid(a), second, second_grid: grid(b) })
+                Some(ProblemKind::Grids {
+                    first,
+                    first_grid: grid(a),
+                    second,
+                    second_grid: grid(b),
+                })
             }
             Some(_) => {
-                let bundle = if is_identified { "identified" } else { "physics" };
-                Some(ProblemKind::Name { condition, bundle, name: part.row.name.clone() })
+                let bundle = if is_identified {
+                    "identified"
+                } else {
+                    "physics"
+                };
+                Some(ProblemKind::Name {
+                    condition,
+                    bundle,
+                    name: part.row.name.clone(),
+                })
             }
         };
         problems.extend(kind.map(|kind| Problem::of(*index, kind)));
@@ -446,7 +535,9 @@ fn twice_measured(part: &Part, earlier: &[&Part], rules: &Rules) -> Option<Probl
     for (output, of_output) in rules.outputs.iter().enumerate() {
         for (input, of_input) in rules.inputs.iter().enumerate() {
             let measures = |part: &Part| {
-                let used = |matched: &ChannelMatch, index: usize| matched.uses.get(index).is_some_and(Option::is_some);
+                let used = |matched: &ChannelMatch, index: usize| {
+                    matched.uses.get(index).is_some_and(Option::is_some)
+                };
                 used(&part.outputs, output) && used(&part.inputs, input)
             };
             if measures(part)

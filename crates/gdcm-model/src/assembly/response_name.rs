@@ -131,20 +131,27 @@ pub enum KnownChannels<'r> {
 
 /// The names of the known channels that stand for all that call the same.
 enum KnownNames {
-    Dataset { inputs: BTreeSet<String>, outputs: BTreeSet<String> },
+    Dataset {
+        inputs: BTreeSet<String>,
+        outputs: BTreeSet<String>,
+    },
     Field,
 }
 
 impl KnownNames {
     fn of(known: KnownChannels<'_>) -> Self {
         let names = |rules: &[ChannelRule]| {
-            let each = rules.iter().flat_map(|rule| std::iter::once(&rule.name).chain(&rule.aliases));
-            each.map(|name| canonical(&SignedName::of(name).name)).collect()
+            let each = rules
+                .iter()
+                .flat_map(|rule| std::iter::once(&rule.name).chain(&rule.aliases));
+            each.map(|name| canonical(&SignedName::of(name).name))
+                .collect()
         };
         match known {
-            KnownChannels::Dataset { inputs, outputs } => {
-                Self::Dataset { inputs: names(inputs), outputs: names(outputs) }
-            }
+            KnownChannels::Dataset { inputs, outputs } => Self::Dataset {
+                inputs: names(inputs),
+                outputs: names(outputs),
+            },
             KnownChannels::Field => Self::Field,
         }
     }
@@ -154,7 +161,10 @@ impl KnownNames {
         match self {
             Self::Dataset { inputs, outputs } => {
                 let name = canonical(name);
-                Sides { output: outputs.contains(&name), input: inputs.contains(&name) }
+                Sides {
+                    output: outputs.contains(&name),
+                    input: inputs.contains(&name),
+                }
             }
             Self::Field => {
                 let folded = folded_name(name);
@@ -195,7 +205,9 @@ impl ResponseName {
     pub fn find(text: &str, known: KnownChannels<'_>) -> Result<Self, ResponseNameError> {
         let words = words_of(text);
         let named = named_channels(text, &words, &KnownNames::of(known));
-        let Some(last) = named.last() else { return Ok(Self::default()) };
+        let Some(last) = named.last() else {
+            return Ok(Self::default());
+        };
         let begins = named[0].words.start;
         let ends = last.words.end;
         for (index, word) in words.iter().enumerate() {
@@ -205,25 +217,51 @@ impl ResponseName {
             }
             let is_between = begins < index && index < ends;
             if is_between || CHANGES_CHANNEL.contains(&word.text.to_lowercase().as_str()) {
-                let before = named.iter().rev().find(|channel| channel.words.start < index);
+                let before = named
+                    .iter()
+                    .rev()
+                    .find(|channel| channel.words.start < index);
                 let channel = before.unwrap_or(&named[0]).text.to_owned();
-                return Err(ResponseNameError::OtherChannel { word: word.text.to_owned(), channel });
+                return Err(ResponseNameError::OtherChannel {
+                    word: word.text.to_owned(),
+                    channel,
+                });
             }
         }
         if let [first, second] = named.as_slice()
-            && [first, second].iter().all(|channel| channel.sides.output && channel.sides.input)
+            && [first, second]
+                .iter()
+                .all(|channel| channel.sides.output && channel.sides.input)
         {
             let between = &words[first.words.end..second.words.start];
-            let input_first = between.iter().any(|word| word.text.eq_ignore_ascii_case("to"));
-            let (output, input) = if input_first { (second, first) } else { (first, second) };
-            return Ok(Self { output: Some(output.text.to_owned()), input: Some(input.text.to_owned()) });
+            let input_first = between
+                .iter()
+                .any(|word| word.text.eq_ignore_ascii_case("to"));
+            let (output, input) = if input_first {
+                (second, first)
+            } else {
+                (first, second)
+            };
+            return Ok(Self {
+                output: Some(output.text.to_owned()),
+                input: Some(input.text.to_owned()),
+            });
         }
-        let outputs: Vec<&NamedChannel<'_>> = named.iter().filter(|channel| channel.sides.output).collect();
-        let inputs: Vec<&NamedChannel<'_>> = named.iter().filter(|channel| channel.sides.input).collect();
+        let outputs: Vec<&NamedChannel<'_>> = named
+            .iter()
+            .filter(|channel| channel.sides.output)
+            .collect();
+        let inputs: Vec<&NamedChannel<'_>> =
+            named.iter().filter(|channel| channel.sides.input).collect();
         // A name that can be both is what the others leave open.
-        let only = |side: &'static str, of_side: &[&NamedChannel<'_>], is_other: fn(Sides) -> bool| {
-            let sure: Vec<&str> =
-                of_side.iter().filter(|channel| !is_other(channel.sides)).map(|channel| channel.text).collect();
+        let only = |side: &'static str,
+                    of_side: &[&NamedChannel<'_>],
+                    is_other: fn(Sides) -> bool| {
+            let sure: Vec<&str> = of_side
+                .iter()
+                .filter(|channel| !is_other(channel.sides))
+                .map(|channel| channel.text)
+                .collect();
             let open: Vec<&str> = of_side.iter().map(|channel| channel.text).collect();
             let names = if sure.is_empty() { open } else { sure };
             match names.split_first() {
@@ -231,7 +269,10 @@ impl ResponseName {
                 Some((first, others)) if others.iter().all(|other| same_channel(first, other)) => {
                     Ok(Some((*first).to_owned()))
                 }
-                Some(_) => Err(ResponseNameError::Several { side, found: names.join(", ") }),
+                Some(_) => Err(ResponseNameError::Several {
+                    side,
+                    found: names.join(", "),
+                }),
             }
         };
         Ok(Self {
@@ -255,7 +296,10 @@ fn words_of(text: &str) -> Vec<Word<'_>> {
         match (start, is_inside) {
             (None, true) => start = Some(place),
             (Some(from), false) => {
-                words.push(Word { start: from, text: &text[from..place] });
+                words.push(Word {
+                    start: from,
+                    text: &text[from..place],
+                });
                 start = None;
             }
             _ => {}
@@ -265,7 +309,11 @@ fn words_of(text: &str) -> Vec<Word<'_>> {
     words
 }
 
-fn named_channels<'t>(text: &'t str, words: &[Word<'t>], known: &KnownNames) -> Vec<NamedChannel<'t>> {
+fn named_channels<'t>(
+    text: &'t str,
+    words: &[Word<'t>],
+    known: &KnownNames,
+) -> Vec<NamedChannel<'t>> {
     let mut named = Vec::new();
     let mut first = 0;
     while first < words.len() {
@@ -275,7 +323,11 @@ fn named_channels<'t>(text: &'t str, words: &[Word<'t>], known: &KnownNames) -> 
             let name = &text[words[first].start..last.start + last.text.len()];
             let sides = known.sides(name);
             let words = first..first + count;
-            (sides.output || sides.input).then_some(NamedChannel { words, text: name, sides })
+            (sides.output || sides.input).then_some(NamedChannel {
+                words,
+                text: name,
+                sides,
+            })
         });
         match found {
             Some(channel) => {
@@ -293,7 +345,10 @@ fn says_no_channel(word: &str) -> bool {
     let word = word.to_lowercase();
     let plain = word.trim_matches(|letter: char| letter.is_ascii_digit());
     let is_unit = PhysicalUnit::of(plain).is_some_and(|unit| {
-        matches!(unit.dimension, Dimension::Speed | Dimension::Length | Dimension::Level | Dimension::Frequency)
+        matches!(
+            unit.dimension,
+            Dimension::Speed | Dimension::Length | Dimension::Level | Dimension::Frequency
+        )
     });
     let is_number = plain.len() < word.len() && plain.len() <= 1;
     plain.is_empty() || is_number || is_unit || NO_CHANNEL.contains(&plain)
@@ -308,9 +363,21 @@ mod tests {
     }
 
     fn read(text: &str) -> Result<(String, String), ResponseNameError> {
-        let (inputs, outputs) = (rules(&["LON", "LAT", "PED", "COL"]), rules(&["P", "Q", "R", "NZ"]));
-        let name = ResponseName::find(text, KnownChannels::Dataset { inputs: &inputs, outputs: &outputs })?;
-        Ok((name.output.unwrap_or_default(), name.input.unwrap_or_default()))
+        let (inputs, outputs) = (
+            rules(&["LON", "LAT", "PED", "COL"]),
+            rules(&["P", "Q", "R", "NZ"]),
+        );
+        let name = ResponseName::find(
+            text,
+            KnownChannels::Dataset {
+                inputs: &inputs,
+                outputs: &outputs,
+            },
+        )?;
+        Ok((
+            name.output.unwrap_or_default(),
+            name.input.unwrap_or_default(),
+        ))
     }
 
     #[test]
@@ -331,35 +398,66 @@ mod tests {
             ("broken", "", ""),
             ("", "", ""),
         ] {
-            assert_eq!(read(text), Ok((output.to_owned(), input.to_owned())), "{text}");
+            assert_eq!(
+                read(text),
+                Ok((output.to_owned(), input.to_owned())),
+                "{text}"
+            );
         }
     }
 
     #[test]
     fn what_names_another_or_several_channels_is_asked_about() {
         for text in ["frf_q_dot_lon", "q_lon_cmd", "q_imu_lon"] {
-            assert!(matches!(read(text), Err(ResponseNameError::OtherChannel { .. })), "{text}: {:?}", read(text));
+            assert!(
+                matches!(read(text), Err(ResponseNameError::OtherChannel { .. })),
+                "{text}: {:?}",
+                read(text)
+            );
         }
         for (text, side) in [("p_q_lon", "output"), ("q_lon_lat", "input")] {
-            assert!(matches!(read(text), Err(ResponseNameError::Several { side: of, .. }) if of == side), "{text}");
+            assert!(
+                matches!(read(text), Err(ResponseNameError::Several { side: of, .. }) if of == side),
+                "{text}"
+            );
         }
-        assert_eq!(read("q_Q_lon"), Ok(("q".to_owned(), "lon".to_owned())), "one channel named twice");
+        assert_eq!(
+            read("q_Q_lon"),
+            Ok(("q".to_owned(), "lon".to_owned())),
+            "one channel named twice"
+        );
     }
 
     #[test]
     fn names_and_aliases_of_the_rules_are_known_and_order_tells_what_can_be_both() {
-        let inputs = [ChannelRule { aliases: vec!["boost lon".into()], ..ChannelRule::named("u1") }];
+        let inputs = [ChannelRule {
+            aliases: vec!["boost lon".into()],
+            ..ChannelRule::named("u1")
+        }];
         let outputs = [ChannelRule::named("y_2")];
-        let find =
-            |text, inputs, outputs| ResponseName::find(text, KnownChannels::Dataset { inputs, outputs }).unwrap();
+        let find = |text, inputs, outputs| {
+            ResponseName::find(text, KnownChannels::Dataset { inputs, outputs }).unwrap()
+        };
         let name = find("frf_y_2_boost_lon", &inputs[..], &outputs[..]);
-        assert_eq!((name.output.as_deref(), name.input.as_deref()), (Some("y_2"), Some("boost_lon")));
+        assert_eq!(
+            (name.output.as_deref(), name.input.as_deref()),
+            (Some("y_2"), Some("boost_lon"))
+        );
         let both = rules(&["roll", "pitch"]);
         let name = find("roll_pitch", &both[..], &both[..]);
-        assert_eq!((name.output.as_deref(), name.input.as_deref()), (Some("roll"), Some("pitch")));
+        assert_eq!(
+            (name.output.as_deref(), name.input.as_deref()),
+            (Some("roll"), Some("pitch"))
+        );
         let name = find("roll to pitch", &both[..], &both[..]);
-        assert_eq!((name.output.as_deref(), name.input.as_deref()), (Some("pitch"), Some("roll")));
+        assert_eq!(
+            (name.output.as_deref(), name.input.as_deref()),
+            (Some("pitch"), Some("roll"))
+        );
         let name = ResponseName::find("mag roll_rate xb", KnownChannels::Field).unwrap();
-        assert_eq!((name.output.as_deref(), name.input.as_deref()), (Some("roll_rate"), Some("xb")));
+        assert_eq!(
+            (name.output.as_deref(), name.input.as_deref()),
+            (Some("roll_rate"), Some("xb"))
+        );
     }
 }

@@ -28,7 +28,10 @@ pub struct ChannelRule {
 impl ChannelRule {
     /// A channel whose unit is still to be said.
     pub fn named(name: impl Into<String>) -> Self {
-        Self { name: name.into(), ..Self::default() }
+        Self {
+            name: name.into(),
+            ..Self::default()
+        }
     }
 }
 
@@ -54,7 +57,10 @@ pub struct RowRule {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub left_out: Option<bool>,
     /// Number of its condition.
-    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "whole_or_none")]
+    #[serde(
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "whole_or_none"
+    )]
     pub condition: Option<i64>,
     /// Its role.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -125,7 +131,10 @@ impl RowRule {
         row.left_out = self.left_out.unwrap_or(row.left_out);
         put(&self.condition, &mut row.condition);
         put(&self.role, &mut row.role);
-        row.name = self.name.clone().unwrap_or_else(|| std::mem::take(&mut row.name));
+        row.name = self
+            .name
+            .clone()
+            .unwrap_or_else(|| std::mem::take(&mut row.name));
         put(&self.airspeed_kt, &mut row.airspeed_kt);
         put(&self.altitude, &mut row.altitude);
         put(&self.altitude_ft, &mut row.altitude_ft);
@@ -223,7 +232,9 @@ impl Rules {
     /// Calls a channel of the dataset otherwise. Files call it as before; what was said of it, on-axis responses, conversions and signs,
     /// is said of the new name, and a response that matters in a helicopter by its new name is marked.
     pub fn rename(&mut self, side: ChannelSide, index: usize, name: String) {
-        let Some(channel) = self.channels_mut(side).get_mut(index) else { return };
+        let Some(channel) = self.channels_mut(side).get_mut(index) else {
+            return;
+        };
         let old = std::mem::replace(&mut channel.name, name.clone());
         if old == name {
             return;
@@ -240,14 +251,21 @@ impl Rules {
         }
         let of_new = |other: &ChannelRule| {
             let (other, name) = (other.name.clone(), name.clone());
-            if side == ChannelSide::Input { (other, name) } else { (name, other) }
+            if side == ChannelSide::Input {
+                (other, name)
+            } else {
+                (name, other)
+            }
         };
         for pair in side.of(&self.outputs, &self.inputs).iter().map(of_new) {
             if standard_on_axis(&pair.0, &pair.1) && !self.on_axis.contains(&pair) {
                 self.on_axis.push(pair);
             }
         }
-        self.units.iter_mut().filter(|unit| unit.channel == old).for_each(|unit| unit.channel.clone_from(&name));
+        self.units
+            .iter_mut()
+            .filter(|unit| unit.channel == old)
+            .for_each(|unit| unit.channel.clone_from(&name));
         for row in self.rows.values_mut() {
             if let Some(signs) = &mut row.signs {
                 rename_key(signs, &old, &name);
@@ -272,7 +290,10 @@ impl Rules {
     pub fn declared(&self, found: &FoundModel, role: Option<RowRole>) -> DeclaredChannels<'_> {
         let with_signs = |of: FileScope, signs: &Signs| ScopedDeclarations {
             of,
-            channels: ChannelDeclarations { signs: signs.clone(), ..ChannelDeclarations::default() },
+            channels: ChannelDeclarations {
+                signs: signs.clone(),
+                ..ChannelDeclarations::default()
+            },
         };
         let mut declarations = vec![with_signs(FileScope::All, &self.signs)];
         for (role, signs) in &self.role_signs {
@@ -286,22 +307,34 @@ impl Rules {
         if let Some(row) = self.rows.get(&found.key()) {
             channels.override_by(&row.declarations());
         }
-        DeclaredChannels { conversions: &self.units, channels }
+        DeclaredChannels {
+            conversions: &self.units,
+            channels,
+        }
     }
 
     /// Declares units, factors and signs in the place of what was declared of the same channels of the same models. Signs of all
     /// models and of a role are kept in [`Self::signs`] and [`Self::role_signs`].
     pub fn declare(&mut self, of: FileScope, declared: &ChannelDeclarations) {
-        let signs = declared.signs.iter().map(|(channel, sign)| (channel.clone(), *sign));
+        let signs = declared
+            .signs
+            .iter()
+            .map(|(channel, sign)| (channel.clone(), *sign));
         match &of {
             FileScope::Files(_) => return self.declarations_mut(of).override_by(declared),
             FileScope::All => self.signs.extend(signs),
             FileScope::Physics | FileScope::Identified if declared.signs.is_empty() => {}
             FileScope::Physics | FileScope::Identified => {
-                self.role_signs.entry(of.to_string()).or_default().extend(signs);
+                self.role_signs
+                    .entry(of.to_string())
+                    .or_default()
+                    .extend(signs);
             }
         }
-        let conversions = ChannelDeclarations { signs: Signs::new(), ..declared.clone() };
+        let conversions = ChannelDeclarations {
+            signs: Signs::new(),
+            ..declared.clone()
+        };
         if conversions != ChannelDeclarations::default() {
             self.declarations_mut(of).override_by(&conversions);
         }
@@ -309,10 +342,17 @@ impl Rules {
 
     /// The declarations of some models, to be added to.
     pub fn declarations_mut(&mut self, of: FileScope) -> &mut ChannelDeclarations {
-        let index = match self.declarations.iter().position(|declared| declared.of == of) {
+        let index = match self
+            .declarations
+            .iter()
+            .position(|declared| declared.of == of)
+        {
             Some(index) => index,
             None => {
-                self.declarations.push(ScopedDeclarations { of, channels: ChannelDeclarations::default() });
+                self.declarations.push(ScopedDeclarations {
+                    of,
+                    channels: ChannelDeclarations::default(),
+                });
                 self.declarations.len() - 1
             }
         };
@@ -363,25 +403,43 @@ pub enum PatternError {
 }
 
 /// What groups are named, besides those of offsets.
-const GROUPS: &str =
-    "condition airspeed_kt altitude altitude_ft weight mass_kg method name nominal perturbed identified";
+const GROUPS: &str = "condition airspeed_kt altitude altitude_ft weight mass_kg method name nominal perturbed identified";
 /// What a group of an offset begins with.
 const OFFSET: &str = "by_";
 
 impl NamePattern {
     /// The pattern that a text spells; case makes no difference.
     pub fn new(pattern: &str) -> Result<Self, PatternError> {
-        let wrong = |reason: String| PatternError::Syntax { pattern: pattern.to_owned(), reason };
+        let wrong = |reason: String| PatternError::Syntax {
+            pattern: pattern.to_owned(),
+            reason,
+        };
         if pattern.len() > LONGEST {
             return Err(wrong(format!("it is longer than {LONGEST} letters")));
         }
-        let built = RegexBuilder::new(pattern).case_insensitive(true).size_limit(MOST_MEMORY).build();
-        let regex =
-            built.map_err(|error| wrong(error.to_string().lines().last().unwrap_or_default().trim().to_owned()))?;
-        let is_known = |name: &&str| name.starts_with(OFFSET) || GROUPS.split(' ').any(|group| group == *name);
+        let built = RegexBuilder::new(pattern)
+            .case_insensitive(true)
+            .size_limit(MOST_MEMORY)
+            .build();
+        let regex = built.map_err(|error| {
+            wrong(
+                error
+                    .to_string()
+                    .lines()
+                    .last()
+                    .unwrap_or_default()
+                    .trim()
+                    .to_owned(),
+            )
+        })?;
+        let is_known =
+            |name: &&str| name.starts_with(OFFSET) || GROUPS.split(' ').any(|group| group == *name);
         let unknown = regex.capture_names().flatten().find(|name| !is_known(name));
         match unknown {
-            Some(group) => Err(PatternError::Group { pattern: pattern.to_owned(), group: group.to_owned() }),
+            Some(group) => Err(PatternError::Group {
+                pattern: pattern.to_owned(),
+                group: group.to_owned(),
+            }),
             None => Ok(Self { regex }),
         }
     }
@@ -406,18 +464,36 @@ impl NamePattern {
 /// The parts of a name that say an offset of the trim, as "dPHI+5" does, and that none of the patterns reads.
 pub fn unread_offsets(name: &str, patterns: &[NamePattern]) -> Vec<String> {
     // A word, a sign and a number, which ends where a unit or the next part begins.
-    let Ok(offset) = Regex::new(r"[A-Za-z]+[_ ]?[+-]\d+(?:\.\d+)?") else { return Vec::new() };
+    let Ok(offset) = Regex::new(r"[A-Za-z]+[_ ]?[+-]\d+(?:\.\d+)?") else {
+        return Vec::new();
+    };
     let read: Vec<std::ops::Range<usize>> = patterns
         .iter()
-        .flat_map(|pattern| pattern.regex.captures_iter(name).map(|found| found.get_match().range()))
+        .flat_map(|pattern| {
+            pattern
+                .regex
+                .captures_iter(name)
+                .map(|found| found.get_match().range())
+        })
         .collect();
-    let is_read =
-        |part: &regex::Match<'_>| read.iter().any(|range| range.start < part.end() && part.start() < range.end);
-    offset.find_iter(name).filter(|part| !is_read(part)).map(|part| part.as_str().to_owned()).collect()
+    let is_read = |part: &regex::Match<'_>| {
+        read.iter()
+            .any(|range| range.start < part.end() && part.start() < range.end)
+    };
+    offset
+        .find_iter(name)
+        .filter(|part| !is_read(part))
+        .map(|part| part.as_str().to_owned())
+        .collect()
 }
 
 fn put(group: &str, text: &str, row: &mut Row) {
-    let number = || text.replace(',', ".").parse::<f64>().ok().filter(|value| value.is_finite());
+    let number = || {
+        text.replace(',', ".")
+            .parse::<f64>()
+            .ok()
+            .filter(|value| value.is_finite())
+    };
     let word = || Some(text.to_lowercase());
     match group {
         "condition" => row.condition = row.condition.or_else(|| text.parse().ok()),
@@ -431,7 +507,9 @@ fn put(group: &str, text: &str, row: &mut Row) {
         "nominal" | "perturbed" | "identified" => row.role = row.role.or(RowRole::of(group)),
         _ => {
             if let (Some(coordinate), Some(offset)) = (group.strip_prefix(OFFSET), offset(text)) {
-                row.perturbation.entry(coordinate.to_owned()).or_insert(offset);
+                row.perturbation
+                    .entry(coordinate.to_owned())
+                    .or_insert(offset);
             }
         }
     }
@@ -440,8 +518,17 @@ fn put(group: &str, text: &str, row: &mut Row) {
 /// `+5`, `-5`, `p5`, `m5`, `plus5`, `minus2.5`.
 fn offset(text: &str) -> Option<f64> {
     let text = text.to_lowercase();
-    let signs = [("minus", -1.0), ("plus", 1.0), ("-", -1.0), ("+", 1.0), ("m", -1.0), ("p", 1.0)];
-    let signed = signs.iter().find_map(|(mark, sign)| Some((text.strip_prefix(mark)?, *sign)));
+    let signs = [
+        ("minus", -1.0),
+        ("plus", 1.0),
+        ("-", -1.0),
+        ("+", 1.0),
+        ("m", -1.0),
+        ("p", 1.0),
+    ];
+    let signed = signs
+        .iter()
+        .find_map(|(mark, sign)| Some((text.strip_prefix(mark)?, *sign)));
     let (digits, sign) = signed.unwrap_or((&text, 1.0));
     let value: f64 = digits.trim_start_matches(['_', ' ']).parse().ok()?;
     value.is_finite().then_some(sign * value)
@@ -485,7 +572,10 @@ static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(|| {
         r"(?:^|[/_ #.-])(?<perturbed>perturbed|pert)\d*(?:[/_ .#(-]|$)".to_owned(),
     ];
     // Each is tried by a test: none is left out here.
-    texts.iter().filter_map(|text| NamePattern::new(text).ok()).collect()
+    texts
+        .iter()
+        .filter_map(|text| NamePattern::new(text).ok())
+        .collect()
 });
 
 #[cfg(test)]
@@ -506,13 +596,21 @@ mod tests {
             inputs: vec![ChannelRule::named("xb"), ChannelRule::named("COL")],
             outputs: vec![ChannelRule::named("Q"), ChannelRule::named("az")],
             on_axis: vec![("az".into(), "COL".into())],
-            units: vec![UnitRule { channel: "xb".into(), from: "in".into(), factor: 8.0 }],
+            units: vec![UnitRule {
+                channel: "xb".into(),
+                from: "in".into(),
+                factor: 8.0,
+            }],
             signs: Signs::from([("az".into(), -1.0)]),
             role_signs: BTreeMap::from([("identified".into(), Signs::from([("xb".into(), -1.0)]))]),
             ..Rules::default()
         };
-        rules.declarations_mut(FileScope::Physics).units.insert("xb".into(), "in".into());
-        rules.rows.entry("a.mat".into()).or_default().factors = Some([("xb".to_owned(), 8.0)].into());
+        rules
+            .declarations_mut(FileScope::Physics)
+            .units
+            .insert("xb".into(), "in".into());
+        rules.rows.entry("a.mat".into()).or_default().factors =
+            Some([("xb".to_owned(), 8.0)].into());
         rules.rename(ChannelSide::Input, 0, "LON".into());
         rules.rename(ChannelSide::Output, 1, "NZ".into());
         let pair = |output: &str, input: &str| (output.to_owned(), input.to_owned());
@@ -520,9 +618,26 @@ mod tests {
         assert_eq!(rules.inputs[0].aliases, ["xb"], "files call it as before");
         assert_eq!(rules.units[0].channel, "LON");
         assert_eq!(rules.signs, Signs::from([("NZ".into(), -1.0)]));
-        assert_eq!(rules.role_signs["identified"], Signs::from([("LON".into(), -1.0)]));
-        assert_eq!(rules.declarations[0].channels.units.keys().collect::<Vec<_>>(), ["LON"]);
-        assert_eq!(rules.rows["a.mat"].declarations().factors.keys().collect::<Vec<_>>(), ["LON"]);
+        assert_eq!(
+            rules.role_signs["identified"],
+            Signs::from([("LON".into(), -1.0)])
+        );
+        assert_eq!(
+            rules.declarations[0]
+                .channels
+                .units
+                .keys()
+                .collect::<Vec<_>>(),
+            ["LON"]
+        );
+        assert_eq!(
+            rules.rows["a.mat"]
+                .declarations()
+                .factors
+                .keys()
+                .collect::<Vec<_>>(),
+            ["LON"]
+        );
         let before = rules.clone();
         rules.rename(ChannelSide::Input, 0, "LON".into());
         rules.rename(ChannelSide::Input, 7, "none".into());
@@ -535,12 +650,28 @@ mod tests {
     fn a_name_says_condition_airspeed_altitude_and_perturbation() {
         assert_eq!(standard_patterns().len(), 17);
         let row = read("c03_045kt_high/roll+5");
-        assert_eq!((row.condition, row.airspeed_kt, row.altitude.as_deref()), (Some(3), Some(45.0), Some("high")));
-        assert_eq!(row.perturbation.into_iter().collect::<Vec<_>>(), [("roll_deg".to_owned(), 5.0)]);
-        let offsets: Vec<f64> = read("dV+5_dROC+150_dPHI-5").perturbation.into_values().collect();
-        assert_eq!(offsets, [5.0, 150.0, -5.0], "airspeed_kt, rate_of_climb_fpm, roll_deg");
+        assert_eq!(
+            (row.condition, row.airspeed_kt, row.altitude.as_deref()),
+            (Some(3), Some(45.0), Some("high"))
+        );
+        assert_eq!(
+            row.perturbation.into_iter().collect::<Vec<_>>(),
+            [("roll_deg".to_owned(), 5.0)]
+        );
+        let offsets: Vec<f64> = read("dV+5_dROC+150_dPHI-5")
+            .perturbation
+            .into_values()
+            .collect();
+        assert_eq!(
+            offsets,
+            [5.0, 150.0, -5.0],
+            "airspeed_kt, rate_of_climb_fpm, roll_deg"
+        );
         let row = read("fc-12/120kt_low_heavy/V-10kt roc+150fpm");
-        assert_eq!((row.condition, row.airspeed_kt, row.weight.as_deref()), (Some(12), Some(120.0), Some("heavy")));
+        assert_eq!(
+            (row.condition, row.airspeed_kt, row.weight.as_deref()),
+            (Some(12), Some(120.0), Some("heavy"))
+        );
         let offsets: Vec<f64> = row.perturbation.values().copied().collect();
         assert_eq!(offsets, [-10.0, 150.0], "airspeed_kt, rate_of_climb_fpm");
     }
@@ -549,8 +680,13 @@ mod tests {
     fn a_trim_of_which_a_part_is_not_understood_is_told() {
         let unread = |name: &str| unread_offsets(name, standard_patterns());
         let row = read("c3/dV+5_dROC+150_dPHI+5");
-        assert_eq!(row.perturbation.into_values().collect::<Vec<_>>(), [5.0, 150.0, 5.0]);
-        assert!(unread("dV+5_dROC+150_dPHI+5").is_empty() && unread("V-10kt roc+150fpm").is_empty());
+        assert_eq!(
+            row.perturbation.into_values().collect::<Vec<_>>(),
+            [5.0, 150.0, 5.0]
+        );
+        assert!(
+            unread("dV+5_dROC+150_dPHI+5").is_empty() && unread("V-10kt roc+150fpm").is_empty()
+        );
         assert_eq!(unread("dV+5_flap-10"), ["flap-10"]);
     }
 
@@ -562,10 +698,17 @@ mod tests {
             (Some("low"), Some("high"), Some(RowRole::Nominal))
         );
         let row = read("V090kt_2000ft_6600kg/CT-PBSID 2");
-        assert_eq!((row.airspeed_kt, row.altitude_ft, row.mass_kg), (Some(90.0), Some(2000.0), Some(6600.0)));
+        assert_eq!(
+            (row.airspeed_kt, row.altitude_ft, row.mass_kg),
+            (Some(90.0), Some(2000.0), Some(6600.0))
+        );
         assert_eq!(read("x/flight_1").role, Some(RowRole::Identified));
         let row = read("study#study.c3.identified(2)");
-        assert_eq!((row.condition, row.role), (Some(3), Some(RowRole::Identified)), "fields of a struct");
+        assert_eq!(
+            (row.condition, row.role),
+            (Some(3), Some(RowRole::Identified)),
+            "fields of a struct"
+        );
     }
 
     #[test]
@@ -573,15 +716,23 @@ mod tests {
         for name in ["V+10kt", "a/V-10kt", "c1/v_m10kt"] {
             let row = read(name);
             assert_eq!(row.airspeed_kt, None, "{name}");
-            assert_eq!(row.perturbation.get("airspeed_kt").map(|by| by.abs()), Some(10.0), "{name}");
+            assert_eq!(
+                row.perturbation.get("airspeed_kt").map(|by| by.abs()),
+                Some(10.0),
+                "{name}"
+            );
         }
     }
 
     #[test]
     fn what_a_pattern_of_the_engineer_finds_first_stands() {
         let mut row = Row::default();
-        NamePattern::new("case(?<condition>\\d)").unwrap().read("case7/c03", &mut row);
-        standard_patterns().iter().for_each(|pattern| pattern.read("case7/c03", &mut row));
+        NamePattern::new("case(?<condition>\\d)")
+            .unwrap()
+            .read("case7/c03", &mut row);
+        standard_patterns()
+            .iter()
+            .for_each(|pattern| pattern.read("case7/c03", &mut row));
         assert_eq!(row.condition, Some(7));
         let unknown = NamePattern::new("(?<speed>\\d+)").unwrap_err();
         assert!(unknown.to_string().contains("\"speed\""), "{unknown}");
@@ -593,7 +744,10 @@ mod tests {
             format!("(?<{}>a)", "g".repeat(900)),
         ] {
             let message = NamePattern::new(&wrong).unwrap_err().to_string();
-            assert!(message.len() < 500 && !message.contains(char::is_control), "{message:?}");
+            assert!(
+                message.len() < 500 && !message.contains(char::is_control),
+                "{message:?}"
+            );
         }
     }
 }

@@ -20,7 +20,11 @@ pub struct Channel {
 impl Channel {
     /// A channel with a name and a unit, and no description.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self { name: name.into(), unit: unit.into(), description: String::new() }
+        Self {
+            name: name.into(),
+            unit: unit.into(),
+            description: String::new(),
+        }
     }
 }
 
@@ -54,7 +58,11 @@ impl<T> PairTable<T> {
     /// The table whose entry of each response is `entry(pair)`.
     pub fn from_fn(outputs: usize, inputs: usize, mut entry: impl FnMut(Pair) -> T) -> Self {
         let entries = pairs(outputs, inputs).map(&mut entry).collect();
-        Self { outputs, inputs, entries }
+        Self {
+            outputs,
+            inputs,
+            entries,
+        }
     }
 
     /// Number of output channels, `p`.
@@ -70,7 +78,10 @@ impl<T> PairTable<T> {
     /// Where the entry of a response stands.
     fn place(&self, pair: Pair) -> usize {
         let (outputs, inputs) = (self.outputs, self.inputs);
-        assert!(pair.output < outputs && pair.input < inputs, "{pair:?} is outside a {outputs} x {inputs} table");
+        assert!(
+            pair.output < outputs && pair.input < inputs,
+            "{pair:?} is outside a {outputs} x {inputs} table"
+        );
         pair.output * inputs + pair.input
     }
 
@@ -107,14 +118,20 @@ fn pairs(outputs: usize, inputs: usize) -> impl Iterator<Item = Pair> {
 impl<T: Clone> PairTable<T> {
     /// The table with the same entry everywhere.
     pub fn filled(outputs: usize, inputs: usize, entry: T) -> Self {
-        Self { outputs, inputs, entries: vec![entry; outputs * inputs] }
+        Self {
+            outputs,
+            inputs,
+            entries: vec![entry; outputs * inputs],
+        }
     }
 }
 
 impl PairTable<bool> {
     /// The responses marked `true`, row by row.
     pub fn marked(&self) -> impl Iterator<Item = Pair> + '_ {
-        self.iter().filter(|(_, marked)| **marked).map(|(pair, _)| pair)
+        self.iter()
+            .filter(|(_, marked)| **marked)
+            .map(|(pair, _)| pair)
     }
 }
 
@@ -195,42 +212,75 @@ pub struct Location {
 impl Location {
     /// A place in words: "on-axis pair 3".
     pub fn entry(words: impl Into<String>) -> Self {
-        Self { entry: words.into(), ..Self::default() }
+        Self {
+            entry: words.into(),
+            ..Self::default()
+        }
     }
 
     /// A condition; `position` counts from 1.
     pub fn condition(position: usize, id: i64) -> Self {
-        Self { condition: Some(ConditionPlace { position, id: Some(id) }), ..Self::default() }
+        Self {
+            condition: Some(ConditionPlace {
+                position,
+                id: Some(id),
+            }),
+            ..Self::default()
+        }
     }
 
     /// A model of this condition; `position` counts from 1.
     pub fn model(&self, bundle: BundleKind, position: usize, name: &str) -> Self {
-        let model = Some(ModelPlace { bundle, position, name: Some(name.to_owned()) });
-        Self { condition: self.condition.clone(), model, entry: String::new() }
+        let model = Some(ModelPlace {
+            bundle,
+            position,
+            name: Some(name.to_owned()),
+        });
+        Self {
+            condition: self.condition.clone(),
+            model,
+            entry: String::new(),
+        }
     }
 
     /// An entry of this condition or model.
     pub fn at(&self, words: impl Into<String>) -> Self {
-        Self { entry: words.into(), ..self.clone() }
+        Self {
+            entry: words.into(),
+            ..self.clone()
+        }
     }
 
     /// The place followed by a colon and a space; nothing for the file as a whole.
     pub fn before(&self) -> String {
         let words = self.to_string();
-        if words.is_empty() { words } else { words + ": " }
+        if words.is_empty() {
+            words
+        } else {
+            words + ": "
+        }
     }
 }
 
 impl fmt::Display for Location {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let condition = self.condition.as_ref().map(|ConditionPlace { position, id }| match id {
-            Some(id) => format!("condition {id} (number {position} in the file)"),
-            None => format!("condition number {position} in the file"),
-        });
-        let model = self.model.as_ref().map(|ModelPlace { bundle, position, name }| match name {
-            Some(name) => format!("{bundle} model {} (number {position})", quoted(name)),
-            None => format!("{bundle} model number {position}"),
-        });
+        let condition = self
+            .condition
+            .as_ref()
+            .map(|ConditionPlace { position, id }| match id {
+                Some(id) => format!("condition {id} (number {position} in the file)"),
+                None => format!("condition number {position} in the file"),
+            });
+        let model = self.model.as_ref().map(
+            |ModelPlace {
+                 bundle,
+                 position,
+                 name,
+             }| match name {
+                Some(name) => format!("{bundle} model {} (number {position})", quoted(name)),
+                None => format!("{bundle} model number {position}"),
+            },
+        );
         let entry = Some(self.entry.clone()).filter(|entry| !entry.is_empty());
         let words: Vec<String> = [condition, model, entry].into_iter().flatten().collect();
         formatter.write_str(&words.join(", "))
@@ -269,7 +319,9 @@ impl fmt::Display for BundleKind {
 }
 
 /// A flight condition: the id that its dataset gives it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
+)]
 pub struct ConditionId(#[serde(deserialize_with = "whole")] pub i64);
 
 impl fmt::Display for ConditionId {
@@ -292,12 +344,20 @@ pub struct ModelId {
 impl ModelId {
     /// The model of this name in a bundle of a condition.
     pub fn new(condition: ConditionId, bundle: BundleKind, name: impl Into<String>) -> Self {
-        Self { condition, bundle, name: name.into() }
+        Self {
+            condition,
+            bundle,
+            name: name.into(),
+        }
     }
 }
 
 impl fmt::Display for ModelId {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "condition {}, {} model \"{}\"", self.condition, self.bundle, self.name)
+        write!(
+            formatter,
+            "condition {}, {} model \"{}\"",
+            self.condition, self.bundle, self.name
+        )
     }
 }

@@ -30,7 +30,15 @@ impl FlightState {
     /// A condition of which no more is said than its airspeed \[kt\], named by its id.
     pub fn at(id: ConditionId, airspeed_kt: f64) -> Self {
         let name = format!("condition {id}");
-        Self { id, name, airspeed_kt, altitude: None, altitude_ft: None, weight: None, mass_kg: None }
+        Self {
+            id,
+            name,
+            airspeed_kt,
+            altitude: None,
+            altitude_ft: None,
+            weight: None,
+            mass_kg: None,
+        }
     }
 }
 
@@ -65,7 +73,9 @@ pub enum ConditionError {
     #[error("the {0} bundle: expected at least one model, found none")]
     EmptyBundle(BundleKind),
     /// Two models of a bundle share a name.
-    #[error("the {bundle} bundle: the name \"{name}\" stands twice (models {first} and {second}); names must differ")]
+    #[error(
+        "the {bundle} bundle: the name \"{name}\" stands twice (models {first} and {second}); names must differ"
+    )]
     DuplicateName {
         /// Which.
         bundle: BundleKind,
@@ -85,7 +95,9 @@ pub enum ConditionError {
         names: String,
     },
     /// Two records share a name.
-    #[error("records: the name \"{name}\" stands twice (records {first} and {second}); names must differ")]
+    #[error(
+        "records: the name \"{name}\" stands twice (records {first} and {second}); names must differ"
+    )]
     DuplicateRecord {
         /// The name.
         name: String,
@@ -112,20 +124,35 @@ pub enum ConditionError {
 
 impl Condition {
     /// The condition with these models, in file order.
-    pub fn new(flight_state: FlightState, physics: Vec<Model>, identified: Vec<Model>) -> Result<Self, ConditionError> {
+    pub fn new(
+        flight_state: FlightState,
+        physics: Vec<Model>,
+        identified: Vec<Model>,
+    ) -> Result<Self, ConditionError> {
         check_flight_state(&flight_state)?;
         let bundles = [physics, identified];
         for (bundle, models) in BundleKind::BOTH.into_iter().zip(&bundles) {
             check_bundle(bundle, models)?;
         }
         let physics = &bundles[0];
-        let nominal: Vec<usize> = (0..physics.len()).filter(|&index| physics[index].is_nominal()).collect();
+        let nominal: Vec<usize> = (0..physics.len())
+            .filter(|&index| physics[index].is_nominal())
+            .collect();
         match nominal[..] {
             [nominal] => {
                 let by_name = bundles.each_ref().map(|models| by_name(models));
-                Ok(Self { flight_state, bundles, nominal, records: Vec::new(), by_name })
+                Ok(Self {
+                    flight_state,
+                    bundles,
+                    nominal,
+                    records: Vec::new(),
+                    by_name,
+                })
             }
-            _ => Err(ConditionError::Nominal { found: nominal.len(), names: names_of(physics, &nominal) }),
+            _ => Err(ConditionError::Nominal {
+                found: nominal.len(),
+                names: names_of(physics, &nominal),
+            }),
         }
     }
 
@@ -145,9 +172,16 @@ impl Condition {
     ///
     /// # Errors
     /// Those of [`Condition::new`] and [`Condition::with_records`].
-    pub fn with_identified(&self, models: Vec<Model>, records: Vec<ConditionRecord>) -> Result<Self, ConditionError> {
+    pub fn with_identified(
+        &self,
+        models: Vec<Model>,
+        records: Vec<ConditionRecord>,
+    ) -> Result<Self, ConditionError> {
         let mut kept = self.records.clone();
-        for whole in kept.iter_mut().filter(|whole| records.iter().any(|part| part.is_part_of(whole))) {
+        for whole in kept
+            .iter_mut()
+            .filter(|whole| records.iter().any(|part| part.is_part_of(whole)))
+        {
             whole.used = false;
         }
         for record in records {
@@ -189,7 +223,9 @@ impl Condition {
     pub fn position(&self, kind: BundleKind, name: &str) -> Option<usize> {
         let models = self.bundle(kind);
         let order = &self.by_name[kind as usize];
-        let place = order.binary_search_by(|index| models[*index].name.as_str().cmp(name)).ok()?;
+        let place = order
+            .binary_search_by(|index| models[*index].name.as_str().cmp(name))
+            .ok()?;
         Some(order[place])
     }
 
@@ -220,7 +256,11 @@ fn check_flight_state(state: &FlightState) -> Result<(), ConditionError> {
         let Some(value) = value else { continue };
         if !value.is_finite() || (not_negative && value < 0.0) {
             let bound = if not_negative { " not below zero" } else { "" };
-            return Err(ConditionError::FlightState { field, bound, value });
+            return Err(ConditionError::FlightState {
+                field,
+                bound,
+                value,
+            });
         }
     }
     Ok(())
@@ -232,9 +272,17 @@ fn check_bundle(bundle: BundleKind, models: &[Model]) -> Result<(), ConditionErr
         return Err(ConditionError::EmptyBundle(bundle));
     }
     for (second, model) in models.iter().enumerate() {
-        if let Some(first) = models[..second].iter().position(|earlier| earlier.name == model.name) {
+        if let Some(first) = models[..second]
+            .iter()
+            .position(|earlier| earlier.name == model.name)
+        {
             let name = model.name.clone();
-            return Err(ConditionError::DuplicateName { bundle, name, first: first + 1, second: second + 1 });
+            return Err(ConditionError::DuplicateName {
+                bundle,
+                name,
+                first: first + 1,
+                second: second + 1,
+            });
         }
     }
     Ok(())
@@ -242,19 +290,40 @@ fn check_bundle(bundle: BundleKind, models: &[Model]) -> Result<(), ConditionErr
 
 fn check_records(records: &[ConditionRecord]) -> Result<(), ConditionError> {
     for (second, record) in records.iter().enumerate() {
-        if let Some(first) = records[..second].iter().position(|earlier| earlier.name == record.name) {
+        if let Some(first) = records[..second]
+            .iter()
+            .position(|earlier| earlier.name == record.name)
+        {
             let name = record.name.clone();
-            return Err(ConditionError::DuplicateRecord { name, first: first + 1, second: second + 1 });
+            return Err(ConditionError::DuplicateRecord {
+                name,
+                first: first + 1,
+                second: second + 1,
+            });
         }
         let wrong = |field, expected, value| {
             let (name, position) = (record.name.clone(), second + 1);
-            Err(ConditionError::Record { name, position, field, expected, value })
+            Err(ConditionError::Record {
+                name,
+                position,
+                field,
+                expected,
+                value,
+            })
         };
-        if let Some(value) = record.sample_time_s.filter(|value| !value.is_finite() || *value <= 0.0) {
+        if let Some(value) = record
+            .sample_time_s
+            .filter(|value| !value.is_finite() || *value <= 0.0)
+        {
             return wrong("sample_time_s", "a positive number of seconds", value);
         }
         let parts = record.part_s.iter().map(|part| ("part_s", part));
-        for (field, &[first, last]) in record.used_s.iter().map(|piece| ("used_s", piece)).chain(parts) {
+        for (field, &[first, last]) in record
+            .used_s
+            .iter()
+            .map(|piece| ("used_s", piece))
+            .chain(parts)
+        {
             if !first.is_finite() {
                 return wrong(field, "finite times", first);
             }
@@ -272,9 +341,17 @@ fn names_of(models: &[Model], indices: &[usize]) -> String {
     }
     /// Enough to see what went wrong.
     const SHOWN: usize = 5;
-    let names: Vec<&str> = indices.iter().take(SHOWN).map(|&index| models[index].name.as_str()).collect();
+    let names: Vec<&str> = indices
+        .iter()
+        .take(SHOWN)
+        .map(|&index| models[index].name.as_str())
+        .collect();
     let rest = indices.len() - names.len();
-    let more = if rest == 0 { String::new() } else { format!(" and {rest} more") };
+    let more = if rest == 0 {
+        String::new()
+    } else {
+        format!(" and {rest} more")
+    };
     format!(" ({}{more})", names.join(", "))
 }
 
@@ -294,7 +371,12 @@ pub enum RecordKind {
 
 impl RecordKind {
     /// Every kind.
-    pub const ALL: [Self; 4] = [Self::Sweep, Self::Multisine, Self::ThreeTwoOneOne, Self::Other];
+    pub const ALL: [Self; 4] = [
+        Self::Sweep,
+        Self::Multisine,
+        Self::ThreeTwoOneOne,
+        Self::Other,
+    ];
 
     /// Its word in files and tables.
     pub fn word(self) -> &'static str {
@@ -351,12 +433,18 @@ pub struct ChannelRemedy {
 
 impl ChannelRemedy {
     /// The channel as it was logged.
-    pub const NONE: Self = Self { delay_s: 0.0, factor: 1.0 };
+    pub const NONE: Self = Self {
+        delay_s: 0.0,
+        factor: 1.0,
+    };
 
     /// One after the other.
     #[must_use]
     pub fn then(self, next: Self) -> Self {
-        Self { delay_s: self.delay_s + next.delay_s, factor: self.factor * next.factor }
+        Self {
+            delay_s: self.delay_s + next.delay_s,
+            factor: self.factor * next.factor,
+        }
     }
 }
 
@@ -370,7 +458,11 @@ impl ConditionRecord {
     /// Whether both are of the same record of the same file. The folders of their files may be said from different places.
     fn is_of_same_source(&self, other: &ConditionRecord) -> bool {
         let name = |record: &Self| record.file.rsplit('/').next().map(str::to_owned);
-        let differ = self.sha256.as_ref().zip(other.sha256.as_ref()).is_some_and(|(a, b)| a != b);
+        let differ = self
+            .sha256
+            .as_ref()
+            .zip(other.sha256.as_ref())
+            .is_some_and(|(a, b)| a != b);
         name(self) == name(other) && self.variable == other.variable && !differ
     }
 
@@ -386,6 +478,11 @@ impl ConditionRecord {
 
     /// A record that is used, of an unknown manoeuvre.
     pub fn new(name: impl Into<String>, file: impl Into<String>) -> Self {
-        Self { name: name.into(), file: file.into(), used: true, ..Self::default() }
+        Self {
+            name: name.into(),
+            file: file.into(),
+            used: true,
+            ..Self::default()
+        }
     }
 }

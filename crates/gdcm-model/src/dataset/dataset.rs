@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::{BundleKind, Channel, Condition, ConditionId, Dynamics, Model, ModelId, Pair, PairTable};
+use super::{
+    BundleKind, Channel, Condition, ConditionId, Dynamics, Model, ModelId, Pair, PairTable,
+};
 use crate::units::number;
 
 /// Channels, on-axis responses, the default band, and the flight conditions with their models (M1).
@@ -31,7 +33,9 @@ pub enum DatasetError {
         name: String,
     },
     /// Two conditions share an id.
-    #[error("conditions: the id {id} stands twice (conditions number {first} and {second}); ids must differ")]
+    #[error(
+        "conditions: the id {id} stands twice (conditions number {first} and {second}); ids must differ"
+    )]
     DuplicateId {
         /// The id.
         id: ConditionId,
@@ -93,7 +97,10 @@ impl Dataset {
             return Err(DatasetError::OnAxisShape { expected, found });
         }
         check_conditions(&conditions, expected)?;
-        Ok(Self { header, conditions: conditions.into_iter().map(Arc::new).collect() })
+        Ok(Self {
+            header,
+            conditions: conditions.into_iter().map(Arc::new).collect(),
+        })
     }
 
     /// What describes the dataset, besides its conditions.
@@ -133,8 +140,13 @@ impl Dataset {
 
     /// Airspeeds of the slowest and of the fastest condition \[kt\].
     pub fn airspeed_range_kt(&self) -> (f64, f64) {
-        let airspeeds = self.conditions.iter().map(|condition| condition.flight_state().airspeed_kt);
-        airspeeds.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), kt| (least.min(kt), most.max(kt)))
+        let airspeeds = self
+            .conditions
+            .iter()
+            .map(|condition| condition.flight_state().airspeed_kt);
+        airspeeds.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), kt| {
+            (least.min(kt), most.max(kt))
+        })
     }
 
     /// Conditions, in file order.
@@ -149,12 +161,18 @@ impl Dataset {
 
     /// The conditions without identified models, in file order: they have no reference to be compared with.
     pub fn without_reference(&self) -> Vec<ConditionId> {
-        self.conditions.iter().filter(|condition| !condition.has_reference()).map(|condition| condition.id()).collect()
+        self.conditions
+            .iter()
+            .filter(|condition| !condition.has_reference())
+            .map(|condition| condition.id())
+            .collect()
     }
 
     /// One condition.
     pub fn condition(&self, id: ConditionId) -> Option<&Arc<Condition>> {
-        self.conditions.iter().find(|condition| condition.id() == id)
+        self.conditions
+            .iter()
+            .find(|condition| condition.id() == id)
     }
 
     /// The same dataset with this condition in place of the one of its id.
@@ -165,15 +183,25 @@ impl Dataset {
         let shape = (self.header.outputs.len(), self.header.inputs.len());
         check_conditions(std::slice::from_ref(&condition), shape)?;
         let (id, condition) = (condition.id(), Arc::new(condition));
-        let replaced = |other: &Arc<Condition>| if other.id() == id { condition.clone() } else { other.clone() };
-        Ok(Self { conditions: self.conditions.iter().map(replaced).collect(), ..self.clone() })
+        let replaced = |other: &Arc<Condition>| {
+            if other.id() == id {
+                condition.clone()
+            } else {
+                other.clone()
+            }
+        };
+        Ok(Self {
+            conditions: self.conditions.iter().map(replaced).collect(),
+            ..self.clone()
+        })
     }
 
     /// Whether any identified model is measured with coherence.
     pub fn has_coherence(&self) -> bool {
-        let has =
-            |model: &Model| matches!(&model.dynamics, Dynamics::Measured(response) if response.coherence().is_some());
-        self.conditions.iter().any(|condition| condition.bundle(BundleKind::Identified).iter().any(has))
+        let has = |model: &Model| matches!(&model.dynamics, Dynamics::Measured(response) if response.coherence().is_some());
+        self.conditions
+            .iter()
+            .any(|condition| condition.bundle(BundleKind::Identified).iter().any(has))
     }
 
     /// One model.
@@ -183,24 +211,43 @@ impl Dataset {
 
     /// A response in words, input first: "LON → Q".
     pub fn pair_name(&self, pair: Pair) -> String {
-        format!("{} → {}", self.header.inputs[pair.input].name, self.header.outputs[pair.output].name)
+        format!(
+            "{} → {}",
+            self.header.inputs[pair.input].name, self.header.outputs[pair.output].name
+        )
     }
 
     /// Names of the inputs and of the outputs.
     pub fn names_of_channels(&self) -> (Vec<String>, Vec<String>) {
-        let names = |channels: &[Channel]| channels.iter().map(|channel| channel.name.clone()).collect();
+        let names = |channels: &[Channel]| {
+            channels
+                .iter()
+                .map(|channel| channel.name.clone())
+                .collect()
+        };
         (names(&self.header.inputs), names(&self.header.outputs))
     }
 
     /// The names of a response's channels, output first.
     pub fn channel_names(&self, pair: Pair) -> (String, String) {
-        (self.header.outputs[pair.output].name.clone(), self.header.inputs[pair.input].name.clone())
+        (
+            self.header.outputs[pair.output].name.clone(),
+            self.header.inputs[pair.input].name.clone(),
+        )
     }
 
     /// The response of the named output to the named input.
     pub fn find_pair(&self, output: &str, input: &str) -> Option<Pair> {
-        let output = self.header.outputs.iter().position(|channel| channel.name == output)?;
-        let input = self.header.inputs.iter().position(|channel| channel.name == input)?;
+        let output = self
+            .header
+            .outputs
+            .iter()
+            .position(|channel| channel.name == output)?;
+        let input = self
+            .header
+            .inputs
+            .iter()
+            .position(|channel| channel.name == input)?;
         Some(Pair { output, input })
     }
 
@@ -219,26 +266,50 @@ fn check_channels(list: &'static str, channels: &[Channel]) -> Result<(), Datase
         return Err(DatasetError::Empty(list));
     }
     for (index, channel) in channels.iter().enumerate() {
-        if channels[..index].iter().any(|earlier| earlier.name == channel.name) {
-            return Err(DatasetError::DuplicateChannel { list, name: channel.name.clone() });
+        if channels[..index]
+            .iter()
+            .any(|earlier| earlier.name == channel.name)
+        {
+            return Err(DatasetError::DuplicateChannel {
+                list,
+                name: channel.name.clone(),
+            });
         }
     }
     Ok(())
 }
 
-fn check_conditions(conditions: &[Condition], expected: (usize, usize)) -> Result<(), DatasetError> {
+fn check_conditions(
+    conditions: &[Condition],
+    expected: (usize, usize),
+) -> Result<(), DatasetError> {
     if conditions.is_empty() {
         return Err(DatasetError::Empty("conditions"));
     }
     for (second, condition) in conditions.iter().enumerate() {
         let id = condition.id();
-        if let Some(first) = conditions[..second].iter().position(|earlier| earlier.id() == id) {
-            return Err(DatasetError::DuplicateId { id, first: first + 1, second: second + 1 });
+        if let Some(first) = conditions[..second]
+            .iter()
+            .position(|earlier| earlier.id() == id)
+        {
+            return Err(DatasetError::DuplicateId {
+                id,
+                first: first + 1,
+                second: second + 1,
+            });
         }
-        for model in BundleKind::BOTH.into_iter().flat_map(|kind| condition.bundle(kind)) {
+        for model in BundleKind::BOTH
+            .into_iter()
+            .flat_map(|kind| condition.bundle(kind))
+        {
             let found = model.dynamics.shape();
             if found != expected {
-                return Err(DatasetError::ModelShape { condition: id, model: model.name.clone(), expected, found });
+                return Err(DatasetError::ModelShape {
+                    condition: id,
+                    model: model.name.clone(),
+                    expected,
+                    found,
+                });
             }
         }
     }
@@ -297,7 +368,11 @@ impl Band {
 
     /// A band that may reach beyond the limits of comparison, `0 < min < max`: the one drawn around such a band does.
     pub fn beyond(min: f64, max: f64) -> Result<Self, BandError> {
-        if 0.0 < min && min < max && max.is_finite() { Ok(Self { min, max }) } else { Err(BandError { min, max }) }
+        if 0.0 < min && min < max && max.is_finite() {
+            Ok(Self { min, max })
+        } else {
+            Err(BandError { min, max })
+        }
     }
 
     /// Lower end \[rad/s\].
@@ -318,7 +393,15 @@ mod tests {
     #[test]
     fn a_reversed_empty_or_non_positive_band_is_refused() {
         let nan = f64::NAN;
-        for (min, max) in [(12.0, 0.5), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (nan, 1.0), (1.0, nan), (1.0, 1.1e5)] {
+        for (min, max) in [
+            (12.0, 0.5),
+            (1.0, 1.0),
+            (0.0, 1.0),
+            (-1.0, 1.0),
+            (nan, 1.0),
+            (1.0, nan),
+            (1.0, 1.1e5),
+        ] {
             assert!(Band::new(min, max).is_err(), "{min} .. {max}");
         }
         assert!(Band::new(0.5, 12.0).is_ok() && Band::new(LEAST_OMEGA, GREATEST_OMEGA).is_ok());

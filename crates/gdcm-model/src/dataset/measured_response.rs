@@ -109,23 +109,45 @@ impl MeasuredResponse {
         check_values("re", re, omega.len(), "a finite number", f64::is_finite)?;
         check_values("im", im, omega.len(), "a finite number", f64::is_finite)?;
         if let Some(coherence) = &coherence {
-            check_values("coherence", coherence, omega.len(), "a number from 0 to 1", |value| {
-                (0.0..=1.0).contains(&value)
-            })?;
+            check_values(
+                "coherence",
+                coherence,
+                omega.len(),
+                "a number from 0 to 1",
+                |value| (0.0..=1.0).contains(&value),
+            )?;
         }
-        let values = re.map(|pair, re| re.iter().zip(&im[pair]).map(|(&re, &im)| Complex::new(re, im)).collect());
-        Ok(Self { omega, values, coherence, valid_bands: None, estimate: Estimate::default() })
+        let values = re.map(|pair, re| {
+            re.iter()
+                .zip(&im[pair])
+                .map(|(&re, &im)| Complex::new(re, im))
+                .collect()
+        });
+        Ok(Self {
+            omega,
+            values,
+            coherence,
+            valid_bands: None,
+            estimate: Estimate::default(),
+        })
     }
 
     /// The same response, each pair of which is trusted between two frequencies \[rad/s\] only (M4a).
     ///
     /// # Errors
     /// [`MeasuredResponseError::ValidBand`] where a band is not finite, negative, or ends before it begins.
-    pub fn with_valid_bands(mut self, bands: PairTable<[f64; 2]>) -> Result<Self, MeasuredResponseError> {
+    pub fn with_valid_bands(
+        mut self,
+        bands: PairTable<[f64; 2]>,
+    ) -> Result<Self, MeasuredResponseError> {
         let is_band = |[low, high]: [f64; 2]| (0.0..=high).contains(&low) && high.is_finite();
         if let Some((pair, &band)) = bands.iter().find(|(_, band)| !is_band(**band)) {
             let (output, input) = (pair.output + 1, pair.input + 1);
-            return Err(MeasuredResponseError::ValidBand { output, input, band });
+            return Err(MeasuredResponseError::ValidBand {
+                output,
+                input,
+                band,
+            });
         }
         self.valid_bands = Some(bands);
         Ok(self)
@@ -136,9 +158,10 @@ impl MeasuredResponse {
     /// # Errors
     /// [`MeasuredResponseError::Estimate`] where a number is outside the limits that the settings have too.
     pub fn with_estimate(mut self, estimate: Estimate) -> Result<Self, MeasuredResponseError> {
-        for (key, value, range) in
-            [("averages", estimate.averages, AVERAGES), ("window_s", estimate.window_s, WINDOW_S)]
-        {
+        for (key, value, range) in [
+            ("averages", estimate.averages, AVERAGES),
+            ("window_s", estimate.window_s, WINDOW_S),
+        ] {
             if let Some(value) = value
                 && !(range[0]..=range[1]).contains(&value)
             {
@@ -171,8 +194,14 @@ impl MeasuredResponse {
 
     /// Whether there are numbers of a response: some are not zero, and its valid band holds a frequency.
     pub fn is_measured(&self, pair: Pair) -> bool {
-        let has_band = self.valid_bands.as_ref().is_none_or(|bands| bands[pair][1] > 0.0);
-        has_band && self.values[pair].iter().any(|value| *value != Complex::new(0.0, 0.0))
+        let has_band = self
+            .valid_bands
+            .as_ref()
+            .is_none_or(|bands| bands[pair][1] > 0.0);
+        has_band
+            && self.values[pair]
+                .iter()
+                .any(|value| *value != Complex::new(0.0, 0.0))
     }
 
     /// How the response was estimated.
@@ -188,7 +217,10 @@ pub(super) fn check_frequencies(omega: &[f64]) -> Result<(), MeasuredResponseErr
     let mut before = 0.0;
     for (index, &value) in omega.iter().enumerate() {
         if !value.is_finite() || value <= before {
-            return Err(MeasuredResponseError::Frequency { entry: index + 1, value });
+            return Err(MeasuredResponseError::Frequency {
+                entry: index + 1,
+                value,
+            });
         }
         before = value;
     }
@@ -206,11 +238,24 @@ pub(super) fn check_values(
         let (output, input) = (pair.output + 1, pair.input + 1);
         if values.len() != length {
             let found = values.len();
-            return Err(MeasuredResponseError::Length { array, output, input, expected: length, found });
+            return Err(MeasuredResponseError::Length {
+                array,
+                output,
+                input,
+                expected: length,
+                found,
+            });
         }
         if let Some(index) = values.iter().position(|&value| !accepts(value)) {
             let (entry, value) = (index + 1, values[index]);
-            return Err(MeasuredResponseError::Value { array, output, input, entry, expected, value });
+            return Err(MeasuredResponseError::Value {
+                array,
+                output,
+                input,
+                entry,
+                expected,
+                value,
+            });
         }
     }
     Ok(())
@@ -226,30 +271,71 @@ mod tests {
 
     #[test]
     fn frequencies_that_do_not_rise_are_refused_with_their_place() {
-        let error = MeasuredResponse::new(vec![1.0, 1.0], &table(&[0.0; 2]), &table(&[0.0; 2]), None).unwrap_err();
-        assert_eq!(error, MeasuredResponseError::Frequency { entry: 2, value: 1.0 });
+        let error =
+            MeasuredResponse::new(vec![1.0, 1.0], &table(&[0.0; 2]), &table(&[0.0; 2]), None)
+                .unwrap_err();
+        assert_eq!(
+            error,
+            MeasuredResponseError::Frequency {
+                entry: 2,
+                value: 1.0
+            }
+        );
     }
 
     #[test]
     fn a_response_of_another_length_is_refused_with_its_place() {
-        let error = MeasuredResponse::new(vec![1.0, 2.0], &table(&[0.0; 2]), &table(&[0.0; 3]), None).unwrap_err();
-        assert_eq!(error.to_string(), "im, output 1, input 1: expected 2 values, found 3");
+        let error =
+            MeasuredResponse::new(vec![1.0, 2.0], &table(&[0.0; 2]), &table(&[0.0; 3]), None)
+                .unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "im, output 1, input 1: expected 2 values, found 3"
+        );
     }
 
     #[test]
     fn a_coherence_above_one_is_refused() {
-        let result =
-            MeasuredResponse::new(vec![1.0, 2.0], &table(&[0.0; 2]), &table(&[0.0; 2]), Some(table(&[0.5, 1.5])));
-        assert!(matches!(result, Err(MeasuredResponseError::Value { array: "coherence", entry: 2, .. })));
+        let result = MeasuredResponse::new(
+            vec![1.0, 2.0],
+            &table(&[0.0; 2]),
+            &table(&[0.0; 2]),
+            Some(table(&[0.5, 1.5])),
+        );
+        assert!(matches!(
+            result,
+            Err(MeasuredResponseError::Value {
+                array: "coherence",
+                entry: 2,
+                ..
+            })
+        ));
     }
 
     #[test]
     fn a_valid_band_that_ends_before_it_begins_is_refused() {
-        let response = MeasuredResponse::new(vec![1.0, 2.0], &table(&[0.0; 2]), &table(&[0.0; 2]), None).unwrap();
-        let with = |band| response.clone().with_valid_bands(PairTable::filled(1, 1, band));
-        assert_eq!(with([0.5, 1.5]).unwrap().valid_bands().unwrap()[Pair::new(0, 0)], [0.5, 1.5]);
-        for band in [[2.0, 1.0], [-1.0, 1.0], [1.0, f64::INFINITY], [f64::NAN, 1.0]] {
-            assert!(matches!(with(band), Err(MeasuredResponseError::ValidBand { .. })));
+        let response =
+            MeasuredResponse::new(vec![1.0, 2.0], &table(&[0.0; 2]), &table(&[0.0; 2]), None)
+                .unwrap();
+        let with = |band| {
+            response
+                .clone()
+                .with_valid_bands(PairTable::filled(1, 1, band))
+        };
+        assert_eq!(
+            with([0.5, 1.5]).unwrap().valid_bands().unwrap()[Pair::new(0, 0)],
+            [0.5, 1.5]
+        );
+        for band in [
+            [2.0, 1.0],
+            [-1.0, 1.0],
+            [1.0, f64::INFINITY],
+            [f64::NAN, 1.0],
+        ] {
+            assert!(matches!(
+                with(band),
+                Err(MeasuredResponseError::ValidBand { .. })
+            ));
         }
     }
 }

@@ -2,7 +2,10 @@
 
 mod channel;
 mod condition;
-#[expect(clippy::module_inception, reason = "the room is named by what it holds")]
+#[expect(
+    clippy::module_inception,
+    reason = "the room is named by what it holds"
+)]
 mod dataset;
 mod measured_response;
 mod model;

@@ -7,8 +7,8 @@ use nalgebra::DMatrix;
 use sha2::{Digest, Sha256};
 
 use super::{
-    ChannelSide, MeasuredResponse, MeasuredResponseError, PairTable, StateSpace, Timing, check_frequencies,
-    check_values,
+    ChannelSide, MeasuredResponse, MeasuredResponseError, PairTable, StateSpace, Timing,
+    check_frequencies, check_values,
 };
 
 /// How the response of a model is known.
@@ -25,7 +25,9 @@ impl Dynamics {
     pub fn shape(&self) -> (usize, usize) {
         match self {
             Dynamics::StateSpace(model) => (model.outputs(), model.inputs()),
-            Dynamics::Measured(response) => (response.values().outputs(), response.values().inputs()),
+            Dynamics::Measured(response) => {
+                (response.values().outputs(), response.values().inputs())
+            }
         }
     }
 }
@@ -76,7 +78,9 @@ pub struct Provenance {
 impl Provenance {
     /// The provenance in words: "models/roll+5.mat, variable sys, made 2026-03-01".
     pub fn words(&self) -> String {
-        let named = |name: &str, value: &Option<String>| value.as_ref().map(|value| format!("{name}{value}"));
+        let named = |name: &str, value: &Option<String>| {
+            value.as_ref().map(|value| format!("{name}{value}"))
+        };
         let parts = [
             self.file.clone(),
             named("variable ", &self.variable),
@@ -110,12 +114,22 @@ pub struct Model {
 impl Model {
     /// A model of this name.
     pub fn new(name: impl Into<String>, origin: Origin, dynamics: Dynamics) -> Self {
-        Self { name: name.into(), origin, dynamics, source: None, states: Arc::default(), bands: None }
+        Self {
+            name: name.into(),
+            origin,
+            dynamics,
+            source: None,
+            states: Arc::default(),
+            bands: None,
+        }
     }
 
     /// The name of a state, or its number (from 1) where it has none: "q", "state 5".
     pub fn state_name(&self, state: usize) -> String {
-        self.states.get(state).cloned().unwrap_or_else(|| format!("state {}", state + 1))
+        self.states
+            .get(state)
+            .cloned()
+            .unwrap_or_else(|| format!("state {}", state + 1))
     }
 
     /// Its matrices; none where its response is measured.
@@ -134,7 +148,9 @@ impl Model {
     /// Offsets of the trim from the condition's, where the file gives them.
     pub fn perturbation(&self) -> Option<&BTreeMap<String, f64>> {
         match &self.origin {
-            Origin::Nominal { perturbation } | Origin::Perturbed { perturbation } => perturbation.as_ref(),
+            Origin::Nominal { perturbation } | Origin::Perturbed { perturbation } => {
+                perturbation.as_ref()
+            }
             Origin::Identified { .. } => None,
         }
     }
@@ -152,7 +168,10 @@ impl Model {
         if let Some(bands) = &self.bands {
             bands.add_to(&mut hash);
         }
-        hash.finalize()[..8].iter().map(|byte| format!("{byte:02x}")).collect()
+        hash.finalize()[..8]
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
     }
 
     /// Number of states, or the order the identification reports; none for measured data without one.
@@ -187,11 +206,19 @@ impl ModelBands {
     ) -> Result<Self, MeasuredResponseError> {
         check_frequencies(&omega)?;
         for (array, table) in [("sd_db", &sd_db), ("sd_deg", &sd_deg)] {
-            check_values(array, table, omega.len(), "a number not below zero", |value| {
-                value.is_finite() && value >= 0.0
-            })?;
+            check_values(
+                array,
+                table,
+                omega.len(),
+                "a number not below zero",
+                |value| value.is_finite() && value >= 0.0,
+            )?;
         }
-        Ok(Self { omega, sd_db, sd_deg })
+        Ok(Self {
+            omega,
+            sd_db,
+            sd_deg,
+        })
     }
 
     /// Frequencies \[rad/s\], strictly rising.
@@ -214,7 +241,9 @@ impl ModelBands {
         hash.update(b"bands");
         add_numbers(hash, &self.omega);
         for table in [&self.sd_db, &self.sd_deg] {
-            table.iter().for_each(|(_, deviations)| add_numbers(hash, deviations));
+            table
+                .iter()
+                .for_each(|(_, deviations)| add_numbers(hash, deviations));
         }
     }
 }
@@ -244,7 +273,10 @@ impl ContentHash {
 /// Adds numbers after how many there are.
 pub(super) fn add_numbers(hash: &mut Sha256, numbers: &[f64]) {
     hash.update((numbers.len() as u64).to_le_bytes());
-    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    let bytes: Vec<u8> = numbers
+        .iter()
+        .flat_map(|number| number.to_le_bytes())
+        .collect();
     hash.update(&bytes);
 }
 
@@ -254,10 +286,16 @@ fn add_state_space(hash: &mut Sha256, model: &StateSpace) {
         hash.update((matrix.nrows() as u64).to_le_bytes());
         add_numbers(hash, matrix.as_slice());
     };
-    [model.a(), model.b(), model.c(), model.d()].into_iter().for_each(|matrix| add(hash, matrix));
+    [model.a(), model.b(), model.c(), model.d()]
+        .into_iter()
+        .for_each(|matrix| add(hash, matrix));
     // Nothing is added for a plain model: its hash stays what it was before there was any timing.
     if !model.timing().is_plain() {
-        let Timing { sample_time_s, input_delays_s, output_delays_s } = model.timing();
+        let Timing {
+            sample_time_s,
+            input_delays_s,
+            output_delays_s,
+        } = model.timing();
         hash.update(b"timing");
         add_numbers(hash, sample_time_s.as_slice());
         add_numbers(hash, input_delays_s.as_deref().unwrap_or_default());
@@ -270,10 +308,17 @@ fn add_measured(hash: &mut Sha256, response: &MeasuredResponse) {
     add_numbers(hash, response.omega());
     hash.update((response.values().outputs() as u64).to_le_bytes());
     for (_, values) in response.values().iter() {
-        let parts: Vec<f64> = values.iter().flat_map(|value| [value.re, value.im]).collect();
+        let parts: Vec<f64> = values
+            .iter()
+            .flat_map(|value| [value.re, value.im])
+            .collect();
         add_numbers(hash, &parts);
     }
-    for (_, coherence) in response.coherence().into_iter().flat_map(|table| table.iter()) {
+    for (_, coherence) in response
+        .coherence()
+        .into_iter()
+        .flat_map(|table| table.iter())
+    {
         add_numbers(hash, coherence);
     }
     if let Some(bands) = response.valid_bands() {
@@ -289,11 +334,24 @@ mod tests {
     #[test]
     fn a_negative_deviation_is_refused_with_its_place() {
         let table = |values: &[f64]| PairTable::filled(1, 1, values.to_vec());
-        let bands = |sd_deg: &[f64]| ModelBands::new(vec![1.0, 2.0], table(&[0.0, 0.5]), table(sd_deg));
-        assert_eq!(bands(&[1.0, 2.0]).unwrap().sd_deg()[crate::dataset::Pair::new(0, 0)], [1.0, 2.0]);
+        let bands =
+            |sd_deg: &[f64]| ModelBands::new(vec![1.0, 2.0], table(&[0.0, 0.5]), table(sd_deg));
+        assert_eq!(
+            bands(&[1.0, 2.0]).unwrap().sd_deg()[crate::dataset::Pair::new(0, 0)],
+            [1.0, 2.0]
+        );
         let words = bands(&[1.0, -2.0]).unwrap_err().to_string();
-        assert_eq!(words, "sd_deg, output 1, input 1, entry 2: expected a number not below zero, found -2");
-        assert!(matches!(bands(&[1.0]), Err(MeasuredResponseError::Length { array: "sd_deg", .. })));
+        assert_eq!(
+            words,
+            "sd_deg, output 1, input 1, entry 2: expected a number not below zero, found -2"
+        );
+        assert!(matches!(
+            bands(&[1.0]),
+            Err(MeasuredResponseError::Length {
+                array: "sd_deg",
+                ..
+            })
+        ));
         assert!(bands(&[1.0, f64::INFINITY]).is_err());
     }
 }
@@ -305,15 +363,32 @@ mod content_tests {
     fn model(a: f64, b: &[f64]) -> Dynamics {
         let b = DMatrix::from_row_slice(1, b.len(), b);
         let d = DMatrix::zeros(1, b.ncols());
-        Dynamics::StateSpace(StateSpace::new(DMatrix::from_element(1, 1, a), b, DMatrix::identity(1, 1), d).unwrap())
+        Dynamics::StateSpace(
+            StateSpace::new(
+                DMatrix::from_element(1, 1, a),
+                b,
+                DMatrix::identity(1, 1),
+                d,
+            )
+            .unwrap(),
+        )
     }
 
     #[test]
     fn models_of_the_same_numbers_have_one_hash_and_any_other_number_gives_another() {
-        assert_eq!(ContentHash::of(&model(-1.0, &[2.0])), ContentHash::of(&model(-1.0, &[2.0])));
+        assert_eq!(
+            ContentHash::of(&model(-1.0, &[2.0])),
+            ContentHash::of(&model(-1.0, &[2.0]))
+        );
         let next = f64::from_bits((-1.0_f64).to_bits() + 1);
-        assert_ne!(ContentHash::of(&model(-1.0, &[2.0])), ContentHash::of(&model(next, &[2.0])));
-        assert_ne!(ContentHash::of(&model(-1.0, &[2.0, 0.0])), ContentHash::of(&model(-1.0, &[2.0])));
+        assert_ne!(
+            ContentHash::of(&model(-1.0, &[2.0])),
+            ContentHash::of(&model(next, &[2.0]))
+        );
+        assert_ne!(
+            ContentHash::of(&model(-1.0, &[2.0, 0.0])),
+            ContentHash::of(&model(-1.0, &[2.0]))
+        );
     }
 
     #[test]
@@ -321,13 +396,23 @@ mod content_tests {
         let hash = |dynamics: &Dynamics| ContentHash::of(dynamics).bytes()[..4].to_vec();
         let plain = model(-1.0, &[2.0]);
         assert_eq!(hash(&plain), [198, 153, 200, 246]);
-        let Dynamics::StateSpace(matrices) = plain.clone() else { unreachable!() };
+        let Dynamics::StateSpace(matrices) = plain.clone() else {
+            unreachable!()
+        };
         let timed = |sample_time_s, delay_s| {
-            let timing = Timing { sample_time_s, input_delays_s: Some(vec![delay_s]), output_delays_s: None };
+            let timing = Timing {
+                sample_time_s,
+                input_delays_s: Some(vec![delay_s]),
+                output_delays_s: None,
+            };
             Dynamics::StateSpace(matrices.clone().timed(timing).unwrap())
         };
         assert_eq!(hash(&timed(None, 0.0)), hash(&plain));
-        let others = [timed(Some(0.01), 0.0), timed(None, 0.01), timed(Some(0.01), 0.01)];
+        let others = [
+            timed(Some(0.01), 0.0),
+            timed(None, 0.01),
+            timed(Some(0.01), 0.01),
+        ];
         let mut hashes: Vec<Vec<u8>> = others.iter().chain([&plain]).map(hash).collect();
         hashes.sort();
         hashes.dedup();

@@ -51,20 +51,40 @@ pub enum StateSpaceError {
 impl StateSpace {
     /// The model (A, B, C, D) of continuous time; the order is the rows of `A`, the inputs and outputs are the columns and rows
     /// of `D`.
-    pub fn new(a: DMatrix<f64>, b: DMatrix<f64>, c: DMatrix<f64>, d: DMatrix<f64>) -> Result<Self, StateSpaceError> {
+    pub fn new(
+        a: DMatrix<f64>,
+        b: DMatrix<f64>,
+        c: DMatrix<f64>,
+        d: DMatrix<f64>,
+    ) -> Result<Self, StateSpaceError> {
         let (n, p, m) = (a.nrows(), d.nrows(), d.ncols());
         for (matrix, of, expected) in [('A', &a, (n, n)), ('B', &b, (n, m)), ('C', &c, (p, n))] {
             if of.shape() != expected {
-                return Err(StateSpaceError::Shape { matrix, expected, found: of.shape() });
+                return Err(StateSpaceError::Shape {
+                    matrix,
+                    expected,
+                    found: of.shape(),
+                });
             }
         }
         for (matrix, of) in [('A', &a), ('B', &b), ('C', &c), ('D', &d)] {
             if let Some(at) = of.iter().position(|value| !value.is_finite()) {
                 let (row, column) = of.vector_to_matrix_index(at);
-                return Err(StateSpaceError::NotFinite { matrix, row: row + 1, column: column + 1, value: of[at] });
+                return Err(StateSpaceError::NotFinite {
+                    matrix,
+                    row: row + 1,
+                    column: column + 1,
+                    value: of[at],
+                });
             }
         }
-        Ok(Self { a, b, c, d, timing: Timing::default() })
+        Ok(Self {
+            a,
+            b,
+            c,
+            d,
+            timing: Timing::default(),
+        })
     }
 
     /// The same matrices with a sample time or delays (M2a).
@@ -167,13 +187,18 @@ impl Timing {
 
     /// Frequency \[rad/s\] from which a discrete-time model has no response, `pi / T`.
     pub fn nyquist_rad_s(&self) -> Option<f64> {
-        self.sample_time_s.map(|sample_time_s| std::f64::consts::PI / sample_time_s)
+        self.sample_time_s
+            .map(|sample_time_s| std::f64::consts::PI / sample_time_s)
     }
 
     /// `tau_o + tau_i` \[s\] of one response.
     pub fn delay_s(&self, output: usize, input: usize) -> f64 {
         let of = |delays: &Option<Vec<f64>>, channel: usize| {
-            delays.as_ref().and_then(|delays| delays.get(channel)).copied().unwrap_or_default()
+            delays
+                .as_ref()
+                .and_then(|delays| delays.get(channel))
+                .copied()
+                .unwrap_or_default()
         };
         of(&self.output_delays_s, output) + of(&self.input_delays_s, input)
     }
@@ -181,17 +206,30 @@ impl Timing {
     /// The timing in words: "discrete time, T = 0.01 s, input delays 0.02, 0 s"; nothing where it is plain.
     pub fn words(&self) -> String {
         let delays = |name: &str, delays: &Option<Vec<f64>>| {
-            let delays: Vec<String> = delays.as_ref()?.iter().map(|delay_s| number(*delay_s)).collect();
+            let delays: Vec<String> = delays
+                .as_ref()?
+                .iter()
+                .map(|delay_s| number(*delay_s))
+                .collect();
             Some(format!("{name} delays {} s", delays.join(", ")))
         };
-        let sampled = self.sample_time_s.map(|sample_time_s| format!("discrete time, T = {} s", number(sample_time_s)));
-        let parts = [sampled, delays("input", &self.input_delays_s), delays("output", &self.output_delays_s)];
+        let sampled = self
+            .sample_time_s
+            .map(|sample_time_s| format!("discrete time, T = {} s", number(sample_time_s)));
+        let parts = [
+            sampled,
+            delays("input", &self.input_delays_s),
+            delays("output", &self.output_delays_s),
+        ];
         parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 
     /// The timing of a model of `outputs` and `inputs`, delays that are all zero left out: such a model is the one without.
     pub(super) fn checked(self, outputs: usize, inputs: usize) -> Result<Self, TimingError> {
-        if let Some(value) = self.sample_time_s.filter(|value| !value.is_finite() || *value <= 0.0) {
+        if let Some(value) = self
+            .sample_time_s
+            .filter(|value| !value.is_finite() || *value <= 0.0)
+        {
             return Err(TimingError::SampleTime(value));
         }
         Ok(Self {
@@ -207,12 +245,25 @@ fn checked_delays(
     delays: Option<Vec<f64>>,
     expected: usize,
 ) -> Result<Option<Vec<f64>>, TimingError> {
-    let Some(delays) = delays else { return Ok(None) };
+    let Some(delays) = delays else {
+        return Ok(None);
+    };
     if delays.len() != expected {
-        return Err(TimingError::Count { list, expected, found: delays.len() });
+        return Err(TimingError::Count {
+            list,
+            expected,
+            found: delays.len(),
+        });
     }
-    if let Some(index) = delays.iter().position(|delay| !(0.0..=GREATEST_CHANNEL_DELAY_S).contains(delay)) {
-        return Err(TimingError::Delay { list, entry: index + 1, value: delays[index] });
+    if let Some(index) = delays
+        .iter()
+        .position(|delay| !(0.0..=GREATEST_CHANNEL_DELAY_S).contains(delay))
+    {
+        return Err(TimingError::Delay {
+            list,
+            entry: index + 1,
+            value: delays[index],
+        });
     }
     Ok(Some(delays).filter(|delays| delays.iter().any(|delay| *delay != 0.0)))
 }
@@ -223,9 +274,13 @@ mod tests {
 
     #[test]
     fn a_matrix_of_the_wrong_shape_is_named() {
-        let error =
-            StateSpace::new(DMatrix::zeros(2, 2), DMatrix::zeros(3, 1), DMatrix::zeros(1, 2), DMatrix::zeros(1, 1))
-                .unwrap_err();
+        let error = StateSpace::new(
+            DMatrix::zeros(2, 2),
+            DMatrix::zeros(3, 1),
+            DMatrix::zeros(1, 2),
+            DMatrix::zeros(1, 1),
+        )
+        .unwrap_err();
         assert_eq!(error.to_string(), "matrix B: expected 2 x 1, found 3 x 1");
     }
 
@@ -233,8 +288,17 @@ mod tests {
     fn a_number_that_is_not_finite_is_named_with_its_row_and_column() {
         let mut c = DMatrix::zeros(3, 2);
         c[(2, 1)] = f64::NAN;
-        let error = StateSpace::new(DMatrix::zeros(2, 2), DMatrix::zeros(2, 1), c, DMatrix::zeros(3, 1)).unwrap_err();
-        assert_eq!(error.to_string(), "matrix C, row 3, column 2: expected a finite number, found NaN");
+        let error = StateSpace::new(
+            DMatrix::zeros(2, 2),
+            DMatrix::zeros(2, 1),
+            c,
+            DMatrix::zeros(3, 1),
+        )
+        .unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "matrix C, row 3, column 2: expected a finite number, found NaN"
+        );
     }
 
     #[test]
@@ -255,7 +319,11 @@ mod timing_tests {
     use super::*;
 
     fn timing(sample_time_s: Option<f64>, input_delays_s: &[f64]) -> Timing {
-        Timing { sample_time_s, input_delays_s: Some(input_delays_s.to_vec()), output_delays_s: None }
+        Timing {
+            sample_time_s,
+            input_delays_s: Some(input_delays_s.to_vec()),
+            output_delays_s: None,
+        }
     }
 
     #[test]
@@ -270,7 +338,10 @@ mod timing_tests {
         let error = |timing: Timing| timing.checked(1, 2).unwrap_err().to_string();
         assert!(error(timing(Some(0.0), &[])).contains("none at all for continuous time"));
         assert!(error(timing(Some(f64::INFINITY), &[0.0; 2])).contains("sample_time_s"));
-        assert_eq!(error(timing(None, &[0.0])), "input_delays_s: expected 2 delays, one for each channel, found 1");
+        assert_eq!(
+            error(timing(None, &[0.0])),
+            "input_delays_s: expected 2 delays, one for each channel, found 1"
+        );
         assert_eq!(
             error(timing(None, &[0.0, -0.1])),
             "input_delays_s, entry 2: expected a delay from 0 to 60 s, found -0.1"
@@ -280,7 +351,10 @@ mod timing_tests {
 
     #[test]
     fn a_timing_is_told_in_words() {
-        assert_eq!(timing(Some(0.01), &[0.02, 0.0]).words(), "discrete time, T = 0.01 s, input delays 0.02, 0 s");
+        assert_eq!(
+            timing(Some(0.01), &[0.02, 0.0]).words(),
+            "discrete time, T = 0.01 s, input delays 0.02, 0 s"
+        );
         assert_eq!(Timing::default().words(), "");
     }
 }

@@ -6,9 +6,10 @@ use nalgebra::{Complex, DMatrix};
 
 use super::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
 use super::{
-    Band, BandError, BundleKind, Channel, Condition, ConditionError, ConditionRecord, Dataset, DatasetError,
-    DatasetHeader, Dynamics, Estimate, FlightState, Location, MeasuredResponse, MeasuredResponseError, Model,
-    ModelBands, Origin, Pair, PairTable, Provenance, StateSpace, StateSpaceError, Timing,
+    Band, BandError, BundleKind, Channel, Condition, ConditionError, ConditionRecord, Dataset,
+    DatasetError, DatasetHeader, Dynamics, Estimate, FlightState, Location, MeasuredResponse,
+    MeasuredResponseError, Model, ModelBands, Origin, Pair, PairTable, Provenance, StateSpace,
+    StateSpaceError, Timing,
 };
 
 /// A table of numbers for each response and frequency, `[output][input][frequency]`, the last index running fastest.
@@ -72,9 +73,18 @@ pub struct ModelDraft {
 impl ResponseArray {
     /// A table with as many numbers for every response.
     fn of<V: AsRef<[f64]>>(table: &PairTable<V>) -> Self {
-        let length = table.iter().next().map_or(0, |(_, values)| values.as_ref().len());
-        let values = table.iter().flat_map(|(_, values)| values.as_ref().iter().copied()).collect();
-        Self { shape: [table.outputs(), table.inputs(), length], values }
+        let length = table
+            .iter()
+            .next()
+            .map_or(0, |(_, values)| values.as_ref().len());
+        let values = table
+            .iter()
+            .flat_map(|(_, values)| values.as_ref().iter().copied())
+            .collect();
+        Self {
+            shape: [table.outputs(), table.inputs(), length],
+            values,
+        }
     }
 }
 
@@ -83,12 +93,17 @@ impl ModelDraft {
     pub fn of(model: &Model) -> Self {
         let (matrices, timing, response) = match &model.dynamics {
             Dynamics::StateSpace(system) => {
-                let matrices = [system.a(), system.b(), system.c(), system.d()].map(|matrix| Some(matrix.clone()));
+                let matrices = [system.a(), system.b(), system.c(), system.d()]
+                    .map(|matrix| Some(matrix.clone()));
                 (matrices, system.timing().clone(), None)
             }
             Dynamics::Measured(response) => {
                 let part = |of: fn(&Complex<f64>) -> f64| {
-                    ResponseArray::of(&response.values().map(|_, values| values.iter().map(of).collect::<Vec<f64>>()))
+                    ResponseArray::of(
+                        &response
+                            .values()
+                            .map(|_, values| values.iter().map(of).collect::<Vec<f64>>()),
+                    )
                 };
                 let draft = ResponseDraft {
                     omega: response.omega().to_vec(),
@@ -202,7 +217,9 @@ pub enum DraftFault {
     )]
     TimedResponse,
     /// A physics model is given by frequency data.
-    #[error("a physics model needs matrices A, B, C, D; a measured response is for identified models")]
+    #[error(
+        "a physics model needs matrices A, B, C, D; a measured response is for identified models"
+    )]
     MeasuredPhysics,
     /// The ends of the band are wrong.
     #[error(transparent)]
@@ -232,7 +249,10 @@ pub struct DraftError {
 
 impl DraftError {
     pub(super) fn new(place: Location, fault: impl Into<DraftFault>) -> Self {
-        Self { place: Box::new(place), fault: Box::new(fault.into()) }
+        Self {
+            place: Box::new(place),
+            fault: Box::new(fault.into()),
+        }
     }
 }
 
@@ -254,7 +274,8 @@ impl DatasetDraft {
     /// # Errors
     /// The first fault.
     pub fn checked(self) -> Result<(Dataset, Vec<Warning>), DraftError> {
-        self.checked_whole().map_err(|mut faults| faults.swap_remove(0))
+        self.checked_whole()
+            .map_err(|mut faults| faults.swap_remove(0))
     }
 
     /// Every fault with its place, in the order of the draft; none where it is a dataset. What one fault hides, such as names that
@@ -266,14 +287,32 @@ impl DatasetDraft {
     /// Every check there is, in this one place; its faults are one at least.
     fn checked_whole(self) -> Result<(Dataset, Vec<Warning>), Vec<DraftError>> {
         let whole = |error: DraftFault| DraftError::new(Location::default(), error);
-        let mut checker = Checker { outputs: self.outputs.len(), inputs: self.inputs.len(), ..Checker::default() };
+        let mut checker = Checker {
+            outputs: self.outputs.len(),
+            inputs: self.inputs.len(),
+            ..Checker::default()
+        };
         checker.count(Location::entry("inputs"), self.inputs.len(), MOST_CHANNELS);
-        checker.count(Location::entry("outputs"), self.outputs.len(), MOST_CHANNELS);
-        checker.count(Location::entry("conditions"), self.conditions.len(), MOST_CONDITIONS);
-        let band = checker.keep(Band::new(self.band.0, self.band.1).map_err(|error| whole(error.into())));
+        checker.count(
+            Location::entry("outputs"),
+            self.outputs.len(),
+            MOST_CHANNELS,
+        );
+        checker.count(
+            Location::entry("conditions"),
+            self.conditions.len(),
+            MOST_CONDITIONS,
+        );
+        let band =
+            checker.keep(Band::new(self.band.0, self.band.1).map_err(|error| whole(error.into())));
         let on_axis = checker.keep(on_axis_table(&self.outputs, &self.inputs, &self.on_axis));
         let mut conditions = Vec::with_capacity(self.conditions.len());
-        for (index, draft) in self.conditions.into_iter().enumerate().take(MOST_CONDITIONS) {
+        for (index, draft) in self
+            .conditions
+            .into_iter()
+            .enumerate()
+            .take(MOST_CONDITIONS)
+        {
             if checker.faults.len() >= MOST_FAULTS {
                 break;
             }
@@ -282,10 +321,24 @@ impl DatasetDraft {
         let (Some(band), Some(on_axis), true) = (band, on_axis, checker.faults.is_empty()) else {
             return Err(checker.faults);
         };
-        let Self { name, description, inputs, outputs, .. } = self;
-        let header = DatasetHeader { name, description, inputs, outputs, on_axis, band };
+        let Self {
+            name,
+            description,
+            inputs,
+            outputs,
+            ..
+        } = self;
+        let header = DatasetHeader {
+            name,
+            description,
+            inputs,
+            outputs,
+            on_axis,
+            band,
+        };
         // These errors name the list or the condition themselves.
-        let dataset = Dataset::new(header, conditions).map_err(|error| vec![whole(error.into())])?;
+        let dataset =
+            Dataset::new(header, conditions).map_err(|error| vec![whole(error.into())])?;
         Ok((dataset, checker.warnings))
     }
 }
@@ -297,14 +350,30 @@ fn on_axis_table(
 ) -> Result<PairTable<bool>, DraftError> {
     let mut table = PairTable::filled(outputs.len(), inputs.len(), false);
     for (index, (output, input)) in pairs.iter().enumerate() {
-        let wrong = |fault| DraftError::new(Location::entry(format!("on-axis pair {}", index + 1)), fault);
+        let wrong = |fault| {
+            DraftError::new(
+                Location::entry(format!("on-axis pair {}", index + 1)),
+                fault,
+            )
+        };
         let find = |channels: &[Channel], kind: &'static str, name: &String| {
             let found = channels.iter().position(|channel| channel.name == *name);
-            found.ok_or_else(|| wrong(DraftFault::UnknownChannel { kind, name: name.clone() }))
+            found.ok_or_else(|| {
+                wrong(DraftFault::UnknownChannel {
+                    kind,
+                    name: name.clone(),
+                })
+            })
         };
-        let pair = Pair::new(find(outputs, "output", output)?, find(inputs, "input", input)?);
+        let pair = Pair::new(
+            find(outputs, "output", output)?,
+            find(inputs, "input", input)?,
+        );
         if std::mem::replace(&mut table[pair], true) {
-            return Err(wrong(DraftFault::DuplicatePair { output: output.clone(), input: input.clone() }));
+            return Err(wrong(DraftFault::DuplicatePair {
+                output: output.clone(),
+                input: input.clone(),
+            }));
         }
     }
     Ok(table)
@@ -317,7 +386,11 @@ impl Dataset {
     /// What keeps the draft from being a model of the dataset, with its place in the model.
     pub fn identified_model(&self, draft: ModelDraft) -> Result<(Model, Vec<Warning>), DraftError> {
         let (outputs, inputs) = (self.outputs().len(), self.inputs().len());
-        let mut checker = Checker { outputs, inputs, ..Checker::default() };
+        let mut checker = Checker {
+            outputs,
+            inputs,
+            ..Checker::default()
+        };
         let model = checker.model(Location::default(), BundleKind::Identified, draft)?;
         Ok((model, checker.warnings))
     }
@@ -341,7 +414,8 @@ impl Checker {
     /// Whether a list is no longer than it may be.
     fn count(&mut self, place: Location, found: usize, most: usize) -> bool {
         if found > most {
-            self.faults.push(DraftError::new(place, DraftFault::TooMany { most, found }));
+            self.faults
+                .push(DraftError::new(place, DraftFault::TooMany { most, found }));
         }
         found <= most
     }
@@ -361,8 +435,17 @@ impl Checker {
         self.keep(condition.map_err(|error| DraftError::new(place, error)))
     }
 
-    fn bundle(&mut self, condition: &Location, kind: BundleKind, drafts: Vec<ModelDraft>) -> Vec<Model> {
-        if !self.count(condition.at(format!("{kind} models")), drafts.len(), MOST_MODELS) {
+    fn bundle(
+        &mut self,
+        condition: &Location,
+        kind: BundleKind,
+        drafts: Vec<ModelDraft>,
+    ) -> Vec<Model> {
+        if !self.count(
+            condition.at(format!("{kind} models")),
+            drafts.len(),
+            MOST_MODELS,
+        ) {
             return Vec::new();
         }
         let mut models = Vec::with_capacity(drafts.len());
@@ -374,7 +457,12 @@ impl Checker {
     }
 
     /// The model of a draft at a place.
-    fn model(&mut self, place: Location, kind: BundleKind, draft: ModelDraft) -> Result<Model, DraftError> {
+    fn model(
+        &mut self,
+        place: Location,
+        kind: BundleKind,
+        draft: ModelDraft,
+    ) -> Result<Model, DraftError> {
         let has_matrices = draft.matrices.iter().any(Option::is_some);
         let dynamics = match (has_matrices, draft.response) {
             (_, Some(_)) if kind == BundleKind::Physics => {
@@ -385,22 +473,52 @@ impl Checker {
             (false, Some(_)) if !draft.timing.is_plain() => {
                 return Err(DraftError::new(place, DraftFault::TimedResponse));
             }
-            (true, None) => Dynamics::StateSpace(self.state_space(&place, draft.matrices, draft.timing)?),
+            (true, None) => {
+                Dynamics::StateSpace(self.state_space(&place, draft.matrices, draft.timing)?)
+            }
             (false, Some(response)) => Dynamics::Measured(self.measured(&place, response)?),
         };
-        if let (Dynamics::StateSpace(model), Origin::Identified { order: Some(order), .. }) = (&dynamics, &draft.origin)
+        if let (
+            Dynamics::StateSpace(model),
+            Origin::Identified {
+                order: Some(order), ..
+            },
+        ) = (&dynamics, &draft.origin)
             && model.order() != *order
         {
-            let words = format!("order says {order}, the matrices have {} states", model.order());
-            self.warnings.push(Warning { place: place.clone(), words });
+            let words = format!(
+                "order says {order}, the matrices have {} states",
+                model.order()
+            );
+            self.warnings.push(Warning {
+                place: place.clone(),
+                words,
+            });
         }
-        let bands = draft.bands.as_ref().map(|bands| self.bands(&place, bands)).transpose()?.map(Arc::new);
+        let bands = draft
+            .bands
+            .as_ref()
+            .map(|bands| self.bands(&place, bands))
+            .transpose()?
+            .map(Arc::new);
         let states = self.state_names(place, &dynamics, draft.states);
-        Ok(Model { name: draft.name, origin: draft.origin, dynamics, source: draft.source, states, bands })
+        Ok(Model {
+            name: draft.name,
+            origin: draft.origin,
+            dynamics,
+            source: draft.source,
+            states,
+            bands,
+        })
     }
 
     /// The names of a model's states, if there is one for each.
-    fn state_names(&mut self, place: Location, dynamics: &Dynamics, names: Vec<String>) -> Arc<[String]> {
+    fn state_names(
+        &mut self,
+        place: Location,
+        dynamics: &Dynamics,
+        names: Vec<String>,
+    ) -> Arc<[String]> {
         let order = match dynamics {
             Dynamics::StateSpace(model) => model.order(),
             Dynamics::Measured(_) => 0,
@@ -409,7 +527,10 @@ impl Checker {
             return names.into();
         }
         if order > 0 && !names.is_empty() {
-            let words = format!("{} names for {order} states: they are left out", names.len());
+            let words = format!(
+                "{} names for {order} states: they are left out",
+                names.len()
+            );
             self.warnings.push(Warning { place, words });
         }
         Arc::default()
@@ -427,7 +548,12 @@ impl Checker {
         let given = |matrix: char, of: Option<DMatrix<f64>>| {
             of.ok_or_else(|| DraftError::new(place.clone(), DraftFault::MissingMatrix(matrix)))
         };
-        let (a, b, c, d) = (given('A', a)?, given('B', b)?, given('C', c)?, given('D', d)?);
+        let (a, b, c, d) = (
+            given('A', a)?,
+            given('B', b)?,
+            given('C', c)?,
+            given('D', d)?,
+        );
         // Checked before the others are checked against it, so that they are not blamed for it.
         if d.shape() != (p, m) {
             let fault = DraftFault::Shape {
@@ -438,27 +564,54 @@ impl Checker {
         }
         // A list without entries does not say how long its lists would be.
         let stateless = a.nrows() == 0;
-        let b = if stateless && b.nrows() == 0 { DMatrix::zeros(0, m) } else { b };
-        let c = if stateless && c.is_empty() { DMatrix::zeros(p, 0) } else { c };
+        let b = if stateless && b.nrows() == 0 {
+            DMatrix::zeros(0, m)
+        } else {
+            b
+        };
+        let c = if stateless && c.is_empty() {
+            DMatrix::zeros(p, 0)
+        } else {
+            c
+        };
         let model = StateSpace::new(a, b, c, d).and_then(|model| model.timed(timing));
         model.map_err(|error| DraftError::new(place.clone(), error))
     }
 
-    fn measured(&self, place: &Location, draft: ResponseDraft) -> Result<MeasuredResponse, DraftError> {
+    fn measured(
+        &self,
+        place: &Location,
+        draft: ResponseDraft,
+    ) -> Result<MeasuredResponse, DraftError> {
         let count = draft.omega.len();
         let table = |array: &ResponseArray, part: &str| {
-            self.table(place, array, &format!("measured response, {part}"), (count, "frequencies"))
+            self.table(
+                place,
+                array,
+                &format!("measured response, {part}"),
+                (count, "frequencies"),
+            )
         };
         let (re, im) = (table(&draft.re, "re")?, table(&draft.im, "im")?);
-        let coherence = draft.coherence.as_ref().map(|array| table(array, "coherence")).transpose()?;
+        let coherence = draft
+            .coherence
+            .as_ref()
+            .map(|array| table(array, "coherence"))
+            .transpose()?;
         let wrong = |error| DraftError::new(place.at("measured response"), error);
         let response = MeasuredResponse::new(draft.omega, &re, &im, coherence).map_err(wrong)?;
         let response = match &draft.valid_bands {
             None => response,
             Some(array) => {
-                let bands =
-                    self.table(place, array, "measured response, valid_band_rad_s", (2, "first and last frequency"))?;
-                response.with_valid_bands(bands.map(|_, band| [band[0], band[1]])).map_err(wrong)?
+                let bands = self.table(
+                    place,
+                    array,
+                    "measured response, valid_band_rad_s",
+                    (2, "first and last frequency"),
+                )?;
+                response
+                    .with_valid_bands(bands.map(|_, band| [band[0], band[1]]))
+                    .map_err(wrong)?
             }
         };
         response.with_estimate(draft.estimate).map_err(wrong)
@@ -466,8 +619,18 @@ impl Checker {
 
     fn bands(&self, place: &Location, draft: &BandsDraft) -> Result<ModelBands, DraftError> {
         let count = draft.omega.len();
-        let table = |array, part: &str| self.table(place, array, &format!("bands, {part}"), (count, "frequencies"));
-        let (sd_db, sd_deg) = (table(&draft.sd_db, "sd_db")?, table(&draft.sd_deg, "sd_deg")?);
+        let table = |array, part: &str| {
+            self.table(
+                place,
+                array,
+                &format!("bands, {part}"),
+                (count, "frequencies"),
+            )
+        };
+        let (sd_db, sd_deg) = (
+            table(&draft.sd_db, "sd_db")?,
+            table(&draft.sd_deg, "sd_deg")?,
+        );
         let bands = ModelBands::new(draft.omega.clone(), sd_db, sd_deg);
         bands.map_err(|error| DraftError::new(place.at("bands"), error))
     }
@@ -488,10 +651,14 @@ impl Checker {
             };
             return Err(DraftError::new(place.at(part), fault));
         }
-        Ok(PairTable::from_fn(self.outputs, self.inputs, |Pair { output, input }| {
-            let start = (output * self.inputs + input) * count;
-            array.values[start..start + count].to_vec()
-        }))
+        Ok(PairTable::from_fn(
+            self.outputs,
+            self.inputs,
+            |Pair { output, input }| {
+                let start = (output * self.inputs + input) * count;
+                array.values[start..start + count].to_vec()
+            },
+        ))
     }
 }
 

@@ -65,26 +65,42 @@ pub fn centred_unwrap(angles: &mut [f64], scratch: &mut Vec<f64>) {
 ///
 /// Frequencies at which either curve is not finite do not count; zero where none is left.
 pub fn nearest_turn_offset(phase: &[f64], reference: &[f64]) -> f64 {
-    let differences = phase.iter().zip(reference).map(|(phase, reference)| reference - phase);
-    let mut differences: Vec<f64> = differences.filter(|difference| difference.is_finite()).collect();
-    if differences.is_empty() { 0.0 } else { TAU * (median(&mut differences) / TAU).round() }
+    let differences = phase
+        .iter()
+        .zip(reference)
+        .map(|(phase, reference)| reference - phase);
+    let mut differences: Vec<f64> = differences
+        .filter(|difference| difference.is_finite())
+        .collect();
+    if differences.is_empty() {
+        0.0
+    } else {
+        TAU * (median(&mut differences) / TAU).round()
+    }
 }
 
 /// The measured response at each `omega` \[rad/s\]: linear on log omega in dB and in unwrapped phase.
 ///
 /// Not a number outside the measured frequencies: nothing is extrapolated. Zero beside a measured zero, which has no dB.
 pub fn interpolate(response: &MeasuredResponse, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
-    let places: Vec<Option<Place>> = omega.iter().map(|&omega| Place::of(response.omega(), omega)).collect();
+    let places: Vec<Option<Place>> = omega
+        .iter()
+        .map(|&omega| Place::of(response.omega(), omega))
+        .collect();
     response.values().map(|_, values| {
-        let magnitude_db: Vec<f64> = values.iter().map(|value| ratio_to_db(value.norm())).collect();
+        let magnitude_db: Vec<f64> = values
+            .iter()
+            .map(|value| ratio_to_db(value.norm()))
+            .collect();
         let mut phase: Vec<f64> = values.iter().map(|value| value.arg()).collect();
         unwrap(&mut phase);
         places
             .iter()
             .map(|place| match place {
-                Some(place) => {
-                    Complex::from_polar(db_to_ratio(place.between_magnitudes_db(&magnitude_db)), place.between(&phase))
-                }
+                Some(place) => Complex::from_polar(
+                    db_to_ratio(place.between_magnitudes_db(&magnitude_db)),
+                    place.between(&phase),
+                ),
                 None => Complex::new(f64::NAN, f64::NAN),
             })
             .collect()
@@ -95,16 +111,31 @@ pub fn interpolate(response: &MeasuredResponse, omega: &[f64]) -> PairTable<Vec<
 ///
 /// Not a number outside the measured frequencies.
 pub fn coherence_at(response: &MeasuredResponse, omega: &[f64]) -> Option<PairTable<Vec<f64>>> {
-    let places: Vec<Option<Place>> = omega.iter().map(|&omega| Place::of(response.omega(), omega)).collect();
-    let at = |place: &Option<Place>, values: &[f64]| place.as_ref().map_or(f64::NAN, |place| place.between(values));
-    Some(response.coherence()?.map(|_, values| places.iter().map(|place| at(place, values)).collect()))
+    let places: Vec<Option<Place>> = omega
+        .iter()
+        .map(|&omega| Place::of(response.omega(), omega))
+        .collect();
+    let at = |place: &Option<Place>, values: &[f64]| {
+        place
+            .as_ref()
+            .map_or(f64::NAN, |place| place.between(values))
+    };
+    Some(
+        response
+            .coherence()?
+            .map(|_, values| places.iter().map(|place| at(place, values)).collect()),
+    )
 }
 
 /// The values of one curve, at rising `known` frequencies, at each `omega` \[rad/s\]: linear on log omega, beyond the ends that of
 /// the end; there is at least one.
 pub fn interpolate_values(known: &[f64], values: &[f64], omega: &[f64]) -> Vec<f64> {
-    let (Some(&low), Some(&high)) = (known.first(), known.last()) else { return vec![f64::NAN; omega.len()] };
-    let at = |omega: &f64| Place::of(known, omega.clamp(low, high)).map_or(f64::NAN, |place| place.between(values));
+    let (Some(&low), Some(&high)) = (known.first(), known.last()) else {
+        return vec![f64::NAN; omega.len()];
+    };
+    let at = |omega: &f64| {
+        Place::of(known, omega.clamp(low, high)).map_or(f64::NAN, |place| place.between(values))
+    };
     omega.iter().map(at).collect()
 }
 
@@ -126,12 +157,18 @@ impl Place {
         if after == measured.len() {
             None
         } else if measured[after] == omega {
-            Some(Self { after, fraction: 1.0 })
+            Some(Self {
+                after,
+                fraction: 1.0,
+            })
         } else if after == 0 {
             None
         } else {
             let (low, high) = (measured[after - 1], measured[after]);
-            Some(Self { after, fraction: (omega / low).ln() / (high / low).ln() })
+            Some(Self {
+                after,
+                fraction: (omega / low).ln() / (high / low).ln(),
+            })
         }
     }
 
@@ -147,8 +184,13 @@ impl Place {
     fn between_magnitudes_db(&self, values: &[f64]) -> f64 {
         let value = self.between(values);
         // The difference of two infinities, or one weighed against a number.
-        let is_beside_zero = self.fraction < 1.0 && values[self.after - 1..=self.after].contains(&f64::NEG_INFINITY);
-        if is_beside_zero { f64::NEG_INFINITY } else { value }
+        let is_beside_zero =
+            self.fraction < 1.0 && values[self.after - 1..=self.after].contains(&f64::NEG_INFINITY);
+        if is_beside_zero {
+            f64::NEG_INFINITY
+        } else {
+            value
+        }
     }
 }
 
@@ -175,7 +217,11 @@ pub fn median(values: &mut [f64]) -> f64 {
 pub fn weighted_median(values: &[f64], weights: &[f64]) -> f64 {
     /// Share of the whole weight by which sums of thousands of weights may be rounded.
     const ROUNDING: f64 = 1e-12;
-    let mut sorted: Vec<(f64, f64)> = values.iter().copied().zip(weights.iter().copied()).collect();
+    let mut sorted: Vec<(f64, f64)> = values
+        .iter()
+        .copied()
+        .zip(weights.iter().copied())
+        .collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
     let whole: f64 = sorted.iter().map(|(_, weight)| weight).sum();
     let mut cumulated = 0.0;
@@ -183,7 +229,9 @@ pub fn weighted_median(values: &[f64], weights: &[f64]) -> f64 {
         cumulated += weight;
         let beyond_half = cumulated - 0.5 * whole;
         if beyond_half.abs() <= ROUNDING * whole {
-            return sorted.get(index + 1).map_or(value, |(next, _)| 0.5 * (value + next));
+            return sorted
+                .get(index + 1)
+                .map_or(value, |(next, _)| 0.5 * (value + next));
         }
         if beyond_half > 0.0 {
             return value;
@@ -211,7 +259,11 @@ pub fn quantile(values: &mut [f64], q: f64) -> f64 {
     let lower = *lower;
     let upper = above.iter().copied().fold(f64::INFINITY, f64::min);
     let fraction = position - below as f64;
-    if fraction == 0.0 { lower } else { lower + fraction * (upper - lower) }
+    if fraction == 0.0 {
+        lower
+    } else {
+        lower + fraction * (upper - lower)
+    }
 }
 
 #[cfg(test)]
@@ -221,9 +273,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_between_two_frequencies_are_on_a_line_over_their_logarithm_and_stay_beyond_the_ends() {
+    fn values_between_two_frequencies_are_on_a_line_over_their_logarithm_and_stay_beyond_the_ends()
+    {
         let found = interpolate_values(&[1.0, 4.0], &[10.0, 20.0], &[0.5, 1.0, 2.0, 4.0, 9.0]);
-        let miss = found.iter().zip([10.0, 10.0, 15.0, 20.0, 20.0]).map(|(found, expected)| (found - expected).abs());
+        let miss = found
+            .iter()
+            .zip([10.0, 10.0, 15.0, 20.0, 20.0])
+            .map(|(found, expected)| (found - expected).abs());
         assert!(miss.fold(0.0, f64::max) < 1e-14, "{found:?}");
         assert!(interpolate_values(&[], &[], &[1.0])[0].is_nan());
     }
@@ -278,7 +334,13 @@ mod tests {
 
     fn measured() -> MeasuredResponse {
         let table = |values: &[f64]| PairTable::filled(1, 1, values.to_vec());
-        MeasuredResponse::new(vec![1.0, 100.0], &table(&[1.0, 0.0]), &table(&[0.0, -0.01]), None).unwrap()
+        MeasuredResponse::new(
+            vec![1.0, 100.0],
+            &table(&[1.0, 0.0]),
+            &table(&[0.0, -0.01]),
+            None,
+        )
+        .unwrap()
     }
 
     fn at(omega: f64) -> Complex<f64> {
@@ -289,7 +351,10 @@ mod tests {
     fn between_two_points_decibels_and_phase_are_linear_in_log_frequency() {
         // From 0 dB, 0 deg at 1 rad/s to -40 dB, -90 deg at 100 rad/s: -20 dB, -45 deg at 10 rad/s.
         let value = at(10.0);
-        assert!((value.norm() - 0.1).abs() < 1e-15 && (value.arg() + std::f64::consts::FRAC_PI_4).abs() < 1e-14);
+        assert!(
+            (value.norm() - 0.1).abs() < 1e-15
+                && (value.arg() + std::f64::consts::FRAC_PI_4).abs() < 1e-14
+        );
     }
 
     #[test]
@@ -301,11 +366,20 @@ mod tests {
     #[test]
     fn coherence_is_linear_in_log_frequency() {
         let table = |values: &[f64]| PairTable::filled(1, 1, values.to_vec());
-        let with =
-            MeasuredResponse::new(vec![1.0, 100.0], &table(&[1.0; 2]), &table(&[0.0; 2]), Some(table(&[0.4, 1.0])));
+        let with = MeasuredResponse::new(
+            vec![1.0, 100.0],
+            &table(&[1.0; 2]),
+            &table(&[0.0; 2]),
+            Some(table(&[0.4, 1.0])),
+        );
         let found = coherence_at(&with.unwrap(), &[0.5, 1.0, 10.0, 100.0]).unwrap();
         let found = found.iter().next().unwrap().1;
-        assert!(found[0].is_nan() && found[1] == 0.4 && (found[2] - 0.7).abs() < 1e-15 && found[3] == 1.0);
+        assert!(
+            found[0].is_nan()
+                && found[1] == 0.4
+                && (found[2] - 0.7).abs() < 1e-15
+                && found[3] == 1.0
+        );
         assert_eq!(coherence_at(&measured(), &[10.0]), None);
     }
 
@@ -315,7 +389,10 @@ mod tests {
         let (re, im) = (table([2.0, 0.0, 0.0, 2.0]), table([0.0; 4]));
         let response = MeasuredResponse::new(vec![1.0, 2.0, 3.0, 4.0], &re, &im, None).unwrap();
         let found = interpolate(&response, &[1.0, 1.5, 2.0, 2.5, 3.5, 4.0]);
-        let magnitudes: Vec<f64> = found[crate::dataset::Pair::new(0, 0)].iter().map(|value| value.norm()).collect();
+        let magnitudes: Vec<f64> = found[crate::dataset::Pair::new(0, 0)]
+            .iter()
+            .map(|value| value.norm())
+            .collect();
         assert_eq!(magnitudes[1..5], [0.0; 4]);
         assert!((magnitudes[0] - 2.0).abs() < 1e-15 && (magnitudes[5] - 2.0).abs() < 1e-15);
     }

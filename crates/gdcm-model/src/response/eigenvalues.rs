@@ -71,7 +71,9 @@ pub enum ModesError {
     #[error("{0}")]
     TooLarge(LargeEntry),
     /// The iteration for the eigenvalues did not come to an end.
-    #[error("the eigenvalues of its matrix A were not found: the iteration does not come to an end")]
+    #[error(
+        "the eigenvalues of its matrix A were not found: the iteration does not come to an end"
+    )]
     NotConverged,
 }
 
@@ -112,7 +114,11 @@ pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
         return Err(ModesError::TooLarge(entry));
     }
     let plane = SPlane::of(model);
-    let (mut a, mut b, mut c) = (plane.matrix(model.a()), model.b().clone(), model.c().clone());
+    let (mut a, mut b, mut c) = (
+        plane.matrix(model.a()),
+        model.b().clone(),
+        model.c().clone(),
+    );
     balance(&mut a, &mut b, &mut c);
     let form = SchurForm::of(&a).ok_or(ModesError::NotConverged)?;
     let rounding = 4.0 * f64::EPSILON * a.nrows() as f64 * a.norm();
@@ -120,21 +126,38 @@ pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
     let mut last_pair: Option<Mode> = None;
     for (index, eigenvalue) in form.eigenvalues().into_iter().enumerate() {
         if let Some(upper) = last_pair.take() {
-            let residues = upper.residues.map(|residues| residues.iter().map(Complex::conj).collect());
+            let residues = upper
+                .residues
+                .map(|residues| residues.iter().map(Complex::conj).collect());
             modes.push(Mode::new(upper.pole.conj(), upper.participation, residues));
             continue;
         }
-        let eigenvalue = if eigenvalue.norm() <= rounding { Complex::from(0.0) } else { eigenvalue };
-        let Some(pole) = plane.value(eigenvalue) else { continue };
+        let eigenvalue = if eigenvalue.norm() <= rounding {
+            Complex::from(0.0)
+        } else {
+            eigenvalue
+        };
+        let Some(pole) = plane.value(eigenvalue) else {
+            continue;
+        };
         let vectors = Eigenvectors::of(&form, index);
-        let residues = vectors.as_ref().ok().map(|vectors| vectors.residues(&b, &c));
-        let mode = Mode::new(pole, vectors.map(|vectors| vectors.participation()), residues);
+        let residues = vectors
+            .as_ref()
+            .ok()
+            .map(|vectors| vectors.residues(&b, &c));
+        let mode = Mode::new(
+            pole,
+            vectors.map(|vectors| vectors.participation()),
+            residues,
+        );
         last_pair = (eigenvalue.im > 0.0).then(|| mode.clone());
         modes.push(mode);
     }
     modes.sort_by(|a, b| {
         let by_size = a.frequency_rad_s.total_cmp(&b.frequency_rad_s);
-        by_size.then(a.pole.re.total_cmp(&b.pole.re)).then(b.pole.im.total_cmp(&a.pole.im))
+        by_size
+            .then(a.pole.re.total_cmp(&b.pole.re))
+            .then(b.pole.im.total_cmp(&a.pole.im))
     });
     Ok(modes)
 }
@@ -165,14 +188,26 @@ impl Eigenvectors {
         if !movement.le(&NEAR_DEFECTIVE) {
             return Err(NearDefective { movement });
         }
-        Ok(Self { right: &form.q * x, left: form.q.conjugate() * y })
+        Ok(Self {
+            right: &form.q * x,
+            left: form.q.conjugate() * y,
+        })
     }
 
     /// The shares of the states, the greatest first.
     fn participation(&self) -> Vec<(usize, f64)> {
-        let products: Vec<f64> = self.right.iter().zip(&self.left).map(|(v, w)| (v * w).norm()).collect();
+        let products: Vec<f64> = self
+            .right
+            .iter()
+            .zip(&self.left)
+            .map(|(v, w)| (v * w).norm())
+            .collect();
         let sum: f64 = products.iter().sum();
-        let mut shares: Vec<(usize, f64)> = products.into_iter().map(|product| product / sum).enumerate().collect();
+        let mut shares: Vec<(usize, f64)> = products
+            .into_iter()
+            .map(|product| product / sum)
+            .enumerate()
+            .collect();
         shares.sort_by(|a, b| b.1.total_cmp(&a.1));
         shares
     }
@@ -180,7 +215,10 @@ impl Eigenvectors {
     /// `(C v)_i |w B|` of each output.
     fn residues(&self, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Vec<Complex<f64>> {
         let of_inputs = (b.map(Complex::from).transpose() * &self.left).norm();
-        (c.map(Complex::from) * &self.right).iter().map(|output| output * of_inputs).collect()
+        (c.map(Complex::from) * &self.right)
+            .iter()
+            .map(|output| output * of_inputs)
+            .collect()
     }
 }
 
@@ -196,7 +234,9 @@ const GONE: f64 = 1e-6;
 impl SPlane {
     /// The s-plane of a model.
     pub(super) fn of(model: &StateSpace) -> Self {
-        Self { sample_time_s: model.timing().sample_time_s }
+        Self {
+            sample_time_s: model.timing().sample_time_s,
+        }
     }
 
     /// The matrix whose eigenvalues are taken: `A`, or `A - I` of discrete time, of which fast sampling leaves more digits.
@@ -210,7 +250,9 @@ impl SPlane {
     /// The `s` of an eigenvalue of [`SPlane::matrix`]: `lambda`, or `ln(1 + lambda) / T`, of which the principal value is
     /// taken; none where `z = 1 + lambda` is zero.
     pub(super) fn value(self, eigenvalue: Complex<f64>) -> Option<Complex<f64>> {
-        let Some(sample_time_s) = self.sample_time_s else { return Some(eigenvalue) };
+        let Some(sample_time_s) = self.sample_time_s else {
+            return Some(eigenvalue);
+        };
         let Complex { re, im } = eigenvalue;
         if (eigenvalue + 1.0).norm() < GONE {
             return None;
@@ -234,10 +276,24 @@ impl SchurForm {
     /// The form of a square matrix; `None` where the iteration does not come to an end.
     pub fn of(a: &DMatrix<f64>) -> Option<Self> {
         let (q, t) = quasi_triangular(a)?;
-        let blocks: Vec<usize> = (1..a.nrows()).filter(|&row| t[(row, row - 1)] != 0.0).map(|row| row - 1).collect();
-        let mut form = Self { q: q.map(Complex::from), t: t.map(Complex::from), least: 0.0 };
+        let blocks: Vec<usize> = (1..a.nrows())
+            .filter(|&row| t[(row, row - 1)] != 0.0)
+            .map(|row| row - 1)
+            .collect();
+        let mut form = Self {
+            q: q.map(Complex::from),
+            t: t.map(Complex::from),
+            least: 0.0,
+        };
         for first in blocks {
-            form.split(first, t.fixed_view::<2, 2>(first, first).into_owned().transpose().data.0);
+            form.split(
+                first,
+                t.fixed_view::<2, 2>(first, first)
+                    .into_owned()
+                    .transpose()
+                    .data
+                    .0,
+            );
         }
         form.least = (f64::EPSILON * form.t.camax()).max(f64::MIN_POSITIVE);
         Some(form)
@@ -257,7 +313,9 @@ impl SchurForm {
     fn right(&self, k: usize) -> DVector<Complex<f64>> {
         let mut x = self.unit(k);
         for row in (0..k).rev() {
-            let sum: Complex<f64> = (row + 1..=k).map(|column| self.t[(row, column)] * x[column]).sum();
+            let sum: Complex<f64> = (row + 1..=k)
+                .map(|column| self.t[(row, column)] * x[column])
+                .sum();
             x[row] = -sum / self.apart(row, k);
         }
         x
@@ -274,13 +332,19 @@ impl SchurForm {
     }
 
     fn unit(&self, k: usize) -> DVector<Complex<f64>> {
-        DVector::from_fn(self.t.nrows(), |row, _| Complex::from(if row == k { 1.0 } else { 0.0 }))
+        DVector::from_fn(self.t.nrows(), |row, _| {
+            Complex::from(if row == k { 1.0 } else { 0.0 })
+        })
     }
 
     /// The difference of two eigenvalues; rounding at least, for equal ones.
     fn apart(&self, of: usize, from: usize) -> Complex<f64> {
         let difference = self.t[(of, of)] - self.t[(from, from)];
-        if difference.norm() < self.least { Complex::from(self.least) } else { difference }
+        if difference.norm() < self.least {
+            Complex::from(self.least)
+        } else {
+            difference
+        }
     }
 
     /// Makes the block of the rows `first` and `first + 1` triangular.
@@ -306,7 +370,12 @@ impl SchurForm {
     }
 }
 
-fn rotate_columns(matrix: &mut DMatrix<Complex<f64>>, row: usize, first: usize, (c, s): (Complex<f64>, f64)) {
+fn rotate_columns(
+    matrix: &mut DMatrix<Complex<f64>>,
+    row: usize,
+    first: usize,
+    (c, s): (Complex<f64>, f64),
+) {
     let (left, right) = (matrix[(row, first)], matrix[(row, first + 1)]);
     matrix[(row, first)] = left * c + right * s;
     matrix[(row, first + 1)] = right * c.conj() - left * s;
@@ -318,7 +387,10 @@ fn eigenvalues_of_block([[p, q], [r, s]]: [[f64; 2]; 2]) -> [Complex<f64>; 2] {
     let squared = half * half + q * r;
     if squared < 0.0 {
         let imaginary = (-squared).sqrt();
-        return [Complex::new(mean, imaginary), Complex::new(mean, -imaginary)];
+        return [
+            Complex::new(mean, imaginary),
+            Complex::new(mean, -imaginary),
+        ];
     }
     // Nothing cancels in the greater distance from s, and the product of the two distances is -q r.
     let far = half + squared.sqrt().copysign(half);
@@ -338,7 +410,8 @@ fn quasi_triangular(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
         if attempt == 0 {
             return Schur::try_new(a.clone(), f64::EPSILON, most).map(Schur::unpack);
         }
-        let axis = DVector::from_fn(size, |row, _| (1.0 + f64::from(attempt) * row as f64).sin()).normalize();
+        let axis = DVector::from_fn(size, |row, _| (1.0 + f64::from(attempt) * row as f64).sin())
+            .normalize();
         let reflection = DMatrix::identity(size, size) - 2.0 * &axis * axis.transpose();
         let (q, t) = Schur::try_new(&reflection * a * &reflection, f64::EPSILON, most)?.unpack();
         Some((reflection * q, t))
@@ -392,7 +465,8 @@ impl SchurForm {
 /// converge.
 #[must_use]
 pub fn poles(model: &StateSpace) -> Option<Vec<Complex<f64>>> {
-    let schur = nalgebra::Schur::try_new(model.a().clone(), f64::EPSILON, 100 * (model.order() + 1))?;
+    let schur =
+        nalgebra::Schur::try_new(model.a().clone(), f64::EPSILON, 100 * (model.order() + 1))?;
     Some(schur.complex_eigenvalues().iter().copied().collect())
 }
 
@@ -405,15 +479,27 @@ mod tests {
 
     fn model(a: DMatrix<f64>) -> StateSpace {
         let n = a.nrows();
-        StateSpace::new(a, DMatrix::zeros(n, 1), DMatrix::zeros(1, n), DMatrix::zeros(1, 1)).unwrap()
+        StateSpace::new(
+            a,
+            DMatrix::zeros(n, 1),
+            DMatrix::zeros(1, n),
+            DMatrix::zeros(1, 1),
+        )
+        .unwrap()
     }
 
     #[test]
     fn an_oscillator_and_a_lag_have_the_modes_of_the_textbook() {
         // x'' + 2 0.3 4 x' + 16 x = 0 beside x' = -0.5 x.
-        let found = modes(&model(dmatrix![0.0, 1.0, 0.0; -16.0, -2.4, 0.0; 0.0, 0.0, -0.5])).unwrap();
+        let found = modes(&model(
+            dmatrix![0.0, 1.0, 0.0; -16.0, -2.4, 0.0; 0.0, 0.0, -0.5],
+        ))
+        .unwrap();
         assert_eq!(found.len(), 3);
-        assert_eq!((found[0].pole, found[0].time_constant_s), (Complex::new(-0.5, 0.0), Some(2.0)));
+        assert_eq!(
+            (found[0].pole, found[0].time_constant_s),
+            (Complex::new(-0.5, 0.0), Some(2.0))
+        );
         assert_eq!(found[0].participation.as_ref().unwrap()[0], (2, 1.0));
         assert!((found[1].frequency_rad_s - 4.0).abs() < 1e-14 && found[1].pole.im > 0.0);
         assert!((found[1].damping_ratio.unwrap() - 0.3).abs() < 1e-15);
@@ -427,18 +513,34 @@ mod tests {
     #[test]
     fn an_integrator_is_a_pole_at_zero_without_a_time_constant() {
         let found = modes(&model(dmatrix![0.0, 1.0; 0.0, -2.0])).unwrap();
-        assert_eq!((found[0].pole, found[0].time_constant_s), (Complex::from(0.0), None));
-        assert_eq!((found[0].damping_ratio, found[0].frequency_rad_s), (None, 0.0));
+        assert_eq!(
+            (found[0].pole, found[0].time_constant_s),
+            (Complex::from(0.0), None)
+        );
+        assert_eq!(
+            (found[0].damping_ratio, found[0].frequency_rad_s),
+            (None, 0.0)
+        );
     }
 
     #[test]
     fn two_poles_that_share_an_eigenvector_have_no_participation_and_say_why() {
-        let found = modes(&model(dmatrix![-1.0, 1.0, 0.0; 0.0, -1.0, 0.0; 0.0, 0.0, -3.0])).unwrap();
+        let found = modes(&model(
+            dmatrix![-1.0, 1.0, 0.0; 0.0, -1.0, 0.0; 0.0, 0.0, -3.0],
+        ))
+        .unwrap();
         let why = found[0].participation.as_ref().unwrap_err();
         assert!(why.movement > 1e15 && why.to_string().contains("cannot be told from another"));
-        assert_eq!(found[2].participation.as_ref().unwrap()[0], (2, 1.0), "the third is by itself");
+        assert_eq!(
+            found[2].participation.as_ref().unwrap()[0],
+            (2, 1.0),
+            "the third is by itself"
+        );
         let apart = modes(&model(dmatrix![-1.0, 1.0; 0.0, -1.001])).unwrap();
-        assert!(apart[0].participation.is_ok(), "poles a thousandth apart can be told from one another");
+        assert!(
+            apart[0].participation.is_ok(),
+            "poles a thousandth apart can be told from one another"
+        );
     }
 
     #[test]
@@ -449,22 +551,37 @@ mod tests {
         let mut a = DMatrix::zeros(5, 5);
         a.view_mut((0, 0), (3, 3)).copy_from(&sampled);
         a[(3, 3)] = -1.0;
-        let timing = Timing { sample_time_s: Some(0.02), ..Timing::default() };
+        let timing = Timing {
+            sample_time_s: Some(0.02),
+            ..Timing::default()
+        };
         let found = modes(&model(a).timed(timing).unwrap()).unwrap();
         let imaginary = (16.0_f64 - 1.44).sqrt();
         let alternating = 50.0 * std::f64::consts::PI;
-        let expected = [(-0.5, 0.0), (-1.2, imaginary), (-1.2, -imaginary), (0.0, alternating)];
+        let expected = [
+            (-0.5, 0.0),
+            (-1.2, imaginary),
+            (-1.2, -imaginary),
+            (0.0, alternating),
+        ];
         assert_eq!(found.len(), 4, "the pole at z = 0 has no s");
         for (mode, (re, im)) in found.iter().zip(expected) {
             // The exponential rounds by some 1e-16, in s by 50 times as much.
-            assert!((mode.pole - Complex::new(re, im)).norm() < 1e-12, "{} {re} {im}", mode.pole);
+            assert!(
+                (mode.pole - Complex::new(re, im)).norm() < 1e-12,
+                "{} {re} {im}",
+                mode.pole
+            );
         }
     }
 
     #[test]
     fn a_model_without_states_has_no_modes_and_one_too_large_is_refused() {
         assert_eq!(modes(&model(DMatrix::zeros(0, 0))), Ok(Vec::new()));
-        assert!(matches!(modes(&model(dmatrix![1e80])), Err(ModesError::TooLarge(_))));
+        assert!(matches!(
+            modes(&model(dmatrix![1e80])),
+            Err(ModesError::TooLarge(_))
+        ));
     }
 
     proptest! {
@@ -495,11 +612,17 @@ mod tests {
 mod s_plane_tests {
     use super::*;
 
-    const SAMPLED: SPlane = SPlane { sample_time_s: Some(0.01) };
+    const SAMPLED: SPlane = SPlane {
+        sample_time_s: Some(0.01),
+    };
 
     #[test]
     fn a_sampled_pole_is_found_where_it_was() {
-        for s in [Complex::new(-0.001, 0.0), Complex::new(-2.0, 30.0), Complex::new(0.3, -1e-3)] {
+        for s in [
+            Complex::new(-0.001, 0.0),
+            Complex::new(-2.0, 30.0),
+            Complex::new(0.3, -1e-3),
+        ] {
             let found = SAMPLED.value((s * 0.01).exp() - 1.0).unwrap();
             // The difference from 1 rounds by 1e-16 of 1, a hundred times as much in s.
             assert!((found - s).norm() < 1e-13, "{found} {s}");
@@ -526,12 +649,18 @@ mod schur_form_tests {
         // A few hundred rotations of the whole matrix, each backward stable.
         assert!((again - a.map(Complex::from)).norm() < 1e-13 * a.norm());
         let below = (0..a.nrows()).flat_map(|row| (0..row).map(move |column| (row, column)));
-        assert!(below.into_iter().all(|at| form.t[at].norm() <= 1e-15 * a.norm()));
+        assert!(
+            below
+                .into_iter()
+                .all(|at| form.t[at].norm() <= 1e-15 * a.norm())
+        );
     }
 
     #[test]
     fn an_eigenvector_is_stretched_by_its_eigenvalue() {
-        let a = DMatrix::from_fn(9, 9, |row, column| ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin());
+        let a = DMatrix::from_fn(9, 9, |row, column| {
+            ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin()
+        });
         let form = SchurForm::of(&a).unwrap();
         for at in 0..9 {
             let vector = form.eigenvector(at);
@@ -541,14 +670,20 @@ mod schur_form_tests {
 
     #[test]
     fn the_form_gives_the_matrix_again() {
-        check(&DMatrix::from_fn(9, 9, |row, column| ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin()));
+        check(&DMatrix::from_fn(9, 9, |row, column| {
+            ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin()
+        }));
         check(&dmatrix![0.0, 1.0; -4.0, -0.4]);
         check(&dmatrix![1.0, 1e-9; 1e-9, 1.0]);
     }
 
     #[test]
     fn a_cyclic_permutation_has_the_roots_of_unity() {
-        let shift = DMatrix::from_fn(8, 8, |row, column| if row == (column + 1) % 8 { 1.0 } else { 0.0 });
+        let shift = DMatrix::from_fn(
+            8,
+            8,
+            |row, column| if row == (column + 1) % 8 { 1.0 } else { 0.0 },
+        );
         check(&shift);
         for eigenvalue in SchurForm::of(&shift).unwrap().eigenvalues() {
             // Orthogonal: each eigenvalue has condition number 1.
@@ -560,6 +695,9 @@ mod schur_form_tests {
     fn two_rows_with_real_eigenvalues_are_told_apart_without_cancellation() {
         let [far, near] = eigenvalues_of_block([[1e8, 1.0], [1.0, 0.0]]);
         // lambda^2 - 1e8 lambda - 1 = 0: the lesser is -1e-8 (1 - 1e-16).
-        assert!((far.re - 1e8).abs() < 1e-7 && (near.re + 1e-8).abs() < 1e-22, "{far} {near}");
+        assert!(
+            (far.re - 1e8).abs() < 1e-7 && (near.re + 1e-8).abs() < 1e-22,
+            "{far} {near}"
+        );
     }
 }

@@ -43,8 +43,14 @@ pub fn evaluate(model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
 
 /// [`evaluate`] on a given instruction set: for tests and benchmarks.
 pub fn evaluate_on(arch: Arch, model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
-    let at: Vec<_> = omega.iter().map(|omega| Complex::new(0.0, *omega)).collect();
-    arch.dispatch(Elimination { form: &HessenbergForm::of(arch, model.a().clone(), model), at: &at })
+    let at: Vec<_> = omega
+        .iter()
+        .map(|omega| Complex::new(0.0, *omega))
+        .collect();
+    arch.dispatch(Elimination {
+        form: &HessenbergForm::of(arch, model.a().clone(), model),
+        at: &at,
+    })
 }
 
 /// `H(s)` of a reduced model, to be evaluated with the vectors of an instruction set.
@@ -70,11 +76,18 @@ impl WithSimd for Elimination<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> FrequencyResponse {
         let form = self.form;
-        let (outputs, inputs) = if form.dual { (form.inputs, form.outputs) } else { (form.outputs, form.inputs) };
+        let (outputs, inputs) = if form.dual {
+            (form.inputs, form.outputs)
+        } else {
+            (form.outputs, form.inputs)
+        };
         let mut curves = PairTable::from_fn(outputs, inputs, |_| Vec::with_capacity(self.at.len()));
         let mut vectors: Vec<ComplexRows<S>> = Vec::new();
         for _ in 0..GROUP / S::F64_LANES {
-            vectors.push(ComplexRows { shift: ComplexLanes::real(simd, 0.0), entries: Vec::new() });
+            vectors.push(ComplexRows {
+                shift: ComplexLanes::real(simd, 0.0),
+                entries: Vec::new(),
+            });
         }
         for at in self.at.chunks(GROUP) {
             let (mut re, mut im) = ([0.0; GROUP], [0.0; GROUP]);
@@ -82,7 +95,11 @@ impl WithSimd for Elimination<'_> {
                 // If there are fewer, the last is in the other lanes.
                 let at = at[lane.min(at.len() - 1)] * form.frequency_scale;
                 // What would overflow must not look like a number.
-                (re[lane], im[lane]) = if at.norm() > LARGEST { (f64::NAN, f64::NAN) } else { (at.re, at.im) };
+                (re[lane], im[lane]) = if at.norm() > LARGEST {
+                    (f64::NAN, f64::NAN)
+                } else {
+                    (at.re, at.im)
+                };
             }
             let (re, im) = (S::as_simd_f64s(&re).0, S::as_simd_f64s(&im).0);
             let vectors = &mut vectors[..at.len().div_ceil(S::F64_LANES)];
@@ -108,7 +125,11 @@ impl WithSimd for Elimination<'_> {
                     for (lane, at) in at.iter().enumerate() {
                         let value = &vectors[lane / S::F64_LANES].entries[place];
                         // Without states what is not a number would be lost.
-                        curve.push(if at.is_nan() { *at } else { value.lane(lane % S::F64_LANES) });
+                        curve.push(if at.is_nan() {
+                            *at
+                        } else {
+                            value.lane(lane % S::F64_LANES)
+                        });
                     }
                 }
             }
@@ -147,7 +168,8 @@ impl<S: Simd> ComplexRows<S> {
     /// Whether the entry of the active row is too large for the next row to clear, or not a number, in any lane.
     #[inline(always)]
     fn asks_for_interchange(&self, simd: S, form: &HessenbergForm, column: usize) -> bool {
-        let inverse_square_threshold = simd.splat_f64s(form.subdiagonals[column].inverse_square_threshold);
+        let inverse_square_threshold =
+            simd.splat_f64s(form.subdiagonals[column].inverse_square_threshold);
         let excess = simd.mul_f64s(self.entries[column].square(simd), inverse_square_threshold);
         let exceeds = simd.not_m64s(simd.less_than_or_equal_f64s(excess, simd.splat_f64s(1.0)));
         simd.first_true_m64s(exceeds) < S::F64_LANES
@@ -157,7 +179,9 @@ impl<S: Simd> ComplexRows<S> {
     #[inline(always)]
     fn clear(&mut self, simd: S, form: &HessenbergForm, column: usize, interchange: bool) {
         let (next, subdiagonal) = (form.next_row(column), &form.subdiagonals[column]);
-        let shift = self.shift.scaled(simd, simd.splat_f64s(subdiagonal.reciprocal));
+        let shift = self
+            .shift
+            .scaled(simd, simd.splat_f64s(subdiagonal.reciprocal));
         let (active, others) = self.entries.split_at_mut(form.width());
         let (pivot, active) = (active[column], &mut active[column + 1..]);
         if !interchange {
@@ -276,7 +300,13 @@ impl Subdiagonal {
         }
         let largest = PIVOT_THRESHOLD / order as f64 * entry;
         let (reciprocal, inverse_square_threshold) = (1.0 / entry, 1.0 / (largest * largest));
-        Self { entry, divisor: entry, reciprocal, inverse_square_threshold, square: entry * entry }
+        Self {
+            entry,
+            divisor: entry,
+            reciprocal,
+            inverse_square_threshold,
+            square: entry * entry,
+        }
     }
 }
 
@@ -304,7 +334,10 @@ impl<S: Simd> Interchange<S> {
     #[inline(always)]
     fn new(simd: S, subdiagonal: &Subdiagonal, pivot: ComplexLanes<S>) -> Self {
         let lanes = simd.greater_than_f64s(pivot.square(simd), simd.splat_f64s(subdiagonal.square));
-        Self { lanes, reciprocal: pivot.reciprocal(simd) }
+        Self {
+            lanes,
+            reciprocal: pivot.reciprocal(simd),
+        }
     }
 
     /// Quotient and multiplier of a row with this entry: `w / u` and zero, or zero and `w`.
@@ -317,12 +350,18 @@ impl<S: Simd> Interchange<S> {
 
     /// Quotient and multiplier of the active row: `h / u` and `-h`, or -1 and `u`.
     #[inline(always)]
-    fn of_active_row(&self, simd: S, subdiagonal: &Subdiagonal, pivot: ComplexLanes<S>) -> [ComplexLanes<S>; 2] {
+    fn of_active_row(
+        &self,
+        simd: S,
+        subdiagonal: &Subdiagonal,
+        pivot: ComplexLanes<S>,
+    ) -> [ComplexLanes<S>; 2] {
         // Zero even where the pivot is zero: nothing of the active row goes on.
         let quotient = if subdiagonal.entry == 0.0 {
             ComplexLanes::real(simd, 0.0)
         } else {
-            self.reciprocal.scaled(simd, simd.splat_f64s(subdiagonal.entry))
+            self.reciprocal
+                .scaled(simd, simd.splat_f64s(subdiagonal.entry))
         };
         let multiplier = ComplexLanes::real(simd, -subdiagonal.divisor);
         [
@@ -348,7 +387,10 @@ impl<S: Simd> ComplexLanes<S> {
     /// The same real number in every lane.
     #[inline(always)]
     fn real(simd: S, value: f64) -> Self {
-        Self { re: simd.splat_f64s(value), im: simd.splat_f64s(0.0) }
+        Self {
+            re: simd.splat_f64s(value),
+            im: simd.splat_f64s(0.0),
+        }
     }
 
     /// `self - factor real`: 2 fused operations.
@@ -365,19 +407,26 @@ impl<S: Simd> ComplexLanes<S> {
     fn plus_product(self, simd: S, left: Self, right: Self) -> Self {
         let re = simd.mul_add_e_f64s(left.re, right.re, self.re);
         let im = simd.mul_add_e_f64s(left.im, right.re, self.im);
-        Self { re: simd.negate_mul_add_e_f64s(left.im, right.im, re), im: simd.mul_add_e_f64s(left.re, right.im, im) }
+        Self {
+            re: simd.negate_mul_add_e_f64s(left.im, right.im, re),
+            im: simd.mul_add_e_f64s(left.re, right.im, im),
+        }
     }
 
     /// `self - other`.
     #[inline(always)]
     fn minus(self, simd: S, other: Self) -> Self {
-        Self { re: simd.sub_f64s(self.re, other.re), im: simd.sub_f64s(self.im, other.im) }
+        Self {
+            re: simd.sub_f64s(self.re, other.re),
+            im: simd.sub_f64s(self.im, other.im),
+        }
     }
 
     /// The number in a lane.
     #[inline(always)]
     fn lane(&self, lane: usize) -> Complex<f64> {
-        let part = |part: &S::f64s| bytemuck::cast_slice::<_, f64>(std::slice::from_ref(part))[lane];
+        let part =
+            |part: &S::f64s| bytemuck::cast_slice::<_, f64>(std::slice::from_ref(part))[lane];
         Complex::new(part(&self.re), part(&self.im))
     }
 
@@ -385,7 +434,10 @@ impl<S: Simd> ComplexLanes<S> {
     #[inline(always)]
     fn minus_product(self, simd: S, left: Self, right: Self) -> Self {
         let Self { re, im } = self.minus_real_product(simd, left, right.re);
-        Self { re: simd.mul_add_e_f64s(left.im, right.im, re), im: simd.negate_mul_add_e_f64s(left.re, right.im, im) }
+        Self {
+            re: simd.mul_add_e_f64s(left.im, right.im, re),
+            im: simd.negate_mul_add_e_f64s(left.re, right.im, im),
+        }
     }
 
     /// `self other`.
@@ -393,20 +445,29 @@ impl<S: Simd> ComplexLanes<S> {
     fn product(self, simd: S, other: Self) -> Self {
         let re = simd.mul_f64s(self.re, other.re);
         let im = simd.mul_f64s(self.re, other.im);
-        Self { re: simd.negate_mul_add_e_f64s(self.im, other.im, re), im: simd.mul_add_e_f64s(self.im, other.re, im) }
+        Self {
+            re: simd.negate_mul_add_e_f64s(self.im, other.im, re),
+            im: simd.mul_add_e_f64s(self.im, other.re, im),
+        }
     }
 
     /// `self scale`, with a real scale for each lane.
     #[inline(always)]
     fn scaled(self, simd: S, scale: S::f64s) -> Self {
-        Self { re: simd.mul_f64s(self.re, scale), im: simd.mul_f64s(self.im, scale) }
+        Self {
+            re: simd.mul_f64s(self.re, scale),
+            im: simd.mul_f64s(self.im, scale),
+        }
     }
 
     /// `1 / self = conj(self) / |self|^2`; not finite in the lanes where `self` is zero.
     #[inline(always)]
     fn reciprocal(self, simd: S) -> Self {
         let inverse = simd.div_f64s(simd.splat_f64s(1.0), self.square(simd));
-        Self { re: simd.mul_f64s(self.re, inverse), im: simd.neg_f64s(simd.mul_f64s(self.im, inverse)) }
+        Self {
+            re: simd.mul_f64s(self.re, inverse),
+            im: simd.neg_f64s(simd.mul_f64s(self.im, inverse)),
+        }
     }
 
     /// `|self|^2`.
@@ -418,7 +479,10 @@ impl<S: Simd> ComplexLanes<S> {
     /// `chosen` in the lanes of `mask`, `self` in the others.
     #[inline(always)]
     fn replaced_where(self, simd: S, mask: S::m64s, chosen: Self) -> Self {
-        Self { re: simd.select_f64s(mask, chosen.re, self.re), im: simd.select_f64s(mask, chosen.im, self.im) }
+        Self {
+            re: simd.select_f64s(mask, chosen.re, self.re),
+            im: simd.select_f64s(mask, chosen.im, self.im),
+        }
     }
 }
 
@@ -435,7 +499,12 @@ mod tests {
     }
 
     fn oscillator() -> StateSpace {
-        siso(dmatrix![0.0, 1.0; -4.0, 0.0], dmatrix![0.0; 1.0], dmatrix![1.0, 0.0], 0.0)
+        siso(
+            dmatrix![0.0, 1.0; -4.0, 0.0],
+            dmatrix![0.0; 1.0],
+            dmatrix![1.0, 0.0],
+            0.0,
+        )
     }
 
     fn only(response: FrequencyResponse) -> Complex<f64> {
@@ -445,13 +514,21 @@ mod tests {
     #[test]
     fn a_first_order_lag_has_its_known_response() {
         // 1 / (j omega + 2) at omega = 3: (2 - 3j) / 13.
-        let value = only(evaluate(&siso(dmatrix![-2.0], dmatrix![1.0], dmatrix![1.0], 0.0), &[3.0]));
+        let value = only(evaluate(
+            &siso(dmatrix![-2.0], dmatrix![1.0], dmatrix![1.0], 0.0),
+            &[3.0],
+        ));
         assert!((value - Complex::new(2.0 / 13.0, -3.0 / 13.0)).norm() < 1e-16);
     }
 
     #[test]
     fn a_model_of_order_zero_is_its_feed_through() {
-        let empty = siso(DMatrix::zeros(0, 0), DMatrix::zeros(0, 1), DMatrix::zeros(1, 0), 2.5);
+        let empty = siso(
+            DMatrix::zeros(0, 0),
+            DMatrix::zeros(0, 1),
+            DMatrix::zeros(1, 0),
+            2.5,
+        );
         assert_eq!(only(evaluate(&empty, &[1.0])), Complex::new(2.5, 0.0));
     }
 
@@ -468,17 +545,31 @@ mod tests {
             // 1 / (4 - omega^2); a handful of operations, of which the difference amplifies rounding up to 8 times.
             let expected = 1.0 / (4.0 - omega * omega);
             assert_eq!(value.is_finite(), *omega != 2.0, "{omega}");
-            assert!(*omega == 2.0 || (value - expected).norm() < 1e-14 * expected.abs(), "{omega}");
+            assert!(
+                *omega == 2.0 || (value - expected).norm() < 1e-14 * expected.abs(),
+                "{omega}"
+            );
         }
     }
 
     #[test]
     fn units_of_inputs_and_outputs_do_not_matter() {
         let a = dmatrix![-1.0, 2.0; -3.0, -0.5];
-        let plain = only(evaluate(&siso(a.clone(), dmatrix![1.0; 0.5], dmatrix![1.0, -2.0], 0.0), &[1.3]));
+        let plain = only(evaluate(
+            &siso(a.clone(), dmatrix![1.0; 0.5], dmatrix![1.0, -2.0], 0.0),
+            &[1.3],
+        ));
         for exponent in [-800, 800] {
             let unit = 2.0_f64.powi(exponent);
-            let scaled = only(evaluate(&siso(a.clone(), dmatrix![unit; 0.5 * unit], dmatrix![1.0, -2.0], 0.0), &[1.3]));
+            let scaled = only(evaluate(
+                &siso(
+                    a.clone(),
+                    dmatrix![unit; 0.5 * unit],
+                    dmatrix![1.0, -2.0],
+                    0.0,
+                ),
+                &[1.3],
+            ));
             // A power of two: nothing is rounded.
             assert_eq!(scaled, plain * unit);
         }
@@ -486,11 +577,21 @@ mod tests {
 
     #[test]
     fn units_of_the_states_do_not_matter() {
-        let (a, b, c) = (dmatrix![-1.0, 2.0; -3.0, -0.5], dmatrix![1.0; 0.5], dmatrix![1.0, -2.0]);
+        let (a, b, c) = (
+            dmatrix![-1.0, 2.0; -3.0, -0.5],
+            dmatrix![1.0; 0.5],
+            dmatrix![1.0, -2.0],
+        );
         let scale = DMatrix::from_diagonal(&nalgebra::dvector![1e-9, 1e9]);
         let inverse = DMatrix::from_diagonal(&nalgebra::dvector![1e9, 1e-9]);
-        let plain = only(evaluate(&siso(a.clone(), b.clone(), c.clone(), 0.1), &[1.3]));
-        let scaled = only(evaluate(&siso(&scale * a * &inverse, scale * b, c * inverse, 0.1), &[1.3]));
+        let plain = only(evaluate(
+            &siso(a.clone(), b.clone(), c.clone(), 0.1),
+            &[1.3],
+        ));
+        let scaled = only(evaluate(
+            &siso(&scale * a * &inverse, scale * b, c * inverse, 0.1),
+            &[1.3],
+        ));
         // The scaling itself rounds each entry once.
         assert!((plain - scaled).norm() < 1e-14 * plain.norm());
     }
@@ -499,8 +600,13 @@ mod tests {
 
     fn on<S: Simd>(simd: S, model: &StateSpace, omega: &[f64]) -> Values {
         let form = &HessenbergForm::of(Arch::new(), model.a().clone(), model);
-        let at: Vec<_> = omega.iter().map(|omega| Complex::new(0.0, *omega)).collect();
-        simd.vectorize(Elimination { form, at: &at }).curves().clone()
+        let at: Vec<_> = omega
+            .iter()
+            .map(|omega| Complex::new(0.0, *omega))
+            .collect();
+        simd.vectorize(Elimination { form, at: &at })
+            .curves()
+            .clone()
     }
 
     /// The values on every instruction set of this machine with fused multiply-adds, which must have the same bits.
@@ -518,35 +624,58 @@ mod tests {
 
     /// Entries from a sine: without pattern, and the same everywhere.
     fn matrix(rows: usize, columns: usize, seed: f64) -> DMatrix<f64> {
-        DMatrix::from_fn(rows, columns, |row, column| (seed + 7.3 * row as f64 + 2.9 * (column * column) as f64).sin())
+        DMatrix::from_fn(rows, columns, |row, column| {
+            (seed + 7.3 * row as f64 + 2.9 * (column * column) as f64).sin()
+        })
     }
 
     fn model(order: usize, outputs: usize, inputs: usize) -> StateSpace {
         let a = matrix(order, order, 0.3) - DMatrix::identity(order, order) * 2.0;
-        let (b, c, d) = (matrix(order, inputs, 1.1), matrix(outputs, order, 2.3), matrix(outputs, inputs, 3.7));
+        let (b, c, d) = (
+            matrix(order, inputs, 1.1),
+            matrix(outputs, order, 2.3),
+            matrix(outputs, inputs, 3.7),
+        );
         StateSpace::new(a, b, c, d).unwrap()
     }
 
     /// From far below the poles, where real rows stay, to far above, where active ones do; lanes differ in between.
     fn wide(count: usize) -> Vec<f64> {
-        (0..count).map(|k| 1e-3 * 1e6_f64.powf(k as f64 / count as f64)).collect()
+        (0..count)
+            .map(|k| 1e-3 * 1e6_f64.powf(k as f64 / count as f64))
+            .collect()
     }
 
     /// By a dense decomposition.
     fn dense(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
-        let [a, b, c, d] = [model.a(), model.b(), model.c(), model.d()].map(|matrix| matrix.map(Complex::from));
+        let [a, b, c, d] =
+            [model.a(), model.b(), model.c(), model.d()].map(|matrix| matrix.map(Complex::from));
         let states = DMatrix::identity(a.nrows(), a.nrows()) * Complex::new(0.0, omega) - a;
         c * states.lu().solve(&b).unwrap() + d
     }
 
     /// The largest difference, relative to the largest value.
     fn difference(found: &Values, expected: &Values) -> f64 {
-        let all = |values: &Values| values.iter().flat_map(|(_, values)| values.clone()).collect::<Vec<_>>();
+        let all = |values: &Values| {
+            values
+                .iter()
+                .flat_map(|(_, values)| values.clone())
+                .collect::<Vec<_>>()
+        };
         let (found, expected) = (all(found), all(expected));
-        let largest = expected.iter().map(|value| value.norm()).fold(0.0, f64::max);
-        let differences = found.iter().zip(&expected).map(|(found, expected)| (found - expected).norm());
+        let largest = expected
+            .iter()
+            .map(|value| value.norm())
+            .fold(0.0, f64::max);
+        let differences = found
+            .iter()
+            .zip(&expected)
+            .map(|(found, expected)| (found - expected).norm());
         // NaN must not be lost in a maximum.
-        differences.fold(0.0, |worst: f64, next| if next <= worst { worst } else { next }) / largest
+        differences.fold(
+            0.0,
+            |worst: f64, next| if next <= worst { worst } else { next },
+        ) / largest
     }
 
     #[test]
@@ -556,19 +685,32 @@ mod tests {
             let scalar = on(Scalar::new(), &model, &omega);
             for vectors in on_vectors(&model, &omega) {
                 // Two backward stable solutions of order 9: rounding errors of at most 9 tau times 1e-16 each.
-                assert!(count == 0 || difference(&vectors, &scalar) < 8e-12, "{count} frequencies");
+                assert!(
+                    count == 0 || difference(&vectors, &scalar) < 8e-12,
+                    "{count} frequencies"
+                );
             }
         }
     }
 
     #[test]
     fn vectors_of_every_length_give_the_same_bits() {
-        for (order, outputs, inputs) in
-            [(0, 2, 1), (1, 1, 1), (2, 6, 4), (12, 6, 4), (30, 6, 4), (17, 3, 5), (8, 7, 6), (7, 9, 9)]
-        {
+        for (order, outputs, inputs) in [
+            (0, 2, 1),
+            (1, 1, 1),
+            (2, 6, 4),
+            (12, 6, 4),
+            (30, 6, 4),
+            (17, 3, 5),
+            (8, 7, 6),
+            (7, 9, 9),
+        ] {
             let (model, omega) = (model(order, outputs, inputs), wide(61));
             let all = on_vectors(&model, &omega);
-            assert!(all.windows(2).all(|pair| pair[0] == pair[1]), "order {order}");
+            assert!(
+                all.windows(2).all(|pair| pair[0] == pair[1]),
+                "order {order}"
+            );
         }
     }
 
@@ -579,7 +721,8 @@ mod tests {
         for (k, omega) in omega.chunks(GROUP).enumerate() {
             let alone = on_vectors(&model, omega);
             for (alone, together) in alone.iter().zip(&together) {
-                let same = |(pair, values): (_, &Vec<_>)| together[pair][k * GROUP..].starts_with(values);
+                let same =
+                    |(pair, values): (_, &Vec<_>)| together[pair][k * GROUP..].starts_with(values);
                 assert!(alone.iter().all(same), "group {k}");
             }
         }
@@ -589,13 +732,18 @@ mod tests {
     fn frequencies_of_a_group_that_disagree_on_their_pivots_each_have_theirs() {
         // At 1e-4 the real row must stay, at 1e4 the complex one: neighbours in one group.
         let model = model(14, 6, 4);
-        let omega: Vec<f64> = (0..29).map(|k| if k % 2 == 0 { 1e-4 } else { 1e4 } * (1.0 + f64::from(k))).collect();
+        let omega: Vec<f64> = (0..29)
+            .map(|k| if k % 2 == 0 { 1e-4 } else { 1e4 } * (1.0 + f64::from(k)))
+            .collect();
         let mut all = on_vectors(&model, &omega);
         all.push(on(Scalar::new(), &model, &omega));
         for values in all {
             for (k, omega) in omega.iter().enumerate() {
                 let expected = dense(&model, *omega);
-                let largest = expected.iter().map(|value| value.norm()).fold(0.0, f64::max);
+                let largest = expected
+                    .iter()
+                    .map(|value| value.norm())
+                    .fold(0.0, f64::max);
                 for (pair, values) in values.iter() {
                     let error = (values[k] - expected[(pair.output, pair.input)]).norm();
                     // The bound of threshold pivoting, 3e-11, times the condition of a random matrix of order 14.
@@ -620,9 +768,14 @@ mod tests {
                 for frequencies in [vec![omega], vec![1.0, omega, 3.0]] {
                     let mut all = on_vectors(&model, &frequencies);
                     all.push(on(Scalar::new(), &model, &frequencies));
-                    let finite =
-                        |k: usize| all.iter().all(|values| values.iter().all(|(_, curve)| curve[k].is_finite()));
-                    assert!(frequencies.len() == 1 || (finite(0) && finite(2)), "{order} states");
+                    let finite = |k: usize| {
+                        all.iter()
+                            .all(|values| values.iter().all(|(_, curve)| curve[k].is_finite()))
+                    };
+                    assert!(
+                        frequencies.len() == 1 || (finite(0) && finite(2)),
+                        "{order} states"
+                    );
                 }
             }
         }
@@ -637,7 +790,13 @@ mod tests {
             1 => weak,
             _ => 0.0,
         });
-        let model = StateSpace::new(a, DMatrix::identity(8, 8), DMatrix::identity(8, 8), DMatrix::zeros(8, 8)).unwrap();
+        let model = StateSpace::new(
+            a,
+            DMatrix::identity(8, 8),
+            DMatrix::identity(8, 8),
+            DMatrix::zeros(8, 8),
+        )
+        .unwrap();
         let mut all = on_vectors(&model, &[0.5, 1.0, 2.0]);
         all.push(on(Scalar::new(), &model, &[0.5, 1.0, 2.0]));
         for values in all {
@@ -649,7 +808,11 @@ mod tests {
                     _ => continue,
                 };
                 // A dozen operations.
-                assert!((values[1] - expected).norm() < 1e-14 * expected.norm(), "{pair:?}: {}", values[1]);
+                assert!(
+                    (values[1] - expected).norm() < 1e-14 * expected.norm(),
+                    "{pair:?}: {}",
+                    values[1]
+                );
             }
         }
     }
@@ -660,12 +823,27 @@ mod tests {
         let (b, c) = (dmatrix![1.0; 0.5; -1.0; 2.0], dmatrix![1.0, -2.0, 0.5, 3.0]);
         let part = |at: usize| {
             let (a, b, c) = (a.view((at, at), (2, 2)), b.rows(at, 2), c.columns(at, 2));
-            StateSpace::new(a.into_owned(), b.into_owned(), c.into_owned(), dmatrix![0.0]).unwrap()
+            StateSpace::new(
+                a.into_owned(),
+                b.into_owned(),
+                c.into_owned(),
+                dmatrix![0.0],
+            )
+            .unwrap()
         };
         let whole = StateSpace::new(a.clone(), b.clone(), c.clone(), dmatrix![0.0]).unwrap();
         let omega = wide(11);
-        let (first, second) = (on(Scalar::new(), &part(0), &omega), on(Scalar::new(), &part(2), &omega));
-        let sum = first.map(|pair, values| values.iter().zip(&second[pair]).map(|(a, b)| a + b).collect());
+        let (first, second) = (
+            on(Scalar::new(), &part(0), &omega),
+            on(Scalar::new(), &part(2), &omega),
+        );
+        let sum = first.map(|pair, values| {
+            values
+                .iter()
+                .zip(&second[pair])
+                .map(|(a, b)| a + b)
+                .collect()
+        });
         for values in on_vectors(&whole, &omega) {
             assert!(difference(&values, &sum) < 1e-14);
         }
@@ -685,7 +863,11 @@ mod tests {
     #[test]
     fn the_pivot_threshold_times_the_order_is_the_same_for_every_order() {
         for order in [2, 12, 60, 500] {
-            let tau = Subdiagonal::new(0.5, order).inverse_square_threshold.sqrt().recip() / 0.5;
+            let tau = Subdiagonal::new(0.5, order)
+                .inverse_square_threshold
+                .sqrt()
+                .recip()
+                / 0.5;
             // A handful of roundings.
             assert!((tau * order as f64 / PIVOT_THRESHOLD - 1.0).abs() < 1e-14);
         }

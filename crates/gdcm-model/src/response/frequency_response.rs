@@ -64,7 +64,11 @@ impl FrequencyResponse {
     /// The responses that are not finite at some frequency.
     pub fn not_finite(&self) -> Vec<Pair> {
         let not_finite = |curve: &[Complex<f64>]| curve.iter().any(|value| !value.is_finite());
-        self.curves.iter().filter(|(_, curve)| not_finite(curve)).map(|(pair, _)| pair).collect()
+        self.curves
+            .iter()
+            .filter(|(_, curve)| not_finite(curve))
+            .map(|(pair, _)| pair)
+            .collect()
     }
 }
 
@@ -77,7 +81,9 @@ pub struct FrequencyGrid {
 impl FrequencyGrid {
     /// [`log_spaced`] over the band, at `N = max(points, 2)` frequencies.
     pub fn logarithmic(band: Band, points: usize) -> Self {
-        Self { omega: log_spaced(band.min(), band.max(), points) }
+        Self {
+            omega: log_spaced(band.min(), band.max(), points),
+        }
     }
 
     /// These frequencies \[rad/s\], which rise: two at least.
@@ -105,7 +111,9 @@ impl FrequencyGrid {
 #[must_use]
 pub fn log_spaced(lowest: f64, highest: f64, count: usize) -> Vec<f64> {
     let (low, high, last) = (lowest.ln(), highest.ln(), count.max(2) - 1);
-    let mut omega: Vec<f64> = (0..=last).map(|k| (low + (high - low) * k as f64 / last as f64).exp()).collect();
+    let mut omega: Vec<f64> = (0..=last)
+        .map(|k| (low + (high - low) * k as f64 / last as f64).exp())
+        .collect();
     (omega[0], omega[last]) = (lowest, highest);
     omega
 }
@@ -122,8 +130,9 @@ pub struct ResponseShape {
 impl ResponseShape {
     /// The phase is principal at the first finite value, then unwrapped; a value that is not finite leaves a gap (M2).
     pub fn of(values: &[Complex<f64>]) -> Self {
-        let finite: Vec<usize> =
-            (0..values.len()).filter(|&k| values[k].is_finite() && values[k].norm() > 0.0).collect();
+        let finite: Vec<usize> = (0..values.len())
+            .filter(|&k| values[k].is_finite() && values[k].norm() > 0.0)
+            .collect();
         let mut phase: Vec<f64> = finite.iter().map(|&k| values[k].arg()).collect();
         unwrap(&mut phase);
         let mut shape = (vec![f64::NAN; values.len()], vec![f64::NAN; values.len()]);
@@ -131,18 +140,30 @@ impl ResponseShape {
             shape.0[k] = ratio_to_db(values[k].norm());
             shape.1[k] = phase.to_degrees();
         }
-        Self { magnitude_db: shape.0.into(), phase_deg: shape.1.into() }
+        Self {
+            magnitude_db: shape.0.into(),
+            phase_deg: shape.1.into(),
+        }
     }
 
     /// The shape moved by whole turns as near to `reference` as they bring it over the first `points` frequencies (M2).
     pub fn phase_aligned(self, reference: &Self, points: usize) -> Self {
-        let radians =
-            |phase: &[f64]| phase.iter().take(points).map(|degrees| degrees.to_radians()).collect::<Vec<f64>>();
-        let offset = nearest_turn_offset(&radians(&self.phase_deg), &radians(&reference.phase_deg)).to_degrees();
+        let radians = |phase: &[f64]| {
+            phase
+                .iter()
+                .take(points)
+                .map(|degrees| degrees.to_radians())
+                .collect::<Vec<f64>>()
+        };
+        let offset = nearest_turn_offset(&radians(&self.phase_deg), &radians(&reference.phase_deg))
+            .to_degrees();
         if offset == 0.0 {
             return self;
         }
-        Self { phase_deg: self.phase_deg.iter().map(|phase| phase + offset).collect(), ..self }
+        Self {
+            phase_deg: self.phase_deg.iter().map(|phase| phase + offset).collect(),
+            ..self
+        }
     }
 
     /// The shape over the first `points` frequencies; not a number at the others.
@@ -151,26 +172,47 @@ impl ResponseShape {
             return self;
         }
         let cut = |values: &[f64]| -> Arc<[f64]> {
-            values.iter().enumerate().map(|(k, value)| if k < points { *value } else { f64::NAN }).collect()
+            values
+                .iter()
+                .enumerate()
+                .map(|(k, value)| if k < points { *value } else { f64::NAN })
+                .collect()
         };
-        Self { magnitude_db: cut(&self.magnitude_db), phase_deg: cut(&self.phase_deg) }
+        Self {
+            magnitude_db: cut(&self.magnitude_db),
+            phase_deg: cut(&self.phase_deg),
+        }
     }
 
     /// The shape after a correction (M10).
     pub fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
-        let phase: Vec<f64> = self.phase_deg.iter().map(|degrees| degrees.to_radians()).collect();
+        let phase: Vec<f64> = self
+            .phase_deg
+            .iter()
+            .map(|degrees| degrees.to_radians())
+            .collect();
         Self {
-            magnitude_db: correction.magnitudes_db(&self.magnitude_db, omega).collect(),
-            phase_deg: correction.phases(&phase, omega).map(f64::to_degrees).collect(),
+            magnitude_db: correction
+                .magnitudes_db(&self.magnitude_db, omega)
+                .collect(),
+            phase_deg: correction
+                .phases(&phase, omega)
+                .map(f64::to_degrees)
+                .collect(),
         }
     }
 }
 
 /// A continuous phase \[deg\] between -180 and 180 degrees, with a gap where it jumps, in place of a line from edge to edge.
 pub fn wrapped_deg(phase_deg: &[f64]) -> Vec<f64> {
-    let wrapped: Vec<f64> = phase_deg.iter().map(|phase| wrap(phase.to_radians()).to_degrees()).collect();
+    let wrapped: Vec<f64> = phase_deg
+        .iter()
+        .map(|phase| wrap(phase.to_radians()).to_degrees())
+        .collect();
     let jumps = |k: usize| k > 0 && (wrapped[k] - wrapped[k - 1]).abs() > 180.0;
-    (0..wrapped.len()).map(|k| if jumps(k) { f64::NAN } else { wrapped[k] }).collect()
+    (0..wrapped.len())
+        .map(|k| if jumps(k) { f64::NAN } else { wrapped[k] })
+        .collect()
 }
 
 /// One response as `N` magnitudes \[dB\] and `N` principal phases \[rad\]; all finite.
@@ -189,14 +231,21 @@ impl PolarCurve {
         if magnitude_db.iter().any(|magnitude| !magnitude.is_finite()) {
             return None;
         }
-        Some(Self { magnitude_db, phase: values.iter().map(|value| value.arg()).collect() })
+        Some(Self {
+            magnitude_db,
+            phase: values.iter().map(|value| value.arg()).collect(),
+        })
     }
 }
 
 /// `20 log10 |H| = 10 log10 |H|^2`; the square spares a root where it neither overflows nor underflows.
 fn magnitude_db(value: &Complex<f64>) -> f64 {
     let square = value.norm_sqr();
-    if square.is_normal() { 10.0 * square.log10() } else { ratio_to_db(value.norm()) }
+    if square.is_normal() {
+        10.0 * square.log10()
+    } else {
+        ratio_to_db(value.norm())
+    }
 }
 
 /// Every response of a model as magnitude and phase.
@@ -211,13 +260,23 @@ pub struct PolarResponse {
 impl PolarResponse {
     /// Magnitude and phase of every response.
     pub fn of(response: &FrequencyResponse) -> Self {
-        Self { curves: response.curves.map(|_, curve| PolarCurve::of(curve)) }
+        Self {
+            curves: response.curves.map(|_, curve| PolarCurve::of(curve)),
+        }
     }
 
     /// Magnitude and phase of the marked responses; the others are left undefined, for a logarithm and an arc tangent cost more
     /// than the response itself.
     pub fn of_marked(response: &FrequencyResponse, marked: &PairTable<bool>) -> Self {
-        Self { curves: response.curves.map(|pair, curve| if marked[pair] { PolarCurve::of(curve) } else { None }) }
+        Self {
+            curves: response.curves.map(|pair, curve| {
+                if marked[pair] {
+                    PolarCurve::of(curve)
+                } else {
+                    None
+                }
+            }),
+        }
     }
 
     /// The responses that are numerically nothing: their peak over the band, \[dB\], lies 120 dB (1e-6) below the greatest of
@@ -225,15 +284,25 @@ impl PolarResponse {
     pub fn numerically_nothing(&self) -> PairTable<bool> {
         const LEAST_DB: f64 = -120.0;
         let peaks = self.curves.map(|_, curve| {
-            curve.iter().flat_map(|curve| &curve.magnitude_db).copied().fold(f64::NEG_INFINITY, f64::max)
+            curve
+                .iter()
+                .flat_map(|curve| &curve.magnitude_db)
+                .copied()
+                .fold(f64::NEG_INFINITY, f64::max)
         });
         let greatest = |of: &dyn Fn(Pair) -> bool| {
-            peaks.iter().filter(|(pair, _)| of(*pair)).map(|(_, peak)| *peak).fold(f64::NEG_INFINITY, f64::max)
+            peaks
+                .iter()
+                .filter(|(pair, _)| of(*pair))
+                .map(|(_, peak)| *peak)
+                .fold(f64::NEG_INFINITY, f64::max)
         };
         self.curves.map(|pair, curve| {
             let of_output = || greatest(&|other| other.output == pair.output);
             let of_input = || greatest(&|other| other.input == pair.input);
-            curve.is_some() && peaks[pair] < of_output() + LEAST_DB && peaks[pair] < of_input() + LEAST_DB
+            curve.is_some()
+                && peaks[pair] < of_output() + LEAST_DB
+                && peaks[pair] < of_input() + LEAST_DB
         })
     }
 
@@ -255,7 +324,10 @@ mod frequency_grid_tests {
     #[test]
     fn both_ends_are_included_and_the_ratio_is_constant() {
         let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 200);
-        assert_eq!((grid.omega()[0], grid.omega()[199], grid.len()), (0.5, 12.0, 200));
+        assert_eq!(
+            (grid.omega()[0], grid.omega()[199], grid.len()),
+            (0.5, 12.0, 200)
+        );
         let ratio = (12.0_f64 / 0.5).powf(1.0 / 199.0);
         for pair in grid.omega().windows(2) {
             // exp and ln round to about 1 ulp each, of arguments up to 2.5.
@@ -274,12 +346,18 @@ mod response_shape_tests {
         let shape = ResponseShape::of(&[turned(-170.0), Complex::new(0.0, 0.0), turned(170.0)]);
         assert!(shape.magnitude_db[1].is_nan() && shape.phase_deg[1].is_nan());
         // A few roundings of angles of 3 rad.
-        assert!((shape.magnitude_db[2] - 20.0).abs() < 1e-12 && (shape.phase_deg[2] + 190.0).abs() < 1e-12);
+        assert!(
+            (shape.magnitude_db[2] - 20.0).abs() < 1e-12
+                && (shape.phase_deg[2] + 190.0).abs() < 1e-12
+        );
     }
 
     #[test]
     fn a_shape_is_moved_by_whole_turns_only() {
-        let shape = |phase: f64| ResponseShape { magnitude_db: [0.0, 0.0].into(), phase_deg: [phase, phase].into() };
+        let shape = |phase: f64| ResponseShape {
+            magnitude_db: [0.0, 0.0].into(),
+            phase_deg: [phase, phase].into(),
+        };
         let laid = shape(350.0).phase_aligned(&shape(-20.0), usize::MAX);
         assert!((laid.phase_deg[0] + 10.0).abs() < 1e-12);
     }
@@ -293,24 +371,35 @@ mod polar_tests {
     fn a_response_is_nothing_only_beside_both_its_output_and_its_input() {
         // Of 2 x 2: only the last is small beside both; the third belongs to an output in small units.
         let values = [[1.0, 1.0], [1e-7, 0.99e-13]];
-        let curves = PairTable::from_fn(2, 2, |pair| vec![Complex::from(values[pair.output][pair.input]); 3]);
+        let curves = PairTable::from_fn(2, 2, |pair| {
+            vec![Complex::from(values[pair.output][pair.input]); 3]
+        });
         let mut polar = PolarResponse::of(&FrequencyResponse::new(curves));
         let nothing = polar.numerically_nothing();
         assert_eq!(nothing.marked().collect::<Vec<_>>(), [Pair::new(1, 1)]);
         polar.clear(&nothing);
-        assert!(polar.curves()[Pair::new(1, 1)].is_none() && polar.curves()[Pair::new(1, 0)].is_some());
+        assert!(
+            polar.curves()[Pair::new(1, 1)].is_none() && polar.curves()[Pair::new(1, 0)].is_some()
+        );
     }
 
     #[test]
     fn the_only_response_of_an_output_is_never_nothing() {
-        let curves = PairTable::from_fn(2, 1, |pair| vec![Complex::from([1.0, 1e-20][pair.output]); 3]);
+        let curves = PairTable::from_fn(2, 1, |pair| {
+            vec![Complex::from([1.0, 1e-20][pair.output]); 3]
+        });
         let polar = PolarResponse::of(&FrequencyResponse::new(curves));
         assert_eq!(polar.numerically_nothing().marked().count(), 0);
     }
 
     #[test]
     fn magnitudes_beyond_the_range_of_their_squares_are_right() {
-        for (magnitude, db) in [(1e-200, -4000.0), (1e-20, -400.0), (1.0, 0.0), (1e200, 4000.0)] {
+        for (magnitude, db) in [
+            (1e-200, -4000.0),
+            (1e-20, -400.0),
+            (1.0, 0.0),
+            (1e200, 4000.0),
+        ] {
             // One rounding of the logarithm and one of its multiple.
             assert!((magnitude_db(&Complex::new(0.0, magnitude)) - db).abs() < 1e-12);
         }

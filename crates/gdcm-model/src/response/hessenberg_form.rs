@@ -66,7 +66,9 @@ impl HessenbergForm {
         };
         balance(&mut a, &mut b, &mut c);
         let frequency_scale = 1.0 / power_of_two_below(a.amax()).max(LEAST_ALPHA);
-        let first_input = (0..b.ncols()).rev().max_by(|&x, &y| b.column(x).amax().total_cmp(&b.column(y).amax()));
+        let first_input = (0..b.ncols())
+            .rev()
+            .max_by(|&x, &y| b.column(x).amax().total_cmp(&b.column(y).amax()));
         let first_input = first_input.unwrap_or(0);
         let input_scale = 1.0 / power_of_two_below(b.amax());
         a *= frequency_scale;
@@ -82,22 +84,49 @@ impl HessenbergForm {
         let (order, inputs, outputs) = (a.nrows(), b.ncols(), c.nrows());
         let mut rows = DMatrix::zeros(order + inputs, order + outputs);
         for (matrix, row, column) in [(a, 0, 0), (b, 0, order), (c, order, 0), (d, order, order)] {
-            rows.view_mut((column, row), (matrix.ncols(), matrix.nrows())).tr_copy_from(&matrix);
+            rows.view_mut((column, row), (matrix.ncols(), matrix.nrows()))
+                .tr_copy_from(&matrix);
         }
-        arch.dispatch(HouseholderReduction { rows: &mut rows, states: order });
+        arch.dispatch(HouseholderReduction {
+            rows: &mut rows,
+            states: order,
+        });
         // An entry of the system matrix: the transpose, with the states in reversed order.
-        let reversed = |state: usize| if state < order { order - 1 - state } else { state };
+        let reversed = |state: usize| {
+            if state < order {
+                order - 1 - state
+            } else {
+                state
+            }
+        };
         let entry = |row: usize, column: usize| rows[(reversed(row), reversed(column))];
-        let subdiagonals: Vec<_> = (1..order).map(|row| Subdiagonal::new(entry(row, row - 1), order)).collect();
+        let subdiagonals: Vec<_> = (1..order)
+            .map(|row| Subdiagonal::new(entry(row, row - 1), order))
+            .collect();
         let width = order + outputs;
-        let row_of = |row: usize, factor: f64| (0..width).map(move |column| factor * entry(row, column));
-        let next_rows = (1..order).flat_map(|row| row_of(row, subdiagonals[row - 1].reciprocal)).collect();
-        let active = if order > 0 { row_of(0, 1.0).collect() } else { vec![0.0; width] };
+        let row_of =
+            |row: usize, factor: f64| (0..width).map(move |column| factor * entry(row, column));
+        let next_rows = (1..order)
+            .flat_map(|row| row_of(row, subdiagonals[row - 1].reciprocal))
+            .collect();
+        let active = if order > 0 {
+            row_of(0, 1.0).collect()
+        } else {
+            vec![0.0; width]
+        };
         let others = (order + 1..order + inputs).flat_map(|row| row_of(row, 1.0));
         Self {
-            gain: if order > 0 && inputs > 0 { entry(order, order - 1) } else { 0.0 },
+            gain: if order > 0 && inputs > 0 {
+                entry(order, order - 1)
+            } else {
+                0.0
+            },
             complex_rows: active.into_iter().chain(others).collect(),
-            feed_through: if inputs > 0 { row_of(order, 1.0).skip(order).collect() } else { vec![0.0; outputs] },
+            feed_through: if inputs > 0 {
+                row_of(order, 1.0).skip(order).collect()
+            } else {
+                vec![0.0; outputs]
+            },
             next_rows,
             subdiagonals,
             order,
@@ -118,7 +147,11 @@ impl HessenbergForm {
         } else {
             input
         };
-        if self.dual { Pair::new(input, output) } else { Pair::new(output, input) }
+        if self.dual {
+            Pair::new(input, output)
+        } else {
+            Pair::new(output, input)
+        }
     }
 
     /// Entries in a row of `[G K]`.
@@ -183,7 +216,9 @@ fn clear(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
     for state in first..states {
         v[state] = rows[(column, state)];
     }
-    let Some((head, tail)) = v[first..states].split_first_mut() else { return };
+    let Some((head, tail)) = v[first..states].split_first_mut() else {
+        return;
+    };
     let tail: f64 = tail.iter().map(|entry| entry * entry).sum();
     if tail == 0.0 {
         return;
@@ -211,7 +246,11 @@ fn reflect(rows: &mut DMatrix<f64>, states: Range<usize>, v: &[f64], beta: f64) 
     }
     let gamma = beta * dot(v, &y);
     for state in states.clone() {
-        subtract_multiple(&mut w[from..], -v[state] * beta, &rows.as_slice()[state * width..][from..width]);
+        subtract_multiple(
+            &mut w[from..],
+            -v[state] * beta,
+            &rows.as_slice()[state * width..][from..width],
+        );
     }
     subtract_multiple(&mut w[from..], gamma, &v[from..]);
     w[..states.start].fill(0.0);
@@ -228,7 +267,8 @@ fn reflect(rows: &mut DMatrix<f64>, states: Range<usize>, v: &[f64], beta: f64) 
 fn dot(left: &[f64], right: &[f64]) -> f64 {
     let mut sums = [0.0_f64; LANES];
     let count = left.len().min(right.len());
-    let ((left, left_rest), (right, right_rest)) = (left[..count].as_chunks(), right[..count].as_chunks());
+    let ((left, left_rest), (right, right_rest)) =
+        (left[..count].as_chunks(), right[..count].as_chunks());
     for (left, right) in left.iter().zip(right) {
         add_products::<LANES>(&mut sums, left, right);
     }
@@ -270,7 +310,9 @@ pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatri
     for _ in 0..MOST_SWEEPS {
         let mut balanced = true;
         for (state, scale) in scales.iter_mut().enumerate() {
-            let Some(factor) = factor(a, state) else { continue };
+            let Some(factor) = factor(a, state) else {
+                continue;
+            };
             if (LARGEST_SCALE.recip()..=LARGEST_SCALE).contains(&(*scale * factor)) {
                 balanced = false;
                 *scale *= factor;
@@ -318,7 +360,10 @@ mod tests {
 
     #[test]
     fn the_scale_is_a_power_of_two_that_brings_the_largest_entry_between_one_and_two() {
-        assert_eq!([0.0, 1.0, 1.999, 40.0, 0.3].map(power_of_two_below), [1.0, 1.0, 1.0, 32.0, 0.25]);
+        assert_eq!(
+            [0.0, 1.0, 1.999, 40.0, 0.3].map(power_of_two_below),
+            [1.0, 1.0, 1.0, 32.0, 0.25]
+        );
     }
 
     #[test]
@@ -333,11 +378,18 @@ mod tests {
 
     #[test]
     fn a_model_of_one_state_and_no_reduction_is_its_own_system_matrix() {
-        let model =
-            StateSpace::new(dmatrix![-1.5], dmatrix![1.0, 1.5], dmatrix![4.0; 5.0], dmatrix![0.1, 0.2; 0.3, 0.4]);
+        let model = StateSpace::new(
+            dmatrix![-1.5],
+            dmatrix![1.0, 1.5],
+            dmatrix![4.0; 5.0],
+            dmatrix![0.1, 0.2; 0.3, 0.4],
+        );
         let form = form(&model.unwrap());
         // The second input has the larger column of B.
-        assert_eq!((form.gain, form.pair(0, 1), form.pair(1, 0)), (1.5, Pair::new(1, 1), Pair::new(0, 0)));
+        assert_eq!(
+            (form.gain, form.pair(0, 1), form.pair(1, 0)),
+            (1.5, Pair::new(1, 1), Pair::new(0, 0))
+        );
         assert_eq!(form.complex_rows, [-1.5, 4.0, 5.0, 1.0, 0.1, 0.3]);
         assert_eq!(form.feed_through, [0.2, 0.4]);
     }
@@ -345,11 +397,18 @@ mod tests {
     #[test]
     fn next_rows_have_a_one_below_the_diagonal_and_the_first_input_reaches_one_state() {
         let a = dmatrix![1.0, 1.25, 0.5; 1.5, 1.75, -1.0; 0.25, 0.5, -0.75];
-        let model = StateSpace::new(a, dmatrix![2.0; 3.0; 1.0], dmatrix![1.0, 1.0, 2.0], dmatrix![0.0]);
+        let model = StateSpace::new(
+            a,
+            dmatrix![2.0; 3.0; 1.0],
+            dmatrix![1.0, 1.0, 2.0],
+            dmatrix![0.0],
+        );
         let form = form(&model.unwrap());
         let next: Vec<&[f64]> = form.next_rows.chunks_exact(4).collect();
         // A handful of roundings; there are two next rows.
-        assert!(next.len() == 2 && (next[0][0] - 1.0).abs() < 1e-15 && (next[1][1] - 1.0).abs() < 1e-15);
+        assert!(
+            next.len() == 2 && (next[0][0] - 1.0).abs() < 1e-15 && (next[1][1] - 1.0).abs() < 1e-15
+        );
         assert_eq!(next[1][0], 0.0);
         assert_eq!(form.next_row(1), &next[1][2..]);
         // |B| = sqrt(14), which a reflection keeps, over the power of two below 3.
@@ -371,14 +430,23 @@ mod tests {
 
     fn reduced(arch: Arch) -> DMatrix<f64> {
         let mut rows = rows();
-        arch.dispatch(HouseholderReduction { rows: &mut rows, states: STATES });
+        arch.dispatch(HouseholderReduction {
+            rows: &mut rows,
+            states: STATES,
+        });
         rows
     }
 
     /// `C A^k B`, which a change of coordinates leaves alone.
     fn markov_parameter(rows: &DMatrix<f64>, power: usize, output: usize, input: usize) -> f64 {
         let mut states: Vec<f64> = (0..STATES).map(|row| rows[(STATES + input, row)]).collect();
-        let product = |row: usize, states: &[f64]| rows.column(row).iter().zip(states).map(|(a, x)| a * x).sum::<f64>();
+        let product = |row: usize, states: &[f64]| {
+            rows.column(row)
+                .iter()
+                .zip(states)
+                .map(|(a, x)| a * x)
+                .sum::<f64>()
+        };
         for _ in 0..power {
             states = (0..STATES).map(|row| product(row, &states)).collect();
         }
@@ -388,16 +456,25 @@ mod tests {
     #[test]
     fn what_stands_below_the_subdiagonal_is_zero() {
         let rows = reduced(Arch::new());
-        assert!((2..STATES).all(|row| rows.column(row).iter().take(row - 1).all(|entry| *entry == 0.0)));
+        assert!((2..STATES).all(|row| {
+            rows.column(row)
+                .iter()
+                .take(row - 1)
+                .all(|entry| *entry == 0.0)
+        }));
     }
 
     #[test]
     fn from_inputs_to_outputs_nothing_changes() {
         let (before, after) = (rows(), reduced(Arch::new()));
         for (power, output, input) in [(0, 0, 0), (1, 2, 1), (5, 1, 0)] {
-            let [before, after] = [&before, &after].map(|rows| markov_parameter(rows, power, output, input));
+            let [before, after] =
+                [&before, &after].map(|rows| markov_parameter(rows, power, output, input));
             // Entries of A^5 grow to some thousand; eleven reflections with rounding errors of 1e-16 each.
-            assert!((before - after).abs() < 1e-11, "C A^{power} B: {before} and {after}");
+            assert!(
+                (before - after).abs() < 1e-11,
+                "C A^{power} B: {before} and {after}"
+            );
         }
     }
 
@@ -417,11 +494,16 @@ mod tests {
             (1.0 + 7.3 * row as f64 + 2.9 * column as f64).sin() * 10_f64.powi(3 * row as i32)
         });
         let (mut ours, mut theirs) = (a.clone(), a);
-        let (mut b, mut c) = (DMatrix::from_element(7, 1, 1.0), DMatrix::from_element(1, 7, 1.0));
+        let (mut b, mut c) = (
+            DMatrix::from_element(7, 1, 1.0),
+            DMatrix::from_element(1, 7, 1.0),
+        );
         balance(&mut ours, &mut b, &mut c);
         let scales = balance_parlett_reinsch(&mut theirs);
         assert_eq!(ours, theirs);
-        assert!(c.iter().eq(scales.iter()) && b.iter().zip(&scales).all(|(b, scale)| b * scale == 1.0));
+        assert!(
+            c.iter().eq(scales.iter()) && b.iter().zip(&scales).all(|(b, scale)| b * scale == 1.0)
+        );
     }
 
     #[test]
@@ -431,14 +513,25 @@ mod tests {
             -1 => 1.0,
             _ => 0.0,
         });
-        let (mut b, mut c) = (DMatrix::from_element(60, 1, 1.0), DMatrix::from_element(1, 60, 1.0));
+        let (mut b, mut c) = (
+            DMatrix::from_element(60, 1, 1.0),
+            DMatrix::from_element(1, 60, 1.0),
+        );
         balance(&mut a, &mut b, &mut c);
-        assert!(b.iter().chain(c.iter()).all(|entry| (1e-31..=1e31).contains(entry)));
+        assert!(
+            b.iter()
+                .chain(c.iter())
+                .all(|entry| (1e-31..=1e31).contains(entry))
+        );
     }
 
     #[test]
     fn a_state_that_nothing_leads_to_is_left_as_it_is() {
-        let (mut a, mut b, mut c) = (dmatrix![-1.0, 0.0; 1e9, 0.0], dmatrix![1.0; 1.0], dmatrix![1.0, 1.0]);
+        let (mut a, mut b, mut c) = (
+            dmatrix![-1.0, 0.0; 1e9, 0.0],
+            dmatrix![1.0; 1.0],
+            dmatrix![1.0, 1.0],
+        );
         balance(&mut a, &mut b, &mut c);
         assert!(a[(1, 0)] != 0.0 && b[1] == 1.0, "the second column is zero");
     }

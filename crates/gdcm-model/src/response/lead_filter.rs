@@ -35,7 +35,9 @@ impl TryFrom<f64> for LeadOrder {
 
     fn try_from(order: f64) -> Result<Self, String> {
         let orders = [Self::First, Self::Second];
-        let found = orders.into_iter().find(|known| known.number() as f64 == order);
+        let found = orders
+            .into_iter()
+            .find(|known| known.number() as f64 == order);
         found.ok_or_else(|| format!("order of the lead filters: expected 1 or 2, found {order}"))
     }
 }
@@ -66,7 +68,11 @@ impl LeadFilter {
             LeadOrder::First => lead_s,
             LeadOrder::Second => lead_s * FRAC_1_SQRT_2,
         };
-        Self { order, zero_s: lag_s + apart_s, lag_s }
+        Self {
+            order,
+            zero_s: lag_s + apart_s,
+            lag_s,
+        }
     }
 
     /// Lead time at low frequency, `l` \[s\].
@@ -103,7 +109,8 @@ impl LeadFilter {
         let (x, y) = (self.zero_s * omega, self.lag_s * omega);
         match self.order {
             LeadOrder::First => ((x - y) / (1.0 + x * y)).atan(),
-            LeadOrder::Second => (SQRT_2 * (x - y) * (1.0 + x * y)).atan2((1.0 - x * x) * (1.0 - y * y) + 2.0 * x * y),
+            LeadOrder::Second => (SQRT_2 * (x - y) * (1.0 + x * y))
+                .atan2((1.0 - x * x) * (1.0 - y * y) + 2.0 * x * y),
         }
     }
 
@@ -138,11 +145,19 @@ pub struct GainDelay {
 
 impl GainDelay {
     /// Leaves a response as it is.
-    pub const NONE: Self = Self { gain_db: 0.0, delay_s: 0.0, leads: [None; 2] };
+    pub const NONE: Self = Self {
+        gain_db: 0.0,
+        delay_s: 0.0,
+        leads: [None; 2],
+    };
 
     /// A positive gain (ratio) and a delay \[s\].
     pub fn new(gain: f64, delay_s: f64) -> Self {
-        Self { gain_db: ratio_to_db(gain), delay_s, leads: [None; 2] }
+        Self {
+            gain_db: ratio_to_db(gain),
+            delay_s,
+            leads: [None; 2],
+        }
     }
 
     /// With these lead filters in series.
@@ -159,17 +174,24 @@ impl GainDelay {
 
     /// Magnitudes \[dB\] at `omega` after it: `20 log10 k` more, and what the filters add.
     pub fn magnitudes_db(self, magnitudes_db: &[f64], omega: &[f64]) -> impl Iterator<Item = f64> {
-        magnitudes_db.iter().zip(omega).map(move |(magnitude, omega)| {
-            let filters = self.leads.iter().flatten();
-            filters.fold(magnitude + self.gain_db, |sum, filter| sum + filter.magnitude_db(*omega))
-        })
+        magnitudes_db
+            .iter()
+            .zip(omega)
+            .map(move |(magnitude, omega)| {
+                let filters = self.leads.iter().flatten();
+                filters.fold(magnitude + self.gain_db, |sum, filter| {
+                    sum + filter.magnitude_db(*omega)
+                })
+            })
     }
 
     /// Phases \[rad\] at `omega` after it: `omega tau` less, and what the filters add.
     pub fn phases(self, phases: &[f64], omega: &[f64]) -> impl Iterator<Item = f64> {
         phases.iter().zip(omega).map(move |(phase, omega)| {
             let filters = self.leads.iter().flatten();
-            filters.fold(phase - omega * self.delay_s, |sum, filter| sum + filter.phase(*omega))
+            filters.fold(phase - omega * self.delay_s, |sum, filter| {
+                sum + filter.phase(*omega)
+            })
         })
     }
 }
@@ -182,7 +204,14 @@ mod tests {
     #[test]
     fn a_lead_of_nothing_leaves_everything() {
         let filter = LeadFilter::new(LeadOrder::Second, 0.0, 0.02);
-        assert_eq!((filter.phase(7.0), filter.magnitude_db(7.0), filter.gain_at_infinity()), (0.0, 0.0, 1.0));
+        assert_eq!(
+            (
+                filter.phase(7.0),
+                filter.magnitude_db(7.0),
+                filter.gain_at_infinity()
+            ),
+            (0.0, 0.0, 1.0)
+        );
     }
 
     proptest! {
@@ -210,8 +239,18 @@ mod gain_delay_tests {
     #[test]
     fn a_correction_multiplies_the_magnitude_and_delays_the_phase() {
         let correction = GainDelay::new(10.0, 0.05);
-        assert_eq!(correction.magnitudes_db(&[-6.0], &[10.0]).collect::<Vec<_>>(), [14.0]);
-        assert_eq!(correction.phases(&[1.0, 1.0], &[10.0, 20.0]).collect::<Vec<_>>(), [0.5, 0.0]);
+        assert_eq!(
+            correction
+                .magnitudes_db(&[-6.0], &[10.0])
+                .collect::<Vec<_>>(),
+            [14.0]
+        );
+        assert_eq!(
+            correction
+                .phases(&[1.0, 1.0], &[10.0, 20.0])
+                .collect::<Vec<_>>(),
+            [0.5, 0.0]
+        );
         assert_eq!(GainDelay::new(1.0, 0.0), GainDelay::NONE);
     }
 

@@ -65,10 +65,22 @@ pub const LARGEST_ENTRY: f64 = 1e75;
 impl LargeEntry {
     /// The first entry of a model that is too large to compute with.
     pub fn of(model: &StateSpace) -> Option<Self> {
-        [('A', model.a()), ('B', model.b()), ('C', model.c()), ('D', model.d())].into_iter().find_map(|(matrix, of)| {
+        [
+            ('A', model.a()),
+            ('B', model.b()),
+            ('C', model.c()),
+            ('D', model.d()),
+        ]
+        .into_iter()
+        .find_map(|(matrix, of)| {
             let at = of.iter().position(|value| value.abs() > LARGEST_ENTRY)?;
             let (row, column) = of.vector_to_matrix_index(at);
-            Some(Self { matrix, row: row + 1, column: column + 1, value: of[at] })
+            Some(Self {
+                matrix,
+                row: row + 1,
+                column: column + 1,
+                value: of[at],
+            })
         })
     }
 }
@@ -77,20 +89,28 @@ impl PreparedModel {
     /// Prepares a model.
     pub fn of(dynamics: &Dynamics) -> Self {
         let source = match dynamics {
-            Dynamics::StateSpace(model) if LargeEntry::of(model).is_some() => {
-                Source::TooLarge { outputs: model.outputs(), inputs: model.inputs() }
-            }
+            Dynamics::StateSpace(model) if LargeEntry::of(model).is_some() => Source::TooLarge {
+                outputs: model.outputs(),
+                inputs: model.inputs(),
+            },
             Dynamics::StateSpace(model) => {
                 let plane = SPlane::of(model);
                 Source::StateSpace {
-                    form: Box::new(HessenbergForm::of(Arch::new(), plane.matrix(model.a()), model)),
+                    form: Box::new(HessenbergForm::of(
+                        Arch::new(),
+                        plane.matrix(model.a()),
+                        model,
+                    )),
                     sample_time_s: model.timing().sample_time_s,
                     connected: connected(model),
                 }
             }
             Dynamics::Measured(response) => Source::Measured(response.clone()),
         };
-        Self { source, delays_s: delays_of(dynamics) }
+        Self {
+            source,
+            delays_s: delays_of(dynamics),
+        }
     }
 
     /// `H(j omega) = C (j omega I - A)^-1 B + D` on the grid, or measured data interpolated on it (M2); of a model of discrete
@@ -105,17 +125,32 @@ impl PreparedModel {
     /// [`PreparedModel::response`] at any frequencies `omega` \[rad/s\].
     pub fn at(&self, omega: &[f64]) -> FrequencyResponse {
         let mut response = self.undelayed(omega);
-        for (pair, &delay_s) in self.delays_s.iter().flat_map(|delays_s| delays_s.iter()).filter(|(_, by)| **by > 0.0) {
+        for (pair, &delay_s) in self
+            .delays_s
+            .iter()
+            .flat_map(|delays_s| delays_s.iter())
+            .filter(|(_, by)| **by > 0.0)
+        {
             let turned = |omega: &f64| Complex::from_polar(1.0, -omega * delay_s);
-            response.curves[pair].iter_mut().zip(omega).for_each(|(value, omega)| *value *= turned(omega));
+            response.curves[pair]
+                .iter_mut()
+                .zip(omega)
+                .for_each(|(value, omega)| *value *= turned(omega));
         }
         response
     }
 
     fn undelayed(&self, omega: &[f64]) -> FrequencyResponse {
         match &self.source {
-            Source::StateSpace { form, sample_time_s, connected } => {
-                let at: Vec<_> = omega.iter().map(|omega| shifted(*omega, *sample_time_s)).collect();
+            Source::StateSpace {
+                form,
+                sample_time_s,
+                connected,
+            } => {
+                let at: Vec<_> = omega
+                    .iter()
+                    .map(|omega| shifted(*omega, *sample_time_s))
+                    .collect();
                 let mut response = Arch::new().dispatch(Elimination { form, at: &at });
                 // Rounding errors stand where the input does not reach the output.
                 let apart = connected.iter().filter(|(_, connected)| !**connected);
@@ -142,11 +177,16 @@ fn shifted(omega: f64, sample_time_s: Option<f64>) -> Complex<f64> {
 
 /// The delays of a model's responses, where there are any.
 fn delays_of(dynamics: &Dynamics) -> Option<PairTable<f64>> {
-    let Dynamics::StateSpace(model) = dynamics else { return None };
+    let Dynamics::StateSpace(model) = dynamics else {
+        return None;
+    };
     let timing = model.timing();
     let is_delayed = timing.input_delays_s.is_some() || timing.output_delays_s.is_some();
-    is_delayed
-        .then(|| PairTable::from_fn(model.outputs(), model.inputs(), |pair| timing.delay_s(pair.output, pair.input)))
+    is_delayed.then(|| {
+        PairTable::from_fn(model.outputs(), model.inputs(), |pair| {
+            timing.delay_s(pair.output, pair.input)
+        })
+    })
 }
 
 /// Whether each response of a model is more than a structural zero: whether a chain of entries that are not zero leads from
@@ -155,11 +195,15 @@ fn delays_of(dynamics: &Dynamics) -> Option<PairTable<f64>> {
 /// Where it is not, the response is zero whatever the frequency. Computed responses would be rounding errors there, of which no
 /// ratio could be taken (M6).
 pub fn connected(model: &StateSpace) -> PairTable<bool> {
-    let reached: Vec<Vec<bool>> = (0..model.inputs()).map(|input| reached_states(model, input)).collect();
+    let reached: Vec<Vec<bool>> = (0..model.inputs())
+        .map(|input| reached_states(model, input))
+        .collect();
     PairTable::from_fn(model.outputs(), model.inputs(), |pair| {
         let through_states = || {
             let row = model.c().row(pair.output);
-            row.iter().zip(&reached[pair.input]).any(|(c, reached)| *reached && *c != 0.0)
+            row.iter()
+                .zip(&reached[pair.input])
+                .any(|(c, reached)| *reached && *c != 0.0)
         };
         model.d()[(pair.output, pair.input)] != 0.0 || through_states()
     })
@@ -168,12 +212,25 @@ pub fn connected(model: &StateSpace) -> PairTable<bool> {
 /// The states that lie on a chain of entries from the input of a response to its output.
 pub(super) fn leading_states(model: &StateSpace, pair: Pair) -> Vec<usize> {
     let reached = reached_states(model, pair.input);
-    let seen = spread(&model.a().transpose(), model.c().row(pair.output).iter().map(|c| *c != 0.0).collect());
-    (0..model.order()).filter(|&state| reached[state] && seen[state]).collect()
+    let seen = spread(
+        &model.a().transpose(),
+        model
+            .c()
+            .row(pair.output)
+            .iter()
+            .map(|c| *c != 0.0)
+            .collect(),
+    );
+    (0..model.order())
+        .filter(|&state| reached[state] && seen[state])
+        .collect()
 }
 
 fn reached_states(model: &StateSpace, input: usize) -> Vec<bool> {
-    spread(model.a(), model.b().column(input).iter().map(|b| *b != 0.0).collect())
+    spread(
+        model.a(),
+        model.b().column(input).iter().map(|b| *b != 0.0).collect(),
+    )
 }
 
 /// The marked states, and those that the columns of `a` lead to from them.
@@ -202,7 +259,13 @@ mod tests {
     use nalgebra::{DMatrix, dmatrix};
 
     fn oscillator() -> StateSpace {
-        StateSpace::new(dmatrix![0.0, 1.0; -9.0, -0.6], dmatrix![0.0; 1.0], dmatrix![1.0, 0.0], dmatrix![0.0]).unwrap()
+        StateSpace::new(
+            dmatrix![0.0, 1.0; -9.0, -0.6],
+            dmatrix![0.0; 1.0],
+            dmatrix![1.0, 0.0],
+            dmatrix![0.0],
+        )
+        .unwrap()
     }
 
     fn grid() -> FrequencyGrid {
@@ -210,7 +273,10 @@ mod tests {
     }
 
     fn curve(model: StateSpace) -> Vec<Complex<f64>> {
-        PreparedModel::of(&Dynamics::StateSpace(model)).response(&grid()).curve(Pair::new(0, 0)).to_vec()
+        PreparedModel::of(&Dynamics::StateSpace(model))
+            .response(&grid())
+            .curve(Pair::new(0, 0))
+            .to_vec()
     }
 
     /// `A_d = e^(A T)`, `B_d = integral of e^(A t) B`: a hold of the inputs between samples.
@@ -220,9 +286,18 @@ mod tests {
         joined.view_mut((0, 0), (n, n)).copy_from(model.a());
         joined.view_mut((0, n), (n, m)).copy_from(model.b());
         let powers = (joined * sample_time_s).exp();
-        let (a, b) = (powers.view((0, 0), (n, n)).into_owned(), powers.view((0, n), (n, m)).into_owned());
-        let timing = Timing { sample_time_s: Some(sample_time_s), ..Timing::default() };
-        StateSpace::new(a, b, model.c().clone(), model.d().clone()).unwrap().timed(timing).unwrap()
+        let (a, b) = (
+            powers.view((0, 0), (n, n)).into_owned(),
+            powers.view((0, n), (n, m)).into_owned(),
+        );
+        let timing = Timing {
+            sample_time_s: Some(sample_time_s),
+            ..Timing::default()
+        };
+        StateSpace::new(a, b, model.c().clone(), model.d().clone())
+            .unwrap()
+            .timed(timing)
+            .unwrap()
     }
 
     #[test]
@@ -232,21 +307,36 @@ mod tests {
         for ((value, expected), omega) in found.iter().zip(&expected).zip(grid.omega()) {
             let lag = Complex::from_polar(1.0, -0.5 * omega * sample_time_s);
             // What is left of the hold is (omega T)^2 / 24 = 6e-10 and what it folds down; and rounding 1e-16 / (omega T).
-            assert!((value - expected * lag).norm() < 1e-8 * expected.norm(), "{omega}");
+            assert!(
+                (value - expected * lag).norm() < 1e-8 * expected.norm(),
+                "{omega}"
+            );
         }
     }
 
     #[test]
     fn delays_of_channels_turn_the_phase_and_nothing_else() {
-        let delays =
-            Timing { sample_time_s: None, input_delays_s: Some(vec![0.03]), output_delays_s: Some(vec![0.02]) };
+        let delays = Timing {
+            sample_time_s: None,
+            input_delays_s: Some(vec![0.03]),
+            output_delays_s: Some(vec![0.02]),
+        };
         let delayed = curve(oscillator().timed(delays).unwrap());
         for ((value, plain), omega) in delayed.iter().zip(curve(oscillator())).zip(grid().omega()) {
             let expected = plain * Complex::from_polar(1.0, -0.05 * omega);
-            assert!((value - expected).norm() < 1e-15 * expected.norm(), "{omega}");
+            assert!(
+                (value - expected).norm() < 1e-15 * expected.norm(),
+                "{omega}"
+            );
         }
-        let zero = Timing { input_delays_s: Some(vec![0.0]), ..Timing::default() };
-        assert_eq!(curve(oscillator().timed(zero).unwrap()), curve(oscillator()));
+        let zero = Timing {
+            input_delays_s: Some(vec![0.0]),
+            ..Timing::default()
+        };
+        assert_eq!(
+            curve(oscillator().timed(zero).unwrap()),
+            curve(oscillator())
+        );
     }
 }
 
@@ -257,33 +347,52 @@ mod discrete_form_tests {
     use nalgebra::dmatrix;
 
     fn noise(seed: f64) -> impl Fn(usize, usize) -> f64 {
-        move |row, column| (seed + 7.3 * row as f64 + 2.9 * column as f64 * (1.0 + row as f64)).sin()
+        move |row, column| {
+            (seed + 7.3 * row as f64 + 2.9 * column as f64 * (1.0 + row as f64)).sin()
+        }
     }
 
     fn discrete(model: &StateSpace, sample_time_s: f64, omega: &[f64]) -> FrequencyResponse {
         let order = model.order();
-        let form = HessenbergForm::of(Arch::new(), model.a() - DMatrix::identity(order, order), model);
-        let at: Vec<_> = omega.iter().map(|omega| shifted(*omega, Some(sample_time_s))).collect();
-        Arch::new().dispatch(Elimination { form: &form, at: &at })
+        let form = HessenbergForm::of(
+            Arch::new(),
+            model.a() - DMatrix::identity(order, order),
+            model,
+        );
+        let at: Vec<_> = omega
+            .iter()
+            .map(|omega| shifted(*omega, Some(sample_time_s)))
+            .collect();
+        Arch::new().dispatch(Elimination {
+            form: &form,
+            at: &at,
+        })
     }
 
     #[test]
     fn a_first_order_recursion_has_its_known_response() {
         // y_k+1 = 0.5 y_k + u_k, T = 0.1 s: 1 / (z - 0.5) at z = e^(0.2j).
-        let model = StateSpace::new(dmatrix![0.5], dmatrix![1.0], dmatrix![1.0], dmatrix![0.0]).unwrap();
+        let model =
+            StateSpace::new(dmatrix![0.5], dmatrix![1.0], dmatrix![1.0], dmatrix![0.0]).unwrap();
         let response = discrete(&model, 0.1, &[2.0, 31.4, 31.5]);
         let values = response.curve(Pair::new(0, 0));
         let expected: Complex<f64> = (Complex::from_polar(1.0, 0.2) - 0.5).inv();
         let error: Complex<f64> = values[0] - expected;
         assert!(error.norm() < 1e-15 * expected.norm());
-        assert!(values[1].is_finite() && !values[2].is_finite(), "there is no response from pi / T = 31.42 rad/s on");
+        assert!(
+            values[1].is_finite() && !values[2].is_finite(),
+            "there is no response from pi / T = 31.42 rad/s on"
+        );
     }
 
     #[test]
     fn a_dense_solution_gives_the_same_to_1e_minus_9_of_the_largest() {
         for order in [1, 2, 7, 30] {
             let a = DMatrix::from_fn(order, order, noise(1.0)) * (0.9 / (order as f64).sqrt());
-            let (b, c) = (DMatrix::from_fn(order, 3, noise(2.0)), DMatrix::from_fn(2, order, noise(3.0)));
+            let (b, c) = (
+                DMatrix::from_fn(order, 3, noise(2.0)),
+                DMatrix::from_fn(2, order, noise(3.0)),
+            );
             let d = DMatrix::from_fn(2, 3, noise(4.0));
             let model = StateSpace::new(a.clone(), b.clone(), c.clone(), d.clone()).unwrap();
             let omega: Vec<f64> = (0..50).map(|k| 0.01 * 1.15_f64.powi(k)).collect();
@@ -293,21 +402,29 @@ mod discrete_form_tests {
             for (k, omega) in omega.iter().enumerate() {
                 let z = Complex::from_polar(1.0, 0.02 * omega);
                 let resolvent = DMatrix::from_diagonal_element(order, order, z) - complex(&a);
-                let expected = complex(&c) * resolvent.lu().solve(&complex(&b)).unwrap() + complex(&d);
+                let expected =
+                    complex(&c) * resolvent.lu().solve(&complex(&b)).unwrap() + complex(&d);
                 for (pair, curve) in response.curves().iter() {
                     let value = expected[(pair.output, pair.input)];
                     largest = largest.max(value.norm());
                     error = error.max((curve[k] - value).norm());
                 }
             }
-            assert!(error <= 1e-11 * largest, "order {order}: {error:e} of {largest:e}");
+            assert!(
+                error <= 1e-11 * largest,
+                "order {order}: {error:e} of {largest:e}"
+            );
         }
     }
 
     #[test]
     fn a_model_without_states_is_its_feed_through() {
-        let gain =
-            StateSpace::new(DMatrix::zeros(0, 0), DMatrix::zeros(0, 2), DMatrix::zeros(1, 0), dmatrix![3.0, 4.0]);
+        let gain = StateSpace::new(
+            DMatrix::zeros(0, 0),
+            DMatrix::zeros(0, 2),
+            DMatrix::zeros(1, 0),
+            dmatrix![3.0, 4.0],
+        );
         let response = discrete(&gain.unwrap(), 0.1, &[1.0]);
         assert_eq!(response.curve(Pair::new(0, 1)), [Complex::from(4.0)]);
     }
@@ -315,9 +432,17 @@ mod discrete_form_tests {
     #[test]
     fn a_pole_on_the_unit_circle_is_not_finite_there_only() {
         // z^2 + 1: poles at +-j, that is omega T = pi / 2.
-        let model =
-            StateSpace::new(dmatrix![0.0, 1.0; -1.0, 0.0], dmatrix![0.0; 1.0], dmatrix![1.0, 0.0], dmatrix![0.0]);
-        let response = discrete(&model.unwrap(), 1.0, &[1.0, std::f64::consts::FRAC_PI_2, 2.0]);
+        let model = StateSpace::new(
+            dmatrix![0.0, 1.0; -1.0, 0.0],
+            dmatrix![0.0; 1.0],
+            dmatrix![1.0, 0.0],
+            dmatrix![0.0],
+        );
+        let response = discrete(
+            &model.unwrap(),
+            1.0,
+            &[1.0, std::f64::consts::FRAC_PI_2, 2.0],
+        );
         let values = response.curve(Pair::new(0, 0));
         // The machine's pi is not pi: what is left of the pole is of the order of 1 / rounding.
         assert!(!values[1].is_finite() || values[1].norm() > 1e15);
@@ -336,15 +461,26 @@ mod structure_tests {
 
     #[test]
     fn two_separate_lags_do_not_answer_to_each_other() {
-        let (a, b, c) = (dmatrix![-1.0, 0.0; 0.0, -2.0], dmatrix![1.0, 0.0; 0.0, 1.0], dmatrix![1.0, 0.0; 0.0, 1.0]);
+        let (a, b, c) = (
+            dmatrix![-1.0, 0.0; 0.0, -2.0],
+            dmatrix![1.0, 0.0; 0.0, 1.0],
+            dmatrix![1.0, 0.0; 0.0, 1.0],
+        );
         let model = StateSpace::new(a, b, c, dmatrix![0.0, 0.0; 0.0, 0.0]).unwrap();
         let table = connected(&model);
-        assert_eq!(table.marked().collect::<Vec<_>>(), [Pair::new(0, 0), Pair::new(1, 1)]);
+        assert_eq!(
+            table.marked().collect::<Vec<_>>(),
+            [Pair::new(0, 0), Pair::new(1, 1)]
+        );
     }
 
     #[test]
     fn a_chain_of_states_or_the_feed_through_connects() {
-        let (a, b, c) = (dmatrix![-1.0, 0.0; 3.0, -2.0], dmatrix![1.0, 0.0; 0.0, 0.0], dmatrix![0.0, 1.0]);
+        let (a, b, c) = (
+            dmatrix![-1.0, 0.0; 3.0, -2.0],
+            dmatrix![1.0, 0.0; 0.0, 0.0],
+            dmatrix![0.0, 1.0],
+        );
         let model = StateSpace::new(a, b, c, dmatrix![0.0, 5.0]).unwrap();
         assert_eq!(connected(&model).marked().count(), 2);
     }

@@ -53,7 +53,9 @@ pub enum ZerosError {
 /// The finite transmission zeros of a model's response; none of a measured one, which has no states, and of one that it does not have.
 pub fn finite_zeros(dynamics: &Dynamics, pair: Pair) -> Vec<Complex<f64>> {
     match dynamics {
-        Dynamics::StateSpace(model) => transmission_zeros(model, pair).map(|zeros| zeros.finite).unwrap_or_default(),
+        Dynamics::StateSpace(model) => transmission_zeros(model, pair)
+            .map(|zeros| zeros.finite)
+            .unwrap_or_default(),
         Dynamics::Measured(_) => Vec::new(),
     }
 }
@@ -72,8 +74,14 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
         return Err(ZerosError::OutsideModel { pair });
     }
     let plane = SPlane::of(model);
-    let minimal = single(model, plane, pair).reached().transposed().reached().transposed().reached();
-    let (reduced, mut infinite) = without_infinite_zeros(minimal.clone()).ok_or(ZerosError::NoResponse)?;
+    let minimal = single(model, plane, pair)
+        .reached()
+        .transposed()
+        .reached()
+        .transposed()
+        .reached();
+    let (reduced, mut infinite) =
+        without_infinite_zeros(minimal.clone()).ok_or(ZerosError::NoResponse)?;
     let closed = &reduced.a - &reduced.b * reduced.c.transpose() / reduced.d;
     let form = SchurForm::of(&closed).ok_or(ZerosError::NotConverged)?;
     let mut finite = Vec::with_capacity(closed.nrows());
@@ -81,11 +89,20 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
         let zero = polished(&minimal, zero);
         let mirrored = zero.im > 0.0;
         match plane.value(zero) {
-            Some(zero) => finite.extend([Some(zero), mirrored.then(|| zero.conj())].into_iter().flatten()),
+            Some(zero) => finite.extend(
+                [Some(zero), mirrored.then(|| zero.conj())]
+                    .into_iter()
+                    .flatten(),
+            ),
             None => infinite += 1 + usize::from(mirrored),
         }
     }
-    finite.sort_by(|a, b| a.norm().total_cmp(&b.norm()).then(a.re.total_cmp(&b.re)).then(b.im.total_cmp(&a.im)));
+    finite.sort_by(|a, b| {
+        a.norm()
+            .total_cmp(&b.norm())
+            .then(a.re.total_cmp(&b.re))
+            .then(b.im.total_cmp(&a.im))
+    });
     Ok(TransmissionZeros { finite, infinite })
 }
 
@@ -96,7 +113,12 @@ fn single(model: &StateSpace, plane: SPlane, pair: Pair) -> SingleResponse {
     let mut b = model.b().columns(pair.input, 1).select_rows(&states);
     let mut c = model.c().rows(pair.output, 1).select_columns(&states);
     balance(&mut a, &mut b, &mut c);
-    SingleResponse { a, b: b.column(0).into_owned(), c: c.row(0).transpose(), d: model.d()[(pair.output, pair.input)] }
+    SingleResponse {
+        a,
+        b: b.column(0).into_owned(),
+        c: c.row(0).transpose(),
+        d: model.d()[(pair.output, pair.input)],
+    }
 }
 
 /// Takes the zeros at infinity out of a Hessenberg model, and counts them; `None` where nothing is left.
@@ -110,7 +132,11 @@ fn without_infinite_zeros(mut model: SingleResponse) -> Option<(SingleResponse, 
     loop {
         let states = model.a.nrows();
         let through_states = model.b.norm() * model.c.norm() / size;
-        let rounding = if infinite == 0 { 0.0 } else { ROUNDING * model.c.norm() };
+        let rounding = if infinite == 0 {
+            0.0
+        } else {
+            ROUNDING * model.c.norm()
+        };
         if model.d != 0.0 && model.d.abs() > rounding.max(through_states / FARTHEST) {
             return Some((model, infinite));
         }
@@ -130,7 +156,10 @@ fn without_infinite_zeros(mut model: SingleResponse) -> Option<(SingleResponse, 
 }
 
 /// `H(s)` and `H'(s) = -c (sI - A)^-2 b`; `None` at a pole.
-fn response_and_slope(model: &SingleResponse, s: Complex<f64>) -> Option<(Complex<f64>, Complex<f64>)> {
+fn response_and_slope(
+    model: &SingleResponse,
+    s: Complex<f64>,
+) -> Option<(Complex<f64>, Complex<f64>)> {
     let resolvent = DMatrix::from_fn(model.a.nrows(), model.a.nrows(), |row, column| {
         let diagonal = if row == column { s } else { Complex::from(0.0) };
         diagonal - model.a[(row, column)]
@@ -150,7 +179,9 @@ fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
     /// Share of its size by which rounding may have moved a zero.
     const CLOSE: f64 = 1e-3;
     let mut best = zero;
-    let Some((mut value, mut slope)) = response_and_slope(model, zero) else { return zero };
+    let Some((mut value, mut slope)) = response_and_slope(model, zero) else {
+        return zero;
+    };
     for _ in 0..MOST_STEPS {
         let mut next = best - value / slope;
         if zero.im == 0.0 {
@@ -212,7 +243,12 @@ impl SingleResponse {
 
     /// The model with inputs and outputs interchanged: what the input reaches is what the output saw.
     pub(super) fn transposed(self) -> Self {
-        Self { a: self.a.transpose(), b: self.c, c: self.b, d: self.d }
+        Self {
+            a: self.a.transpose(),
+            b: self.c,
+            c: self.b,
+            d: self.d,
+        }
     }
 
     /// Reflects the states so that `axis`, which is zero before `at`, has its only entry there.
@@ -231,7 +267,9 @@ impl SingleResponse {
         if at == 0 {
             self.b.rows_mut(1, self.b.nrows() - 1).fill(0.0);
         } else {
-            self.a.view_mut((at + 1, at - 1), (self.a.nrows() - at - 1, 1)).fill(0.0);
+            self.a
+                .view_mut((at + 1, at - 1), (self.a.nrows() - at - 1, 1))
+                .fill(0.0);
         }
     }
 
@@ -252,13 +290,17 @@ mod tests {
     use nalgebra::{dmatrix, dvector};
     use proptest::prelude::*;
 
-    const ONLY: Pair = Pair { output: 0, input: 0 };
+    const ONLY: Pair = Pair {
+        output: 0,
+        input: 0,
+    };
 
     /// The polynomial with these real roots, highest power first.
     fn polynomial(roots: &[f64]) -> Vec<f64> {
         roots.iter().fold(vec![1.0], |of, root| {
             let shifted = of.iter().copied().chain([0.0]);
-            let scaled = std::iter::once(0.0).chain(of.iter().map(|coefficient| -root * coefficient));
+            let scaled =
+                std::iter::once(0.0).chain(of.iter().map(|coefficient| -root * coefficient));
             shifted.zip(scaled).map(|(a, b)| a + b).collect()
         })
     }
@@ -270,37 +312,73 @@ mod tests {
         while numerator.len() <= n {
             numerator.insert(0, 0.0);
         }
-        let a = DMatrix::from_fn(n, n, |row, column| match (row + 1 == n, column == row + 1) {
-            (true, _) => -denominator[n - column],
-            (false, next) => f64::from(u8::from(next)),
+        let a = DMatrix::from_fn(n, n, |row, column| {
+            match (row + 1 == n, column == row + 1) {
+                (true, _) => -denominator[n - column],
+                (false, next) => f64::from(u8::from(next)),
+            }
         });
         let b = DMatrix::from_fn(n, 1, |row, _| f64::from(u8::from(row + 1 == n)));
         let through = numerator[0];
-        let c = DMatrix::from_fn(1, n, |_, column| gain * (numerator[n - column] - through * denominator[n - column]));
+        let c = DMatrix::from_fn(1, n, |_, column| {
+            gain * (numerator[n - column] - through * denominator[n - column])
+        });
         StateSpace::new(a, b, c, dmatrix![gain * through]).unwrap()
     }
 
     /// The same in other coordinates of the states.
     fn transformed(model: &StateSpace, by: &DMatrix<f64>) -> StateSpace {
         let inverse = by.clone().try_inverse().unwrap();
-        StateSpace::new(by * model.a() * &inverse, by * model.b(), model.c() * inverse, model.d().clone()).unwrap()
+        StateSpace::new(
+            by * model.a() * &inverse,
+            by * model.b(),
+            model.c() * inverse,
+            model.d().clone(),
+        )
+        .unwrap()
     }
 
     fn assert_zeros(model: &StateSpace, expected: &[f64], infinite: usize, tolerance: f64) {
         let found = transmission_zeros(model, ONLY).unwrap();
-        assert_eq!((found.finite.len(), found.infinite), (expected.len(), infinite), "{found:?}");
+        assert_eq!(
+            (found.finite.len(), found.infinite),
+            (expected.len(), infinite),
+            "{found:?}"
+        );
         for zero in expected {
-            let nearest = found.finite.iter().map(|found| (found - zero).norm()).fold(f64::INFINITY, f64::min);
-            assert!(nearest <= tolerance * (1.0 + zero.abs()), "{zero}: {found:?}");
+            let nearest = found
+                .finite
+                .iter()
+                .map(|found| (found - zero).norm())
+                .fold(f64::INFINITY, f64::min);
+            assert!(
+                nearest <= tolerance * (1.0 + zero.abs()),
+                "{zero}: {found:?}"
+            );
         }
     }
 
     #[test]
     fn the_zeros_of_a_ratio_of_polynomials_are_found() {
         // Conditioning of the roots of polynomials of degree 2 to 5 with roots this far apart.
-        assert_zeros(&canonical(2.0, &[-1.0, -2.0], &[-3.0, -4.0, -5.0]), &[-1.0, -2.0], 1, 1e-12);
-        assert_zeros(&canonical(-0.1, &[-1.0, 2.0, -8.0], &[-3.0, -4.0, -5.0]), &[-1.0, 2.0, -8.0], 0, 1e-12);
-        assert_zeros(&canonical(1e-6, &[0.0, -30.0], &[-1.0, -2.0, -7.0, -9.0, -20.0]), &[0.0, -30.0], 3, 1e-10);
+        assert_zeros(
+            &canonical(2.0, &[-1.0, -2.0], &[-3.0, -4.0, -5.0]),
+            &[-1.0, -2.0],
+            1,
+            1e-12,
+        );
+        assert_zeros(
+            &canonical(-0.1, &[-1.0, 2.0, -8.0], &[-3.0, -4.0, -5.0]),
+            &[-1.0, 2.0, -8.0],
+            0,
+            1e-12,
+        );
+        assert_zeros(
+            &canonical(1e-6, &[0.0, -30.0], &[-1.0, -2.0, -7.0, -9.0, -20.0]),
+            &[0.0, -30.0],
+            3,
+            1e-10,
+        );
         assert_zeros(&canonical(5.0, &[], &[-1.0, -2.0, -3.0]), &[], 3, 1e-12);
     }
 
@@ -314,7 +392,10 @@ mod tests {
             dmatrix![0.0],
         );
         let found = transmission_zeros(&model.unwrap(), ONLY).unwrap();
-        assert_eq!((found.finite.len(), found.infinite, found.finite[0]), (2, 1, found.finite[1].conj()));
+        assert_eq!(
+            (found.finite.len(), found.infinite, found.finite[0]),
+            (2, 1, found.finite[1].conj())
+        );
         assert!((found.finite[0] - Complex::new(-0.1, 3.99_f64.sqrt())).norm() < 1e-13);
     }
 
@@ -329,8 +410,12 @@ mod tests {
         );
         // 1 + 2 / (s + 1).
         assert_zeros(&model.unwrap(), &[-3.0], 0, 1e-14);
-        let hidden =
-            SingleResponse { a: dmatrix![-1.5, 0.5; 0.5, -1.5], b: dvector![1.0, 1.0], c: dvector![1.0, 0.0], d: 1.0 };
+        let hidden = SingleResponse {
+            a: dmatrix![-1.5, 0.5; 0.5, -1.5],
+            b: dvector![1.0, 1.0],
+            c: dvector![1.0, 0.0],
+            d: 1.0,
+        };
         let model = StateSpace::new(
             hidden.a.clone(),
             DMatrix::from_column_slice(2, 1, hidden.b.as_slice()),
@@ -344,20 +429,48 @@ mod tests {
     #[test]
     fn zeros_of_discrete_time_are_those_of_the_recursion() {
         // (z - 0.9) z / ((z - 0.5) (z - 0.8) (z + 0.3)), T = 0.1 s: s = ln 0.9 / T; z = 0 has no s.
-        let timing = Timing { sample_time_s: Some(0.1), ..Timing::default() };
-        let model = canonical(2.0, &[0.9, 0.0], &[0.5, 0.8, -0.3]).timed(timing).unwrap();
+        let timing = Timing {
+            sample_time_s: Some(0.1),
+            ..Timing::default()
+        };
+        let model = canonical(2.0, &[0.9, 0.0], &[0.5, 0.8, -0.3])
+            .timed(timing)
+            .unwrap();
         assert_zeros(&model, &[0.9_f64.ln() / 0.1], 2, 1e-12);
     }
 
     #[test]
     fn a_response_that_is_nowhere_is_refused() {
-        let apart =
-            StateSpace::new(dmatrix![-1.0, 0.0; 0.0, -2.0], dmatrix![1.0; 0.0], dmatrix![0.0, 1.0], dmatrix![0.0]);
-        assert_eq!(transmission_zeros(&apart.unwrap(), ONLY), Err(ZerosError::NoResponse));
-        let gain = StateSpace::new(DMatrix::zeros(0, 0), DMatrix::zeros(0, 1), DMatrix::zeros(1, 0), dmatrix![3.0]);
+        let apart = StateSpace::new(
+            dmatrix![-1.0, 0.0; 0.0, -2.0],
+            dmatrix![1.0; 0.0],
+            dmatrix![0.0, 1.0],
+            dmatrix![0.0],
+        );
+        assert_eq!(
+            transmission_zeros(&apart.unwrap(), ONLY),
+            Err(ZerosError::NoResponse)
+        );
+        let gain = StateSpace::new(
+            DMatrix::zeros(0, 0),
+            DMatrix::zeros(0, 1),
+            DMatrix::zeros(1, 0),
+            dmatrix![3.0],
+        );
         let gain = gain.unwrap();
-        assert_eq!(transmission_zeros(&gain, ONLY), Ok(TransmissionZeros { finite: Vec::new(), infinite: 0 }));
-        assert!(transmission_zeros(&gain, Pair::new(1, 0)).unwrap_err().to_string().contains("output number 2"));
+        assert_eq!(
+            transmission_zeros(&gain, ONLY),
+            Ok(TransmissionZeros {
+                finite: Vec::new(),
+                infinite: 0
+            })
+        );
+        assert!(
+            transmission_zeros(&gain, Pair::new(1, 0))
+                .unwrap_err()
+                .to_string()
+                .contains("output number 2")
+        );
     }
 
     proptest! {
@@ -404,19 +517,39 @@ mod staircase_tests {
     fn states_that_the_input_does_not_reach_are_left_out() {
         // Two lags of which the input drives the sum only: seen in other coordinates, one state.
         let a = dmatrix![-1.5, 0.5; 0.5, -1.5];
-        let model = SingleResponse { a, b: dvector![1.0, 1.0], c: dvector![1.0, 0.0], d: 0.25 };
+        let model = SingleResponse {
+            a,
+            b: dvector![1.0, 1.0],
+            c: dvector![1.0, 0.0],
+            d: 0.25,
+        };
         let reached = model.clone().reached();
         assert_eq!(reached.a.nrows(), 1);
         // 0.25 + 1 / (s + 1): the rounding of one reflection.
-        assert!((reached.a[(0, 0)] + 1.0).abs() < 1e-14 && (reached.b[0] * reached.c[0] - 1.0).abs() < 1e-14);
-        assert_eq!(model.transposed().reached().a.nrows(), 2, "the first state alone sees both");
+        assert!(
+            (reached.a[(0, 0)] + 1.0).abs() < 1e-14
+                && (reached.b[0] * reached.c[0] - 1.0).abs() < 1e-14
+        );
+        assert_eq!(
+            model.transposed().reached().a.nrows(),
+            2,
+            "the first state alone sees both"
+        );
     }
 
     #[test]
     fn what_an_input_reaches_is_a_chain() {
-        let a = DMatrix::from_fn(6, 6, |row, column| ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin());
+        let a = DMatrix::from_fn(6, 6, |row, column| {
+            ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin()
+        });
         let b = DVector::from_fn(6, |row, _| 1.0 / (1.0 + row as f64));
-        let reached = SingleResponse { a: a.clone(), b: b.clone(), c: b.clone(), d: 0.0 }.reached();
+        let reached = SingleResponse {
+            a: a.clone(),
+            b: b.clone(),
+            c: b.clone(),
+            d: 0.0,
+        }
+        .reached();
         assert_eq!(reached.a.nrows(), 6);
         assert_eq!(reached.b.iter().filter(|entry| **entry != 0.0).count(), 1);
         let below = (0..6).flat_map(|column| (column + 2..6).map(move |row| (row, column)));

@@ -27,20 +27,27 @@ impl FirstOrderHold {
     pub fn of(model: &StateSpace, sample_time_s: f64) -> Option<Self> {
         let (n, m) = (model.order(), model.inputs());
         let mut exponent = DMatrix::zeros(n + 2 * m, n + 2 * m);
-        exponent.view_mut((0, 0), (n, n)).copy_from(&model.a().scale(sample_time_s));
-        exponent.view_mut((0, n), (n, m)).copy_from(&model.b().scale(sample_time_s));
+        exponent
+            .view_mut((0, 0), (n, n))
+            .copy_from(&model.a().scale(sample_time_s));
+        exponent
+            .view_mut((0, n), (n, m))
+            .copy_from(&model.b().scale(sample_time_s));
         exponent.view_mut((n, n + m), (m, m)).fill_with_identity();
         if !exponent.norm().is_finite() {
             return None;
         }
         let exponential = exponent.exp();
-        exponential.iter().all(|entry| entry.is_finite()).then(|| Self {
-            phi: exponential.view((0, 0), (n, n)).into_owned(),
-            gamma: exponential.view((0, n), (n, m)).into_owned(),
-            gamma_slope: exponential.view((0, n + m), (n, m)).into_owned(),
-            c: model.c().clone(),
-            d: model.d().clone(),
-        })
+        exponential
+            .iter()
+            .all(|entry| entry.is_finite())
+            .then(|| Self {
+                phi: exponential.view((0, 0), (n, n)).into_owned(),
+                gamma: exponential.view((0, n), (n, m)).into_owned(),
+                gamma_slope: exponential.view((0, n + m), (n, m)).into_owned(),
+                c: model.c().clone(),
+                d: model.d().clone(),
+            })
     }
 
     /// The outputs from the state `initial` for `inputs`, both one row a sample.
@@ -67,7 +74,9 @@ impl FirstOrderHold {
         let mut responses = DMatrix::zeros(samples * outputs, states);
         let mut response = self.c.clone();
         for n in 0..samples {
-            responses.rows_mut(n * outputs, outputs).copy_from(&response);
+            responses
+                .rows_mut(n * outputs, outputs)
+                .copy_from(&response);
             response = &response * &self.phi;
         }
         responses

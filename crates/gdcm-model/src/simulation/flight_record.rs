@@ -38,7 +38,10 @@ impl FlightRecord {
     /// Samples of one channel.
     #[must_use]
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
-        signal.role.of(&self.inputs, &self.outputs).column(signal.index)
+        signal
+            .role
+            .of(&self.inputs, &self.outputs)
+            .column(signal.index)
     }
 }
 
@@ -46,7 +49,10 @@ impl Segment {
     /// Samples of one channel.
     #[must_use]
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
-        signal.role.of(&self.inputs, &self.outputs).column(signal.index)
+        signal
+            .role
+            .of(&self.inputs, &self.outputs)
+            .column(signal.index)
     }
 }
 

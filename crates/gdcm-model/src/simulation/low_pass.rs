@@ -42,7 +42,11 @@ impl LowPass {
         }
         let tap = |n: usize| {
             let n = n as f64;
-            let sinc = if n == 0.0 { step / PI } else { (step * n).sin() / (PI * n) };
+            let sinc = if n == 0.0 {
+                step / PI
+            } else {
+                (step * n).sin() / (PI * n)
+            };
             sinc * (0.54 + 0.46 * (PI * n / length).cos())
         };
         let mut half: Vec<f64> = (0..=length as usize).map(tap).collect();
@@ -59,7 +63,8 @@ impl LowPass {
         let filtered = |n: usize| {
             let centre = n + reach;
             let sides = |(k, h): (usize, &f64)| h * (extended[centre - k] + extended[centre + k]);
-            self.half[0] * extended[centre] + self.half.iter().enumerate().skip(1).map(sides).sum::<f64>()
+            self.half[0] * extended[centre]
+                + self.half.iter().enumerate().skip(1).map(sides).sum::<f64>()
         };
         (0..samples.len()).map(filtered).collect()
     }
@@ -67,13 +72,22 @@ impl LowPass {
     /// Every channel of a segment through the filter with cut-off `omega` \[rad/s\]; as it is where there is nothing to take off.
     #[must_use]
     pub fn applied(omega: f64, segment: &Segment) -> Segment {
-        let Some(low_pass) = Self::new(omega, segment.sample_time_s) else { return segment.clone() };
+        let Some(low_pass) = Self::new(omega, segment.sample_time_s) else {
+            return segment.clone();
+        };
         let side = |samples: &DMatrix<f64>| {
-            let filtered: Vec<f64> =
-                samples.as_slice().chunks(samples.nrows().max(1)).flat_map(|x| low_pass.filter(x)).collect();
+            let filtered: Vec<f64> = samples
+                .as_slice()
+                .chunks(samples.nrows().max(1))
+                .flat_map(|x| low_pass.filter(x))
+                .collect();
             DMatrix::from_vec(samples.nrows(), samples.ncols(), filtered)
         };
-        Segment { inputs: side(&segment.inputs), outputs: side(&segment.outputs), ..segment.clone() }
+        Segment {
+            inputs: side(&segment.inputs),
+            outputs: side(&segment.outputs),
+            ..segment.clone()
+        }
     }
 }
 

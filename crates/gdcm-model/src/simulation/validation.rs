@@ -29,25 +29,44 @@ impl ValidationSettings {
     /// Windows of 10 s; signals low-passed at twice the highest line used, `highest` \[rad/s\] (M14, 6).
     #[must_use]
     pub fn filtered(highest: f64) -> Self {
-        Self { longest_window_s: 10.0, low_pass: Some(2.0 * highest) }
+        Self {
+            longest_window_s: 10.0,
+            low_pass: Some(2.0 * highest),
+        }
     }
 
     /// Windows of 10 s of the signals as they are, to be drawn.
     #[must_use]
     pub fn unfiltered() -> Self {
-        Self { longest_window_s: 10.0, low_pass: None }
+        Self {
+            longest_window_s: 10.0,
+            low_pass: None,
+        }
     }
 
     /// The same with windows that all of `models` are compared over: the shortest that one of them asks for. A model that has too few samples
     /// in its own windows is compared with nothing, and shortens none of the others'.
     #[must_use]
-    pub fn common_to<'m>(self, models: impl IntoIterator<Item = &'m StateSpace>, segments: &[Segment]) -> Self {
+    pub fn common_to<'m>(
+        self,
+        models: impl IntoIterator<Item = &'m StateSpace>,
+        segments: &[Segment],
+    ) -> Self {
         let own = |model: &StateSpace| {
             let window_s = window_s(model, self.longest_window_s)?;
-            segments.iter().any(|segment| windows_in(model, segment, window_s).is_some()).then_some(window_s)
+            segments
+                .iter()
+                .any(|segment| windows_in(model, segment, window_s).is_some())
+                .then_some(window_s)
         };
-        let longest_window_s = models.into_iter().filter_map(own).fold(self.longest_window_s, f64::min);
-        Self { longest_window_s, ..self }
+        let longest_window_s = models
+            .into_iter()
+            .filter_map(own)
+            .fold(self.longest_window_s, f64::min);
+        Self {
+            longest_window_s,
+            ..self
+        }
     }
 }
 
@@ -87,7 +106,9 @@ pub enum ValidationError {
     #[error("record {} has other channels than the model", .0 + 1)]
     ChannelsDiffer(usize),
     /// The response of the model over one sample is not finite.
-    #[error("the model cannot be simulated: its matrices do not fit each other or hold values that are not finite")]
+    #[error(
+        "the model cannot be simulated: its matrices do not fit each other or hold values that are not finite"
+    )]
     NotSimulated,
     /// The longest window is no time.
     #[error("windows must last longer than 0 s")]
@@ -124,41 +145,58 @@ pub fn validate(
     if segments.is_empty() {
         return Err(ValidationError::NoSegments);
     }
-    let differs = |segment: &&Segment| (segment.outputs.ncols(), segment.inputs.ncols()) != model.d().shape();
+    let differs =
+        |segment: &&Segment| (segment.outputs.ncols(), segment.inputs.ncols()) != model.d().shape();
     if let Some(segment) = segments.iter().find(differs) {
         return Err(ValidationError::ChannelsDiffer(segment.record));
     }
     if settings.longest_window_s.is_nan() || settings.longest_window_s <= 0.0 {
         return Err(ValidationError::NoWindow);
     }
-    let window_s = window_s(model, settings.longest_window_s).ok_or(ValidationError::NotSimulated)?;
+    let window_s =
+        window_s(model, settings.longest_window_s).ok_or(ValidationError::NotSimulated)?;
     let filtered = each(executor, segments, |segment| match settings.low_pass {
         Some(omega) => LowPass::applied(omega, segment),
         None => segment.clone(),
     });
     let std = deviations(filtered.iter().map(|segment| &segment.outputs));
-    let windows = each(executor, &filtered, |segment| windows(model, segment, window_s, &std));
-    let windows: Vec<ValidationWindow> =
-        windows.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
+    let windows = each(executor, &filtered, |segment| {
+        windows(model, segment, window_s, &std)
+    });
+    let windows: Vec<ValidationWindow> = windows
+        .into_iter()
+        .collect::<Result<Vec<_>, _>>()?
+        .into_iter()
+        .flatten()
+        .collect();
     if windows.is_empty() {
         return Err(ValidationError::TooShort(window_s));
     }
     let (fit_percent, theil) = figures(&windows);
-    Ok(Validation { windows, fit_percent, theil })
+    Ok(Validation {
+        windows,
+        fit_percent,
+        theil,
+    })
 }
 
 /// Length of a window \[s\]; none where the model is not finite or its poles are not found.
 fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
     let fastest = poles(model)?.iter().map(|pole| pole.re).fold(0.0, f64::max);
-    Some(if fastest > 0.0 { longest_s.min(TIME_CONSTANTS / fastest) } else { longest_s })
+    Some(if fastest > 0.0 {
+        longest_s.min(TIME_CONSTANTS / fastest)
+    } else {
+        longest_s
+    })
 }
 
 /// In how many windows a segment is cut; none where they hold too few samples for the initial state of a model.
 fn windows_in(model: &StateSpace, segment: &Segment, window_s: f64) -> Option<usize> {
     let (samples, outputs) = segment.outputs.shape();
     // A millionth of a window is rounding.
-    let count =
-        (samples as f64 * segment.sample_time_s / window_s - 1e-6).ceil().clamp(1.0, samples.max(1) as f64) as usize;
+    let count = (samples as f64 * segment.sample_time_s / window_s - 1e-6)
+        .ceil()
+        .clamp(1.0, samples.max(1) as f64) as usize;
     ((samples / count) * outputs >= OVER_UNKNOWNS * (model.order() + outputs)).then_some(count)
 }
 
@@ -169,8 +207,11 @@ fn windows(
     window_s: f64,
     std: &[f64],
 ) -> Result<Vec<ValidationWindow>, ValidationError> {
-    let held = FirstOrderHold::of(model, segment.sample_time_s).ok_or(ValidationError::NotSimulated)?;
-    let Some(count) = windows_in(model, segment, window_s) else { return Ok(Vec::new()) };
+    let held =
+        FirstOrderHold::of(model, segment.sample_time_s).ok_or(ValidationError::NotSimulated)?;
+    let Some(count) = windows_in(model, segment, window_s) else {
+        return Ok(Vec::new());
+    };
     let samples = segment.outputs.nrows();
     let longest = samples.div_ceil(count);
     let free = held.free_responses(longest);
@@ -179,7 +220,13 @@ fn windows(
         let bound = |k: usize| (samples as u128 * k as u128 / count as u128) as usize;
         let (from, length) = (bound(k), bound(k + 1) - bound(k));
         let measured = segment.outputs.rows(from, length).into_owned();
-        let simulated = best_simulation(&held, &free, segment.inputs.rows(from, length).into_owned(), &measured, std)?;
+        let simulated = best_simulation(
+            &held,
+            &free,
+            segment.inputs.rows(from, length).into_owned(),
+            &measured,
+            std,
+        )?;
         Some(ValidationWindow {
             record: segment.record,
             start_s: segment.start_s + segment.sample_time_s * from as f64,
@@ -188,7 +235,9 @@ fn windows(
             simulated,
         })
     };
-    (0..count).map(|k| window(k).ok_or(ValidationError::NotFinite)).collect()
+    (0..count)
+        .map(|k| window(k).ok_or(ValidationError::NotFinite))
+        .collect()
 }
 
 /// The outputs for `inputs` with the initial state and the offsets that bring them closest to `measured`; none where they are
@@ -209,15 +258,17 @@ fn best_simulation(
     for n in 0..samples {
         for (o, std) in std.iter().enumerate() {
             let mut row = rows.row_mut(n * outputs + o);
-            row.columns_mut(0, states).copy_from(&(free.row(n * outputs + o) / *std));
+            row.columns_mut(0, states)
+                .copy_from(&(free.row(n * outputs + o) / *std));
             row[states + o] = 1.0 / std;
             row[states + outputs] = (measured[(n, o)] - forced[(n, o)]) / std;
         }
     }
     let unknowns = solve(rows)?;
     let free_part = free.rows(0, samples * outputs) * unknowns.rows(0, states);
-    let simulated =
-        DMatrix::from_fn(samples, outputs, |n, o| forced[(n, o)] + free_part[n * outputs + o] + unknowns[states + o]);
+    let simulated = DMatrix::from_fn(samples, outputs, |n, o| {
+        forced[(n, o)] + free_part[n * outputs + o] + unknowns[states + o]
+    });
     simulated.iter().all(|y| y.is_finite()).then_some(simulated)
 }
 
@@ -229,14 +280,22 @@ fn solve(rows: DMatrix<f64>) -> Option<DVector<f64>> {
     }
     let r = rows.qr().unpack_r();
     let mut a = r.view((0, 0), (unknowns, unknowns)).into_owned();
-    let lengths =
-        RowDVector::from_fn(unknowns, |_, column| Some(a.column(column).norm()).filter(|x| *x > 0.0).unwrap_or(1.0));
+    let lengths = RowDVector::from_fn(unknowns, |_, column| {
+        Some(a.column(column).norm())
+            .filter(|x| *x > 0.0)
+            .unwrap_or(1.0)
+    });
     for (mut column, length) in a.column_iter_mut().zip(lengths.iter()) {
         column /= *length;
     }
     let svd = a.try_svd(true, true, f64::EPSILON, 100 * (unknowns + 1))?;
     let tolerance = RANK_TOLERANCE * svd.singular_values.max();
-    let solution = svd.solve(&r.view((0, unknowns), (unknowns, 1)).into_owned(), tolerance).ok()?;
+    let solution = svd
+        .solve(
+            &r.view((0, unknowns), (unknowns, 1)).into_owned(),
+            tolerance,
+        )
+        .ok()?;
     Some(solution.column(0).component_div(&lengths.transpose()))
 }
 
@@ -246,16 +305,32 @@ fn deviations<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<
     let squares = sums(parts.clone(), |o, y| (y - means[o]).powi(2));
     let samples: usize = parts.map(DMatrix::nrows).sum();
     let deviation = |square: &f64| (square / samples.max(1) as f64).sqrt();
-    squares.iter().map(deviation).map(|std| if std > 0.0 && std.is_finite() { std } else { 1.0 }).collect()
+    squares
+        .iter()
+        .map(deviation)
+        .map(|std| {
+            if std > 0.0 && std.is_finite() {
+                std
+            } else {
+                1.0
+            }
+        })
+        .collect()
 }
 
 fn means<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
     let samples: usize = parts.clone().map(DMatrix::nrows).sum();
-    sums(parts, |_, y| y).iter().map(|sum| sum / samples.max(1) as f64).collect()
+    sums(parts, |_, y| y)
+        .iter()
+        .map(|sum| sum / samples.max(1) as f64)
+        .collect()
 }
 
 /// The sum over all samples of `term(column, value)`, for each column.
-fn sums<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>>, term: impl Fn(usize, f64) -> f64) -> Vec<f64> {
+fn sums<'a>(
+    parts: impl Iterator<Item = &'a DMatrix<f64>>,
+    term: impl Fn(usize, f64) -> f64,
+) -> Vec<f64> {
     let mut sums: Vec<f64> = Vec::new();
     for part in parts {
         sums.resize(part.ncols(), 0.0);
@@ -270,13 +345,21 @@ fn sums<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>>, term: impl Fn(usize, 
 fn figures(windows: &[ValidationWindow]) -> (Vec<Option<f64>>, Vec<Option<f64>>) {
     let measured = windows.iter().map(|window| &window.measured);
     let means = means(measured.clone());
-    let errors: Vec<DMatrix<f64>> = windows.iter().map(|window| &window.measured - &window.simulated).collect();
+    let errors: Vec<DMatrix<f64>> = windows
+        .iter()
+        .map(|window| &window.measured - &window.simulated)
+        .collect();
     let error = sums(errors.iter(), |_, e| e * e);
     let power = sums(measured, |o, y| (y - means[o]).powi(2));
-    let simulated = sums(windows.iter().map(|window| &window.simulated), |o, y| (y - means[o]).powi(2));
+    let simulated = sums(windows.iter().map(|window| &window.simulated), |o, y| {
+        (y - means[o]).powi(2)
+    });
     // Every sum is over the same samples, which cancel.
     let finite = |value: f64| Some(value).filter(|value| value.is_finite());
     let fit = |o: usize| finite(100.0 * (1.0 - (error[o] / power[o]).sqrt()));
     let theil = |o: usize| finite(error[o].sqrt() / (power[o].sqrt() + simulated[o].sqrt()));
-    ((0..means.len()).map(fit).collect(), (0..means.len()).map(theil).collect())
+    (
+        (0..means.len()).map(fit).collect(),
+        (0..means.len()).map(theil).collect(),
+    )
 }

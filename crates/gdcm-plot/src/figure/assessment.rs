@@ -7,7 +7,8 @@ use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::units::signed;
 use gdcm_study::study::{
-    Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, PairScatter, Table, Uncertainty,
+    Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, PairScatter,
+    Table, Uncertainty,
 };
 
 use super::axis::{Axis, Range};
@@ -27,16 +28,30 @@ struct Part {
 }
 
 const PARTS: [Part; 3] = [
-    Part { name: "ΔJ", color: Color::INK, of: CostChange::total },
-    Part { name: "ΔJ magnitude", color: Color::DIM, of: CostChange::magnitude },
-    Part { name: "ΔJ phase", color: Color::DIM.tint(45), of: CostChange::phase },
+    Part {
+        name: "ΔJ",
+        color: Color::INK,
+        of: CostChange::total,
+    },
+    Part {
+        name: "ΔJ magnitude",
+        color: Color::DIM,
+        of: CostChange::magnitude,
+    },
+    Part {
+        name: "ΔJ phase",
+        color: Color::DIM.tint(45),
+        of: CostChange::phase,
+    },
 ];
 
 /// ΔJ and its parts in each condition, of each of `pairs`; below 0 is better.
 pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: AssessmentChoice) -> Figure {
     let table = AssessmentTable::of(analysis, choice);
     let title = |pair| analysis.study.dataset.pair_name(pair);
-    let plots = pairs.iter().map(|&pair| Plot::new(title(pair)).panel(panel(analysis, &table, pair)));
+    let plots = pairs
+        .iter()
+        .map(|&pair| Plot::new(title(pair)).panel(panel(analysis, &table, pair)));
     let model = match choice.model {
         AssessedModel::Nominal => "nominal",
         AssessedModel::Representative => "representative",
@@ -47,32 +62,72 @@ pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: Assessment
         AssessedCorrection::ScheduleOfOthers => "the schedule of the other conditions",
         AssessedCorrection::Own => "each condition's own optimum",
     };
-    let figure = Figure::new(format!("Change of J of the {model} model under {correction}"));
-    figure.caption(caption(analysis, &table)).plots(plots).columns(3).aspect(0.62)
+    let figure = Figure::new(format!(
+        "Change of J of the {model} model under {correction}"
+    ));
+    figure
+        .caption(caption(analysis, &table))
+        .plots(plots)
+        .columns(3)
+        .aspect(0.62)
 }
 
 /// What the paper assesses: the nominal model under the schedule, with the average of the settings.
 pub fn usual_choice(analysis: &Analysis) -> AssessmentChoice {
     let average = analysis.study.settings.cost_average;
-    AssessmentChoice { model: AssessedModel::Nominal, correction: AssessedCorrection::Scheduled, average }
+    AssessmentChoice {
+        model: AssessedModel::Nominal,
+        correction: AssessedCorrection::Scheduled,
+        average,
+    }
 }
 
 fn panel(analysis: &Analysis, table: &AssessmentTable, pair: Pair) -> Panel {
     let conditions = analysis.study.dataset.conditions();
-    let changes: Vec<Option<CostChange>> =
-        conditions.iter().map(|condition| table.change(condition.id(), pair)).collect();
-    let bars = PARTS.into_iter().zip([-BAR, 0.0, BAR]).map(|(part, beside)| {
-        let value = |(index, change): (usize, &Option<CostChange>)| Some([index as f64, (part.of)((*change)?)]);
-        let bars = changes.iter().enumerate().filter_map(value).collect();
-        Bars { name: part.name.to_owned(), color: part.color, width: BAR, bars, feet: Vec::new(), beside }
-    });
-    let left_out = changes.iter().enumerate().filter(|(_, change)| change.is_none()).map(|(index, _)| Note {
-        at: Place::Value { x: index as f64, y: 0.0, upright: true },
-        text: "left out".to_owned(),
-    });
-    let x = Axis::named("Condition", conditions.iter().map(|condition| condition.id().to_string()));
+    let changes: Vec<Option<CostChange>> = conditions
+        .iter()
+        .map(|condition| table.change(condition.id(), pair))
+        .collect();
+    let bars = PARTS
+        .into_iter()
+        .zip([-BAR, 0.0, BAR])
+        .map(|(part, beside)| {
+            let value = |(index, change): (usize, &Option<CostChange>)| {
+                Some([index as f64, (part.of)((*change)?)])
+            };
+            let bars = changes.iter().enumerate().filter_map(value).collect();
+            Bars {
+                name: part.name.to_owned(),
+                color: part.color,
+                width: BAR,
+                bars,
+                feet: Vec::new(),
+                beside,
+            }
+        });
+    let left_out = changes
+        .iter()
+        .enumerate()
+        .filter(|(_, change)| change.is_none())
+        .map(|(index, _)| Note {
+            at: Place::Value {
+                x: index as f64,
+                y: 0.0,
+                upright: true,
+            },
+            text: "left out".to_owned(),
+        });
+    let x = Axis::named(
+        "Condition",
+        conditions
+            .iter()
+            .map(|condition| condition.id().to_string()),
+    );
     let panel = Panel::new(x, Axis::linear("ΔJ [-]").including(0.0).at_least(1.0));
-    panel.with_all(bars).with(Rule::horizontal(0.0, ZERO)).with_all(left_out)
+    panel
+        .with_all(bars)
+        .with(Rule::horizontal(0.0, ZERO))
+        .with_all(left_out)
 }
 
 /// The change of J of each of `pairs`, or a part of it, in each condition, under these headings; signed.
@@ -84,10 +139,19 @@ pub fn change_table(
     part: fn(CostChange) -> f64,
 ) -> Table {
     let headings = conditions.iter().map(|(_, heading)| heading.clone());
-    let mut table = Table::new(title, std::iter::once("response".to_owned()).chain(headings));
+    let mut table = Table::new(
+        title,
+        std::iter::once("response".to_owned()).chain(headings),
+    );
     for &pair in pairs {
-        let change = |(id, _): &(ConditionId, String)| found.change(*id, pair).map(|change| signed(part(change), 1));
-        let cells = conditions.iter().map(|condition| change(condition).unwrap_or("–".to_owned()));
+        let change = |(id, _): &(ConditionId, String)| {
+            found
+                .change(*id, pair)
+                .map(|change| signed(part(change), 1))
+        };
+        let cells = conditions
+            .iter()
+            .map(|condition| change(condition).unwrap_or("–".to_owned()));
         table.row(std::iter::once(dataset.pair_name(pair)).chain(cells));
     }
     table
@@ -106,12 +170,20 @@ fn caption(analysis: &Analysis, table: &AssessmentTable) -> String {
     let study = &analysis.study;
     let mut caption = settings_words(&study.dataset, &study.settings);
     if table.choice.correction != AssessedCorrection::Own {
-        caption.push_str(&format!(" Schedule: {}.", schedule_words(&study.settings.schedule)));
+        caption.push_str(&format!(
+            " Schedule: {}.",
+            schedule_words(&study.settings.schedule)
+        ));
     }
     let average = average_word(table.choice.average);
-    caption.push_str(&format!(" J takes {average} over frequency; below 0 is better."));
+    caption.push_str(&format!(
+        " J takes {average} over frequency; below 0 is better."
+    ));
     for left_out in &table.left_out {
-        caption.push_str(&format!(" Condition {} is left out: {}.", left_out.condition, left_out.why));
+        caption.push_str(&format!(
+            " Condition {} is left out: {}.",
+            left_out.condition, left_out.why
+        ));
     }
     caption
 }
@@ -125,36 +197,59 @@ const INTERVAL: Stroke = Stroke::solid(Color::of(Hue::Nominal).tint(50), 2.4);
 /// Intervals are seen up to so many times the scatter.
 const MOST_SEEN: f64 = 4.0;
 /// The shares end at 100 %; the numbers above them have the rest \[%\].
-const SHARES: Range = Range { min: 0.0, max: 118.0 };
+const SHARES: Range = Range {
+    min: 0.0,
+    max: 118.0,
+};
 /// Where those numbers stand \[%\].
 const ABOVE: f64 = 109.0;
 
 /// What the scatter is about, in the order of the places of an axis.
 const ABOUT: [&str; 2] = ["airspeed", "schedule"];
 /// The parts of a scatter, from below; in print they differ by how dark they are.
-const SHARED: [(&str, Hue); 3] =
-    [("trim", Hue::Perturbed), ("identification", Hue::Identified), ("unexplained", Hue::Nominal)];
+const SHARED: [(&str, Hue); 3] = [
+    ("trim", Hue::Perturbed),
+    ("identification", Hue::Identified),
+    ("unexplained", Hue::Nominal),
+];
 
 /// The split of the scatter of each of `pairs` that has one, at equal airspeed and about the schedule: shares of the variance as stacked
 /// bars, below them the scatter itself, what is expected, and what is unexplained with its interval; none where bars were not computed,
 /// or no pair has a scatter.
 pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     let uncertainty = analysis.uncertainty.as_ref()?;
-    let of_pairs = uncertainty.scatter.iter().filter(|scatter| pairs.contains(&scatter.pair));
+    let of_pairs = uncertainty
+        .scatter
+        .iter()
+        .filter(|scatter| pairs.contains(&scatter.pair));
     let plot = |scatter: &PairScatter| {
         let title = analysis.study.dataset.pair_name(scatter.pair);
-        Plot::new(title).panel(shares(scatter)).panel(deviations(scatter, uncertainty.level))
+        Plot::new(title)
+            .panel(shares(scatter))
+            .panel(deviations(scatter, uncertainty.level))
     };
     let plots: Vec<Plot> = of_pairs.map(plot).collect();
-    let figure =
-        Figure::new("What the scatter of the net gains is made of").caption(evidence_caption(analysis, uncertainty));
-    (!plots.is_empty()).then(|| figure.plots(plots).columns(5).shared_x().shared_y().aspect(1.9))
+    let figure = Figure::new("What the scatter of the net gains is made of")
+        .caption(evidence_caption(analysis, uncertainty));
+    (!plots.is_empty()).then(|| {
+        figure
+            .plots(plots)
+            .columns(5)
+            .shared_x()
+            .shared_y()
+            .aspect(1.9)
+    })
 }
 
 /// The splits that there are, with their places.
 fn splits(scatter: &PairScatter) -> impl Iterator<Item = (f64, &VarianceDecomposition)> {
-    let both = [scatter.same_airspeed.as_ref(), scatter.about_schedule.as_ref()];
-    both.into_iter().zip([0.0, 1.0]).filter_map(|(split, x)| Some((x, split?)))
+    let both = [
+        scatter.same_airspeed.as_ref(),
+        scatter.about_schedule.as_ref(),
+    ];
+    both.into_iter()
+        .zip([0.0, 1.0])
+        .filter_map(|(split, x)| Some((x, split?)))
 }
 
 fn axis() -> Axis {
@@ -165,21 +260,39 @@ fn axis() -> Axis {
 fn shares(scatter: &PairScatter) -> Panel {
     let mut feet = [0.0; 2];
     let bars = (0..SHARED.len()).map(|part| {
-        let share = |(x, split): (f64, &VarianceDecomposition)| Some([x, 100.0 * split.shares()?[part]]);
+        let share =
+            |(x, split): (f64, &VarianceDecomposition)| Some([x, 100.0 * split.shares()?[part]]);
         let bars: Vec<[f64; 2]> = splits(scatter).filter_map(share).collect();
         let on: Vec<f64> = bars.iter().map(|[x, _]| feet[*x as usize]).collect();
-        bars.iter().for_each(|[x, share]| feet[*x as usize] += share);
+        bars.iter()
+            .for_each(|[x, share]| feet[*x as usize] += share);
         let (name, hue) = SHARED[part];
-        Bars { name: name.to_owned(), color: Color::of(hue), width: STACK, bars, feet: on, beside: 0.0 }
+        Bars {
+            name: name.to_owned(),
+            color: Color::of(hue),
+            width: STACK,
+            bars,
+            feet: on,
+            beside: 0.0,
+        }
     });
     let bars: Vec<Bars> = bars.collect();
-    let note = |x: f64, y: f64, text: String, upright: bool| Note { at: Place::Value { x, y, upright }, text };
-    let times = splits(scatter).filter_map(|(x, split)| Some(note(x, ABOVE, format!("{:.1}×", split.ratio()?), false)));
-    let missing = [&scatter.same_airspeed, &scatter.about_schedule].into_iter().zip([0.0, 1.0]);
+    let note = |x: f64, y: f64, text: String, upright: bool| Note {
+        at: Place::Value { x, y, upright },
+        text,
+    };
+    let times = splits(scatter)
+        .filter_map(|(x, split)| Some(note(x, ABOVE, format!("{:.1}×", split.ratio()?), false)));
+    let missing = [&scatter.same_airspeed, &scatter.about_schedule]
+        .into_iter()
+        .zip([0.0, 1.0]);
     let missing = missing.filter(|(split, _)| split.is_none());
     let missing = missing.map(|(_, x)| note(x, 50.0, "no freedom".to_owned(), true));
     let y = Axis::linear("Variance [%]").showing(Some(SHARES));
-    Panel::new(axis(), y).with_all(bars).with_all(times).with_all(missing)
+    Panel::new(axis(), y)
+        .with_all(bars)
+        .with_all(times)
+        .with_all(missing)
 }
 
 /// The standard deviations themselves, of `ln k_o k_i` in percent, and the interval of the rest.
@@ -188,23 +301,49 @@ fn deviations(scatter: &PairScatter, level: f64) -> Panel {
     let scatter_of: fn(&VarianceDecomposition) -> f64 = |split| split.scatter;
     let figures = [
         ("scatter", DotShape::Circle, Color::INK, scatter_of),
-        ("expected", DotShape::Diamond, Color::of(Hue::Perturbed), VarianceDecomposition::explained),
-        ("unexplained", DotShape::Square, Color::of(Hue::Nominal), VarianceDecomposition::unexplained),
+        (
+            "expected",
+            DotShape::Diamond,
+            Color::of(Hue::Perturbed),
+            VarianceDecomposition::explained,
+        ),
+        (
+            "unexplained",
+            DotShape::Square,
+            Color::of(Hue::Nominal),
+            VarianceDecomposition::unexplained,
+        ),
     ];
-    let dots = figures.into_iter().zip([-APART, 0.0, APART]).map(|((name, shape, color, of), beside)| {
-        let dots = Dots::new(name, shape, color).key(name).filled(shape != DotShape::Diamond);
-        splits(scatter).fold(dots, |dots, (x, split)| dots.dot(x + beside, percent(of(split)), ""))
-    });
+    let dots =
+        figures
+            .into_iter()
+            .zip([-APART, 0.0, APART])
+            .map(|((name, shape, color, of), beside)| {
+                let dots = Dots::new(name, shape, color)
+                    .key(name)
+                    .filled(shape != DotShape::Diamond);
+                splits(scatter).fold(dots, |dots, (x, split)| {
+                    dots.dot(x + beside, percent(of(split)), "")
+                })
+            });
     let interval = |(x, split): (f64, &VarianceDecomposition)| {
         let [low, high] = split.unexplained_interval(level)?;
         Some([x + APART, 100.0 * low, 100.0 * high])
     };
     let ends: Vec<[f64; 3]> = splits(scatter).filter_map(interval).collect();
     let y = Axis::linear("Scatter [%]").including(0.0).at_least(1.0);
-    let most = splits(scatter).map(|(_, split)| MOST_SEEN * percent(split.scatter)).fold(0.0, f64::max);
-    let y = ends.iter().fold(y, |y, [_, _, high]| y.including(high.min(most)));
+    let most = splits(scatter)
+        .map(|(_, split)| MOST_SEEN * percent(split.scatter))
+        .fold(0.0, f64::max);
+    let y = ends
+        .iter()
+        .fold(y, |y, [_, _, high]| y.including(high.min(most)));
     let name = format!("unexplained, interval of {:.0} %", 100.0 * level);
-    let intervals = (!ends.is_empty()).then_some(Intervals { name, stroke: INTERVAL, ends });
+    let intervals = (!ends.is_empty()).then_some(Intervals {
+        name,
+        stroke: INTERVAL,
+        ends,
+    });
     Panel::new(axis(), y).with_all(intervals).with_all(dots)
 }
 

@@ -36,7 +36,14 @@ pub struct Axis {
 
 impl Axis {
     fn new(label: impl Into<String>, scale: Scale) -> Self {
-        Self { label: label.into(), scale, range: None, including: Vec::new(), least: 0.0, names: None }
+        Self {
+            label: label.into(),
+            scale,
+            range: None,
+            including: Vec::new(),
+            least: 0.0,
+            names: None,
+        }
     }
 
     /// An axis of decimal ticks.
@@ -55,15 +62,29 @@ impl Axis {
     }
 
     /// An axis of named places, the first at 0, the others at whole numbers from there.
-    pub fn named(label: impl Into<String>, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
-        let names: Vec<_> = names.into_iter().enumerate().map(|(at, name)| (at as f64, name.into())).collect();
+    pub fn named(
+        label: impl Into<String>,
+        names: impl IntoIterator<Item = impl Into<String>>,
+    ) -> Self {
+        let names: Vec<_> = names
+            .into_iter()
+            .enumerate()
+            .map(|(at, name)| (at as f64, name.into()))
+            .collect();
         let range = Range::new(-0.5, (names.len() as f64 - 0.5).max(0.5));
-        Self { names: Some(names), range: Some(range), ..Self::new(label, Scale::Linear) }
+        Self {
+            names: Some(names),
+            range: Some(range),
+            ..Self::new(label, Scale::Linear)
+        }
     }
 
     /// The same axis that shows exactly this part.
     pub fn showing(self, range: Option<Range>) -> Self {
-        Self { range: range.or(self.range), ..self }
+        Self {
+            range: range.or(self.range),
+            ..self
+        }
     }
 
     /// The same axis that shows `value` too.
@@ -82,13 +103,19 @@ impl Axis {
         if let Some(range) = self.range {
             return range;
         }
-        let shown = values.chain(self.including.iter().copied()).filter(|value| self.can_show(*value));
+        let shown = values
+            .chain(self.including.iter().copied())
+            .filter(|value| self.can_show(*value));
         let range = Range::of(shown).unwrap_or(Range::new(1.0, 10.0));
         match self.scale {
             Scale::Logarithmic if range.min < range.max => range,
             Scale::Logarithmic => Range::new(range.min / 2.0, range.max * 2.0),
             Scale::Linear | Scale::Degrees => {
-                let least = if self.least > 0.0 { self.least } else { 1e-3 * range.middle().abs().max(1e-6) };
+                let least = if self.least > 0.0 {
+                    self.least
+                } else {
+                    1e-3 * range.middle().abs().max(1e-6)
+                };
                 range.with_margin(MARGIN, least)
             }
         }
@@ -106,7 +133,8 @@ impl Axis {
             Scale::Linear | Scale::Degrees => value,
         };
         let (low, high) = (place(range.min), place(range.max));
-        self.can_show(value).then(|| (place(value) - low) / (high - low))
+        self.can_show(value)
+            .then(|| (place(value) - low) / (high - low))
     }
 }
 
@@ -121,11 +149,17 @@ pub struct Range {
 
 impl Range {
     /// Every value.
-    pub const ALL: Self = Self { min: f64::NEG_INFINITY, max: f64::INFINITY };
+    pub const ALL: Self = Self {
+        min: f64::NEG_INFINITY,
+        max: f64::INFINITY,
+    };
 
     /// The range from `min` to `max`, which need not be in order.
     pub fn new(min: f64, max: f64) -> Self {
-        Self { min: min.min(max), max: max.max(min) }
+        Self {
+            min: min.min(max),
+            max: max.max(min),
+        }
     }
 
     /// The least range that holds every finite value, or nothing where there is none.
@@ -148,7 +182,10 @@ impl Range {
 
     /// The least range that holds this one and `value`.
     pub fn including(self, value: f64) -> Self {
-        Self { min: self.min.min(value), max: self.max.max(value) }
+        Self {
+            min: self.min.min(value),
+            max: self.max.max(value),
+        }
     }
 
     /// The least range that holds both.
@@ -159,12 +196,18 @@ impl Range {
     /// This range with `fraction` of its width added on either side, and at least as wide as `least`.
     pub fn with_margin(self, fraction: f64, least: f64) -> Self {
         let half = (0.5 * self.width() * (1.0 + 2.0 * fraction)).max(0.5 * least);
-        Self { min: self.middle() - half, max: self.middle() + half }
+        Self {
+            min: self.middle() - half,
+            max: self.middle() + half,
+        }
     }
 
     /// This range with `by` added to both ends.
     pub fn moved(self, by: f64) -> Self {
-        Self { min: self.min + by, max: self.max + by }
+        Self {
+            min: self.min + by,
+            max: self.max + by,
+        }
     }
 
     /// This range seen `factor` times closer, with `fixed` staying where it is.
@@ -173,7 +216,10 @@ impl Range {
             // To the last digit.
             return self;
         }
-        Self { min: fixed + (self.min - fixed) / factor, max: fixed + (self.max - fixed) / factor }
+        Self {
+            min: fixed + (self.min - fixed) / factor,
+            max: fixed + (self.max - fixed) / factor,
+        }
     }
 
     /// This range where its width lies in `widths`, else the nearest range about the same middle whose width does.
@@ -185,7 +231,14 @@ impl Range {
             return None;
         }
         let limited = width.clamp(widths.min, widths.max);
-        Some(if limited == width { self } else { Self { min: middle - 0.5 * limited, max: middle + 0.5 * limited } })
+        Some(if limited == width {
+            self
+        } else {
+            Self {
+                min: middle - 0.5 * limited,
+                max: middle + 0.5 * limited,
+            }
+        })
     }
 
     /// Whether `value` lies in the range, ends included.
@@ -197,7 +250,9 @@ impl Range {
 /// Where less than this is shown \[decades\], equal steps may be labelled instead of parts of a decade.
 const LINEAR_BELOW: f64 = 0.9;
 /// Degrees between ticks, from about one degree on; below, decimal steps.
-const DEGREE_STEPS: [f64; 13] = [5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0, 720.0, 1800.0, 3600.0, 7200.0];
+const DEGREE_STEPS: [f64; 13] = [
+    5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0, 720.0, 1800.0, 3600.0, 7200.0,
+];
 
 /// A place on an axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -230,9 +285,22 @@ pub(super) fn ticks(axis: &Axis, range: Range, length_pt: f64, gap_pt: f64) -> V
         let shown: Vec<_> = names.iter().filter(|(at, _)| range.contains(*at)).collect();
         let apart = length_pt / range.width();
         let every = (gap_pt / apart).ceil().max(1.0) as usize;
-        return shown.into_iter().step_by(every).map(|(at, name)| labelled(*at, name.clone())).collect();
+        return shown
+            .into_iter()
+            .step_by(every)
+            .map(|(at, name)| labelled(*at, name.clone()))
+            .collect();
     }
-    ticks_of(axis.scale, range, length_pt, TickGaps { labels: gap_pt, equal_steps: gap_pt, lines: 0.0 })
+    ticks_of(
+        axis.scale,
+        range,
+        length_pt,
+        TickGaps {
+            labels: gap_pt,
+            equal_steps: gap_pt,
+            lines: 0.0,
+        },
+    )
 }
 
 /// The ticks of an axis of numbers where `range` is shown on `length_pt`.
@@ -246,13 +314,20 @@ pub fn ticks_of(scale: Scale, range: Range, length_pt: f64, gaps: TickGaps) -> V
 }
 
 fn labelled(value: f64, label: String) -> Tick {
-    Tick { value, label: Some(label) }
+    Tick {
+        value,
+        label: Some(label),
+    }
 }
 
 fn equal_steps(range: Range, step: f64) -> Vec<Tick> {
     let slack = 1e-6;
-    let indices = (range.min / step - slack).ceil() as i64..=(range.max / step + slack).floor() as i64;
-    indices.map(|k| k as f64 * step).map(|value| labelled(value, compact(value))).collect()
+    let indices =
+        (range.min / step - slack).ceil() as i64..=(range.max / step + slack).floor() as i64;
+    indices
+        .map(|k| k as f64 * step)
+        .map(|value| labelled(value, compact(value)))
+        .collect()
 }
 
 /// The least part of a turn \[deg\] that is not below `least`.
@@ -271,7 +346,10 @@ pub fn step_above(least: f64) -> f64 {
     let power = 10f64.powf(least.log10().floor());
     // A step that is meant to be round may come in a rounding error above itself.
     let fits = |factor: f64| factor * power >= least * (1.0 - 1e-9);
-    let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| fits(*factor)).unwrap_or(10.0);
+    let factor = [1.0, 2.0, 5.0]
+        .into_iter()
+        .find(|factor| fits(*factor))
+        .unwrap_or(10.0);
     factor * power
 }
 
@@ -290,11 +368,18 @@ fn decades(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
         2 | 5 => has_two_and_five,
         _ => has_nine,
     };
-    let is_drawn = |mantissa: u8, exponent: i64| has_lines || mantissa == 1 || is_labelled(mantissa, exponent);
+    let is_drawn =
+        |mantissa: u8, exponent: i64| has_lines || mantissa == 1 || is_labelled(mantissa, exponent);
     let all = (low.floor() as i64..=high.floor() as i64)
         .flat_map(|exponent| (1..=9u8).map(move |mantissa| (mantissa, exponent)))
         .filter(|(mantissa, exponent)| is_drawn(*mantissa, *exponent))
-        .map(|(mantissa, exponent)| (mantissa, exponent, f64::from(mantissa) * 10f64.powi(exponent as i32)))
+        .map(|(mantissa, exponent)| {
+            (
+                mantissa,
+                exponent,
+                f64::from(mantissa) * 10f64.powi(exponent as i32),
+            )
+        })
         .filter(|(.., value)| (low - slack..=high + slack).contains(&value.log10()));
     let ticks: Vec<Tick> = all
         .map(|(mantissa, exponent, value)| Tick {
@@ -304,18 +389,33 @@ fn decades(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
         .collect();
     let count = ticks.iter().filter(|tick| tick.label.is_some()).count();
     // The upper end is where equal steps are closest.
-    let linear = equal_steps(range, step_above(gaps.equal_steps * range.max * std::f64::consts::LN_10 / decade_pt));
-    if high - low < LINEAR_BELOW && linear.len() > count { linear } else { ticks }
+    let linear = equal_steps(
+        range,
+        step_above(gaps.equal_steps * range.max * std::f64::consts::LN_10 / decade_pt),
+    );
+    if high - low < LINEAR_BELOW && linear.len() > count {
+        linear
+    } else {
+        ticks
+    }
 }
 
 /// The shortest text of `value` to six significant digits, without trailing zeros, with a true minus sign.
 pub fn compact(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
-        return if value == 0.0 { "0".to_owned() } else { value.to_string() };
+        return if value == 0.0 {
+            "0".to_owned()
+        } else {
+            value.to_string()
+        };
     }
     let decimals = (5 - value.abs().log10().floor() as i64).clamp(0, 12) as usize;
     let text = format!("{value:.decimals$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    let text = if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.')
+    } else {
+        &text
+    };
     signed(text)
 }
 
@@ -366,7 +466,11 @@ impl FrequencyUnit {
             Self::RadPerSecond => "ω",
             Self::Hertz => "f",
         };
-        format!("{quantity} {} {}", three_digits(self.of_omega(omega)), self.symbol())
+        format!(
+            "{quantity} {} {}",
+            three_digits(self.of_omega(omega)),
+            self.symbol()
+        )
     }
 
     /// What stands beside the axis.
@@ -417,7 +521,10 @@ mod tests {
 
     #[test]
     fn a_decade_is_as_long_as_another_on_a_logarithmic_axis() {
-        let (axis, range) = (Axis::logarithmic("Frequency [rad/s]"), Range::new(0.1, 10.0));
+        let (axis, range) = (
+            Axis::logarithmic("Frequency [rad/s]"),
+            Range::new(0.1, 10.0),
+        );
         assert_eq!(axis.fraction(0.1, range), Some(0.0));
         assert!((axis.fraction(1.0, range).unwrap() - 0.5).abs() < 1e-15);
         assert_eq!(axis.fraction(-1.0, range), None);
@@ -428,8 +535,14 @@ mod tests {
     fn an_axis_shows_what_it_has_to_and_no_less_than_its_least_width() {
         let axis = Axis::linear("Gain [-]").including(1.0).at_least(0.5);
         let fitted = axis.fitted([1.2, f64::NAN].into_iter());
-        assert!(fitted.contains(1.0) && fitted.contains(1.2) && (fitted.width() - 0.5).abs() < 1e-12);
-        assert_eq!(axis.showing(Some(Range::new(0.0, 2.0))).fitted([5.0].into_iter()), Range::new(0.0, 2.0));
+        assert!(
+            fitted.contains(1.0) && fitted.contains(1.2) && (fitted.width() - 0.5).abs() < 1e-12
+        );
+        assert_eq!(
+            axis.showing(Some(Range::new(0.0, 2.0)))
+                .fitted([5.0].into_iter()),
+            Range::new(0.0, 2.0)
+        );
     }
 
     #[test]
@@ -440,7 +553,10 @@ mod tests {
 
     #[test]
     fn values_that_are_not_finite_do_not_count() {
-        assert_eq!(Range::of([f64::NAN, 2.0, f64::NEG_INFINITY, -1.0]), Some(Range::new(-1.0, 2.0)));
+        assert_eq!(
+            Range::of([f64::NAN, 2.0, f64::NEG_INFINITY, -1.0]),
+            Some(Range::new(-1.0, 2.0))
+        );
         assert_eq!(Range::of([f64::NAN]), None);
     }
 
@@ -452,40 +568,73 @@ mod tests {
 
     #[test]
     fn a_range_of_no_width_gets_the_least_one() {
-        assert_eq!(Range::new(3.0, 3.0).with_margin(0.05, 2.0), Range::new(2.0, 4.0));
+        assert_eq!(
+            Range::new(3.0, 3.0).with_margin(0.05, 2.0),
+            Range::new(2.0, 4.0)
+        );
     }
 
     #[test]
     fn zooming_stops_at_the_limits() {
         let widths = Range::new(1.0, 100.0);
-        assert_eq!(Range::new(0.0, 1e9).limited(widths).map(Range::width), Some(100.0));
-        assert_eq!(Range::new(0.0, 1e-9).limited(widths).map(Range::width), Some(1.0));
-        assert_eq!(Range { min: f64::NAN, max: 1.0 }.limited(widths), None);
+        assert_eq!(
+            Range::new(0.0, 1e9).limited(widths).map(Range::width),
+            Some(100.0)
+        );
+        assert_eq!(
+            Range::new(0.0, 1e-9).limited(widths).map(Range::width),
+            Some(1.0)
+        );
+        assert_eq!(
+            Range {
+                min: f64::NAN,
+                max: 1.0
+            }
+            .limited(widths),
+            None
+        );
     }
 
     fn labels(axis: &Axis, range: Range, length_pt: f64) -> Vec<String> {
-        ticks(axis, range, length_pt, 14.0).into_iter().filter_map(|tick| tick.label).collect()
+        ticks(axis, range, length_pt, 14.0)
+            .into_iter()
+            .filter_map(|tick| tick.label)
+            .collect()
     }
 
     #[test]
     fn a_band_of_comparison_is_labelled_at_one_two_and_five() {
         let axis = Axis::logarithmic("Frequency [rad/s]");
-        assert_eq!(labels(&axis, Range::new(0.3, 20.4), 130.0), ["0.5", "1", "2", "5", "10", "20"]);
+        assert_eq!(
+            labels(&axis, Range::new(0.3, 20.4), 130.0),
+            ["0.5", "1", "2", "5", "10", "20"]
+        );
         assert_eq!(labels(&axis, Range::new(0.3, 20.4), 60.0), ["1", "10"]);
-        let minor = ticks(&axis, Range::new(1.0, 10.0), 60.0, 14.0).into_iter().filter(|tick| tick.label.is_none());
+        let minor = ticks(&axis, Range::new(1.0, 10.0), 60.0, 14.0)
+            .into_iter()
+            .filter(|tick| tick.label.is_none());
         assert_eq!(minor.count(), 6, "3, 4, 6, 7, 8 and 9");
     }
 
     #[test]
     fn a_small_part_of_a_decade_has_equal_steps() {
         let axis = Axis::logarithmic("Frequency [rad/s]");
-        assert_eq!(labels(&axis, Range::new(1.9, 3.1), 130.0), ["2", "2.2", "2.4", "2.6", "2.8", "3"]);
+        assert_eq!(
+            labels(&axis, Range::new(1.9, 3.1), 130.0),
+            ["2", "2.2", "2.4", "2.6", "2.8", "3"]
+        );
     }
 
     #[test]
     fn phases_have_ticks_at_parts_of_a_turn_and_magnitudes_at_round_numbers() {
-        assert_eq!(labels(&Axis::degrees(""), Range::new(-200.0, 10.0), 60.0), ["−180", "−120", "−60", "0"]);
-        assert_eq!(labels(&Axis::linear(""), Range::new(-26.0, 10.0), 60.0), ["−20", "−10", "0", "10"]);
+        assert_eq!(
+            labels(&Axis::degrees(""), Range::new(-200.0, 10.0), 60.0),
+            ["−180", "−120", "−60", "0"]
+        );
+        assert_eq!(
+            labels(&Axis::linear(""), Range::new(-26.0, 10.0), 60.0),
+            ["−20", "−10", "0", "10"]
+        );
     }
 
     #[test]
@@ -498,10 +647,23 @@ mod tests {
 
     #[test]
     fn a_step_is_the_next_round_number() {
-        for (least, step) in [(0.011, 0.02), (0.2, 0.2), (3.0, 5.0), (6.0, 10.0), (1e-7, 1e-7)] {
-            assert!((step_above(least) / step - 1.0).abs() < 1e-9, "{least}: {}", step_above(least));
+        for (least, step) in [
+            (0.011, 0.02),
+            (0.2, 0.2),
+            (3.0, 5.0),
+            (6.0, 10.0),
+            (1e-7, 1e-7),
+        ] {
+            assert!(
+                (step_above(least) / step - 1.0).abs() < 1e-9,
+                "{least}: {}",
+                step_above(least)
+            );
         }
-        assert_eq!((degree_step(40.0), degree_step(1.5), degree_step(1e5)), (45.0, 2.0, 1e5));
+        assert_eq!(
+            (degree_step(40.0), degree_step(1.5), degree_step(1e5)),
+            (45.0, 2.0, 1e5)
+        );
     }
 
     #[test]

@@ -4,9 +4,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use gdcm_model::dataset::{Band as BandOfComparison, BundleKind, ConditionId, Dynamics, ModelId, Pair};
+use gdcm_model::dataset::{
+    Band as BandOfComparison, BundleKind, ConditionId, Dynamics, ModelId, Pair,
+};
 use gdcm_model::units::db_to_ratio;
-use gdcm_study::study::{AcrossJob, AcrossRole, Analysis, CURVE_POINTS, Job, Unobserved, display_band};
+use gdcm_study::study::{
+    AcrossJob, AcrossRole, Analysis, CURVE_POINTS, Job, Unobserved, display_band,
+};
 use gdcm_sysid::identification::TRUSTED_COHERENCE;
 
 use super::axis::{Axis, FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit, Range};
@@ -15,8 +19,8 @@ use super::drawing::{Color, Dash, Hue, Stroke};
 use super::error::muad_about;
 use super::figure::{Band, Curve, Envelope, Figure, Mark, Note, Panel, Place, Plot, Rule};
 use super::responses::{
-    AirspeedCache, BodeBand, BodeCurve, Level, Pane, ReferenceKind, ReferenceLine, ResponseCache, airspeed_curves,
-    fitted_values, uncertainty_bands,
+    AirspeedCache, BodeBand, BodeCurve, Level, Pane, ReferenceKind, ReferenceLine, ResponseCache,
+    airspeed_curves, fitted_values, uncertainty_bands,
 };
 use super::role::Role;
 
@@ -69,7 +73,8 @@ pub struct BodeOptions {
 impl BodeOptions {
     /// The axis of frequencies.
     pub(super) fn frequency_axis(&self) -> Axis {
-        Axis::logarithmic(self.unit.axis_label()).showing(self.omega.map(|range| self.in_unit(range.min, range.max)))
+        Axis::logarithmic(self.unit.axis_label())
+            .showing(self.omega.map(|range| self.in_unit(range.min, range.max)))
     }
 
     fn in_unit(&self, from: f64, to: f64) -> Range {
@@ -79,13 +84,21 @@ impl BodeOptions {
     /// The ground of the band of comparison.
     fn band(&self, band: BandOfComparison) -> Band {
         let range = self.in_unit(band.min(), band.max());
-        Band { range, color: BAND, key: "band of comparison".to_owned() }
+        Band {
+            range,
+            color: BAND,
+            key: "band of comparison".to_owned(),
+        }
     }
 
     /// The ground of the frequencies above the band where a model with leads is not valid.
     fn invalid(&self, band: BandOfComparison, up_to: f64) -> Band {
         let range = self.in_unit(band.max(), up_to);
-        Band { range, color: INVALID, key: "not valid with leads".to_owned() }
+        Band {
+            range,
+            color: INVALID,
+            key: "not valid with leads".to_owned(),
+        }
     }
 }
 
@@ -107,14 +120,18 @@ impl FrequencyPanels<'_> {
 
     /// The same, where values are drawn as `shown` says.
     fn panel_of(&self, pane: Pane, axis: Axis, shown: impl Fn(f64) -> f64) -> Panel {
-        let mut visible: Vec<&BodeCurve> = self.curves.iter().filter(|curve| !curve.hidden).collect();
+        let mut visible: Vec<&BodeCurve> =
+            self.curves.iter().filter(|curve| !curve.hidden).collect();
         visible.sort_by_key(|curve| curve.role.layer(curve.rejected));
         // The curves of a plot mostly share their frequencies: so do those of the figure then.
         let mut last: Option<[Arc<[f64]>; 2]> = None;
         let mut in_unit = |omega: &Arc<[f64]>| match &last {
             Some([of, frequency]) if Arc::ptr_eq(of, omega) => Arc::clone(frequency),
             _ => {
-                let frequency: Arc<[f64]> = omega.iter().map(|omega| self.options.unit.of_omega(*omega)).collect();
+                let frequency: Arc<[f64]> = omega
+                    .iter()
+                    .map(|omega| self.options.unit.of_omega(*omega))
+                    .collect();
                 last = Some([Arc::clone(omega), Arc::clone(&frequency)]);
                 frequency
             }
@@ -122,25 +139,41 @@ impl FrequencyPanels<'_> {
         let curves: Vec<Curve> = visible
             .iter()
             .map(|curve| {
-                let values: Arc<[f64]> = curve.values(pane).iter().map(|value| shown(*value)).collect();
+                let values: Arc<[f64]> = curve
+                    .values(pane)
+                    .iter()
+                    .map(|value| shown(*value))
+                    .collect();
                 let key = match curve.role {
                     Role::OfAirspeed(_) => curve.label.as_str(),
                     role => role.key(curve.rejected),
                 };
-                Curve::new(&curve.label, curve.role.stroke(curve.rejected), in_unit(&curve.omega), values).key(key)
+                Curve::new(
+                    &curve.label,
+                    curve.role.stroke(curve.rejected),
+                    in_unit(&curve.omega),
+                    values,
+                )
+                .key(key)
             })
             .collect();
         let omega = self.curves.first().map_or(&[][..], |curve| &curve.omega);
         let references = self.references.iter().filter(|line| line.pane == pane);
-        let references: Vec<Mark> =
-            references.map(|line| reference_mark(line, omega, self.options.unit, &shown)).collect();
+        let references: Vec<Mark> = references
+            .map(|line| reference_mark(line, omega, self.options.unit, &shown))
+            .collect();
         let strips = self.strips.iter().map(|&(from, to)| Band {
             range: self.options.in_unit(from, to),
             color: NOTICED,
             key: "what is left would be noticed".to_owned(),
         });
-        let bands = self.bands.iter().map(|band| self.envelope(band, pane, &shown));
-        let panel = Panel::new(self.options.frequency_axis(), axis).with_all(strips).with_all(bands);
+        let bands = self
+            .bands
+            .iter()
+            .map(|band| self.envelope(band, pane, &shown));
+        let panel = Panel::new(self.options.frequency_axis(), axis)
+            .with_all(strips)
+            .with_all(bands);
         panel.with_all(curves).with_all(references)
     }
 
@@ -149,25 +182,51 @@ impl FrequencyPanels<'_> {
             Pane::Magnitude => &band.magnitude_db,
             Pane::Phase => &band.phase_deg,
         };
-        let frequencies = band.omega.iter().map(|omega| self.options.unit.of_omega(*omega));
-        let points = frequencies.zip(values).map(|(x, [low, high])| [x, shown(*low), shown(*high)]);
-        Envelope { name: "band of 95 %".to_owned(), color: UNCERTAIN, edge: None, points: points.collect() }
+        let frequencies = band
+            .omega
+            .iter()
+            .map(|omega| self.options.unit.of_omega(*omega));
+        let points = frequencies
+            .zip(values)
+            .map(|(x, [low, high])| [x, shown(*low), shown(*high)]);
+        Envelope {
+            name: "band of 95 %".to_owned(),
+            color: UNCERTAIN,
+            edge: None,
+            points: points.collect(),
+        }
     }
 }
 
 /// A line that curves are read against: where it is level and has a label of its own a rule, else a curve over its own frequencies or
 /// these \[rad/s\].
-fn reference_mark(line: &ReferenceLine, omega: &[f64], unit: FrequencyUnit, shown: &impl Fn(f64) -> f64) -> Mark {
+fn reference_mark(
+    line: &ReferenceLine,
+    omega: &[f64],
+    unit: FrequencyUnit,
+    shown: &impl Fn(f64) -> f64,
+) -> Mark {
     let stroke = line.kind.line().printed();
     let points: Vec<[f64; 2]> = match &line.level {
-        Level::Constant(value) if matches!(line.kind, ReferenceKind::Delta | ReferenceKind::Bound) => {
-            return Rule::horizontal(shown(*value), stroke).label(&line.label).into();
+        Level::Constant(value)
+            if matches!(line.kind, ReferenceKind::Delta | ReferenceKind::Bound) =>
+        {
+            return Rule::horizontal(shown(*value), stroke)
+                .label(&line.label)
+                .into();
         }
         Level::Sampled(points) => points.clone(),
-        level => omega.iter().map(|omega| [*omega, level.at(*omega)]).collect(),
+        level => omega
+            .iter()
+            .map(|omega| [*omega, level.at(*omega)])
+            .collect(),
     };
-    let points = points.iter().map(|[omega, value]| [unit.of_omega(*omega), shown(*value)]);
-    Curve::through(&line.label, stroke, points).key(line.kind.key()).into()
+    let points = points
+        .iter()
+        .map(|[omega, value]| [unit.of_omega(*omega), shown(*value)]);
+    Curve::through(&line.label, stroke, points)
+        .key(line.kind.key())
+        .into()
 }
 
 /// A figure of a plot of each of `pairs`, beside one another; where it is one, that one names the figure.
@@ -195,11 +254,22 @@ fn side_by_side(
 ) -> Figure {
     let is_one = pairs.len() == 1;
     let titled = |pair: &Pair| {
-        let title = if is_one { String::new() } else { dataset.pair_name(*pair) };
-        Plot { title, ..plot(*pair) }
+        let title = if is_one {
+            String::new()
+        } else {
+            dataset.pair_name(*pair)
+        };
+        Plot {
+            title,
+            ..plot(*pair)
+        }
     };
     let aspect = if is_one { 0.72 } else { 1.9 };
-    Figure::new(title).columns(5).aspect(aspect).shared_x().plots(pairs.iter().map(titled))
+    Figure::new(title)
+        .columns(5)
+        .aspect(aspect)
+        .shared_x()
+        .plots(pairs.iter().map(titled))
 }
 
 /// The responses `pairs` of one condition: a magnitude above a phase each, of every model and of the corrected ones.
@@ -209,9 +279,16 @@ pub fn bode_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeO
         let bands = uncertainty_bands(source.dataset(), pair, &curves);
         let ratio_unit = ConditionSource::ratio_unit(source.dataset(), pair);
         let unnoticed = muad_about(&curves, options);
-        let plot = plot((&curves, &bands, &unnoticed), source.study.settings.band, options, &ratio_unit);
+        let plot = plot(
+            (&curves, &bands, &unnoticed),
+            source.study.settings.band,
+            options,
+            &ratio_unit,
+        );
         let coherence = coherence_panel(source, pair, options);
-        coherence.into_iter().fold(plot, |plot, panel| plot.panel(panel.over(options.band(source.study.settings.band))))
+        coherence.into_iter().fold(plot, |plot, panel| {
+            plot.panel(panel.over(options.band(source.study.settings.band)))
+        })
     })
 }
 
@@ -221,9 +298,15 @@ fn plot(
     options: &BodeOptions,
     ratio_unit: &str,
 ) -> Plot {
-    let visible: Vec<BodeCurve> = curves.iter().filter(|curve| !curve.hidden).cloned().collect();
+    let visible: Vec<BodeCurve> = curves
+        .iter()
+        .filter(|curve| !curve.hidden)
+        .cloned()
+        .collect();
     // What leads cost is drawn as far as the curves without them go (M15.6).
-    let without_leads = visible.iter().find(|curve| curve.role == Role::WithoutLeads);
+    let without_leads = visible
+        .iter()
+        .find(|curve| curve.role == Role::WithoutLeads);
     let invalid = without_leads.and_then(|curve| curve.omega.last().copied());
     let needed = |pane, least| {
         fitted_values(&visible, pane, (band.min(), invalid.unwrap_or(band.max())))
@@ -231,9 +314,18 @@ fn plot(
     };
     let magnitude_db = options.values[0].or_else(|| needed(Pane::Magnitude, 4.0));
     let phase_deg = options.values[1].or_else(|| needed(Pane::Phase, 20.0));
-    let panels = FrequencyPanels { curves, references, bands, strips: &[], options };
+    let panels = FrequencyPanels {
+        curves,
+        references,
+        bands,
+        strips: &[],
+        options,
+    };
     let magnitude = match options.magnitude {
-        MagnitudeUnit::Decibel => panels.panel(Pane::Magnitude, Axis::linear("Magnitude [dB]").showing(magnitude_db)),
+        MagnitudeUnit::Decibel => panels.panel(
+            Pane::Magnitude,
+            Axis::linear("Magnitude [dB]").showing(magnitude_db),
+        ),
         MagnitudeUnit::Ratio => {
             let ratio = magnitude_db.map(|db| Range::new(db_to_ratio(db.min), db_to_ratio(db.max)));
             let axis = Axis::logarithmic(format!("Magnitude [{ratio_unit}]")).showing(ratio);
@@ -242,7 +334,9 @@ fn plot(
     };
     let phase = panels.panel(Pane::Phase, Axis::degrees("Phase [deg]").showing(phase_deg));
     let on_ground = |panel: Panel| match invalid {
-        Some(up_to) => panel.over(options.invalid(band, up_to)).over(options.band(band)),
+        Some(up_to) => panel
+            .over(options.invalid(band, up_to))
+            .over(options.band(band)),
         None => panel.over(options.band(band)),
     };
     let marked = |panel: Panel, is_named: bool| {
@@ -253,7 +347,9 @@ fn plot(
         panel.with_all(rules)
     };
     let (magnitude, phase) = (marked(magnitude, true), marked(phase, false));
-    Plot::default().panel(on_ground(magnitude).weight(MAGNITUDE_WEIGHT)).panel(on_ground(phase))
+    Plot::default()
+        .panel(on_ground(magnitude).weight(MAGNITUDE_WEIGHT))
+        .panel(on_ground(phase))
 }
 
 /// The responses `pairs` of one model of every condition: a magnitude above a phase each, from blue for the slowest condition to
@@ -265,15 +361,31 @@ pub fn airspeeds_figure(
     options: &BodeOptions,
 ) -> Option<Figure> {
     let (dataset, settings) = (&analysis.study.dataset, &analysis.study.settings);
-    let job = AcrossJob::of(dataset, Some(analysis), role, (display_band(settings.band), CURVE_POINTS));
-    let curves = job.run(&mut (), &Unobserved).ok().filter(|curves| !curves.responses.is_empty())?;
+    let job = AcrossJob::of(
+        dataset,
+        Some(analysis),
+        role,
+        (display_band(settings.band), CURVE_POINTS),
+    );
+    let curves = job
+        .run(&mut (), &Unobserved)
+        .ok()
+        .filter(|curves| !curves.responses.is_empty())?;
     let curves = Arc::new(curves);
     let title = match pairs {
-        [pair] => format!("{} · every condition, {}", dataset.pair_name(*pair), role.name()),
+        [pair] => format!(
+            "{} · every condition, {}",
+            dataset.pair_name(*pair),
+            role.name()
+        ),
         _ => format!("Every condition, {}", role.name()),
     };
-    let options =
-        BodeOptions { unit: options.unit, omega: options.omega, values: options.values, ..BodeOptions::default() };
+    let options = BodeOptions {
+        unit: options.unit,
+        omega: options.omega,
+        values: options.values,
+        ..BodeOptions::default()
+    };
     let of_pair = |pair| {
         let made_of = (&**dataset, Some(analysis));
         let drawn = airspeed_curves(made_of, role, pair, &curves, &mut AirspeedCache::default());
@@ -287,21 +399,46 @@ pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> F
     let dataset = source.dataset();
     let plots = dataset.on_axis().pairs().map(|pair| {
         let curves = source.response_curves(pair, options, &mut ResponseCache::default());
-        let panels = FrequencyPanels { curves: &curves, references: &[], bands: &[], strips: &[], options };
-        let panel = panels.panel(Pane::Magnitude, Axis::linear("Magnitude [dB]").at_least(4.0));
+        let panels = FrequencyPanels {
+            curves: &curves,
+            references: &[],
+            bands: &[],
+            strips: &[],
+            options,
+        };
+        let panel = panels.panel(
+            Pane::Magnitude,
+            Axis::linear("Magnitude [dB]").at_least(4.0),
+        );
         let cost = source.analysis.and_then(|analysis| analysis.cost[pair]);
         let note = cost.map(|cost| {
-            let text = format!("J {:.0} → {:.0}", cost.uncorrected.total(), cost.corrected.total());
-            Note { at: Place::LowerLeft, text }
+            let text = format!(
+                "J {:.0} → {:.0}",
+                cost.uncorrected.total(),
+                cost.corrected.total()
+            );
+            Note {
+                at: Place::LowerLeft,
+                text,
+            }
         });
-        let is_held = source.analysis.is_some_and(|analysis| analysis.held()[pair]);
+        let is_held = source
+            .analysis
+            .is_some_and(|analysis| analysis.held()[pair]);
         let held = if is_held { " *" } else { "" };
-        let panel = panel.over(options.band(source.study.settings.band)).with_all(note);
+        let panel = panel
+            .over(options.band(source.study.settings.band))
+            .with_all(note);
         Plot::new(format!("{}{held}", dataset.pair_name(pair))).panel(panel)
     });
-    let figure =
-        Figure::new(source.condition_words()).caption(format!("{} * held exactly.", source.caption())).plots(plots);
-    figure.columns(dataset.inputs().len()).dense().shared_x().aspect(0.55)
+    let figure = Figure::new(source.condition_words())
+        .caption(format!("{} * held exactly.", source.caption()))
+        .plots(plots);
+    figure
+        .columns(dataset.inputs().len())
+        .dense()
+        .shared_x()
+        .aspect(0.55)
 }
 
 /// Height of the strip, where that of the phase is 1.
@@ -326,12 +463,27 @@ impl ConditionSource<'_> {
     /// The coherence of a response of every identified model that is shown and was measured with it; the representative last.
     pub fn coherence_curves(&self, pair: Pair, options: &BodeOptions) -> Vec<CoherenceCurve> {
         let bundle = self.curves.condition.bundle(BundleKind::Identified);
-        let models = self.models(BundleKind::Identified, options).into_iter().filter(|model| !model.hidden);
+        let models = self
+            .models(BundleKind::Identified, options)
+            .into_iter()
+            .filter(|model| !model.hidden);
         let curve = |model: super::condition_source::SourceModel| {
-            let Dynamics::Measured(response) = &bundle[model.index].dynamics else { return None };
+            let Dynamics::Measured(response) = &bundle[model.index].dynamics else {
+                return None;
+            };
             let coherence = response.coherence()?.get(pair)?;
-            let points = response.omega().iter().zip(coherence).map(|(omega, value)| [*omega, *value]).collect();
-            Some(CoherenceCurve { label: model.id.name, role: model.role, rejected: model.rejected, points })
+            let points = response
+                .omega()
+                .iter()
+                .zip(coherence)
+                .map(|(omega, value)| [*omega, *value])
+                .collect();
+            Some(CoherenceCurve {
+                label: model.id.name,
+                role: model.role,
+                rejected: model.rejected,
+                points,
+            })
         };
         let mut curves: Vec<CoherenceCurve> = models.filter_map(curve).collect();
         curves.sort_by_key(|curve| curve.role.layer(curve.rejected));
@@ -340,21 +492,40 @@ impl ConditionSource<'_> {
 
     /// From which coherence on a frequency counts: that of the settings, else what is usual.
     pub fn least_coherence(&self) -> f64 {
-        self.study.settings.coherence_threshold.unwrap_or(TRUSTED_COHERENCE)
+        self.study
+            .settings
+            .coherence_threshold
+            .unwrap_or(TRUSTED_COHERENCE)
     }
 }
 
 /// The strip below a Bode plot; none where nothing was measured with coherence.
-pub(super) fn coherence_panel(source: &ConditionSource<'_>, pair: Pair, options: &BodeOptions) -> Option<Panel> {
+pub(super) fn coherence_panel(
+    source: &ConditionSource<'_>,
+    pair: Pair,
+    options: &BodeOptions,
+) -> Option<Panel> {
     let curves = source.coherence_curves(pair, options);
     if curves.is_empty() {
         return None;
     }
     let curves = curves.into_iter().map(|curve| {
-        let points = curve.points.iter().map(|[omega, value]| [options.unit.of_omega(*omega), *value]);
-        Curve::through(format!("coherence of {}", curve.label), curve.role.stroke(curve.rejected), points)
+        let points = curve
+            .points
+            .iter()
+            .map(|[omega, value]| [options.unit.of_omega(*omega), *value]);
+        Curve::through(
+            format!("coherence of {}", curve.label),
+            curve.role.stroke(curve.rejected),
+            points,
+        )
     });
     let axis = Axis::linear("Coherence").showing(Some(Range::new(0.0, 1.05)));
     let trusted = Rule::horizontal(source.least_coherence(), TRUSTED);
-    Some(Panel::new(options.frequency_axis(), axis).with(trusted).with_all(curves).weight(WEIGHT))
+    Some(
+        Panel::new(options.frequency_axis(), axis)
+            .with(trusted)
+            .with_all(curves)
+            .weight(WEIGHT),
+    )
 }

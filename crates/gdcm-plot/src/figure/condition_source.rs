@@ -8,7 +8,9 @@ use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings, ScheduledQ
 use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, FlightState, Model, ModelId, Pair};
 use gdcm_model::response::GainDelay;
 use gdcm_model::units::s_to_ms;
-use gdcm_study::study::{ConditionAnalysis, ConditionCurves, CouplingCorrection, PhaseCorrection, Settings, Study};
+use gdcm_study::study::{
+    ConditionAnalysis, ConditionCurves, CouplingCorrection, PhaseCorrection, Settings, Study,
+};
 
 use super::axis::compact;
 use super::bode::BodeOptions;
@@ -82,8 +84,17 @@ impl<'a> ConditionSource<'a> {
 
     /// `(deg/s)/in`: the unit of the ratio of a response's output to its input.
     pub fn ratio_unit(dataset: &Dataset, pair: Pair) -> String {
-        let (output, input) = (&dataset.outputs()[pair.output].unit, &dataset.inputs()[pair.input].unit);
-        let bracketed = |unit: &str| if unit.contains('/') { format!("({unit})") } else { unit.to_owned() };
+        let (output, input) = (
+            &dataset.outputs()[pair.output].unit,
+            &dataset.inputs()[pair.input].unit,
+        );
+        let bracketed = |unit: &str| {
+            if unit.contains('/') {
+                format!("({unit})")
+            } else {
+                unit.to_owned()
+            }
+        };
         format!("{}/{}", bracketed(output), bracketed(input))
     }
 
@@ -104,98 +115,200 @@ impl<'a> ConditionSource<'a> {
 
     /// The representative of a bundle; none before the bundle was compared.
     fn representative(&self, kind: BundleKind) -> Option<&'a str> {
-        self.analysis.map(|analysis| analysis.representative_name(kind))
+        self.analysis
+            .map(|analysis| analysis.representative_name(kind))
     }
 
     /// Index of the identified model that the others are laid on and compared with; the first one where nothing was compared.
     pub(super) fn reference(&self) -> usize {
         let name = self.representative(BundleKind::Identified);
-        name.and_then(|name| self.curves.condition.position(BundleKind::Identified, name)).unwrap_or(0)
+        name.and_then(|name| self.curves.condition.position(BundleKind::Identified, name))
+            .unwrap_or(0)
     }
 
     /// The models of a bundle in file order; where one is isolated, that one and the representative.
     pub(super) fn models(&self, kind: BundleKind, options: &BodeOptions) -> Vec<SourceModel> {
         let condition = &self.curves.condition;
         let representative = self.representative(kind);
-        let isolated = options.isolated.as_ref().filter(|id| id.condition == condition.id());
+        let isolated = options
+            .isolated
+            .as_ref()
+            .filter(|id| id.condition == condition.id());
         let is_visible = |name: &str| {
-            isolated.is_none_or(|id| (id.bundle == kind && id.name == name) || representative == Some(name))
+            isolated.is_none_or(|id| {
+                (id.bundle == kind && id.name == name) || representative == Some(name)
+            })
         };
         let of_model = |(index, model): (usize, &Model)| {
             let id = ModelId::new(condition.id(), kind, &model.name);
-            let role = Role::of_model(kind, model.is_nominal(), representative == Some(&model.name));
+            let role = Role::of_model(
+                kind,
+                model.is_nominal(),
+                representative == Some(&model.name),
+            );
             let rejected = self.study.is_rejected(&id);
-            let hidden = options.hidden.contains(&role.shown(rejected)) || options.hidden_models.contains(&id);
-            SourceModel { id, index, role, rejected, hidden }
+            let hidden = options.hidden.contains(&role.shown(rejected))
+                || options.hidden_models.contains(&id);
+            SourceModel {
+                id,
+                index,
+                role,
+                rejected,
+                hidden,
+            }
         };
-        condition.bundle(kind).iter().enumerate().filter(|(_, model)| is_visible(&model.name)).map(of_model).collect()
+        condition
+            .bundle(kind)
+            .iter()
+            .enumerate()
+            .filter(|(_, model)| is_visible(&model.name))
+            .map(of_model)
+            .collect()
     }
 
     /// The curve of a model, without numbers yet.
     pub(super) fn curve_of(&self, model: SourceModel) -> BodeCurve {
-        let SourceModel { id, index, role, rejected, hidden } = model;
+        let SourceModel {
+            id,
+            index,
+            role,
+            rejected,
+            hidden,
+        } = model;
         let detail = self.detail(&id, index);
         let label = id.name.clone();
-        BodeCurve { label, detail, rejected, hidden, ..BodeCurve::new(CurveId::Model(id), role) }
+        BodeCurve {
+            label,
+            detail,
+            rejected,
+            hidden,
+            ..BodeCurve::new(CurveId::Model(id), role)
+        }
     }
 
     /// "ratio 3.68, suggested as an outlier · from run 3".
     fn detail(&self, id: &ModelId, index: usize) -> String {
         let analysis = self.analysis.filter(|_| id.bundle == BundleKind::Physics);
-        let ratio = analysis.and_then(|analysis| analysis.discontinuity_ratio(&id.name)).map(|ratio| {
-            let verdict = if ratio > SUGGESTION_RATIO { ", suggested as an outlier" } else { "" };
-            format!("ratio {ratio:.2}{verdict}")
-        });
-        let source = self.curves.condition.bundle(id.bundle)[index].source.as_ref();
+        let ratio = analysis
+            .and_then(|analysis| analysis.discontinuity_ratio(&id.name))
+            .map(|ratio| {
+                let verdict = if ratio > SUGGESTION_RATIO {
+                    ", suggested as an outlier"
+                } else {
+                    ""
+                };
+                format!("ratio {ratio:.2}{verdict}")
+            });
+        let source = self.curves.condition.bundle(id.bundle)[index]
+            .source
+            .as_ref();
         let source = source.map(|source| format!("from {}", source.words()));
-        ratio.into_iter().chain(source).collect::<Vec<_>>().join(" · ")
+        ratio
+            .into_iter()
+            .chain(source)
+            .collect::<Vec<_>>()
+            .join(" · ")
     }
 
     /// The representative physics model with the condition's own correction, with that of the schedule, where there are leads
     /// without them, and where a variant is laid over with its.
-    pub(super) fn corrected_models(&self, pair: Pair, options: &BodeOptions) -> Vec<CorrectedModel<'a>> {
-        let Some(analysis) = self.analysis else { return Vec::new() };
+    pub(super) fn corrected_models(
+        &self,
+        pair: Pair,
+        options: &BodeOptions,
+    ) -> Vec<CorrectedModel<'a>> {
+        let Some(analysis) = self.analysis else {
+            return Vec::new();
+        };
         let of = |result: &'a ConditionAnalysis,
                   (id, role): (CurveId, Role),
                   words: &str,
                   correction: &ChannelCorrection| {
             let name = result.representative_name(BundleKind::Physics);
             let model = self.curves.condition.position(BundleKind::Physics, name)?;
-            let (gain, delay_ms) = (correction.net_gain(pair), s_to_ms(correction.net_delay_s(pair)));
+            let (gain, delay_ms) = (
+                correction.net_gain(pair),
+                s_to_ms(correction.net_delay_s(pair)),
+            );
             let detail = format!("net gain {gain:.3}, net delay {delay_ms:.1} ms");
             let (label, hidden) = (format!("{name}, {words}"), options.hidden.contains(&role));
-            let curve = BodeCurve { label, detail, hidden, ..BodeCurve::new(id, role) };
-            Some(CorrectedModel { curve, result, model, correction: correction.on(pair)? })
+            let curve = BodeCurve {
+                label,
+                detail,
+                hidden,
+                ..BodeCurve::new(id, role)
+            };
+            Some(CorrectedModel {
+                curve,
+                result,
+                model,
+                correction: correction.on(pair)?,
+            })
         };
-        let corrected = |id, role, words: &str, correction: &_| of(analysis, (id, role), words, correction);
+        let corrected =
+            |id, role, words: &str, correction: &_| of(analysis, (id, role), words, correction);
         let variant = self.variant.and_then(|(name, result)| {
-            let mut model = of(result, (CurveId::Variant, Role::Variant), "corrected", &result.correction)?;
+            let mut model = of(
+                result,
+                (CurveId::Variant, Role::Variant),
+                "corrected",
+                &result.correction,
+            )?;
             // The chip says whose decisions these are; which model represents stands in its detail.
             model.curve.detail = format!("{}; {}", model.curve.label, model.curve.detail);
             model.curve.label = format!("variant {name}");
             Some(model)
         });
-        let own = corrected(CurveId::Corrected, Role::Corrected, "corrected", &analysis.correction);
+        let own = corrected(
+            CurveId::Corrected,
+            Role::Corrected,
+            "corrected",
+            &analysis.correction,
+        );
         let scheduled = self.schedule.and_then(|schedule| {
             let correction = schedule.at_state(self.curves.condition.flight_state());
-            corrected(CurveId::Scheduled, Role::Scheduled, "scheduled", &correction)
+            corrected(
+                CurveId::Scheduled,
+                Role::Scheduled,
+                "scheduled",
+                &correction,
+            )
         });
         let without = analysis.compensated.as_ref().and_then(|_| {
             let correction = analysis.correction.clone().without_leads();
-            corrected(CurveId::WithoutLeads, Role::WithoutLeads, "corrected without leads", &correction)
+            corrected(
+                CurveId::WithoutLeads,
+                Role::WithoutLeads,
+                "corrected without leads",
+                &correction,
+            )
         });
         let coupled = analysis.coupled.as_ref().and_then(|_| {
-            let mut model = corrected(CurveId::Coupled, Role::Coupled, "couplings alone", &analysis.correction)?;
+            let mut model = corrected(
+                CurveId::Coupled,
+                Role::Coupled,
+                "couplings alone",
+                &analysis.correction,
+            )?;
             (model.correction, model.curve.detail) = (GainDelay::NONE, String::new());
             Some(model)
         });
-        own.into_iter().chain(scheduled).chain(without).chain(coupled).chain(variant).collect()
+        own.into_iter()
+            .chain(scheduled)
+            .chain(without)
+            .chain(coupled)
+            .chain(variant)
+            .collect()
     }
 }
 
 /// `Condition 10: 60 kt, low altitude, high weight`.
 pub fn condition_words(FlightState { id, name, .. }: &FlightState) -> String {
-    if name.is_empty() { format!("Condition {id}") } else { format!("Condition {id}: {name}") }
+    if name.is_empty() {
+        format!("Condition {id}")
+    } else {
+        format!("Condition {id}: {name}")
+    }
 }
 
 /// The dataset, and the settings that every figure of the analysis rests on.
@@ -235,7 +348,8 @@ pub fn schedule_words(settings: &ScheduleSettings) -> String {
         ScheduleKind::Table => "table".to_owned(),
     };
     let quantity = quantity_symbol(settings.quantity);
-    let second =
-        settings.second.map_or_else(String::new, |variable| format!(", with {variable} in the middle of its range"));
+    let second = settings.second.map_or_else(String::new, |variable| {
+        format!(", with {variable} in the middle of its range")
+    });
     format!("{kind} of {quantity}{second}")
 }

@@ -107,7 +107,12 @@ pub struct Area {
 impl Area {
     /// The rectangle of these edges.
     pub fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
-        Self { left, top, width, height }
+        Self {
+            left,
+            top,
+            width,
+            height,
+        }
     }
 
     /// Right edge.
@@ -127,7 +132,12 @@ impl Area {
 
     /// The corners, from the upper left with the clock.
     pub fn corners(&self) -> [[f64; 2]; 4] {
-        [[self.left, self.top], [self.right(), self.top], [self.right(), self.bottom()], [self.left, self.bottom()]]
+        [
+            [self.left, self.top],
+            [self.right(), self.top],
+            [self.right(), self.bottom()],
+            [self.left, self.bottom()],
+        ]
     }
 
     /// Whether a point lies in it, edges included.
@@ -142,7 +152,12 @@ impl Area {
 
     /// The rectangle that is larger by `by` on every side.
     pub fn expanded(&self, by: f64) -> Self {
-        Self::new(self.left - by, self.top - by, self.width + 2.0 * by, self.height + 2.0 * by)
+        Self::new(
+            self.left - by,
+            self.top - by,
+            self.width + 2.0 * by,
+            self.height + 2.0 * by,
+        )
     }
 
     /// How far a point is from it; 0 within.
@@ -162,12 +177,22 @@ impl Area {
 impl Shape {
     /// A line through points.
     pub fn line(points: impl Into<Vec<[f64; 2]>>, stroke: Stroke) -> Self {
-        Self::Path { points: points.into(), closed: false, fill: None, stroke: Some(stroke) }
+        Self::Path {
+            points: points.into(),
+            closed: false,
+            fill: None,
+            stroke: Some(stroke),
+        }
     }
 
     /// A rectangle.
     pub fn rectangle(area: Area, fill: Option<Color>, stroke: Option<Stroke>) -> Self {
-        Self::Path { points: area.corners().to_vec(), closed: true, fill, stroke }
+        Self::Path {
+            points: area.corners().to_vec(),
+            closed: true,
+            fill,
+            stroke,
+        }
     }
 }
 
@@ -219,7 +244,11 @@ impl Hue {
             Self::Warning => 0xa9410a,
             Self::Good => 0x187049,
             Self::OfAirspeed(step) => {
-                return mixed(Self::Perturbed.on_paper(), Self::Identified.on_paper(), f64::from(step) / 255.0);
+                return mixed(
+                    Self::Perturbed.on_paper(),
+                    Self::Identified.on_paper(),
+                    f64::from(step) / 255.0,
+                );
             }
         };
         [(rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8]
@@ -228,7 +257,9 @@ impl Hue {
 
 /// The colour that is this part of the way to another one.
 fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
-    let mix = |from: u8, to: u8| (f64::from(from) + part * (f64::from(to) - f64::from(from))).round() as u8;
+    let mix = |from: u8, to: u8| {
+        (f64::from(from) + part * (f64::from(to) - f64::from(from))).round() as u8
+    };
     std::array::from_fn(|at| mix(from[at], to[at]))
 }
 
@@ -263,7 +294,11 @@ impl Color {
 
     /// Red, green and blue on paper (sRGB).
     pub fn rgb(self) -> [u8; 3] {
-        mixed(Hue::Background.on_paper(), self.hue.on_paper(), f64::from(self.percent.min(100)) / 100.0)
+        mixed(
+            Hue::Background.on_paper(),
+            self.hue.on_paper(),
+            f64::from(self.percent.min(100)) / 100.0,
+        )
     }
 }
 
@@ -313,17 +348,28 @@ pub struct Stroke {
 impl Stroke {
     /// A solid line.
     pub const fn solid(color: Color, width_pt: f64) -> Self {
-        Self { color, width_pt, dash: Dash::Solid }
+        Self {
+            color,
+            width_pt,
+            dash: Dash::Solid,
+        }
     }
 
     /// A line of dashes.
     pub const fn dashed(color: Color, width_pt: f64, dash: Dash) -> Self {
-        Self { color, width_pt, dash }
+        Self {
+            color,
+            width_pt,
+            dash,
+        }
     }
 
     /// This line of the window as it is printed: finer, for paper shows more.
     pub fn printed(self) -> Self {
-        Self { width_pt: Self::PRINTED * self.width_pt, ..self }
+        Self {
+            width_pt: Self::PRINTED * self.width_pt,
+            ..self
+        }
     }
 
     /// Width on paper as a part of that in the window.
@@ -333,16 +379,36 @@ impl Stroke {
 impl Drawing {
     /// The same drawing with fewer points: none of those left out is farther than `tolerance_pt` from its line.
     pub fn thinned(self, tolerance_pt: f64) -> Self {
-        Self { shapes: coarser(self.shapes, Pixel { width: tolerance_pt, tolerance: tolerance_pt }), ..self }
+        Self {
+            shapes: coarser(
+                self.shapes,
+                Pixel {
+                    width: tolerance_pt,
+                    tolerance: tolerance_pt,
+                },
+            ),
+            ..self
+        }
     }
 }
 
 fn coarser(shapes: Vec<Shape>, pixel: Pixel) -> Vec<Shape> {
     let one = |shape: Shape| match shape {
-        Shape::Path { points, closed: false, fill, stroke } => {
-            Shape::Path { points: thinned(&points, pixel), closed: false, fill, stroke }
-        }
-        Shape::Clipped { area, shapes } => Shape::Clipped { area, shapes: coarser(shapes, pixel) },
+        Shape::Path {
+            points,
+            closed: false,
+            fill,
+            stroke,
+        } => Shape::Path {
+            points: thinned(&points, pixel),
+            closed: false,
+            fill,
+            stroke,
+        },
+        Shape::Clipped { area, shapes } => Shape::Clipped {
+            area,
+            shapes: coarser(shapes, pixel),
+        },
         other => other,
     };
     shapes.into_iter().map(one).collect()

@@ -20,40 +20,93 @@ use super::role::Role;
 pub fn error_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
     figure_of_pairs(source, pairs, "Error", |pair| {
         let curves = source.error_curves(pair, options, &mut ErrorCache::default());
-        let (references, strips) = (source.error_references(pair, options, &curves), noticed(&curves, options));
-        let panels = FrequencyPanels { curves: &curves, references: &references, bands: &[], strips: &strips, options };
-        let ratio = Axis::linear("|ident.| / |model| [dB]").including(0.0).at_least(1.0).showing(options.values[0]);
+        let (references, strips) = (
+            source.error_references(pair, options, &curves),
+            noticed(&curves, options),
+        );
+        let panels = FrequencyPanels {
+            curves: &curves,
+            references: &references,
+            bands: &[],
+            strips: &strips,
+            options,
+        };
+        let ratio = Axis::linear("|ident.| / |model| [dB]")
+            .including(0.0)
+            .at_least(1.0)
+            .showing(options.values[0]);
         let phase = match options.phase_error {
             PhaseErrorUnit::Degree => Axis::degrees("Δφ [deg]"),
             PhaseErrorUnit::Millisecond => Axis::linear("Δφ/ω [ms]"),
         };
-        let phase = phase.including(0.0).at_least(5.0).showing(options.values[1]);
-        Plot::default().panel(panels.panel(Pane::Magnitude, ratio)).panel(panels.panel(Pane::Phase, phase))
+        let phase = phase
+            .including(0.0)
+            .at_least(5.0)
+            .showing(options.values[1]);
+        Plot::default()
+            .panel(panels.panel(Pane::Magnitude, ratio))
+            .panel(panels.panel(Pane::Phase, phase))
     })
 }
 
 impl ConditionSource<'_> {
     /// The error over the band of every kept physics model, of the representative after its correction and after the schedule's, and
     /// the reference as the line at zero. `cache` keeps their numbers while nothing of them changes.
-    pub fn error_curves(&self, pair: Pair, options: &BodeOptions, cache: &mut ErrorCache) -> Vec<BodeCurve> {
-        let (band, coherence) = (self.study.settings.band, self.study.settings.coherence_threshold);
+    pub fn error_curves(
+        &self,
+        pair: Pair,
+        options: &BodeOptions,
+        cache: &mut ErrorCache,
+    ) -> Vec<BodeCurve> {
+        let (band, coherence) = (
+            self.study.settings.band,
+            self.study.settings.coherence_threshold,
+        );
         let (reference, unit) = (self.reference(), options.phase_error);
         let curves = Arc::clone(self.curves);
-        cache.refresh(Made { curves, pair, reference, band: (band.min(), band.max()), coherence, unit });
+        cache.refresh(Made {
+            curves,
+            pair,
+            reference,
+            band: (band.min(), band.max()),
+            coherence,
+            unit,
+        });
         let mut drawn = Vec::new();
-        for model in self.models(BundleKind::Physics, options).into_iter().filter(|model| !model.rejected) {
+        for model in self
+            .models(BundleKind::Physics, options)
+            .into_iter()
+            .filter(|model| !model.rejected)
+        {
             if let Some((_, error)) = &cache.errors[model.index] {
-                drawn.push(self.curve_of(model).with(&cache.omega, &error.magnitude_db, &error.phase));
+                drawn.push(self.curve_of(model).with(
+                    &cache.omega,
+                    &error.magnitude_db,
+                    &error.phase,
+                ));
             }
         }
         if !drawn.is_empty() {
             let identified = self.models(BundleKind::Identified, options).into_iter();
             let of_reference = identified.filter(|model| model.index == reference);
-            drawn.extend(of_reference.map(|model| self.curve_of(model).with(&cache.omega, &cache.zero, &cache.zero)));
+            drawn.extend(of_reference.map(|model| {
+                self.curve_of(model)
+                    .with(&cache.omega, &cache.zero, &cache.zero)
+            }));
         }
-        for CorrectedModel { curve, result, model, correction } in self.corrected_models(pair, options) {
-            let coupled = result.coupled.as_ref().map(|_| cache.shape(&self.curves.with_couplings(result, model)));
-            let shape = coupled.unwrap_or_else(|| cache.errors[model].as_ref().map(|(shape, _)| shape.clone()));
+        for CorrectedModel {
+            curve,
+            result,
+            model,
+            correction,
+        } in self.corrected_models(pair, options)
+        {
+            let coupled = result
+                .coupled
+                .as_ref()
+                .map(|_| cache.shape(&self.curves.with_couplings(result, model)));
+            let shape = coupled
+                .unwrap_or_else(|| cache.errors[model].as_ref().map(|(shape, _)| shape.clone()));
             if let Some(shape) = shape {
                 let error = shape.drawn(correction, &cache.omega, unit);
                 drawn.push(curve.with(&cache.omega, &error.magnitude_db, &error.phase));
@@ -64,8 +117,15 @@ impl ConditionSource<'_> {
 
     /// G and D, the bounds of the channels, and quantiles of the representative's error among `drawn`, hidden or not: what the fit
     /// makes of it (M6, M7).
-    pub fn error_references(&self, pair: Pair, options: &BodeOptions, drawn: &[BodeCurve]) -> Vec<ReferenceLine> {
-        let Some(analysis) = self.analysis else { return Vec::new() };
+    pub fn error_references(
+        &self,
+        pair: Pair,
+        options: &BodeOptions,
+        drawn: &[BodeCurve],
+    ) -> Vec<ReferenceLine> {
+        let Some(analysis) = self.analysis else {
+            return Vec::new();
+        };
         let unit = options.phase_error;
         let mut lines = delta_rules(analysis, pair, unit);
         lines.extend(bound_rules(analysis, unit));
@@ -107,17 +167,25 @@ impl ErrorShape {
     ) -> Option<Self> {
         let mismatch = Mismatch::new(simulated, reference).coherence_weighted(coherence_weights)?;
         let phase = mismatch.on_grid(mismatch.phase_difference(omega), omega.len());
-        Some(Self { phase, mismatch_db: mismatch.on_grid(mismatch.magnitude_db.clone(), omega.len()) })
+        Some(Self {
+            phase,
+            mismatch_db: mismatch.on_grid(mismatch.magnitude_db.clone(), omega.len()),
+        })
     }
 
     /// After a gain and a delay of the simulated response (M10), which leave it on its branch.
     fn drawn(&self, correction: GainDelay, omega: &[f64], unit: PhaseErrorUnit) -> DrawnError {
         let phase = correction.phases(&self.phase, omega).zip(omega);
         DrawnError {
-            magnitude_db: correction.magnitudes_db(&self.mismatch_db, omega).map(|db| -db).collect(),
+            magnitude_db: correction
+                .magnitudes_db(&self.mismatch_db, omega)
+                .map(|db| -db)
+                .collect(),
             phase: match unit {
                 PhaseErrorUnit::Degree => phase.map(|(phase, _)| phase.to_degrees()).collect(),
-                PhaseErrorUnit::Millisecond => phase.map(|(phase, omega)| s_to_ms(phase / omega)).collect(),
+                PhaseErrorUnit::Millisecond => {
+                    phase.map(|(phase, omega)| s_to_ms(phase / omega)).collect()
+                }
             },
         }
     }
@@ -137,7 +205,15 @@ struct Made {
 
 impl Made {
     fn is_same(&self, other: &Self) -> bool {
-        let key = |made: &Self| (made.pair, made.reference, made.band, made.coherence, made.unit);
+        let key = |made: &Self| {
+            (
+                made.pair,
+                made.reference,
+                made.band,
+                made.coherence,
+                made.unit,
+            )
+        };
         Arc::ptr_eq(&self.curves, &other.curves) && key(self) == key(other)
     }
 
@@ -149,19 +225,30 @@ impl Made {
     /// The error of a response of the condition over `omega`, the band.
     fn shape(&self, response: &FrequencyResponse, omega: &[f64]) -> Option<ErrorShape> {
         let reference = self.polar(self.curves.identified.get(self.reference)?)?;
-        ErrorShape::of(&self.polar(response)?, &reference, omega, self.coherence_weights(omega).as_ref())
+        ErrorShape::of(
+            &self.polar(response)?,
+            &reference,
+            omega,
+            self.coherence_weights(omega).as_ref(),
+        )
     }
 
     /// The frequencies among `omega` that count, where the reference's coherence says that.
     fn coherence_weights(&self, omega: &[f64]) -> Option<CoherenceWeights> {
-        let flight = &self.curves.condition.bundle(BundleKind::Identified).get(self.reference)?.dynamics;
+        let flight = &self
+            .curves
+            .condition
+            .bundle(BundleKind::Identified)
+            .get(self.reference)?
+            .dynamics;
         Some(CoherenceWeights::of_model(flight, omega, self.coherence)?[self.pair].clone())
     }
 
     /// Which of the frequencies lie in the band.
     fn within(&self) -> std::ops::Range<usize> {
         let omega = self.curves.grid.omega();
-        omega.partition_point(|omega| *omega < self.band.0)..omega.partition_point(|omega| *omega <= self.band.1)
+        omega.partition_point(|omega| *omega < self.band.0)
+            ..omega.partition_point(|omega| *omega <= self.band.1)
     }
 }
 
@@ -178,7 +265,11 @@ pub struct ErrorCache {
 
 impl ErrorCache {
     fn refresh(&mut self, made: Made) {
-        if self.made.as_ref().is_some_and(|before| before.is_same(&made)) {
+        if self
+            .made
+            .as_ref()
+            .is_some_and(|before| before.is_same(&made))
+        {
             return;
         }
         self.omega = made.curves.grid.omega()[made.within()].into();
@@ -208,8 +299,12 @@ fn muad_rules(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let ends = [(0, "unnoticed below, MUAD"), (1, "unnoticed above, MUAD")];
     let rules = |(end, label): (usize, &str)| {
         [
-            muad_line(Pane::Magnitude, label, omega, |_, omega| -Muad::at(omega).magnitude_db[end]),
-            muad_line(Pane::Phase, label, omega, |_, omega| phase(omega, Muad::at(omega).phase_deg[end])),
+            muad_line(Pane::Magnitude, label, omega, |_, omega| {
+                -Muad::at(omega).magnitude_db[end]
+            }),
+            muad_line(Pane::Phase, label, omega, |_, omega| {
+                phase(omega, Muad::at(omega).phase_deg[end])
+            }),
         ]
     };
     ends.into_iter().flat_map(rules).collect()
@@ -218,30 +313,57 @@ fn muad_rules(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
 /// The same envelopes about the identified representative among `drawn`, hidden or not: a response within both cannot be told from
 /// it by a pilot. None where they are not asked for.
 pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLine> {
-    let identified = drawn.iter().find(|curve| curve.role == Role::IdentifiedRepresentative);
-    let Some(curve) = identified.filter(|_| options.shows_muad) else { return Vec::new() };
+    let identified = drawn
+        .iter()
+        .find(|curve| curve.role == Role::IdentifiedRepresentative);
+    let Some(curve) = identified.filter(|_| options.shows_muad) else {
+        return Vec::new();
+    };
     let (omega, magnitude_db, phase_deg) = (&curve.omega, &curve.magnitude_db, &curve.phase_deg);
     let ends = [(0, "unnoticed above, MUAD"), (1, "unnoticed below, MUAD")];
     let lines = |(end, label): (usize, &str)| {
         [
-            muad_line(Pane::Magnitude, label, omega, |k, omega| magnitude_db[k] + Muad::at(omega).magnitude_db[end]),
-            muad_line(Pane::Phase, label, omega, |k, omega| phase_deg[k] + Muad::at(omega).phase_deg[end]),
+            muad_line(Pane::Magnitude, label, omega, |k, omega| {
+                magnitude_db[k] + Muad::at(omega).magnitude_db[end]
+            }),
+            muad_line(Pane::Phase, label, omega, |k, omega| {
+                phase_deg[k] + Muad::at(omega).phase_deg[end]
+            }),
         ]
     };
     ends.into_iter().flat_map(lines).collect()
 }
 
 /// An envelope over `omega` \[rad/s\]; `value` gets the number of a frequency and the frequency.
-fn muad_line(pane: Pane, label: &str, omega: &[f64], value: impl Fn(usize, f64) -> f64) -> ReferenceLine {
-    let level = Level::Sampled(omega.iter().enumerate().map(|(k, &omega)| [omega, value(k, omega)]).collect());
+fn muad_line(
+    pane: Pane,
+    label: &str,
+    omega: &[f64],
+    value: impl Fn(usize, f64) -> f64,
+) -> ReferenceLine {
+    let level = Level::Sampled(
+        omega
+            .iter()
+            .enumerate()
+            .map(|(k, &omega)| [omega, value(k, omega)])
+            .collect(),
+    );
     ReferenceLine::new(pane, ReferenceKind::Envelope, label, level)
 }
 
 /// Where what is left of the mismatch would be noticed \[rad/s\]: that of the corrected curve among `drawn`, where that is asked for.
 pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
-    let corrected = drawn.iter().find(|curve| curve.id == CurveId::Corrected).filter(|_| options.shows_muad);
-    let Some(curve) = corrected else { return Vec::new() };
-    let errors = curve.omega.iter().zip(curve.magnitude_db.iter().zip(curve.phase_deg.iter()));
+    let corrected = drawn
+        .iter()
+        .find(|curve| curve.id == CurveId::Corrected)
+        .filter(|_| options.shows_muad);
+    let Some(curve) = corrected else {
+        return Vec::new();
+    };
+    let errors = curve
+        .omega
+        .iter()
+        .zip(curve.magnitude_db.iter().zip(curve.phase_deg.iter()));
     let (mut omega, mut error_db, mut principal_deg) = (Vec::new(), Vec::new(), Vec::new());
     // There is no error at frequencies that do not count.
     for (&at, (&db, &phase)) in errors.filter(|(_, (db, _))| db.is_finite()) {
@@ -257,7 +379,12 @@ pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
 }
 
 /// A delay as a line in the pane of phase errors.
-fn delay_rule(kind: ReferenceKind, label: String, delay_s: f64, unit: PhaseErrorUnit) -> ReferenceLine {
+fn delay_rule(
+    kind: ReferenceKind,
+    label: String,
+    delay_s: f64,
+    unit: PhaseErrorUnit,
+) -> ReferenceLine {
     let level = match unit {
         PhaseErrorUnit::Degree => Level::PerOmega(delay_s.to_degrees()),
         PhaseErrorUnit::Millisecond => Level::Constant(s_to_ms(delay_s)),
@@ -266,7 +393,12 @@ fn delay_rule(kind: ReferenceKind, label: String, delay_s: f64, unit: PhaseError
 }
 
 fn gain_rule(kind: ReferenceKind, label: String, gain: f64) -> ReferenceLine {
-    ReferenceLine::new(Pane::Magnitude, kind, label, Level::Constant(ratio_to_db(gain)))
+    ReferenceLine::new(
+        Pane::Magnitude,
+        kind,
+        label,
+        Level::Constant(ratio_to_db(gain)),
+    )
 }
 
 fn signed(value: f64) -> String {
@@ -277,12 +409,22 @@ fn delta_rules(shown: &ConditionAnalysis, pair: Pair, unit: PhaseErrorUnit) -> V
     let gain = shown.wanted_gain(pair).map(|gain| {
         let label = format!("G {gain:.3} ({} dB)", signed(ratio_to_db(gain)));
         let note = ", median over the band".to_owned();
-        ReferenceLine { note, ..gain_rule(ReferenceKind::Delta, label, gain) }
+        ReferenceLine {
+            note,
+            ..gain_rule(ReferenceKind::Delta, label, gain)
+        }
     });
     let delay = shown.wanted_delay_s(pair).map(|delay_s| {
-        let meaning = if delay_s < 0.0 { ": lead is missing" } else { "" };
+        let meaning = if delay_s < 0.0 {
+            ": lead is missing"
+        } else {
+            ""
+        };
         let label = format!("D {} ms", signed(s_to_ms(delay_s)));
-        ReferenceLine { note: meaning.to_owned(), ..delay_rule(ReferenceKind::Delta, label, delay_s, unit) }
+        ReferenceLine {
+            note: meaning.to_owned(),
+            ..delay_rule(ReferenceKind::Delta, label, delay_s, unit)
+        }
     });
     gain.into_iter().chain(delay).collect()
 }
@@ -290,21 +432,45 @@ fn delta_rules(shown: &ConditionAnalysis, pair: Pair, unit: PhaseErrorUnit) -> V
 fn bound_rules(shown: &ConditionAnalysis, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let (bounds, delay_s) = (shown.gain_bounds(), shown.delay_upper_s());
     vec![
-        gain_rule(ReferenceKind::Bound, format!("LB {:.3}", bounds.lower), bounds.lower),
-        gain_rule(ReferenceKind::Bound, format!("UB {:.3}", bounds.upper), bounds.upper),
-        delay_rule(ReferenceKind::Bound, format!("UB {} ms", signed(s_to_ms(delay_s))), delay_s, unit),
+        gain_rule(
+            ReferenceKind::Bound,
+            format!("LB {:.3}", bounds.lower),
+            bounds.lower,
+        ),
+        gain_rule(
+            ReferenceKind::Bound,
+            format!("UB {:.3}", bounds.upper),
+            bounds.upper,
+        ),
+        delay_rule(
+            ReferenceKind::Bound,
+            format!("UB {} ms", signed(s_to_ms(delay_s))),
+            delay_s,
+            unit,
+        ),
     ]
 }
 
 /// The quantiles of one response's error: what M7 would take were there no others.
 fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
-    let delays = curve.omega.iter().zip(curve.phase_deg.iter()).map(|(omega, phase)| match unit {
-        PhaseErrorUnit::Degree => phase.to_radians() / omega,
-        PhaseErrorUnit::Millisecond => 1e-3 * phase,
-    });
+    let delays = curve
+        .omega
+        .iter()
+        .zip(curve.phase_deg.iter())
+        .map(|(omega, phase)| match unit {
+            PhaseErrorUnit::Degree => phase.to_radians() / omega,
+            PhaseErrorUnit::Millisecond => 1e-3 * phase,
+        });
     // There is no error at frequencies that do not count.
-    let finite = |values: &mut dyn Iterator<Item = f64>| values.filter(|value| value.is_finite()).collect::<Vec<f64>>();
-    let (mut ratios_db, mut delays_s) = (finite(&mut curve.magnitude_db.iter().copied()), finite(&mut { delays }));
+    let finite = |values: &mut dyn Iterator<Item = f64>| {
+        values
+            .filter(|value| value.is_finite())
+            .collect::<Vec<f64>>()
+    };
+    let (mut ratios_db, mut delays_s) = (
+        finite(&mut curve.magnitude_db.iter().copied()),
+        finite(&mut { delays }),
+    );
     let label = |q: f64| format!("{:.0} % quantile", 100.0 * q);
     [q, 1.0 - q]
         .into_iter()
@@ -312,7 +478,12 @@ fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<Refere
             let level = Level::Constant(quantile(&mut ratios_db, q));
             [
                 ReferenceLine::new(Pane::Magnitude, ReferenceKind::Quantile, label(q), level),
-                delay_rule(ReferenceKind::Quantile, label(q), quantile(&mut delays_s, q), unit),
+                delay_rule(
+                    ReferenceKind::Quantile,
+                    label(q),
+                    quantile(&mut delays_s, q),
+                    unit,
+                ),
             ]
         })
         .collect()
@@ -340,16 +511,35 @@ mod tests {
         let error = error(&omega, 2.0, 0.6);
         let before = error.drawn(GainDelay::NONE, &omega, PhaseErrorUnit::Millisecond);
         // Roundings of angles of a turn, divided by 0.1 rad/s.
-        assert!(before.phase.iter().all(|delay| (delay - 600.0).abs() < 1e-9) && omega[119] * 0.6 > TAU);
-        assert_eq!(before.magnitude_db[0], -2.0, "the model is to be made smaller");
-        let after = error.drawn(GainDelay::new(10f64.powf(-0.1), 0.6), &omega, PhaseErrorUnit::Degree);
+        assert!(
+            before
+                .phase
+                .iter()
+                .all(|delay| (delay - 600.0).abs() < 1e-9)
+                && omega[119] * 0.6 > TAU
+        );
+        assert_eq!(
+            before.magnitude_db[0], -2.0,
+            "the model is to be made smaller"
+        );
+        let after = error.drawn(
+            GainDelay::new(10f64.powf(-0.1), 0.6),
+            &omega,
+            PhaseErrorUnit::Degree,
+        );
         let values = after.magnitude_db.iter().chain(after.phase.iter());
         assert!(values.into_iter().all(|value| value.abs() < 1e-10));
     }
 
     #[test]
     fn frequencies_that_do_not_count_are_gaps() {
-        let (omega, polar) = ([1.0, 2.0, 3.0], PolarCurve { magnitude_db: vec![1.0; 3], phase: vec![0.1; 3] });
+        let (omega, polar) = (
+            [1.0, 2.0, 3.0],
+            PolarCurve {
+                magnitude_db: vec![1.0; 3],
+                phase: vec![0.1; 3],
+            },
+        );
         let coherence_weights = CoherenceWeights::of(&omega, &[0.9, 0.2, 0.9], 0.6, None);
         let shape = ErrorShape::of(&polar, &polar, &omega, Some(&coherence_weights)).unwrap();
         assert!(shape.mismatch_db[1].is_nan() && shape.phase[1].is_nan());
@@ -361,7 +551,10 @@ mod tests {
     #[test]
     fn a_delay_is_a_ray_in_degrees_and_level_in_milliseconds() {
         let level = |unit| delay_rule(ReferenceKind::Delta, String::new(), 0.1, unit).level;
-        assert_eq!(level(PhaseErrorUnit::Degree), Level::PerOmega(0.1f64.to_degrees()));
+        assert_eq!(
+            level(PhaseErrorUnit::Degree),
+            Level::PerOmega(0.1f64.to_degrees())
+        );
         assert_eq!(level(PhaseErrorUnit::Millisecond), Level::Constant(100.0));
     }
 
@@ -370,7 +563,10 @@ mod tests {
         let omega: Arc<[f64]> = [2.0].into();
         let curve = BodeCurve::new(CurveId::Corrected, Role::IdentifiedRepresentative);
         let drawn = [curve.with(&omega, &[-6.0].into(), &[-90.0].into())];
-        let options = BodeOptions { shows_muad: true, ..BodeOptions::default() };
+        let options = BodeOptions {
+            shows_muad: true,
+            ..BodeOptions::default()
+        };
         let muad = Muad::at(2.0);
         let expected: Vec<Level> = [0, 1]
             .into_iter()
@@ -378,18 +574,35 @@ mod tests {
             .map(|value| Level::Sampled(vec![[2.0, value]]))
             .collect();
         let lines = muad_about(&drawn, &options);
-        assert_eq!(lines.iter().map(|line| line.level.clone()).collect::<Vec<_>>(), expected);
-        assert!(muad_about(&drawn, &BodeOptions::default()).is_empty(), "on wish");
+        assert_eq!(
+            lines
+                .iter()
+                .map(|line| line.level.clone())
+                .collect::<Vec<_>>(),
+            expected
+        );
+        assert!(
+            muad_about(&drawn, &BodeOptions::default()).is_empty(),
+            "on wish"
+        );
     }
 
     #[test]
     fn the_envelopes_of_model_over_reference_are_mirrored_where_the_inverse_is_drawn() {
         let muad = Muad::at(2.0);
         let rules = muad_rules(&[2.0], PhaseErrorUnit::Degree);
-        let of = |pane| rules.iter().filter(move |rule| rule.pane == pane).map(|rule| rule.level.clone());
+        let of = |pane| {
+            rules
+                .iter()
+                .filter(move |rule| rule.pane == pane)
+                .map(|rule| rule.level.clone())
+        };
         let sampled = |value: f64| Level::Sampled(vec![[2.0, value]]);
         let expected = muad.magnitude_db.map(|db| sampled(-db));
         assert_eq!(of(Pane::Magnitude).collect::<Vec<_>>(), expected);
-        assert_eq!(of(Pane::Phase).collect::<Vec<_>>(), muad.phase_deg.map(sampled));
+        assert_eq!(
+            of(Pane::Phase).collect::<Vec<_>>(),
+            muad.phase_deg.map(sampled)
+        );
     }
 }

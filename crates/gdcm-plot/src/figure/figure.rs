@@ -78,12 +78,20 @@ impl ColumnWidth {
 impl Figure {
     /// A figure without plots.
     pub fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), columns: 1, aspect: 0.62, ..Self::default() }
+        Self {
+            title: title.into(),
+            columns: 1,
+            aspect: 0.62,
+            ..Self::default()
+        }
     }
 
     /// The same figure with a caption.
     pub fn caption(self, caption: impl Into<String>) -> Self {
-        Self { caption: caption.into(), ..self }
+        Self {
+            caption: caption.into(),
+            ..self
+        }
     }
 
     /// The same figure with one more plot.
@@ -100,17 +108,32 @@ impl Figure {
 
     /// The same figure with at most so many plots side by side.
     pub fn columns(self, columns: usize) -> Self {
-        Self { columns: columns.max(1), ..self }
+        Self {
+            columns: columns.max(1),
+            ..self
+        }
     }
 
     /// The same figure, its plots on the same horizontal axis.
     pub fn shared_x(self) -> Self {
-        Self { shared: Shared { x: true, ..self.shared }, ..self }
+        Self {
+            shared: Shared {
+                x: true,
+                ..self.shared
+            },
+            ..self
+        }
     }
 
     /// The same figure, its plots on the same vertical axes.
     pub fn shared_y(self) -> Self {
-        Self { shared: Shared { y: true, ..self.shared }, ..self }
+        Self {
+            shared: Shared {
+                y: true,
+                ..self.shared
+            },
+            ..self
+        }
     }
 
     /// The same figure with plots of another height, as a part of their width.
@@ -120,14 +143,29 @@ impl Figure {
 
     /// The same figure with plots as small as is readable at all.
     pub fn dense(self) -> Self {
-        Self { dense: true, ..self }
+        Self {
+            dense: true,
+            ..self
+        }
     }
 
     /// The same figure where each panel says which part of the axes that all have in common it shows.
     pub fn with_ranges(mut self) -> Self {
-        let common = |along| self.panels().map(|(_, panel)| panel.shown(along)).reduce(Range::union);
-        let x = if self.shared.x { common(Along::X) } else { None };
-        let y = if self.shared.y { common(Along::Y) } else { None };
+        let common = |along| {
+            self.panels()
+                .map(|(_, panel)| panel.shown(along))
+                .reduce(Range::union)
+        };
+        let x = if self.shared.x {
+            common(Along::X)
+        } else {
+            None
+        };
+        let y = if self.shared.y {
+            common(Along::Y)
+        } else {
+            None
+        };
         for panel in self.plots.iter_mut().flat_map(|plot| &mut plot.panels) {
             panel.x.range = x.or(panel.x.range);
             panel.y.range = y.or(panel.y.range);
@@ -137,7 +175,9 @@ impl Figure {
 
     /// Every panel, with the title of its plot.
     pub fn panels(&self) -> impl Iterator<Item = (&str, &Panel)> {
-        self.plots.iter().flat_map(|plot| plot.panels.iter().map(|panel| (plot.title.as_str(), panel)))
+        self.plots
+            .iter()
+            .flat_map(|plot| plot.panels.iter().map(|panel| (plot.title.as_str(), panel)))
     }
 
     /// The legend: one entry for each key among the marks.
@@ -162,7 +202,12 @@ pub struct Panel {
 impl Panel {
     /// An empty panel.
     pub fn new(x: Axis, y: Axis) -> Self {
-        Self { x, y, marks: Vec::new(), weight: 1.0 }
+        Self {
+            x,
+            y,
+            marks: Vec::new(),
+            weight: 1.0,
+        }
     }
 
     /// The same panel with one more mark, over those before.
@@ -190,7 +235,16 @@ impl Panel {
 
     /// Every dot in it.
     pub fn dots(&self) -> impl Iterator<Item = &Dot> {
-        self.marks.iter().filter_map(|mark| if let Mark::Dots(of) = mark { Some(&of.dots) } else { None }).flatten()
+        self.marks
+            .iter()
+            .filter_map(|mark| {
+                if let Mark::Dots(of) = mark {
+                    Some(&of.dots)
+                } else {
+                    None
+                }
+            })
+            .flatten()
     }
 
     /// What is shown of an axis where this panel stands alone.
@@ -215,7 +269,10 @@ pub struct Plot {
 impl Plot {
     /// A plot without panels.
     pub fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), panels: Vec::new() }
+        Self {
+            title: title.into(),
+            panels: Vec::new(),
+        }
     }
 
     /// The same plot with one more panel below.
@@ -519,23 +576,43 @@ macro_rules! into_mark {
     };
 }
 
-into_mark!(Curve, Dots, Bars, Band, Rule, Spans, Envelope, Intervals, Brackets, Guide, Note);
+into_mark!(
+    Curve, Dots, Bars, Band, Rule, Spans, Envelope, Intervals, Brackets, Guide, Note
+);
 
 impl Curve {
     /// A line through the points `x[k]`, `y[k]`.
-    pub fn new(name: impl Into<String>, stroke: Stroke, x: impl Into<Arc<[f64]>>, y: impl Into<Arc<[f64]>>) -> Self {
-        Self { name: name.into(), key: None, stroke, x: x.into(), y: y.into() }
+    pub fn new(
+        name: impl Into<String>,
+        stroke: Stroke,
+        x: impl Into<Arc<[f64]>>,
+        y: impl Into<Arc<[f64]>>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            key: None,
+            stroke,
+            x: x.into(),
+            y: y.into(),
+        }
     }
 
     /// A line through these points.
-    pub fn through(name: impl Into<String>, stroke: Stroke, points: impl IntoIterator<Item = [f64; 2]>) -> Self {
+    pub fn through(
+        name: impl Into<String>,
+        stroke: Stroke,
+        points: impl IntoIterator<Item = [f64; 2]>,
+    ) -> Self {
         let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().map(|[x, y]| (x, y)).unzip();
         Self::new(name, stroke, x, y)
     }
 
     /// The same curve with an entry in the legend.
     pub fn key(self, key: impl Into<String>) -> Self {
-        Self { key: Some(key.into()), ..self }
+        Self {
+            key: Some(key.into()),
+            ..self
+        }
     }
 
     /// Its points.
@@ -547,12 +624,23 @@ impl Curve {
 impl Dots {
     /// No dots yet, drawn like this.
     pub fn new(name: impl Into<String>, shape: DotShape, color: Color) -> Self {
-        Self { name: name.into(), key: None, shape, color, filled: true, size: 1.0, dots: Vec::new() }
+        Self {
+            name: name.into(),
+            key: None,
+            shape,
+            color,
+            filled: true,
+            size: 1.0,
+            dots: Vec::new(),
+        }
     }
 
     /// The same dots with an entry in the legend.
     pub fn key(self, key: impl Into<String>) -> Self {
-        Self { key: Some(key.into()), ..self }
+        Self {
+            key: Some(key.into()),
+            ..self
+        }
     }
 
     /// The same dots, filled or open.
@@ -562,7 +650,12 @@ impl Dots {
 
     /// The same dots and one more.
     pub fn dot(mut self, x: f64, y: f64, label: impl Into<String>) -> Self {
-        self.dots.push(Dot { x, y, label: label.into(), id: None });
+        self.dots.push(Dot {
+            x,
+            y,
+            label: label.into(),
+            id: None,
+        });
         self
     }
 }
@@ -571,9 +664,15 @@ impl Envelope {
     /// Its lower or its upper edge, as a curve, where its edges are drawn.
     pub(super) fn edges(&self) -> impl Iterator<Item = Curve> + '_ {
         let edge = |stroke: Stroke, at: usize| {
-            Curve::through(&self.name, stroke, self.points.iter().map(|point| [point[0], point[at]]))
+            Curve::through(
+                &self.name,
+                stroke,
+                self.points.iter().map(|point| [point[0], point[at]]),
+            )
         };
-        self.edge.into_iter().flat_map(move |stroke| [edge(stroke, 1), edge(stroke, 2)])
+        self.edge
+            .into_iter()
+            .flat_map(move |stroke| [edge(stroke, 1), edge(stroke, 2)])
     }
 }
 
@@ -581,24 +680,40 @@ impl Bars {
     /// Foot and top of each.
     pub(super) fn ends(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         let feet = self.feet.iter().copied().chain(std::iter::repeat(0.0));
-        self.bars.iter().zip(feet).map(|([_, value], foot)| [foot, foot + value])
+        self.bars
+            .iter()
+            .zip(feet)
+            .map(|([_, value], foot)| [foot, foot + value])
     }
 }
 
 impl Rule {
     /// A horizontal line at the value `y`.
     pub fn horizontal(y: f64, stroke: Stroke) -> Self {
-        Self { along: Along::Y, at: y, stroke, label: String::new() }
+        Self {
+            along: Along::Y,
+            at: y,
+            stroke,
+            label: String::new(),
+        }
     }
 
     /// A vertical line at the value `x`.
     pub fn vertical(x: f64, stroke: Stroke) -> Self {
-        Self { along: Along::X, at: x, stroke, label: String::new() }
+        Self {
+            along: Along::X,
+            at: x,
+            stroke,
+            label: String::new(),
+        }
     }
 
     /// The same line with a text beside it.
     pub fn label(self, label: impl Into<String>) -> Self {
-        Self { label: label.into(), ..self }
+        Self {
+            label: label.into(),
+            ..self
+        }
     }
 }
 
@@ -607,15 +722,19 @@ impl Mark {
     pub(super) fn values(&self, along: Along) -> Vec<f64> {
         let pick = |[x, y]: [f64; 2]| if along == Along::X { x } else { y };
         match self {
-            Mark::Curve(curve) => {
-                curve.points().filter(|point| point.iter().all(|c| c.is_finite())).map(pick).collect()
-            }
+            Mark::Curve(curve) => curve
+                .points()
+                .filter(|point| point.iter().all(|c| c.is_finite()))
+                .map(pick)
+                .collect(),
             Mark::Dots(dots) => dots.dots.iter().map(|dot| pick([dot.x, dot.y])).collect(),
             Mark::Bars(bars) if along == Along::Y => bars.ends().flatten().chain([0.0]).collect(),
             Mark::Bars(bars) => bars.bars.iter().map(|bar| bar[0]).collect(),
-            Mark::Envelope(of) if of.edge.is_some() => {
-                of.points.iter().flat_map(|&[x, low, high]| [pick([x, low]), pick([x, high])]).collect()
-            }
+            Mark::Envelope(of) if of.edge.is_some() => of
+                .points
+                .iter()
+                .flat_map(|&[x, low, high]| [pick([x, low]), pick([x, high])])
+                .collect(),
             _ => Vec::new(),
         }
     }

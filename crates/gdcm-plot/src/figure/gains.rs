@@ -7,13 +7,16 @@ use gdcm_method::schedule::Schedule;
 use gdcm_method::uncertainty::{BandWidths, Bar, Scalar};
 use gdcm_model::dataset::{Dataset, FlightState, Pair};
 use gdcm_model::units::s_to_ms;
-use gdcm_study::study::{AirspeedDifference, Analysis, ConditionAnalysis, ConditionChoice, Uncertainty};
+use gdcm_study::study::{
+    AirspeedDifference, Analysis, ConditionAnalysis, ConditionChoice, Uncertainty,
+};
 
 use super::axis::{Axis, Range, decimals};
 use super::condition_source::{schedule_words, settings_words};
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{
-    Bracket, Brackets, Curve, Dot, DotShape, Dots, Envelope, Figure, Intervals, Mark, MarkId, Panel, Plot, Rule, Spans,
+    Bracket, Brackets, Curve, Dot, DotShape, Dots, Envelope, Figure, Intervals, Mark, MarkId,
+    Panel, Plot, Rule, Spans,
 };
 use super::role::Role;
 
@@ -75,7 +78,12 @@ impl Measure {
     /// The schedule, where it has values of this measure over this axis.
     pub fn schedule_of(self, analysis: &Analysis, across: Across) -> Option<&Schedule> {
         let has_values = |schedule: &&Schedule| self == Self::Gain || schedule.has_delays();
-        analysis.schedule.as_ref().ok().filter(|_| across == Across::Airspeed).filter(has_values)
+        analysis
+            .schedule
+            .as_ref()
+            .ok()
+            .filter(|_| across == Across::Airspeed)
+            .filter(has_values)
     }
 
     /// What stands beside an axis of values of a channel.
@@ -110,13 +118,19 @@ impl Classes {
     /// Those of a dataset.
     pub fn of(dataset: &Dataset) -> Self {
         let names = |class: fn(&FlightState) -> &Option<String>| -> Vec<String> {
-            let states = dataset.conditions().iter().map(|condition| condition.flight_state());
+            let states = dataset
+                .conditions()
+                .iter()
+                .map(|condition| condition.flight_state());
             let names: BTreeSet<String> = states.filter_map(|state| class(state).clone()).collect();
             let mut names: Vec<String> = names.into_iter().collect();
             names.sort_by_key(|name| !["low", "light"].contains(&name.as_str()));
             names
         };
-        Self { altitudes: names(|state| &state.altitude), weights: names(|state| &state.weight) }
+        Self {
+            altitudes: names(|state| &state.altitude),
+            weights: names(|state| &state.weight),
+        }
     }
 
     /// Whether a condition is drawn as a circle.
@@ -132,28 +146,74 @@ impl Classes {
 
 /// The net gain of each of `pairs` in each condition's optimum, and the schedule (Figures 6 and 7); with bars and bands where
 /// `uncertainty` says how sure they are.
-pub fn net_gain_figure(analysis: &Analysis, uncertainty: Option<&Uncertainty>, pairs: &[Pair]) -> Figure {
+pub fn net_gain_figure(
+    analysis: &Analysis,
+    uncertainty: Option<&Uncertainty>,
+    pairs: &[Pair],
+) -> Figure {
     let plots = pairs.iter().map(|&pair| {
-        let panel = GainQuantity::NetGain(pair).panel(analysis, uncertainty, Across::Airspeed, "Net gain [-]");
+        let panel = GainQuantity::NetGain(pair).panel(
+            analysis,
+            uncertainty,
+            Across::Airspeed,
+            "Net gain [-]",
+        );
         Plot::new(analysis.study.dataset.pair_name(pair)).panel(panel)
     });
-    let figure = Figure::new("Net gains against airspeed").caption(caption(analysis, Across::Airspeed, Measure::Gain));
-    figure.plots(plots).columns(5).shared_x().shared_y().aspect(ASPECTS[usize::from(uncertainty.is_some())])
+    let figure = Figure::new("Net gains against airspeed").caption(caption(
+        analysis,
+        Across::Airspeed,
+        Measure::Gain,
+    ));
+    figure
+        .plots(plots)
+        .columns(5)
+        .shared_x()
+        .shared_y()
+        .aspect(ASPECTS[usize::from(uncertainty.is_some())])
 }
 
 /// Lays the optima and the schedule of a variant over plots of these quantities, behind what is shown: small open dots, dotted.
-pub fn add_variant(figure: &mut Figure, quantities: &[GainQuantity], analysis: &Analysis, name: &str) {
+pub fn add_variant(
+    figure: &mut Figure,
+    quantities: &[GainQuantity],
+    analysis: &Analysis,
+    name: &str,
+) {
     let (role, across) = (Role::Variant.stroke(false), Across::Airspeed);
     let key = format!("variant {name}");
-    for (panel, quantity) in figure.plots.iter_mut().flat_map(|plot| plot.panels.first_mut()).zip(quantities) {
+    for (panel, quantity) in figure
+        .plots
+        .iter_mut()
+        .flat_map(|plot| plot.panels.first_mut())
+        .zip(quantities)
+    {
         let schedule = quantity.measure().schedule_of(analysis, across);
-        let curve = schedule
-            .map(|schedule| Curve::through(format!("schedule of {key}"), role, quantity.samples(schedule)).into());
-        let of = places(analysis, across).map(|(x, _, result)| (x, quantity.of(&result.correction)));
-        let empty = Dots { size: 0.7, ..Dots::new(&key, DotShape::Square, role.color).filled(false).key(&key) };
+        let curve = schedule.map(|schedule| {
+            Curve::through(
+                format!("schedule of {key}"),
+                role,
+                quantity.samples(schedule),
+            )
+            .into()
+        });
+        let of =
+            places(analysis, across).map(|(x, _, result)| (x, quantity.of(&result.correction)));
+        let empty = Dots {
+            size: 0.7,
+            ..Dots::new(&key, DotShape::Square, role.color)
+                .filled(false)
+                .key(&key)
+        };
         let dots = Mark::Dots(of.fold(empty, |dots, (x, y)| dots.dot(x, y, "")));
-        let behind = panel.marks.iter().position(|mark| matches!(mark, Mark::Dots(_))).unwrap_or(panel.marks.len());
-        panel.marks.splice(behind..behind, curve.into_iter().chain([dots]));
+        let behind = panel
+            .marks
+            .iter()
+            .position(|mark| matches!(mark, Mark::Dots(_)))
+            .unwrap_or(panel.marks.len());
+        panel
+            .marks
+            .splice(behind..behind, curve.into_iter().chain([dots]));
     }
 }
 
@@ -168,11 +228,26 @@ pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) 
         let differ: Vec<[f64; 2]> = panel
             .marks
             .iter()
-            .filter_map(|mark| if let Mark::Brackets(brackets) = mark { Some(&brackets.brackets) } else { None })
-            .flat_map(|brackets| brackets.iter().flat_map(|of| of.ends.map(|end| [of.x, end])))
+            .filter_map(|mark| {
+                if let Mark::Brackets(brackets) = mark {
+                    Some(&brackets.brackets)
+                } else {
+                    None
+                }
+            })
+            .flat_map(|brackets| {
+                brackets
+                    .iter()
+                    .flat_map(|of| of.ends.map(|end| [of.x, end]))
+            })
             .collect();
-        let dots =
-            panel.marks.iter_mut().filter_map(|mark| if let Mark::Dots(dots) = mark { Some(dots) } else { None });
+        let dots = panel.marks.iter_mut().filter_map(|mark| {
+            if let Mark::Dots(dots) = mark {
+                Some(dots)
+            } else {
+                None
+            }
+        });
         for dot in dots.flat_map(|dots| &mut dots.dots) {
             if dot.id.as_ref() != Some(selected) && !differ.contains(&[dot.x, dot.y]) {
                 dot.label.clear();
@@ -198,21 +273,32 @@ pub fn channels_figure(
         Measure::Gain => "Channel gains",
         Measure::Delay => "Channel delays",
     };
-    let figure = Figure::new(title).caption(caption(analysis, across, measure)).plots(plots);
-    figure.columns(6).shared_x().shared_y().aspect(ASPECTS[usize::from(uncertainty.is_some())])
+    let figure = Figure::new(title)
+        .caption(caption(analysis, across, measure))
+        .plots(plots);
+    figure
+        .columns(6)
+        .shared_x()
+        .shared_y()
+        .aspect(ASPECTS[usize::from(uncertainty.is_some())])
 }
 
 /// Every channel, inputs first.
 pub fn all_channels(dataset: &Dataset) -> Vec<Channel> {
     let inputs = (0..dataset.inputs().len()).map(Channel::Input);
-    inputs.chain((0..dataset.outputs().len()).map(Channel::Output)).collect()
+    inputs
+        .chain((0..dataset.outputs().len()).map(Channel::Output))
+        .collect()
 }
 
 fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {
     let study = &analysis.study;
     let mut caption = settings_words(&study.dataset, &study.settings);
     if measure.schedule_of(analysis, across).is_some() {
-        caption.push_str(&format!(" Schedule: {}.", schedule_words(&study.settings.schedule)));
+        caption.push_str(&format!(
+            " Schedule: {}.",
+            schedule_words(&study.settings.schedule)
+        ));
     }
     if across == Across::Airspeed {
         caption.push_str(" Numbers are those of the conditions.");
@@ -243,7 +329,11 @@ impl GainQuantity {
 
     /// What it measures.
     pub fn measure(self) -> Measure {
-        if matches!(self, Self::Delay(_)) { Measure::Delay } else { Measure::Gain }
+        if matches!(self, Self::Delay(_)) {
+            Measure::Delay
+        } else {
+            Measure::Gain
+        }
     }
 
     /// What it is of a correction, in the unit of the measure.
@@ -273,25 +363,45 @@ impl GainQuantity {
         }
     }
 
-    fn panel(self, analysis: &Analysis, uncertainty: Option<&Uncertainty>, across: Across, label: &str) -> Panel {
+    fn panel(
+        self,
+        analysis: &Analysis,
+        uncertainty: Option<&Uncertainty>,
+        across: Across,
+        label: &str,
+    ) -> Panel {
         let conditions = analysis.study.dataset.conditions();
         let x = match across {
             Across::Airspeed => Axis::linear("Airspeed [kt]").at_least(10.0),
-            Across::Conditions => {
-                Axis::named("Condition", conditions.iter().map(|condition| condition.id().to_string()))
-            }
+            Across::Conditions => Axis::named(
+                "Condition",
+                conditions
+                    .iter()
+                    .map(|condition| condition.id().to_string()),
+            ),
         };
-        let bars = uncertainty.map(|of| self.bars(analysis, of, across)).unwrap_or_default();
-        let brackets = uncertainty.map(|of| self.brackets(analysis, of, across)).unwrap_or_default();
+        let bars = uncertainty
+            .map(|of| self.bars(analysis, of, across))
+            .unwrap_or_default();
+        let brackets = uncertainty
+            .map(|of| self.brackets(analysis, of, across))
+            .unwrap_or_default();
         let y = self.value_axis(analysis, &bars, label);
         let schedule = self.measure().schedule_of(analysis, across);
-        let samples: Vec<[f64; 2]> = schedule.map(|schedule| self.samples(schedule)).unwrap_or_default();
+        let samples: Vec<[f64; 2]> = schedule
+            .map(|schedule| self.samples(schedule))
+            .unwrap_or_default();
         let bands = schedule.zip(uncertainty.and_then(|of| of.bands.as_ref()));
-        let bands = bands.map(|(schedule, bands)| self.bands(&samples, |at| bands.at(schedule, self.scalar(), at)));
-        let curve =
-            schedule.map(|_| Curve::through("schedule", Role::Scheduled.stroke(false), samples).key("schedule"));
+        let bands = bands.map(|(schedule, bands)| {
+            self.bands(&samples, |at| bands.at(schedule, self.scalar(), at))
+        });
+        let curve = schedule.map(|_| {
+            Curve::through("schedule", Role::Scheduled.stroke(false), samples).key("schedule")
+        });
         let panel = Panel::new(x, y).with_all(self.spans(analysis, across));
-        let panel = panel.with(Rule::horizontal(self.measure().null(), NULL)).with_all(bands.into_iter().flatten());
+        let panel = panel
+            .with(Rule::horizontal(self.measure().null(), NULL))
+            .with_all(bands.into_iter().flatten());
         let panel = panel.with_all(curve).with_all(bars).with_all(brackets);
         panel.with_all(self.dots(analysis, across))
     }
@@ -300,12 +410,26 @@ impl GainQuantity {
     fn samples(self, schedule: &Schedule) -> Vec<[f64; 2]> {
         let (from, to) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
         let airspeed = |sample: usize| from + (to - from) * sample as f64 / SAMPLES as f64;
-        (0..=SAMPLES).map(airspeed).map(|at| [at, self.of(&schedule.at(at))]).collect()
+        (0..=SAMPLES)
+            .map(airspeed)
+            .map(|at| [at, self.of(&schedule.at(at))])
+            .collect()
     }
 
     /// The bar of each condition, where that was computed: thin with not knowing the trim flown, thick for the model chosen (M13).
-    fn bars(self, analysis: &Analysis, uncertainty: &Uncertainty, across: Across) -> Vec<Intervals> {
-        let told = |end: f64| if self.scalar().is_delay() { s_to_ms(end) } else { end.exp() };
+    fn bars(
+        self,
+        analysis: &Analysis,
+        uncertainty: &Uncertainty,
+        across: Across,
+    ) -> Vec<Intervals> {
+        let told = |end: f64| {
+            if self.scalar().is_delay() {
+                s_to_ms(end)
+            } else {
+                end.exp()
+            }
+        };
         let ends = |of: &dyn Fn(&Bar) -> Option<[f64; 2]>| -> Vec<[f64; 3]> {
             let bar = |(x, state, _): (f64, &FlightState, &ConditionAnalysis)| {
                 let [low, high] = of(uncertainty.bar(state.id, self.scalar())?)?.map(told);
@@ -316,55 +440,127 @@ impl GainQuantity {
         let level = uncertainty.level;
         let whole = format!("bar of {:.0} %", 100.0 * level);
         let inner = ends(&|bar| bar.inner_interval(level));
-        let inner = Intervals { name: "identification in it".to_owned(), stroke: INNER_BAR, ends: inner };
-        let outer = Intervals { name: whole, stroke: BAR, ends: ends(&|bar| bar.interval(level)) };
-        [outer, inner].into_iter().filter(|bars| !bars.ends.is_empty()).collect()
+        let inner = Intervals {
+            name: "identification in it".to_owned(),
+            stroke: INNER_BAR,
+            ends: inner,
+        };
+        let outer = Intervals {
+            name: whole,
+            stroke: BAR,
+            ends: ends(&|bar| bar.interval(level)),
+        };
+        [outer, inner]
+            .into_iter()
+            .filter(|bars| !bars.ends.is_empty())
+            .collect()
     }
 
     /// For each airspeed the difference that is the largest multiple of what is expected (M13.4).
-    fn brackets(self, analysis: &Analysis, uncertainty: &Uncertainty, across: Across) -> Vec<Brackets> {
-        let (Self::NetGain(pair), Across::Airspeed) = (self, across) else { return Vec::new() };
+    fn brackets(
+        self,
+        analysis: &Analysis,
+        uncertainty: &Uncertainty,
+        across: Across,
+    ) -> Vec<Brackets> {
+        let (Self::NetGain(pair), Across::Airspeed) = (self, across) else {
+            return Vec::new();
+        };
         let level = uncertainty.level;
         let of = |beyond: bool| {
             let found = uncertainty.greatest_differences(pair).into_iter();
             let bracket = |difference: &AirspeedDifference| {
                 let value = |id| Some(self.of(&analysis.condition(id)?.correction));
                 let [one, other] = difference.conditions.map(value);
-                let label = difference.difference.ratio().filter(|_| beyond).map(|ratio| format!("{ratio:.1}×"));
-                Some(Bracket { x: difference.airspeed_kt, ends: [one?, other?], label: label.unwrap_or_default() })
+                let label = difference
+                    .difference
+                    .ratio()
+                    .filter(|_| beyond)
+                    .map(|ratio| format!("{ratio:.1}×"));
+                Some(Bracket {
+                    x: difference.airspeed_kt,
+                    ends: [one?, other?],
+                    label: label.unwrap_or_default(),
+                })
             };
-            found.filter(|of| of.is_significant(level) == beyond).filter_map(bracket).collect::<Vec<Bracket>>()
+            found
+                .filter(|of| of.is_significant(level) == beyond)
+                .filter_map(bracket)
+                .collect::<Vec<Bracket>>()
         };
-        let within = Brackets { name: WITHIN.to_owned(), stroke: BRACKET_WITHIN, brackets: of(false) };
-        let beyond = Brackets { name: BEYOND.to_owned(), stroke: BRACKET_BEYOND, brackets: of(true) };
-        [beyond, within].into_iter().filter(|brackets| !brackets.brackets.is_empty()).collect()
+        let within = Brackets {
+            name: WITHIN.to_owned(),
+            stroke: BRACKET_WITHIN,
+            brackets: of(false),
+        };
+        let beyond = Brackets {
+            name: BEYOND.to_owned(),
+            stroke: BRACKET_BEYOND,
+            brackets: of(true),
+        };
+        [beyond, within]
+            .into_iter()
+            .filter(|brackets| !brackets.brackets.is_empty())
+            .collect()
     }
 
     /// The axis of values: bars are seen as far as they leave the dots their room.
     fn value_axis(self, analysis: &Analysis, bars: &[Intervals], label: &str) -> Axis {
-        let axis = Axis::linear(label).including(self.measure().null()).at_least(self.measure().least_height());
-        let values = places(analysis, Across::Airspeed).map(|(.., result)| self.of(&result.correction));
-        let Some(range) = Range::of(values) else { return axis };
+        let axis = Axis::linear(label)
+            .including(self.measure().null())
+            .at_least(self.measure().least_height());
+        let values =
+            places(analysis, Across::Airspeed).map(|(.., result)| self.of(&result.correction));
+        let Some(range) = Range::of(values) else {
+            return axis;
+        };
         let spare = OF_BARS * range.width();
-        let ends = bars.iter().flat_map(|bars| &bars.ends).flat_map(|[_, low, high]| [low, high]);
-        ends.fold(axis, |axis, end| axis.including(end.clamp(range.min - spare, range.max + spare)))
+        let ends = bars
+            .iter()
+            .flat_map(|bars| &bars.ends)
+            .flat_map(|[_, low, high]| [low, high]);
+        ends.fold(axis, |axis, end| {
+            axis.including(end.clamp(range.min - spare, range.max + spare))
+        })
     }
 
     /// Both bands about the samples of the schedule, as wide as `widths` says at an airspeed \[kt\].
-    fn bands(self, samples: &[[f64; 2]], widths: impl Fn(f64) -> Option<BandWidths>) -> Vec<Envelope> {
-        let widths: Vec<_> = samples.iter().filter_map(|[x, value]| Some((*x, *value, widths(*x)?))).collect();
+    fn bands(
+        self,
+        samples: &[[f64; 2]],
+        widths: impl Fn(f64) -> Option<BandWidths>,
+    ) -> Vec<Envelope> {
+        let widths: Vec<_> = samples
+            .iter()
+            .filter_map(|[x, value]| Some((*x, *value, widths(*x)?)))
+            .collect();
         let color = Role::Scheduled.stroke(false).color;
         let of = |name: &str, dash: Dash, percent: u8, half: fn(&BandWidths) -> f64| {
             let end = |(x, value, widths): &(f64, f64, BandWidths)| {
-                [*x, value * (-half(widths)).exp(), value * half(widths).exp()]
+                [
+                    *x,
+                    value * (-half(widths)).exp(),
+                    value * half(widths).exp(),
+                ]
             };
             let (name, points) = (name.to_owned(), widths.iter().map(end).collect());
             let edge = Some(Stroke::dashed(color, 0.6, dash));
-            Envelope { name, color: color.tint(percent), edge, points }
+            Envelope {
+                name,
+                color: color.tint(percent),
+                edge,
+                points,
+            }
         };
-        let confidence = of("confidence band", Dash::Long, 22, |widths| widths.confidence);
+        let confidence = of("confidence band", Dash::Long, 22, |widths| {
+            widths.confidence
+        });
         let scatter = of("scatter band", Dash::Dotted, 13, |widths| widths.scatter);
-        if widths.is_empty() { Vec::new() } else { vec![confidence, scatter] }
+        if widths.is_empty() {
+            Vec::new()
+        } else {
+            vec![confidence, scatter]
+        }
     }
 
     /// Where each optimum was looked for.
@@ -378,7 +574,12 @@ impl GainQuantity {
             Some([x, lower, upper])
         };
         let spans: Vec<[f64; 3]> = places(analysis, across).filter_map(span).collect();
-        (!spans.is_empty()).then(|| Spans { name: "bounds".to_owned(), color: BOUNDS, width, spans })
+        (!spans.is_empty()).then(|| Spans {
+            name: "bounds".to_owned(),
+            color: BOUNDS,
+            width,
+            spans,
+        })
     }
 
     /// One group of dots for each class of conditions, and one of those that are not in the schedule.
@@ -390,17 +591,37 @@ impl GainQuantity {
             let chosen = choice.is_in_schedule();
             let name = class_words(state, choice);
             // Over conditions the axis has their numbers.
-            let label = if across == Across::Airspeed { state.id.to_string() } else { String::new() };
-            let dot = Dot { x, y: self.of(&result.correction), label, id: Some(MarkId::Condition(state.id)) };
+            let label = if across == Across::Airspeed {
+                state.id.to_string()
+            } else {
+                String::new()
+            };
+            let dot = Dot {
+                x,
+                y: self.of(&result.correction),
+                label,
+                id: Some(MarkId::Condition(state.id)),
+            };
             match groups.iter_mut().find(|group| group.name == name) {
                 Some(group) => group.dots.push(dot),
                 None => {
-                    let shape = if classes.is_first_altitude(state) { DotShape::Circle } else { DotShape::Diamond };
-                    let color = Color::of(if chosen { Hue::Perturbed } else { Hue::Rejected });
+                    let shape = if classes.is_first_altitude(state) {
+                        DotShape::Circle
+                    } else {
+                        DotShape::Diamond
+                    };
+                    let color = Color::of(if chosen {
+                        Hue::Perturbed
+                    } else {
+                        Hue::Rejected
+                    });
                     let group = Dots::new(&name, shape, color)
                         .filled(classes.is_first_weight(state) && !choice.held_out)
                         .key(&name);
-                    groups.push(Dots { dots: vec![dot], ..group });
+                    groups.push(Dots {
+                        dots: vec![dot],
+                        ..group
+                    });
                 }
             }
         }
@@ -410,7 +631,10 @@ impl GainQuantity {
 }
 
 /// Every condition with a result: its place on the horizontal axis, what describes it, its result.
-fn places(analysis: &Analysis, across: Across) -> impl Iterator<Item = (f64, &FlightState, &ConditionAnalysis)> {
+fn places(
+    analysis: &Analysis,
+    across: Across,
+) -> impl Iterator<Item = (f64, &FlightState, &ConditionAnalysis)> {
     let conditions = analysis.study.dataset.conditions().iter().enumerate();
     conditions.filter_map(move |(index, condition)| {
         let state = condition.flight_state();
@@ -424,8 +648,12 @@ fn places(analysis: &Analysis, across: Across) -> impl Iterator<Item = (f64, &Fl
 
 /// `low altitude` and `high weight`, where a condition has these classes.
 pub fn class_names(state: &FlightState) -> [Option<String>; 2] {
-    let class = |name: &Option<String>, what: &str| name.as_ref().map(|name| format!("{name} {what}"));
-    [class(&state.altitude, "altitude"), class(&state.weight, "weight")]
+    let class =
+        |name: &Option<String>, what: &str| name.as_ref().map(|name| format!("{name} {what}"));
+    [
+        class(&state.altitude, "altitude"),
+        class(&state.weight, "weight"),
+    ]
 }
 
 /// `low altitude, high weight`; `optimum` of a condition without classes.

@@ -80,7 +80,9 @@ pub struct Surroundings {
 /// The places of the labels of `dots`, in their order; none of a label for which there is no room.
 pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<LabelPlace>> {
     let mut places: Vec<Option<LabelPlace>> = vec![None; dots.len()];
-    let labelled: Vec<usize> = (0..dots.len()).filter(|&index| dots[index].size[0] > 0.0).collect();
+    let labelled: Vec<usize> = (0..dots.len())
+        .filter(|&index| dots[index].size[0] > 0.0)
+        .collect();
     if labelled.len() > MOST_LABELS {
         return places;
     }
@@ -91,7 +93,9 @@ pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<L
     }
     // The worst goes first: what it covered may then stay.
     loop {
-        let covered = labelled.iter().map(|&index| (index, covered_part(index, dots, &places, around)));
+        let covered = labelled
+            .iter()
+            .map(|&index| (index, covered_part(index, dots, &places, around)));
         let worst = covered.max_by(|a, b| a.1.total_cmp(&b.1));
         match worst.filter(|(_, part)| *part > MOST_COVERED) {
             Some((index, _)) => places[index] = None,
@@ -101,15 +105,28 @@ pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<L
 }
 
 /// Which part of a label covers other labels, dots and what lies outside.
-fn covered_part(index: usize, dots: &[LabelledDot], places: &[Option<LabelPlace>], around: &Surroundings) -> f64 {
-    let Some(place) = places[index] else { return 0.0 };
-    let labels: f64 = others(index, places).map(|other| place.area.overlap(&other.area)).sum();
+fn covered_part(
+    index: usize,
+    dots: &[LabelledDot],
+    places: &[Option<LabelPlace>],
+    around: &Surroundings,
+) -> f64 {
+    let Some(place) = places[index] else {
+        return 0.0;
+    };
+    let labels: f64 = others(index, places)
+        .map(|other| place.area.overlap(&other.area))
+        .sum();
     let on_dots: f64 = dots.iter().map(|dot| place.area.overlap(&dot.area())).sum();
     (labels + on_dots + outside(&place.area, around)) / place.area.size()
 }
 
 fn others(index: usize, places: &[Option<LabelPlace>]) -> impl Iterator<Item = LabelPlace> + '_ {
-    places.iter().enumerate().filter(move |(other, _)| *other != index).filter_map(|(_, place)| *place)
+    places
+        .iter()
+        .enumerate()
+        .filter(move |(other, _)| *other != index)
+        .filter_map(|(_, place)| *place)
 }
 
 fn outside(area: &Area, around: &Surroundings) -> f64 {
@@ -135,7 +152,8 @@ fn best_place(
         if best.is_none_or(|(_, least)| preference < least) {
             let ambiguity = AMBIGUOUS * nearer_dots(&place.area, index, dots) as f64;
             let leaders = leaders_on_labels(&place, dots[index].center, &others);
-            let cost = preference + ambiguity + leaders + obstruction(&place.area, &others, dots, around);
+            let cost =
+                preference + ambiguity + leaders + obstruction(&place.area, &others, dots, around);
             if best.is_none_or(|(_, least)| cost < least) {
                 best = Some((place, cost));
             }
@@ -146,29 +164,63 @@ fn best_place(
 
 fn candidates(dot: LabelledDot) -> impl Iterator<Item = (LabelPlace, f64)> {
     GAPS.into_iter().enumerate().flat_map(move |(ring, gap)| {
-        SIDES.into_iter().enumerate().map(move |(side, (before, direction))| {
-            let anchor: [f64; 2] = std::array::from_fn(|at| dot.center[at] + direction[at] * (dot.radius + gap));
-            let [left, top] = std::array::from_fn(|at| anchor[at] - before[at] * dot.size[at]);
-            let leader = (ring > 0).then_some(anchor);
-            let preference = side as f64 * LATER_SIDE + gap * FARTHER;
-            (LabelPlace { area: Area::new(left, top, dot.size[0], dot.size[1]), leader }, preference)
-        })
+        SIDES
+            .into_iter()
+            .enumerate()
+            .map(move |(side, (before, direction))| {
+                let anchor: [f64; 2] =
+                    std::array::from_fn(|at| dot.center[at] + direction[at] * (dot.radius + gap));
+                let [left, top] = std::array::from_fn(|at| anchor[at] - before[at] * dot.size[at]);
+                let leader = (ring > 0).then_some(anchor);
+                let preference = side as f64 * LATER_SIDE + gap * FARTHER;
+                (
+                    LabelPlace {
+                        area: Area::new(left, top, dot.size[0], dot.size[1]),
+                        leader,
+                    },
+                    preference,
+                )
+            })
     })
 }
 
-fn obstruction(area: &Area, others: &[(LabelPlace, [f64; 2])], dots: &[LabelledDot], around: &Surroundings) -> f64 {
-    let on_labels: f64 = others.iter().map(|(other, _)| area.overlap(&other.area.expanded(1.0))).sum();
+fn obstruction(
+    area: &Area,
+    others: &[(LabelPlace, [f64; 2])],
+    dots: &[LabelledDot],
+    around: &Surroundings,
+) -> f64 {
+    let on_labels: f64 = others
+        .iter()
+        .map(|(other, _)| area.overlap(&other.area.expanded(1.0)))
+        .sum();
     let on_dots: f64 = dots.iter().map(|dot| area.overlap(&dot.area())).sum();
     let on_bars: f64 = around.bars.iter().map(|bar| area.overlap(bar)).sum();
-    let on_path: f64 = around.path.windows(2).map(|ends| length_inside(area, ends[0], ends[1])).sum();
-    ON_LABEL * on_labels + ON_DOT * on_dots + ON_BAR * on_bars + OUTSIDE * outside(area, around) + ON_PATH * on_path
+    let on_path: f64 = around
+        .path
+        .windows(2)
+        .map(|ends| length_inside(area, ends[0], ends[1]))
+        .sum();
+    ON_LABEL * on_labels
+        + ON_DOT * on_dots
+        + ON_BAR * on_bars
+        + OUTSIDE * outside(area, around)
+        + ON_PATH * on_path
 }
 
 /// What it costs that a label's leader crosses others, and that theirs cross it.
-fn leaders_on_labels(place: &LabelPlace, center: [f64; 2], others: &[(LabelPlace, [f64; 2])]) -> f64 {
+fn leaders_on_labels(
+    place: &LabelPlace,
+    center: [f64; 2],
+    others: &[(LabelPlace, [f64; 2])],
+) -> f64 {
     let across = |(other, from): &(LabelPlace, [f64; 2])| {
-        let own = place.leader.map_or(0.0, |end| length_inside(&other.area, center, end));
-        own + other.leader.map_or(0.0, |end| length_inside(&place.area, *from, end))
+        let own = place
+            .leader
+            .map_or(0.0, |end| length_inside(&other.area, center, end));
+        own + other
+            .leader
+            .map_or(0.0, |end| length_inside(&place.area, *from, end))
     };
     LEADER_ON_LABEL * others.iter().map(across).sum::<f64>()
 }
@@ -177,7 +229,8 @@ fn leaders_on_labels(place: &LabelPlace, center: [f64; 2], others: &[(LabelPlace
 fn length_inside(area: &Area, from: [f64; 2], to: [f64; 2]) -> f64 {
     /// Distance between the points that are tried \[pt\].
     const STEP: f64 = 2.0;
-    let apart = |at: usize, low: f64, high: f64| from[at].max(to[at]) < low || from[at].min(to[at]) > high;
+    let apart =
+        |at: usize, low: f64, high: f64| from[at].max(to[at]) < low || from[at].min(to[at]) > high;
     if apart(0, area.left, area.right()) || apart(1, area.top, area.bottom()) {
         return 0.0;
     }
@@ -187,7 +240,9 @@ fn length_inside(area: &Area, from: [f64; 2], to: [f64; 2]) -> f64 {
         let part = (k as f64 + 0.5) / steps;
         std::array::from_fn(|at| from[at] + part * (to[at] - from[at]))
     };
-    let inside = (0..steps as usize).filter(|&k| area.contains(at(k))).count();
+    let inside = (0..steps as usize)
+        .filter(|&k| area.contains(at(k)))
+        .count();
     inside as f64 * length / steps
 }
 
@@ -197,14 +252,22 @@ fn nearer_dots(label: &Area, index: usize, dots: &[LabelledDot]) -> usize {
     const SLACK: f64 = 0.5;
     let distance = |dot: &LabelledDot| label.distance(dot.center) - dot.radius;
     let own = distance(&dots[index]);
-    dots.iter().enumerate().filter(|(k, dot)| *k != index && distance(dot) + SLACK < own).count()
+    dots.iter()
+        .enumerate()
+        .filter(|(k, dot)| *k != index && distance(dot) + SLACK < own)
+        .count()
 }
 
 impl LabelledDot {
     /// About what it covers.
     fn area(&self) -> Area {
         let width = 1.9 * self.radius;
-        Area::new(self.center[0] - 0.5 * width, self.center[1] - 0.5 * width, width, width)
+        Area::new(
+            self.center[0] - 0.5 * width,
+            self.center[1] - 0.5 * width,
+            width,
+            width,
+        )
     }
 }
 
@@ -215,16 +278,30 @@ mod tests {
     const SIZE: [f64; 2] = [12.0, 12.0];
 
     fn around() -> Surroundings {
-        Surroundings { bounds: Area::new(0.0, 0.0, 140.0, 170.0), path: Vec::new(), bars: Vec::new() }
+        Surroundings {
+            bounds: Area::new(0.0, 0.0, 140.0, 170.0),
+            path: Vec::new(),
+            bars: Vec::new(),
+        }
     }
 
     fn dots(centers: &[[f64; 2]]) -> Vec<LabelledDot> {
-        centers.iter().map(|&center| LabelledDot { center, radius: 4.0, size: SIZE }).collect()
+        centers
+            .iter()
+            .map(|&center| LabelledDot {
+                center,
+                radius: 4.0,
+                size: SIZE,
+            })
+            .collect()
     }
 
     fn places(centers: &[[f64; 2]]) -> Vec<LabelPlace> {
         let places = place_labels(&dots(centers), &around());
-        places.into_iter().map(|place| place.expect("there is room")).collect()
+        places
+            .into_iter()
+            .map(|place| place.expect("there is room"))
+            .collect()
     }
 
     fn assert_no_two_overlap(places: &[LabelPlace]) {
@@ -245,8 +322,21 @@ mod tests {
     #[test]
     fn labels_of_the_example_do_not_overlap() {
         // PED to NY: conditions 1, 4, 8 and 2, 9 nearly coincide.
-        let dots = [[120.0, 128.0], [136.0, 134.0], [12.0, 18.0], [120.0, 137.0], [12.0, 54.0], [50.0, 110.0]];
-        let more = [[80.0, 106.0], [120.0, 134.0], [136.0, 134.5], [50.0, 91.0], [80.0, 120.0]];
+        let dots = [
+            [120.0, 128.0],
+            [136.0, 134.0],
+            [12.0, 18.0],
+            [120.0, 137.0],
+            [12.0, 54.0],
+            [50.0, 110.0],
+        ];
+        let more = [
+            [80.0, 106.0],
+            [120.0, 134.0],
+            [136.0, 134.5],
+            [50.0, 91.0],
+            [80.0, 120.0],
+        ];
         assert_no_two_overlap(&places(&[&dots[..], &more].concat()));
     }
 
@@ -266,32 +356,70 @@ mod tests {
     fn a_label_keeps_off_the_line_and_off_bars() {
         let dots = dots(&[[70.0, 80.0]]);
         let path = vec![[60.0, 90.0], [90.0, 60.0]];
-        let off_path = place_labels(&dots, &Surroundings { path: path.clone(), ..around() })[0].unwrap();
+        let off_path = place_labels(
+            &dots,
+            &Surroundings {
+                path: path.clone(),
+                ..around()
+            },
+        )[0]
+        .unwrap();
         assert_eq!(length_inside(&off_path.area, path[0], path[1]), 0.0);
-        let bars = vec![Area::new(76.0, 40.0, 3.0, 80.0), Area::new(61.0, 40.0, 3.0, 80.0)];
-        let off_bars = place_labels(&dots, &Surroundings { bars: bars.clone(), ..around() })[0].unwrap();
-        assert!(bars.iter().all(|bar| bar.overlap(&off_bars.area) == 0.0), "{off_bars:?}");
+        let bars = vec![
+            Area::new(76.0, 40.0, 3.0, 80.0),
+            Area::new(61.0, 40.0, 3.0, 80.0),
+        ];
+        let off_bars = place_labels(
+            &dots,
+            &Surroundings {
+                bars: bars.clone(),
+                ..around()
+            },
+        )[0]
+        .unwrap();
+        assert!(
+            bars.iter().all(|bar| bar.overlap(&off_bars.area) == 0.0),
+            "{off_bars:?}"
+        );
     }
 
     #[test]
     fn labels_stay_inside_the_plot() {
         for dot in [[1.0, 1.0], [139.0, 1.0], [139.0, 169.0], [1.0, 169.0]] {
             let area = places(&[dot])[0].area;
-            assert!(area.left >= 0.0 && area.right() <= 140.0 && area.top >= 0.0 && area.bottom() <= 170.0);
+            assert!(
+                area.left >= 0.0
+                    && area.right() <= 140.0
+                    && area.top >= 0.0
+                    && area.bottom() <= 170.0
+            );
         }
     }
 
     #[test]
     fn where_there_is_no_room_labels_are_left_out_and_those_that_stay_can_be_read() {
-        let narrow = Surroundings { bounds: Area::new(40.0, 40.0, 60.0, 60.0), ..around() };
+        let narrow = Surroundings {
+            bounds: Area::new(40.0, 40.0, 60.0, 60.0),
+            ..around()
+        };
         let crowd = dots(&[[70.0, 70.0]; 40]);
-        let places: Vec<LabelPlace> = place_labels(&crowd, &narrow).into_iter().flatten().collect();
+        let places: Vec<LabelPlace> = place_labels(&crowd, &narrow)
+            .into_iter()
+            .flatten()
+            .collect();
         assert!(places.len() > 4 && places.len() < 40, "{}", places.len());
         for (k, a) in places.iter().enumerate() {
-            let covered: f64 = places[k + 1..].iter().map(|b| a.area.overlap(&b.area)).sum();
+            let covered: f64 = places[k + 1..]
+                .iter()
+                .map(|b| a.area.overlap(&b.area))
+                .sum();
             assert!(covered <= MOST_COVERED * a.area.size(), "{a:?}");
         }
-        assert!(place_labels(&dots(&vec![[70.0, 70.0]; 5000]), &around()).iter().all(Option::is_none));
+        assert!(
+            place_labels(&dots(&vec![[70.0, 70.0]; 5000]), &around())
+                .iter()
+                .all(Option::is_none)
+        );
     }
 
     #[test]

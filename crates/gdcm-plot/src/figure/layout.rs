@@ -83,7 +83,9 @@ impl<'f> Layout<'f> {
         let table = Table::of(figure, width_pt);
         let mut frame_width = 0.8 * width_pt / table.columns as f64;
         for _ in 0..2 {
-            let gutters: f64 = (0..table.columns).map(|column| table.gutter(column, frame_width, top)).sum();
+            let gutters: f64 = (0..table.columns)
+                .map(|column| table.gutter(column, frame_width, top))
+                .sum();
             let gaps = COLUMN_GAP * (table.columns - 1) as f64 + RIGHT;
             frame_width = ((width_pt - gutters - gaps) / table.columns as f64).max(LEAST_HEIGHT);
         }
@@ -100,31 +102,49 @@ struct Table<'f> {
 
 impl<'f> Table<'f> {
     fn of(figure: &'f Figure, width_pt: f64) -> Self {
-        let least = if figure.dense { LEAST_DENSE_WIDTH } else { LEAST_WIDTH };
+        let least = if figure.dense {
+            LEAST_DENSE_WIDTH
+        } else {
+            LEAST_WIDTH
+        };
         let room = ((width_pt / least) as usize).max(1);
         let count = figure.plots.len().max(1);
         let columns = figure.columns.min(count).min(room).max(1);
-        Self { figure, columns, rows: count.div_ceil(columns) }
+        Self {
+            figure,
+            columns,
+            rows: count.div_ceil(columns),
+        }
     }
 
     /// Height of the frames of one plot together.
     fn plot_height(&self, frame_width: f64, top: f64) -> f64 {
         let rows = self.rows as f64;
-        let around: f64 = (0..self.rows).map(|row| self.above(row) + self.below(row)).sum();
+        let around: f64 = (0..self.rows)
+            .map(|row| self.above(row) + self.below(row))
+            .sum();
         let room = (MOST_HEIGHT - top - around - ROW_GAP * (rows - 1.0)) / rows;
-        (self.figure.aspect * frame_width).min(room).max(LEAST_HEIGHT)
+        (self.figure.aspect * frame_width)
+            .min(room)
+            .max(LEAST_HEIGHT)
     }
 
     /// Room above the frames of a row, for titles.
     fn above(&self, row: usize) -> f64 {
-        let has_title = self.row(row).any(|index| !self.figure.plots[index].title.is_empty());
+        let has_title = self
+            .row(row)
+            .any(|index| !self.figure.plots[index].title.is_empty());
         if has_title { LABEL_LINE + 2.0 } else { 3.0 }
     }
 
     /// Room below the frames of a row, for numbers and labels.
     fn below(&self, row: usize) -> f64 {
         let has_numbers = self.row(row).any(|index| self.has_x_numbers(index));
-        if has_numbers { TICK + SMALL_LINE + LABEL_LINE } else { 0.0 }
+        if has_numbers {
+            TICK + SMALL_LINE + LABEL_LINE
+        } else {
+            0.0
+        }
     }
 
     fn row(&self, row: usize) -> impl Iterator<Item = usize> + use<'f> {
@@ -144,19 +164,38 @@ impl<'f> Table<'f> {
     /// Whether the quantity of a vertical axis is said: at the left of each row, and wherever it is another one than there.
     fn has_y_label(&self, index: usize, panel: usize) -> bool {
         let first = index - index % self.columns;
-        let label = |plot: usize| self.figure.plots[plot].panels.get(panel).map(|panel| &panel.y.label);
+        let label = |plot: usize| {
+            self.figure.plots[plot]
+                .panels
+                .get(panel)
+                .map(|panel| &panel.y.label)
+        };
         index == first || label(index) != label(first)
     }
 
     fn x_range(&self, index: usize) -> Range {
-        let plots = if self.figure.shared.x { &self.figure.plots[..] } else { &self.figure.plots[index..=index] };
-        let ranges = plots.iter().flat_map(|plot| &plot.panels).map(|panel| panel.shown(Along::X));
+        let plots = if self.figure.shared.x {
+            &self.figure.plots[..]
+        } else {
+            &self.figure.plots[index..=index]
+        };
+        let ranges = plots
+            .iter()
+            .flat_map(|plot| &plot.panels)
+            .map(|panel| panel.shown(Along::X));
         ranges.reduce(Range::union).unwrap_or(Range::new(0.0, 1.0))
     }
 
     fn y_range(&self, index: usize, panel: usize) -> Range {
-        let plots = if self.figure.shared.y { &self.figure.plots[..] } else { &self.figure.plots[index..=index] };
-        let ranges = plots.iter().filter_map(|plot| plot.panels.get(panel)).map(|panel| panel.shown(Along::Y));
+        let plots = if self.figure.shared.y {
+            &self.figure.plots[..]
+        } else {
+            &self.figure.plots[index..=index]
+        };
+        let ranges = plots
+            .iter()
+            .filter_map(|plot| plot.panels.get(panel))
+            .map(|panel| panel.shown(Along::Y));
         ranges.reduce(Range::union).unwrap_or(Range::new(0.0, 1.0))
     }
 
@@ -165,7 +204,10 @@ impl<'f> Table<'f> {
         let panels = &self.figure.plots[index].panels;
         let room = plot_height - PANEL_GAP * panels.len().saturating_sub(1) as f64;
         let weights: f64 = panels.iter().map(|panel| panel.weight).sum();
-        panels.iter().map(|panel| room * panel.weight / weights).collect()
+        panels
+            .iter()
+            .map(|panel| room * panel.weight / weights)
+            .collect()
     }
 
     fn y_side(&self, index: usize, panel: usize, height: f64) -> Side {
@@ -173,8 +215,18 @@ impl<'f> Table<'f> {
         let axis = &self.figure.plots[index].panels[panel].y;
         let ticks = ticks(axis, range, height, VERTICAL_GAP);
         let has_numbers = self.has_y_numbers(index);
-        let depth = if has_numbers { TICK + 2.0 + SMALL_PT * widest(&ticks) } else { TICK };
-        Side { range, ticks, has_numbers, has_label: self.has_y_label(index, panel), depth }
+        let depth = if has_numbers {
+            TICK + 2.0 + SMALL_PT * widest(&ticks)
+        } else {
+            TICK
+        };
+        Side {
+            range,
+            ticks,
+            has_numbers,
+            has_label: self.has_y_label(index, panel),
+            depth,
+        }
     }
 
     fn x_side(&self, index: usize, panel: usize, frame_width: f64) -> Side {
@@ -186,7 +238,13 @@ impl<'f> Table<'f> {
         // Where frames are narrow, the first of a row says it for all.
         let has_room = LABEL_PT * width(&plot.panels[panel].x.label) <= frame_width + COLUMN_GAP;
         let has_label = has_numbers && (has_room || index.is_multiple_of(self.columns));
-        Side { range, ticks, has_numbers, has_label, depth: TICK + SMALL_LINE }
+        Side {
+            range,
+            ticks,
+            has_numbers,
+            has_label,
+            depth: TICK + SMALL_LINE,
+        }
     }
 
     /// Room at the left of a column of frames, for numbers and labels.
@@ -195,14 +253,21 @@ impl<'f> Table<'f> {
         let plots = (column..self.figure.plots.len()).step_by(self.columns);
         let sides = plots.flat_map(|index| {
             let heights = self.heights(index, plot_height);
-            heights.into_iter().enumerate().map(move |(panel, height)| self.y_side(index, panel, height))
+            heights
+                .into_iter()
+                .enumerate()
+                .map(move |(panel, height)| self.y_side(index, panel, height))
         });
-        sides.map(|side| side.depth + if side.has_label { LABEL_LINE } else { 0.0 }).fold(0.0, f64::max)
+        sides
+            .map(|side| side.depth + if side.has_label { LABEL_LINE } else { 0.0 })
+            .fold(0.0, f64::max)
     }
 
     fn place(&self, frame_width: f64, top: f64) -> Layout<'f> {
         let plot_height = self.plot_height(frame_width, top);
-        let gutters: Vec<f64> = (0..self.columns).map(|column| self.gutter(column, frame_width, top)).collect();
+        let gutters: Vec<f64> = (0..self.columns)
+            .map(|column| self.gutter(column, frame_width, top))
+            .collect();
         let (mut panels, mut y) = (Vec::new(), top);
         for row in 0..self.rows {
             y += self.above(row);
@@ -214,13 +279,27 @@ impl<'f> Table<'f> {
             }
             y += plot_height + self.below(row) + ROW_GAP;
         }
-        Layout { panels, bottom: y - ROW_GAP }
+        Layout {
+            panels,
+            bottom: y - ROW_GAP,
+        }
     }
 
-    fn place_plot(&self, index: usize, [x, y]: [f64; 2], [width, height]: [f64; 2], panels: &mut Vec<Placed<'f>>) {
+    fn place_plot(
+        &self,
+        index: usize,
+        [x, y]: [f64; 2],
+        [width, height]: [f64; 2],
+        panels: &mut Vec<Placed<'f>>,
+    ) {
         let plot = &self.figure.plots[index];
         let mut top = y;
-        for (at, (panel, height)) in plot.panels.iter().zip(self.heights(index, height)).enumerate() {
+        for (at, (panel, height)) in plot
+            .panels
+            .iter()
+            .zip(self.heights(index, height))
+            .enumerate()
+        {
             panels.push(Placed {
                 panel,
                 title: if at == 0 { &plot.title } else { "" },
@@ -236,7 +315,11 @@ impl<'f> Table<'f> {
 
 /// Width of the widest label, as a part of the size of its letters.
 fn widest(ticks: &[Tick]) -> f64 {
-    ticks.iter().filter_map(|tick| tick.label.as_deref()).map(width).fold(0.0, f64::max)
+    ticks
+        .iter()
+        .filter_map(|tick| tick.label.as_deref())
+        .map(width)
+        .fold(0.0, f64::max)
 }
 
 /// Ticks with labels that do not touch.
@@ -252,8 +335,10 @@ fn horizontal_ticks(axis: &Axis, range: Range, length_pt: f64) -> Vec<Tick> {
 }
 
 /// The fonts, with the name that a reader of SVG may know them by.
-pub const FONTS: [(&str, &[u8]); 2] =
-    [("Ubuntu", epaint_default_fonts::UBUNTU_LIGHT), ("Hack", epaint_default_fonts::HACK_REGULAR)];
+pub const FONTS: [(&str, &[u8]); 2] = [
+    ("Ubuntu", epaint_default_fonts::UBUNTU_LIGHT),
+    ("Hack", epaint_default_fonts::HACK_REGULAR),
+];
 
 /// One letter as a font draws it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -270,16 +355,32 @@ pub struct Letter {
 
 /// The letters of a line of words, in their order; what has no shape of its own is spelt out.
 pub fn letters(words: &str) -> Vec<Letter> {
-    let fonts: Vec<FontRef<'_>> = FONTS.iter().filter_map(|(_, bytes)| FontRef::new(bytes).ok()).collect();
-    sanitized(words).chars().filter_map(|character| letter(&fonts, character)).collect()
+    let fonts: Vec<FontRef<'_>> = FONTS
+        .iter()
+        .filter_map(|(_, bytes)| FontRef::new(bytes).ok())
+        .collect();
+    sanitized(words)
+        .chars()
+        .filter_map(|character| letter(&fonts, character))
+        .collect()
 }
 
 fn letter(fonts: &[FontRef<'_>], character: char) -> Option<Letter> {
-    let found = fonts.iter().enumerate().find_map(|(font, face)| Some((font, face.charmap().map(character)?)));
+    let found = fonts
+        .iter()
+        .enumerate()
+        .find_map(|(font, face)| Some((font, face.charmap().map(character)?)));
     let (font, glyph) = found.unwrap_or((0, GlyphId::NOTDEF));
-    let metrics = fonts.get(font)?.glyph_metrics(Size::new(1.0), LocationRef::default());
+    let metrics = fonts
+        .get(font)?
+        .glyph_metrics(Size::new(1.0), LocationRef::default());
     let advance = f64::from(metrics.advance_width(glyph)?);
-    Some(Letter { character, font, glyph: u16::try_from(glyph.to_u32()).ok()?, advance })
+    Some(Letter {
+        character,
+        font,
+        glyph: u16::try_from(glyph.to_u32()).ok()?,
+        advance,
+    })
 }
 
 /// Width of a line of words as a part of the size of its letters.
@@ -308,7 +409,8 @@ mod tests {
 
     #[test]
     fn every_sign_that_figures_use_has_a_glyph() {
-        for letter in letters("aZ0 Δατωφλζ → − ° ² · … – × ± ≤ ≥ ● ◆ [rad/s]") {
+        for letter in letters("aZ0 Δατωφλζ → − ° ² · … – × ± ≤ ≥ ● ◆ [rad/s]")
+        {
             assert_ne!(letter.glyph, 0, "{}", letter.character);
         }
         let arrow = letters("→")[0];

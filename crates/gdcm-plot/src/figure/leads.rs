@@ -27,8 +27,12 @@ pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
         source.caption()
     );
     let figure = Figure::new(title).caption(caption).columns(2).aspect(0.62);
-    let Some(analysis) = source.analysis else { return figure };
-    let rows = pairs.iter().flat_map(|&pair| plots(source, &analysis.correction, pair));
+    let Some(analysis) = source.analysis else {
+        return figure;
+    };
+    let rows = pairs
+        .iter()
+        .flat_map(|&pair| plots(source, &analysis.correction, pair));
     figure.plots(rows)
 }
 
@@ -39,19 +43,39 @@ fn plots(source: &ConditionSource<'_>, correction: &ChannelCorrection, pair: Pai
     let omega = frequencies(band.min(), ABOVE_BAND * band.max());
     let [output, input] = Channel::of(pair);
     let of = |channels: &[Channel]| {
-        let lead = |at: usize| channels.get(at).and_then(|channel| correction.lead(*channel));
-        let delay_s: f64 = channels.iter().map(|channel| correction.pure_delay_s(*channel)).sum();
+        let lead = |at: usize| {
+            channels
+                .get(at)
+                .and_then(|channel| correction.lead(*channel))
+        };
+        let delay_s: f64 = channels
+            .iter()
+            .map(|channel| correction.pure_delay_s(*channel))
+            .sum();
         GainDelay::new(1.0, delay_s).led([lead(0), lead(1)])
     };
-    let others = all_channels(dataset).into_iter().filter(|channel| ![output, input].contains(channel));
-    let others =
-        others.map(|channel| (channel.name(&inputs, &outputs), "other channels".to_owned(), OTHERS, vec![channel]));
+    let others = all_channels(dataset)
+        .into_iter()
+        .filter(|channel| ![output, input].contains(channel));
+    let others = others.map(|channel| {
+        (
+            channel.name(&inputs, &outputs),
+            "other channels".to_owned(),
+            OTHERS,
+            vec![channel],
+        )
+    });
     let focus = [(input, OF_INPUT), (output, OF_OUTPUT)].map(|(channel, stroke)| {
         let name = channel.name(&inputs, &outputs);
         (name.clone(), name, stroke, vec![channel])
     });
     let name = dataset.pair_name(pair);
-    let both = (name.clone(), format!("{name}, both"), Role::Corrected.stroke(false), vec![output, input]);
+    let both = (
+        name.clone(),
+        format!("{name}, both"),
+        Role::Corrected.stroke(false),
+        vec![output, input],
+    );
     let drawn: Vec<_> = others
         .chain(focus)
         .chain([both])
@@ -60,18 +84,25 @@ fn plots(source: &ConditionSource<'_>, correction: &ChannelCorrection, pair: Pai
     let price = correction.leads.as_ref().and_then(LeadPrice::of);
     let zeros = vec![0.0; omega.len()];
     let panel = |y: Axis, values: &dyn Fn(GainDelay) -> Vec<f64>| {
-        let curves = drawn
-            .iter()
-            .map(|(name, key, stroke, dynamics)| Curve::new(name, *stroke, omega.clone(), values(*dynamics)).key(key));
+        let curves = drawn.iter().map(|(name, key, stroke, dynamics)| {
+            Curve::new(name, *stroke, omega.clone(), values(*dynamics)).key(key)
+        });
         let panel = Panel::new(Axis::logarithmic("Frequency [rad/s]"), y).with_all(curves);
         price.iter().fold(panel, beyond)
     };
-    let gain = panel(Axis::linear("Gain [dB]").including(0.0).at_least(3.0), &|dynamics| {
-        dynamics.magnitudes_db(&zeros, &omega).collect()
-    });
-    let phase = panel(Axis::degrees("Phase [deg]").including(0.0).at_least(10.0), &|dynamics| {
-        dynamics.phases(&zeros, &omega).map(f64::to_degrees).collect()
-    });
+    let gain = panel(
+        Axis::linear("Gain [dB]").including(0.0).at_least(3.0),
+        &|dynamics| dynamics.magnitudes_db(&zeros, &omega).collect(),
+    );
+    let phase = panel(
+        Axis::degrees("Phase [deg]").including(0.0).at_least(10.0),
+        &|dynamics| {
+            dynamics
+                .phases(&zeros, &omega)
+                .map(f64::to_degrees)
+                .collect()
+        },
+    );
     let price = price.as_ref().and_then(|price| price.pair_words(pair));
     let price = price.map(|words| format!(": {words}")).unwrap_or_default();
     [
@@ -83,12 +114,20 @@ fn plots(source: &ConditionSource<'_>, correction: &ChannelCorrection, pair: Pai
 /// The ground of what lies beyond the band, whose entry in the legend says so, and the line where it begins.
 fn beyond(panel: Panel, price: &LeadPrice) -> Panel {
     let range = Range::new(price.limit_rad_s, price.above_rad_s());
-    let ground = Band { range, color: Color::of(Hue::Warning).tint(14), key: price.limit_words() };
-    panel.over(ground).with(Rule::vertical(price.limit_rad_s, LIMIT))
+    let ground = Band {
+        range,
+        color: Color::of(Hue::Warning).tint(14),
+        key: price.limit_words(),
+    };
+    panel
+        .over(ground)
+        .with(Rule::vertical(price.limit_rad_s, LIMIT))
 }
 
 /// So many frequencies \[rad/s\] between two, equally far apart by their logarithms, with both.
 fn frequencies(min: f64, max: f64) -> Vec<f64> {
     let part = |point: usize| point as f64 / (POINTS - 1) as f64;
-    (0..POINTS).map(|point| min * (max / min).powf(part(point))).collect()
+    (0..POINTS)
+        .map(|point| min * (max / min).powf(part(point)))
+        .collect()
 }

@@ -23,8 +23,8 @@ use std::sync::Arc;
 
 use gdcm_model::dataset::{ModelId, Pair};
 use gdcm_study::study::{
-    AcrossRole, Analysis, AssessmentChoice, ConditionAnalysis, ConditionModes, CouplingsAssessment, RecordHistory,
-    Requirements, TestAnswers, Unobserved,
+    AcrossRole, Analysis, AssessmentChoice, ConditionAnalysis, ConditionModes, CouplingsAssessment,
+    RecordHistory, Requirements, TestAnswers, Unobserved,
 };
 
 mod assessment;
@@ -33,7 +33,10 @@ mod bode;
 mod condition_source;
 mod drawing;
 mod error;
-#[expect(clippy::module_inception, reason = "the room is named by what it makes")]
+#[expect(
+    clippy::module_inception,
+    reason = "the room is named by what it makes"
+)]
 mod figure;
 mod gains;
 mod label_places;
@@ -143,7 +146,10 @@ impl FigureKind {
 
     /// Whether it is a figure of one condition.
     pub fn is_of_condition(self) -> bool {
-        matches!(self, Self::Bode | Self::Error | Self::Overview | Self::Poles | Self::Leads)
+        matches!(
+            self,
+            Self::Bode | Self::Error | Self::Overview | Self::Poles | Self::Leads
+        )
     }
 }
 
@@ -186,25 +192,45 @@ pub struct FigureRequest {
 impl FigureRequest {
     /// A figure of these responses and channels, shown as usual.
     pub fn new(kind: FigureKind, pairs: Vec<Pair>, channels: Vec<Channel>) -> Self {
-        Self { kind, pairs, channels, ..Self::default() }
+        Self {
+            kind,
+            pairs,
+            channels,
+            ..Self::default()
+        }
     }
 
     /// The figure; none where what it is made of is not there: the condition's source for those of one condition, else the
     /// analysis.
-    pub fn figure(&self, analysis: Option<&Analysis>, condition: Option<&ConditionSource<'_>>) -> Option<Figure> {
+    pub fn figure(
+        &self,
+        analysis: Option<&Analysis>,
+        condition: Option<&ConditionSource<'_>>,
+    ) -> Option<Figure> {
         Some(match self.kind {
             FigureKind::Bode => bode_figure(condition?, &self.pairs, &self.bode),
             FigureKind::Error => error_figure(condition?, &self.pairs, &self.bode),
             FigureKind::Overview => overview_figure(condition?, &self.bode),
-            FigureKind::NetGain => net_gain_figure(analysis?, analysis?.uncertainty.as_deref(), &self.pairs),
+            FigureKind::NetGain => {
+                net_gain_figure(analysis?, analysis?.uncertainty.as_deref(), &self.pairs)
+            }
             FigureKind::Channels => {
                 let shown = (self.measure, self.across);
-                channels_figure(analysis?, analysis?.uncertainty.as_deref(), &self.channels, shown)
+                channels_figure(
+                    analysis?,
+                    analysis?.uncertainty.as_deref(),
+                    &self.channels,
+                    shown,
+                )
             }
             FigureKind::Evidence => return evidence_figure(analysis?, &self.pairs),
             FigureKind::Assessment => {
                 let analysis = analysis?;
-                assessment_figure(analysis, &self.pairs, self.assessed.unwrap_or_else(|| usual_choice(analysis)))
+                assessment_figure(
+                    analysis,
+                    &self.pairs,
+                    self.assessed.unwrap_or_else(|| usual_choice(analysis)),
+                )
             }
             FigureKind::Poles => {
                 let condition = condition?;
@@ -213,7 +239,10 @@ impl FigureRequest {
                     Some(pair) => zeros_of_model(condition, pair, id),
                     None => Vec::new(),
                 };
-                let shifts = condition.analysis.map(ConditionAnalysis::pole_shifts).unwrap_or_default();
+                let shifts = condition
+                    .analysis
+                    .map(ConditionAnalysis::pole_shifts)
+                    .unwrap_or_default();
                 poles_figure(condition, &modes, &self.bode, (&zeros, &shifts))
             }
             FigureKind::Leads => leads_figure(condition?, &self.pairs),
@@ -221,10 +250,16 @@ impl FigureRequest {
                 let study = &analysis?.study;
                 match &self.over_time {
                     Some(OverTime::Test(answers)) => test_answers_figure(answers, &study.dataset),
-                    Some(OverTime::Record(history, input)) => record_history_figure(history, &study.dataset, *input),
+                    Some(OverTime::Record(history, input)) => {
+                        record_history_figure(history, &study.dataset, *input)
+                    }
                     None => {
                         let requirements = self.requirements.as_deref()?;
-                        requirements_figure(requirements, &study.dataset, &study.requirements.levels)
+                        requirements_figure(
+                            requirements,
+                            &study.dataset,
+                            &study.requirements.levels,
+                        )
                     }
                 }
             }
@@ -232,7 +267,9 @@ impl FigureRequest {
                 let shown = condition.map(|of| of.curves.condition.id());
                 return couplings_figure(self.couplings.as_deref()?, shown, self.bode.unit);
             }
-            FigureKind::Airspeeds => return airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode),
+            FigureKind::Airspeeds => {
+                return airspeeds_figure(analysis?, &self.pairs, self.across_role, &self.bode);
+            }
         })
     }
 }

@@ -3,11 +3,13 @@
 use super::axis::{Axis, Range};
 use super::drawing::{Anchor, Area, Color, Dash, Drawing, PT_PER_MM, Shape, Stroke, Text};
 use super::figure::{
-    Along, Bars, Bracket, Brackets, ColumnWidth, Curve, DotShape, Dots, Envelope, Figure, Guide, Intervals, Mark, Note,
-    Panel, Place, Rule, Spans,
+    Along, Bars, Bracket, Brackets, ColumnWidth, Curve, DotShape, Dots, Envelope, Figure, Guide,
+    Intervals, Mark, Note, Panel, Place, Rule, Spans,
 };
 use super::label_places::{LabelledDot, Surroundings, place_labels};
-use super::layout::{LABEL_LINE, LABEL_PT, Layout, Placed, SMALL_LINE, SMALL_PT, Side, TICK, width, wrapped};
+use super::layout::{
+    LABEL_LINE, LABEL_PT, Layout, Placed, SMALL_LINE, SMALL_PT, Side, TICK, width, wrapped,
+};
 use super::role::{Entry, Sample};
 use super::thinning::{Pixel, thinned};
 
@@ -19,7 +21,10 @@ const TITLE_LINE: f64 = 11.0;
 const MARGIN: f64 = 3.0;
 /// How far a line may be from the points that it stands for \[pt\]: a tenth of the finest line.
 const TOLERANCE: f64 = 0.04;
-const FINEST: Pixel = Pixel { width: TOLERANCE, tolerance: TOLERANCE };
+const FINEST: Pixel = Pixel {
+    width: TOLERANCE,
+    tolerance: TOLERANCE,
+};
 /// From the middle of a line of letters down to its base, as a part of their size.
 const HALF_HEIGHT: f64 = 0.34;
 const FRAME: Stroke = Stroke::solid(Color::DIM, 0.6);
@@ -45,11 +50,20 @@ impl Figure {
         let width_pt = width.mm() * PT_PER_MM;
         let inner = width_pt - 2.0 * MARGIN;
         let mut shapes = Vec::new();
-        let mut y = lines(&mut shapes, &self.title, MARGIN, inner, (TITLE_PT, TITLE_LINE, Color::INK));
+        let mut y = lines(
+            &mut shapes,
+            &self.title,
+            MARGIN,
+            inner,
+            (TITLE_PT, TITLE_LINE, Color::INK),
+        );
         let layout = Layout::of(self, inner, y);
         let mut left_out = 0;
         for placed in layout.panels {
-            let frame = Area { left: placed.frame.left + MARGIN, ..placed.frame };
+            let frame = Area {
+                left: placed.frame.left + MARGIN,
+                ..placed.frame
+            };
             let (panel, without_label) = panel_shapes(&Placed { frame, ..placed });
             shapes.extend(panel);
             left_out += without_label;
@@ -57,15 +71,34 @@ impl Figure {
         y = legend(&mut shapes, &self.legend(), layout.bottom + 3.0, inner);
         let caption = match left_out {
             0 => self.caption.clone(),
-            count => format!("{} Without room, and left out: {count} of the labels.", self.caption),
+            count => format!(
+                "{} Without room, and left out: {count} of the labels.",
+                self.caption
+            ),
         };
-        y = lines(&mut shapes, &caption, y + 1.0, inner, (SMALL_PT, SMALL_LINE, Color::DIM));
-        Drawing { title: self.title.clone(), size: [width_pt, y + MARGIN], shapes }
+        y = lines(
+            &mut shapes,
+            &caption,
+            y + 1.0,
+            inner,
+            (SMALL_PT, SMALL_LINE, Color::DIM),
+        );
+        Drawing {
+            title: self.title.clone(),
+            size: [width_pt, y + MARGIN],
+            shapes,
+        }
     }
 }
 
 /// Writes a text from `top` down; gives where it ends.
-fn lines(shapes: &mut Vec<Shape>, words: &str, top: f64, inner: f64, (size, line, color): (f64, f64, Color)) -> f64 {
+fn lines(
+    shapes: &mut Vec<Shape>,
+    words: &str,
+    top: f64,
+    inner: f64,
+    (size, line, color): (f64, f64, Color),
+) -> f64 {
     let lines = wrapped(words, inner / size);
     let bottom = top + line * lines.len() as f64;
     shapes.extend(lines.into_iter().enumerate().map(|(at, words)| {
@@ -75,8 +108,21 @@ fn lines(shapes: &mut Vec<Shape>, words: &str, top: f64, inner: f64, (size, line
     bottom
 }
 
-fn text(at: [f64; 2], words: impl Into<String>, size_pt: f64, anchor: Anchor, color: Color) -> Shape {
-    Shape::Text(Text { at, words: words.into(), size_pt, anchor, upright: false, color })
+fn text(
+    at: [f64; 2],
+    words: impl Into<String>,
+    size_pt: f64,
+    anchor: Anchor,
+    color: Color,
+) -> Shape {
+    Shape::Text(Text {
+        at,
+        words: words.into(),
+        size_pt,
+        anchor,
+        upright: false,
+        color,
+    })
 }
 
 /// Draws the legend in lines as wide as the figure, from `top` down; gives where it ends.
@@ -96,14 +142,32 @@ fn legend(shapes: &mut Vec<Shape>, entries: &[Entry], top: f64, inner: f64) -> f
             Sample::Line(stroke) => {
                 vec![Shape::line([[start, y], [start + sample, y]], stroke)]
             }
-            Sample::Dot { shape, color, filled } => dot_shapes([start + 0.5 * sample, y], (shape, 1.0), color, filled),
-            Sample::Ground(color) => vec![Shape::rectangle(Area::new(start, y - 3.0, sample, 6.0), Some(color), None)],
+            Sample::Dot {
+                shape,
+                color,
+                filled,
+            } => dot_shapes([start + 0.5 * sample, y], (shape, 1.0), color, filled),
+            Sample::Ground(color) => vec![Shape::rectangle(
+                Area::new(start, y - 3.0, sample, 6.0),
+                Some(color),
+                None,
+            )],
         });
         let place = [start + sample + 4.0, y + HALF_HEIGHT * SMALL_PT];
-        shapes.push(text(place, &entry.text, SMALL_PT, Anchor::Start, Color::INK));
+        shapes.push(text(
+            place,
+            &entry.text,
+            SMALL_PT,
+            Anchor::Start,
+            Color::INK,
+        ));
         x += whole + 10.0;
     }
-    if entries.is_empty() { top } else { y + 0.5 * LABEL_LINE }
+    if entries.is_empty() {
+        top
+    } else {
+        y + 0.5 * LABEL_LINE
+    }
 }
 
 /// What a panel shows, and how many labels have no room in it.
@@ -111,14 +175,29 @@ fn panel_shapes(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
     let frame = placed.frame;
     let mut within = grounds(placed);
     within.extend(grid(placed));
-    within.extend(placed.panel.marks.iter().flat_map(|mark| lines_of(placed, mark)));
-    let mut shapes = vec![Shape::Clipped { area: frame, shapes: within }];
+    within.extend(
+        placed
+            .panel
+            .marks
+            .iter()
+            .flat_map(|mark| lines_of(placed, mark)),
+    );
+    let mut shapes = vec![Shape::Clipped {
+        area: frame,
+        shapes: within,
+    }];
     shapes.push(Shape::rectangle(frame, None, Some(FRAME)));
     shapes.extend(horizontal(&placed.x, &placed.panel.x, frame));
     shapes.extend(vertical(&placed.y, &placed.panel.y, frame));
     if !placed.title.is_empty() {
         let [x, y] = frame.at(0.5, 1.0);
-        shapes.push(text([x, y - 4.0], placed.title, LABEL_PT, Anchor::Middle, Color::INK));
+        shapes.push(text(
+            [x, y - 4.0],
+            placed.title,
+            LABEL_PT,
+            Anchor::Middle,
+            Color::INK,
+        ));
     }
     let left_out = dots_and_words(placed, &mut shapes);
     (shapes, left_out)
@@ -128,8 +207,20 @@ fn panel_shapes(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
 fn dots_and_words(placed: &Placed<'_>, shapes: &mut Vec<Shape>) -> usize {
     let (dots, left_out) = dots_and_labels(placed);
     shapes.extend(dots);
-    shapes.extend(placed.panel.marks.iter().flat_map(|mark| rule_label(placed, mark)));
-    shapes.extend(placed.panel.marks.iter().filter_map(|mark| words(placed, mark)));
+    shapes.extend(
+        placed
+            .panel
+            .marks
+            .iter()
+            .flat_map(|mark| rule_label(placed, mark)),
+    );
+    shapes.extend(
+        placed
+            .panel
+            .marks
+            .iter()
+            .filter_map(|mark| words(placed, mark)),
+    );
     left_out
 }
 
@@ -137,8 +228,21 @@ impl Panel {
     /// The marks as they are drawn in `frame` where these parts of both axes are shown, with letters of this size \[pt\]; and how many
     /// labels have no room. For canvases that draw axes of their own: edged areas are filled.
     pub fn shapes(&self, frame: Area, [x, y]: [Range; 2], letters_pt: f64) -> (Vec<Shape>, usize) {
-        let side = |range| Side { range, ticks: Vec::new(), has_numbers: false, has_label: false, depth: 0.0 };
-        let placed = Placed { panel: self, title: "", frame, x: side(x), y: side(y), letters_pt };
+        let side = |range| Side {
+            range,
+            ticks: Vec::new(),
+            has_numbers: false,
+            has_label: false,
+            depth: 0.0,
+        };
+        let placed = Placed {
+            panel: self,
+            title: "",
+            frame,
+            x: side(x),
+            y: side(y),
+            letters_pt,
+        };
         let mut within = grounds(&placed);
         for mark in &self.marks {
             match mark {
@@ -146,7 +250,10 @@ impl Panel {
                 mark => within.extend(lines_of(&placed, mark)),
             }
         }
-        let mut shapes = vec![Shape::Clipped { area: frame, shapes: within }];
+        let mut shapes = vec![Shape::Clipped {
+            area: frame,
+            shapes: within,
+        }];
         let left_out = dots_and_words(&placed, &mut shapes);
         (shapes, left_out)
     }
@@ -179,7 +286,11 @@ impl Placed<'_> {
     fn bracket(&self, bracket: &Bracket) -> Option<[[[f64; 2]; 2]; 2]> {
         let [from, to] = bracket.ends.map(|end| self.at([bracket.x, end]));
         let ends = [from?, to?];
-        let side = if ends[0][0] - BRACKET < self.frame.left + 1.0 { 1.0 } else { -1.0 };
+        let side = if ends[0][0] - BRACKET < self.frame.left + 1.0 {
+            1.0
+        } else {
+            -1.0
+        };
         let moved = |by: f64| ends.map(|[x, y]| [x + side * by, y]);
         Some([moved(BRACKET), moved(BRACKET - HOOK)])
     }
@@ -194,10 +305,21 @@ impl Placed<'_> {
 fn grounds(placed: &Placed<'_>) -> Vec<Shape> {
     let mut shapes = bands(placed);
     for mark in &placed.panel.marks {
-        if let Mark::Spans(Spans { color, width, spans, .. }) = mark {
+        if let Mark::Spans(Spans {
+            color,
+            width,
+            spans,
+            ..
+        }) = mark
+        {
             let areas = spans.iter().filter_map(|&[x, lower, upper]| {
                 let from = placed.at([x - 0.5 * width, lower])?;
-                Some(rectangle(from, placed.at([x + 0.5 * width, upper])?, *color, None))
+                Some(rectangle(
+                    from,
+                    placed.at([x + 0.5 * width, upper])?,
+                    *color,
+                    None,
+                ))
             });
             shapes.extend(areas);
         }
@@ -216,9 +338,18 @@ fn envelope(placed: &Placed<'_>, Envelope { color, points, .. }: &Envelope) -> V
     let ends: Vec<Option<[[f64; 2]; 2]>> = points.iter().map(ends).collect();
     let runs = ends.split(Option::is_none).filter(|run| run.len() > 1);
     let area = |run: &[Option<[[f64; 2]; 2]>]| {
-        let (lower, upper): (Vec<_>, Vec<_>) = run.iter().flatten().map(|[low, high]| (*low, *high)).unzip();
+        let (lower, upper): (Vec<_>, Vec<_>) = run
+            .iter()
+            .flatten()
+            .map(|[low, high]| (*low, *high))
+            .unzip();
         let points = lower.into_iter().chain(upper.into_iter().rev()).collect();
-        Shape::Path { points, closed: true, fill: Some(*color), stroke: None }
+        Shape::Path {
+            points,
+            closed: true,
+            fill: Some(*color),
+            stroke: None,
+        }
     };
     runs.map(area).collect()
 }
@@ -226,14 +357,21 @@ fn envelope(placed: &Placed<'_>, Envelope { color, points, .. }: &Envelope) -> V
 /// The rectangle between two corners.
 fn rectangle(from: [f64; 2], to: [f64; 2], color: Color, stroke: Option<Stroke>) -> Shape {
     let points = vec![from, [from[0], to[1]], to, [to[0], from[1]]];
-    Shape::Path { points, closed: true, fill: Some(color), stroke }
+    Shape::Path {
+        points,
+        closed: true,
+        fill: Some(color),
+        stroke,
+    }
 }
 
 fn bands(placed: &Placed<'_>) -> Vec<Shape> {
     let band = |mark: &Mark| {
         let Mark::Band(band) = mark else { return None };
-        let ([from, _], [_, far]) =
-            (placed.across(Along::X, band.range.min)?, placed.across(Along::X, band.range.max)?);
+        let ([from, _], [_, far]) = (
+            placed.across(Along::X, band.range.min)?,
+            placed.across(Along::X, band.range.max)?,
+        );
         Some(rectangle(from, far, band.color, None))
     };
     placed.panel.marks.iter().filter_map(band).collect()
@@ -243,7 +381,9 @@ fn grid(placed: &Placed<'_>) -> Vec<Shape> {
     let is_named = |axis: &Axis| axis.names.is_some();
     let lines = |along: Along, side: &Side, axis: &Axis| -> Vec<Shape> {
         let ticks = side.ticks.iter().filter(|_| !is_named(axis));
-        ticks.filter_map(|tick| Some(Shape::line(placed.across(along, tick.value)?, GRID))).collect()
+        ticks
+            .filter_map(|tick| Some(Shape::line(placed.across(along, tick.value)?, GRID)))
+            .collect()
     };
     let mut shapes = lines(Along::X, &placed.x, &placed.panel.x);
     shapes.extend(lines(Along::Y, &placed.y, &placed.panel.y));
@@ -255,40 +395,76 @@ fn lines_of(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
     match mark {
         Mark::Curve(curve) => curve_lines(placed, curve),
         Mark::Bars(bars) => bar_shapes(placed, bars),
-        Mark::Rule(Rule { along, at, stroke, .. }) => {
-            placed.across(*along, *at).map(|ends| Shape::line(ends, *stroke)).into_iter().collect()
-        }
+        Mark::Rule(Rule {
+            along, at, stroke, ..
+        }) => placed
+            .across(*along, *at)
+            .map(|ends| Shape::line(ends, *stroke))
+            .into_iter()
+            .collect(),
         Mark::Guide(Guide { points, .. }) => {
-            let points: Vec<[f64; 2]> = points.iter().filter_map(|point| placed.at(*point)).collect();
+            let points: Vec<[f64; 2]> = points
+                .iter()
+                .filter_map(|point| placed.at(*point))
+                .collect();
             vec![Shape::line(points, GUIDE)]
         }
         Mark::Intervals(Intervals { stroke, ends, .. }) => {
-            let ends = ends.iter().filter_map(|&[x, low, high]| Some([placed.at([x, low])?, placed.at([x, high])?]));
+            let ends = ends
+                .iter()
+                .filter_map(|&[x, low, high]| Some([placed.at([x, low])?, placed.at([x, high])?]));
             ends.map(|ends| Shape::line(ends, *stroke)).collect()
         }
-        Mark::Brackets(Brackets { stroke, brackets, .. }) => {
-            let places = brackets.iter().filter_map(|bracket| placed.bracket(bracket));
-            places.map(|[spine, hooks]| bracket_line(spine, hooks, *stroke)).collect()
+        Mark::Brackets(Brackets {
+            stroke, brackets, ..
+        }) => {
+            let places = brackets
+                .iter()
+                .filter_map(|bracket| placed.bracket(bracket));
+            places
+                .map(|[spine, hooks]| bracket_line(spine, hooks, *stroke))
+                .collect()
         }
-        Mark::Envelope(of) => of.edges().flat_map(|edge| curve_lines(placed, &edge)).collect(),
+        Mark::Envelope(of) => of
+            .edges()
+            .flat_map(|edge| curve_lines(placed, &edge))
+            .collect(),
         Mark::Dots(_) | Mark::Band(_) | Mark::Spans(_) | Mark::Note(_) => Vec::new(),
     }
 }
 
 /// A curve without what lies outside the frame: what is drawn is no longer than what is seen.
 fn curve_lines(placed: &Placed<'_>, curve: &Curve) -> Vec<Shape> {
-    let points: Vec<Option<[f64; 2]>> =
-        curve.points().map(|point| placed.at(point).filter(|place| place.iter().all(|c| c.abs() < 1e6))).collect();
-    let runs = points.split(Option::is_none).map(|run| run.iter().copied().flatten().collect::<Vec<[f64; 2]>>());
+    let points: Vec<Option<[f64; 2]>> = curve
+        .points()
+        .map(|point| {
+            placed
+                .at(point)
+                .filter(|place| place.iter().all(|c| c.abs() < 1e6))
+        })
+        .collect();
+    let runs = points
+        .split(Option::is_none)
+        .map(|run| run.iter().copied().flatten().collect::<Vec<[f64; 2]>>());
     let lines = runs.filter(|run| run.len() > 1);
-    lines.map(|run| Shape::line(thinned(&run, FINEST), curve.stroke)).collect()
+    lines
+        .map(|run| Shape::line(thinned(&run, FINEST), curve.stroke))
+        .collect()
 }
 
 fn bar_shapes(placed: &Placed<'_>, bars: &Bars) -> Vec<Shape> {
     let bar = |(&[x, _], [foot, top]): (&[f64; 2], [f64; 2])| {
         let left = x + bars.beside - 0.5 * bars.width;
-        let (foot, top) = (placed.at([left, foot])?, placed.at([left + bars.width, top])?);
-        Some(rectangle(foot, top, bars.color, Some(Stroke::solid(Color::DIM, 0.3))))
+        let (foot, top) = (
+            placed.at([left, foot])?,
+            placed.at([left + bars.width, top])?,
+        );
+        Some(rectangle(
+            foot,
+            top,
+            bars.color,
+            Some(Stroke::solid(Color::DIM, 0.3)),
+        ))
     };
     bars.bars.iter().zip(bars.ends()).filter_map(bar).collect()
 }
@@ -304,18 +480,36 @@ fn dots_and_labels(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
     let (mut shapes, mut labels) = (Vec::new(), Vec::new());
     for mark in &placed.panel.marks {
         match mark {
-            Mark::Dots(Dots { shape, color, filled, size, dots, .. }) => {
+            Mark::Dots(Dots {
+                shape,
+                color,
+                filled,
+                size,
+                dots,
+                ..
+            }) => {
                 for one in dots {
-                    let Some(center) = placed.at([one.x, one.y]).filter(|center| placed.shows(*center)) else {
+                    let Some(center) = placed
+                        .at([one.x, one.y])
+                        .filter(|center| placed.shows(*center))
+                    else {
                         continue;
                     };
                     shapes.extend(dot_shapes(center, (*shape, *size), *color, *filled));
-                    labels.push((labelled(placed, center, DOT, &one.label), &one.label, Color::DIM));
+                    labels.push((
+                        labelled(placed, center, DOT, &one.label),
+                        &one.label,
+                        Color::DIM,
+                    ));
                 }
             }
-            Mark::Brackets(Brackets { stroke, brackets, .. }) => {
+            Mark::Brackets(Brackets {
+                stroke, brackets, ..
+            }) => {
                 for bracket in brackets {
-                    let Some([[from, to], _]) = placed.bracket(bracket) else { continue };
+                    let Some([[from, to], _]) = placed.bracket(bracket) else {
+                        continue;
+                    };
                     let middle = [from[0], 0.5 * (from[1] + to[1])];
                     let label = labelled(placed, middle, 0.5 * stroke.width_pt, &bracket.label);
                     labels.push((label, &bracket.label, stroke.color));
@@ -326,19 +520,39 @@ fn dots_and_labels(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
     }
     let dots: Vec<LabelledDot> = labels.iter().map(|(dot, ..)| *dot).collect();
     let (mut leaders, mut texts, mut left_out) = (Vec::new(), Vec::new(), 0);
-    for (place, (dot, label, color)) in place_labels(&dots, &surroundings(placed)).into_iter().zip(labels) {
+    for (place, (dot, label, color)) in place_labels(&dots, &surroundings(placed))
+        .into_iter()
+        .zip(labels)
+    {
         let Some(place) = place else {
             left_out += usize::from(!label.is_empty());
             continue;
         };
-        leaders.extend(place.leader.map(|end| Shape::line([dot.center, end], LEADER)));
-        texts.push(text([place.area.left, place.area.bottom()], label, placed.letters_pt, Anchor::Start, color));
+        leaders.extend(
+            place
+                .leader
+                .map(|end| Shape::line([dot.center, end], LEADER)),
+        );
+        texts.push(text(
+            [place.area.left, place.area.bottom()],
+            label,
+            placed.letters_pt,
+            Anchor::Start,
+            color,
+        ));
     }
-    (leaders.into_iter().chain(shapes).chain(texts).collect(), left_out)
+    (
+        leaders.into_iter().chain(shapes).chain(texts).collect(),
+        left_out,
+    )
 }
 
 fn labelled(placed: &Placed<'_>, center: [f64; 2], radius: f64, label: &str) -> LabelledDot {
-    LabelledDot { center, radius, size: [width(label), FIGURE_HEIGHT].map(|part| placed.letters_pt * part) }
+    LabelledDot {
+        center,
+        radius,
+        size: [width(label), FIGURE_HEIGHT].map(|part| placed.letters_pt * part),
+    }
 }
 
 /// What the labels of a panel keep clear of.
@@ -351,41 +565,75 @@ fn surroundings(placed: &Placed<'_>) -> Surroundings {
     for mark in &placed.panel.marks {
         match mark {
             // The first curve with an entry in the legend is what the dots are about.
-            Mark::Curve(curve) if path.is_empty() && curve.key.is_some() && curve.stroke.dash == Dash::Solid => {
-                path = curve.points().filter_map(|point| placed.at(point)).collect();
+            Mark::Curve(curve)
+                if path.is_empty() && curve.key.is_some() && curve.stroke.dash == Dash::Solid =>
+            {
+                path = curve
+                    .points()
+                    .filter_map(|point| placed.at(point))
+                    .collect();
             }
             Mark::Intervals(Intervals { stroke, ends, .. }) => {
-                let ends =
-                    ends.iter().filter_map(|&[x, low, high]| Some((placed.at([x, low])?, placed.at([x, high])?)));
+                let ends = ends.iter().filter_map(|&[x, low, high]| {
+                    Some((placed.at([x, low])?, placed.at([x, high])?))
+                });
                 ends.for_each(|(from, to)| upright(from, to, stroke.width_pt));
             }
             Mark::Brackets(Brackets { brackets, .. }) => {
-                let spines = brackets.iter().filter_map(|bracket| placed.bracket(bracket));
+                let spines = brackets
+                    .iter()
+                    .filter_map(|bracket| placed.bracket(bracket));
                 spines.for_each(|[[from, to], _]| upright(from, to, HOOK));
             }
             _ => {}
         }
     }
-    Surroundings { bounds: placed.frame, path, bars }
+    Surroundings {
+        bounds: placed.frame,
+        path,
+        bars,
+    }
 }
 
 /// A dot of a shape and of a size, as a part of the usual one; all shapes cover about the same area.
-pub fn dot_shapes([x, y]: [f64; 2], (shape, part): (DotShape, f64), color: Color, filled: bool) -> Vec<Shape> {
+pub fn dot_shapes(
+    [x, y]: [f64; 2],
+    (shape, part): (DotShape, f64),
+    color: Color,
+    filled: bool,
+) -> Vec<Shape> {
     let line = Stroke::solid(color, DOT_LINE * part.sqrt());
     let radius = DOT * part;
-    let (fill, stroke, size) =
-        if filled { (Some(color), None, radius) } else { (Some(Color::WHITE), Some(line), radius - 0.5 * DOT_LINE) };
+    let (fill, stroke, size) = if filled {
+        (Some(color), None, radius)
+    } else {
+        (Some(Color::WHITE), Some(line), radius - 0.5 * DOT_LINE)
+    };
     let corners = |corners: &[[f64; 2]]| {
-        let points = corners.iter().map(|[dx, dy]| [x + size * dx, y + size * dy]).collect();
-        vec![Shape::Path { points, closed: true, fill, stroke }]
+        let points = corners
+            .iter()
+            .map(|[dx, dy]| [x + size * dx, y + size * dy])
+            .collect();
+        vec![Shape::Path {
+            points,
+            closed: true,
+            fill,
+            stroke,
+        }]
     };
     // Two lines: one that turns back over the middle has no direction there, and its corner no place on the screen.
     let strokes = |ends: [[[f64; 2]; 2]; 2]| {
         let place = |[dx, dy]: [f64; 2]| [x + radius * dx, y + radius * dy];
-        ends.map(|ends| Shape::line(ends.map(place).to_vec(), line)).to_vec()
+        ends.map(|ends| Shape::line(ends.map(place).to_vec(), line))
+            .to_vec()
     };
     match shape {
-        DotShape::Circle => vec![Shape::Circle { center: [x, y], radius: size, fill, stroke }],
+        DotShape::Circle => vec![Shape::Circle {
+            center: [x, y],
+            radius: size,
+            fill,
+            stroke,
+        }],
         DotShape::Diamond => corners(&[[0.0, -1.3], [1.3, 0.0], [0.0, 1.3], [-1.3, 0.0]]),
         DotShape::Square => corners(&[[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]),
         DotShape::Triangle => corners(&[[0.0, -1.3], [1.2, 0.9], [-1.2, 0.9]]),
@@ -396,8 +644,15 @@ pub fn dot_shapes([x, y]: [f64; 2], (shape, part): (DotShape, f64), color: Color
 
 /// The words beside a line across the frame, on white, so that curves may run behind them.
 fn rule_label(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
-    let Mark::Rule(Rule { along, at, label, .. }) = mark else { return Vec::new() };
-    let Some([_, [x, y]]) = placed.across(*along, *at).filter(|[_, end]| !label.is_empty() && placed.shows(*end))
+    let Mark::Rule(Rule {
+        along, at, label, ..
+    }) = mark
+    else {
+        return Vec::new();
+    };
+    let Some([_, [x, y]]) = placed
+        .across(*along, *at)
+        .filter(|[_, end]| !label.is_empty() && placed.shows(*end))
     else {
         return Vec::new();
     };
@@ -406,7 +661,12 @@ fn rule_label(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
         Along::X => [x - 2.0, y + SMALL_LINE],
     };
     let length = SMALL_PT * width(label);
-    let ground = Area::new(x - length - 1.0, y - 0.75 * SMALL_PT, length + 2.0, 0.8 * SMALL_PT);
+    let ground = Area::new(
+        x - length - 1.0,
+        y - 0.75 * SMALL_PT,
+        length + 2.0,
+        0.8 * SMALL_PT,
+    );
     let words = text([x, y], label, SMALL_PT, Anchor::End, Color::DIM);
     vec![Shape::rectangle(ground, Some(Color::WHITE), None), words]
 }
@@ -417,13 +677,20 @@ fn words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
     let small = |at, words: &str, anchor| text(at, words, size_pt, anchor, Color::DIM);
     match mark {
         Mark::Guide(Guide { points, label }) if !label.is_empty() => {
-            let visible = points.iter().rev().filter_map(|point| placed.at(*point)).find(|place| placed.shows(*place));
+            let visible = points
+                .iter()
+                .rev()
+                .filter_map(|point| placed.at(*point))
+                .find(|place| placed.shows(*place));
             visible.map(|[x, y]| small([x + 1.5, y + size_pt], label, Anchor::Start))
         }
         Mark::Note(Note { at, text: words }) => match at {
             Place::Value { x, y, upright } => {
                 // Words about a name of an axis need room beside those of the next.
-                let (slot, is_named) = (placed.frame.width / placed.x.range.width(), placed.panel.x.names.is_some());
+                let (slot, is_named) = (
+                    placed.frame.width / placed.x.range.width(),
+                    placed.panel.x.names.is_some(),
+                );
                 if is_named && !upright && size_pt * width(words) > slot {
                     return None;
                 }
@@ -434,7 +701,14 @@ fn words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
                     ([x, y + HALF_HEIGHT * size_pt], false)
                 };
                 let (words, anchor) = (words.clone(), Anchor::Middle);
-                Some(Shape::Text(Text { at, words, size_pt, anchor, upright, color: Color::DIM }))
+                Some(Shape::Text(Text {
+                    at,
+                    words,
+                    size_pt,
+                    anchor,
+                    upright,
+                    color: Color::DIM,
+                }))
             }
             Place::UpperRight => {
                 let [x, y] = placed.frame.at(1.0, 1.0);
@@ -453,19 +727,41 @@ fn words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
 fn horizontal(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for tick in &side.ticks {
-        let Some(fraction) = axis.fraction(tick.value, side.range) else { continue };
+        let Some(fraction) = axis.fraction(tick.value, side.range) else {
+            continue;
+        };
         let [x, y] = frame.at(fraction, 0.0);
-        let length = if tick.label.is_some() { TICK } else { 0.6 * TICK };
+        let length = if tick.label.is_some() {
+            TICK
+        } else {
+            0.6 * TICK
+        };
         shapes.push(Shape::line([[x, y], [x, y + length]], FRAME));
         if let Some(label) = tick.label.as_ref().filter(|_| side.has_numbers) {
-            shapes.push(text([x, y + TICK + SMALL_PT], label, SMALL_PT, Anchor::Middle, Color::INK));
+            shapes.push(text(
+                [x, y + TICK + SMALL_PT],
+                label,
+                SMALL_PT,
+                Anchor::Middle,
+                Color::INK,
+            ));
         }
     }
     if side.has_label {
         let is_wide = LABEL_PT * width(&axis.label) > frame.width;
-        let (part, anchor) = if is_wide { (0.0, Anchor::Start) } else { (0.5, Anchor::Middle) };
+        let (part, anchor) = if is_wide {
+            (0.0, Anchor::Start)
+        } else {
+            (0.5, Anchor::Middle)
+        };
         let [x, y] = frame.at(part, 0.0);
-        shapes.push(text([x, y + side.depth + LABEL_PT - 0.5], &axis.label, LABEL_PT, anchor, Color::INK));
+        shapes.push(text(
+            [x, y + side.depth + LABEL_PT - 0.5],
+            &axis.label,
+            LABEL_PT,
+            anchor,
+            Color::INK,
+        ));
     }
     shapes
 }
@@ -474,7 +770,9 @@ fn horizontal(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
 fn vertical(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for tick in &side.ticks {
-        let Some(fraction) = axis.fraction(tick.value, side.range) else { continue };
+        let Some(fraction) = axis.fraction(tick.value, side.range) else {
+            continue;
+        };
         let [x, y] = frame.at(0.0, fraction);
         shapes.push(Shape::line([[x - TICK, y], [x, y]], FRAME));
         if let Some(label) = tick.label.as_ref().filter(|_| side.has_numbers) {
@@ -486,7 +784,14 @@ fn vertical(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
         let [x, y] = frame.at(0.0, 0.5);
         let (words, at) = (axis.label.clone(), [x - side.depth - 2.5, y]);
         let (anchor, color) = (Anchor::Middle, Color::INK);
-        shapes.push(Shape::Text(Text { at, words, size_pt: LABEL_PT, anchor, upright: true, color }));
+        shapes.push(Shape::Text(Text {
+            at,
+            words,
+            size_pt: LABEL_PT,
+            anchor,
+            upright: true,
+            color,
+        }));
     }
     shapes
 }

@@ -1,14 +1,20 @@
 //! What a qualification asks: phase delay over bandwidth of every attitude response (M17.1), and models over time, what they answer to a test
 //! input and to a flight record within the corridors about it (M17.2).
 
-use gdcm_method::requirements::{LevelBoundaries, LevelBoundary, RecordCheck, TestInputShape, ToleranceCheck};
+use gdcm_method::requirements::{
+    LevelBoundaries, LevelBoundary, RecordCheck, TestInputShape, ToleranceCheck,
+};
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::units::{number, s_to_ms};
-use gdcm_study::study::{BandwidthFinding, QuantityHistory, RecordHistory, RequirementRole, Requirements, TestAnswers};
+use gdcm_study::study::{
+    BandwidthFinding, QuantityHistory, RecordHistory, RequirementRole, Requirements, TestAnswers,
+};
 
 use super::axis::{Axis, Range};
 use super::drawing::{Color, Dash, Hue, Stroke};
-use super::figure::{Curve, Dot, DotShape, Dots, Envelope, Figure, Intervals, Mark, MarkId, Panel, Plot};
+use super::figure::{
+    Curve, Dot, DotShape, Dots, Envelope, Figure, Intervals, Mark, MarkId, Panel, Plot,
+};
 use super::role::Role;
 
 const WAY: Stroke = Stroke::solid(Color::DIM.tint(70), 0.7);
@@ -37,7 +43,11 @@ pub fn bandwidth_place(of: &BandwidthFinding) -> Option<[f64; 2]> {
 /// The responses that have a bandwidth and a phase delay in some condition.
 pub fn bandwidth_pairs(requirements: &Requirements) -> Vec<Pair> {
     let mut pairs: Vec<Pair> = Vec::new();
-    for of in requirements.bandwidth.iter().filter(|of| bandwidth_place(of).is_some()) {
+    for of in requirements
+        .bandwidth
+        .iter()
+        .filter(|of| bandwidth_place(of).is_some())
+    {
         if !pairs.contains(&of.pair) {
             pairs.push(of.pair);
         }
@@ -48,12 +58,21 @@ pub fn bandwidth_pairs(requirements: &Requirements) -> Vec<Pair> {
 /// Phase delay over bandwidth, a plot for each attitude response: a mark for each condition and model, an arrow from the physics model
 /// to the corrected one, intervals where there are some, and the engineer's levels. A number that rests on a model beyond the band is
 /// grey.
-pub fn requirements_figure(requirements: &Requirements, dataset: &Dataset, levels: &LevelBoundaries) -> Figure {
+pub fn requirements_figure(
+    requirements: &Requirements,
+    dataset: &Dataset,
+    levels: &LevelBoundaries,
+) -> Figure {
     let plots = bandwidth_pairs(requirements).into_iter().map(|pair| {
         let name = dataset.pair_name(pair);
         let axis = &dataset.outputs()[pair.output].name;
-        let (x, y) = (Axis::linear("bandwidth [rad/s]"), Axis::linear("phase delay [ms]").including(0.0));
-        let panel = Panel::new(x, y).with_all(beyond(levels, axis)).with_all(boundaries(levels, axis));
+        let (x, y) = (
+            Axis::linear("bandwidth [rad/s]"),
+            Axis::linear("phase delay [ms]").including(0.0),
+        );
+        let panel = Panel::new(x, y)
+            .with_all(beyond(levels, axis))
+            .with_all(boundaries(levels, axis));
         let panel = panel.with_all(marks(requirements, pair));
         Plot::new(format!("{name}: attitude")).panel(panel)
     });
@@ -62,27 +81,45 @@ pub fn requirements_figure(requirements: &Requirements, dataset: &Dataset, level
         "Bars: {level:.0} % intervals. Grey: rests on the model beyond the band. Arrows lead from physics to corrected of a condition. \
          These numbers are no qualification."
     );
-    Figure::new("Bandwidth and phase delay").caption(caption).columns(2).aspect(0.66).plots(plots)
+    Figure::new("Bandwidth and phase delay")
+        .caption(caption)
+        .columns(2)
+        .aspect(0.66)
+        .plots(plots)
 }
 
 /// What lies beyond the boundaries, at less bandwidth and more phase delay, the widest first and the narrower darker; of one that turns
 /// back along x nothing is shaded.
 fn beyond(levels: &LevelBoundaries, axis: &str) -> Vec<Envelope> {
-    let mut rising: Vec<&LevelBoundary> =
-        levels.of_axis(axis).filter(|of| of.points.is_sorted_by(|a, b| a[0] <= b[0])).collect();
+    let mut rising: Vec<&LevelBoundary> = levels
+        .of_axis(axis)
+        .filter(|of| of.points.is_sorted_by(|a, b| a[0] <= b[0]))
+        .collect();
     rising.sort_by(|a, b| b.points[0][0].total_cmp(&a.points[0][0]));
     let area = |(index, of): (usize, &LevelBoundary)| {
         let before = [[0.0, 0.0], [of.points[0][0], 0.0]];
-        let points = before.iter().chain(&of.points).map(|[x, y]| [*x, s_to_ms(*y), BEYOND_MS]).collect();
+        let points = before
+            .iter()
+            .chain(&of.points)
+            .map(|[x, y]| [*x, s_to_ms(*y), BEYOND_MS])
+            .collect();
         let color = Color::of(Hue::Warning).tint((12 * (1 + index)).min(48) as u8);
-        Envelope { name: format!("beyond {}", of.name), color, edge: None, points }
+        Envelope {
+            name: format!("beyond {}", of.name),
+            color,
+            edge: None,
+            points,
+        }
     };
     rising.into_iter().enumerate().map(area).collect()
 }
 
 fn boundaries<'a>(levels: &'a LevelBoundaries, axis: &'a str) -> impl Iterator<Item = Mark> + 'a {
     let line = |of: &LevelBoundary| {
-        let points = of.points.iter().map(|[omega, delay_s]| [*omega, s_to_ms(*delay_s)]);
+        let points = of
+            .points
+            .iter()
+            .map(|[omega, delay_s]| [*omega, s_to_ms(*delay_s)]);
         Curve::through(&of.name, LEVEL, points).key(&of.name).into()
     };
     levels.of_axis(axis).map(line)
@@ -91,8 +128,12 @@ fn boundaries<'a>(levels: &'a LevelBoundaries, axis: &'a str) -> impl Iterator<I
 /// What these places span along both axes; nothing is no more than a thousandth.
 pub(super) fn spanned(places: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
     [0, 1].map(|axis| {
-        let range = Range::of(places.clone().map(|place| place[axis])).unwrap_or(Range::new(0.0, 0.0));
-        range.width().max(1e-3 * range.max.abs()).max(f64::MIN_POSITIVE)
+        let range =
+            Range::of(places.clone().map(|place| place[axis])).unwrap_or(Range::new(0.0, 0.0));
+        range
+            .width()
+            .max(1e-3 * range.max.abs())
+            .max(f64::MIN_POSITIVE)
     })
 }
 
@@ -105,16 +146,32 @@ pub(super) fn arrow(from: [f64; 2], to: [f64; 2], spanned: [f64; 2]) -> Vec<[f64
     }
     let unit = along.map(|part| part / length);
     let at = |ahead: f64, beside: f64| {
-        let of_unit = [ahead * unit[0] - beside * unit[1], ahead * unit[1] + beside * unit[0]];
+        let of_unit = [
+            ahead * unit[0] - beside * unit[1],
+            ahead * unit[1] + beside * unit[0],
+        ];
         [0, 1].map(|axis| from[axis] + spanned[axis] * of_unit[axis])
     };
     let tip = 0.5 * (length + HEAD[0]);
     let wing = |side: f64| at(tip - HEAD[0], side * HEAD[1]);
-    vec![from, at(tip, 0.0), wing(1.0), at(tip, 0.0), wing(-1.0), at(tip, 0.0), to]
+    vec![
+        from,
+        at(tip, 0.0),
+        wing(1.0),
+        at(tip, 0.0),
+        wing(-1.0),
+        at(tip, 0.0),
+        to,
+    ]
 }
 
 fn marks(requirements: &Requirements, pair: Pair) -> Vec<Mark> {
-    let of_pair = || requirements.bandwidth.iter().filter(move |of| of.pair == pair);
+    let of_pair = || {
+        requirements
+            .bandwidth
+            .iter()
+            .filter(move |of| of.pair == pair)
+    };
     let of_role = |role: RequirementRole| of_pair().filter(move |of| of.role == role);
     let mut marks: Vec<Mark> = Vec::new();
     let spanned = spanned(of_pair().filter_map(bandwidth_place));
@@ -130,29 +187,55 @@ fn marks(requirements: &Requirements, pair: Pair) -> Vec<Mark> {
     });
     let ends: Vec<[f64; 3]> = delays.collect();
     if !ends.is_empty() {
-        marks.push(Intervals { name: "interval".to_owned(), stroke: BAR, ends }.into());
+        marks.push(
+            Intervals {
+                name: "interval".to_owned(),
+                stroke: BAR,
+                ends,
+            }
+            .into(),
+        );
     }
     for of in of_pair() {
-        if let (Some([low, high]), Some([_, delay])) = (of.interval.get("omega_bw_rad_s"), bandwidth_place(of)) {
-            marks.push(Curve::new("interval of the bandwidth", BAR, [*low, *high], [delay, delay]).into());
+        if let (Some([low, high]), Some([_, delay])) =
+            (of.interval.get("omega_bw_rad_s"), bandwidth_place(of))
+        {
+            marks.push(
+                Curve::new(
+                    "interval of the bandwidth",
+                    BAR,
+                    [*low, *high],
+                    [delay, delay],
+                )
+                .into(),
+            );
         }
     }
     for role in RequirementRole::ALL {
         let (shape, color) = look(role);
         for rests in [false, true] {
-            let is_so =
-                |of: &&BandwidthFinding| (of.rests_above("omega_bw_rad_s") || of.rests_above("phase_delay_s")) == rests;
+            let is_so = |of: &&BandwidthFinding| {
+                (of.rests_above("omega_bw_rad_s") || of.rests_above("phase_delay_s")) == rests
+            };
             let dot = |of: &BandwidthFinding| {
                 let [x, y] = bandwidth_place(of)?;
                 let id = Some(MarkId::Condition(of.condition));
                 // One number a condition is enough to find the others by.
-                let label = if role == RequirementRole::Corrected { of.condition.to_string() } else { String::new() };
+                let label = if role == RequirementRole::Corrected {
+                    of.condition.to_string()
+                } else {
+                    String::new()
+                };
                 Some(Dot { x, y, label, id })
             };
             let dots: Vec<Dot> = of_role(role).filter(is_so).filter_map(dot).collect();
             let color = if rests { color.tint(45) } else { color };
             let of_role = Dots::new(role.name(), shape, color).filled(!rests);
-            let of_role = if rests { of_role } else { of_role.key(role.name()) };
+            let of_role = if rests {
+                of_role
+            } else {
+                of_role.key(role.name())
+            };
             if !dots.is_empty() {
                 marks.push(Dots { dots, ..of_role }.into());
             }
@@ -187,18 +270,28 @@ pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
     let time_s = answers.time_s();
     let input = &dataset.inputs()[answers.input];
     let plot = |label: String, curves: Vec<Curve>| {
-        let panel = Panel::new(Axis::linear("time [s]"), Axis::linear(&label).including(0.0));
+        let panel = Panel::new(
+            Axis::linear("time [s]"),
+            Axis::linear(&label).including(0.0),
+        );
         Plot::new(label).panel(panel.with_all(curves))
     };
     let moved = Curve::new(&input.name, INPUT, time_s.clone(), answers.signal.clone());
     let moved = plot(format!("{} [{}]", input.name, input.unit), vec![moved]);
     let of_output = |(index, output): (usize, &gdcm_model::dataset::Channel)| {
-        let models = answers.models.iter().rev().filter_map(|(role, answer)| Some((*role, answer.as_ref().ok()?)));
+        let models = answers
+            .models
+            .iter()
+            .rev()
+            .filter_map(|(role, answer)| Some((*role, answer.as_ref().ok()?)));
         let curves = models.map(|(role, answer)| {
             let values: Vec<f64> = answer.column(index).iter().copied().collect();
             Curve::new(role.name(), line_of(role), time_s.clone(), values).key(role.name())
         });
-        plot(format!("{} [{}]", output.name, output.unit), curves.collect())
+        plot(
+            format!("{} [{}]", output.name, output.unit),
+            curves.collect(),
+        )
     };
     let outputs = dataset.outputs().iter().enumerate().map(of_output);
     let shape = match answers.test.shape {
@@ -206,14 +299,23 @@ pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
         TestInputShape::Doublet => "doublet",
     };
     let (size, duration) = (number(answers.test.size), number(answers.test.duration_s));
-    let title =
-        format!("Condition {}: {shape} of {} by {size} {} for {duration} s", answers.condition, input.name, input.unit);
+    let title = format!(
+        "Condition {}: {shape} of {} by {size} {} for {duration} s",
+        answers.condition, input.name, input.unit
+    );
     let absent = answers.models.iter().filter_map(|(role, answer)| {
         let why = answer.as_ref().err()?;
         Some(format!(" No {} model: {why}.", role.name()))
     });
-    let caption = format!("Linear models from rest; there is no flight here.{}", absent.collect::<String>());
-    Figure::new(title).caption(caption).columns(2).aspect(0.4).plots(std::iter::once(moved).chain(outputs))
+    let caption = format!(
+        "Linear models from rest; there is no flight here.{}",
+        absent.collect::<String>()
+    );
+    Figure::new(title)
+        .caption(caption)
+        .columns(2)
+        .aspect(0.4)
+        .plots(std::iter::once(moved).chain(outputs))
 }
 
 /// An input of a record, then a plot for each quantity that has a tolerance: what was flown with the corridor about it and what each model
@@ -222,24 +324,53 @@ pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: 
     let moved = &dataset.inputs()[input];
     let panel = |label: &str| Panel::new(Axis::linear("time [s]"), Axis::linear(label));
     let label = format!("{} [{}]", moved.name, moved.unit);
-    let samples: Vec<f64> = history.flight.inputs.column(input).iter().copied().collect();
+    let samples: Vec<f64> = history
+        .flight
+        .inputs
+        .column(input)
+        .iter()
+        .copied()
+        .collect();
     let curve = Curve::new(&moved.name, INPUT, history.flight.time_s.clone(), samples);
     let first = Plot::new(&label).panel(panel(&label).with(curve));
-    let quantities = history.quantities.iter().filter(|of| !of.models.is_empty()).map(|of| {
-        let label = format!("{} [{}]", of.tolerance.quantity, of.unit);
-        let less = format!("less flight [{}]", of.unit);
-        Plot::new(format!("{}, {}", of.tolerance.quantity, of.tolerance.words()))
+    let quantities = history
+        .quantities
+        .iter()
+        .filter(|of| !of.models.is_empty())
+        .map(|of| {
+            let label = format!("{} [{}]", of.tolerance.quantity, of.unit);
+            let less = format!("less flight [{}]", of.unit);
+            Plot::new(format!(
+                "{}, {}",
+                of.tolerance.quantity,
+                of.tolerance.words()
+            ))
             .panel(panel(&label).with_all(history_marks(of, Shown::AsItIs)))
-            .panel(panel(&less).with_all(history_marks(of, Shown::LessFlight)).weight(DIFFERENCE_WEIGHT))
-    });
+            .panel(
+                panel(&less)
+                    .with_all(history_marks(of, Shown::LessFlight))
+                    .weight(DIFFERENCE_WEIGHT),
+            )
+        });
     let held_out = if history.held_out { ", held out" } else { "" };
-    let missing: String = history.missing.iter().map(|why| format!(" {why}.")).collect();
+    let missing: String = history
+        .missing
+        .iter()
+        .map(|why| format!(" {why}."))
+        .collect();
     let caption = format!(
         "Windows of at most 10 s, each from an estimated state; attitudes are integrals of rates from the start of each window. Below: \
          less flight. Wide: outside the corridor. No qualification: the tests of the table are steps and doublets at given conditions.{missing}"
     );
-    let title = format!("Condition {}: {}{held_out}", history.condition, history.record);
-    Figure::new(title).caption(caption).columns(2).aspect(0.4).plots(std::iter::once(first).chain(quantities))
+    let title = format!(
+        "Condition {}: {}{held_out}",
+        history.condition, history.record
+    );
+    Figure::new(title)
+        .caption(caption)
+        .columns(2)
+        .aspect(0.4)
+        .plots(std::iter::once(first).chain(quantities))
 }
 
 /// What of a record is drawn.
@@ -252,7 +383,11 @@ enum Shown {
 impl Shown {
     /// A value at a sample of a window.
     fn of(self, value: f64, window: &ToleranceCheck, n: usize) -> f64 {
-        if self == Self::LessFlight { value - window.flown[n] } else { value }
+        if self == Self::LessFlight {
+            value - window.flown[n]
+        } else {
+            value
+        }
     }
 }
 
@@ -267,12 +402,19 @@ fn samples(check: &RecordCheck) -> impl Iterator<Item = (f64, Option<(&Tolerance
 
 /// A value at each sample over time.
 fn values(check: &RecordCheck, value: impl Fn(&ToleranceCheck, usize) -> f64) -> Vec<[f64; 2]> {
-    samples(check).map(|(time, at)| [time, at.map_or(f64::NAN, |(window, n)| value(window, n))]).collect()
+    samples(check)
+        .map(|(time, at)| [time, at.map_or(f64::NAN, |(window, n)| value(window, n))])
+        .collect()
 }
 
 fn history_marks(of: &QuantityHistory, shown: Shown) -> Vec<Mark> {
-    let corrected = of.models.iter().find(|(role, _)| *role == RequirementRole::Corrected);
-    let Some((_, about)) = corrected.or(of.models.first()) else { return Vec::new() };
+    let corrected = of
+        .models
+        .iter()
+        .find(|(role, _)| *role == RequirementRole::Corrected);
+    let Some((_, about)) = corrected.or(of.models.first()) else {
+        return Vec::new();
+    };
     let corridor = samples(about).map(|(time, at)| match at {
         Some((window, n)) => {
             let (flown, width) = (shown.of(window.flown[n], window, n), window.width[n]);
@@ -280,25 +422,47 @@ fn history_marks(of: &QuantityHistory, shown: Shown) -> Vec<Mark> {
         }
         None => [time, f64::NAN, f64::NAN],
     });
-    let corridor = Envelope { name: "corridor".to_owned(), color: CORRIDOR, edge: None, points: corridor.collect() };
+    let corridor = Envelope {
+        name: "corridor".to_owned(),
+        color: CORRIDOR,
+        edge: None,
+        points: corridor.collect(),
+    };
     let flown = values(about, |window, n| shown.of(window.flown[n], window, n));
-    let flown = (shown == Shown::AsItIs).then(|| Mark::from(Curve::through("flown", FLOWN, flown).key("flown")));
+    let flown = (shown == Shown::AsItIs)
+        .then(|| Mark::from(Curve::through("flown", FLOWN, flown).key("flown")));
     let models = of.models.iter().rev().flat_map(|(role, check)| {
         let line = line_of(*role);
         let all = values(check, |window, n| shown.of(window.simulated[n], window, n));
         let all = Curve::through(role.name(), line, all).key(role.name());
-        let is_outside =
-            |window: &ToleranceCheck, n: usize| (window.simulated[n] - window.flown[n]).abs() > window.width[n];
+        let is_outside = |window: &ToleranceCheck, n: usize| {
+            (window.simulated[n] - window.flown[n]).abs() > window.width[n]
+        };
         let outside = values(check, |window, n| match is_outside(window, n) {
             true => shown.of(window.simulated[n], window, n),
             false => f64::NAN,
         });
-        let wide = Stroke { width_pt: line.width_pt + OUTSIDE_PT, dash: Dash::Solid, ..line };
+        let wide = Stroke {
+            width_pt: line.width_pt + OUTSIDE_PT,
+            dash: Dash::Solid,
+            ..line
+        };
         let is_any = outside.iter().any(|[_, value]| value.is_finite());
-        let outside = is_any.then(|| Mark::from(Curve::through(format!("{}, outside", role.name()), wide, outside)));
-        std::iter::once(Mark::from(all)).chain(outside).collect::<Vec<_>>()
+        let outside = is_any.then(|| {
+            Mark::from(Curve::through(
+                format!("{}, outside", role.name()),
+                wide,
+                outside,
+            ))
+        });
+        std::iter::once(Mark::from(all))
+            .chain(outside)
+            .collect::<Vec<_>>()
     });
-    std::iter::once(Mark::from(corridor)).chain(flown).chain(models).collect()
+    std::iter::once(Mark::from(corridor))
+        .chain(flown)
+        .chain(models)
+        .collect()
 }
 
 #[cfg(test)]
@@ -309,13 +473,26 @@ mod tests {
     fn an_arrow_ends_where_it_leads_and_its_head_points_there() {
         // In parts of the span from the origin to the far corner.
         let points = arrow([1.0, 10.0], [3.0, 10.0], [2.0, 100.0]);
-        assert_eq!((points[0], points[6], points.len()), ([1.0, 10.0], [3.0, 10.0], 7));
+        assert_eq!(
+            (points[0], points[6], points.len()),
+            ([1.0, 10.0], [3.0, 10.0], 7)
+        );
         let (tip, wings) = (points[1], [points[2], points[4]]);
         for wing in wings {
-            assert!(wing[0] < tip[0] && ((tip[0] - wing[0]) / 2.0 - HEAD[0]).abs() < 1e-12, "{wing:?}");
-            assert!(((wing[1] - tip[1]).abs() / 100.0 - HEAD[1]).abs() < 1e-12, "{wing:?}");
+            assert!(
+                wing[0] < tip[0] && ((tip[0] - wing[0]) / 2.0 - HEAD[0]).abs() < 1e-12,
+                "{wing:?}"
+            );
+            assert!(
+                ((wing[1] - tip[1]).abs() / 100.0 - HEAD[1]).abs() < 1e-12,
+                "{wing:?}"
+            );
         }
-        assert_eq!(arrow([1.0, 10.0], [1.001, 10.0], [2.0, 100.0]).len(), 2, "too short for a head");
+        assert_eq!(
+            arrow([1.0, 10.0], [1.001, 10.0], [2.0, 100.0]).len(),
+            2,
+            "too short for a head"
+        );
         assert_eq!(spanned([[1.0, 5.0], [3.0, 5.0]].into_iter()), [2.0, 5e-3]);
     }
 
@@ -335,6 +512,15 @@ mod tests {
         );
         assert!(areas[0].color.percent < areas[1].color.percent);
         let lower: Vec<[f64; 2]> = areas[1].points.iter().map(|of| [of[0], of[1]]).collect();
-        assert_eq!(lower, [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [1.0, 200.0], [1.5, 300.0]]);
+        assert_eq!(
+            lower,
+            [
+                [0.0, 0.0],
+                [1.0, 0.0],
+                [1.0, 0.0],
+                [1.0, 200.0],
+                [1.5, 300.0]
+            ]
+        );
     }
 }

@@ -3,7 +3,9 @@
 
 use std::sync::Arc;
 
-use gdcm_model::dataset::{Band as BandOfComparison, BundleKind, Dataset, ModelBands, ModelId, Pair};
+use gdcm_model::dataset::{
+    Band as BandOfComparison, BundleKind, Dataset, ModelBands, ModelId, Pair,
+};
 use gdcm_model::response::{FrequencyResponse, GainDelay, ResponseShape, wrapped_deg};
 use gdcm_model::units::signed;
 use gdcm_study::study::{AcrossCurves, AcrossRole, Analysis, ConditionCurves, display_band};
@@ -21,13 +23,31 @@ const OUTSIDE_PART: f64 = 0.4;
 impl ConditionSource<'_> {
     /// Every curve of one response, hidden ones too; phases are laid on that of the reference. `cache` keeps their numbers, and where
     /// they are in memory, while nothing of them changes.
-    pub fn response_curves(&self, pair: Pair, options: &BodeOptions, cache: &mut ResponseCache) -> Vec<BodeCurve> {
-        cache.refresh(self.curves, pair, self.reference(), self.study.settings.band);
+    pub fn response_curves(
+        &self,
+        pair: Pair,
+        options: &BodeOptions,
+        cache: &mut ResponseCache,
+    ) -> Vec<BodeCurve> {
+        cache.refresh(
+            self.curves,
+            pair,
+            self.reference(),
+            self.study.settings.band,
+        );
         let mut drawn = Vec::new();
         let mut draw = |cache: &ResponseCache, curve: BodeCurve, shape: ResponseShape| {
-            let turns = options.turns.get(&(self.id(), pair, curve.id.clone())).copied().unwrap_or(0);
+            let turns = options
+                .turns
+                .get(&(self.id(), pair, curve.id.clone()))
+                .copied()
+                .unwrap_or(0);
             let phase_deg = presented(&shape.phase_deg, options.phase, turns);
-            drawn.push(moved_by_hand(curve, turns).with(&cache.omega, &shape.magnitude_db, &phase_deg));
+            drawn.push(moved_by_hand(curve, turns).with(
+                &cache.omega,
+                &shape.magnitude_db,
+                &phase_deg,
+            ));
         };
         for kind in BundleKind::BOTH {
             for model in self.models(kind, options) {
@@ -35,12 +55,18 @@ impl ConditionSource<'_> {
                 draw(cache, self.curve_of(model), shape);
             }
         }
-        for CorrectedModel { curve, result, model, correction } in self.corrected_models(pair, options) {
+        for CorrectedModel {
+            curve,
+            result,
+            model,
+            correction,
+        } in self.corrected_models(pair, options)
+        {
             let shape = match &result.coupled {
                 None => cache.physics[model].corrected(&cache.omega, correction),
-                Some(_) => {
-                    cache.laid(&self.curves.with_couplings(result, model), pair).corrected(&cache.omega, correction)
-                }
+                Some(_) => cache
+                    .laid(&self.curves.with_couplings(result, model), pair)
+                    .corrected(&cache.omega, correction),
             };
             draw(cache, curve, shape);
         }
@@ -52,7 +78,11 @@ impl ConditionSource<'_> {
 fn moved_by_hand(mut curve: BodeCurve, turns: i32) -> BodeCurve {
     if turns != 0 {
         let moved = format!("phase {}°", signed(360.0 * f64::from(turns), 0));
-        curve.detail = if curve.detail.is_empty() { moved } else { format!("{moved} · {}", curve.detail) };
+        curve.detail = if curve.detail.is_empty() {
+            moved
+        } else {
+            format!("{moved} · {}", curve.detail)
+        };
     }
     curve
 }
@@ -73,7 +103,10 @@ pub struct ResponseCache {
 fn presented(phase_deg: &Arc<[f64]>, unit: PhaseUnit, turns: i32) -> Arc<[f64]> {
     match (unit, turns) {
         (PhaseUnit::Unwrapped, 0) => Arc::clone(phase_deg),
-        (PhaseUnit::Unwrapped, _) => phase_deg.iter().map(|phase| phase + 360.0 * f64::from(turns)).collect(),
+        (PhaseUnit::Unwrapped, _) => phase_deg
+            .iter()
+            .map(|phase| phase + 360.0 * f64::from(turns))
+            .collect(),
         (PhaseUnit::Wrapped, _) => wrapped_deg(phase_deg).into(),
     }
 }
@@ -81,22 +114,40 @@ fn presented(phase_deg: &Arc<[f64]>, unit: PhaseUnit, turns: i32) -> Arc<[f64]> 
 impl ResponseCache {
     /// Makes the shapes of `pair`; phases are laid on that of the identified model `reference` around the band. Beyond that the
     /// identified models, which say nothing there, end.
-    fn refresh(&mut self, curves: &Arc<ConditionCurves>, pair: Pair, reference: usize, band: BandOfComparison) {
+    fn refresh(
+        &mut self,
+        curves: &Arc<ConditionCurves>,
+        pair: Pair,
+        reference: usize,
+        band: BandOfComparison,
+    ) {
         let same = |(made_of, of_pair, of_reference): &(Arc<ConditionCurves>, Pair, usize)| {
             Arc::ptr_eq(made_of, curves) && *of_pair == pair && *of_reference == reference
         };
         if self.made_of.as_ref().is_some_and(same) {
             return;
         }
-        let reference_shape = curves.identified.get(reference).map(|response| ResponseShape::of(response.curve(pair)));
+        let reference_shape = curves
+            .identified
+            .get(reference)
+            .map(|response| ResponseShape::of(response.curve(pair)));
         // The last frequency of a grid may be a rounding error beyond its end.
         let limit = display_band(band).max() * (1.0 + 1e-9);
         let points = curves.grid.omega().partition_point(|omega| *omega <= limit);
         self.reference = reference_shape.map(|shape| (shape, points));
-        let shapes = |kind| curves.bundle(kind).iter().map(|response| self.laid(response, pair)).collect::<Vec<_>>();
+        let shapes = |kind| {
+            curves
+                .bundle(kind)
+                .iter()
+                .map(|response| self.laid(response, pair))
+                .collect::<Vec<_>>()
+        };
         let (physics, identified) = (shapes(BundleKind::Physics), shapes(BundleKind::Identified));
         self.physics = physics;
-        self.identified = identified.into_iter().map(|shape| shape.first(points)).collect();
+        self.identified = identified
+            .into_iter()
+            .map(|shape| shape.first(points))
+            .collect();
         self.omega = curves.grid.omega().into();
         self.made_of = Some((Arc::clone(curves), pair, reference));
     }
@@ -121,7 +172,9 @@ impl ResponseCache {
 /// The 95 % band of every identified model among `curves` that is drawn, is kept, and says how uncertain it is.
 pub fn uncertainty_bands(dataset: &Dataset, pair: Pair, curves: &[BodeCurve]) -> Vec<BodeBand> {
     let band = |curve: &BodeCurve| {
-        let CurveId::Model(id) = &curve.id else { return None };
+        let CurveId::Model(id) = &curve.id else {
+            return None;
+        };
         let is_shown = id.bundle == BundleKind::Identified && !curve.rejected && !curve.hidden;
         let bands = dataset.model(id).filter(|_| is_shown)?.bands.as_ref()?;
         Some(band_around(curve, bands, pair))
@@ -133,11 +186,15 @@ fn band_around(curve: &BodeCurve, bands: &ModelBands, pair: Pair) -> BodeBand {
     let (db, deg) = (&bands.sd_db()[pair], &bands.sd_deg()[pair]);
     let mut band = BodeBand::default();
     for (index, omega) in curve.omega.iter().enumerate() {
-        let Some((at, part)) = place(bands.omega(), *omega) else { continue };
-        let sd = |values: &[f64]| TWO_SIDED_95 * (values[at] + part * (values[at + 1] - values[at]));
+        let Some((at, part)) = place(bands.omega(), *omega) else {
+            continue;
+        };
+        let sd =
+            |values: &[f64]| TWO_SIDED_95 * (values[at] + part * (values[at + 1] - values[at]));
         let around = |value: f64, half: f64| [value - half, value + half];
         band.omega.push(*omega);
-        band.magnitude_db.push(around(curve.magnitude_db[index], sd(db)));
+        band.magnitude_db
+            .push(around(curve.magnitude_db[index], sd(db)));
         band.phase_deg.push(around(curve.phase_deg[index], sd(deg)));
     }
     band
@@ -165,7 +222,11 @@ pub struct AirspeedCache {
 impl AirspeedCache {
     /// Makes the shapes of `pair`; phases are laid on that of the first model.
     fn refresh(&mut self, curves: &Arc<AcrossCurves>, pair: Pair) {
-        if self.made_of.as_ref().is_some_and(|(of, at)| Arc::ptr_eq(of, curves) && *at == pair) {
+        if self
+            .made_of
+            .as_ref()
+            .is_some_and(|(of, at)| Arc::ptr_eq(of, curves) && *at == pair)
+        {
             return;
         }
         let mut first: Option<ResponseShape> = None;
@@ -198,7 +259,11 @@ pub fn airspeed_curves(
         let state = dataset.condition(id.condition)?.flight_state();
         let correction = role.correction(id.condition, pair, analysis)?;
         let is_as_it_is = correction == GainDelay::NONE;
-        let shape = if is_as_it_is { shape.clone() } else { shape.corrected(&cache.omega, correction) };
+        let shape = if is_as_it_is {
+            shape.clone()
+        } else {
+            shape.corrected(&cache.omega, correction)
+        };
         let of_airspeed = Role::of_airspeed(state.airspeed_kt, dataset.airspeed_range_kt());
         let curve = BodeCurve {
             label: format!("condition {} · {:.0} kt", id.condition, state.airspeed_kt),
@@ -212,7 +277,11 @@ pub fn airspeed_curves(
 
 /// The values to show: all within the band, and outside it as far as they leave room for those within.
 pub fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Option<Range> {
-    let points = || curves.iter().flat_map(|curve| curve.omega.iter().zip(curve.values(pane)));
+    let points = || {
+        curves
+            .iter()
+            .flat_map(|curve| curve.omega.iter().zip(curve.values(pane)))
+    };
     let all = Range::of(points().map(|(_, value)| *value))?;
     let within = points().filter(|(omega, _)| (min..=max).contains(*omega));
     let Some(within) = Range::of(within.map(|(_, value)| *value)) else {
@@ -262,13 +331,38 @@ impl BodeCurve {
         let (label, detail, none) = (String::new(), String::new(), Arc::<[f64]>::default());
         let (magnitude_db, phase_deg) = (Arc::clone(&none), Arc::clone(&none));
         let (rejected, highlighted, hidden) = (false, false, false);
-        Self { id, label, detail, role, rejected, highlighted, hidden, omega: none, magnitude_db, phase_deg }
+        Self {
+            id,
+            label,
+            detail,
+            role,
+            rejected,
+            highlighted,
+            hidden,
+            omega: none,
+            magnitude_db,
+            phase_deg,
+        }
     }
 
     /// The same curve of these numbers.
-    pub fn with(self, omega: &Arc<[f64]>, magnitude_db: &Arc<[f64]>, phase_deg: &Arc<[f64]>) -> Self {
-        let (omega, magnitude_db, phase_deg) = (Arc::clone(omega), Arc::clone(magnitude_db), Arc::clone(phase_deg));
-        Self { omega, magnitude_db, phase_deg, ..self }
+    pub fn with(
+        self,
+        omega: &Arc<[f64]>,
+        magnitude_db: &Arc<[f64]>,
+        phase_deg: &Arc<[f64]>,
+    ) -> Self {
+        let (omega, magnitude_db, phase_deg) = (
+            Arc::clone(omega),
+            Arc::clone(magnitude_db),
+            Arc::clone(phase_deg),
+        );
+        Self {
+            omega,
+            magnitude_db,
+            phase_deg,
+            ..self
+        }
     }
 
     /// What a pane shows of this curve.
@@ -286,12 +380,22 @@ impl BodeCurve {
 
     /// The points of a pane in plot coordinates, `[log10 omega, value]`; gaps are points that are not finite.
     pub fn points(&self, pane: Pane) -> impl Iterator<Item = [f64; 2]> + '_ {
-        self.omega.iter().zip(self.values(pane)).map(|(omega, value)| [omega.log10(), *value])
+        self.omega
+            .iter()
+            .zip(self.values(pane))
+            .map(|(omega, value)| [omega.log10(), *value])
     }
 
     /// [`Self::points`], with logarithms taken once for all the curves on the same frequencies.
-    pub fn points_on<'a>(&'a self, axis: &'a mut LogFrequencies, pane: Pane) -> impl Iterator<Item = [f64; 2]> + 'a {
-        axis.of(&self.omega).iter().zip(self.values(pane)).map(|(log_omega, value)| [*log_omega, *value])
+    pub fn points_on<'a>(
+        &'a self,
+        axis: &'a mut LogFrequencies,
+        pane: Pane,
+    ) -> impl Iterator<Item = [f64; 2]> + 'a {
+        axis.of(&self.omega)
+            .iter()
+            .zip(self.values(pane))
+            .map(|(log_omega, value)| [*log_omega, *value])
     }
 
     /// Those of [`Self::points_on`] from `low` to `high` in `log10 omega`, and one on either side.
@@ -304,7 +408,11 @@ impl BodeCurve {
         let log_omega = axis.of(&self.omega);
         let from = log_omega.partition_point(|at| *at < low).saturating_sub(1);
         let count = log_omega[from..].partition_point(|at| *at <= high) + 1;
-        let points = log_omega.iter().zip(self.values(pane)).skip(from).take(count);
+        let points = log_omega
+            .iter()
+            .zip(self.values(pane))
+            .skip(from)
+            .take(count);
         points.map(|(log_omega, value)| [*log_omega, *value])
     }
 
@@ -363,17 +471,24 @@ impl Level {
         match self {
             Self::Constant(value) => *value,
             Self::PerOmega(slope) => slope * omega,
-            Self::Sampled(points) => points.iter().find(|[at, _]| *at == omega).map_or(f64::NAN, |[_, value]| *value),
+            Self::Sampled(points) => points
+                .iter()
+                .find(|[at, _]| *at == omega)
+                .map_or(f64::NAN, |[_, value]| *value),
         }
     }
 
     /// The points of the line between two frequencies: `log10 omega` and value.
     pub fn points(&self, from: f64, to: f64) -> Vec<[f64; 2]> {
-        let log_omega = (0..=Self::POINTS).map(|point| from + (to - from) * point as f64 / Self::POINTS as f64);
+        let log_omega =
+            (0..=Self::POINTS).map(|point| from + (to - from) * point as f64 / Self::POINTS as f64);
         match self {
             Self::Constant(value) => vec![[from, *value], [to, *value]],
             Self::PerOmega(slope) => log_omega.map(|x| [x, slope * 10f64.powf(x)]).collect(),
-            Self::Sampled(points) => points.iter().map(|[omega, value]| [omega.log10(), *value]).collect(),
+            Self::Sampled(points) => points
+                .iter()
+                .map(|[omega, value]| [omega.log10(), *value])
+                .collect(),
         }
     }
 }
@@ -430,8 +545,19 @@ pub struct ReferenceLine {
 
 impl ReferenceLine {
     /// A line of which nothing is said besides its label.
-    pub(super) fn new(pane: Pane, kind: ReferenceKind, label: impl Into<String>, level: Level) -> Self {
-        Self { pane, kind, label: label.into(), note: String::new(), level }
+    pub(super) fn new(
+        pane: Pane,
+        kind: ReferenceKind,
+        label: impl Into<String>,
+        level: Level,
+    ) -> Self {
+        Self {
+            pane,
+            kind,
+            label: label.into(),
+            note: String::new(),
+            level,
+        }
     }
 }
 
@@ -452,7 +578,11 @@ mod tests {
 
     #[test]
     fn a_wrapped_phase_stays_within_half_a_turn_and_has_a_gap_where_it_jumps() {
-        let wrapped = presented(&vec![-100.0, -170.0, -190.0, -200.0].into(), PhaseUnit::Wrapped, 0);
+        let wrapped = presented(
+            &vec![-100.0, -170.0, -190.0, -200.0].into(),
+            PhaseUnit::Wrapped,
+            0,
+        );
         // Two roundings of angles below 360.
         assert!((wrapped[1] + 170.0).abs() < 1e-12 && (wrapped[3] - 160.0).abs() < 1e-12);
         assert!(wrapped[2].is_nan(), "{wrapped:?}");
@@ -470,7 +600,11 @@ mod tests {
         assert_eq!(place(&omegas, 10.0), Some((1, 0.0)));
         let (at, part) = place(&omegas, 10f64.powf(1.5)).unwrap();
         assert!(at == 1 && (part - 0.5).abs() < 1e-12);
-        assert_eq!(place(&omegas, 100.0), Some((1, 1.0)), "the last one belongs to the band");
+        assert_eq!(
+            place(&omegas, 100.0),
+            Some((1, 1.0)),
+            "the last one belongs to the band"
+        );
         assert_eq!((place(&omegas, 0.9), place(&omegas, 101.0)), (None, None));
     }
 
@@ -483,32 +617,52 @@ mod tests {
 
     #[test]
     fn fitting_shows_all_that_is_within_the_band_and_what_is_near_it() {
-        assert_eq!(fitted(&[2.0, 0.0, -5.0, -10.0, -12.0]), Some(Range::new(-12.0, 2.0)));
+        assert_eq!(
+            fitted(&[2.0, 0.0, -5.0, -10.0, -12.0]),
+            Some(Range::new(-12.0, 2.0))
+        );
     }
 
     #[test]
     fn a_peak_outside_the_band_does_not_flatten_what_is_within() {
-        assert_eq!(fitted(&[90.0, 0.0, -5.0, -10.0, -12.0]), Some(Range::new(-12.0, 10.0 * OUTSIDE_PART)));
+        assert_eq!(
+            fitted(&[90.0, 0.0, -5.0, -10.0, -12.0]),
+            Some(Range::new(-12.0, 10.0 * OUTSIDE_PART))
+        );
     }
 
     #[test]
     fn without_values_in_the_band_all_are_shown() {
-        assert_eq!(fitted(&[3.0, f64::NAN, f64::NAN, f64::NAN, -50.0]), Some(Range::new(-50.0, 3.0)));
+        assert_eq!(
+            fitted(&[3.0, f64::NAN, f64::NAN, f64::NAN, -50.0]),
+            Some(Range::new(-50.0, 3.0))
+        );
         assert_eq!(fitted(&[f64::NAN; 5]), None);
     }
 
     fn curve(magnitude_db: &[f64]) -> BodeCurve {
-        let omega: Vec<f64> = (0..magnitude_db.len()).map(|k| 10f64.powi(k as i32)).collect();
+        let omega: Vec<f64> = (0..magnitude_db.len())
+            .map(|k| 10f64.powi(k as i32))
+            .collect();
         let curve = BodeCurve::new(CurveId::Corrected, Role::Corrected);
         curve.with(&omega.into(), &magnitude_db.into(), &magnitude_db.into())
     }
 
     #[test]
     fn a_delay_takes_phase_in_proportion_to_frequency() {
-        assert_eq!(Level::Constant(3.0).points(0.0, 1.0), [[0.0, 3.0], [1.0, 3.0]]);
+        assert_eq!(
+            Level::Constant(3.0).points(0.0, 1.0),
+            [[0.0, 3.0], [1.0, 3.0]]
+        );
         let points = Level::PerOmega(-2.0).points(0.0, 1.0);
-        assert_eq!((points.first(), points.last()), (Some(&[0.0, -2.0]), Some(&[1.0, -20.0])));
-        assert_eq!(Level::Sampled(vec![[100.0, 5.0]]).points(0.0, 1.0), [[2.0, 5.0]]);
+        assert_eq!(
+            (points.first(), points.last()),
+            (Some(&[0.0, -2.0]), Some(&[1.0, -20.0]))
+        );
+        assert_eq!(
+            Level::Sampled(vec![[100.0, 5.0]]).points(0.0, 1.0),
+            [[2.0, 5.0]]
+        );
     }
 
     #[test]
@@ -526,7 +680,10 @@ mod tests {
         let curve = curve(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
         let mut axis = LogFrequencies::default();
         let mut between = |low, high| -> Vec<f64> {
-            curve.points_between(&mut axis, Pane::Magnitude, (low, high)).map(|[x, _]| x).collect()
+            curve
+                .points_between(&mut axis, Pane::Magnitude, (low, high))
+                .map(|[x, _]| x)
+                .collect()
         };
         assert_eq!(between(1.5, 2.5), [1.0, 2.0, 3.0]);
         assert_eq!(between(2.0, 3.0), [1.0, 2.0, 3.0, 4.0]);

@@ -54,7 +54,11 @@ impl Role {
 
     /// The role of a model of a condition at an airspeed \[kt\], among those of the slowest and the fastest condition.
     pub fn of_airspeed(airspeed_kt: f64, (least, most): (f64, f64)) -> Self {
-        let part = if most > least { (airspeed_kt - least) / (most - least) } else { 0.0 };
+        let part = if most > least {
+            (airspeed_kt - least) / (most - least)
+        } else {
+            0.0
+        };
         Self::OfAirspeed((255.0 * part.clamp(0.0, 1.0)).round() as u8)
     }
 
@@ -100,13 +104,21 @@ impl Role {
 
     /// The role that a curve is shown in: a rejected curve is `Rejected`, but the nominal model stays nominal.
     pub fn shown(self, rejected: bool) -> Self {
-        if rejected && self != Self::Nominal { Self::Rejected } else { self }
+        if rejected && self != Self::Nominal {
+            Self::Rejected
+        } else {
+            self
+        }
     }
 
     /// The line in the window. Where colours are not seen, dashes and widths tell the roles apart. A rejected nominal model stays
     /// red, but dotted.
     pub fn line(self, rejected: bool) -> Stroke {
-        let line = |hue, width_pt, dash| Stroke { color: Color::of(hue), width_pt, dash };
+        let line = |hue, width_pt, dash| Stroke {
+            color: Color::of(hue),
+            width_pt,
+            dash,
+        };
         match self.shown(rejected) {
             Self::Nominal if rejected => line(Hue::Nominal, 1.3, Dash::Dotted),
             Self::Nominal => line(Hue::Nominal, 1.8, Dash::DashDot),
@@ -186,7 +198,9 @@ pub enum Sample {
 pub(super) fn entries<'m>(marks: impl Iterator<Item = &'m Mark>) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     for mark in marks {
-        if let Some(entry) = entry(mark).filter(|entry| entries.iter().all(|known| known.text != entry.text)) {
+        if let Some(entry) =
+            entry(mark).filter(|entry| entries.iter().all(|known| known.text != entry.text))
+        {
             entries.push(entry);
         }
     }
@@ -198,12 +212,20 @@ pub(super) fn entries<'m>(marks: impl Iterator<Item = &'m Mark>) -> Vec<Entry> {
 fn entry(mark: &Mark) -> Option<Entry> {
     let (text, sample) = match mark {
         Mark::Curve(curve) => (curve.key.clone()?, Sample::Line(curve.stroke)),
-        Mark::Dots(dots) => {
-            (dots.key.clone()?, Sample::Dot { shape: dots.shape, color: dots.color, filled: dots.filled })
-        }
+        Mark::Dots(dots) => (
+            dots.key.clone()?,
+            Sample::Dot {
+                shape: dots.shape,
+                color: dots.color,
+                filled: dots.filled,
+            },
+        ),
         Mark::Bars(bars) => (bars.name.clone(), Sample::Ground(bars.color)),
         Mark::Spans(spans) => (spans.name.clone(), Sample::Ground(spans.color)),
-        Mark::Envelope(of) => (of.name.clone(), of.edge.map_or(Sample::Ground(of.color), Sample::Line)),
+        Mark::Envelope(of) => (
+            of.name.clone(),
+            of.edge.map_or(Sample::Ground(of.color), Sample::Line),
+        ),
         Mark::Intervals(of) => (of.name.clone(), Sample::Line(of.stroke)),
         Mark::Brackets(of) => (of.name.clone(), Sample::Line(of.stroke)),
         Mark::Band(band) => (band.key.clone(), Sample::Ground(band.color)),
@@ -214,10 +236,18 @@ fn entry(mark: &Mark) -> Option<Entry> {
 
 fn place(text: &str) -> usize {
     // Where only one physics model is drawn it stands in the place of the nominal one.
-    let text = if text == RequirementRole::Physics.name() { Role::Nominal.key(false) } else { text };
+    let text = if text == RequirementRole::Physics.name() {
+        Role::Nominal.key(false)
+    } else {
+        text
+    };
     // A rejected model has the entry of its own role: all but the nominal one have that of the rejected.
-    let of_role = |role: &Role| role.key(false) == text || (*role == Role::Nominal && role.key(true) == text);
-    Role::ALL.iter().position(of_role).unwrap_or(Role::ALL.len())
+    let of_role =
+        |role: &Role| role.key(false) == text || (*role == Role::Nominal && role.key(true) == text);
+    Role::ALL
+        .iter()
+        .position(of_role)
+        .unwrap_or(Role::ALL.len())
 }
 
 #[cfg(test)]
@@ -230,7 +260,10 @@ mod tests {
         for a in Role::ALL {
             for b in Role::ALL.into_iter().filter(|b| *b != a) {
                 let (a, b) = (a.stroke(false), b.stroke(false));
-                assert!(a.dash != b.dash || (a.width_pt - b.width_pt).abs() > 0.3, "{a:?} {b:?}");
+                assert!(
+                    a.dash != b.dash || (a.width_pt - b.width_pt).abs() > 0.3,
+                    "{a:?} {b:?}"
+                );
             }
         }
     }
@@ -238,13 +271,18 @@ mod tests {
     #[test]
     fn a_rejected_nominal_model_stays_red_but_is_dotted() {
         let stroke = Role::Nominal.stroke(true);
-        assert_eq!((stroke.color, stroke.dash), (Color::of(Hue::Nominal), Dash::Dotted));
+        assert_eq!(
+            (stroke.color, stroke.dash),
+            (Color::of(Hue::Nominal), Dash::Dotted)
+        );
         assert_eq!(Role::Nominal.key(true), "nominal (rejected)");
         assert_eq!(Role::Perturbed.key(true), "rejected");
     }
 
     fn curve(role: Role, rejected: bool) -> Mark {
-        Curve::new("", role.stroke(rejected), [0.0], [0.0]).key(role.key(rejected)).into()
+        Curve::new("", role.stroke(rejected), [0.0], [0.0])
+            .key(role.key(rejected))
+            .into()
     }
 
     #[test]
@@ -256,7 +294,13 @@ mod tests {
             curve(Role::Perturbed, false),
             curve(Role::Nominal, true),
         ];
-        let texts: Vec<String> = entries(marks.iter()).into_iter().map(|entry| entry.text).collect();
-        assert_eq!(texts, ["nominal (rejected)", "perturbed", "corrected", "rejected"]);
+        let texts: Vec<String> = entries(marks.iter())
+            .into_iter()
+            .map(|entry| entry.text)
+            .collect();
+        assert_eq!(
+            texts,
+            ["nominal (rejected)", "perturbed", "corrected", "rejected"]
+        );
     }
 }

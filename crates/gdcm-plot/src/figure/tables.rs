@@ -9,30 +9,50 @@ use super::axis::Axis;
 use super::figure::{Along, Bracket, Curve, Envelope, Figure, Intervals, Mark, Panel, Spans};
 
 /// The columns of a figure's long table.
-pub const LONG_COLUMNS: [&str; 8] = ["figure", "panel", "curve", "label", "x_quantity", "x", "y_quantity", "y"];
+pub const LONG_COLUMNS: [&str; 8] = [
+    "figure",
+    "panel",
+    "curve",
+    "label",
+    "x_quantity",
+    "x",
+    "y_quantity",
+    "y",
+];
 
 impl Figure {
     /// All numbers as the rows of one table under [`LONG_COLUMNS`], one for each point: the figure's title, the panel (title of the
     /// plot, quantity), the curve, the text beside the point, and both coordinates, each after the label of its axis. A labelled
     /// horizontal line has no x.
     pub fn long_rows(&self) -> impl Iterator<Item = [String; 8]> + '_ {
-        self.panels().flat_map(|(title, panel)| panel.long_rows(&self.title, panel.name(title)))
+        self.panels()
+            .flat_map(|(title, panel)| panel.long_rows(&self.title, panel.name(title)))
     }
 
     /// The numbers of each panel: one column for each curve where all share their x, else one row for each point. Bounds of a
     /// band that stand at frequencies of their own follow in tables of their own.
     pub fn tables(&self) -> Vec<Table> {
-        let (tables, of_bands): (Vec<Table>, Vec<Option<Table>>) =
-            self.panels().map(|(title, panel)| panel.tables(title)).unzip();
-        let tables = tables.into_iter().chain(of_bands.into_iter().flatten()).filter(|table| !table.rows.is_empty());
+        let (tables, of_bands): (Vec<Table>, Vec<Option<Table>>) = self
+            .panels()
+            .map(|(title, panel)| panel.tables(title))
+            .unzip();
+        let tables = tables
+            .into_iter()
+            .chain(of_bands.into_iter().flatten())
+            .filter(|table| !table.rows.is_empty());
         tables.map(without_control_codes).collect()
     }
 }
 
 /// A table whose names a terminal or a spreadsheet shows as they are.
 fn without_control_codes(mut table: Table) -> Table {
-    let cells = table.columns.iter_mut().chain(table.rows.iter_mut().flatten());
-    cells.chain([&mut table.title]).for_each(|text| *text = sanitized(text));
+    let cells = table
+        .columns
+        .iter_mut()
+        .chain(table.rows.iter_mut().flatten());
+    cells
+        .chain([&mut table.title])
+        .for_each(|text| *text = sanitized(text));
     table
 }
 
@@ -50,16 +70,33 @@ type Constant<'m> = (&'m str, f64);
 impl Panel {
     /// What it is called among the numbers, in a plot of this title.
     fn name(&self, title: &str) -> String {
-        if title.is_empty() { self.y.label.clone() } else { format!("{title}, {}", self.y.label) }
+        if title.is_empty() {
+            self.y.label.clone()
+        } else {
+            format!("{title}, {}", self.y.label)
+        }
     }
 
     /// Its rows of the long table, in a figure of this title and under this name.
-    fn long_rows<'p>(&'p self, figure_title: &'p str, name: String) -> impl Iterator<Item = [String; 8]> + 'p {
+    fn long_rows<'p>(
+        &'p self,
+        figure_title: &'p str,
+        name: String,
+    ) -> impl Iterator<Item = [String; 8]> + 'p {
         let mut rows = Vec::new();
         for series in self.marks.iter().flat_map(series) {
             for at in 0..series.x.len().min(series.y.len()) {
-                let label = series.labels.as_ref().and_then(|labels| labels.get(at)).map_or("", String::as_str);
-                rows.push([series.name.clone(), label.to_owned(), place(&self.x, series.x[at]), figure(series.y[at])]);
+                let label = series
+                    .labels
+                    .as_ref()
+                    .and_then(|labels| labels.get(at))
+                    .map_or("", String::as_str);
+                rows.push([
+                    series.name.clone(),
+                    label.to_owned(),
+                    place(&self.x, series.x[at]),
+                    figure(series.y[at]),
+                ]);
             }
         }
         for (line, value) in self.marks.iter().filter_map(constant) {
@@ -67,17 +104,30 @@ impl Panel {
         }
         rows.into_iter().map(move |[curve, label, x, y]| {
             let (x_quantity, y_quantity) = (self.x.label.clone(), self.y.label.clone());
-            [figure_title.to_owned(), name.clone(), curve, label, x_quantity, x, y_quantity, y]
+            [
+                figure_title.to_owned(),
+                name.clone(),
+                curve,
+                label,
+                x_quantity,
+                x,
+                y_quantity,
+                y,
+            ]
         })
     }
 
     fn tables(&self, title: &str) -> (Table, Option<Table>) {
-        let (bands, others): (Vec<&Mark>, Vec<&Mark>) =
-            self.marks.iter().partition(|mark| matches!(mark, Mark::Envelope(of) if of.edge.is_none()));
+        let (bands, others): (Vec<&Mark>, Vec<&Mark>) = self
+            .marks
+            .iter()
+            .partition(|mark| matches!(mark, Mark::Envelope(of) if of.edge.is_none()));
         let mut main: Vec<Series> = others.into_iter().flat_map(series).collect();
         let bands: Vec<Series> = bands.into_iter().flat_map(series).collect();
         let title = self.name(title);
-        let apart = main.first().is_some_and(|first| bands.iter().any(|band| band.x != first.x));
+        let apart = main
+            .first()
+            .is_some_and(|first| bands.iter().any(|band| band.x != first.x));
         let of_bands = apart.then(|| self.table(format!("{title}, bands"), &bands, &[]));
         if !apart {
             main.extend(bands);
@@ -87,7 +137,11 @@ impl Panel {
     }
 
     fn table(&self, title: String, series: &[Series], constants: &[Constant<'_>]) -> Table {
-        let same_x = |first: &Series| series.iter().all(|next| next.labels.is_none() && next.x == first.x);
+        let same_x = |first: &Series| {
+            series
+                .iter()
+                .all(|next| next.labels.is_none() && next.x == first.x)
+        };
         if series.first().is_some_and(same_x) {
             self.wide(title, series, constants)
         } else {
@@ -98,13 +152,23 @@ impl Panel {
     /// `x | first curve [unit] | second curve [unit] | …`; the series have the same x.
     fn wide(&self, title: String, series: &[Series], constants: &[Constant<'_>]) -> Table {
         let unit = unit_of(&self.y.label);
-        let names = series.iter().map(|series| series.name.as_str()).chain(constants.iter().map(|(name, _)| *name));
+        let names = series
+            .iter()
+            .map(|series| series.name.as_str())
+            .chain(constants.iter().map(|(name, _)| *name));
         let headings = names.map(|name| format!("{name}{unit}"));
         let mut table = Table::new(title, std::iter::once(self.x.label.clone()).chain(headings));
-        let x = series.first().map(|series| &series.x[..]).unwrap_or_default();
+        let x = series
+            .first()
+            .map(|series| &series.x[..])
+            .unwrap_or_default();
         for (at, &x) in x.iter().enumerate() {
-            let values = series.iter().map(|series| series.y.get(at).copied().unwrap_or(f64::NAN));
-            let values = values.chain(constants.iter().map(|(_, value)| *value)).map(figure);
+            let values = series
+                .iter()
+                .map(|series| series.y.get(at).copied().unwrap_or(f64::NAN));
+            let values = values
+                .chain(constants.iter().map(|(_, value)| *value))
+                .map(figure);
             table.row(std::iter::once(place(&self.x, x)).chain(values));
         }
         table
@@ -115,12 +179,22 @@ impl Panel {
         let mut table = Table::new(title, ["series", "label", &self.x.label, &self.y.label]);
         for series in series {
             for (at, (&x, &y)) in series.x.iter().zip(series.y.iter()).enumerate() {
-                let label = series.labels.as_ref().and_then(|labels| labels.get(at)).cloned().unwrap_or_default();
+                let label = series
+                    .labels
+                    .as_ref()
+                    .and_then(|labels| labels.get(at))
+                    .cloned()
+                    .unwrap_or_default();
                 table.row([series.name.clone(), label, place(&self.x, x), figure(y)]);
             }
         }
         for (name, value) in constants {
-            table.row([(*name).to_owned(), String::new(), String::new(), figure(*value)]);
+            table.row([
+                (*name).to_owned(),
+                String::new(),
+                String::new(),
+                figure(*value),
+            ]);
         }
         table
     }
@@ -141,17 +215,31 @@ fn series(mark: &Mark) -> Vec<Series> {
     };
     match mark {
         Mark::Curve(curve) => vec![of_curve(curve)],
-        Mark::Envelope(of) if of.edge.is_some() => of.edges().map(|curve| of_curve(&curve)).collect(),
+        Mark::Envelope(of) if of.edge.is_some() => {
+            of.edges().map(|curve| of_curve(&curve)).collect()
+        }
         Mark::Dots(dots) => {
             let labels = dots.dots.iter().map(|dot| dot.label.clone()).collect();
-            vec![of(&dots.name, dots.dots.iter().map(|dot| [dot.x, dot.y]).collect(), Some(labels))]
+            vec![of(
+                &dots.name,
+                dots.dots.iter().map(|dot| [dot.x, dot.y]).collect(),
+                Some(labels),
+            )]
         }
         Mark::Bars(bars) => vec![of(&bars.name, bars.bars.clone(), None)],
-        Mark::Spans(Spans { name, spans: ends, .. })
-        | Mark::Envelope(Envelope { name, points: ends, .. })
+        Mark::Spans(Spans {
+            name, spans: ends, ..
+        })
+        | Mark::Envelope(Envelope {
+            name, points: ends, ..
+        })
         | Mark::Intervals(Intervals { name, ends, .. }) => {
             let end = |(end, at): (&str, usize)| {
-                of(&format!("{name}, {end}"), ends.iter().map(|ends| [ends[0], ends[at]]).collect(), None)
+                of(
+                    &format!("{name}, {end}"),
+                    ends.iter().map(|ends| [ends[0], ends[at]]).collect(),
+                    None,
+                )
             };
             [("lower", 1), ("upper", 2)].map(end).into()
         }
@@ -167,7 +255,9 @@ fn series(mark: &Mark) -> Vec<Series> {
 /// What a labelled horizontal line says.
 fn constant(mark: &Mark) -> Option<Constant<'_>> {
     match mark {
-        Mark::Rule(rule) if rule.along == Along::Y && !rule.label.is_empty() => Some((&rule.label, rule.at)),
+        Mark::Rule(rule) if rule.along == Along::Y && !rule.label.is_empty() => {
+            Some((&rule.label, rule.at))
+        }
         _ => None,
     }
 }
@@ -179,14 +269,23 @@ fn unit_of(label: &str) -> &str {
 
 /// The name of a place on an axis of names, of what stands beside it too; else the number.
 fn place(axis: &Axis, value: f64) -> String {
-    let name = axis.names.iter().flatten().find(|(at, _)| (at - value).abs() < 0.5).map(|(_, name)| name.clone());
+    let name = axis
+        .names
+        .iter()
+        .flatten()
+        .find(|(at, _)| (at - value).abs() < 0.5)
+        .map(|(_, name)| name.clone());
     name.unwrap_or_else(|| figure(value))
 }
 
 /// A figure to the last digit; an empty cell where it is not finite.
 fn figure(value: f64) -> String {
     // Debug writes an exponent where Display would write hundreds of zeros.
-    if value.is_finite() { format!("{value:?}") } else { String::new() }
+    if value.is_finite() {
+        format!("{value:?}")
+    } else {
+        String::new()
+    }
 }
 
 #[cfg(test)]
@@ -199,19 +298,39 @@ mod tests {
     const LINE: Stroke = Stroke::solid(Color::INK, 1.0);
 
     fn table_of(panel: Panel) -> Table {
-        Figure::new("").plot(Plot::new("LON → Q").panel(panel)).tables().remove(0)
+        Figure::new("")
+            .plot(Plot::new("LON → Q").panel(panel))
+            .tables()
+            .remove(0)
     }
 
     #[test]
     fn curves_on_the_same_frequencies_stand_beside_one_another_to_the_last_digit() {
         let omega: Arc<[f64]> = vec![0.1 + 0.2, 1e-300].into();
-        let panel = Panel::new(Axis::logarithmic("Frequency [rad/s]"), Axis::linear("Magnitude [dB]"))
-            .with(Curve::new("nominal", LINE, Arc::clone(&omega), [1.0, f64::NAN]))
-            .with(Curve::new("V+5kt", LINE, omega, [-2.5, 3.0]));
+        let panel = Panel::new(
+            Axis::logarithmic("Frequency [rad/s]"),
+            Axis::linear("Magnitude [dB]"),
+        )
+        .with(Curve::new(
+            "nominal",
+            LINE,
+            Arc::clone(&omega),
+            [1.0, f64::NAN],
+        ))
+        .with(Curve::new("V+5kt", LINE, omega, [-2.5, 3.0]));
         let table = table_of(panel);
         assert_eq!(table.title, "LON → Q, Magnitude [dB]");
-        assert_eq!(table.columns, ["Frequency [rad/s]", "nominal [dB]", "V+5kt [dB]"]);
-        assert_eq!(table.rows, [["0.30000000000000004", "1.0", "-2.5"], ["1e-300", "", "3.0"]]);
+        assert_eq!(
+            table.columns,
+            ["Frequency [rad/s]", "nominal [dB]", "V+5kt [dB]"]
+        );
+        assert_eq!(
+            table.rows,
+            [
+                ["0.30000000000000004", "1.0", "-2.5"],
+                ["1e-300", "", "3.0"]
+            ]
+        );
     }
 
     #[test]
@@ -220,28 +339,79 @@ mod tests {
             .with(Dots::new("optimum", DotShape::Circle, Color::INK).dot(60.0, 1.1, "10"))
             .with(Curve::new("schedule", LINE, [45.0], [1.0]));
         let table = table_of(panel);
-        assert_eq!(table.columns, ["series", "label", "Airspeed [kt]", "Net gain [-]"]);
-        assert_eq!(table.rows, [["optimum", "10", "60.0", "1.1"], ["schedule", "", "45.0", "1.0"]]);
+        assert_eq!(
+            table.columns,
+            ["series", "label", "Airspeed [kt]", "Net gain [-]"]
+        );
+        assert_eq!(
+            table.rows,
+            [
+                ["optimum", "10", "60.0", "1.1"],
+                ["schedule", "", "45.0", "1.0"]
+            ]
+        );
     }
 
     #[test]
     fn the_long_table_has_a_row_for_each_point_of_each_curve_of_each_panel() {
         let omega: Arc<[f64]> = vec![0.5, 12.0].into();
-        let magnitude = Panel::new(Axis::logarithmic("Frequency [rad/s]"), Axis::linear("Magnitude [dB]"))
-            .with(Curve::new("nominal", LINE, Arc::clone(&omega), [1.0, -0.0]))
-            .with(Rule::horizontal(3.0, LINE).label("limit"));
+        let magnitude = Panel::new(
+            Axis::logarithmic("Frequency [rad/s]"),
+            Axis::linear("Magnitude [dB]"),
+        )
+        .with(Curve::new("nominal", LINE, Arc::clone(&omega), [1.0, -0.0]))
+        .with(Rule::horizontal(3.0, LINE).label("limit"));
         let errors = Panel::new(Axis::named("Condition", ["3"]), Axis::linear("ΔJ [-]"))
             .with(Dots::new("optimum", DotShape::Circle, Color::INK).dot(0.0, f64::NAN, "10"));
-        let plots = [Plot::new("LON → Q").panel(magnitude), Plot::new("").panel(errors)];
+        let plots = [
+            Plot::new("LON → Q").panel(magnitude),
+            Plot::new("").panel(errors),
+        ];
         let rows: Vec<[String; 8]> = Figure::new("Both").plots(plots).long_rows().collect();
         let magnitude = "LON → Q, Magnitude [dB]";
         assert_eq!(
             rows,
             [
-                ["Both", magnitude, "nominal", "", "Frequency [rad/s]", "0.5", "Magnitude [dB]", "1.0"],
-                ["Both", magnitude, "nominal", "", "Frequency [rad/s]", "12.0", "Magnitude [dB]", "-0.0"],
-                ["Both", magnitude, "limit", "", "Frequency [rad/s]", "", "Magnitude [dB]", "3.0"],
-                ["Both", "ΔJ [-]", "optimum", "10", "Condition", "3", "ΔJ [-]", ""],
+                [
+                    "Both",
+                    magnitude,
+                    "nominal",
+                    "",
+                    "Frequency [rad/s]",
+                    "0.5",
+                    "Magnitude [dB]",
+                    "1.0"
+                ],
+                [
+                    "Both",
+                    magnitude,
+                    "nominal",
+                    "",
+                    "Frequency [rad/s]",
+                    "12.0",
+                    "Magnitude [dB]",
+                    "-0.0"
+                ],
+                [
+                    "Both",
+                    magnitude,
+                    "limit",
+                    "",
+                    "Frequency [rad/s]",
+                    "",
+                    "Magnitude [dB]",
+                    "3.0"
+                ],
+                [
+                    "Both",
+                    "ΔJ [-]",
+                    "optimum",
+                    "10",
+                    "Condition",
+                    "3",
+                    "ΔJ [-]",
+                    ""
+                ],
             ]
         );
     }
@@ -256,7 +426,9 @@ mod tests {
             feet: Vec::new(),
             beside: 0.0,
         };
-        let table = table_of(Panel::new(Axis::named("Condition", ["3", "7"]), Axis::linear("ΔJ [-]")).with(bars));
+        let table = table_of(
+            Panel::new(Axis::named("Condition", ["3", "7"]), Axis::linear("ΔJ [-]")).with(bars),
+        );
         assert_eq!(table.columns, ["Condition", "ΔJ [-]"]);
         assert_eq!(table.rows, [["3", "-4.0"], ["7", "2.0"]]);
     }

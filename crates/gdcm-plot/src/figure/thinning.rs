@@ -19,7 +19,11 @@ impl Pixel {
             let first = rest.first()?;
             let end = ((first[0] / self.width).floor() + 1.0) * self.width;
             // By rounding, the end may come out at the first point itself.
-            let count = rest.iter().take_while(|point| point[0] < end).count().max(1);
+            let count = rest
+                .iter()
+                .take_while(|point| point[0] < end)
+                .count()
+                .max(1);
             let (column, others) = rest.split_at(count);
             rest = others;
             Some(column)
@@ -39,7 +43,10 @@ pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
 /// The first, the least, the greatest and the last point in each column of pixels, in their order.
 fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
     // Most often no column holds three points, and there is nothing to leave out.
-    if run.windows(3).all(|points| points[2][0] - points[0][0] >= pixel.width) {
+    if run
+        .windows(3)
+        .all(|points| points[2][0] - points[0][0] >= pixel.width)
+    {
         return Cow::Borrowed(run);
     }
     let mut kept = Vec::with_capacity(run.len());
@@ -51,7 +58,12 @@ fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
         let by_value = |a: &usize, b: &usize| points[*a][1].total_cmp(&points[*b][1]);
         let indices = || 0..points.len();
         let extremes = [indices().min_by(by_value), indices().max_by(by_value)];
-        let mut indices = [0, extremes[0].unwrap_or(0), extremes[1].unwrap_or(0), points.len() - 1];
+        let mut indices = [
+            0,
+            extremes[0].unwrap_or(0),
+            extremes[1].unwrap_or(0),
+            points.len() - 1,
+        ];
         indices.sort_unstable();
         let distinct = indices.chunk_by(|a, b| a == b).map(|same| points[same[0]]);
         kept.extend(distinct);
@@ -101,30 +113,43 @@ mod tests {
 
     /// The value at `x` of the lines between `kept`.
     fn drawn_at(kept: &[[f64; 2]], x: f64) -> f64 {
-        let after = kept.partition_point(|point| point[0] < x).clamp(1, kept.len() - 1);
+        let after = kept
+            .partition_point(|point| point[0] < x)
+            .clamp(1, kept.len() - 1);
         let ([x0, y0], [x1, y1]) = (kept[after - 1], kept[after]);
         y0 + (y1 - y0) * (x - x0) / (x1 - x0)
     }
 
     /// Largest distance in y of `points` from the lines between `kept`.
     fn error(points: &[[f64; 2]], kept: &[[f64; 2]]) -> f64 {
-        points.iter().map(|point| (point[1] - drawn_at(kept, point[0])).abs()).fold(0.0, f64::max)
+        points
+            .iter()
+            .map(|point| (point[1] - drawn_at(kept, point[0])).abs())
+            .fold(0.0, f64::max)
     }
 
     /// The least and the greatest value of some points.
     fn extremes(points: &[[f64; 2]]) -> (f64, f64) {
         let start = (f64::INFINITY, f64::NEG_INFINITY);
-        points.iter().fold(start, |(least, greatest), point| (least.min(point[1]), greatest.max(point[1])))
+        points.iter().fold(start, |(least, greatest), point| {
+            (least.min(point[1]), greatest.max(point[1]))
+        })
     }
 
     /// Pixels a hundred times narrower than the distance of points at 0, 1, 2 …
     fn fine(tolerance: f64) -> Pixel {
-        Pixel { width: 0.01, tolerance }
+        Pixel {
+            width: 0.01,
+            tolerance,
+        }
     }
 
     /// Runs of points from far closer to farther apart than a pixel, of steps up, down and level.
     fn run() -> impl Strategy<Value = Vec<[f64; 2]>> {
-        let step = (0.01..1.0f64, prop_oneof![Just(0.0), -0.05..0.05f64, -5.0..5.0f64]);
+        let step = (
+            0.01..1.0f64,
+            prop_oneof![Just(0.0), -0.05..0.05f64, -5.0..5.0f64],
+        );
         (0.02..3.0f64, prop::collection::vec(step, 2..300)).prop_map(|(spacing, steps)| {
             let mut at = [-7.3, 1.0];
             let walk = |(dx, dy): (f64, f64)| {
@@ -135,7 +160,10 @@ mod tests {
         })
     }
 
-    const COLUMN: Pixel = Pixel { width: 1.0, tolerance: 0.1 };
+    const COLUMN: Pixel = Pixel {
+        width: 1.0,
+        tolerance: 0.1,
+    };
 
     proptest! {
         #[test]
@@ -173,16 +201,30 @@ mod tests {
 
     #[test]
     fn a_straight_line_needs_its_ends_only() {
-        let line: Vec<[f64; 2]> = (0..500).map(|k| [f64::from(k), 2.0 * f64::from(k)]).collect();
+        let line: Vec<[f64; 2]> = (0..500)
+            .map(|k| [f64::from(k), 2.0 * f64::from(k)])
+            .collect();
         assert_eq!(thinned(&line, fine(1e-9)), [line[0], line[499]]);
     }
 
     #[test]
     fn a_curve_keeps_within_the_tolerance_with_a_tenth_of_its_points() {
-        let curve: Vec<[f64; 2]> =
-            (0..2000).map(|k| 0.01 * f64::from(k)).map(|x| [x, 40.0 * (x.sin() + 0.2 * (5.0 * x).cos())]).collect();
-        let kept = thinned(&curve, Pixel { width: 1e-3, tolerance: 0.2 });
-        assert!(error(&curve, &kept) <= 0.2 + 1e-12, "{}", error(&curve, &kept));
+        let curve: Vec<[f64; 2]> = (0..2000)
+            .map(|k| 0.01 * f64::from(k))
+            .map(|x| [x, 40.0 * (x.sin() + 0.2 * (5.0 * x).cos())])
+            .collect();
+        let kept = thinned(
+            &curve,
+            Pixel {
+                width: 1e-3,
+                tolerance: 0.2,
+            },
+        );
+        assert!(
+            error(&curve, &kept) <= 0.2 + 1e-12,
+            "{}",
+            error(&curve, &kept)
+        );
         assert!(kept.len() < 200, "{}", kept.len());
     }
 
@@ -190,14 +232,32 @@ mod tests {
     fn a_peak_of_one_point_stays() {
         let curve = [[0.0, 0.0], [1.0, 0.0], [2.0, 9.0], [3.0, 0.0], [4.0, 0.0]];
         assert_eq!(thinned(&curve, fine(0.1)), curve);
-        let hidden = [[0.0, 0.0], [0.1, 0.0], [0.2, 9.0], [0.3, 0.0], [0.4, 0.0], [0.5, 0.0]];
-        assert!(thinned(&hidden, Pixel { width: 1.0, tolerance: 0.1 }).contains(&[0.2, 9.0]), "in a single column");
+        let hidden = [
+            [0.0, 0.0],
+            [0.1, 0.0],
+            [0.2, 9.0],
+            [0.3, 0.0],
+            [0.4, 0.0],
+            [0.5, 0.0],
+        ];
+        assert!(
+            thinned(
+                &hidden,
+                Pixel {
+                    width: 1.0,
+                    tolerance: 0.1
+                }
+            )
+            .contains(&[0.2, 9.0]),
+            "in a single column"
+        );
     }
 
     #[test]
     fn of_a_thousand_points_in_a_column_four_are_drawn() {
-        let noise: Vec<[f64; 2]> =
-            (0..1000).map(|k| [1e-4 * f64::from(k), f64::from((k * 7919 + 500) % 1000)]).collect();
+        let noise: Vec<[f64; 2]> = (0..1000)
+            .map(|k| [1e-4 * f64::from(k), f64::from((k * 7919 + 500) % 1000)])
+            .collect();
         assert_eq!(thinned(&noise, COLUMN).len(), 4);
     }
 

@@ -5,7 +5,9 @@ use std::io::{self, Write};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use gdcm_model::message_text::sanitized;
-use pdf_writer::types::{CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, UnicodeCmap};
+use pdf_writer::types::{
+    CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, UnicodeCmap,
+};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, MetadataProvider};
@@ -19,8 +21,15 @@ const QUARTER: f64 = 0.552_284_749_830_793_4;
 /// The bytes of the file.
 pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     let [catalog, pages, page, content, info] = [1, 2, 3, 4, 5].map(Ref::new);
-    let mut drawn = Page { content: Content::new(), height: drawing.size[1], used: UsedLetters::default() };
-    drawn.content.set_line_join(LineJoinStyle::RoundJoin).set_line_cap(LineCapStyle::ButtCap);
+    let mut drawn = Page {
+        content: Content::new(),
+        height: drawing.size[1],
+        used: UsedLetters::default(),
+    };
+    drawn
+        .content
+        .set_line_join(LineJoinStyle::RoundJoin)
+        .set_line_cap(LineCapStyle::ButtCap);
     drawing.shapes.iter().for_each(|shape| drawn.shape(shape));
     let mut pdf = Pdf::new();
     pdf.catalog(catalog).pages(pages);
@@ -30,7 +39,10 @@ pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     let fonts = drawn.used.write(&mut pdf, Ref::new(6))?;
     let mut entry = pdf.page(page);
     let [width, height] = drawing.size.map(|length| length as f32);
-    entry.parent(pages).media_box(Rect::new(0.0, 0.0, width, height)).contents(content);
+    entry
+        .parent(pages)
+        .media_box(Rect::new(0.0, 0.0, width, height))
+        .contents(content);
     let mut resources = entry.resources();
     let mut list = resources.fonts();
     for (name, font) in fonts {
@@ -39,7 +51,9 @@ pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     list.finish();
     resources.finish();
     entry.finish();
-    pdf.document_info(info).title(TextStr(&sanitized(&drawing.title))).creator(TextStr("gdcm"));
+    pdf.document_info(info)
+        .title(TextStr(&sanitized(&drawing.title)))
+        .creator(TextStr("gdcm"));
     Ok(pdf.finish())
 }
 
@@ -57,7 +71,12 @@ impl Page {
 
     fn shape(&mut self, shape: &Shape) {
         match shape {
-            Shape::Path { points, closed, fill, stroke } => {
+            Shape::Path {
+                points,
+                closed,
+                fill,
+                stroke,
+            } => {
                 self.take_paint(*fill, *stroke);
                 for (index, point) in points.iter().enumerate() {
                     let [x, y] = self.at(*point);
@@ -72,16 +91,30 @@ impl Page {
                 }
                 self.draw(*fill, *stroke);
             }
-            Shape::Circle { center, radius, fill, stroke } => {
+            Shape::Circle {
+                center,
+                radius,
+                fill,
+                stroke,
+            } => {
                 self.take_paint(*fill, *stroke);
                 self.circle(*center, *radius);
                 self.draw(*fill, *stroke);
             }
             Shape::Text(text) => self.text(text),
             Shape::Clipped { area, shapes } => {
-                let Area { left, width, height, .. } = *area;
+                let Area {
+                    left,
+                    width,
+                    height,
+                    ..
+                } = *area;
                 let [x, y] = self.at([left, area.bottom()]);
-                self.content.save_state().rect(x, y, width as f32, height as f32).clip_nonzero().end_path();
+                self.content
+                    .save_state()
+                    .rect(x, y, width as f32, height as f32)
+                    .clip_nonzero()
+                    .end_path();
                 shapes.iter().for_each(|shape| self.shape(shape));
                 self.content.restore_state();
             }
@@ -90,10 +123,15 @@ impl Page {
 
     fn circle(&mut self, [x, y]: [f64; 2], radius: f64) {
         let at = |dx: f64, dy: f64| self.at([x + radius * dx, y + radius * dy]);
-        let quarters = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].map(|[dx, dy]: [f64; 2]| {
-            // A quarter turn on from (dx, dy) is (-dy, dx).
-            [at(dx - QUARTER * dy, dy + QUARTER * dx), at(QUARTER * dx - dy, QUARTER * dy + dx), at(-dy, dx)]
-        });
+        let quarters =
+            [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].map(|[dx, dy]: [f64; 2]| {
+                // A quarter turn on from (dx, dy) is (-dy, dx).
+                [
+                    at(dx - QUARTER * dy, dy + QUARTER * dx),
+                    at(QUARTER * dx - dy, QUARTER * dy + dx),
+                    at(-dy, dx),
+                ]
+            });
         let [start_x, start_y] = at(1.0, 0.0);
         self.content.move_to(start_x, start_y);
         for [[x1, y1], [x2, y2], [x3, y3]] in quarters {
@@ -107,7 +145,12 @@ impl Page {
             let [red, green, blue] = parts(color);
             self.content.set_fill_rgb(red, green, blue);
         }
-        if let Some(Stroke { color, width_pt, dash }) = stroke {
+        if let Some(Stroke {
+            color,
+            width_pt,
+            dash,
+        }) = stroke
+        {
             let [red, green, blue] = parts(color);
             let lengths = dash.pattern_pt().iter().map(|length| *length as f32);
             self.content
@@ -136,7 +179,10 @@ impl Page {
             ([1.0, 0.0, 0.0, 1.0], self.at([x - before, y]))
         };
         let [a, b, c, d] = matrix;
-        self.content.begin_text().set_fill_rgb(red, green, blue).set_text_matrix([a, b, c, d, x, y]);
+        self.content
+            .begin_text()
+            .set_fill_rgb(red, green, blue)
+            .set_text_matrix([a, b, c, d, x, y]);
         let letters = letters(&text.words);
         for run in letters.chunk_by(|one, next| one.font == next.font) {
             self.run(run, text.size_pt);
@@ -147,8 +193,13 @@ impl Page {
     /// Letters of one font.
     fn run(&mut self, run: &[Letter], size_pt: f64) {
         let Some(first) = run.first() else { return };
-        let codes: Vec<u8> = run.iter().flat_map(|letter| self.used.code(letter).to_be_bytes()).collect();
-        self.content.set_font(Name(FONTS[first.font].0.as_bytes()), size_pt as f32).show(Str(&codes));
+        let codes: Vec<u8> = run
+            .iter()
+            .flat_map(|letter| self.used.code(letter).to_be_bytes())
+            .collect();
+        self.content
+            .set_font(Name(FONTS[first.font].0.as_bytes()), size_pt as f32)
+            .show(Str(&codes));
     }
 }
 
@@ -158,7 +209,11 @@ fn parts(color: Color) -> [f32; 3] {
 
 /// Units of a PDF's letters in their size.
 const UNITS: f64 = 1000.0;
-const IDENTITY: SystemInfo<'static> = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
+const IDENTITY: SystemInfo<'static> = SystemInfo {
+    registry: Str(b"Adobe"),
+    ordering: Str(b"Identity"),
+    supplement: 0,
+};
 
 /// The letters of each font that have been used, numbered in the order in which they came.
 #[derive(Default)]
@@ -199,7 +254,12 @@ impl UsedLetters {
 }
 
 impl Used {
-    fn write(&self, pdf: &mut Pdf, (name, bytes): (&str, &[u8]), next: &mut Ref) -> io::Result<Ref> {
+    fn write(
+        &self,
+        pdf: &mut Pdf,
+        (name, bytes): (&str, &[u8]),
+        next: &mut Ref,
+    ) -> io::Result<Ref> {
         let [font, descendant, descriptor, characters, file] = std::array::from_fn(|_| next.bump());
         let subset = subsetter::subset(bytes, 0, &self.numbers).map_err(io::Error::other)?;
         let face = FontRef::new(bytes).map_err(io::Error::other)?;
@@ -212,25 +272,48 @@ impl Used {
             .descendant_font(descendant)
             .to_unicode(characters);
         let mut cid_font = pdf.cid_font(descendant);
-        cid_font.subtype(CidFontType::Type2).base_font(part).system_info(IDENTITY).font_descriptor(descriptor);
-        cid_font.default_width(0.0).cid_to_gid_map_predefined(Name(b"Identity"));
-        let advances = self.letters.iter().map(|letter| (UNITS * letter.advance) as f32);
+        cid_font
+            .subtype(CidFontType::Type2)
+            .base_font(part)
+            .system_info(IDENTITY)
+            .font_descriptor(descriptor);
+        cid_font
+            .default_width(0.0)
+            .cid_to_gid_map_predefined(Name(b"Identity"));
+        let advances = self
+            .letters
+            .iter()
+            .map(|letter| (UNITS * letter.advance) as f32);
         cid_font.widths().consecutive(1, advances).finish();
         cid_font.finish();
         self.describe(pdf, (descriptor, file), part, &face);
-        pdf.stream(characters, &packed(&self.characters())?).filter(Filter::FlateDecode);
+        pdf.stream(characters, &packed(&self.characters())?)
+            .filter(Filter::FlateDecode);
         let length = i32::try_from(subset.len()).map_err(io::Error::other)?;
-        pdf.stream(file, &packed(&subset)?).filter(Filter::FlateDecode).pair(Name(b"Length1"), length);
+        pdf.stream(file, &packed(&subset)?)
+            .filter(Filter::FlateDecode)
+            .pair(Name(b"Length1"), length);
         Ok(font)
     }
 
-    fn describe(&self, pdf: &mut Pdf, (descriptor, file): (Ref, Ref), name: Name<'_>, face: &FontRef<'_>) {
+    fn describe(
+        &self,
+        pdf: &mut Pdf,
+        (descriptor, file): (Ref, Ref),
+        name: Name<'_>,
+        face: &FontRef<'_>,
+    ) {
         let metrics = face.metrics(Size::new(UNITS as f32), LocationRef::default());
         let bounds = metrics.bounds.unwrap_or_default();
         pdf.font_descriptor(descriptor)
             .name(name)
             .flags(FontFlags::SYMBOLIC)
-            .bbox(Rect::new(bounds.x_min, bounds.y_min, bounds.x_max, bounds.y_max))
+            .bbox(Rect::new(
+                bounds.x_min,
+                bounds.y_min,
+                bounds.x_max,
+                bounds.y_max,
+            ))
             .italic_angle(metrics.italic_angle)
             .ascent(metrics.ascent)
             .descent(metrics.descent)

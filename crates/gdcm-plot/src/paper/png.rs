@@ -7,7 +7,9 @@ use skrifa::instance::{LocationRef, Size};
 use skrifa::outline::{DrawSettings, OutlinePen};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
 use vello_cpu::color::AlphaColor;
-use vello_cpu::kurbo::{Affine, BezPath, Cap, Circle, Join, Point, Rect, Shape as _, Stroke as PathStroke};
+use vello_cpu::kurbo::{
+    Affine, BezPath, Cap, Circle, Join, Point, Rect, Shape as _, Stroke as PathStroke,
+};
 use vello_cpu::{Level, Pixmap, RenderContext, RenderSettings, Resources};
 
 use crate::figure::{Area, Color, Drawing, FONTS, Shape, Stroke, Text, letters, width};
@@ -23,14 +25,20 @@ const TOLERANCE: f64 = 0.01;
 
 /// Writes the drawing, 300 dots to the inch.
 pub fn write_png(drawing: &Drawing, file: &mut dyn Write) -> io::Result<()> {
-    let [width, height] = drawing.size.map(|length| (length * SCALE).ceil().clamp(1.0, f64::from(u16::MAX)) as u16);
+    let [width, height] = drawing
+        .size
+        .map(|length| (length * SCALE).ceil().clamp(1.0, f64::from(u16::MAX)) as u16);
     let pixels = pixels(drawing, width, height);
     let mut encoder = Encoder::new(file, u32::from(width), u32::from(height));
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_compression(Compression::High);
     let per_metre = (DOTS_PER_INCH * INCHES_PER_METRE).round() as u32;
-    encoder.set_pixel_dims(Some(PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }));
+    encoder.set_pixel_dims(Some(PixelDimensions {
+        xppu: per_metre,
+        yppu: per_metre,
+        unit: Unit::Meter,
+    }));
     let mut writer = encoder.write_header().map_err(unpacked)?;
     writer.write_image_data(&pixels).map_err(unpacked)?;
     writer.finish().map_err(unpacked)
@@ -47,26 +55,57 @@ fn unpacked(error: EncodingError) -> io::Error {
 /// Red, green and blue of each dot, row by row.
 fn pixels(drawing: &Drawing, width: u16, height: u16) -> Vec<u8> {
     // Without the instructions of one processor or another: the same dots everywhere.
-    let settings = RenderSettings { level: Level::baseline(), num_threads: 0 };
+    let settings = RenderSettings {
+        level: Level::baseline(),
+        num_threads: 0,
+    };
     let mut context = RenderContext::new_with(width, height, settings);
     context.set_transform(Affine::scale(SCALE));
-    let ground =
-        Shape::rectangle(Area::new(0.0, 0.0, drawing.size[0] + 1.0, drawing.size[1] + 1.0), Some(Color::WHITE), None);
-    let fonts: Vec<FontRef<'_>> = FONTS.iter().filter_map(|(_, bytes)| FontRef::new(bytes).ok()).collect();
+    let ground = Shape::rectangle(
+        Area::new(0.0, 0.0, drawing.size[0] + 1.0, drawing.size[1] + 1.0),
+        Some(Color::WHITE),
+        None,
+    );
+    let fonts: Vec<FontRef<'_>> = FONTS
+        .iter()
+        .filter_map(|(_, bytes)| FontRef::new(bytes).ok())
+        .collect();
     paint(&mut context, &ground, &fonts);
-    drawing.shapes.iter().for_each(|shape| paint(&mut context, shape, &fonts));
+    drawing
+        .shapes
+        .iter()
+        .for_each(|shape| paint(&mut context, shape, &fonts));
     context.flush();
     let mut pixmap = Pixmap::new(width, height);
     context.render(&mut pixmap, &mut Resources::new());
     // The ground is white throughout: nothing is transparent.
-    pixmap.data_as_u8_slice().chunks_exact(4).flat_map(|dot| [dot[0], dot[1], dot[2]]).collect()
+    pixmap
+        .data_as_u8_slice()
+        .chunks_exact(4)
+        .flat_map(|dot| [dot[0], dot[1], dot[2]])
+        .collect()
 }
 
 fn paint(context: &mut RenderContext, shape: &Shape, fonts: &[FontRef<'_>]) {
     match shape {
-        Shape::Path { points, closed, fill, stroke } => draw(context, &path(points, *closed), *fill, *stroke),
-        Shape::Circle { center: [x, y], radius, fill, stroke } => {
-            draw(context, &Circle::new((*x, *y), *radius).to_path(TOLERANCE), *fill, *stroke);
+        Shape::Path {
+            points,
+            closed,
+            fill,
+            stroke,
+        } => draw(context, &path(points, *closed), *fill, *stroke),
+        Shape::Circle {
+            center: [x, y],
+            radius,
+            fill,
+            stroke,
+        } => {
+            draw(
+                context,
+                &Circle::new((*x, *y), *radius).to_path(TOLERANCE),
+                *fill,
+                *stroke,
+            );
         }
         Shape::Text(text) => write(context, text, fonts),
         Shape::Clipped { area, shapes } => {
@@ -81,7 +120,11 @@ fn paint(context: &mut RenderContext, shape: &Shape, fonts: &[FontRef<'_>]) {
 fn path(points: &[[f64; 2]], closed: bool) -> BezPath {
     let mut path = BezPath::new();
     for (index, &[x, y]) in points.iter().enumerate() {
-        if index == 0 { path.move_to((x, y)) } else { path.line_to((x, y)) }
+        if index == 0 {
+            path.move_to((x, y))
+        } else {
+            path.line_to((x, y))
+        }
     }
     if closed && !points.is_empty() {
         path.close_path();
@@ -94,9 +137,16 @@ fn draw(context: &mut RenderContext, path: &BezPath, fill: Option<Color>, stroke
         take_color(context, color);
         context.fill_path(path);
     }
-    if let Some(Stroke { color, width_pt, dash }) = stroke {
+    if let Some(Stroke {
+        color,
+        width_pt,
+        dash,
+    }) = stroke
+    {
         take_color(context, color);
-        let line = PathStroke::new(width_pt).with_caps(Cap::Butt).with_join(Join::Round);
+        let line = PathStroke::new(width_pt)
+            .with_caps(Cap::Butt)
+            .with_join(Join::Round);
         context.set_stroke(line.with_dashes(0.0, dash.pattern_pt().iter().copied()));
         context.stroke_path(path);
     }
@@ -109,14 +159,28 @@ fn take_color(context: &mut RenderContext, color: Color) {
 
 /// Fills the outlines of the letters.
 fn write(context: &mut RenderContext, text: &Text, fonts: &[FontRef<'_>]) {
-    let turn = if text.upright { -std::f64::consts::FRAC_PI_2 } else { 0.0 };
-    let place = Affine::translate((text.at[0], text.at[1])) * Affine::rotate(turn) * Affine::scale(text.size_pt);
-    let mut pen = Pen { path: BezPath::new(), x: -text.anchor.before() * width(&text.words) };
+    let turn = if text.upright {
+        -std::f64::consts::FRAC_PI_2
+    } else {
+        0.0
+    };
+    let place = Affine::translate((text.at[0], text.at[1]))
+        * Affine::rotate(turn)
+        * Affine::scale(text.size_pt);
+    let mut pen = Pen {
+        path: BezPath::new(),
+        x: -text.anchor.before() * width(&text.words),
+    };
     for letter in letters(&text.words) {
-        let outline = fonts.get(letter.font).and_then(|font| font.outline_glyphs().get(GlyphId::from(letter.glyph)));
+        let outline = fonts
+            .get(letter.font)
+            .and_then(|font| font.outline_glyphs().get(GlyphId::from(letter.glyph)));
         if let Some(outline) = outline {
             // An outline that is damaged is left out; those of the fonts here are not.
-            let _ = outline.draw(DrawSettings::unhinted(Size::new(1.0), LocationRef::default()), &mut pen);
+            let _ = outline.draw(
+                DrawSettings::unhinted(Size::new(1.0), LocationRef::default()),
+                &mut pen,
+            );
         }
         pen.x += letter.advance;
     }
@@ -151,7 +215,8 @@ impl OutlinePen for Pen {
     }
 
     fn curve_to(&mut self, cx0: f32, cy0: f32, cx1: f32, cy1: f32, x: f32, y: f32) {
-        self.path.curve_to(self.at(cx0, cy0), self.at(cx1, cy1), self.at(x, y));
+        self.path
+            .curve_to(self.at(cx0, cy0), self.at(cx1, cy1), self.at(x, y));
     }
 
     fn close(&mut self) {

@@ -11,7 +11,10 @@ const OTHER_FONTS: &str = "Helvetica, Arial, sans-serif";
 
 /// The text of the file.
 pub fn svg(drawing: &Drawing) -> String {
-    let head = format!("xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" {}", size_attributes(drawing));
+    let head = format!(
+        "xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" {}",
+        size_attributes(drawing)
+    );
     element(drawing, &head, "frame")
 }
 
@@ -19,7 +22,14 @@ pub fn svg(drawing: &Drawing) -> String {
 /// to by: no two of a page may share it.
 pub fn inline_svg(drawing: &Drawing, name: &str) -> String {
     let label = escaped(&sanitized(&drawing.title));
-    element(drawing, &format!("role=\"img\" aria-label=\"{label}\" {}", size_attributes(drawing)), name)
+    element(
+        drawing,
+        &format!(
+            "role=\"img\" aria-label=\"{label}\" {}",
+            size_attributes(drawing)
+        ),
+        name,
+    )
 }
 
 fn size_attributes(drawing: &Drawing) -> String {
@@ -31,13 +41,24 @@ fn size_attributes(drawing: &Drawing) -> String {
 
 fn element(drawing: &Drawing, head: &str, name: &str) -> String {
     let [width, height] = drawing.size;
-    let mut svg = Svg { text: String::new(), name, clips: 0 };
+    let mut svg = Svg {
+        text: String::new(),
+        name,
+        clips: 0,
+    };
     svg.line(&format!(
         "<svg {head} font-family=\"{}, {OTHER_FONTS}\" font-weight=\"300\" stroke-linejoin=\"round\">",
         FONTS[0].0,
     ));
-    svg.line(&format!("<title>{}</title>", escaped(&sanitized(&drawing.title))));
-    svg.shape(&Shape::rectangle(Area::new(0.0, 0.0, width, height), Some(Color::WHITE), None));
+    svg.line(&format!(
+        "<title>{}</title>",
+        escaped(&sanitized(&drawing.title))
+    ));
+    svg.shape(&Shape::rectangle(
+        Area::new(0.0, 0.0, width, height),
+        Some(Color::WHITE),
+        None,
+    ));
     drawing.shapes.iter().for_each(|shape| svg.shape(shape));
     svg.line("</svg>");
     svg.text
@@ -59,18 +80,36 @@ impl Svg<'_> {
 
     fn shape(&mut self, shape: &Shape) {
         match shape {
-            Shape::Path { points, closed, fill, stroke } => {
+            Shape::Path {
+                points,
+                closed,
+                fill,
+                stroke,
+            } => {
                 let paint = paint(*fill, *stroke);
                 self.line(&format!("<path d=\"{}\"{paint}/>", path(points, *closed)));
             }
-            Shape::Circle { center: [x, y], radius, fill, stroke } => {
+            Shape::Circle {
+                center: [x, y],
+                radius,
+                fill,
+                stroke,
+            } => {
                 let (x, y, radius) = (number(*x), number(*y), number(*radius));
-                self.line(&format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"{}/>", paint(*fill, *stroke)));
+                self.line(&format!(
+                    "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"{}/>",
+                    paint(*fill, *stroke)
+                ));
             }
             Shape::Text(text) => self.text(text),
             Shape::Clipped { area, shapes } => {
                 self.clips += 1;
-                let Area { left, top, width, height } = *area;
+                let Area {
+                    left,
+                    top,
+                    width,
+                    height,
+                } = *area;
                 let [x, y, width, height] = [left, top, width, height].map(number);
                 self.line(&format!(
                     "<clipPath id=\"{0}{1}\"><rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"/></clipPath>\n\
@@ -84,14 +123,25 @@ impl Svg<'_> {
     }
 
     fn text(&mut self, text: &Text) {
-        let Text { at: [x, y], words, size_pt, anchor, upright, color } = text;
+        let Text {
+            at: [x, y],
+            words,
+            size_pt,
+            anchor,
+            upright,
+            color,
+        } = text;
         let anchor = match anchor {
             Anchor::Start => "",
             Anchor::Middle => " text-anchor=\"middle\"",
             Anchor::End => " text-anchor=\"end\"",
         };
         let (x, y, size) = (number(*x), number(*y), number(*size_pt));
-        let turn = if *upright { format!(" transform=\"rotate(-90 {x} {y})\"") } else { String::new() };
+        let turn = if *upright {
+            format!(" transform=\"rotate(-90 {x} {y})\"")
+        } else {
+            String::new()
+        };
         // As long as it was laid out, in whatever letters the reader has.
         let length = number(size_pt * width(words));
         let length = format!(" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\"");
@@ -121,8 +171,18 @@ fn path(points: &[[f64; 2]], closed: bool) -> String {
 
 fn paint(fill: Option<Color>, stroke: Option<Stroke>) -> String {
     let mut text = format!(" fill=\"{}\"", fill.map_or("none".to_owned(), hex));
-    if let Some(Stroke { color, width_pt, dash }) = stroke {
-        let _ = write!(text, " stroke=\"{}\" stroke-width=\"{}\"", hex(color), number(width_pt));
+    if let Some(Stroke {
+        color,
+        width_pt,
+        dash,
+    }) = stroke
+    {
+        let _ = write!(
+            text,
+            " stroke=\"{}\" stroke-width=\"{}\"",
+            hex(color),
+            number(width_pt)
+        );
         if !dash.pattern_pt().is_empty() {
             let lengths: Vec<String> = dash.pattern_pt().iter().copied().map(number).collect();
             let _ = write!(text, " stroke-dasharray=\"{}\"", lengths.join(" "));
@@ -140,7 +200,11 @@ fn hex(color: Color) -> String {
 fn number(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+    if text == "-0" {
+        "0".to_owned()
+    } else {
+        text.to_owned()
+    }
 }
 
 /// Words as XML takes them; what XML 1.0 has no place for is left out.

@@ -55,7 +55,10 @@ impl Analysis {
     /// Why there are none, in words that name the channels: what would leave without them is not what was asked for.
     pub fn asked_couplings(&self) -> Result<Option<&Arc<FittedCouplings>>, String> {
         let words = |error: &CouplingError| error.words(&self.study.dataset.names_of_channels().0);
-        self.couplings.as_ref().map(|found| found.as_ref().map_err(words)).transpose()
+        self.couplings
+            .as_ref()
+            .map(|found| found.as_ref().map_err(words))
+            .transpose()
     }
 
     /// What has to be said of the couplings: why there are none, or what they mean, are worth and cost, as far as that was asked for.
@@ -95,12 +98,18 @@ impl Analysis {
     /// # Errors
     /// [`ScheduleError`] where there is no schedule.
     pub fn compare_forms(&self) -> Result<FormComparison, ScheduleError> {
-        compare_forms(&scheduled_points(&self.study, &self.conditions), self.study.settings.schedule)
+        compare_forms(
+            &scheduled_points(&self.study, &self.conditions),
+            self.study.settings.schedule,
+        )
     }
 
     /// What speaks for each degree of the scheduled signed delays; none where leads are not asked for (M15.5).
     pub fn compare_lead_degrees(&self) -> Vec<LeadDegreeFit> {
-        compare_lead_degrees(&scheduled_points(&self.study, &self.conditions), self.study.settings.schedule)
+        compare_lead_degrees(
+            &scheduled_points(&self.study, &self.conditions),
+            self.study.settings.schedule,
+        )
     }
 }
 
@@ -140,7 +149,9 @@ pub struct ConditionAnalysis {
 impl ConditionAnalysis {
     /// The comparison of the models as they are: before the couplings, where there are any.
     pub fn before_couplings(&self) -> &Comparison {
-        self.coupled.as_ref().map_or(&self.comparison, |coupled| &coupled.before)
+        self.coupled
+            .as_ref()
+            .map_or(&self.comparison, |coupled| &coupled.before)
     }
 
     /// Responses held: the constrained ones that are defined.
@@ -167,7 +178,11 @@ impl ConditionAnalysis {
     /// The value of which [`Self::wanted_delay_s`] is one: its bar stands beside it (M13).
     pub fn wanted_delay(&self, pair: Pair) -> Scalar {
         let is_median = self.delay_problem.delta[pair] == self.comparison.delta.delay_s[pair];
-        if is_median { Scalar::Delay(pair) } else { Scalar::BandDelay(pair) }
+        if is_median {
+            Scalar::Delay(pair)
+        } else {
+            Scalar::BandDelay(pair)
+        }
     }
 
     /// Bounds of every channel gain.
@@ -178,7 +193,10 @@ impl ConditionAnalysis {
     /// Least and greatest delay of every channel \[s\]; leads are negative (M15.4).
     pub fn delay_bounds_s(&self) -> [f64; 2] {
         // Adding zero turns minus zero into zero.
-        [self.delay_problem.bounds.lower + 0.0, self.delay_problem.bounds.upper]
+        [
+            self.delay_problem.bounds.lower + 0.0,
+            self.delay_problem.bounds.upper,
+        ]
     }
 
     /// Upper bound of every channel delay \[s\].
@@ -188,9 +206,17 @@ impl ConditionAnalysis {
 
     /// Names of the physics models suggested as outliers, whatever is rejected.
     pub fn suggested(&self) -> Vec<String> {
-        let suggested = self.figures.discontinuity.as_ref().map(Discontinuity::suggested).unwrap_or_default();
+        let suggested = self
+            .figures
+            .discontinuity
+            .as_ref()
+            .map(Discontinuity::suggested)
+            .unwrap_or_default();
         let models = self.condition.bundle(BundleKind::Physics);
-        suggested.into_iter().map(|index| models[index].name.clone()).collect()
+        suggested
+            .into_iter()
+            .map(|index| models[index].name.clone())
+            .collect()
     }
 
     /// The representative of a bundle, with the scores of its models in the order of [`ConditionAnalysis::condition`].

@@ -34,9 +34,19 @@ impl AssessedCorrection {
     ///
     /// # Errors
     /// [`ScheduleError`] where a schedule is asked for and there is none.
-    pub fn of(self, analysis: &Analysis, result: &ConditionAnalysis) -> Result<ChannelCorrection, ScheduleError> {
+    pub fn of(
+        self,
+        analysis: &Analysis,
+        result: &ConditionAnalysis,
+    ) -> Result<ChannelCorrection, ScheduleError> {
         let (id, state) = (result.condition.id(), result.condition.flight_state());
-        let scheduled = || analysis.schedule.as_ref().map(|schedule| schedule.at_state(state)).map_err(|error| *error);
+        let scheduled = || {
+            analysis
+                .schedule
+                .as_ref()
+                .map(|schedule| schedule.at_state(state))
+                .map_err(|error| *error)
+        };
         match self {
             Self::Own => Ok(result.correction.clone()),
             Self::Scheduled => scheduled(),
@@ -72,7 +82,11 @@ impl AssessmentChoice {
     /// What the paper assesses: the nominal model under the schedule.
     pub(super) fn of_paper(settings: &Settings) -> Self {
         let (model, correction) = (AssessedModel::Nominal, AssessedCorrection::Scheduled);
-        Self { model, correction, average: settings.cost_average }
+        Self {
+            model,
+            correction,
+            average: settings.cost_average,
+        }
     }
 }
 
@@ -125,8 +139,16 @@ pub struct AssessmentSummary {
 impl AssessmentTable {
     /// The assessment of an analysis, from the mismatches that it keeps: two averages over frequency for each response.
     pub fn of(analysis: &Analysis, choice: AssessmentChoice) -> Self {
-        let mut table = Self { choice, conditions: Vec::new(), left_out: Vec::new() };
-        analysis.study.dataset.ids().for_each(|id| table.add(analysis, id));
+        let mut table = Self {
+            choice,
+            conditions: Vec::new(),
+            left_out: Vec::new(),
+        };
+        analysis
+            .study
+            .dataset
+            .ids()
+            .for_each(|id| table.add(analysis, id));
         table
     }
 
@@ -139,14 +161,24 @@ impl AssessmentTable {
 
     /// J before and after of one response in one condition.
     pub fn change(&self, condition: ConditionId, pair: Pair) -> Option<CostChange> {
-        self.conditions.iter().find(|assessed| assessed.condition == condition)?.changes[pair]
+        self.conditions
+            .iter()
+            .find(|assessed| assessed.condition == condition)?
+            .changes[pair]
     }
 
     /// The assessment of the marked responses in a sentence.
     pub fn summary(&self, marked: &PairTable<bool>) -> AssessmentSummary {
-        let mut summary = AssessmentSummary { better: 0, compared: 0, worst: None };
+        let mut summary = AssessmentSummary {
+            better: 0,
+            compared: 0,
+            worst: None,
+        };
         for assessed in &self.conditions {
-            for (pair, change) in marked.marked().filter_map(|pair| Some((pair, assessed.changes[pair]?.total()))) {
+            for (pair, change) in marked
+                .marked()
+                .filter_map(|pair| Some((pair, assessed.changes[pair]?.total())))
+            {
                 summary.compared += 1;
                 summary.better += usize::from(change < 0.0);
                 if summary.worst.is_none_or(|(.., worst)| change > worst) {
@@ -165,7 +197,10 @@ impl AssessmentSummary {
             return "nothing to assess".to_owned();
         };
         let (pair, change) = (dataset.pair_name(pair), signed(change, 1));
-        format!("better in {} of {}, worst {pair} in condition {condition}: {change}", self.better, self.compared)
+        format!(
+            "better in {} of {}, worst {pair} in condition {condition}: {change}",
+            self.better, self.compared
+        )
     }
 }
 
@@ -181,17 +216,33 @@ pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option
     let table = AssessmentTable::of(analysis, choice);
     let measuring = analysis.study.dataset.measuring_pairs();
     let words = |wanted: bool| {
-        let conditions = table.conditions.iter().filter(|of| is_held_out(of.condition) == wanted);
-        let changes = conditions.flat_map(|of| measuring.marked().filter_map(|pair| Some(of.changes[pair]?.total())));
+        let conditions = table
+            .conditions
+            .iter()
+            .filter(|of| is_held_out(of.condition) == wanted);
+        let changes = conditions.flat_map(|of| {
+            measuring
+                .marked()
+                .filter_map(|pair| Some(of.changes[pair]?.total()))
+        });
         let changes: Vec<f64> = changes.collect();
         if changes.is_empty() {
             return "nothing to assess".to_owned();
         }
         let better = changes.iter().filter(|change| **change < 0.0).count();
         let mean = changes.iter().sum::<f64>() / changes.len() as f64;
-        format!("better in {better} of {} responses, mean ΔJ {}", changes.len(), signed(mean, 1))
+        format!(
+            "better in {better} of {} responses, mean ΔJ {}",
+            changes.len(),
+            signed(mean, 1)
+        )
     };
-    Some(format!("held out ({}): {}; the others: {}", held_out.join(", "), words(true), words(false)))
+    Some(format!(
+        "held out ({}): {}; the others: {}",
+        held_out.join(", "),
+        words(true),
+        words(false)
+    ))
 }
 
 /// One condition's part, or why it has none.
@@ -201,7 +252,11 @@ pub(super) fn assessed(
     choice: AssessmentChoice,
 ) -> Result<AssessedCondition, String> {
     let result = analysis.result(id);
-    let condition = analysis.study.dataset.condition(id).ok_or("it was not analysed")?;
+    let condition = analysis
+        .study
+        .dataset
+        .condition(id)
+        .ok_or("it was not analysed")?;
     let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()].name;
     let by_nominal = choice.model == AssessedModel::Nominal;
     if by_nominal && analysis.study.choice(id).physics.rejected.contains(nominal) {
@@ -209,12 +264,29 @@ pub(super) fn assessed(
     }
     let result = result?;
     let airspeed_kt = condition.flight_state().airspeed_kt;
-    let correction = choice.correction.of(analysis, result).map_err(|error| error.to_string())?;
-    let models = if by_nominal { &result.comparison.nominal } else { &result.comparison.representative };
+    let correction = choice
+        .correction
+        .of(analysis, result)
+        .map_err(|error| error.to_string())?;
+    let models = if by_nominal {
+        &result.comparison.nominal
+    } else {
+        &result.comparison.representative
+    };
     let changes = changes(analysis, models, &correction, choice.average);
-    let model = if by_nominal { nominal.as_str() } else { result.representative_name(BundleKind::Physics) };
+    let model = if by_nominal {
+        nominal.as_str()
+    } else {
+        result.representative_name(BundleKind::Physics)
+    };
     let missing = missing(result, models, &changes);
-    Ok(AssessedCondition { condition: id, airspeed_kt, model: model.to_owned(), changes, missing })
+    Ok(AssessedCondition {
+        condition: id,
+        airspeed_kt,
+        model: model.to_owned(),
+        changes,
+        missing,
+    })
 }
 
 fn changes(
@@ -227,9 +299,22 @@ fn changes(
     let is_known = average == analysis.study.settings.cost_average;
     let corrected = corrected_cost(&models.mismatch, correction, omega, average);
     corrected.map(|pair, corrected| {
-        let uncorrected = || Some(models.mismatch[pair].as_ref()?.cost(omega, GainDelay::NONE, average));
-        let uncorrected = if is_known { models.cost[pair]? } else { uncorrected()? };
-        Some(CostChange { uncorrected, corrected: (*corrected)? })
+        let uncorrected = || {
+            Some(
+                models.mismatch[pair]
+                    .as_ref()?
+                    .cost(omega, GainDelay::NONE, average),
+            )
+        };
+        let uncorrected = if is_known {
+            models.cost[pair]?
+        } else {
+            uncorrected()?
+        };
+        Some(CostChange {
+            uncorrected,
+            corrected: (*corrected)?,
+        })
     })
 }
 
@@ -238,13 +323,18 @@ fn missing(
     models: &ModelMismatch,
     changes: &PairTable<Option<CostChange>>,
 ) -> Vec<(Pair, String)> {
-    let without = changes.iter().filter(|(_, change)| change.is_none()).map(|(pair, _)| pair);
-    let why = |pair: Pair| match (&models.mismatch[pair], result.comparison.undefined[pair]) {
+    let without = changes
+        .iter()
+        .filter(|(_, change)| change.is_none())
+        .map(|(pair, _)| pair);
+    let why = |pair: Pair| {
+        match (&models.mismatch[pair], result.comparison.undefined[pair]) {
         (Some(_), _) => "the scheduled net gain is not positive".to_owned(),
         (None, Some(why)) => why.to_string(),
         (None, None) => {
             "the nominal model's response is zero, numerically nothing or not finite somewhere in the band".to_owned()
         }
+    }
     };
     without.map(|pair| (pair, why(pair))).collect()
 }
@@ -263,9 +353,15 @@ impl Job for AssessmentJob {
     type Output = Arc<AssessmentTable>;
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let mut table = AssessmentTable { choice: self.choice, conditions: Vec::new(), left_out: Vec::new() };
+        let mut table = AssessmentTable {
+            choice: self.choice,
+            conditions: Vec::new(),
+            left_out: Vec::new(),
+        };
         let conditions = self.analysis.study.dataset.conditions();
-        in_turn(conditions, progress, |condition| table.add(&self.analysis, condition.id()))?;
+        in_turn(conditions, progress, |condition| {
+            table.add(&self.analysis, condition.id())
+        })?;
         Ok(Arc::new(table))
     }
 }

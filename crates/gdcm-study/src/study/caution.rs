@@ -104,18 +104,36 @@ pub struct GainOutOfRange {
 impl GainOutOfRange {
     /// Those of two models.
     pub(super) fn of_models(physics: &PolarResponse, identified: &PolarResponse) -> Vec<Self> {
-        physics.curves().pairs().filter_map(|pair| Self::of_pair(physics, identified, pair)).collect()
+        physics
+            .curves()
+            .pairs()
+            .filter_map(|pair| Self::of_pair(physics, identified, pair))
+            .collect()
     }
 
     /// That of one response; none where one of the models lacks it, or its gain can be computed with.
-    pub(super) fn of_pair(physics: &PolarResponse, identified: &PolarResponse, pair: Pair) -> Option<Self> {
-        let (physics, identified) = (physics.curves()[pair].as_ref()?, identified.curves()[pair].as_ref()?);
-        let gains_db = identified.magnitude_db.iter().zip(&physics.magnitude_db).map(|(flight, model)| flight - model);
+    pub(super) fn of_pair(
+        physics: &PolarResponse,
+        identified: &PolarResponse,
+        pair: Pair,
+    ) -> Option<Self> {
+        let (physics, identified) = (
+            physics.curves()[pair].as_ref()?,
+            identified.curves()[pair].as_ref()?,
+        );
+        let gains_db = identified
+            .magnitude_db
+            .iter()
+            .zip(&physics.magnitude_db)
+            .map(|(flight, model)| flight - model);
         let farthest_db = gains_db.max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
         if farthest_db.abs() < LARGEST_GAIN_DB {
             return None;
         }
-        Some(Self { pair, power_of_ten: (farthest_db / 20.0).round() as i32 })
+        Some(Self {
+            pair,
+            power_of_ten: (farthest_db / 20.0).round() as i32,
+        })
     }
 }
 
@@ -133,7 +151,10 @@ pub struct BundleModel {
 
 impl BundleModel {
     pub(super) fn of(condition: &Condition, bundle: BundleKind, model: usize) -> Self {
-        Self { bundle, name: condition.bundle(bundle)[model].name.clone() }
+        Self {
+            bundle,
+            name: condition.bundle(bundle)[model].name.clone(),
+        }
     }
 }
 
@@ -209,7 +230,8 @@ impl fmt::Display for Undefined {
 }
 
 /// What "numerically nothing" means (M6a).
-const NOTHING: &str = "over the band less than 1e-6 of the greatest response of its output and of its input";
+const NOTHING: &str =
+    "over the band less than 1e-6 of the greatest response of its output and of its input";
 
 /// Why a model has responses that are not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -240,14 +262,24 @@ impl NotFinite {
         match dynamics {
             Dynamics::StateSpace(model) => {
                 let timing = model.timing();
-                let sampled = timing.sample_time_s.zip(timing.nyquist_rad_s().filter(|nyquist| top >= *nyquist));
-                let sampled =
-                    sampled.map(|(sample_time_s, nyquist_rad_s)| Self::Sampled { sample_time_s, nyquist_rad_s });
-                LargeEntry::of(model).map(NotFinite::Entry).or(sampled).unwrap_or(NotFinite::Pole)
+                let sampled = timing
+                    .sample_time_s
+                    .zip(timing.nyquist_rad_s().filter(|nyquist| top >= *nyquist));
+                let sampled = sampled.map(|(sample_time_s, nyquist_rad_s)| Self::Sampled {
+                    sample_time_s,
+                    nyquist_rad_s,
+                });
+                LargeEntry::of(model)
+                    .map(NotFinite::Entry)
+                    .or(sampled)
+                    .unwrap_or(NotFinite::Pole)
             }
             Dynamics::Measured(response) => {
                 let omega = response.omega();
-                NotFinite::Measured { min: omega[0], max: omega[omega.len() - 1] }
+                NotFinite::Measured {
+                    min: omega[0],
+                    max: omega[omega.len() - 1],
+                }
             }
         }
     }
@@ -309,10 +341,21 @@ impl Caution {
     }
 
     /// The caution of the kept models of a bundle whose channels were taken by their position, where there are some.
-    pub(super) fn of_positions(condition: &Condition, choice: &BundleChoice, bundle: BundleKind) -> Option<Self> {
-        let kept = condition.bundle(bundle).iter().filter(|model| !choice.rejected.contains(&model.name));
-        let by_position =
-            kept.filter(|model| model.source.as_ref().is_some_and(|source| !source.by_position.is_empty()));
+    pub(super) fn of_positions(
+        condition: &Condition,
+        choice: &BundleChoice,
+        bundle: BundleKind,
+    ) -> Option<Self> {
+        let kept = condition
+            .bundle(bundle)
+            .iter()
+            .filter(|model| !choice.rejected.contains(&model.name));
+        let by_position = kept.filter(|model| {
+            model
+                .source
+                .as_ref()
+                .is_some_and(|source| !source.by_position.is_empty())
+        });
         let models: Vec<String> = by_position.map(|model| model.name.clone()).collect();
         if models.is_empty() {
             return None;
@@ -330,7 +373,13 @@ impl Caution {
 
     /// The caution in words; `pair_name` names a response.
     pub fn words(&self, pair_name: impl Fn(Pair) -> String) -> String {
-        let names = |pairs: &[Pair]| pairs.iter().map(|pair| pair_name(*pair)).collect::<Vec<_>>().join(", ");
+        let names = |pairs: &[Pair]| {
+            pairs
+                .iter()
+                .map(|pair| pair_name(*pair))
+                .collect::<Vec<_>>()
+                .join(", ")
+        };
         match self {
             Caution::HeldButUndefined { pair, why } => format!("{} is not held: {}", pair_name(*pair), why),
             Caution::NoSuggestions(error) => error.to_string(),
@@ -407,7 +456,10 @@ fn few(names: &[String]) -> String {
 fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> String) -> String {
     /// Responses named.
     const NAMED: usize = 3;
-    let named = left_out.iter().take(NAMED).map(|(pair, count)| format!("{count} of {}", pair_name(*pair)));
+    let named = left_out
+        .iter()
+        .take(NAMED)
+        .map(|(pair, count)| format!("{count} of {}", pair_name(*pair)));
     let rest = left_out.len().saturating_sub(NAMED);
     let more = (rest > 0).then(|| format!("and some of {rest} more"));
     named.chain(more).collect::<Vec<_>>().join(", ")
@@ -415,7 +467,11 @@ fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> Strin
 
 /// Three significant digits.
 fn short(gain: f64) -> String {
-    if (1e-3..1e4).contains(&gain) { format!("{gain:.3}") } else { format!("{gain:.2e}") }
+    if (1e-3..1e4).contains(&gain) {
+        format!("{gain:.3}")
+    } else {
+        format!("{gain:.2e}")
+    }
 }
 
 /// What the kept models of a bundle lack in a band that ends at `top` \[rad/s\]: those set aside, those that have responses which are
@@ -442,21 +498,40 @@ pub(super) fn of_models(
         let why = NotFinite::of(dynamics, top);
         let lacks = measured.lacks[index].clone();
         if matches!(dynamics, Dynamics::Measured(_)) {
-            let missing: Vec<Pair> = zero.iter().copied().filter(|pair| !lacks.contains(pair)).collect();
+            let missing: Vec<Pair> = zero
+                .iter()
+                .copied()
+                .filter(|pair| !lacks.contains(pair))
+                .collect();
             if !missing.is_empty() {
-                cautions.push(Caution::MissingResponses { model: model.clone(), responses: missing });
+                cautions.push(Caution::MissingResponses {
+                    model: model.clone(),
+                    responses: missing,
+                });
             }
         }
         if !lacks.is_empty() {
             cautions.push(Caution::SetAside {
                 model,
-                zero: lacks.iter().copied().filter(|pair| zero.contains(pair)).collect(),
-                why: if lacks.iter().any(|pair| not_finite.contains(pair)) { Some(why) } else { None },
+                zero: lacks
+                    .iter()
+                    .copied()
+                    .filter(|pair| zero.contains(pair))
+                    .collect(),
+                why: if lacks.iter().any(|pair| not_finite.contains(pair)) {
+                    Some(why)
+                } else {
+                    None
+                },
                 lacks,
                 pinned: choice.pinned.as_ref() == Some(name),
             });
         } else if !not_finite.is_empty() {
-            cautions.push(Caution::NotFinite { model, responses: not_finite, why });
+            cautions.push(Caution::NotFinite {
+                model,
+                responses: not_finite,
+                why,
+            });
         }
     }
     cautions

@@ -20,11 +20,23 @@ pub struct OfferedModels {
 
 impl OfferedModels {
     /// The bundle that M14 gives to M5.
-    pub const REFINED: Self = Self { refined: true, unrefined: false, measured: false };
+    pub const REFINED: Self = Self {
+        refined: true,
+        unrefined: false,
+        measured: false,
+    };
     /// The same, and CT-PBSID without refinement.
-    pub const WITH_UNREFINED: Self = Self { refined: true, unrefined: true, measured: false };
+    pub const WITH_UNREFINED: Self = Self {
+        refined: true,
+        unrefined: true,
+        measured: false,
+    };
     /// The measured response alone.
-    pub const MEASURED: Self = Self { refined: false, unrefined: false, measured: true };
+    pub const MEASURED: Self = Self {
+        refined: false,
+        unrefined: false,
+        measured: true,
+    };
 }
 
 /// Models identified from flight records, and these.
@@ -38,19 +50,33 @@ pub struct AdoptedModels {
 
 impl AdoptedModels {
     /// The offered models of an identification of `records`, the recommended one first.
-    pub fn of(found: &Identification, offered: OfferedModels, records: Vec<ConditionRecord>) -> Self {
+    pub fn of(
+        found: &Identification,
+        offered: OfferedModels,
+        records: Vec<ConditionRecord>,
+    ) -> Self {
         let mut models = Vec::new();
         if offered.refined {
-            models.extend(std::iter::once(&found.refined).chain(&found.bundle).cloned());
+            models.extend(
+                std::iter::once(&found.refined)
+                    .chain(&found.bundle)
+                    .cloned(),
+            );
         }
         if offered.unrefined {
             models.push(found.unrefined.clone());
         }
         if let Some(response) = found.measured.measured().filter(|_| offered.measured) {
             let method = Some("local polynomial method".to_owned());
-            let origin = Origin::Identified { method, order: None };
+            let origin = Origin::Identified {
+                method,
+                order: None,
+            };
             let source = found.unrefined.source.clone();
-            models.push(Model { source, ..Model::new("measured", origin, Dynamics::Measured(response)) });
+            models.push(Model {
+                source,
+                ..Model::new("measured", origin, Dynamics::Measured(response))
+            });
         }
         Self { models, records }
     }
@@ -60,11 +86,15 @@ impl AdoptedModels {
     /// # Errors
     /// [`EditRefusal::NoCondition`], and [`EditRefusal::Models`] where they cannot be the condition's.
     pub fn put_into(&self, dataset: &Dataset, id: ConditionId) -> Result<Dataset, EditRefusal> {
-        let before = dataset.condition(id).ok_or(EditRefusal::NoCondition { condition: id })?;
+        let before = dataset
+            .condition(id)
+            .ok_or(EditRefusal::NoCondition { condition: id })?;
         let refused = |why: String| EditRefusal::Models { condition: id, why };
         let condition = before.with_identified(self.models.clone(), self.records.clone());
         let condition = condition.map_err(|error| refused(error.to_string()))?;
-        dataset.with_condition(condition).map_err(|error| refused(error.to_string()))
+        dataset
+            .with_condition(condition)
+            .map_err(|error| refused(error.to_string()))
     }
 }
 
@@ -80,7 +110,10 @@ impl Study {
     }
 
     /// Takes models into conditions: into all of them, or into none. Decisions about models that are gone go with them.
-    pub(super) fn take_models(&mut self, taken: &[(ConditionId, Arc<AdoptedModels>)]) -> Result<(), EditRefusal> {
+    pub(super) fn take_models(
+        &mut self,
+        taken: &[(ConditionId, Arc<AdoptedModels>)],
+    ) -> Result<(), EditRefusal> {
         let mut models = self.taken.clone();
         models.extend(taken.iter().cloned());
         self.rebuild(models, self.signs.clone())
@@ -94,7 +127,11 @@ impl Study {
     }
 
     /// Turns the models of a channel, or puts them back as they were.
-    pub(super) fn set_sign(&mut self, channel: Channel, of: Option<SignRole>) -> Result<(), EditRefusal> {
+    pub(super) fn set_sign(
+        &mut self,
+        channel: Channel,
+        of: Option<SignRole>,
+    ) -> Result<(), EditRefusal> {
         if !Channel::all_of(&self.dataset).any(|known| known == channel) {
             return Err(EditRefusal::NoChannel { channel });
         }
@@ -105,7 +142,11 @@ impl Study {
     }
 
     /// The dataset of the file with these models in its conditions, then turned.
-    fn rebuild(&mut self, models: BTreeMap<ConditionId, Arc<AdoptedModels>>, signs: Signs) -> Result<(), EditRefusal> {
+    fn rebuild(
+        &mut self,
+        models: BTreeMap<ConditionId, Arc<AdoptedModels>>,
+        signs: Signs,
+    ) -> Result<(), EditRefusal> {
         let file = Arc::clone(self.file_dataset());
         let mut dataset = Arc::clone(&file);
         for (id, taken) in &models {
@@ -122,9 +163,14 @@ impl Study {
     fn forget_absent_models(&mut self) {
         let dataset = Arc::clone(&self.dataset);
         let is_there = |id: ConditionId, name: &str| {
-            dataset.condition(id).is_some_and(|condition| condition.position(BundleKind::Identified, name).is_some())
+            dataset
+                .condition(id)
+                .is_some_and(|condition| condition.position(BundleKind::Identified, name).is_some())
         };
-        let of_variants = self.variants.iter_mut().map(|variant| &mut Arc::make_mut(variant).choices);
+        let of_variants = self
+            .variants
+            .iter_mut()
+            .map(|variant| &mut Arc::make_mut(variant).choices);
         for (id, choice) in of_variants.chain([&mut self.choices]).flatten() {
             choice.identified.retain(|name| is_there(*id, name));
         }
@@ -200,7 +246,10 @@ impl TurnedChannel {
             ChannelSide::Input => (dataset.inputs(), Channel::Input),
             ChannelSide::Output => (dataset.outputs(), Channel::Output),
         };
-        channels.iter().position(|channel| channel.name == self.channel).map(of)
+        channels
+            .iter()
+            .position(|channel| channel.name == self.channel)
+            .map(of)
     }
 }
 
@@ -209,7 +258,11 @@ impl Study {
     pub fn turned_channels(&self) -> Vec<TurnedChannel> {
         let turned = |(channel, of): (&Channel, &SignRole)| TurnedChannel {
             channel: channel.name_in(&self.dataset),
-            side: if matches!(channel, Channel::Input(_)) { ChannelSide::Input } else { ChannelSide::Output },
+            side: if matches!(channel, Channel::Input(_)) {
+                ChannelSide::Input
+            } else {
+                ChannelSide::Output
+            },
             of: *of,
         };
         self.signs.iter().map(turned).collect()
@@ -221,9 +274,16 @@ impl Study {
 pub(super) fn turned(dataset: &Arc<Dataset>, signs: &Signs) -> Result<Arc<Dataset>, EditRefusal> {
     let mut turned = Arc::clone(dataset);
     for condition in dataset.conditions().iter().filter(|_| !signs.is_empty()) {
-        let refused = |why: String| EditRefusal::Models { condition: condition.id(), why };
+        let refused = |why: String| EditRefusal::Models {
+            condition: condition.id(),
+            why,
+        };
         let models = turned_condition(condition, signs).map_err(refused)?;
-        turned = Arc::new(turned.with_condition(models).map_err(|error| refused(error.to_string()))?);
+        turned = Arc::new(
+            turned
+                .with_condition(models)
+                .map_err(|error| refused(error.to_string()))?,
+        );
     }
     Ok(turned)
 }
@@ -231,14 +291,30 @@ pub(super) fn turned(dataset: &Arc<Dataset>, signs: &Signs) -> Result<Arc<Datase
 fn turned_condition(condition: &Condition, signs: &Signs) -> Result<Condition, String> {
     let bundle = |kind| -> Result<Vec<Model>, String> {
         let sign = |channel: Channel| {
-            if signs.get(&channel).is_some_and(|role| role.covers(kind)) { -1.0 } else { 1.0 }
+            if signs.get(&channel).is_some_and(|role| role.covers(kind)) {
+                -1.0
+            } else {
+                1.0
+            }
         };
         let models = condition.bundle(kind).iter();
-        models.map(|model| Ok(Model { dynamics: turned_dynamics(&model.dynamics, sign)?, ..model.clone() })).collect()
+        models
+            .map(|model| {
+                Ok(Model {
+                    dynamics: turned_dynamics(&model.dynamics, sign)?,
+                    ..model.clone()
+                })
+            })
+            .collect()
     };
-    let (physics, identified) = (bundle(BundleKind::Physics)?, bundle(BundleKind::Identified)?);
+    let (physics, identified) = (
+        bundle(BundleKind::Physics)?,
+        bundle(BundleKind::Identified)?,
+    );
     let turned = Condition::new(condition.flight_state().clone(), physics, identified);
-    turned.and_then(|turned| turned.with_records(condition.records().to_vec())).map_err(|error| error.to_string())
+    turned
+        .and_then(|turned| turned.with_records(condition.records().to_vec()))
+        .map_err(|error| error.to_string())
 }
 
 fn turned_dynamics(dynamics: &Dynamics, sign: impl Fn(Channel) -> f64) -> Result<Dynamics, String> {
@@ -253,19 +329,33 @@ fn turned_dynamics(dynamics: &Dynamics, sign: impl Fn(Channel) -> f64) -> Result
                 c.row_mut(output).scale_mut(sign(Channel::Output(output)));
                 d.row_mut(output).scale_mut(sign(Channel::Output(output)));
             }
-            let turned = StateSpace::new(model.a().clone(), b, c, d).map_err(|error| error.to_string())?;
-            Ok(Dynamics::StateSpace(turned.timed(model.timing().clone()).map_err(|error| error.to_string())?))
+            let turned =
+                StateSpace::new(model.a().clone(), b, c, d).map_err(|error| error.to_string())?;
+            Ok(Dynamics::StateSpace(
+                turned
+                    .timed(model.timing().clone())
+                    .map_err(|error| error.to_string())?,
+            ))
         }
         Dynamics::Measured(response) => {
             let sign = |pair: Pair| Channel::of(pair).into_iter().map(&sign).product::<f64>();
             let values = response.values();
-            let re = values.map(|pair, values| values.iter().map(|value| sign(pair) * value.re).collect());
-            let im = values.map(|pair, values| values.iter().map(|value| sign(pair) * value.im).collect());
-            let turned = MeasuredResponse::new(response.omega().to_vec(), &re, &im, response.coherence().cloned());
+            let re = values
+                .map(|pair, values| values.iter().map(|value| sign(pair) * value.re).collect());
+            let im = values
+                .map(|pair, values| values.iter().map(|value| sign(pair) * value.im).collect());
+            let turned = MeasuredResponse::new(
+                response.omega().to_vec(),
+                &re,
+                &im,
+                response.coherence().cloned(),
+            );
             let turned = turned.and_then(|turned| turned.with_estimate(response.estimate()));
             let turned = turned.map_err(|error| error.to_string())?;
             Ok(Dynamics::Measured(match response.valid_bands() {
-                Some(bands) => turned.with_valid_bands(bands.clone()).map_err(|error| error.to_string())?,
+                Some(bands) => turned
+                    .with_valid_bands(bands.clone())
+                    .map_err(|error| error.to_string())?,
                 None => turned,
             }))
         }

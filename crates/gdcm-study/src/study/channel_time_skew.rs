@@ -53,28 +53,55 @@ impl ChannelTimeSkew {
         let (outputs, inputs) = measured.points.first()?.response.shape();
         let rows = (0..outputs).map(|index| (ChannelSide::Output, index, inputs));
         let columns = (0..inputs).map(|index| (ChannelSide::Input, index, outputs));
-        let suspects: Vec<Suspect> = rows.chain(columns).filter_map(|of| Suspect::of(&lags, of)).collect();
-        let most = suspects.iter().map(|suspect| suspect.explained).fold(0.0, f64::max);
-        let suspects = suspects.into_iter().filter(|suspect| suspect.explained >= 0.5 * most);
-        suspects.min_by(|a, b| a.common_s.abs().total_cmp(&b.common_s.abs())).map(|suspect| suspect.channel)
+        let suspects: Vec<Suspect> = rows
+            .chain(columns)
+            .filter_map(|of| Suspect::of(&lags, of))
+            .collect();
+        let most = suspects
+            .iter()
+            .map(|suspect| suspect.explained)
+            .fold(0.0, f64::max);
+        let suspects = suspects
+            .into_iter()
+            .filter(|suspect| suspect.explained >= 0.5 * most);
+        suspects
+            .min_by(|a, b| a.common_s.abs().total_cmp(&b.common_s.abs()))
+            .map(|suspect| suspect.channel)
     }
 
     /// The same against the nominal physics model of a condition.
-    pub fn of_condition(measured: &ResponseEstimate, band: [f64; 2], condition: &Condition) -> Option<Self> {
-        let nominal = condition.bundle(BundleKind::Physics).get(condition.nominal())?;
+    pub fn of_condition(
+        measured: &ResponseEstimate,
+        band: [f64; 2],
+        condition: &Condition,
+    ) -> Option<Self> {
+        let nominal = condition
+            .bundle(BundleKind::Physics)
+            .get(condition.nominal())?;
         Self::of(measured, band, &nominal.dynamics)
     }
 
     /// The channel of a dataset.
     pub fn signal(&self, dataset: &Dataset) -> Option<Signal> {
-        let channels = if self.role == ChannelSide::Input { dataset.inputs() } else { dataset.outputs() };
+        let channels = if self.role == ChannelSide::Input {
+            dataset.inputs()
+        } else {
+            dataset.outputs()
+        };
         let name = channels.get(self.index)?.name.clone();
-        Some(Signal { role: self.role, index: self.index, name })
+        Some(Signal {
+            role: self.role,
+            index: self.index,
+            name,
+        })
     }
 
     /// What is said of it; `name` is the channel's, `physics` the physics model's.
     pub fn words(&self, name: &str, physics: &str) -> String {
-        let (ms, how) = (telling(s_to_ms(self.delay_s.abs()), 0), if self.delay_s < 0.0 { "early" } else { "late" });
+        let (ms, how) = (
+            telling(s_to_ms(self.delay_s.abs()), 0),
+            if self.delay_s < 0.0 { "early" } else { "late" },
+        );
         format!(
             "{name} seems to be logged {ms} ms {how} in all records: against the physics model \"{physics}\" its responses differ as by a \
              delay, and the others do not. That delay can be taken out. Leave it where the sensor or servo is as slow as that: the \
@@ -94,24 +121,37 @@ struct Lag {
 impl Lag {
     /// `sum W (phi + omega d)^2`.
     fn left(&self, delay_s: f64) -> f64 {
-        self.phase.iter().map(|[omega, phase, weight]| weight * (phase + omega * delay_s).powi(2)).sum()
+        self.phase
+            .iter()
+            .map(|[omega, phase, weight]| weight * (phase + omega * delay_s).powi(2))
+            .sum()
     }
 }
 
 /// The lags of the responses that are coherent over half of the band; none where the physics model has none on these frequencies.
 fn lags(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Vec<Lag>> {
-    let points: Vec<_> = measured.points.iter().filter(|point| (band[0]..=band[1]).contains(&point.omega)).collect();
+    let points: Vec<_> = measured
+        .points
+        .iter()
+        .filter(|point| (band[0]..=band[1]).contains(&point.omega))
+        .collect();
     let (first, last) = (points.first()?, points.last()?);
     let grid = FrequencyGrid::logarithmic(Band::new(first.omega, last.omega).ok()?, points.len());
     let same = grid.len() == points.len()
-        && grid.omega().iter().zip(&points).all(|(omega, point)| (omega / point.omega - 1.0).abs() < 1e-9);
+        && grid
+            .omega()
+            .iter()
+            .zip(&points)
+            .all(|(omega, point)| (omega / point.omega - 1.0).abs() < 1e-9);
     let physics = Some(FrequencyResponse::of(physics, &grid)).filter(|_| same)?;
     let (outputs, inputs) = first.response.shape();
     let lag = |pair: Pair| {
         let at = (pair.output, pair.input);
         let modelled = physics.curve(pair);
         let trusted = points.iter().zip(modelled).filter(|(point, value)| {
-            point.partial_coherence[at] >= TRUSTED_COHERENCE && value.norm() > 0.0 && point.response[at].norm() > 0.0
+            point.partial_coherence[at] >= TRUSTED_COHERENCE
+                && value.norm() > 0.0
+                && point.response[at].norm() > 0.0
         });
         let (mut angles, mut others) = (Vec::new(), Vec::new());
         for (point, value) in trusted {
@@ -123,14 +163,22 @@ fn lags(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Opti
             return None;
         }
         unwrap(&mut angles);
-        let phase: Vec<[f64; 3]> =
-            angles.iter().zip(&others).map(|(phase, (omega, weight))| [*omega, *phase, *weight]).collect();
+        let phase: Vec<[f64; 3]> = angles
+            .iter()
+            .zip(&others)
+            .map(|(phase, (omega, weight))| [*omega, *phase, *weight])
+            .collect();
         let sum = |of: fn(&[f64; 3]) -> f64| phase.iter().map(of).sum::<f64>();
-        let delay_s =
-            -sum(|[omega, phase, weight]| weight * omega * phase) / sum(|[omega, _, weight]| weight * omega * omega);
-        delay_s.is_finite().then_some(Lag { pair, delay_s, phase })
+        let delay_s = -sum(|[omega, phase, weight]| weight * omega * phase)
+            / sum(|[omega, _, weight]| weight * omega * omega);
+        delay_s.is_finite().then_some(Lag {
+            pair,
+            delay_s,
+            phase,
+        })
     };
-    let pairs = (0..outputs).flat_map(|output| (0..inputs).map(move |input| Pair { output, input }));
+    let pairs =
+        (0..outputs).flat_map(|output| (0..inputs).map(move |input| Pair { output, input }));
     Some(pairs.filter_map(lag).collect())
 }
 
@@ -156,17 +204,28 @@ impl Suspect {
         }
         let middle = |of: &mut dyn Iterator<Item = f64>| median(&mut of.collect::<Vec<f64>>());
         let common_s = middle(&mut others.iter().map(|lag| lag.delay_s));
-        let scatter_s = OF_MEDIAN * middle(&mut others.iter().map(|lag| (lag.delay_s - common_s).abs()));
+        let scatter_s =
+            OF_MEDIAN * middle(&mut others.iter().map(|lag| (lag.delay_s - common_s).abs()));
         let delay_s = middle(&mut own.iter().map(|lag| lag.delay_s)) - common_s;
         let tolerance_s = LEAST_S.max(STANDS_OUT * scatter_s);
-        let agree = own.iter().all(|lag| (lag.delay_s - common_s - delay_s).abs() <= tolerance_s);
+        let agree = own
+            .iter()
+            .all(|lag| (lag.delay_s - common_s - delay_s).abs() <= tolerance_s);
         let left = |delay_s: f64| own.iter().map(|lag| lag.left(delay_s)).sum::<f64>();
         let (before, after) = (left(common_s), left(common_s + delay_s));
         let is_late = delay_s.abs() > tolerance_s && agree && after <= MOST_LEFT * before;
         // The responses to an input that is logged late come too early.
-        let delay_s = if role == ChannelSide::Output { delay_s } else { -delay_s };
+        let delay_s = if role == ChannelSide::Output {
+            delay_s
+        } else {
+            -delay_s
+        };
         is_late.then_some(Self {
-            channel: ChannelTimeSkew { role, index, delay_s },
+            channel: ChannelTimeSkew {
+                role,
+                index,
+                delay_s,
+            },
             common_s,
             explained: before - after,
         })

@@ -2,8 +2,8 @@
 
 use gdcm_method::correction::mismatch_table;
 use gdcm_method::fidelity::{
-    BundleDistance, CoherenceWeights, ComparedModel, Discontinuity, DiscontinuityError, FitError, MeasuredPairs,
-    Representative, distances_from,
+    BundleDistance, CoherenceWeights, ComparedModel, Discontinuity, DiscontinuityError, FitError,
+    MeasuredPairs, Representative, distances_from,
 };
 use gdcm_model::response::PolarResponse;
 
@@ -32,19 +32,35 @@ impl BundleMetrics {
     ) -> Result<Self, Cancelled> {
         let distances = |kind| {
             let models = condition.bundle(kind).iter();
-            let coherence_weights =
-                models.map(|model| CoherenceWeights::of_model(&model.dynamics, grid.omega(), coherence));
-            distances(responses.bundle(kind), &coherence_weights.collect::<Vec<_>>(), measuring, execution)
+            let coherence_weights = models
+                .map(|model| CoherenceWeights::of_model(&model.dynamics, grid.omega(), coherence));
+            distances(
+                responses.bundle(kind),
+                &coherence_weights.collect::<Vec<_>>(),
+                measuring,
+                execution,
+            )
         };
-        let (physics, identified) = (distances(BundleKind::Physics)?, distances(BundleKind::Identified)?);
+        let (physics, identified) = (
+            distances(BundleKind::Physics)?,
+            distances(BundleKind::Identified)?,
+        );
         let models = condition.bundle(BundleKind::Physics);
-        let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> =
-            models.iter().map(|model| (model.name.as_str(), model.perturbation())).collect();
-        let discontinuity = Discontinuity::of(&physics, &perturbations, &|| execution.progress().cancelled());
+        let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> = models
+            .iter()
+            .map(|model| (model.name.as_str(), model.perturbation()))
+            .collect();
+        let discontinuity = Discontinuity::of(&physics, &perturbations, &|| {
+            execution.progress().cancelled()
+        });
         if discontinuity == Err(DiscontinuityError::Fit(FitError::Cancelled)) {
             return Err(Cancelled);
         }
-        Ok(Self { physics, identified, discontinuity })
+        Ok(Self {
+            physics,
+            identified,
+            discontinuity,
+        })
     }
 
     /// Distances of one bundle.
@@ -60,7 +76,9 @@ fn measured_pairs(
     execution: &Execution<'_>,
 ) -> Result<(Vec<PolarResponse>, MeasuredPairs), Cancelled> {
     let polar = |marked: &PairTable<bool>, steps| {
-        execution.each(responses.len(), steps, |model| PolarResponse::of_marked(&responses[model], marked))
+        execution.each(responses.len(), steps, |model| {
+            PolarResponse::of_marked(&responses[model], marked)
+        })
     };
     let marked = polar(measuring, 1)?;
     let measured = MeasuredPairs::of(&marked, measuring);
@@ -80,17 +98,25 @@ fn distances(
     execution: &Execution<'_>,
 ) -> Result<BundleDistance, Cancelled> {
     let (polar, measured) = measured_pairs(responses, measuring, execution)?;
-    let model =
-        |model: usize| ComparedModel { responses: &polar[model], coherence_weights: coherence_weights[model].as_ref() };
-    let compared: Vec<ComparedModel<'_>> = measured.compared_models().into_iter().map(model).collect();
-    let rows = execution.each(compared.len(), 1, |place| distances_from(place, &compared, &measured.compared))?;
+    let model = |model: usize| ComparedModel {
+        responses: &polar[model],
+        coherence_weights: coherence_weights[model].as_ref(),
+    };
+    let compared: Vec<ComparedModel<'_>> =
+        measured.compared_models().into_iter().map(model).collect();
+    let rows = execution.each(compared.len(), 1, |place| {
+        distances_from(place, &compared, &measured.compared)
+    })?;
     execution.step(polar.len() - compared.len());
     Ok(BundleDistance::from_rows(rows, measured))
 }
 
 /// What of a study's models cannot be computed or compared in its band, condition by condition: the cautions that an
 /// analysis gives of the models by themselves.
-pub fn cautions_of_models(study: &Study, execution: &Execution<'_>) -> Result<Vec<(ConditionId, Caution)>, Cancelled> {
+pub fn cautions_of_models(
+    study: &Study,
+    execution: &Execution<'_>,
+) -> Result<Vec<(ConditionId, Caution)>, Cancelled> {
     let grid = (study.settings.band, study.settings.points);
     let measuring = study.dataset.measuring_pairs();
     let mut cautions = Vec::new();
@@ -99,10 +125,21 @@ pub fn cautions_of_models(study: &Study, execution: &Execution<'_>) -> Result<Ve
         for kind in BundleKind::BOTH {
             let (_, measured) = measured_pairs(responses.bundle(kind), &measuring, execution)?;
             let choice = study.choice(condition.id()).bundle(kind);
-            let of_bundle =
-                caution::of_models(condition, choice, kind, responses.bundle(kind), &measured, grid.0.max());
+            let of_bundle = caution::of_models(
+                condition,
+                choice,
+                kind,
+                responses.bundle(kind),
+                &measured,
+                grid.0.max(),
+            );
             let of_positions = Caution::of_positions(condition, choice, kind);
-            cautions.extend(of_bundle.into_iter().chain(of_positions).map(|caution| (condition.id(), caution)));
+            cautions.extend(
+                of_bundle
+                    .into_iter()
+                    .chain(of_positions)
+                    .map(|caution| (condition.id(), caution)),
+            );
         }
         let out_of_range = gains_out_of_range(condition, &responses, study.choice(condition.id()));
         cautions.extend(out_of_range.map(|caution| (condition.id(), caution)));
@@ -118,12 +155,21 @@ fn gains_out_of_range(
 ) -> Option<Caution> {
     let nominal = condition.nominal();
     let physics = PolarResponse::of(&responses.bundle(BundleKind::Physics)[nominal]);
-    let identified = condition.bundle(BundleKind::Identified).iter().zip(responses.bundle(BundleKind::Identified));
-    for (model, response) in identified.filter(|(model, _)| !choice.identified.rejected.contains(&model.name)) {
+    let identified = condition
+        .bundle(BundleKind::Identified)
+        .iter()
+        .zip(responses.bundle(BundleKind::Identified));
+    for (model, response) in
+        identified.filter(|(model, _)| !choice.identified.rejected.contains(&model.name))
+    {
         let responses = GainOutOfRange::of_models(&physics, &PolarResponse::of(response));
         if !responses.is_empty() {
             let physics = condition.bundle(BundleKind::Physics)[nominal].name.clone();
-            return Some(Caution::GainsOutOfRange { physics, identified: model.name.clone(), responses });
+            return Some(Caution::GainsOutOfRange {
+                physics,
+                identified: model.name.clone(),
+                responses,
+            });
         }
     }
     None
@@ -141,7 +187,11 @@ pub struct ModelMismatch {
 impl ModelMismatch {
     fn of(simulated: &Compared, reference: &Compared, omega: &[f64], average: CostAverage) -> Self {
         let mismatch = simulated.against(reference);
-        let cost = mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.cost(omega, GainDelay::NONE, average)));
+        let cost = mismatch.map(|_, entry| {
+            entry
+                .as_ref()
+                .map(|entry| entry.cost(omega, GainDelay::NONE, average))
+        });
         Self { mismatch, cost }
     }
 }
@@ -183,25 +233,42 @@ impl Comparison {
         let of_kind = |kind| {
             let measured = figures.bundle(kind).measured();
             let choice = choice.bundle(kind);
-            let mut cautions = caution::of_models(condition, choice, kind, responses.bundle(kind), measured, top);
+            let mut cautions = caution::of_models(
+                condition,
+                choice,
+                kind,
+                responses.bundle(kind),
+                measured,
+                top,
+            );
             cautions.extend(Caution::of_positions(condition, choice, kind));
             cautions
         };
         let mut cautions: Vec<Caution> = BundleKind::BOTH.into_iter().flat_map(of_kind).collect();
         let representative = |kind: BundleKind| {
             let position = |name: &String| condition.position(kind, name);
-            let BundleChoice { rejected, pinned, .. } = choice.bundle(kind);
+            let BundleChoice {
+                rejected, pinned, ..
+            } = choice.bundle(kind);
             let rejected: BTreeSet<usize> = rejected.iter().filter_map(position).collect();
-            let representative =
-                Representative::of(figures.bundle(kind), &rejected, pinned.as_ref().and_then(position));
+            let representative = Representative::of(
+                figures.bundle(kind),
+                &rejected,
+                pinned.as_ref().and_then(position),
+            );
             representative.ok_or(ConditionFailure::AllSetAside { bundle: kind })
         };
-        let (physics, identified) = (representative(BundleKind::Physics)?, representative(BundleKind::Identified)?);
+        let (physics, identified) = (
+            representative(BundleKind::Physics)?,
+            representative(BundleKind::Identified)?,
+        );
         let flight = &condition.bundle(BundleKind::Identified)[identified.model].dynamics;
-        let compared = |kind, model| Compared::of(condition, responses, (kind, model), (grid, coherence));
+        let compared =
+            |kind, model| Compared::of(condition, responses, (kind, model), (grid, coherence));
         let reference = compared(BundleKind::Identified, identified.model);
         let simulated = compared(BundleKind::Physics, physics.model);
-        let against = |simulated: &Compared| ModelMismatch::of(simulated, &reference, grid.omega(), average);
+        let against =
+            |simulated: &Compared| ModelMismatch::of(simulated, &reference, grid.omega(), average);
         let representative = against(&simulated);
         let nominal = condition.nominal();
         let nominal = if physics.model == nominal {
@@ -214,7 +281,9 @@ impl Comparison {
             Dynamics::Measured(response) if !response.is_measured(pair) => Undefined::NotMeasured,
             _ => why_undefined(&simulated, &reference, pair),
         };
-        let undefined = delta.gain.map(|pair, gain| gain.is_none().then(|| why(pair)));
+        let undefined = delta
+            .gain
+            .map(|pair, gain| gain.is_none().then(|| why(pair)));
         let mut out_of_range = GainOutOfRange::of_models(&simulated.polar, &reference.polar);
         // A gain may be out of range where coherence leaves it out.
         out_of_range.retain(|of| delta.gain[of.pair].is_none());
@@ -227,16 +296,27 @@ impl Comparison {
             });
         }
         cautions.extend(coherence_caution(flight, &reference, grid.len(), coherence));
-        for (kind, model, compared) in
-            [(BundleKind::Physics, physics.model, &simulated), (BundleKind::Identified, identified.model, &reference)]
-        {
+        for (kind, model, compared) in [
+            (BundleKind::Physics, physics.model, &simulated),
+            (BundleKind::Identified, identified.model, &reference),
+        ] {
             let responses: Vec<Pair> = compared.nothing.marked().collect();
             if !responses.is_empty() {
-                cautions
-                    .push(Caution::NumericallyNothing { model: BundleModel::of(condition, kind, model), responses });
+                cautions.push(Caution::NumericallyNothing {
+                    model: BundleModel::of(condition, kind, model),
+                    responses,
+                });
             }
         }
-        Ok(Self { physics, identified, representative, nominal, delta, undefined, cautions })
+        Ok(Self {
+            physics,
+            identified,
+            representative,
+            nominal,
+            delta,
+            undefined,
+            cautions,
+        })
     }
 }
 
@@ -252,12 +332,16 @@ impl Comparison {
     ) -> Self {
         let kept = |kind, of: &Representative| -> Vec<Compared> {
             let kept = (0..of.scores.len()).filter(|&model| of.scores[model].is_some());
-            kept.map(|model| Compared::of(condition, responses, (kind, model), (grid, coherence))).collect()
+            kept.map(|model| Compared::of(condition, responses, (kind, model), (grid, coherence)))
+                .collect()
         };
         let physics = kept(BundleKind::Physics, &self.physics);
         let identified = kept(BundleKind::Identified, &self.identified);
         let mut sums = self.delta.gain.map(|_, _| (0.0, 0_usize));
-        for (simulated, reference) in physics.iter().flat_map(|a| identified.iter().map(move |b| (a, b))) {
+        for (simulated, reference) in physics
+            .iter()
+            .flat_map(|a| identified.iter().map(move |b| (a, b)))
+        {
             for (pair, gain) in delta_gains(&simulated.against(reference)).iter() {
                 let Some(gain) = gain else { continue };
                 let (sum, count) = &mut sums[pair];
@@ -266,19 +350,28 @@ impl Comparison {
             }
         }
         let mean = |(sum, count): (f64, usize)| (sum / count as f64).exp();
-        self.delta.gain = self.delta.gain.map(|pair, gain| gain.and(Some(mean(sums[pair]))));
+        self.delta.gain = self
+            .delta
+            .gain
+            .map(|pair, gain| gain.and(Some(mean(sums[pair]))));
         self
     }
 }
 
 /// Why a response of two representatives has no G and no D.
 fn why_undefined(simulated: &Compared, reference: &Compared, pair: Pair) -> Undefined {
-    for (bundle, compared) in [(BundleKind::Physics, simulated), (BundleKind::Identified, reference)] {
+    for (bundle, compared) in [
+        (BundleKind::Physics, simulated),
+        (BundleKind::Identified, reference),
+    ] {
         if compared.nothing[pair] {
             return Undefined::NumericallyNothing(bundle);
         }
     }
-    for (bundle, compared) in [(BundleKind::Physics, simulated), (BundleKind::Identified, reference)] {
+    for (bundle, compared) in [
+        (BundleKind::Physics, simulated),
+        (BundleKind::Identified, reference),
+    ] {
         if let Some(absence) = compared.absence(pair) {
             return match absence {
                 Absence::Zero => Undefined::Zero(bundle),
@@ -303,16 +396,31 @@ fn coherence_caution(
     points: usize,
     coherence: Option<f64>,
 ) -> Option<Caution> {
-    let Dynamics::Measured(response) = flight else { return None };
+    let Dynamics::Measured(response) = flight else {
+        return None;
+    };
     response.coherence()?;
-    let Some(threshold) = coherence else { return Some(Caution::CoherenceNotUsed) };
-    let pairs = reference.polar.curves().pairs().filter(|pair| reference.has(*pair));
-    let left: Vec<(Pair, usize)> = pairs.filter_map(|pair| Some((pair, reference.left(pair)?))).collect();
+    let Some(threshold) = coherence else {
+        return Some(Caution::CoherenceNotUsed);
+    };
+    let pairs = reference
+        .polar
+        .curves()
+        .pairs()
+        .filter(|pair| reference.has(*pair));
+    let left: Vec<(Pair, usize)> = pairs
+        .filter_map(|pair| Some((pair, reference.left(pair)?)))
+        .collect();
     let weighed = left.iter().filter(|(_, count)| *count > 0).count();
     let left_out = left.into_iter().map(|(pair, count)| (pair, points - count));
     let mut left_out: Vec<(Pair, usize)> = left_out.filter(|(_, count)| *count > 0).collect();
     left_out.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
-    (!left_out.is_empty()).then_some(Caution::NotCoherent { threshold, weighed, left_out, points })
+    (!left_out.is_empty()).then_some(Caution::NotCoherent {
+        threshold,
+        weighed,
+        left_out,
+        points,
+    })
 }
 
 /// Difference of every response that two models have.
@@ -333,7 +441,11 @@ impl Absence {
         if finite.peek().is_some() && finite.all(|value| value.norm() == 0.0) {
             return Self::Zero;
         }
-        if values.iter().all(|value| value.is_finite()) { Self::ZeroSomewhere } else { Self::NotFinite }
+        if values.iter().all(|value| value.is_finite()) {
+            Self::ZeroSomewhere
+        } else {
+            Self::NotFinite
+        }
     }
 }
 
@@ -374,7 +486,11 @@ impl Compared {
 
     /// What it differs from a reference in, response by response.
     pub(super) fn against(&self, reference: &Self) -> Mismatches {
-        mismatch_table(&self.polar, &reference.polar, reference.coherence_weights.as_ref())
+        mismatch_table(
+            &self.polar,
+            &reference.polar,
+            reference.coherence_weights.as_ref(),
+        )
     }
 
     fn has(&self, pair: Pair) -> bool {
@@ -388,6 +504,8 @@ impl Compared {
 
     /// How many frequencies of a response count, where coherence says which do.
     fn left(&self, pair: Pair) -> Option<usize> {
-        self.coherence_weights.as_ref().map(|coherence_weights| coherence_weights[pair].weights.len())
+        self.coherence_weights
+            .as_ref()
+            .map(|coherence_weights| coherence_weights[pair].weights.len())
     }
 }

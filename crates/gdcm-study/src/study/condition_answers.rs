@@ -52,7 +52,10 @@ impl RecordHistory {
             "correlation",
         ];
         let held_out = if self.held_out { ", held out" } else { "" };
-        let mut table = Table::new(format!("{}{held_out}: within tolerances", self.record), columns);
+        let mut table = Table::new(
+            format!("{}{held_out}: within tolerances", self.record),
+            columns,
+        );
         for of in &self.quantities {
             for (role, check) in &of.models {
                 let worst = check.worst();
@@ -64,10 +67,13 @@ impl RecordHistory {
                     of.tolerance.entry.clone(),
                     role.name().to_owned(),
                     percent(Some(check.share_inside())),
-                    beyond
-                        .map_or("none".to_owned(), |worst| format!("{} {}", telling(worst.largest_excess, 2), of.unit)),
+                    beyond.map_or("none".to_owned(), |worst| {
+                        format!("{} {}", telling(worst.largest_excess, 2), of.unit)
+                    }),
                     beyond.map_or(String::new(), |worst| telling(worst.largest_excess_at_s, 1)),
-                    Trend::of(correlation, of.on_axis).map_or("", Trend::name).to_owned(),
+                    Trend::of(correlation, of.on_axis)
+                        .map_or("", Trend::name)
+                        .to_owned(),
                     correlation.map_or(String::new(), |of| telling(of, 2).replace('-', "\u{2212}")),
                 ]);
             }
@@ -94,8 +100,12 @@ pub struct RecordHistoryJob {
 impl RecordHistoryJob {
     fn found(&self, executor: &dyn Executor) -> Result<RecordHistory, String> {
         let result = self.analysis.result(self.condition)?;
-        let preparation = Preparation { least_segment_s: LEAST_PIECE_S, ..self.preparation.clone() };
-        let segments = segments_of(&self.record.flight, &preparation).map_err(|error| error.to_string())?;
+        let preparation = Preparation {
+            least_segment_s: LEAST_PIECE_S,
+            ..self.preparation.clone()
+        };
+        let segments =
+            segments_of(&self.record.flight, &preparation).map_err(|error| error.to_string())?;
         let (mut missing, mut models) = (Vec::new(), Vec::new());
         for role in RequirementRole::ALL {
             match self.analysis.role_model(result, role) {
@@ -131,7 +141,14 @@ impl RecordHistoryJob {
         let quantities = comparer.rows.iter().map(quantity).collect();
         let (record, held_out) = (self.record.flight.name.clone(), self.record.held_out);
         let flight = self.record.flight.clone();
-        Ok(RecordHistory { condition: self.condition, record, held_out, flight, quantities, missing })
+        Ok(RecordHistory {
+            condition: self.condition,
+            record,
+            held_out,
+            flight,
+            quantities,
+            missing,
+        })
     }
 }
 
@@ -141,9 +158,17 @@ impl Job for RecordHistoryJob {
     /// In words why there is none.
     type Output = Result<Arc<RecordHistory>, String>;
 
-    fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+    fn run(
+        &self,
+        executor: &mut Self::Tools,
+        progress: &dyn Progress,
+    ) -> Result<Self::Output, Cancelled> {
         let found = self.found(executor.as_ref()).map(Arc::new);
-        if progress.cancelled() { Err(Cancelled) } else { Ok(found) }
+        if progress.cancelled() {
+            Err(Cancelled)
+        } else {
+            Ok(found)
+        }
     }
 }
 
@@ -173,23 +198,40 @@ pub struct TestAnswers {
 
 impl TestAnswers {
     fn of(job: &TestAnswersJob, executor: &dyn Executor) -> Result<Self, String> {
-        let TestAnswersJob { analysis, condition, input, test } = job;
+        let TestAnswersJob {
+            analysis,
+            condition,
+            input,
+            test,
+        } = job;
         let (condition, input) = (*condition, *input);
         let result = analysis.result(condition)?;
         let sample_time_s = LEAST_SHOWN_S.max(SHOWN * test.duration_s) / STEPS as f64;
         let answer = |role: &RequirementRole| {
-            let model = analysis.role_model(result, *role).map_err(|error| error.to_string())?;
-            test.answer(&model, input, sample_time_s, STEPS + 1).map_err(|error| error.to_string())
+            let model = analysis
+                .role_model(result, *role)
+                .map_err(|error| error.to_string())?;
+            test.answer(&model, input, sample_time_s, STEPS + 1)
+                .map_err(|error| error.to_string())
         };
         let answers = each(executor, &RequirementRole::ALL, answer);
         let signal = test.signal(sample_time_s, STEPS + 1);
         let models = RequirementRole::ALL.into_iter().zip(answers).collect();
-        Ok(Self { condition, input, test: *test, sample_time_s, signal, models })
+        Ok(Self {
+            condition,
+            input,
+            test: *test,
+            sample_time_s,
+            signal,
+            models,
+        })
     }
 
     /// The times of the samples \[s\].
     pub fn time_s(&self) -> Vec<f64> {
-        (0..self.signal.len()).map(|n| n as f64 * self.sample_time_s).collect()
+        (0..self.signal.len())
+            .map(|n| n as f64 * self.sample_time_s)
+            .collect()
     }
 }
 
@@ -212,9 +254,17 @@ impl Job for TestAnswersJob {
     /// In words why there are none.
     type Output = Result<Arc<TestAnswers>, String>;
 
-    fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+    fn run(
+        &self,
+        executor: &mut Self::Tools,
+        progress: &dyn Progress,
+    ) -> Result<Self::Output, Cancelled> {
         let found = TestAnswers::of(self, executor.as_ref()).map(Arc::new);
-        if progress.cancelled() { Err(Cancelled) } else { Ok(found) }
+        if progress.cancelled() {
+            Err(Cancelled)
+        } else {
+            Ok(found)
+        }
     }
 }
 
@@ -230,33 +280,68 @@ mod tests {
     fn answers(test: TestInput) -> TestAnswers {
         let analysis = EXAMPLE.analysis.clone();
         let condition = *analysis.conditions.keys().next().unwrap();
-        let job = TestAnswersJob { analysis: Arc::new(analysis).into(), condition, input: 1, test };
+        let job = TestAnswersJob {
+            analysis: Arc::new(analysis).into(),
+            condition,
+            input: 1,
+            test,
+        };
         let executor: Box<dyn Executor> = Box::new(gdcm_model::executor::Sequential);
         TestAnswers::clone(&job.run(&mut { executor }, &Unobserved).unwrap().unwrap())
     }
 
     #[test]
     fn every_model_answers_in_proportion_to_the_size_of_the_test() {
-        let test = TestInput { shape: TestInputShape::Doublet, size: 1.0, duration_s: 1.0 };
+        let test = TestInput {
+            shape: TestInputShape::Doublet,
+            size: 1.0,
+            duration_s: 1.0,
+        };
         let (one, three) = (answers(test), answers(TestInput { size: 3.0, ..test }));
         for ((role, small), (_, large)) in one.models.iter().zip(&three.models) {
             let (small, large) = (small.as_ref().unwrap(), large.as_ref().unwrap());
             // Linear models; rounding of a thousand steps.
-            assert!((3.0 * small - large).amax() <= 1e-9 * large.amax(), "{role:?}");
+            assert!(
+                (3.0 * small - large).amax() <= 1e-9 * large.amax(),
+                "{role:?}"
+            );
             assert!(small.amax() > 0.0, "{role:?}");
         }
     }
 
     #[test]
     fn the_corrected_model_answers_as_that_which_is_exported() {
-        let test = TestInput { shape: TestInputShape::Step, size: 2.0, duration_s: 3.0 };
+        let test = TestInput {
+            shape: TestInputShape::Step,
+            size: 2.0,
+            duration_s: 3.0,
+        };
         let found = answers(test);
-        let result = EXAMPLE.analysis.conditions[&found.condition].as_ref().unwrap();
-        let physics = result.condition.model(BundleKind::Physics, result.representative_name(BundleKind::Physics));
+        let result = EXAMPLE.analysis.conditions[&found.condition]
+            .as_ref()
+            .unwrap();
+        let physics = result.condition.model(
+            BundleKind::Physics,
+            result.representative_name(BundleKind::Physics),
+        );
         let physics = physics.unwrap().state_space().unwrap();
-        let exported = result.corrected_model(physics, &result.correction, Pade::default()).unwrap().model;
-        let expected = test.answer(&exported, 1, found.sample_time_s, found.signal.len()).unwrap();
-        let of = |role| found.models.iter().find(|of| of.0 == role).unwrap().1.as_ref().unwrap();
+        let exported = result
+            .corrected_model(physics, &result.correction, Pade::default())
+            .unwrap()
+            .model;
+        let expected = test
+            .answer(&exported, 1, found.sample_time_s, found.signal.len())
+            .unwrap();
+        let of = |role| {
+            found
+                .models
+                .iter()
+                .find(|of| of.0 == role)
+                .unwrap()
+                .1
+                .as_ref()
+                .unwrap()
+        };
         assert_eq!(*of(RequirementRole::Corrected), expected);
         assert_ne!(*of(RequirementRole::Physics), expected);
     }

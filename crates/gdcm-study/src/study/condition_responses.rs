@@ -43,7 +43,11 @@ impl CoupledResponses {
     /// None made yet, of so many models.
     pub(super) fn new(couplings: &Arc<FittedCouplings>, airspeed_kt: f64, models: usize) -> Self {
         let made = (0..models).map(|_| OnceLock::new()).collect();
-        Self { couplings: Arc::clone(couplings), airspeed_kt, made }
+        Self {
+            couplings: Arc::clone(couplings),
+            airspeed_kt,
+            made,
+        }
     }
 }
 
@@ -54,7 +58,14 @@ impl ConditionResponses {
         let response = &self.bundle(kind)[model];
         match &self.coupled {
             Some(coupled) if kind == BundleKind::Physics => {
-                let couple = || Arc::new(coupled.couplings.matrices().response(response, coupled.airspeed_kt));
+                let couple = || {
+                    Arc::new(
+                        coupled
+                            .couplings
+                            .matrices()
+                            .response(response, coupled.airspeed_kt),
+                    )
+                };
                 Arc::clone(coupled.made[model].get_or_init(couple))
             }
             _ => Arc::clone(response),
@@ -63,7 +74,10 @@ impl ConditionResponses {
 
     /// The same with couplings.
     pub(super) fn with(self, coupled: CoupledResponses) -> Self {
-        Self { coupled: Some(coupled), ..self }
+        Self {
+            coupled: Some(coupled),
+            ..self
+        }
     }
 
     /// The responses of every model of `condition` on `points` frequencies of `band`.
@@ -94,12 +108,23 @@ struct ModelResponses {
 impl ModelResponses {
     /// A value is kept whole or not at all, whoever panicked.
     fn last(&self, purpose: Purpose) -> MutexGuard<'_, Memo<GridKey, Arc<FrequencyResponse>>> {
-        self.last[purpose as usize].lock().unwrap_or_else(PoisonError::into_inner)
+        self.last[purpose as usize]
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn response(&self, model: &Model, purpose: Purpose, key: GridKey, grid: &FrequencyGrid) -> Arc<FrequencyResponse> {
-        let prepared = self.prepared.get_or_init(|| PreparedModel::of(&model.dynamics));
-        self.last(purpose).get(key, |_| Arc::new(prepared.response(grid)))
+    fn response(
+        &self,
+        model: &Model,
+        purpose: Purpose,
+        key: GridKey,
+        grid: &FrequencyGrid,
+    ) -> Arc<FrequencyResponse> {
+        let prepared = self
+            .prepared
+            .get_or_init(|| PreparedModel::of(&model.dynamics));
+        self.last(purpose)
+            .get(key, |_| Arc::new(prepared.response(grid)))
     }
 }
 
@@ -112,12 +137,15 @@ pub struct KnownModels {
 
 impl KnownModels {
     fn by_content(&self) -> MutexGuard<'_, HashMap<ContentHash, Weak<ModelResponses>>> {
-        self.by_content.lock().unwrap_or_else(PoisonError::into_inner)
+        self.by_content
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Forgets the models that no condition holds any more.
     pub(super) fn forget_unused(&self) {
-        self.by_content().retain(|_, responses| responses.strong_count() > 0);
+        self.by_content()
+            .retain(|_, responses| responses.strong_count() > 0);
     }
 
     fn responses_of(&self, content: ContentHash) -> Arc<ModelResponses> {
@@ -143,8 +171,13 @@ impl ConditionModels {
     /// The models of `condition`; those that are known already bring their responses.
     pub(super) fn of(condition: &Arc<Condition>, known: &KnownModels) -> Self {
         let contents = models_of(condition).map(|model| ContentHash::of(&model.dynamics));
-        let models = contents.map(|content| (content, known.responses_of(content))).collect();
-        Self { condition: Arc::clone(condition), models }
+        let models = contents
+            .map(|content| (content, known.responses_of(content)))
+            .collect();
+        Self {
+            condition: Arc::clone(condition),
+            models,
+        }
     }
 
     /// The condition.
@@ -154,13 +187,23 @@ impl ConditionModels {
 
     /// Hash of the numbers of a model.
     pub(super) fn content(&self, kind: BundleKind, model: usize) -> ContentHash {
-        let before = if kind == BundleKind::Physics { 0 } else { self.condition.bundle(BundleKind::Physics).len() };
+        let before = if kind == BundleKind::Physics {
+            0
+        } else {
+            self.condition.bundle(BundleKind::Physics).len()
+        };
         self.models[before + model].0
     }
 
     /// Whether the bundles hold the same models, by name, origin and numbers, in the same order.
     pub(super) fn are_the_same_as(&self, other: &Self) -> bool {
-        let contents = |models: &Self| models.models.iter().map(|(content, _)| *content).collect::<Vec<_>>();
+        let contents = |models: &Self| {
+            models
+                .models
+                .iter()
+                .map(|(content, _)| *content)
+                .collect::<Vec<_>>()
+        };
         let named = |condition| models_of(condition).map(|model| (&model.name, &model.origin));
         let physics = |models: &Self| models.condition.bundle(BundleKind::Physics).len();
         physics(self) == physics(other)
@@ -178,20 +221,29 @@ impl ConditionModels {
     ) -> Result<ConditionResponses, Cancelled> {
         let physics = self.condition.bundle(BundleKind::Physics);
         let bundle = |models: &[Model], responses: &[(ContentHash, Arc<ModelResponses>)]| {
-            let kept: Option<Vec<_>> =
-                responses.iter().map(|(_, responses)| responses.last(purpose).kept(&key).cloned()).collect();
+            let kept: Option<Vec<_>> = responses
+                .iter()
+                .map(|(_, responses)| responses.last(purpose).kept(&key).cloned())
+                .collect();
             match kept {
                 Some(kept) => {
                     execution.step(kept.len());
                     Ok(kept)
                 }
-                None => execution
-                    .each(models.len(), 1, |index| responses[index].1.response(&models[index], purpose, key, grid)),
+                None => execution.each(models.len(), 1, |index| {
+                    responses[index]
+                        .1
+                        .response(&models[index], purpose, key, grid)
+                }),
             }
         };
         let (of_physics, of_identified) = self.models.split_at(physics.len());
         let identified = bundle(self.condition.bundle(BundleKind::Identified), of_identified)?;
-        Ok(ConditionResponses { physics: bundle(physics, of_physics)?, identified, coupled: None })
+        Ok(ConditionResponses {
+            physics: bundle(physics, of_physics)?,
+            identified,
+            coupled: None,
+        })
     }
 
     /// Lets go of what was computed for drawing.
@@ -203,7 +255,9 @@ impl ConditionModels {
 }
 
 fn models_of(condition: &Condition) -> impl Iterator<Item = &Model> {
-    BundleKind::BOTH.into_iter().flat_map(|kind| condition.bundle(kind))
+    BundleKind::BOTH
+        .into_iter()
+        .flat_map(|kind| condition.bundle(kind))
 }
 
 /// Responses of every model of a condition on a grid for drawing.
@@ -230,25 +284,53 @@ struct CoupledCurve {
 }
 
 impl ConditionCurves {
-    pub(super) fn new(condition: Arc<Condition>, grid: FrequencyGrid, responses: ConditionResponses) -> Self {
-        let ConditionResponses { physics, identified, .. } = responses;
-        Self { condition, grid, physics, identified, coupled: Mutex::default() }
+    pub(super) fn new(
+        condition: Arc<Condition>,
+        grid: FrequencyGrid,
+        responses: ConditionResponses,
+    ) -> Self {
+        let ConditionResponses {
+            physics,
+            identified,
+            ..
+        } = responses;
+        Self {
+            condition,
+            grid,
+            physics,
+            identified,
+            coupled: Mutex::default(),
+        }
     }
 
     /// `H~` of a physics model under the couplings of a result; `H` without couplings.
-    pub fn with_couplings(&self, result: &ConditionAnalysis, model: usize) -> Arc<FrequencyResponse> {
+    pub fn with_couplings(
+        &self,
+        result: &ConditionAnalysis,
+        model: usize,
+    ) -> Arc<FrequencyResponse> {
         /// Those of a result and of a variant, each of a representative now and before.
         const KEPT: usize = 4;
-        let Some(coupled) = &result.coupled else { return Arc::clone(&self.physics[model]) };
+        let Some(coupled) = &result.coupled else {
+            return Arc::clone(&self.physics[model]);
+        };
         let mut kept = self.coupled.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_of = |of: &&CoupledCurve| Arc::ptr_eq(&of.fitted, &coupled.fitted) && of.model == model;
+        let is_of =
+            |of: &&CoupledCurve| Arc::ptr_eq(&of.fitted, &coupled.fitted) && of.model == model;
         if let Some(of) = kept.iter().find(is_of) {
             return Arc::clone(&of.response);
         }
         let response = Arc::new(result.coupled_response(&self.physics[model]).into_owned());
         kept.truncate(KEPT - 1);
         let fitted = Arc::clone(&coupled.fitted);
-        kept.insert(0, CoupledCurve { fitted, model, response: Arc::clone(&response) });
+        kept.insert(
+            0,
+            CoupledCurve {
+                fitted,
+                model,
+                response: Arc::clone(&response),
+            },
+        );
         response
     }
 

@@ -1,6 +1,8 @@
 //! The stages of one condition, each kept while what it depends on stays the same.
 
-use gdcm_method::correction::{Bounds, DELAY_AGREEMENT_S, LeadDesign, delay_upper_s, gain_bounds, solve};
+use gdcm_method::correction::{
+    Bounds, DELAY_AGREEMENT_S, LeadDesign, delay_upper_s, gain_bounds, solve,
+};
 use gdcm_method::schedule::assess;
 
 use super::*;
@@ -8,7 +10,13 @@ use super::*;
 /// What the distances depend on, besides the models: the grid, the responses that measure them, and the coherence that counts.
 type FiguresKey = (GridKey, PairTable<bool>, Option<f64>);
 /// What the comparison of the representatives depends on, besides the models.
-type ComparisonKey = (FiguresKey, ConditionChoice, CostAverage, GainSource, Option<Arc<FittedCouplings>>);
+type ComparisonKey = (
+    FiguresKey,
+    ConditionChoice,
+    CostAverage,
+    GainSource,
+    Option<Arc<FittedCouplings>>,
+);
 /// The last result of each stage of a condition.
 #[derive(Clone, Debug)]
 pub(super) struct ConditionStages {
@@ -95,32 +103,60 @@ impl ConditionStages {
 
     /// Responses and distances of the models as they are.
     fn measured<'a>(&mut self, run: Run<'a>) -> Result<Measured<'a>, Cancelled> {
-        let Run { study, grid, execution, .. } = run;
+        let Run {
+            study,
+            grid,
+            execution,
+            ..
+        } = run;
         let condition = Arc::clone(self.models.condition());
         let grid_key = (study.settings.band, study.settings.points);
-        let (measuring, coherence) = (study.dataset.measuring_pairs(), study.settings.coherence_threshold);
+        let (measuring, coherence) = (
+            study.dataset.measuring_pairs(),
+            study.settings.coherence_threshold,
+        );
         let figures_key = (grid_key, measuring.clone(), coherence);
-        let responses = self.models.responses(Purpose::Comparison, grid_key, grid, execution)?;
+        let responses = self
+            .models
+            .responses(Purpose::Comparison, grid_key, grid, execution)?;
         if self.figures.holds(&figures_key) {
             execution.step(2 * model_count(&condition));
         }
         let figures = self.figures.get_or_fail(figures_key, |(_, measuring, _)| {
-            BundleMetrics::of(&condition, &responses, measuring, (grid, coherence), execution).map(Arc::new)
+            BundleMetrics::of(
+                &condition,
+                &responses,
+                measuring,
+                (grid, coherence),
+                execution,
+            )
+            .map(Arc::new)
         })?;
-        Ok(Measured { run, condition, measuring, responses, figures })
+        Ok(Measured {
+            run,
+            condition,
+            measuring,
+            responses,
+            figures,
+        })
     }
 
     /// What the condition brings to the fit of the couplings; none where its representatives cannot be compared, or have no delays.
-    pub(super) fn coupling_source(&mut self, run: Run<'_>) -> Result<Option<CouplingSource>, Cancelled> {
+    pub(super) fn coupling_source(
+        &mut self,
+        run: Run<'_>,
+    ) -> Result<Option<CouplingSource>, Cancelled> {
         let measured = self.measured(run)?;
         let source = match self.plain.compare(&measured, None) {
             Err(_) => None,
             Ok(comparison) => {
                 let input = measured.solve_input(&comparison);
                 let delays = self.plain.delays(&input, input.lead_design().as_deref())?.1;
-                let model = |kind: BundleKind| kind.pick(&comparison.physics, &comparison.identified).model;
+                let model =
+                    |kind: BundleKind| kind.pick(&comparison.physics, &comparison.identified).model;
                 let chosen = BundleKind::BOTH.map(|kind| (kind, model(kind)));
-                let [physics, flight] = chosen.map(|(kind, model)| Arc::clone(&measured.responses.bundle(kind)[model]));
+                let [physics, flight] =
+                    chosen.map(|(kind, model)| Arc::clone(&measured.responses.bundle(kind)[model]));
                 delays.ok().map(|delays| CouplingSource {
                     condition: Arc::clone(&measured.condition),
                     delays_s: delays.channels(),
@@ -147,11 +183,21 @@ impl ConditionStages {
             Some(fitted) => self.plain.compare(&measured, None).map_or_else(
                 |failure| Ok(Err(failure)),
                 |before| {
-                    let responses = self.coupled_responses(run.study, couplings, measured.responses);
-                    let measured = Measured { responses, ..measured };
+                    let responses =
+                        self.coupled_responses(run.study, couplings, measured.responses);
+                    let measured = Measured {
+                        responses,
+                        ..measured
+                    };
                     let outcome = self.coupled.compare_and_solve(&measured, couplings)?;
-                    let coupled = CoupledCondition { before, fitted: Arc::clone(fitted) };
-                    Ok(outcome.map(|result| ConditionAnalysis { coupled: Some(coupled), ..result }))
+                    let coupled = CoupledCondition {
+                        before,
+                        fitted: Arc::clone(fitted),
+                    };
+                    Ok(outcome.map(|result| ConditionAnalysis {
+                        coupled: Some(coupled),
+                        ..result
+                    }))
                 },
             )?,
         };
@@ -166,19 +212,39 @@ impl ConditionStages {
         run: Run<'_>,
         (analysis, couplings): (&ConditionAnalysis, Option<&Arc<FittedCouplings>>),
     ) -> Result<ConditionSubstitutions, Cancelled> {
-        let Run { study, grid, execution, .. } = run;
+        let Run {
+            study,
+            grid,
+            execution,
+            ..
+        } = run;
         let grid_key = (study.settings.band, study.settings.points);
-        let responses = self.models.responses(Purpose::Comparison, grid_key, grid, execution)?;
+        let responses = self
+            .models
+            .responses(Purpose::Comparison, grid_key, grid, execution)?;
         let responses = self.coupled_responses(study, couplings, responses);
-        let substituting = Substituting { run, analysis, responses: &responses, couplings };
+        let substituting = Substituting {
+            run,
+            analysis,
+            responses: &responses,
+            couplings,
+        };
         let measuring = study.dataset.measuring_pairs();
-        self.substitutions.complete(&substituting, |mismatch, delta| {
-            let solved = SolvedStages::default().solve(&SolveInput::new(run, &measuring, (mismatch, &delta)))?;
-            Ok(solved.ok().map(|solved| {
-                let gain = solved.gain_problem.delta.clone();
-                SubstitutedOptimum { correction: solved.correction(), delta: Delta { gain, ..delta } }
-            }))
-        })
+        self.substitutions
+            .complete(&substituting, |mismatch, delta| {
+                let solved = SolvedStages::default().solve(&SolveInput::new(
+                    run,
+                    &measuring,
+                    (mismatch, &delta),
+                ))?;
+                Ok(solved.ok().map(|solved| {
+                    let gain = solved.gain_problem.delta.clone();
+                    SubstitutedOptimum {
+                        correction: solved.correction(),
+                        delta: Delta { gain, ..delta },
+                    }
+                }))
+            })
     }
 
     /// The responses with couplings, where there are any: the one place where they are put on a physics model that is compared.
@@ -188,11 +254,17 @@ impl ConditionStages {
         couplings: Option<&Arc<FittedCouplings>>,
         responses: ConditionResponses,
     ) -> ConditionResponses {
-        let Some(couplings) = couplings else { return responses };
-        let key = ((study.settings.band, study.settings.points), Arc::clone(couplings));
+        let Some(couplings) = couplings else {
+            return responses;
+        };
+        let key = (
+            (study.settings.band, study.settings.points),
+            Arc::clone(couplings),
+        );
         let airspeed_kt = self.models.condition().flight_state().airspeed_kt;
-        let coupled =
-            self.responses.get(key, |(_, of)| CoupledResponses::new(of, airspeed_kt, responses.physics.len()));
+        let coupled = self.responses.get(key, |(_, of)| {
+            CoupledResponses::new(of, airspeed_kt, responses.physics.len())
+        });
         responses.with(coupled)
     }
 }
@@ -218,17 +290,35 @@ impl SolvedStages {
         measured: &Measured<'_>,
         couplings: Option<&Arc<FittedCouplings>>,
     ) -> Result<Arc<Comparison>, ConditionFailure> {
-        let Measured { run: Run { study, grid, .. }, condition, measuring, responses, figures } = measured;
+        let Measured {
+            run: Run { study, grid, .. },
+            condition,
+            measuring,
+            responses,
+            figures,
+        } = measured;
         let settings = &study.settings;
         let choice = study.choice(condition.id());
-        let figures_key = ((settings.band, settings.points), measuring.clone(), settings.coherence_threshold);
-        let key = (figures_key, choice.of_models(), settings.cost_average, settings.gain_source, couplings.cloned());
+        let figures_key = (
+            (settings.band, settings.points),
+            measuring.clone(),
+            settings.coherence_threshold,
+        );
+        let key = (
+            figures_key,
+            choice.of_models(),
+            settings.cost_average,
+            settings.gain_source,
+            couplings.cloned(),
+        );
         let comparison = self.comparison.get(key, |_| {
             let averaging = (settings.cost_average, settings.coherence_threshold);
             let comparison = Comparison::of(condition, responses, figures, grid, choice, averaging);
             let comparison = comparison.map(|comparison| match settings.gain_source {
                 GainSource::Representatives => comparison,
-                GainSource::MeanOfPairs => comparison.with_mean_gains(condition, responses, grid, averaging.1),
+                GainSource::MeanOfPairs => {
+                    comparison.with_mean_gains(condition, responses, grid, averaging.1)
+                }
             });
             comparison.map(Arc::new)
         });
@@ -256,10 +346,22 @@ impl SolvedStages {
             Err(failure) => return Ok(Err(failure)),
         };
         let correction = solved.correction();
-        let cost = Arc::new(assess(&models.mismatch, &models.cost, &correction, omega, average));
+        let cost = Arc::new(assess(
+            &models.mismatch,
+            &models.cost,
+            &correction,
+            omega,
+            average,
+        ));
         let offer = self.offer(&input, &solved.gain_problem.constrained, &cost)?;
         let cautions = cautions_of(settings, &comparison, &measured.figures);
-        let Optima { gain_problem, delay_problem, gains, delays, compensated } = solved;
+        let Optima {
+            gain_problem,
+            delay_problem,
+            gains,
+            delays,
+            compensated,
+        } = solved;
         Ok(Ok(ConditionAnalysis {
             condition: Arc::clone(&measured.condition),
             figures: Arc::clone(&measured.figures),
@@ -286,22 +388,48 @@ impl SolvedStages {
         now: &PairTable<Option<CostChange>>,
     ) -> Result<Option<LeadOffer>, Cancelled> {
         let (settings, omega) = (input.settings(), input.run.grid.omega());
-        let mut held_s = held.marked().map(|pair| input.delta.band_delay_s[pair].unwrap_or_default()).peekable();
+        let mut held_s = held
+            .marked()
+            .map(|pair| input.delta.band_delay_s[pair].unwrap_or_default())
+            .peekable();
         let is_wanted = held_s.peek().is_some() && held_s.all(|delay_s| delay_s < 0.0);
         if settings.phase == PhaseCorrection::Lead || !is_wanted {
             return Ok(None);
         }
         let design = Arc::new(LeadDesign::new(settings.lead, omega.into()));
-        let bounds = Bounds { lower: design.lower_s(), upper: input.delay_upper_s };
+        let bounds = Bounds {
+            lower: design.lower_s(),
+            upper: input.delay_upper_s,
+        };
         // The weight decides on shares, not on what is held: it is 1 whatever delays are asked with.
         let asked = input.delay_problem(Some(&design));
-        let problem = Problem { constrained: held.clone(), bounds, alpha: 1.0, ..asked };
-        let solve = |problem: &Arc<Problem>| solved(problem, ProofBudget::default(), input.run.execution.progress());
+        let problem = Problem {
+            constrained: held.clone(),
+            bounds,
+            alpha: 1.0,
+            ..asked
+        };
+        let solve = |problem: &Arc<Problem>| {
+            solved(
+                problem,
+                ProofBudget::default(),
+                input.run.execution.progress(),
+            )
+        };
         // An offer that cannot be made is none.
-        let Ok(solution) = self.offer.get_or_fail(Arc::new(problem), solve)? else { return Ok(None) };
+        let Ok(solution) = self.offer.get_or_fail(Arc::new(problem), solve)? else {
+            return Ok(None);
+        };
         let leads = ChannelLeads::new(design, solution.channels());
-        let mismatch = input.mismatch.map(|pair, mismatch| mismatch.clone().filter(|_| held[pair]));
-        Ok(LeadOffer::of(leads, &mismatch, now, (omega, settings.cost_average)))
+        let mismatch = input
+            .mismatch
+            .map(|pair, mismatch| mismatch.clone().filter(|_| held[pair]));
+        Ok(LeadOffer::of(
+            leads,
+            &mismatch,
+            now,
+            (omega, settings.cost_average),
+        ))
     }
 
     /// The delays, or signed delays, with what they were asked to do.
@@ -311,12 +439,17 @@ impl SolvedStages {
         design: Option<&LeadDesign>,
     ) -> Result<(Arc<Problem>, Solved), Cancelled> {
         let problem = Arc::new(input.delay_problem(design));
-        let delays = self.delays.get_or_fail(Arc::clone(&problem), |problem| input.run.solved(problem))?;
+        let delays = self
+            .delays
+            .get_or_fail(Arc::clone(&problem), |problem| input.run.solved(problem))?;
         Ok((problem, delays))
     }
 
     /// The delays, then the gains on what leads leave (M15.5).
-    fn solve(&mut self, input: &SolveInput<'_>) -> Result<Result<Optima, ConditionFailure>, Cancelled> {
+    fn solve(
+        &mut self,
+        input: &SolveInput<'_>,
+    ) -> Result<Result<Optima, ConditionFailure>, Cancelled> {
         let design = input.lead_design();
         let (delay_problem, delays) = self.delays(input, design.as_deref())?;
         let leads = match (&delays, design) {
@@ -326,9 +459,19 @@ impl SolvedStages {
         };
         let compensated = leads.map(|leads| LeadCompensated::of(input.mismatch, &leads));
         let gain_problem = Arc::new(input.gain_problem(compensated.as_deref()));
-        let gains = self.gains.get_or_fail(Arc::clone(&gain_problem), |problem| input.run.solved(problem))?;
+        let gains = self
+            .gains
+            .get_or_fail(Arc::clone(&gain_problem), |problem| {
+                input.run.solved(problem)
+            })?;
         Ok(match (gains, delays) {
-            (Ok(gains), Ok(delays)) => Ok(Optima { gain_problem, delay_problem, gains, delays, compensated }),
+            (Ok(gains), Ok(delays)) => Ok(Optima {
+                gain_problem,
+                delay_problem,
+                gains,
+                delays,
+                compensated,
+            }),
             (Err(error), _) => Err(ConditionFailure::Gains(error)),
             (_, Err(error)) => Err(ConditionFailure::Delays(error)),
         })
@@ -336,7 +479,11 @@ impl SolvedStages {
 }
 
 /// The budget of the proof of a substitution's gains: as far as that of a live answer, without a look for other minima.
-pub(super) const SUBSTITUTION_PROOF: ProofBudget = ProofBudget { work: 1_000_000, listing: 0, bytes: 64_000_000 };
+pub(super) const SUBSTITUTION_PROOF: ProofBudget = ProofBudget {
+    work: 1_000_000,
+    listing: 0,
+    bytes: 64_000_000,
+};
 
 /// What the optima of a condition are asked for.
 struct SolveInput<'a> {
@@ -348,11 +495,22 @@ struct SolveInput<'a> {
 }
 
 impl<'a> SolveInput<'a> {
-    fn new(run: Run<'a>, measuring: &'a PairTable<bool>, (mismatch, delta): (&'a Mismatches, &'a Delta)) -> Self {
+    fn new(
+        run: Run<'a>,
+        measuring: &'a PairTable<bool>,
+        (mismatch, delta): (&'a Mismatches, &'a Delta),
+    ) -> Self {
         let settings = &run.study.settings;
-        let by_quantile = || delay_upper_s(mismatch, measuring, run.grid.omega(), settings.quantile);
+        let by_quantile =
+            || delay_upper_s(mismatch, measuring, run.grid.omega(), settings.quantile);
         let delay_upper_s = settings.delay_upper_s.unwrap_or_else(by_quantile);
-        Self { run, measuring, mismatch, delta, delay_upper_s }
+        Self {
+            run,
+            measuring,
+            mismatch,
+            delta,
+            delay_upper_s,
+        }
     }
 
     fn settings(&self) -> &'a Settings {
@@ -362,7 +520,12 @@ impl<'a> SolveInput<'a> {
     /// What lead filters have in common, where leads are asked for.
     fn lead_design(&self) -> Option<Arc<LeadDesign>> {
         let is_asked = self.settings().phase == PhaseCorrection::Lead;
-        is_asked.then(|| Arc::new(LeadDesign::new(self.settings().lead, self.run.grid.omega().into())))
+        is_asked.then(|| {
+            Arc::new(LeadDesign::new(
+                self.settings().lead,
+                self.run.grid.omega().into(),
+            ))
+        })
     }
 
     fn gain_problem(&self, compensated: Option<&LeadCompensated>) -> Problem {
@@ -371,8 +534,12 @@ impl<'a> SolveInput<'a> {
         let by_quantile = || gain_bounds(mismatch, self.measuring, settings.quantile);
         Problem {
             quantity: Quantity::Gain(settings.gain_objective),
-            delta: compensated.map_or(&delta.gain, |compensated| &compensated.gain).clone(),
-            constrained: settings.constrained.map(|pair, held| *held && delta.gain[pair].is_some()),
+            delta: compensated
+                .map_or(&delta.gain, |compensated| &compensated.gain)
+                .clone(),
+            constrained: settings
+                .constrained
+                .map(|pair, held| *held && delta.gain[pair].is_some()),
             fitted: settings.fitted(),
             bounds: settings.gain_bounds.unwrap_or_else(by_quantile),
             alpha: settings.alpha_gain,
@@ -383,16 +550,32 @@ impl<'a> SolveInput<'a> {
     /// Delays of the D that is chosen, signed ones of the band delay; none at all where the phase is left as it is.
     fn delay_problem(&self, design: Option<&LeadDesign>) -> Problem {
         let (settings, delta) = (self.settings(), self.delta);
-        let upper_s = if settings.phase == PhaseCorrection::None { 0.0 } else { self.delay_upper_s };
-        let held =
-            |pair: Pair, held: &bool| *held && delta.gain[pair].is_some() && settings.phase != PhaseCorrection::None;
+        let upper_s = if settings.phase == PhaseCorrection::None {
+            0.0
+        } else {
+            self.delay_upper_s
+        };
+        let held = |pair: Pair, held: &bool| {
+            *held && delta.gain[pair].is_some() && settings.phase != PhaseCorrection::None
+        };
         let from_band = design.is_some() || settings.delay_from == DelayFrom::Band;
         Problem {
-            quantity: if design.is_some() { Quantity::SignedDelay } else { Quantity::Delay },
-            delta: if from_band { delta.band_delay_s.clone() } else { delta.delay_s.clone() },
+            quantity: if design.is_some() {
+                Quantity::SignedDelay
+            } else {
+                Quantity::Delay
+            },
+            delta: if from_band {
+                delta.band_delay_s.clone()
+            } else {
+                delta.delay_s.clone()
+            },
             constrained: settings.constrained.map(held),
             fitted: settings.fitted(),
-            bounds: Bounds { lower: design.map_or(0.0, LeadDesign::lower_s), upper: upper_s },
+            bounds: Bounds {
+                lower: design.map_or(0.0, LeadDesign::lower_s),
+                upper: upper_s,
+            },
             alpha: settings.alpha_delay,
             agreement: DELAY_AGREEMENT_S,
         }
@@ -403,7 +586,11 @@ impl<'a> SolveInput<'a> {
 pub(super) type Solved = Result<Arc<Solution>, ProblemError>;
 
 /// The optimum of a problem, proven within a budget.
-pub(super) fn solved(problem: &Problem, proofs: ProofBudget, progress: &dyn Progress) -> Result<Solved, Cancelled> {
+pub(super) fn solved(
+    problem: &Problem,
+    proofs: ProofBudget,
+    progress: &dyn Progress,
+) -> Result<Solved, Cancelled> {
     match solve(problem, proofs, &|| progress.cancelled()) {
         Err(ProblemError::Stopped) => Err(Cancelled),
         solved => Ok(solved.map(Arc::new)),
@@ -422,7 +609,9 @@ struct Optima {
 impl Optima {
     fn correction(&self) -> ChannelCorrection {
         match &self.compensated {
-            Some(compensated) => ChannelCorrection::of_leads(self.gains.channels(), compensated.leads.clone()),
+            Some(compensated) => {
+                ChannelCorrection::of_leads(self.gains.channels(), compensated.leads.clone())
+            }
             None => ChannelCorrection::of_delays(self.gains.channels(), self.delays.channels()),
         }
     }
@@ -437,7 +626,11 @@ fn check_comparable(
         return Ok(());
     }
     let name = |kind, model: usize| condition.bundle(kind)[model].name.clone();
-    let because = comparison.cautions.iter().map(|caution| format!("; {}", caution.words(&pair_name))).collect();
+    let because = comparison
+        .cautions
+        .iter()
+        .map(|caution| format!("; {}", caution.words(&pair_name)))
+        .collect();
     Err(ConditionFailure::NothingToCompare {
         physics: name(BundleKind::Physics, comparison.physics.model),
         identified: name(BundleKind::Identified, comparison.identified.model),
@@ -445,14 +638,34 @@ fn check_comparable(
     })
 }
 
-fn cautions_of(settings: &Settings, comparison: &Comparison, figures: &BundleMetrics) -> Vec<Caution> {
+fn cautions_of(
+    settings: &Settings,
+    comparison: &Comparison,
+    figures: &BundleMetrics,
+) -> Vec<Caution> {
     let held = settings.constrained.marked();
-    let undefined = held.filter_map(|pair| Some(Caution::HeldButUndefined { pair, why: comparison.undefined[pair]? }));
+    let undefined = held.filter_map(|pair| {
+        Some(Caution::HeldButUndefined {
+            pair,
+            why: comparison.undefined[pair]?,
+        })
+    });
     let mut cautions: Vec<Caution> = undefined.collect();
-    cautions.extend(figures.discontinuity.as_ref().err().cloned().map(Caution::NoSuggestions));
+    cautions.extend(
+        figures
+            .discontinuity
+            .as_ref()
+            .err()
+            .cloned()
+            .map(Caution::NoSuggestions),
+    );
     cautions.extend(comparison.cautions.iter().cloned());
     let fitted = settings.fitted();
-    cautions.extend(fitted.marked().filter_map(|pair| Caution::of_gain(pair, comparison.delta.gain[pair]?)));
+    cautions.extend(
+        fitted
+            .marked()
+            .filter_map(|pair| Caution::of_gain(pair, comparison.delta.gain[pair]?)),
+    );
     cautions
 }
 

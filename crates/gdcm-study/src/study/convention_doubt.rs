@@ -50,27 +50,45 @@ impl ConventionDoubt {
     /// The doubt in words, with what would settle it.
     pub fn words(&self, dataset: &Dataset) -> String {
         let channel = self.channel.name_in(dataset);
-        let pairs: Vec<String> = self.pairs.iter().map(|&pair| dataset.pair_name(pair)).collect();
+        let pairs: Vec<String> = self
+            .pairs
+            .iter()
+            .map(|&pair| dataset.pair_name(pair))
+            .collect();
         let ids: Vec<String> = self.conditions.iter().map(ToString::to_string).collect();
         let place = match self.conditions.len() {
             count if count == dataset.conditions().len() => "in every condition".to_owned(),
             1 => format!("in condition {}", ids[0]),
             _ => format!("in conditions {}", ids.join(", ")),
         };
-        let alike = if self.all_responses { format!(", like all responses of {channel},") } else { String::new() };
+        let alike = if self.all_responses {
+            format!(", like all responses of {channel},")
+        } else {
+            String::new()
+        };
         match self.convention {
             Convention::Sign => format!(
                 "{} {} by half a turn at all frequencies{alike} {place}: {channel} of the identified models has the other sign. \
                  Turn it?",
                 pairs.join(", "),
-                if pairs.len() == 1 { "differs" } else { "differ" }
+                if pairs.len() == 1 {
+                    "differs"
+                } else {
+                    "differ"
+                }
             ),
             Convention::Factor(factor) => {
-                let near = KNOWN_FACTORS.iter().find(|(known, _)| is_near(factor, *known));
+                let near = KNOWN_FACTORS
+                    .iter()
+                    .find(|(known, _)| is_near(factor, *known));
                 let units = near.map_or_else(String::new, |(known, units)| {
                     format!(
                         ", near {}: {units}",
-                        if factor < 1.0 { format!("1/{}", short(*known)) } else { short(*known) }
+                        if factor < 1.0 {
+                            format!("1/{}", short(*known))
+                        } else {
+                            short(*known)
+                        }
                     )
                 });
                 format!(
@@ -96,7 +114,11 @@ fn short(factor: f64) -> String {
 }
 
 fn is_near(factor: f64, known: f64) -> bool {
-    let ratio = if factor < 1.0 { factor * known } else { factor / known };
+    let ratio = if factor < 1.0 {
+        factor * known
+    } else {
+        factor / known
+    };
     (1.0 / NEAR_FACTOR..=NEAR_FACTOR).contains(&ratio)
 }
 
@@ -110,7 +132,10 @@ struct Sample<'a> {
 impl Sample<'_> {
     /// The responses of a channel that have a mismatch.
     fn of_channel(&self, channel: Channel) -> impl Iterator<Item = (Pair, &Mismatch)> {
-        let own = self.mismatch.iter().filter(move |(pair, _)| channel.is_of(*pair));
+        let own = self
+            .mismatch
+            .iter()
+            .filter(move |(pair, _)| channel.is_of(*pair));
         own.filter_map(|(pair, mismatch)| Some((pair, mismatch.as_ref()?)))
     }
 
@@ -118,26 +143,45 @@ impl Sample<'_> {
     fn opposed(&self, channel: Channel) -> f64 {
         let opposed: Vec<f64> = self
             .of_channel(channel)
-            .map(|(_, mismatch)| if weighted_sum(mismatch, f64::cos) < 0.0 { 1.0 } else { 0.0 })
+            .map(|(_, mismatch)| {
+                if weighted_sum(mismatch, f64::cos) < 0.0 {
+                    1.0
+                } else {
+                    0.0
+                }
+            })
             .collect();
         opposed.iter().sum::<f64>() / opposed.len().max(1) as f64
     }
 
     /// Natural logarithms of G of the responses of a channel.
     fn ln_gains(&self, channel: Channel) -> Vec<f64> {
-        self.of_channel(channel).filter_map(|(pair, _)| Some(self.gains[pair]?.ln())).collect()
+        self.of_channel(channel)
+            .filter_map(|(pair, _)| Some(self.gains[pair]?.ln()))
+            .collect()
     }
 }
 
 /// A sum over frequency by the weights of J (M4a).
 fn weighted_sum(mismatch: &Mismatch, of: impl Fn(f64) -> f64) -> f64 {
     let weight = |place: usize| mismatch.weights().map_or(1.0, |weights| weights[place]);
-    mismatch.phase.iter().enumerate().map(|(place, phase)| weight(place) * of(*phase)).sum()
+    mismatch
+        .phase
+        .iter()
+        .enumerate()
+        .map(|(place, phase)| weight(place) * of(*phase))
+        .sum()
 }
 
 /// Whether the phase difference lies near half a turn over most of the band.
 fn is_turned(mismatch: &Mismatch) -> bool {
-    let near = |phase: f64| if PI - phase.abs() <= NEAR_HALF_A_TURN { 1.0 } else { 0.0 };
+    let near = |phase: f64| {
+        if PI - phase.abs() <= NEAR_HALF_A_TURN {
+            1.0
+        } else {
+            0.0
+        }
+    };
     weighted_sum(mismatch, near) > 0.5 * weighted_sum(mismatch, |_| 1.0)
 }
 
@@ -154,7 +198,9 @@ pub(super) fn convention_doubts(
     let samples: Vec<Sample<'_>> = samples.collect();
     let channels = || Channel::all(measuring.inputs(), measuring.outputs());
     let signs = channels().filter_map(|channel| sign_doubt(&samples, measuring, channel));
-    signs.chain(channels().filter_map(|channel| factor_doubt(&samples, measuring, channel))).collect()
+    signs
+        .chain(channels().filter_map(|channel| factor_doubt(&samples, measuring, channel)))
+        .collect()
 }
 
 /// The other channel of a response.
@@ -166,21 +212,37 @@ fn other(channel: Channel, pair: Pair) -> Channel {
 /// What one sample shows of a channel: the condition, the responses that show it, and whether all of the channel do.
 type Shown = (ConditionId, Vec<Pair>, bool);
 
-fn sign_doubt(samples: &[Sample<'_>], measuring: &PairTable<bool>, channel: Channel) -> Option<ConventionDoubt> {
+fn sign_doubt(
+    samples: &[Sample<'_>],
+    measuring: &PairTable<bool>,
+    channel: Channel,
+) -> Option<ConventionDoubt> {
     let shown = samples.iter().map(|sample| {
         // Of the two channels of a response that one is to blame whose other responses are opposed too; the output where both are.
         let is_to_blame = |pair: Pair| {
-            let (own, of_other) = (sample.opposed(channel), sample.opposed(other(channel, pair)));
+            let (own, of_other) = (
+                sample.opposed(channel),
+                sample.opposed(other(channel, pair)),
+            );
             own > of_other || (own == of_other && matches!(channel, Channel::Output(_)))
         };
-        let turned = sample.of_channel(channel).filter(|(pair, mismatch)| measuring[*pair] && is_turned(mismatch));
-        let turned = turned.map(|(pair, _)| pair).filter(|pair| is_to_blame(*pair)).collect();
+        let turned = sample
+            .of_channel(channel)
+            .filter(|(pair, mismatch)| measuring[*pair] && is_turned(mismatch));
+        let turned = turned
+            .map(|(pair, _)| pair)
+            .filter(|pair| is_to_blame(*pair))
+            .collect();
         (sample.condition, turned, sample.opposed(channel) == 1.0)
     });
     ConventionDoubt::of(Convention::Sign, channel, shown)
 }
 
-fn factor_doubt(samples: &[Sample<'_>], measuring: &PairTable<bool>, channel: Channel) -> Option<ConventionDoubt> {
+fn factor_doubt(
+    samples: &[Sample<'_>],
+    measuring: &PairTable<bool>,
+    channel: Channel,
+) -> Option<ConventionDoubt> {
     let is_far = |ln_gain: f64| ln_gain.abs() > USUAL_FACTOR.ln();
     let mut ln_gains = Vec::new();
     let shown = samples.iter().map(|sample| {
@@ -190,16 +252,29 @@ fn factor_doubt(samples: &[Sample<'_>], measuring: &PairTable<bool>, channel: Ch
             let (here, there) = (apart(channel), apart(other(channel, pair)));
             here < there || (here == there && matches!(channel, Channel::Output(_)))
         };
-        let measured = sample.of_channel(channel).filter(|(pair, _)| measuring[*pair]);
-        let far = measured.filter_map(|(pair, _)| Some((pair, sample.gains[pair]?.ln()))).filter(|of| is_far(of.1));
-        let (pairs, gains): (Vec<Pair>, Vec<f64>) = far.filter(|(pair, ln_gain)| is_to_blame(*pair, *ln_gain)).unzip();
+        let measured = sample
+            .of_channel(channel)
+            .filter(|(pair, _)| measuring[*pair]);
+        let far = measured
+            .filter_map(|(pair, _)| Some((pair, sample.gains[pair]?.ln())))
+            .filter(|of| is_far(of.1));
+        let (pairs, gains): (Vec<Pair>, Vec<f64>) = far
+            .filter(|(pair, ln_gain)| is_to_blame(*pair, *ln_gain))
+            .unzip();
         ln_gains.extend(gains);
-        (sample.condition, pairs, sample.ln_gains(channel).into_iter().all(is_far))
+        (
+            sample.condition,
+            pairs,
+            sample.ln_gains(channel).into_iter().all(is_far),
+        )
     });
     let shown: Vec<Shown> = shown.collect();
     let factor = median(&mut ln_gains);
     // A unit is one factor: responses that ask for several differ by something else.
-    if ln_gains.iter().any(|ln_gain| (ln_gain - factor).abs() > MOST_SPREAD.ln()) {
+    if ln_gains
+        .iter()
+        .any(|ln_gain| (ln_gain - factor).abs() > MOST_SPREAD.ln())
+    {
         return None;
     }
     ConventionDoubt::of(Convention::Factor(factor.exp()), channel, shown)
@@ -207,9 +282,20 @@ fn factor_doubt(samples: &[Sample<'_>], measuring: &PairTable<bool>, channel: Ch
 
 impl ConventionDoubt {
     /// The doubt that conditions show; none where none does.
-    fn of(convention: Convention, channel: Channel, shown: impl IntoIterator<Item = Shown>) -> Option<Self> {
-        let shown: Vec<Shown> = shown.into_iter().filter(|(_, pairs, _)| !pairs.is_empty()).collect();
-        let pairs: BTreeSet<Pair> = shown.iter().flat_map(|(_, pairs, _)| pairs).copied().collect();
+    fn of(
+        convention: Convention,
+        channel: Channel,
+        shown: impl IntoIterator<Item = Shown>,
+    ) -> Option<Self> {
+        let shown: Vec<Shown> = shown
+            .into_iter()
+            .filter(|(_, pairs, _)| !pairs.is_empty())
+            .collect();
+        let pairs: BTreeSet<Pair> = shown
+            .iter()
+            .flat_map(|(_, pairs, _)| pairs)
+            .copied()
+            .collect();
         (!shown.is_empty()).then(|| Self {
             convention,
             channel,
@@ -224,7 +310,10 @@ impl ConventionDoubt {
 ///
 /// # Errors
 /// [`Cancelled`] where `execution` is.
-pub fn doubts_of_models(study: &Study, execution: &Execution<'_>) -> Result<Vec<ConventionDoubt>, Cancelled> {
+pub fn doubts_of_models(
+    study: &Study,
+    execution: &Execution<'_>,
+) -> Result<Vec<ConventionDoubt>, Cancelled> {
     let (band, points) = (study.settings.band, study.settings.points);
     let grid = FrequencyGrid::logarithmic(band, points);
     let mut tables = Vec::new();
@@ -232,14 +321,25 @@ pub fn doubts_of_models(study: &Study, execution: &Execution<'_>) -> Result<Vec<
         let responses = ConditionResponses::of(condition, (band, points), execution)?;
         let rejected = &study.choice(condition.id()).identified.rejected;
         let models = condition.bundle(BundleKind::Identified).iter();
-        let kept = models.enumerate().find(|(_, model)| !rejected.contains(&model.name));
+        let kept = models
+            .enumerate()
+            .find(|(_, model)| !rejected.contains(&model.name));
         let compared = |kind, model| {
-            Compared::of(condition, &responses, (kind, model), (&grid, study.settings.coherence_threshold))
+            Compared::of(
+                condition,
+                &responses,
+                (kind, model),
+                (&grid, study.settings.coherence_threshold),
+            )
         };
         let physics = compared(BundleKind::Physics, condition.nominal());
-        let mismatch = kept.map(|(model, _)| physics.against(&compared(BundleKind::Identified, model)));
+        let mismatch =
+            kept.map(|(model, _)| physics.against(&compared(BundleKind::Identified, model)));
         tables.extend(mismatch.map(|mismatch| (condition.id(), mismatch)));
     }
-    let tables: Vec<(ConditionId, &Mismatches)> = tables.iter().map(|(id, mismatch)| (*id, mismatch)).collect();
+    let tables: Vec<(ConditionId, &Mismatches)> = tables
+        .iter()
+        .map(|(id, mismatch)| (*id, mismatch))
+        .collect();
     Ok(convention_doubts(&tables, &study.dataset.measuring_pairs()))
 }

@@ -2,7 +2,9 @@
 //! that move, how near the loop is to ringing, what it does above the band (M16.4).
 
 use gdcm_method::correction::ABOVE_BAND;
-use gdcm_method::couplings::{CouplingBars, LEAST_CONDITIONS, LeftOutFit, LoopMargin, PoleShift, relative_change_db};
+use gdcm_method::couplings::{
+    CouplingBars, LEAST_CONDITIONS, LeftOutFit, LoopMargin, PoleShift, relative_change_db,
+};
 use gdcm_model::progress::{Portion, Shares};
 use gdcm_model::response::log_spaced;
 
@@ -98,15 +100,26 @@ impl CouplingsAssessment {
 
     /// `M~`, m x m, at an airspeed, with its bars.
     pub fn mixing(&self, airspeed_kt: f64) -> DMatrix<CouplingEntry> {
-        let (values, bars) = (self.fitted.matrices().normalised_mixing(airspeed_kt), self.bars(airspeed_kt));
-        entries(&values, bars.as_ref().map(|bars| (&bars.mixing, bars.quantile)), |to, from| to == from)
+        let (values, bars) = (
+            self.fitted.matrices().normalised_mixing(airspeed_kt),
+            self.bars(airspeed_kt),
+        );
+        entries(
+            &values,
+            bars.as_ref().map(|bars| (&bars.mixing, bars.quantile)),
+            |to, from| to == from,
+        )
     }
 
     /// `K`, m x p, with its bars.
     pub fn feedback(&self) -> DMatrix<CouplingEntry> {
         let bars = self.bars(self.mean_airspeed_kt());
         let values = self.fitted.matrices().feedback();
-        entries(values, bars.as_ref().map(|bars| (&bars.feedback, bars.quantile)), |_, _| false)
+        entries(
+            values,
+            bars.as_ref().map(|bars| (&bars.feedback, bars.quantile)),
+            |_, _| false,
+        )
     }
 
     /// Number of newly unstable poles whose frequency lies in the band of comparison, of every kept physics model.
@@ -132,8 +145,11 @@ fn entries(
         CouplingEntry {
             value,
             half_width,
-            deviation: half_width.zip(bars).map(|(half_width, (_, quantile))| half_width / quantile),
-            is_within_bar: !is_fixed(row, column) && (value == 0.0 || half_width.is_some_and(|bar| value.abs() <= bar)),
+            deviation: half_width
+                .zip(bars)
+                .map(|(half_width, (_, quantile))| half_width / quantile),
+            is_within_bar: !is_fixed(row, column)
+                && (value == 0.0 || half_width.is_some_and(|bar| value.abs() <= bar)),
         }
     })
 }
@@ -152,7 +168,9 @@ pub struct CouplingsJob {
 
 impl CouplingsJob {
     fn variant(&self) -> VariantJob {
-        VariantJob { study: with_couplings(&self.study, self.couplings) }
+        VariantJob {
+            study: with_couplings(&self.study, self.couplings),
+        }
     }
 }
 
@@ -213,7 +231,12 @@ impl Engine {
             omega: grid.omega().into(),
             conditions: BTreeMap::new(),
             unstable: Vec::new(),
-            want_leads: without.conditions.values().flatten().filter(|result| result.offer.is_some()).count(),
+            want_leads: without
+                .conditions
+                .values()
+                .flatten()
+                .filter(|result| result.offer.is_some())
+                .count(),
             left_out_fits: Vec::new(),
         };
         let results: Vec<&ConditionAnalysis> = with.conditions.values().flatten().collect();
@@ -226,7 +249,10 @@ impl Engine {
         for (result, looked_at) in results.iter().zip(looked_at) {
             let (mut condition, unstable) = looked_at?;
             let id = result.condition.id();
-            condition.left_out = left_out.iter().find(|of| of.fit.condition == id).map(|of| of.cost);
+            condition.left_out = left_out
+                .iter()
+                .find(|of| of.fit.condition == id)
+                .map(|of| of.cost);
             assessment.conditions.insert(id, condition);
             assessment.unstable.extend(unstable);
         }
@@ -248,16 +274,27 @@ impl Engine {
         let share = 0.6 / ids.len() as f64;
         let of_condition = |id: ConditionId| {
             let mut study = with.study.clone();
-            if study.apply(&Edit::SetHeldOut { condition: id, held_out: true }).is_err() {
+            if study
+                .apply(&Edit::SetHeldOut {
+                    condition: id,
+                    held_out: true,
+                })
+                .is_err()
+            {
                 return Ok(None);
             }
-            let mut engine = self.fork(Box::new(Sequential)).with_proofs_within(SUBSTITUTION_PROOF);
+            let mut engine = self
+                .fork(Box::new(Sequential))
+                .with_proofs_within(SUBSTITUTION_PROOF);
             let portion = Portion::new(shares, share, LEAVING_OUT);
             let analysis = engine.analyze(&study, &portion)?;
             portion.finish()?;
             Ok(LeftOutCondition::of(id, &analysis, without))
         };
-        each(self.executor(), ids, of_condition).into_iter().filter_map(Result::transpose).collect()
+        each(self.executor(), ids, of_condition)
+            .into_iter()
+            .filter_map(Result::transpose)
+            .collect()
     }
 }
 
@@ -271,21 +308,39 @@ struct LeftOutCondition {
 impl LeftOutCondition {
     /// None where the others do not make couplings or a schedule, or it cannot be assessed.
     fn of(condition: ConditionId, held_out: &Analysis, without: &Analysis) -> Option<Self> {
-        let fit = LeftOutFit { condition, fit: held_out.fitted_couplings()?.fit.clone() };
-        let changes = [(without, AssessedCorrection::ScheduleOfOthers), (held_out, AssessedCorrection::Scheduled)];
+        let fit = LeftOutFit {
+            condition,
+            fit: held_out.fitted_couplings()?.fit.clone(),
+        };
+        let changes = [
+            (without, AssessedCorrection::ScheduleOfOthers),
+            (held_out, AssessedCorrection::Scheduled),
+        ];
         let [before, after] = changes.map(|(analysis, correction)| {
-            Some(assessed(analysis, condition, choice(analysis, correction)).ok()?.changes)
+            Some(
+                assessed(analysis, condition, choice(analysis, correction))
+                    .ok()?
+                    .changes,
+            )
         });
         let changes = [before?, after?];
         let mut sums = CostSums::new(without.study.dataset.on_axis());
         sums.add(&changes[0], &changes[1]);
-        Some(Self { fit, cost: sums.corrected(), changes })
+        Some(Self {
+            fit,
+            cost: sums.corrected(),
+            changes,
+        })
     }
 }
 
 /// The representatives under a correction.
 fn choice(analysis: &Analysis, correction: AssessedCorrection) -> AssessmentChoice {
-    AssessmentChoice { model: AssessedModel::Representative, correction, average: analysis.study.settings.cost_average }
+    AssessmentChoice {
+        model: AssessedModel::Representative,
+        correction,
+        average: analysis.study.settings.cost_average,
+    }
 }
 
 fn costs(without: &Analysis, with: &Analysis, left_out: &[LeftOutCondition]) -> CouplingCosts {
@@ -300,9 +355,17 @@ fn costs(without: &Analysis, with: &Analysis, left_out: &[LeftOutCondition]) -> 
         }
         sums
     };
-    let (own, scheduled) = (of(AssessedCorrection::Own), of(AssessedCorrection::Scheduled));
+    let (own, scheduled) = (
+        of(AssessedCorrection::Own),
+        of(AssessedCorrection::Scheduled),
+    );
     let mut unseen = CostSums::new(on_axis);
-    left_out.iter().for_each(|LeftOutCondition { changes: [without, with], .. }| unseen.add(without, with));
+    left_out.iter().for_each(
+        |LeftOutCondition {
+             changes: [without, with],
+             ..
+         }| unseen.add(without, with),
+    );
     CouplingCosts {
         uncorrected: own.uncorrected(),
         own: own.corrected(),
@@ -327,19 +390,34 @@ fn of_condition(
     grid: &FrequencyGrid,
     progress: &dyn Progress,
 ) -> Result<(ConditionCouplings, Vec<UnstablePole>), Cancelled> {
-    let (id, airspeed_kt) = (result.condition.id(), result.condition.flight_state().airspeed_kt);
+    let (id, airspeed_kt) = (
+        result.condition.id(),
+        result.condition.flight_state().airspeed_kt,
+    );
     let physics = result.condition.bundle(BundleKind::Physics);
     let chosen = result.comparison.physics.model;
-    let Some(coupled) = &result.coupled else { return Err(Cancelled) };
+    let Some(coupled) = &result.coupled else {
+        return Err(Cancelled);
+    };
     let matrices = coupled.fitted.matrices();
     let shifts = |model: &Model| match model.state_space() {
-        None => Err("the physics representative is a measured response: it has no poles".to_owned()),
-        Some(of) => matrices.pole_shifts(of, airspeed_kt, Pade::default()).map_err(|error| error.to_string()),
+        None => {
+            Err("the physics representative is a measured response: it has no poles".to_owned())
+        }
+        Some(of) => matrices
+            .pole_shifts(of, airspeed_kt, Pade::default())
+            .map_err(|error| error.to_string()),
     };
     let response = PreparedModel::of(&physics[chosen].dynamics).response(grid);
     let singular_values = matrices.least_singular_values(&response);
-    let from_band = grid.omega().partition_point(|omega| *omega < study.settings.band.min());
-    let above_band_db = relative_change_db(&response, &result.coupled_response(&response), grid.len() - 1);
+    let from_band = grid
+        .omega()
+        .partition_point(|omega| *omega < study.settings.band.min());
+    let above_band_db = relative_change_db(
+        &response,
+        &result.coupled_response(&response),
+        grid.len() - 1,
+    );
     let (mut unstable, mut refused) = (Vec::new(), Vec::new());
     let mut poles = Err(String::new());
     for (index, model) in physics.iter().enumerate() {
@@ -351,13 +429,19 @@ fn of_condition(
             continue;
         }
         let found = shifts(model);
-        let newly = found.iter().flatten().filter(|shift| shift.is_newly_unstable());
-        unstable.extend(newly.map(|shift| UnstablePole {
-            condition: id,
-            model: model.name.clone(),
-            is_representative,
-            pole: shift.after,
-            is_in_band: (study.settings.band.min()..=study.settings.band.max()).contains(&shift.after.norm()),
+        let newly = found
+            .iter()
+            .flatten()
+            .filter(|shift| shift.is_newly_unstable());
+        unstable.extend(newly.map(|shift| {
+            UnstablePole {
+                condition: id,
+                model: model.name.clone(),
+                is_representative,
+                pole: shift.after,
+                is_in_band: (study.settings.band.min()..=study.settings.band.max())
+                    .contains(&shift.after.norm()),
+            }
         }));
         match found {
             found if is_representative => poles = found,
@@ -367,13 +451,26 @@ fn of_condition(
     }
     let margin = LoopMargin::of(&singular_values[from_band..], &grid.omega()[from_band..]);
     let left_out = None;
-    Ok((ConditionCouplings { airspeed_kt, poles, singular_values, margin, above_band_db, left_out, refused }, unstable))
+    Ok((
+        ConditionCouplings {
+            airspeed_kt,
+            poles,
+            singular_values,
+            margin,
+            above_band_db,
+            left_out,
+            refused,
+        },
+        unstable,
+    ))
 }
 
 impl ConditionCouplings {
     /// The response among the marked ones that couplings change most above the band, and by how much \[dB\].
     pub fn most_changed_above_band(&self, marked: &PairTable<bool>) -> Option<(Pair, f64)> {
-        let known = marked.marked().filter_map(|pair| Some((pair, self.above_band_db[pair]?)));
+        let known = marked
+            .marked()
+            .filter_map(|pair| Some((pair, self.above_band_db[pair]?)));
         known.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
@@ -415,7 +512,10 @@ impl CouplingCost {
 
     /// Whether the off-axis J is at least a tenth less with couplings.
     pub fn is_worth_it(&self) -> bool {
-        self.with.others.zip(self.without.others).is_some_and(|(with, without)| with <= Self::WORTH * without)
+        self.with
+            .others
+            .zip(self.without.others)
+            .is_some_and(|(with, without)| with <= Self::WORTH * without)
     }
 }
 
@@ -428,22 +528,34 @@ pub(super) struct CostSums<'a> {
 
 impl<'a> CostSums<'a> {
     pub(super) fn new(on_axis: &'a PairTable<bool>) -> Self {
-        Self { on_axis, sums: Default::default() }
+        Self {
+            on_axis,
+            sums: Default::default(),
+        }
     }
 
     /// Adds the responses of a condition, without couplings and with them.
-    pub(super) fn add(&mut self, without: &PairTable<Option<CostChange>>, with: &PairTable<Option<CostChange>>) {
+    pub(super) fn add(
+        &mut self,
+        without: &PairTable<Option<CostChange>>,
+        with: &PairTable<Option<CostChange>>,
+    ) {
         let both = |(pair, of): (Pair, &Option<CostChange>)| Some((pair, (*of)?, with[pair]?));
         for (pair, without, with) in without.iter().filter_map(both) {
             let (count, sums) = &mut self.sums[usize::from(self.on_axis[pair])];
             *count += 1;
-            let added = [without.uncorrected, without.corrected, with.corrected].map(|cost| cost.total());
-            sums.iter_mut().zip(added).for_each(|(sum, cost)| *sum += cost);
+            let added =
+                [without.uncorrected, without.corrected, with.corrected].map(|cost| cost.total());
+            sums.iter_mut()
+                .zip(added)
+                .for_each(|(sum, cost)| *sum += cost);
         }
     }
 
     fn mean(&self, which: usize) -> AxisCost {
-        let [others, on_axis] = self.sums.map(|(count, sums)| (count > 0).then(|| sums[which] / count as f64));
+        let [others, on_axis] = self
+            .sums
+            .map(|(count, sums)| (count > 0).then(|| sums[which] / count as f64));
         AxisCost { on_axis, others }
     }
 
@@ -454,7 +566,10 @@ impl<'a> CostSums<'a> {
 
     /// The means of J without couplings and with them.
     pub(super) fn corrected(&self) -> CouplingCost {
-        CouplingCost { without: self.mean(1), with: self.mean(2) }
+        CouplingCost {
+            without: self.mean(1),
+            with: self.mean(2),
+        }
     }
 }
 
@@ -474,9 +589,14 @@ mod tests {
 
     /// The assessment of mixing and feedback of the reference dataset.
     static ASSESSED: LazyLock<Arc<CouplingsAssessment>> = LazyLock::new(|| {
-        let job =
-            CouplingsJob { study: EXAMPLE.analysis.study.clone(), couplings: CouplingCorrection::MixingAndFeedback };
-        job.run(&mut engine(), &Unobserved).unwrap().unwrap().unwrap()
+        let job = CouplingsJob {
+            study: EXAMPLE.analysis.study.clone(),
+            couplings: CouplingCorrection::MixingAndFeedback,
+        };
+        job.run(&mut engine(), &Unobserved)
+            .unwrap()
+            .unwrap()
+            .unwrap()
     });
 
     fn both(of: AxisCost) -> Vec<f64> {
@@ -488,49 +608,105 @@ mod tests {
         let costs = &ASSESSED.costs;
         let mean_cost = &REFERENCE["example"]["feedback"]["mean_J"];
         let tolerance = number(&REFERENCE["tolerance"]["mean_J"]);
-        assert_close("own", &both(costs.own.with), &numbers(&mean_cost["own"]), tolerance);
-        assert_close("scheduled", &both(costs.scheduled.with), &numbers(&mean_cost["scheduled"]), tolerance);
+        assert_close(
+            "own",
+            &both(costs.own.with),
+            &numbers(&mean_cost["own"]),
+            tolerance,
+        );
+        assert_close(
+            "scheduled",
+            &both(costs.scheduled.with),
+            &numbers(&mean_cost["scheduled"]),
+            tolerance,
+        );
         let [own, scheduled] = own_and_scheduled(&EXAMPLE.analysis);
         // The same sums in another order.
         assert_close("own, without", &both(costs.own.without), &own, 1e-9);
-        assert_close("scheduled, without", &both(costs.scheduled.without), &scheduled, 1e-9);
+        assert_close(
+            "scheduled, without",
+            &both(costs.scheduled.without),
+            &scheduled,
+            1e-9,
+        );
     }
 
     #[test]
     fn a_condition_left_out_is_in_neither_the_fit_nor_the_schedule_that_judge_it() {
         let left_out = ASSESSED.costs.left_out.unwrap();
-        let [unseen, seen] = [left_out, ASSESSED.costs.scheduled].map(|cost| cost.with.others.unwrap());
-        assert!(unseen > seen, "what was seen is fitted better: {unseen} {seen}");
-        assert!(left_out.is_worth_it() && unseen < 0.6 * left_out.without.others.unwrap(), "{left_out:?}");
+        let [unseen, seen] =
+            [left_out, ASSESSED.costs.scheduled].map(|cost| cost.with.others.unwrap());
+        assert!(
+            unseen > seen,
+            "what was seen is fitted better: {unseen} {seen}"
+        );
+        assert!(
+            left_out.is_worth_it() && unseen < 0.6 * left_out.without.others.unwrap(),
+            "{left_out:?}"
+        );
         assert_eq!(ASSESSED.left_out_fits.len(), 11);
         let id = ASSESSED.left_out_fits[3].condition;
         let mut study = COUPLED.1.study.clone();
-        study.apply(&Edit::SetHeldOut { condition: id, held_out: true }).unwrap();
+        study
+            .apply(&Edit::SetHeldOut {
+                condition: id,
+                held_out: true,
+            })
+            .unwrap();
         let analysis = engine().analyze(&study, &Unobserved).unwrap();
-        assert_eq!(analysis.fitted_couplings().unwrap().fit, ASSESSED.left_out_fits[3].fit);
-        assert!(ASSESSED.conditions[&id].left_out.unwrap().with.others.unwrap() > 0.0);
+        assert_eq!(
+            analysis.fitted_couplings().unwrap().fit,
+            ASSESSED.left_out_fits[3].fit
+        );
+        assert!(
+            ASSESSED.conditions[&id]
+                .left_out
+                .unwrap()
+                .with
+                .others
+                .unwrap()
+                > 0.0
+        );
     }
 
     #[test]
     fn the_diagnosis_comes_first_and_what_is_within_its_bar_is_not_told() {
         let said = ASSESSED.remarks(&EXAMPLE.dataset);
-        let swashplate =
-            said.iter().position(|of| of.text.starts_with("LAT takes ") && of.text.contains("swashplate phase of "));
-        let verdict = said.iter().position(|of| of.text.starts_with("Off the axis, J of conditions left out is "));
+        let swashplate = said.iter().position(|of| {
+            of.text.starts_with("LAT takes ") && of.text.contains("swashplate phase of ")
+        });
+        let verdict = said.iter().position(|of| {
+            of.text
+                .starts_with("Off the axis, J of conditions left out is ")
+        });
         assert!(swashplate.unwrap() < verdict.unwrap(), "{said:#?}");
-        assert!(said.iter().all(|of| !of.text.contains("switch the couplings off")), "{said:#?}");
         assert!(
-            ASSESSED
-                .offer()
-                .unwrap()
-                .starts_with("With mixing and feedback off-axis J of conditions left out would be ")
+            said.iter()
+                .all(|of| !of.text.contains("switch the couplings off")),
+            "{said:#?}"
+        );
+        assert!(
+            ASSESSED.offer().unwrap().starts_with(
+                "With mixing and feedback off-axis J of conditions left out would be "
+            )
         );
         let mixing = ASSESSED.mixing(ASSESSED.mean_airspeed_kt());
-        for (entry, half_width) in mixing.iter().filter_map(|entry| Some((entry, entry.half_width?))) {
+        for (entry, half_width) in mixing
+            .iter()
+            .filter_map(|entry| Some((entry, entry.half_width?)))
+        {
             assert!(entry.is_within_bar == (entry.value.abs() <= half_width) || entry.value == 1.0);
-            assert!(entry.deviation.unwrap() <= half_width, "Student's quantile of 90 % is over 1");
+            assert!(
+                entry.deviation.unwrap() <= half_width,
+                "Student's quantile of 90 % is over 1"
+            );
         }
-        assert!(mixing.diagonal().iter().all(|entry| entry.value == 1.0 && !entry.is_within_bar));
+        assert!(
+            mixing
+                .diagonal()
+                .iter()
+                .all(|entry| entry.value == 1.0 && !entry.is_within_bar)
+        );
         assert!(ASSESSED.feedback().iter().any(|entry| entry.is_within_bar));
     }
 
@@ -547,12 +723,19 @@ mod tests {
         assessed.unstable = vec![unstable("fast", 90.0, false), unstable("slow", 2.0, true)];
         assessed.left_out_fits.pop();
         let said = assessed.cautions(&EXAMPLE.dataset);
-        let poles = said.iter().find(|of| of.text.contains("newly unstable")).unwrap();
+        let poles = said
+            .iter()
+            .find(|of| of.text.contains("newly unstable"))
+            .unwrap();
         assert_eq!(poles.kind, RemarkKind::Trouble);
         let words = "2 poles of other kept physics models are newly unstable with the couplings: in the band condition 4, slow at 2.000 rad/s; \
                      condition 4, fast at 90.000 rad/s.";
         assert_eq!(poles.text, words);
-        assert!(said.iter().any(|of| of.text.contains("rest on 10 of 11 conditions")), "{said:#?}");
+        assert!(
+            said.iter()
+                .any(|of| of.text.contains("rest on 10 of 11 conditions")),
+            "{said:#?}"
+        );
     }
 
     #[test]
@@ -561,41 +744,87 @@ mod tests {
         assert!((ASSESSED.omega[0] / band.min() - 0.1).abs() < 1e-9);
         for of in ASSESSED.conditions.values() {
             let poles = of.poles.as_ref().unwrap();
-            assert!(poles.iter().any(|shift| shift.distance_rad_s().unwrap() > 1e-3), "feedback moves poles");
+            assert!(
+                poles
+                    .iter()
+                    .any(|shift| shift.distance_rad_s().unwrap() > 1e-3),
+                "feedback moves poles"
+            );
             let margin = of.margin.unwrap();
             // M16.4: 0.87 in the band of another dataset of the same helicopter.
-            assert!(margin.least > 0.8 && margin.omega_rad_s >= band.min(), "{margin:?}");
-            let (_, change_db) = of.most_changed_above_band(EXAMPLE.dataset.on_axis()).unwrap();
+            assert!(
+                margin.least > 0.8 && margin.omega_rad_s >= band.min(),
+                "{margin:?}"
+            );
+            let (_, change_db) = of
+                .most_changed_above_band(EXAMPLE.dataset.on_axis())
+                .unwrap();
             assert!(change_db < 6.0 && change_db > -60.0, "{change_db}");
         }
-        assert!(ASSESSED.unstable.iter().all(|of| !of.is_in_band && of.pole.re > 0.0));
+        assert!(
+            ASSESSED
+                .unstable
+                .iter()
+                .all(|of| !of.is_in_band && of.pole.re > 0.0)
+        );
     }
 
     #[test]
     fn without_leads_a_feedback_is_said_to_take_their_place() {
         assert_eq!(ASSESSED.want_leads, 0, "leads are given");
         let mut study = EXAMPLE.analysis.study.clone();
-        study.apply(&setting::PHASE.to(PhaseCorrection::Delay)).unwrap();
-        let assess = |couplings| engine().assess_couplings(&study, couplings, &Unobserved).unwrap().unwrap().unwrap();
+        study
+            .apply(&setting::PHASE.to(PhaseCorrection::Delay))
+            .unwrap();
+        let assess = |couplings| {
+            engine()
+                .assess_couplings(&study, couplings, &Unobserved)
+                .unwrap()
+                .unwrap()
+                .unwrap()
+        };
         let says = |of: &CouplingsAssessment| {
-            of.cautions(&EXAMPLE.dataset).iter().any(|of| of.text.ends_with("Correct the phase by leads first."))
+            of.cautions(&EXAMPLE.dataset)
+                .iter()
+                .any(|of| of.text.ends_with("Correct the phase by leads first."))
         };
         assert!(says(&assess(CouplingCorrection::MixingAndFeedback)) && !says(&ASSESSED));
-        assert!(!says(&assess(CouplingCorrection::Mixing)), "a mixing gives no lead");
+        assert!(
+            !says(&assess(CouplingCorrection::Mixing)),
+            "a mixing gives no lead"
+        );
     }
 
     #[test]
     fn mixing_alone_moves_no_pole_and_no_couplings_are_not_assessed() {
         let study = EXAMPLE.analysis.study.clone();
-        let run = |couplings| CouplingsJob { study: study.clone(), couplings }.run(&mut engine(), &Unobserved).unwrap();
+        let run = |couplings| {
+            CouplingsJob {
+                study: study.clone(),
+                couplings,
+            }
+            .run(&mut engine(), &Unobserved)
+            .unwrap()
+        };
         assert!(run(CouplingCorrection::None).is_none());
         let mixing = run(CouplingCorrection::Mixing).unwrap().unwrap();
         for of in mixing.conditions.values() {
-            assert!(of.poles.as_ref().unwrap().iter().all(|shift| shift.distance_rad_s() == Some(0.0)));
+            assert!(
+                of.poles
+                    .as_ref()
+                    .unwrap()
+                    .iter()
+                    .all(|shift| shift.distance_rad_s() == Some(0.0))
+            );
             assert_eq!(of.margin.unwrap().least, 1.0);
         }
         let mean_cost = &REFERENCE["example"]["mixing"]["mean_J"];
-        assert_close("own", &both(mixing.costs.own.with), &numbers(&mean_cost["own"]), 1e-3);
+        assert_close(
+            "own",
+            &both(mixing.costs.own.with),
+            &numbers(&mean_cost["own"]),
+            1e-3,
+        );
         assert_eq!(list(&mean_cost["own"]).len(), 2);
     }
 
@@ -603,38 +832,80 @@ mod tests {
     fn aircraft(outputs: usize, inputs: usize, response: impl Fn(Pair) -> bool) -> StateSpace {
         let states = outputs * inputs;
         let of = |state: usize| Pair::new(state / inputs, state % inputs);
-        let a =
-            DMatrix::from_fn(states, states, |row, column| if row == column { -0.8 - 0.3 * row as f64 } else { 0.0 });
-        let b = DMatrix::from_fn(states, inputs, |state, input| f64::from(u8::from(of(state).input == input)));
+        let a = DMatrix::from_fn(states, states, |row, column| {
+            if row == column {
+                -0.8 - 0.3 * row as f64
+            } else {
+                0.0
+            }
+        });
+        let b = DMatrix::from_fn(states, inputs, |state, input| {
+            f64::from(u8::from(of(state).input == input))
+        });
         let gain = |pair: Pair| if pair.output == pair.input { 4.0 } else { 0.5 };
         let c = DMatrix::from_fn(outputs, states, |output, state| {
-            if of(state).output == output && response(of(state)) { gain(of(state)) } else { 0.0 }
+            if of(state).output == output && response(of(state)) {
+                gain(of(state))
+            } else {
+                0.0
+            }
         });
         StateSpace::new(a, b, c, DMatrix::zeros(outputs, inputs)).unwrap()
     }
 
     /// A study of such aircraft, whose flight is theirs with a little mixing and feedback; gains alone correct the channels.
-    fn small_study(outputs: usize, inputs: usize, conditions: i64, response: impl Fn(Pair) -> bool) -> Study {
+    fn small_study(
+        outputs: usize,
+        inputs: usize,
+        conditions: i64,
+        response: impl Fn(Pair) -> bool,
+    ) -> Study {
         let unknowns = [
-            Unknown::Mixing { to: inputs - 1, from: 0, power: 0 },
-            Unknown::Feedback { input: 0, output: outputs - 1 },
+            Unknown::Mixing {
+                to: inputs - 1,
+                from: 0,
+                power: 0,
+            },
+            Unknown::Feedback {
+                input: 0,
+                output: outputs - 1,
+            },
         ];
         let airspeeds = || Airspeeds::new(vec![40.0], 2.0).unwrap();
         let flown = CouplingMatrices::none(airspeeds(), inputs, outputs).with(
-            &(0..inputs).map(|of| Unknown::Mixing { to: of, from: of, power: 0 }).chain(unknowns).collect::<Vec<_>>(),
-            &vec![1.0; inputs].into_iter().chain([0.08, -0.05]).collect::<Vec<_>>(),
+            &(0..inputs)
+                .map(|of| Unknown::Mixing {
+                    to: of,
+                    from: of,
+                    power: 0,
+                })
+                .chain(unknowns)
+                .collect::<Vec<_>>(),
+            &vec![1.0; inputs]
+                .into_iter()
+                .chain([0.08, -0.05])
+                .collect::<Vec<_>>(),
         );
         let condition = |id: i64| {
             let physics = aircraft(outputs, inputs, &response);
             let flight = flown.model(&physics, 40.0, Default::default()).unwrap();
             let model = |name: &str, origin, of| Model::new(name, origin, Dynamics::StateSpace(of));
             let nominal = model("nominal", Origin::Nominal { perturbation: None }, physics);
-            let flight = model("flight", Origin::Identified { method: None, order: None }, flight);
+            let flight = model(
+                "flight",
+                Origin::Identified {
+                    method: None,
+                    order: None,
+                },
+                flight,
+            );
             let state = FlightState::at(ConditionId(id), 40.0 + 20.0 * id as f64);
             Condition::new(state, vec![nominal], vec![flight]).unwrap()
         };
         let channels = |letter: &str, count: usize, unit: &str| -> Vec<Channel> {
-            (1..=count).map(|of| Channel::new(format!("{letter}{of}"), unit)).collect()
+            (1..=count)
+                .map(|of| Channel::new(format!("{letter}{of}"), unit))
+                .collect()
         };
         let header = DatasetHeader {
             name: "small".into(),
@@ -644,9 +915,15 @@ mod tests {
             on_axis: PairTable::from_fn(outputs, inputs, |pair| pair.output == pair.input),
             band: Band::new(0.5, 10.0).unwrap(),
         };
-        let mut study = Study::new(Arc::new(Dataset::new(header, (1..=conditions).map(condition).collect()).unwrap()));
-        study.apply(&setting::PHASE.to(PhaseCorrection::None)).unwrap();
-        study.apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback)).unwrap();
+        let mut study = Study::new(Arc::new(
+            Dataset::new(header, (1..=conditions).map(condition).collect()).unwrap(),
+        ));
+        study
+            .apply(&setting::PHASE.to(PhaseCorrection::None))
+            .unwrap();
+        study
+            .apply(&setting::COUPLINGS.to(CouplingCorrection::MixingAndFeedback))
+            .unwrap();
         study
     }
 
@@ -656,16 +933,33 @@ mod tests {
             let study = small_study(outputs, inputs, conditions, |_| true);
             let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
             let what = format!("{outputs} outputs, {inputs} inputs, {conditions} conditions");
-            let fitted = analysis.fitted_couplings().unwrap_or_else(|| panic!("{what}: {:?}", analysis.couplings));
-            assert!(fitted.fit.coefficients.iter().flatten().all(|value| value.is_finite()), "{what}");
-            let assessed = Engine::default().assess_couplings(&study, study.settings.couplings, &Unobserved).unwrap();
+            let fitted = analysis
+                .fitted_couplings()
+                .unwrap_or_else(|| panic!("{what}: {:?}", analysis.couplings));
+            assert!(
+                fitted
+                    .fit
+                    .coefficients
+                    .iter()
+                    .flatten()
+                    .all(|value| value.is_finite()),
+                "{what}"
+            );
+            let assessed = Engine::default()
+                .assess_couplings(&study, study.settings.couplings, &Unobserved)
+                .unwrap();
             let assessed = assessed.unwrap().unwrap();
             assert_eq!(assessed.costs.left_out.is_some(), conditions >= 3, "{what}");
             let said = assessed.cautions(&study.dataset);
-            let has_few = said.iter().any(|of| of.text.contains("three are needed for error bars"));
+            let has_few = said
+                .iter()
+                .any(|of| of.text.contains("three are needed for error bars"));
             assert_eq!(has_few, conditions < 3, "{what}: {said:?}");
             let own = assessed.costs.own.with;
-            assert!(own.on_axis.unwrap() < 1.0 && own.others.is_none_or(|others| others < 1.0), "{what}: {own:?}");
+            assert!(
+                own.on_axis.unwrap() < 1.0 && own.others.is_none_or(|others| others < 1.0),
+                "{what}: {own:?}"
+            );
         }
     }
 
@@ -675,28 +969,65 @@ mod tests {
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let matrices = analysis.fitted_couplings().unwrap().matrices();
         // The ridge draws entries by a thousandth.
-        assert!((matrices.normalised_mixing(60.0)[(1, 0)] - 0.08).abs() < 1e-3, "{matrices:?}");
-        assert!((matrices.feedback()[(0, 1)] + 0.05).abs() < 1e-3, "{matrices:?}");
+        assert!(
+            (matrices.normalised_mixing(60.0)[(1, 0)] - 0.08).abs() < 1e-3,
+            "{matrices:?}"
+        );
+        assert!(
+            (matrices.feedback()[(0, 1)] + 0.05).abs() < 1e-3,
+            "{matrices:?}"
+        );
     }
 
     use gdcm_method::fidelity::Cost;
 
     fn change(uncorrected: f64, corrected: f64) -> Option<CostChange> {
-        let cost = |magnitude| Cost { magnitude, phase: 0.0 };
-        Some(CostChange { uncorrected: cost(uncorrected), corrected: cost(corrected) })
+        let cost = |magnitude| Cost {
+            magnitude,
+            phase: 0.0,
+        };
+        Some(CostChange {
+            uncorrected: cost(uncorrected),
+            corrected: cost(corrected),
+        })
     }
 
     #[test]
     fn only_responses_that_can_be_compared_both_times_count() {
         let on_axis = PairTable::from_fn(2, 1, |pair| pair.output == 0);
         let mut sums = CostSums::new(&on_axis);
-        let table = |values: [Option<CostChange>; 2]| PairTable::from_fn(2, 1, |pair| values[pair.output]);
-        sums.add(&table([change(9.0, 4.0), change(50.0, 40.0)]), &table([change(9.0, 2.0), None]));
-        sums.add(&table([change(5.0, 2.0), change(70.0, 20.0)]), &table([change(5.0, 2.0), change(70.0, 18.0)]));
-        assert_eq!(sums.uncorrected(), AxisCost { on_axis: Some(7.0), others: Some(70.0) });
+        let table =
+            |values: [Option<CostChange>; 2]| PairTable::from_fn(2, 1, |pair| values[pair.output]);
+        sums.add(
+            &table([change(9.0, 4.0), change(50.0, 40.0)]),
+            &table([change(9.0, 2.0), None]),
+        );
+        sums.add(
+            &table([change(5.0, 2.0), change(70.0, 20.0)]),
+            &table([change(5.0, 2.0), change(70.0, 18.0)]),
+        );
+        assert_eq!(
+            sums.uncorrected(),
+            AxisCost {
+                on_axis: Some(7.0),
+                others: Some(70.0)
+            }
+        );
         let found = sums.corrected();
-        assert_eq!(found.without, AxisCost { on_axis: Some(3.0), others: Some(20.0) });
-        assert_eq!(found.with, AxisCost { on_axis: Some(2.0), others: Some(18.0) });
+        assert_eq!(
+            found.without,
+            AxisCost {
+                on_axis: Some(3.0),
+                others: Some(20.0)
+            }
+        );
+        assert_eq!(
+            found.with,
+            AxisCost {
+                on_axis: Some(2.0),
+                others: Some(18.0)
+            }
+        );
         assert!(found.is_worth_it(), "a tenth less");
         assert!(!CouplingCost::default().is_worth_it());
     }

@@ -16,7 +16,11 @@ pub struct DecisionDifference {
 
 impl DecisionDifference {
     fn new(what: impl Into<String>, before: impl Into<String>, after: impl Into<String>) -> Self {
-        Self { what: what.into(), before: before.into(), after: after.into() }
+        Self {
+            what: what.into(),
+            before: before.into(),
+            after: after.into(),
+        }
     }
 }
 
@@ -30,16 +34,31 @@ impl fmt::Display for DecisionDifference {
 /// condition. What was kept under names does not count.
 pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
     let (a, b) = (&before.settings, &after.settings);
-    let changed = SETTINGS.iter().filter(|setting| setting.value(a) != setting.value(b));
-    let changed = changed.map(|setting| DecisionDifference::new(setting.name, setting.words(a), setting.words(b)));
+    let changed = SETTINGS
+        .iter()
+        .filter(|setting| setting.value(a) != setting.value(b));
+    let changed = changed
+        .map(|setting| DecisionDifference::new(setting.name, setting.words(a), setting.words(b)));
     let mut differences: Vec<DecisionDifference> = changed.collect();
-    differences.extend(pair_differences(before, (&a.constrained, &b.constrained), ["held", "free"]));
-    differences.extend(pair_differences(before, (&a.ignored, &b.ignored), ["ignored", "fitted"]));
-    for channel in
-        Channel::all_of(&before.dataset).filter(|channel| before.signs.get(channel) != after.signs.get(channel))
+    differences.extend(pair_differences(
+        before,
+        (&a.constrained, &b.constrained),
+        ["held", "free"],
+    ));
+    differences.extend(pair_differences(
+        before,
+        (&a.ignored, &b.ignored),
+        ["ignored", "fitted"],
+    ));
+    for channel in Channel::all_of(&before.dataset)
+        .filter(|channel| before.signs.get(channel) != after.signs.get(channel))
     {
         let sign = |of: &Study| {
-            of.signs.get(&channel).map_or("as in the file".to_owned(), |of| format!("{} turned", of.models()))
+            of.signs
+                .get(&channel)
+                .map_or("as in the file".to_owned(), |of| {
+                    format!("{} turned", of.models())
+                })
         };
         let what = format!("sign of {}", channel.name_in(&before.dataset));
         differences.push(DecisionDifference::new(what, sign(before), sign(after)));
@@ -49,10 +68,15 @@ pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDiffer
         let (a, b) = (before.choice(id), after.choice(id));
         let mut compare = |before: bool, after: bool, [no, yes]: [&str; 2]| {
             let word = |is_so: bool| if is_so { yes } else { no };
-            let difference = DecisionDifference::new(format!("condition {id}"), word(before), word(after));
+            let difference =
+                DecisionDifference::new(format!("condition {id}"), word(before), word(after));
             differences.extend((before != after).then_some(difference));
         };
-        compare(a.scheduled, b.scheduled, ["left out of the schedule", "in the schedule"]);
+        compare(
+            a.scheduled,
+            b.scheduled,
+            ["left out of the schedule", "in the schedule"],
+        );
         compare(a.held_out, b.held_out, ["not held out", "held out"]);
         for kind in BundleKind::BOTH {
             differences.extend(bundle_differences(id, kind, a.bundle(kind), b.bundle(kind)));
@@ -67,9 +91,13 @@ fn pair_differences(
     [yes, no]: [&str; 2],
 ) -> Vec<DecisionDifference> {
     let word = |marked: bool| if marked { yes } else { no };
-    let changed = before.iter().filter(|(pair, marked)| **marked != after[*pair]);
+    let changed = before
+        .iter()
+        .filter(|(pair, marked)| **marked != after[*pair]);
     changed
-        .map(|(pair, &marked)| DecisionDifference::new(study.dataset.pair_name(pair), word(marked), word(!marked)))
+        .map(|(pair, &marked)| {
+            DecisionDifference::new(study.dataset.pair_name(pair), word(marked), word(!marked))
+        })
         .collect()
 }
 
@@ -79,12 +107,14 @@ fn bundle_differences(
     before: &BundleChoice,
     after: &BundleChoice,
 ) -> Vec<DecisionDifference> {
-    let rejected =
-        |choice: &BundleChoice, name: &String| match (choice.rejected.contains(name), choice.reasons.get(name)) {
-            (true, Some(reason)) => format!("rejected ({reason})"),
-            (true, None) => "rejected".to_owned(),
-            (false, _) => "kept".to_owned(),
-        };
+    let rejected = |choice: &BundleChoice, name: &String| match (
+        choice.rejected.contains(name),
+        choice.reasons.get(name),
+    ) {
+        (true, Some(reason)) => format!("rejected ({reason})"),
+        (true, None) => "rejected".to_owned(),
+        (false, _) => "kept".to_owned(),
+    };
     let names: BTreeSet<&String> = before.rejected.iter().chain(&after.rejected).collect();
     let of_models = names.into_iter().map(|name| {
         DecisionDifference::new(
@@ -93,13 +123,21 @@ fn bundle_differences(
             rejected(after, name),
         )
     });
-    let represents = |choice: &BundleChoice| choice.pinned.clone().unwrap_or_else(|| "the medoid".to_owned());
+    let represents = |choice: &BundleChoice| {
+        choice
+            .pinned
+            .clone()
+            .unwrap_or_else(|| "the medoid".to_owned())
+    };
     let pinned = DecisionDifference::new(
         format!("{kind} representative (condition {condition})"),
         represents(before),
         represents(after),
     );
-    of_models.chain([pinned]).filter(|difference| difference.before != difference.after).collect()
+    of_models
+        .chain([pinned])
+        .filter(|difference| difference.before != difference.after)
+        .collect()
 }
 
 /// One thing in which a dataset differs from the one that a study was made with, or a decision that has no place in it.
@@ -150,8 +188,15 @@ impl fmt::Display for Difference {
             ),
             Difference::ConditionAdded(id) => write!(formatter, "condition {id} was added"),
             Difference::ConditionRemoved(id) => write!(formatter, "condition {id} was removed"),
-            Difference::AirspeedChanged { condition, before_kt, now_kt } => {
-                write!(formatter, "condition {condition} is flown at {now_kt} kt, was {before_kt} kt")
+            Difference::AirspeedChanged {
+                condition,
+                before_kt,
+                now_kt,
+            } => {
+                write!(
+                    formatter,
+                    "condition {condition} is flown at {now_kt} kt, was {before_kt} kt"
+                )
             }
             Difference::ModelAdded(id) => write!(formatter, "{id} was added"),
             Difference::ModelRemoved(id) => write!(formatter, "{id} was removed"),
@@ -192,7 +237,12 @@ impl Decisions {
             variants: study
                 .variants
                 .iter()
-                .filter_map(|variant| Some((variant.name.clone(), Self::of(&study.of_variant(&variant.name)?))))
+                .filter_map(|variant| {
+                    Some((
+                        variant.name.clone(),
+                        Self::of(&study.of_variant(&variant.name)?),
+                    ))
+                })
                 .collect(),
         }
     }
@@ -206,14 +256,27 @@ impl Decisions {
             let why = "it stays in the study for another dataset".to_owned();
             differences.push(Difference::NotApplied { decision, why });
         }
-        study.settings = self.settings.with_responses(|verb, names| marked(verb, names, &study, &mut differences));
+        study.settings = self
+            .settings
+            .with_responses(|verb, names| marked(verb, names, &study, &mut differences));
         for taken in &self.taken {
-            carry_out(&Edit::TakeModels(vec![taken.clone()]), &mut study, &mut differences);
+            carry_out(
+                &Edit::TakeModels(vec![taken.clone()]),
+                &mut study,
+                &mut differences,
+            );
         }
         for turned in &self.signs {
             match turned.find(&study.dataset) {
                 Some(channel) => {
-                    carry_out(&Edit::SetSign { channel, of: Some(turned.of) }, &mut study, &mut differences);
+                    carry_out(
+                        &Edit::SetSign {
+                            channel,
+                            of: Some(turned.of),
+                        },
+                        &mut study,
+                        &mut differences,
+                    );
                 }
                 None => differences.push(Difference::NotApplied {
                     decision: format!("turn {}", turned.channel),
@@ -232,9 +295,15 @@ impl Decisions {
                 }
             }
             differences.extend(not_applied);
-            let Study { settings, choices, .. } = of_variant;
+            let Study {
+                settings, choices, ..
+            } = of_variant;
             if study.variant(name).is_none() {
-                study.variants.push(Arc::new(Variant { name: name.clone(), settings, choices }));
+                study.variants.push(Arc::new(Variant {
+                    name: name.clone(),
+                    settings,
+                    choices,
+                }));
             }
         }
         (study, differences)
@@ -242,7 +311,12 @@ impl Decisions {
 }
 
 /// The listed responses as a table.
-fn marked(verb: &str, listed: &ResponseNames, study: &Study, differences: &mut Vec<Difference>) -> PairTable<bool> {
+fn marked(
+    verb: &str,
+    listed: &ResponseNames,
+    study: &Study,
+    differences: &mut Vec<Difference>,
+) -> PairTable<bool> {
     let mut table = study.settings.constrained.map(|_, _| false);
     for (output, input) in &listed.0 {
         match study.dataset.find_pair(output, input) {
@@ -257,28 +331,47 @@ fn marked(verb: &str, listed: &ResponseNames, study: &Study, differences: &mut V
 }
 
 /// Every choice goes the way of the engineer's own decisions, so that nothing comes in that could not be decided.
-fn take_choice(study: &mut Study, condition: ConditionId, choice: &ConditionChoice, differences: &mut Vec<Difference>) {
+fn take_choice(
+    study: &mut Study,
+    condition: ConditionId,
+    choice: &ConditionChoice,
+    differences: &mut Vec<Difference>,
+) {
     let mut edits = Vec::new();
     if !choice.scheduled {
-        edits.push(Edit::SetScheduled { condition, scheduled: false });
+        edits.push(Edit::SetScheduled {
+            condition,
+            scheduled: false,
+        });
     }
     if choice.held_out {
-        edits.push(Edit::SetHeldOut { condition, held_out: true });
+        edits.push(Edit::SetHeldOut {
+            condition,
+            held_out: true,
+        });
     }
     for kind in BundleKind::BOTH {
         let id = |name: &String| ModelId::new(condition, kind, name);
         let of_bundle = choice.bundle(kind);
         edits.extend(of_bundle.rejected.iter().map(|name| Edit::Reject(id(name))));
-        let reasons = of_bundle.reasons.iter().filter(|(name, _)| of_bundle.rejected.contains(*name));
+        let reasons = of_bundle
+            .reasons
+            .iter()
+            .filter(|(name, _)| of_bundle.rejected.contains(*name));
         edits.extend(reasons.map(|(name, reason)| Edit::SetReason(id(name), reason.clone())));
         edits.extend(of_bundle.pinned.iter().map(|name| Edit::Pin(id(name))));
     }
-    edits.iter().for_each(|edit| carry_out(edit, study, differences));
+    edits
+        .iter()
+        .for_each(|edit| carry_out(edit, study, differences));
 }
 
 fn carry_out(edit: &Edit, study: &mut Study, differences: &mut Vec<Difference>) {
     if let Err(refusal) = study.apply(edit) {
-        differences.push(Difference::NotApplied { decision: edit.label(study), why: refusal.to_string() });
+        differences.push(Difference::NotApplied {
+            decision: edit.label(study),
+            why: refusal.to_string(),
+        });
     }
 }
 
@@ -298,7 +391,9 @@ impl Inventory {
         let now = Inventory::of(dataset);
         let mut differences = Vec::new();
         let [before, now] = [self, &now].map(|of| -> BTreeMap<ConditionId, &ConditionInventory> {
-            of.0.iter().map(|condition| (condition.id, condition)).collect()
+            of.0.iter()
+                .map(|condition| (condition.id, condition))
+                .collect()
         });
         let ids: BTreeSet<ConditionId> = before.keys().chain(now.keys()).copied().collect();
         for id in ids {
@@ -308,10 +403,19 @@ impl Inventory {
                 (Some(before), Some(now)) => {
                     let (before_kt, now_kt) = (before.airspeed_kt, now.airspeed_kt);
                     if before_kt != now_kt {
-                        differences.push(Difference::AirspeedChanged { condition: id, before_kt, now_kt });
+                        differences.push(Difference::AirspeedChanged {
+                            condition: id,
+                            before_kt,
+                            now_kt,
+                        });
                     }
                     for kind in BundleKind::BOTH {
-                        compare_bundles((id, kind), before.bundle(kind), now.bundle(kind), &mut differences);
+                        compare_bundles(
+                            (id, kind),
+                            before.bundle(kind),
+                            now.bundle(kind),
+                            &mut differences,
+                        );
                     }
                 }
                 (None, None) => {}
@@ -356,7 +460,9 @@ impl ConditionInventory {
     fn of(condition: &Condition) -> Self {
         let models = |kind| {
             let models = condition.bundle(kind).iter();
-            models.map(|model| (model.name.clone(), model.fingerprint())).collect()
+            models
+                .map(|model| (model.name.clone(), model.fingerprint()))
+                .collect()
         };
         Self {
             id: condition.id(),
@@ -379,6 +485,12 @@ pub struct Inventory(pub Vec<ConditionInventory>);
 impl Inventory {
     /// The inventory of a dataset.
     pub fn of(dataset: &Dataset) -> Self {
-        Self(dataset.conditions().iter().map(|condition| ConditionInventory::of(condition)).collect())
+        Self(
+            dataset
+                .conditions()
+                .iter()
+                .map(|condition| ConditionInventory::of(condition))
+                .collect(),
+        )
     }
 }

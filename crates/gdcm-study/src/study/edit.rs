@@ -107,7 +107,9 @@ pub const LONGEST_REASON: usize = 1000;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EditRefusal {
     /// The last model of a bundle cannot be rejected.
-    #[error("condition {condition}: \"{model}\" is the last model kept in its bundle; at least one must stay")]
+    #[error(
+        "condition {condition}: \"{model}\" is the last model kept in its bundle; at least one must stay"
+    )]
     LastModel {
         /// The condition's id.
         condition: ConditionId,
@@ -115,7 +117,9 @@ pub enum EditRefusal {
         model: String,
     },
     /// A rejected model cannot represent its bundle.
-    #[error("condition {condition}: \"{model}\" is rejected; restore it before using it as representative")]
+    #[error(
+        "condition {condition}: \"{model}\" is rejected; restore it before using it as representative"
+    )]
     PinRejected {
         /// The condition's id.
         condition: ConditionId,
@@ -211,7 +215,12 @@ pub enum EditRefusal {
 impl Edit {
     /// Rejects physics models of a condition, by their names.
     pub fn reject_physics(condition: ConditionId, models: &[String]) -> Self {
-        Self::RejectEach(models.iter().map(|name| ModelId::new(condition, BundleKind::Physics, name)).collect())
+        Self::RejectEach(
+            models
+                .iter()
+                .map(|name| ModelId::new(condition, BundleKind::Physics, name))
+                .collect(),
+        )
     }
 
     /// The decision in a few words, for the undo list: "reject nominal (condition 10)".
@@ -226,22 +235,43 @@ impl Edit {
             Edit::RejectEach(models) => format!("reject {} models", models.len()),
             Edit::RestoreEach(models) => format!("restore {} models", models.len()),
             Edit::Pin(id) => format!("use {} as representative", name_of(id)),
-            Edit::Unpin { condition, .. } => format!("use the medoid as representative (condition {condition})"),
-            Edit::SetScheduled { condition, scheduled: true } => format!("schedule condition {condition}"),
+            Edit::Unpin { condition, .. } => {
+                format!("use the medoid as representative (condition {condition})")
+            }
+            Edit::SetScheduled {
+                condition,
+                scheduled: true,
+            } => format!("schedule condition {condition}"),
             Edit::SetScheduled { condition, .. } => format!("leave condition {condition} out"),
-            Edit::SetHeldOut { condition, held_out: true } => format!("hold condition {condition} out"),
-            Edit::SetHeldOut { condition, .. } => format!("no longer hold condition {condition} out"),
+            Edit::SetHeldOut {
+                condition,
+                held_out: true,
+            } => format!("hold condition {condition} out"),
+            Edit::SetHeldOut { condition, .. } => {
+                format!("no longer hold condition {condition} out")
+            }
             Edit::ConstrainOnAxis => "hold the on-axis responses".to_owned(),
             Edit::Hold(pair, held) => {
-                format!("{} {}", if *held { "hold" } else { "release" }, study.dataset.pair_name(*pair))
+                format!(
+                    "{} {}",
+                    if *held { "hold" } else { "release" },
+                    study.dataset.pair_name(*pair)
+                )
             }
             Edit::Fit(pair, fitted) => {
-                format!("{} {}", if *fitted { "fit" } else { "ignore" }, study.dataset.pair_name(*pair))
+                format!(
+                    "{} {}",
+                    if *fitted { "fit" } else { "ignore" },
+                    study.dataset.pair_name(*pair)
+                )
             }
             Edit::Set(setting, _) => setting.name.to_owned(),
             Edit::SetSign { channel, of } => {
                 let name = channel.name_in(&study.dataset);
-                of.map_or_else(|| format!("turn {name} back"), |of| format!("turn {name} ({})", of.word()))
+                of.map_or_else(
+                    || format!("turn {name} back"),
+                    |of| format!("turn {name} ({})", of.word()),
+                )
             }
             Edit::TakeModels(taken) => match taken.as_slice() {
                 [(condition, _)] => format!("use identified models (condition {condition})"),
@@ -262,7 +292,9 @@ impl Edit {
     pub fn continues(&self, earlier: &Edit) -> bool {
         match (self, earlier) {
             (Edit::Set(later, _), Edit::Set(earlier, _)) => later == earlier,
-            (Edit::SetRequirements(later, _), Edit::SetRequirements(earlier, _)) => later == earlier,
+            (Edit::SetRequirements(later, _), Edit::SetRequirements(earlier, _)) => {
+                later == earlier
+            }
             _ => false,
         }
     }
@@ -273,7 +305,9 @@ impl Study {
     pub fn apply(&mut self, edit: &Edit) -> Result<(), EditRefusal> {
         match edit {
             Edit::Reject(id) => return self.reject(id),
-            Edit::RejectEach(models) => return self.attempt(|of| models.iter().try_for_each(|model| of.reject(model))),
+            Edit::RejectEach(models) => {
+                return self.attempt(|of| models.iter().try_for_each(|model| of.reject(model)));
+            }
             Edit::RestoreEach(models) => {
                 return self.attempt(|of| models.iter().try_for_each(|model| of.restore(model)));
             }
@@ -281,12 +315,21 @@ impl Study {
             Edit::Restore(id) => return self.restore(id),
             Edit::RestoreAll { condition } => self.condition(*condition)?.1.restore_all(),
             Edit::RejectBecause { model, reason } => {
-                return self.attempt(|of| of.reject(model).and_then(|()| of.set_reason(model, reason)));
+                return self
+                    .attempt(|of| of.reject(model).and_then(|()| of.set_reason(model, reason)));
             }
             Edit::SetReason(id, reason) => return self.set_reason(id, reason),
-            Edit::Unpin { condition, bundle } => self.condition(*condition)?.1.bundle_mut(*bundle).pinned = None,
-            Edit::SetScheduled { condition, scheduled } => self.condition(*condition)?.1.scheduled = *scheduled,
-            Edit::SetHeldOut { condition, held_out } => self.condition(*condition)?.1.held_out = *held_out,
+            Edit::Unpin { condition, bundle } => {
+                self.condition(*condition)?.1.bundle_mut(*bundle).pinned = None
+            }
+            Edit::SetScheduled {
+                condition,
+                scheduled,
+            } => self.condition(*condition)?.1.scheduled = *scheduled,
+            Edit::SetHeldOut {
+                condition,
+                held_out,
+            } => self.condition(*condition)?.1.held_out = *held_out,
             Edit::ConstrainOnAxis => self.settings.constrained = self.dataset.on_axis().clone(),
             Edit::Hold(pair, held) => mark(&mut self.settings.constrained, *pair, *held)?,
             Edit::Fit(pair, fitted) => mark(&mut self.settings.ignored, *pair, !*fitted)?,
@@ -304,8 +347,15 @@ impl Study {
     }
 
     /// A condition with the choices in it, to change.
-    fn condition(&mut self, id: ConditionId) -> Result<(&Condition, &mut ConditionChoice), EditRefusal> {
-        let found = self.dataset.condition(id).map(Arc::as_ref).zip(self.choices.get_mut(&id));
+    fn condition(
+        &mut self,
+        id: ConditionId,
+    ) -> Result<(&Condition, &mut ConditionChoice), EditRefusal> {
+        let found = self
+            .dataset
+            .condition(id)
+            .map(Arc::as_ref)
+            .zip(self.choices.get_mut(&id));
         found.ok_or(EditRefusal::NoCondition { condition: id })
     }
 
@@ -323,7 +373,10 @@ impl Study {
         let models = condition.bundle(id.bundle).len();
         let choice = choice.bundle_mut(id.bundle);
         if !choice.rejected.contains(&id.name) && choice.rejected.len() + 1 == models {
-            return Err(EditRefusal::LastModel { condition: id.condition, model: id.name.clone() });
+            return Err(EditRefusal::LastModel {
+                condition: id.condition,
+                model: id.name.clone(),
+            });
         }
         choice.rejected.insert(id.name.clone());
         if choice.pinned.as_ref() == Some(&id.name) {
@@ -338,7 +391,10 @@ impl Study {
     }
 
     /// Several decisions as one: all of them, or none.
-    fn attempt(&mut self, decide: impl FnOnce(&mut Self) -> Result<(), EditRefusal>) -> Result<(), EditRefusal> {
+    fn attempt(
+        &mut self,
+        decide: impl FnOnce(&mut Self) -> Result<(), EditRefusal>,
+    ) -> Result<(), EditRefusal> {
         let mut trial = self.clone();
         decide(&mut trial)?;
         *self = trial;
@@ -349,7 +405,10 @@ impl Study {
         let (reason, (_, choice)) = (reason.trim(), self.model(id)?);
         let choice = choice.bundle_mut(id.bundle);
         if !choice.rejected.contains(&id.name) {
-            return Err(EditRefusal::ReasonOfKept { condition: id.condition, model: id.name.clone() });
+            return Err(EditRefusal::ReasonOfKept {
+                condition: id.condition,
+                model: id.name.clone(),
+            });
         }
         check_length("reason", reason, LONGEST_REASON)?;
         if reason.is_empty() {
@@ -364,7 +423,10 @@ impl Study {
         let (_, choice) = self.model(id)?;
         let choice = choice.bundle_mut(id.bundle);
         if choice.rejected.contains(&id.name) {
-            return Err(EditRefusal::PinRejected { condition: id.condition, model: id.name.clone() });
+            return Err(EditRefusal::PinRejected {
+                condition: id.condition,
+                model: id.name.clone(),
+            });
         }
         choice.pinned = Some(id.name.clone());
         Ok(())
@@ -381,5 +443,9 @@ fn mark(table: &mut PairTable<bool>, pair: Pair, value: bool) -> Result<(), Edit
 
 pub(super) fn check_length(what: &'static str, text: &str, most: usize) -> Result<(), EditRefusal> {
     let found = text.chars().count();
-    if found > most { Err(EditRefusal::TooLong { what, most, found }) } else { Ok(()) }
+    if found > most {
+        Err(EditRefusal::TooLong { what, most, found })
+    } else {
+        Ok(())
+    }
 }

@@ -2,7 +2,9 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use gdcm_method::schedule::{DelayScheduling, NOTABLE_DELAY_S, ScheduleCaution, ScheduleSettings, ScheduledPoint};
+use gdcm_method::schedule::{
+    DelayScheduling, NOTABLE_DELAY_S, ScheduleCaution, ScheduleSettings, ScheduledPoint,
+};
 
 use super::*;
 
@@ -29,7 +31,11 @@ pub struct Engine {
 }
 
 /// The budget of a proof that an answer may wait for; what needs more of it is proven beside the answer ([`super::ProofJob`]).
-pub const LIVE_PROOF: ProofBudget = ProofBudget { work: 1_000_000, listing: 100_000, bytes: 64_000_000 };
+pub const LIVE_PROOF: ProofBudget = ProofBudget {
+    work: 1_000_000,
+    listing: 100_000,
+    bytes: 64_000_000,
+};
 
 impl Default for Engine {
     fn default() -> Self {
@@ -57,7 +63,10 @@ impl Engine {
 
     /// Another engine that knows what this one has computed, and goes its own way from there.
     pub fn fork(&self, executor: Box<dyn Executor>) -> Self {
-        Self { executor: executor.into(), ..self.clone() }
+        Self {
+            executor: executor.into(),
+            ..self.clone()
+        }
     }
 
     /// Who carries out its work.
@@ -73,16 +82,25 @@ impl Engine {
     /// The same engine with the responses of models that other engines know; for engines that work on the same band and points in
     /// turn, since of each model the last response is kept.
     pub fn sharing(self, known: &KnownModels) -> Self {
-        Self { known: known.clone(), ..self }
+        Self {
+            known: known.clone(),
+            ..self
+        }
     }
 
     /// Takes gains that were proven elsewhere, with a larger budget, in place of its own for the same problem.
     pub fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
-        self.conditions.values_mut().for_each(|stages| stages.take_gains(problem, solution));
+        self.conditions
+            .values_mut()
+            .for_each(|stages| stages.take_gains(problem, solution));
     }
 
     /// The analysis of `study`; stages that do not depend on what changed since the last call are not computed again.
-    pub fn analyze(&mut self, study: &Study, progress: &dyn Progress) -> Result<Analysis, Cancelled> {
+    pub fn analyze(
+        &mut self,
+        study: &Study,
+        progress: &dyn Progress,
+    ) -> Result<Analysis, Cancelled> {
         self.analyze_first(study, None, progress)
     }
 
@@ -96,7 +114,12 @@ impl Engine {
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
         let execution = Execution::new(self.executor.as_ref(), progress, steps(study));
-        let run = Run { study, grid: &grid, proofs: self.proofs, execution: &execution };
+        let run = Run {
+            study,
+            grid: &grid,
+            proofs: self.proofs,
+            execution: &execution,
+        };
         let couplings = fit_of(run, &mut self.couplings, &mut self.conditions)?;
         let fitted = couplings.as_ref().and_then(|outcome| outcome.as_ref().ok());
         let mut conditions = analyze_conditions(run, &mut self.conditions, fitted, first)?;
@@ -104,7 +127,9 @@ impl Engine {
         let settings = schedule_settings(study, &conditions);
         let mut schedule = Schedule::of(&scheduled_points(study, &conditions), settings);
         if let Ok(schedule) = &mut schedule {
-            schedule.cautions.extend(signed_delays_apart(study, &conditions));
+            schedule
+                .cautions
+                .extend(signed_delays_apart(study, &conditions));
         }
         let (study, omega) = (study.clone(), grid.omega().into());
         let assessment = BTreeMap::new();
@@ -133,18 +158,37 @@ impl Engine {
 
     /// How sure each figure of `analysis` is (M13). Substitutions of models that do not depend on what changed since the last call are not
     /// computed again.
-    pub fn uncertainty(&mut self, analysis: &Analysis, progress: &dyn Progress) -> Result<Uncertainty, Cancelled> {
+    pub fn uncertainty(
+        &mut self,
+        analysis: &Analysis,
+        progress: &dyn Progress,
+    ) -> Result<Uncertainty, Cancelled> {
         let study = &analysis.study;
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
         // A response and a substitution for each model.
-        let total = study.dataset.conditions().iter().map(|of| 2 * model_count(of)).sum();
+        let total = study
+            .dataset
+            .conditions()
+            .iter()
+            .map(|of| 2 * model_count(of))
+            .sum();
         let execution = Execution::new(self.executor.as_ref(), progress, total);
-        let analysed =
-            self.conditions.iter_mut().filter_map(|(id, stages)| Some((*id, stages, analysis.condition(*id)?)));
-        let run = Run { study, grid: &grid, proofs: SUBSTITUTION_PROOF, execution: &execution };
+        let analysed = self
+            .conditions
+            .iter_mut()
+            .filter_map(|(id, stages)| Some((*id, stages, analysis.condition(*id)?)));
+        let run = Run {
+            study,
+            grid: &grid,
+            proofs: SUBSTITUTION_PROOF,
+            execution: &execution,
+        };
         let substitutions = execution.each_mut(analysed.collect(), |(id, stages, condition)| {
-            Ok((id, stages.substitutions(run, (condition, analysis.fitted_couplings()))?))
+            Ok((
+                id,
+                stages.substitutions(run, (condition, analysis.fitted_couplings()))?,
+            ))
         })?;
         Ok(Uncertainty::of(analysis, &substitutions))
     }
@@ -160,7 +204,10 @@ impl Engine {
         self.take(dataset);
         if self.drawn != Some(condition) {
             let before = self.drawn.replace(condition);
-            before.and_then(|id| self.conditions.get(&id)).iter().for_each(|stages| stages.models().forget_drawn());
+            before
+                .and_then(|id| self.conditions.get(&id))
+                .iter()
+                .for_each(|stages| stages.models().forget_drawn());
             self.curves = Memo::default();
         }
         let Some(stages) = self.conditions.get(&condition) else {
@@ -171,17 +218,28 @@ impl Engine {
             let grid = FrequencyGrid::logarithmic(band, points);
             let execution = Execution::new(executor, progress, model_count(models.condition()));
             let responses = models.responses(Purpose::Drawing, key, &grid, &execution)?;
-            Ok(Arc::new(ConditionCurves::new(Arc::clone(models.condition()), grid, responses)))
+            Ok(Arc::new(ConditionCurves::new(
+                Arc::clone(models.condition()),
+                grid,
+                responses,
+            )))
         })?;
         Ok(Some(curves))
     }
 
     /// Goes on with this dataset: whatever it shares with the last one stays computed.
     fn take(&mut self, dataset: &Arc<Dataset>) {
-        if self.dataset.as_ref().is_some_and(|kept| Arc::ptr_eq(kept, dataset)) {
+        if self
+            .dataset
+            .as_ref()
+            .is_some_and(|kept| Arc::ptr_eq(kept, dataset))
+        {
             return;
         }
-        let models = dataset.conditions().iter().map(|condition| ConditionModels::of(condition, &self.known));
+        let models = dataset
+            .conditions()
+            .iter()
+            .map(|condition| ConditionModels::of(condition, &self.known));
         // All are made before any of the last dataset's is dropped: a model may have moved.
         let models: Vec<ConditionModels> = models.collect();
         let mut before = std::mem::take(&mut self.conditions);
@@ -216,7 +274,8 @@ pub struct WantedFirst<'a> {
 /// once more for the fit.
 fn steps(study: &Study) -> usize {
     let of = |condition: &Arc<Condition>| {
-        let is_fitted_to = study.settings.couplings.kind().is_some() && !study.choice(condition.id()).held_out;
+        let is_fitted_to =
+            study.settings.couplings.kind().is_some() && !study.choice(condition.id()).held_out;
         ConditionStages::steps(condition) * if is_fitted_to { 3 } else { 1 }
     };
     study.dataset.conditions().iter().map(of).sum()
@@ -228,15 +287,34 @@ fn fit_of(
     kept: &mut Memo<CouplingFitKey, CouplingOutcome>,
     stages: &mut BTreeMap<ConditionId, ConditionStages>,
 ) -> Result<Option<CouplingOutcome>, Cancelled> {
-    let Run { study, grid, execution, .. } = run;
-    let Some(kind) = study.settings.couplings.kind() else { return Ok(None) };
-    let chosen: Vec<_> = stages.iter_mut().filter(|(id, _)| !study.choice(**id).held_out).collect();
-    let steps = chosen.iter().map(|(_, stages)| ConditionStages::steps(stages.models().condition())).sum();
+    let Run {
+        study,
+        grid,
+        execution,
+        ..
+    } = run;
+    let Some(kind) = study.settings.couplings.kind() else {
+        return Ok(None);
+    };
+    let chosen: Vec<_> = stages
+        .iter_mut()
+        .filter(|(id, _)| !study.choice(**id).held_out)
+        .collect();
+    let steps = chosen
+        .iter()
+        .map(|(_, stages)| ConditionStages::steps(stages.models().condition()))
+        .sum();
     let sources = execution.each_mut(chosen, |(_, stages)| stages.coupling_source(run))?;
     let sources: Vec<CouplingSource> = sources.into_iter().flatten().collect();
     let key = CouplingFitKey::of(study, kind, &sources);
-    let solves = Solves { execution, steps, told: AtomicUsize::new(0) };
-    let fit = kept.get_or_fail(key, |key| key.fit(study, grid, &sources, (execution.parts().0, &solves)))?;
+    let solves = Solves {
+        execution,
+        steps,
+        told: AtomicUsize::new(0),
+    };
+    let fit = kept.get_or_fail(key, |key| {
+        key.fit(study, grid, &sources, (execution.parts().0, &solves))
+    })?;
     // None of them was told where the fit is known.
     solves.advanced(1, 1);
     Ok(Some(fit))
@@ -278,33 +356,58 @@ fn analyze_conditions(
         (first.tell)(&outcome);
         outcomes.insert(first.condition, outcome);
     }
-    let others: Vec<_> = stages.iter_mut().filter(|(id, _)| !outcomes.contains_key(id)).collect();
-    let others = run.execution.each_mut(others, |(id, stages)| Ok((*id, stages.analyze(run, couplings)?)))?;
+    let others: Vec<_> = stages
+        .iter_mut()
+        .filter(|(id, _)| !outcomes.contains_key(id))
+        .collect();
+    let others = run.execution.each_mut(others, |(id, stages)| {
+        Ok((*id, stages.analyze(run, couplings)?))
+    })?;
     outcomes.extend(others);
     Ok(outcomes)
 }
 
 /// Signs and units that are to be asked after, told to each condition that shows them too.
 fn doubts_of(study: &Study, outcomes: &mut Outcomes) -> Vec<ConventionDoubt> {
-    let solved = outcomes.iter().filter_map(|(id, outcome)| Some((*id, outcome.as_ref().ok()?)));
+    let solved = outcomes
+        .iter()
+        .filter_map(|(id, outcome)| Some((*id, outcome.as_ref().ok()?)));
     // Signs and units are those of the models as they are.
-    let mismatches = solved.map(|(id, result)| (id, &result.before_couplings().representative.mismatch));
-    let doubts = convention_doubts(&mismatches.collect::<Vec<_>>(), &study.dataset.measuring_pairs());
-    for (id, result) in outcomes.iter_mut().filter_map(|(id, outcome)| Some((id, outcome.as_mut().ok()?))) {
-        result.doubts = doubts.iter().filter(|doubt| doubt.conditions.contains(id)).cloned().collect();
+    let mismatches =
+        solved.map(|(id, result)| (id, &result.before_couplings().representative.mismatch));
+    let doubts = convention_doubts(
+        &mismatches.collect::<Vec<_>>(),
+        &study.dataset.measuring_pairs(),
+    );
+    for (id, result) in outcomes
+        .iter_mut()
+        .filter_map(|(id, outcome)| Some((id, outcome.as_mut().ok()?)))
+    {
+        result.doubts = doubts
+            .iter()
+            .filter(|doubt| doubt.conditions.contains(id))
+            .cloned()
+            .collect();
     }
     doubts
 }
 
 /// The scheduled conditions that have a result, in the dataset's order.
-pub(super) fn scheduled_points<'a>(study: &Study, outcomes: &'a Outcomes) -> Vec<ScheduledPoint<'a>> {
+pub(super) fn scheduled_points<'a>(
+    study: &Study,
+    outcomes: &'a Outcomes,
+) -> Vec<ScheduledPoint<'a>> {
     let point = |analysis: &'a ConditionAnalysis| {
         let state = analysis.condition.flight_state();
         ScheduledPoint {
             airspeed_kt: state.airspeed_kt,
             correction: &analysis.correction,
             delay_upper_s: analysis.delay_upper_s(),
-            second: study.settings.schedule.second.and_then(|variable| variable.value(state)),
+            second: study
+                .settings
+                .schedule
+                .second
+                .and_then(|variable| variable.value(state)),
         }
     };
     in_schedule(study, outcomes).map(point).collect()
@@ -317,17 +420,29 @@ pub(super) fn schedule_settings(study: &Study, outcomes: &Outcomes) -> ScheduleS
         DelayScheduling::Never => false,
         DelayScheduling::Automatic => in_schedule(study, outcomes).any(has_notable_delay),
     };
-    ScheduleSettings { delays, ..study.settings.schedule }
+    ScheduleSettings {
+        delays,
+        ..study.settings.schedule
+    }
 }
 
 /// Whether a constrained response has a net delay above half a millisecond.
 fn has_notable_delay(result: &ConditionAnalysis) -> bool {
-    result.held().marked().any(|pair| result.correction.net_delay_s(pair) > NOTABLE_DELAY_S)
+    result
+        .held()
+        .marked()
+        .any(|pair| result.correction.net_delay_s(pair) > NOTABLE_DELAY_S)
 }
 
 /// The results of the conditions that are in the schedule, in file order.
-fn in_schedule<'a>(study: &Study, outcomes: &'a Outcomes) -> impl Iterator<Item = &'a ConditionAnalysis> {
-    let chosen = study.dataset.ids().filter(|id| study.choice(*id).is_in_schedule());
+fn in_schedule<'a>(
+    study: &Study,
+    outcomes: &'a Outcomes,
+) -> impl Iterator<Item = &'a ConditionAnalysis> {
+    let chosen = study
+        .dataset
+        .ids()
+        .filter(|id| study.choice(*id).is_in_schedule());
     chosen.filter_map(|id| outcomes.get(&id)?.as_ref().ok())
 }
 
@@ -341,15 +456,29 @@ fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCautio
         .filter_map(|result| Some((result.condition.id(), &result.compensated.as_ref()?.leads)));
     let leads: Vec<(ConditionId, &ChannelLeads)> = leads.collect();
     let caution = |channel: Channel| {
-        let taus_s: Vec<(ConditionId, f64)> = leads.iter().map(|(id, leads)| (*id, leads.taus_s[channel])).collect();
+        let taus_s: Vec<(ConditionId, f64)> = leads
+            .iter()
+            .map(|(id, leads)| (*id, leads.taus_s[channel]))
+            .collect();
         let sum_s: f64 = taus_s.iter().map(|(_, tau_s)| tau_s).sum();
         let mean_s = sum_s / taus_s.len() as f64;
         let apart = |tau_s: f64| (tau_s - mean_s).abs();
-        let &(condition, tau_s) = taus_s.iter().max_by(|a, b| apart(a.1).total_cmp(&apart(b.1)))?;
-        let signs = [-1.0, 1.0].map(|sign| taus_s.iter().any(|(_, tau_s)| sign * tau_s > NOTHING_S));
+        let &(condition, tau_s) = taus_s
+            .iter()
+            .max_by(|a, b| apart(a.1).total_cmp(&apart(b.1)))?;
+        let signs =
+            [-1.0, 1.0].map(|sign| taus_s.iter().any(|(_, tau_s)| sign * tau_s > NOTHING_S));
         let elsewhere_s = (sum_s - tau_s) / (taus_s.len() as f64 - 1.0);
-        (taus_s.len() > 1 && (apart(tau_s) > APART_S || signs == [true; 2]))
-            .then_some(ScheduleCaution::SignedDelayApart { channel, condition, tau_s, elsewhere_s })
+        (taus_s.len() > 1 && (apart(tau_s) > APART_S || signs == [true; 2])).then_some(
+            ScheduleCaution::SignedDelayApart {
+                channel,
+                condition,
+                tau_s,
+                elsewhere_s,
+            },
+        )
     };
-    Channel::all_of(&study.dataset).filter_map(caution).collect()
+    Channel::all_of(&study.dataset)
+        .filter_map(caution)
+        .collect()
 }

@@ -16,7 +16,12 @@ pub struct Execution<'a> {
 impl<'a> Execution<'a> {
     /// An analysis of `total` steps.
     pub fn new(executor: &'a dyn Executor, progress: &'a dyn Progress, total: usize) -> Self {
-        Self { executor, progress, done: AtomicUsize::new(0), total }
+        Self {
+            executor,
+            progress,
+            done: AtomicUsize::new(0),
+            total,
+        }
     }
 
     /// An analysis by one thread that nobody observes.
@@ -50,10 +55,12 @@ impl<'a> Execution<'a> {
         steps: usize,
         of: impl Fn(usize) -> T + Sync,
     ) -> Result<Vec<T>, Cancelled> {
-        each(self.executor, 0..count, |index| self.piece(steps, || of(index)))
-            .into_iter()
-            .collect::<Option<_>>()
-            .ok_or(Cancelled)
+        each(self.executor, 0..count, |index| {
+            self.piece(steps, || of(index))
+        })
+        .into_iter()
+        .collect::<Option<_>>()
+        .ok_or(Cancelled)
     }
 
     /// One piece of work; none if it is not wanted any more.
@@ -72,7 +79,9 @@ impl<'a> Execution<'a> {
         things: Vec<S>,
         of: impl Fn(S) -> Result<T, Cancelled> + Sync,
     ) -> Result<Vec<T>, Cancelled> {
-        let pieces = each(self.executor, things, |thing| self.piece(0, || of(thing)).unwrap_or(Err(Cancelled)));
+        let pieces = each(self.executor, things, |thing| {
+            self.piece(0, || of(thing)).unwrap_or(Err(Cancelled))
+        });
         pieces.into_iter().collect()
     }
 }
@@ -112,7 +121,9 @@ impl<K, V> Default for Memo<K, V> {
 impl<K: PartialEq, V: Clone> Memo<K, V> {
     /// A value made elsewhere.
     pub(super) fn of(key: K, value: V) -> Self {
-        Self { kept: Some((key, value)) }
+        Self {
+            kept: Some((key, value)),
+        }
     }
 
     /// The value for `key`: the kept one where the key is the same, `make(&key)` otherwise.
@@ -123,7 +134,11 @@ impl<K: PartialEq, V: Clone> Memo<K, V> {
 
     /// As [`Memo::get`], for a value that may fail to be made: nothing is kept then. The old value is dropped first, so that
     /// a large one is not in memory twice.
-    pub(super) fn get_or_fail<E>(&mut self, key: K, make: impl FnOnce(&K) -> Result<V, E>) -> Result<V, E> {
+    pub(super) fn get_or_fail<E>(
+        &mut self,
+        key: K,
+        make: impl FnOnce(&K) -> Result<V, E>,
+    ) -> Result<V, E> {
         if let Some(value) = self.kept(&key) {
             return Ok(value.clone());
         }
@@ -135,7 +150,10 @@ impl<K: PartialEq, V: Clone> Memo<K, V> {
 
     /// The value for `key`, if it is kept.
     pub(super) fn kept(&self, key: &K) -> Option<&V> {
-        self.kept.as_ref().filter(|(kept, _)| kept == key).map(|(_, value)| value)
+        self.kept
+            .as_ref()
+            .filter(|(kept, _)| kept == key)
+            .map(|(_, value)| value)
     }
 
     /// Whether the value for `key` is kept.
@@ -157,7 +175,11 @@ mod tests {
 
     impl Progress for Impatient {
         fn cancelled(&self) -> bool {
-            self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1)).is_err()
+            self.left
+                .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
+                    left.checked_sub(1)
+                })
+                .is_err()
         }
 
         fn advanced(&self, done: usize, total: usize) {
@@ -166,28 +188,40 @@ mod tests {
     }
 
     fn impatient(left: usize) -> Impatient {
-        Impatient { left: AtomicUsize::new(left), heard: Mutex::default() }
+        Impatient {
+            left: AtomicUsize::new(left),
+            heard: Mutex::default(),
+        }
     }
 
     #[test]
     fn results_come_in_order() {
-        assert_eq!(Execution::sequential().each(4, 1, |index| 10 * index), Ok(vec![0, 10, 20, 30]));
+        assert_eq!(
+            Execution::sequential().each(4, 1, |index| 10 * index),
+            Ok(vec![0, 10, 20, 30])
+        );
     }
 
     #[test]
     fn work_that_is_not_wanted_any_more_is_given_up() {
         let progress = impatient(3);
         let begun = AtomicUsize::new(0);
-        let result = Execution::new(&Sequential, &progress, 100).each(50, 1, |_| begun.fetch_add(1, Ordering::Relaxed));
+        let result = Execution::new(&Sequential, &progress, 100)
+            .each(50, 1, |_| begun.fetch_add(1, Ordering::Relaxed));
         assert_eq!((result, begun.into_inner()), (Err(Cancelled), 3));
     }
 
     #[test]
     fn hundredths_only_are_told() {
         let progress = impatient(usize::MAX);
-        Execution::new(&Sequential, &progress, 1000).each(1000, 1, |_| ()).unwrap();
+        Execution::new(&Sequential, &progress, 1000)
+            .each(1000, 1, |_| ())
+            .unwrap();
         let heard = progress.heard.into_inner().unwrap();
-        assert_eq!((heard.len(), heard[0], heard[99]), (100, (10, 1000), (1000, 1000)));
+        assert_eq!(
+            (heard.len(), heard[0], heard[99]),
+            (100, (10, 1000), (1000, 1000))
+        );
     }
 
     #[test]

@@ -5,9 +5,9 @@ use std::borrow::Cow;
 
 use gdcm_method::correction::{Channels, CorrectedModel, LeadDesign, LeadSettings};
 use gdcm_method::couplings::{
-    CoupledModelError, CouplingCondition, CouplingFit, CouplingKind, CouplingMatrices, CouplingOptions,
-    CouplingProblem, PoleShift, coherence_deviation, fit_couplings, mean_delays_s, response_deviation,
-    without_channels,
+    CoupledModelError, CouplingCondition, CouplingFit, CouplingKind, CouplingMatrices,
+    CouplingOptions, CouplingProblem, PoleShift, coherence_deviation, fit_couplings, mean_delays_s,
+    response_deviation, without_channels,
 };
 use gdcm_method::fidelity::CoherenceWeights;
 use gdcm_model::dataset::{ContentHash, ModelBands};
@@ -70,7 +70,10 @@ impl CouplingSource {
     }
 
     fn usable(&self) -> PairTable<bool> {
-        self.comparison.representative.mismatch.map(|_, mismatch| mismatch.is_some())
+        self.comparison
+            .representative
+            .mismatch
+            .map(|_, mismatch| mismatch.is_some())
     }
 }
 
@@ -118,16 +121,32 @@ impl CouplingFitKey {
             airspeed_tolerance_kt: settings.schedule.airspeed_tolerance_kt,
             lead: (settings.phase == PhaseCorrection::Lead).then_some(settings.lead),
             coherence: settings.coherence_threshold,
-            averaging: (averaging.averages, averaging.window_s, averaging.half_overlap),
-            delays_s: mean_delays_s(&sources.iter().map(|of| of.delays_s.clone()).collect::<Vec<_>>()),
+            averaging: (
+                averaging.averages,
+                averaging.window_s,
+                averaging.half_overlap,
+            ),
+            delays_s: mean_delays_s(
+                &sources
+                    .iter()
+                    .map(|of| of.delays_s.clone())
+                    .collect::<Vec<_>>(),
+            ),
             conditions: sources.iter().map(condition).collect(),
         }
     }
 
     /// The problem of these sources (M16.1).
-    fn problem(&self, study: &Study, grid: &FrequencyGrid, sources: &[CouplingSource]) -> CouplingProblem {
+    fn problem(
+        &self,
+        study: &Study,
+        grid: &FrequencyGrid,
+        sources: &[CouplingSource],
+    ) -> CouplingProblem {
         let omega: Arc<[f64]> = grid.omega().into();
-        let design = self.lead.map(|lead| LeadDesign::new(lead, Arc::clone(&omega)));
+        let design = self
+            .lead
+            .map(|lead| LeadDesign::new(lead, Arc::clone(&omega)));
         let condition = |of: &CouplingSource| {
             let dynamics = &of.identified().dynamics;
             let flight = self.delays_s.as_ref().map_or_else(
@@ -179,12 +198,19 @@ fn deviation(study: &Study, identified: &Model, omega: &[f64]) -> Option<PairTab
         return Some(response_deviation(bands, omega));
     }
     let settings = &study.settings;
-    let (Dynamics::Measured(response), Some(_)) = (&identified.dynamics, settings.coherence_threshold) else {
+    let (Dynamics::Measured(response), Some(_)) =
+        (&identified.dynamics, settings.coherence_threshold)
+    else {
         return None;
     };
     let estimate = response.estimate();
-    let measurement = settings.uncertainty.measurement(estimate.averages, estimate.window_s)?;
-    Some(coherence_deviation(&coherence_at(response, omega)?, &measurement))
+    let measurement = settings
+        .uncertainty
+        .measurement(estimate.averages, estimate.window_s)?;
+    Some(coherence_deviation(
+        &coherence_at(response, omega)?,
+        &measurement,
+    ))
 }
 
 /// What the couplings have changed of a condition.
@@ -203,10 +229,18 @@ impl ConditionAnalysis {
 
     /// `H~ = (I - H K)^-1 H M~` of a response of one of its physics models; the response itself without couplings.
     #[must_use]
-    pub fn coupled_response<'a>(&self, physics: &'a FrequencyResponse) -> Cow<'a, FrequencyResponse> {
+    pub fn coupled_response<'a>(
+        &self,
+        physics: &'a FrequencyResponse,
+    ) -> Cow<'a, FrequencyResponse> {
         match &self.coupled {
             None => Cow::Borrowed(physics),
-            Some(coupled) => Cow::Owned(coupled.fitted.matrices().response(physics, self.airspeed_kt())),
+            Some(coupled) => Cow::Owned(
+                coupled
+                    .fitted
+                    .matrices()
+                    .response(physics, self.airspeed_kt()),
+            ),
         }
     }
 
@@ -214,9 +248,17 @@ impl ConditionAnalysis {
     #[must_use]
     pub fn pole_shifts(&self) -> Vec<PoleShift> {
         let representative = self.representative_model(BundleKind::Physics).state_space();
-        let shifts = self.coupled.as_ref().zip(representative).map(|(coupled, of)| {
-            coupled.fitted.matrices().pole_shifts(of, self.airspeed_kt(), Pade::default()).unwrap_or_default()
-        });
+        let shifts = self
+            .coupled
+            .as_ref()
+            .zip(representative)
+            .map(|(coupled, of)| {
+                coupled
+                    .fitted
+                    .matrices()
+                    .pole_shifts(of, self.airspeed_kt(), Pade::default())
+                    .unwrap_or_default()
+            });
         shifts.unwrap_or_default()
     }
 
@@ -230,7 +272,12 @@ impl ConditionAnalysis {
         physics: &'a StateSpace,
         pade: Pade,
     ) -> Result<Cow<'a, StateSpace>, CoupledModelError> {
-        coupled_model(self.coupled.as_ref().map(|coupled| &coupled.fitted), physics, self.airspeed_kt(), pade)
+        coupled_model(
+            self.coupled.as_ref().map(|coupled| &coupled.fitted),
+            physics,
+            self.airspeed_kt(),
+            pade,
+        )
     }
 
     /// `M_O H~ M_I`: a physics model with the couplings, then with a correction of its channels.
@@ -257,7 +304,10 @@ fn coupled_model<'a>(
 ) -> Result<Cow<'a, StateSpace>, CoupledModelError> {
     match fitted {
         None => Ok(Cow::Borrowed(physics)),
-        Some(fitted) => fitted.matrices().model(physics, airspeed_kt, pade).map(Cow::Owned),
+        Some(fitted) => fitted
+            .matrices()
+            .model(physics, airspeed_kt, pade)
+            .map(Cow::Owned),
     }
 }
 

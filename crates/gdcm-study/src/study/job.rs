@@ -7,7 +7,9 @@ use std::time::Instant;
 use gdcm_method::correction::{Toggle, toggles};
 use gdcm_method::fidelity::{ModeTrack, mode_tracks};
 use gdcm_model::response::{Mode, ModesError, modes_of};
-use gdcm_sysid::identification::{Identification, IdentificationError, Options, ValidationSettings, identify};
+use gdcm_sysid::identification::{
+    Identification, IdentificationError, Options, ValidationSettings, identify,
+};
 use gdcm_sysid::records::LaidOutRecord;
 
 use super::*;
@@ -55,7 +57,11 @@ pub trait Job: Clone + PartialEq + Send + 'static {
     ///
     /// # Errors
     /// [`Cancelled`] soon after `progress` says so.
-    fn run(&self, tools: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled>;
+    fn run(
+        &self,
+        tools: &mut Self::Tools,
+        progress: &dyn Progress,
+    ) -> Result<Self::Output, Cancelled>;
 
     /// Whether `newer`, which is asked for in its place, is quicker once it is done; `done` of `total` steps are behind. Then it goes on.
     fn serves(&self, _newer: &Self, _done: usize, _total: usize) -> bool {
@@ -92,7 +98,9 @@ impl TogglesJob {
     pub fn is_of(&self, condition: &ConditionAnalysis) -> bool {
         let (a, b) = (&self.condition, condition);
         let same_problems = a.gain_problem == b.gain_problem && a.delay_problem == b.delay_problem;
-        same_problems && a.gains.objective == b.gains.objective && a.delays.objective == b.delays.objective
+        same_problems
+            && a.gains.objective == b.gains.objective
+            && a.delays.objective == b.delays.objective
     }
 }
 
@@ -109,14 +117,26 @@ impl Job for TogglesJob {
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
         // The table is a hint, not a result.
-        let budget = ProofBudget { work: 4_000_000, ..ProofBudget::default() };
-        let ConditionAnalysis { gain_problem, gains, delay_problem, delays, .. } = &self.condition;
+        let budget = ProofBudget {
+            work: 4_000_000,
+            ..ProofBudget::default()
+        };
+        let ConditionAnalysis {
+            gain_problem,
+            gains,
+            delay_problem,
+            delays,
+            ..
+        } = &self.condition;
         let gains = toggles(gain_problem, gains, budget, &|| progress.cancelled());
         let delays = toggles(delay_problem, delays, budget, &|| progress.cancelled());
         if progress.cancelled() {
             return Err(Cancelled);
         }
-        Ok(gains.ok().zip(delays.ok()).map(|(gains, delays)| Toggles { gains, delays }))
+        Ok(gains
+            .ok()
+            .zip(delays.ok())
+            .map(|(gains, delays)| Toggles { gains, delays }))
     }
 }
 
@@ -182,11 +202,27 @@ pub struct AcrossCurves {
 
 impl AcrossJob {
     /// The model of a role of every condition, as far as there is one.
-    pub fn of(dataset: &Arc<Dataset>, analysis: Option<&Analysis>, role: AcrossRole, grid: (Band, usize)) -> Self {
-        let models = dataset.conditions().iter().filter_map(|condition| role.model(condition, analysis)).collect();
-        let couplings =
-            analysis.filter(|_| role == AcrossRole::Corrected).and_then(Analysis::fitted_couplings).cloned();
-        Self { dataset: Arc::clone(dataset).into(), models, couplings, grid }
+    pub fn of(
+        dataset: &Arc<Dataset>,
+        analysis: Option<&Analysis>,
+        role: AcrossRole,
+        grid: (Band, usize),
+    ) -> Self {
+        let models = dataset
+            .conditions()
+            .iter()
+            .filter_map(|condition| role.model(condition, analysis))
+            .collect();
+        let couplings = analysis
+            .filter(|_| role == AcrossRole::Corrected)
+            .and_then(Analysis::fitted_couplings)
+            .cloned();
+        Self {
+            dataset: Arc::clone(dataset).into(),
+            models,
+            couplings,
+            grid,
+        }
     }
 }
 
@@ -199,11 +235,13 @@ impl Job for AcrossJob {
         let grid = FrequencyGrid::logarithmic(band, points);
         let responses = in_turn(&self.models, progress, |id| {
             let condition = self.dataset.condition(id.condition)?;
-            let response = PreparedModel::of(&condition.model(id.bundle, &id.name)?.dynamics).response(&grid);
-            let coupled = self
-                .couplings
-                .as_ref()
-                .map(|fitted| fitted.matrices().response(&response, condition.flight_state().airspeed_kt));
+            let response =
+                PreparedModel::of(&condition.model(id.bundle, &id.name)?.dynamics).response(&grid);
+            let coupled = self.couplings.as_ref().map(|fitted| {
+                fitted
+                    .matrices()
+                    .response(&response, condition.flight_state().airspeed_kt)
+            });
             Some((id.clone(), Arc::new(coupled.unwrap_or(response))))
         })?;
         let responses = responses.into_iter().flatten().collect();
@@ -227,7 +265,12 @@ pub enum AcrossRole {
 
 impl AcrossRole {
     /// Every role, in the order of its list.
-    pub const ALL: [Self; 4] = [Self::Nominal, Self::Representative, Self::Corrected, Self::Identified];
+    pub const ALL: [Self; 4] = [
+        Self::Nominal,
+        Self::Representative,
+        Self::Corrected,
+        Self::Identified,
+    ];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -243,15 +286,27 @@ impl AcrossRole {
     pub fn model(self, condition: &Condition, analysis: Option<&Analysis>) -> Option<ModelId> {
         let of = |kind: BundleKind, name: &str| ModelId::new(condition.id(), kind, name);
         if self == Self::Nominal {
-            return Some(of(BundleKind::Physics, &condition.bundle(BundleKind::Physics)[condition.nominal()].name));
+            return Some(of(
+                BundleKind::Physics,
+                &condition.bundle(BundleKind::Physics)[condition.nominal()].name,
+            ));
         }
         let result = analysis?.condition(condition.id())?;
-        let kind = if self == Self::Identified { BundleKind::Identified } else { BundleKind::Physics };
+        let kind = if self == Self::Identified {
+            BundleKind::Identified
+        } else {
+            BundleKind::Physics
+        };
         Some(of(kind, result.representative_name(kind)))
     }
 
     /// What is done to its response before it is drawn; none where the response has no correction.
-    pub fn correction(self, condition: ConditionId, pair: Pair, analysis: Option<&Analysis>) -> Option<GainDelay> {
+    pub fn correction(
+        self,
+        condition: ConditionId,
+        pair: Pair,
+        analysis: Option<&Analysis>,
+    ) -> Option<GainDelay> {
         match self {
             Self::Corrected => analysis?.condition(condition)?.correction.on(pair),
             _ => Some(GainDelay::NONE),
@@ -289,7 +344,9 @@ impl PartialEq for VariantJob {
         let (a, b) = (&self.study, &other.study);
         Arc::ptr_eq(&a.dataset, &b.dataset)
             && a.settings == b.settings
-            && a.dataset.ids().all(|id| a.choice(id).without_reasons() == b.choice(id).without_reasons())
+            && a.dataset
+                .ids()
+                .all(|id| a.choice(id).without_reasons() == b.choice(id).without_reasons())
     }
 }
 
@@ -340,10 +397,17 @@ impl ConditionModes {
     /// # Errors
     /// [`Cancelled`] between two models, where `progress` says so.
     pub fn of(condition: &Arc<Condition>, progress: &dyn Progress) -> Result<Self, Cancelled> {
-        let models: Vec<&Model> = BundleKind::BOTH.into_iter().flat_map(|kind| condition.bundle(kind)).collect();
+        let models: Vec<&Model> = BundleKind::BOTH
+            .into_iter()
+            .flat_map(|kind| condition.bundle(kind))
+            .collect();
         let mut physics = in_turn(&models, progress, |model| modes_of(&model.dynamics))?;
         let identified = physics.split_off(condition.bundle(BundleKind::Physics).len());
-        Ok(Self { condition: Arc::clone(condition), physics, identified })
+        Ok(Self {
+            condition: Arc::clone(condition),
+            physics,
+            identified,
+        })
     }
 
     /// The modes of one bundle.
@@ -353,7 +417,10 @@ impl ConditionModes {
 
     /// Each mode of the model of index `reference` followed through its bundle. A model without modes leaves gaps.
     pub fn tracks(&self, kind: BundleKind, reference: usize) -> Vec<ModeTrack> {
-        let modes = self.bundle(kind).iter().map(|modes| modes.as_deref().unwrap_or_default());
+        let modes = self
+            .bundle(kind)
+            .iter()
+            .map(|modes| modes.as_deref().unwrap_or_default());
         mode_tracks(&modes.collect::<Vec<&[Mode]>>(), reference)
     }
 }
@@ -388,10 +455,14 @@ impl IdentificationRequest {
         preparation: Preparation,
         band: [f64; 2],
     ) -> Result<Self, NothingToIdentify> {
-        let used = records.filter_map(|record| Some((record.used_flight()?, record.guess.held_out)));
-        let (flights, held_out): (Vec<FlightRecord>, Vec<bool>) =
-            used.map(|(flight, held_out)| (flight.as_ref().clone(), held_out)).unzip();
-        let held_out: Vec<usize> = (0..flights.len()).filter(|index| held_out[*index]).collect();
+        let used =
+            records.filter_map(|record| Some((record.used_flight()?, record.guess.held_out)));
+        let (flights, held_out): (Vec<FlightRecord>, Vec<bool>) = used
+            .map(|(flight, held_out)| (flight.as_ref().clone(), held_out))
+            .unzip();
+        let held_out: Vec<usize> = (0..flights.len())
+            .filter(|index| held_out[*index])
+            .collect();
         if flights.is_empty() {
             return Err(NothingToIdentify::NoRecord);
         }
@@ -400,7 +471,10 @@ impl IdentificationRequest {
         }
         Ok(Self {
             records: Arc::<[_]>::from(flights).into(),
-            options: Options { held_out, ..Options::new(band, preparation) },
+            options: Options {
+                held_out,
+                ..Options::new(band, preparation)
+            },
         })
     }
 
@@ -442,7 +516,11 @@ pub struct IdentifyJob {
 impl IdentifyJob {
     /// The job of this request.
     pub fn new(condition: ConditionId, request: IdentificationRequest) -> Self {
-        Self { condition, request, news: Arc::default() }
+        Self {
+            condition,
+            request,
+            news: Arc::default(),
+        }
     }
 
     /// What it has told so far.
@@ -491,9 +569,19 @@ impl Job for IdentifyJob {
     type Tools = Box<dyn Executor>;
     type Output = Result<Arc<Identification>, IdentificationError>;
 
-    fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+    fn run(
+        &self,
+        executor: &mut Self::Tools,
+        progress: &dyn Progress,
+    ) -> Result<Self::Output, Cancelled> {
         let begin = Instant::now();
-        let found = self.request.identify(executor.as_ref(), &Told { progress, news: &self.news });
+        let found = self.request.identify(
+            executor.as_ref(),
+            &Told {
+                progress,
+                news: &self.news,
+            },
+        );
         told(&self.news).duration_s = Some(begin.elapsed().as_secs_f64());
         match found {
             Err(IdentificationError::Stopped(cancelled)) => Err(cancelled),
@@ -519,15 +607,22 @@ impl Job for SimulationJob {
     /// In words why there is none.
     type Output = Result<Arc<Validation>, String>;
 
-    fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
+    fn run(
+        &self,
+        executor: &mut Self::Tools,
+        progress: &dyn Progress,
+    ) -> Result<Self::Output, Cancelled> {
         let segments = segments_of(&self.record, &self.preparation);
         if progress.cancelled() {
             return Err(Cancelled);
         }
-        let found = segments.map_err(|error| error.to_string()).and_then(|segments| {
-            let settings = ValidationSettings::unfiltered();
-            validate(&self.model, &segments, &settings, executor.as_ref()).map_err(|error| error.to_string())
-        });
+        let found = segments
+            .map_err(|error| error.to_string())
+            .and_then(|segments| {
+                let settings = ValidationSettings::unfiltered();
+                validate(&self.model, &segments, &settings, executor.as_ref())
+                    .map_err(|error| error.to_string())
+            });
         Ok(found.map(Arc::new))
     }
 }

@@ -22,11 +22,17 @@ impl LeadCompensated {
     pub(super) fn of(mismatch: &PairTable<Option<Mismatch>>, leads: &ChannelLeads) -> Arc<Self> {
         let mismatch = mismatch.map(|pair, mismatch| match leads.curve(pair) {
             None => mismatch.clone(),
-            Some(lead) => mismatch.as_ref().map(|mismatch| mismatch.multiplied(&lead.magnitude_db, &lead.phase)),
+            Some(lead) => mismatch
+                .as_ref()
+                .map(|mismatch| mismatch.multiplied(&lead.magnitude_db, &lead.phase)),
         });
         // A pure delay leaves every magnitude.
         let gain = delta_gains(&mismatch);
-        Arc::new(Self { leads: leads.clone(), mismatch, gain })
+        Arc::new(Self {
+            leads: leads.clone(),
+            mismatch,
+            gain,
+        })
     }
 }
 
@@ -56,7 +62,10 @@ impl LeadOffer {
         };
         let both: Vec<[f64; 2]> = left.iter().filter_map(of_both).collect();
         let mean = |at: usize| both.iter().map(|of| of[at]).sum::<f64>() / both.len() as f64;
-        let offer = Self { without: mean(0), with: mean(1) };
+        let offer = Self {
+            without: mean(0),
+            with: mean(1),
+        };
         (!both.is_empty() && offer.with < WORTH * offer.without).then_some(offer)
     }
 }
@@ -69,13 +78,23 @@ const NOTHING_S: f64 = 2e-3;
 /// The responses and the channels that get lead, in words: "P from LAT wants 65 ms of lead over the band: 24 on P, 41 on LAT"; "LAT: as if
 /// a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band". What a response wants has its bar, where `sure` knows
 /// it: "65 ± 4 ms" (M13).
-pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncertainty>) -> Vec<String> {
-    let Some(compensated) = &result.compensated else { return Vec::new() };
+pub fn lead_words(
+    study: &Study,
+    result: &ConditionAnalysis,
+    sure: Option<&Uncertainty>,
+) -> Vec<String> {
+    let Some(compensated) = &result.compensated else {
+        return Vec::new();
+    };
     let name = |channel: Channel| channel.name_in(&study.dataset);
     let price = LeadPrice::of(&compensated.leads);
     let half_ms = |pair: Pair| {
-        let bar = sure?.conditions.get(&result.condition.id())?.bars[Scalar::BandDelay(pair)].as_ref()?;
-        Some(format!(" ± {}", telling(s_to_ms(bar.half_width(sure?.level)?), 0)))
+        let bar =
+            sure?.conditions.get(&result.condition.id())?.bars[Scalar::BandDelay(pair)].as_ref()?;
+        Some(format!(
+            " ± {}",
+            telling(s_to_ms(bar.half_width(sure?.level)?), 0)
+        ))
     };
     let wants = |pair: Pair| {
         let [output, input] = Channel::of(pair);
@@ -83,10 +102,17 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
         let ms = |tau_s: f64| telling(s_to_ms(tau_s.abs()), 0);
         let part = |channel: Channel| {
             let tau_s = compensated.leads.taus_s[channel];
-            let sign = if (tau_s > 0.0) == (wanted_s > 0.0) || tau_s == 0.0 { "" } else { "−" };
+            let sign = if (tau_s > 0.0) == (wanted_s > 0.0) || tau_s == 0.0 {
+                ""
+            } else {
+                "−"
+            };
             format!("{sign}{} on {}", ms(tau_s), name(channel))
         };
-        let price = price.as_ref().and_then(|price| price.pair_words(pair)).map(|words| format!("; {words}"));
+        let price = price
+            .as_ref()
+            .and_then(|price| price.pair_words(pair))
+            .map(|words| format!("; {words}"));
         let price = price.unwrap_or_default();
         Some(format!(
             "{} from {} wants {}{} ms of {} over the band: {}, {}{price}",
@@ -99,22 +125,49 @@ pub fn lead_words(study: &Study, result: &ConditionAnalysis, sure: Option<&Uncer
             part(input)
         ))
     };
-    let filters = || compensated.leads.filters().iter().filter_map(|(channel, filter)| Some((channel, (*filter)?)));
+    let filters = || {
+        compensated
+            .leads
+            .filters()
+            .iter()
+            .filter_map(|(channel, filter)| Some((channel, (*filter)?)))
+    };
     let replaced = filters().map(|(channel, filter)| {
         let at_above = price.as_ref().map(|price| {
-            format!("; {} dB at {} rad/s", signed(price.gains_db[channel], 1), number(price.above_rad_s()))
+            format!(
+                "; {} dB at {} rad/s",
+                signed(price.gains_db[channel], 1),
+                number(price.above_rad_s())
+            )
         });
-        format!("{}: {}{}", name(channel), servo_words(filter), at_above.unwrap_or_default())
+        format!(
+            "{}: {}{}",
+            name(channel),
+            servo_words(filter),
+            at_above.unwrap_or_default()
+        )
     });
-    result.held().marked().filter_map(wants).chain(replaced).chain(lead_limit_words(result)).collect()
+    result
+        .held()
+        .marked()
+        .filter_map(wants)
+        .chain(replaced)
+        .chain(lead_limit_words(result))
+        .collect()
 }
 
 /// How many states the leads add, and where the corrected model ends to be valid.
 pub fn lead_limit_words(result: &ConditionAnalysis) -> Option<String> {
     let leads = &result.compensated.as_ref()?.leads;
     let top = number(LeadPrice::of(leads)?.limit_rad_s);
-    let states: usize = leads.filters().iter().filter_map(|(_, filter)| Some((*filter)?.order.number())).sum();
-    Some(format!("The leads add {states} states. Do not use the corrected model above {top} rad/s."))
+    let states: usize = leads
+        .filters()
+        .iter()
+        .filter_map(|(_, filter)| Some((*filter)?.order.number()))
+        .sum();
+    Some(format!(
+        "The leads add {states} states. Do not use the corrected model above {top} rad/s."
+    ))
 }
 
 /// "as if a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band".
@@ -129,8 +182,16 @@ pub fn servo_words(filter: LeadFilter) -> String {
 
 /// What has to be known of leads, where they are asked for, in words (M15.6).
 pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
-    let remarks = if result.compensated.is_some() { lead_remarks(study, result) } else { Vec::new() };
-    remarks.into_iter().filter(|remark| remark.kind != RemarkKind::Good).map(|remark| remark.text).collect()
+    let remarks = if result.compensated.is_some() {
+        lead_remarks(study, result)
+    } else {
+        Vec::new()
+    };
+    remarks
+        .into_iter()
+        .filter(|remark| remark.kind != RemarkKind::Good)
+        .map(|remark| remark.text)
+        .collect()
 }
 
 /// What leads do and what has to be asked before them; of a study without leads, whether they would help.
@@ -157,10 +218,19 @@ pub(super) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Rem
 /// That all held responses want about the same lead, and what to check first.
 fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     let held = result.held().marked();
-    let mut wanted_s: Vec<f64> = held.filter_map(|pair| result.comparison.delta.band_delay_s[pair]).collect();
-    let (least, most) = wanted_s.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| (a.min(*at), b.max(*at)));
+    let mut wanted_s: Vec<f64> = held
+        .filter_map(|pair| result.comparison.delta.band_delay_s[pair])
+        .collect();
+    let (least, most) = wanted_s
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), at| {
+            (a.min(*at), b.max(*at))
+        });
     let middle = gdcm_model::response::median(&mut wanted_s);
-    let is_common = wanted_s.len() > 1 && most < 0.0 && most - least <= 0.5 * middle.abs() && -middle >= NOTHING_S;
+    let is_common = wanted_s.len() > 1
+        && most < 0.0
+        && most - least <= 0.5 * middle.abs()
+        && -middle >= NOTHING_S;
     is_common.then(|| {
         let lead_ms = telling(-s_to_ms(middle), 0);
         let text = format!(
@@ -175,7 +245,12 @@ fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
 /// Whether every held response gets what it wants; which does not and why.
 fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let (held, delays) = (result.held().marked().count(), &result.delays);
-    if delays.inputs.iter().chain(&delays.outputs).all(|tau_s| tau_s.abs() < NOTHING_S) {
+    if delays
+        .inputs
+        .iter()
+        .chain(&delays.outputs)
+        .all(|tau_s| tau_s.abs() < NOTHING_S)
+    {
         let text = "Nothing to do for the phase: every delay or lead is less than 2 ms.".to_owned();
         return vec![Remark::new(RemarkKind::Good, text)];
     }
@@ -187,7 +262,9 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         };
         return vec![Remark::new(RemarkKind::Good, text)];
     }
-    miss_words(study, delays).map(|text| Remark::new(RemarkKind::Caution, text)).collect()
+    miss_words(study, delays)
+        .map(|text| Remark::new(RemarkKind::Caution, text))
+        .collect()
 }
 
 /// What filters of first order add to the gain within the band, which the gains take back.
@@ -211,14 +288,28 @@ fn raised_gain(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
 /// The held responses of which the two figures of D are far apart, but for those whose sign is doubted: half a turn is no zero and no mode.
 fn not_of_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<String> {
     let delta = &result.comparison.delta;
-    let is_doubted = |pair: &Pair| result.doubts.iter().any(|of| of.turns().is_some() && of.pairs.contains(pair));
-    let apart = result.held().marked().filter(|pair| !is_doubted(pair)).filter_map(|pair| {
-        let (median_s, band_s) = (delta.delay_s[pair]?, delta.band_delay_s[pair]?);
-        let ms = |delay_s: f64| signed(s_to_ms(delay_s), 0);
-        let name = study.dataset.pair_name(pair);
-        ((median_s - band_s).abs() > APART_S)
-            .then(|| format!("{name} {} ms by eq. (9), {} ms over the band", ms(median_s), ms(band_s)))
-    });
+    let is_doubted = |pair: &Pair| {
+        result
+            .doubts
+            .iter()
+            .any(|of| of.turns().is_some() && of.pairs.contains(pair))
+    };
+    let apart = result
+        .held()
+        .marked()
+        .filter(|pair| !is_doubted(pair))
+        .filter_map(|pair| {
+            let (median_s, band_s) = (delta.delay_s[pair]?, delta.band_delay_s[pair]?);
+            let ms = |delay_s: f64| signed(s_to_ms(delay_s), 0);
+            let name = study.dataset.pair_name(pair);
+            ((median_s - band_s).abs() > APART_S).then(|| {
+                format!(
+                    "{name} {} ms by eq. (9), {} ms over the band",
+                    ms(median_s),
+                    ms(band_s)
+                )
+            })
+        });
     let apart: Vec<String> = apart.collect();
     (!apart.is_empty()).then(|| {
         let lead = if study.settings.phase == PhaseCorrection::Lead { ": no lead filter mends it" } else { "" };

@@ -44,16 +44,19 @@ use nalgebra::{Complex, DMatrix};
 use serde::{Deserialize, Serialize};
 
 use gdcm_method::correction::{
-    Channel, ChannelCorrection, ChannelLeads, Delta, GainBounds, GainObjective, GainSource, Pade, Problem,
-    ProblemError, ProofBudget, Quantity, Solution, delta_gains,
+    Channel, ChannelCorrection, ChannelLeads, Delta, GainBounds, GainObjective, GainSource, Pade,
+    Problem, ProblemError, ProofBudget, Quantity, Solution, delta_gains,
 };
 use gdcm_method::couplings::CouplingError;
 use gdcm_method::fidelity::{Cost, CostAverage, Mismatch};
 use gdcm_method::requirements::{ModeVerdict, ToleranceTable};
-use gdcm_method::schedule::{CostChange, Schedule, ScheduleError, ScheduledQuantity, SecondVariable};
+use gdcm_method::schedule::{
+    CostChange, Schedule, ScheduleError, ScheduledQuantity, SecondVariable,
+};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{
-    Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, Pair, PairTable, StateSpace,
+    Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, Pair, PairTable,
+    StateSpace,
 };
 use gdcm_model::executor::{Executor, Sequential, each};
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse, GainDelay, PreparedModel, median};
@@ -63,11 +66,12 @@ use gdcm_sysid::identification::{FlightRecord, Preparation, Validation, segments
 pub use self::derivation::{Derivation, ExplainTarget, derivation};
 pub use self::setting::SETTINGS;
 pub use self::{
-    analysis::*, assessment_table::*, caution::*, changed_models::*, channel_time_skew::*, comparison::*,
-    condition_answers::*, condition_responses::*, convention_doubt::*, couplings_assessment::*, couplings_words::*,
-    differences::*, edit::*, engine::*, execution::*, fitted_couplings::*, job::*, lead_compensation::*, remark::*,
-    required_bandwidth::*, required_modes::*, requirements::*, requirements_tables::*, schedule_losses::*,
-    setting_row::*, settings::*, substitutions::*, table::*, time_histories::*, uncertainty::*,
+    analysis::*, assessment_table::*, caution::*, changed_models::*, channel_time_skew::*,
+    comparison::*, condition_answers::*, condition_responses::*, convention_doubt::*,
+    couplings_assessment::*, couplings_words::*, differences::*, edit::*, engine::*, execution::*,
+    fitted_couplings::*, job::*, lead_compensation::*, remark::*, required_bandwidth::*,
+    required_modes::*, requirements::*, requirements_tables::*, schedule_losses::*, setting_row::*,
+    settings::*, substitutions::*, table::*, time_histories::*, uncertainty::*,
 };
 use self::{condition_stages::*, time_history_tables::*};
 pub use gdcm_model::progress::{Cancelled, Progress, Unobserved};
@@ -107,7 +111,12 @@ pub struct ConditionChoice {
 
 impl Default for ConditionChoice {
     fn default() -> Self {
-        Self { physics: BundleChoice::default(), identified: BundleChoice::default(), scheduled: true, held_out: false }
+        Self {
+            physics: BundleChoice::default(),
+            identified: BundleChoice::default(),
+            scheduled: true,
+            held_out: false,
+        }
     }
 }
 
@@ -130,7 +139,11 @@ impl ConditionChoice {
 
     /// What of the choices the comparison of the models depends on.
     pub(super) fn of_models(&self) -> Self {
-        Self { scheduled: true, held_out: false, ..self.without_reasons() }
+        Self {
+            scheduled: true,
+            held_out: false,
+            ..self.without_reasons()
+        }
     }
 
     /// Whether the schedule is made of the condition: chosen for it, and not held out.
@@ -174,8 +187,19 @@ pub struct Study {
 impl PartialEq for Study {
     /// Decisions first: the numbers of two datasets are compared only where these are not one and the same.
     fn eq(&self, other: &Self) -> bool {
-        let decisions = (&self.settings, &self.choices, &self.variants, &self.signs, &self.requirements)
-            == (&other.settings, &other.choices, &other.variants, &other.signs, &other.requirements);
+        let decisions = (
+            &self.settings,
+            &self.choices,
+            &self.variants,
+            &self.signs,
+            &self.requirements,
+        ) == (
+            &other.settings,
+            &other.choices,
+            &other.variants,
+            &other.signs,
+            &other.requirements,
+        );
         decisions && (Arc::ptr_eq(&self.dataset, &other.dataset) || self.dataset == other.dataset)
     }
 }
@@ -184,7 +208,10 @@ impl Study {
     /// The study of a dataset before any decision.
     pub fn new(dataset: Arc<Dataset>) -> Self {
         let settings = Settings::of(&dataset);
-        let choices = dataset.ids().map(|id| (id, ConditionChoice::default())).collect();
+        let choices = dataset
+            .ids()
+            .map(|id| (id, ConditionChoice::default()))
+            .collect();
         Self {
             dataset,
             settings,
@@ -205,20 +232,33 @@ impl Study {
 
     /// Whether a model is rejected.
     pub fn is_rejected(&self, id: &ModelId) -> bool {
-        self.choice(id.condition).bundle(id.bundle).rejected.contains(&id.name)
+        self.choice(id.condition)
+            .bundle(id.bundle)
+            .rejected
+            .contains(&id.name)
     }
 
     /// Why a model is rejected, where the engineer has said so.
     pub fn reason(&self, id: &ModelId) -> Option<&str> {
-        self.choice(id.condition).bundle(id.bundle).reasons.get(&id.name).map(String::as_str)
+        self.choice(id.condition)
+            .bundle(id.bundle)
+            .reasons
+            .get(&id.name)
+            .map(String::as_str)
     }
 
     /// Names of the rejected models of one condition in file order, the physics bundle first.
     pub fn rejected_names(&self, condition: ConditionId) -> Vec<&str> {
         let of = |kind| {
             let rejected = &self.choice(condition).bundle(kind).rejected;
-            let models = self.dataset.condition(condition).map_or(&[][..], |found| found.bundle(kind));
-            models.iter().map(|model| model.name.as_str()).filter(|name| rejected.contains(*name))
+            let models = self
+                .dataset
+                .condition(condition)
+                .map_or(&[][..], |found| found.bundle(kind));
+            models
+                .iter()
+                .map(|model| model.name.as_str())
+                .filter(|name| rejected.contains(*name))
         };
         BundleKind::BOTH.into_iter().flat_map(of).collect()
     }
@@ -241,27 +281,43 @@ pub struct Variant {
 impl Study {
     /// The variant of this name.
     pub fn variant(&self, name: &str) -> Option<&Variant> {
-        self.variants.iter().find(|variant| variant.name == name).map(Arc::as_ref)
+        self.variants
+            .iter()
+            .find(|variant| variant.name == name)
+            .map(Arc::as_ref)
     }
 
     /// The study with the decisions of one of its variants in place of the present ones, and no variants of its own: what is
     /// analysed to compare them.
     pub fn of_variant(&self, name: &str) -> Option<Study> {
-        let Variant { settings, choices, .. } = self.variant(name)?;
+        let Variant {
+            settings, choices, ..
+        } = self.variant(name)?;
         let (settings, choices) = (settings.clone(), choices.clone());
-        Some(Study { settings, choices, variants: Vec::new(), ..self.clone() })
+        Some(Study {
+            settings,
+            choices,
+            variants: Vec::new(),
+            ..self.clone()
+        })
     }
 
     pub(super) fn keep_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
         let name = self.new_variant_name(name)?;
         let (settings, choices) = (self.settings.clone(), self.choices.clone());
-        self.variants.push(Arc::new(Variant { name, settings, choices }));
+        self.variants.push(Arc::new(Variant {
+            name,
+            settings,
+            choices,
+        }));
         Ok(())
     }
 
     pub(super) fn take_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
         let index = self.variant_index(name)?;
-        let Variant { settings, choices, .. } = self.variants[index].as_ref();
+        let Variant {
+            settings, choices, ..
+        } = self.variants[index].as_ref();
         (self.settings, self.choices) = (settings.clone(), choices.clone());
         Ok(())
     }
@@ -278,13 +334,21 @@ impl Study {
             return Ok(());
         }
         let name = self.new_variant_name(to)?;
-        self.variants[index] = Arc::new(Variant { name, ..self.variants[index].as_ref().clone() });
+        self.variants[index] = Arc::new(Variant {
+            name,
+            ..self.variants[index].as_ref().clone()
+        });
         Ok(())
     }
 
     fn variant_index(&self, name: &str) -> Result<usize, EditRefusal> {
-        let index = self.variants.iter().position(|variant| variant.name == name);
-        index.ok_or_else(|| EditRefusal::NoVariant { name: name.to_owned() })
+        let index = self
+            .variants
+            .iter()
+            .position(|variant| variant.name == name);
+        index.ok_or_else(|| EditRefusal::NoVariant {
+            name: name.to_owned(),
+        })
     }
 
     fn new_variant_name(&self, name: &str) -> Result<String, EditRefusal> {
@@ -292,7 +356,9 @@ impl Study {
         check_length("name of a variant", name, LONGEST_VARIANT_NAME)?;
         match (name.is_empty(), self.variant(name)) {
             (true, _) => Err(EditRefusal::VariantWithoutName),
-            (_, Some(_)) => Err(EditRefusal::VariantExists { name: name.to_owned() }),
+            (_, Some(_)) => Err(EditRefusal::VariantExists {
+                name: name.to_owned(),
+            }),
             (_, None) => Ok(name.to_owned()),
         }
     }
@@ -324,7 +390,12 @@ pub struct History<B = ()> {
 
 impl<B> Default for History<B> {
     fn default() -> Self {
-        Self { past: Vec::new(), future: Vec::new(), lost: Vec::new(), open: None }
+        Self {
+            past: Vec::new(),
+            future: Vec::new(),
+            lost: Vec::new(),
+            open: None,
+        }
     }
 }
 
@@ -338,21 +409,33 @@ impl<B: Default> History<B> {
             return;
         }
         self.lost = lost;
-        self.push(Step { label: edit.label(&before), study: before, beside: B::default() });
+        self.push(Step {
+            label: edit.label(&before),
+            study: before,
+            beside: B::default(),
+        });
         self.open = Some(edit.clone());
     }
 
     /// Keeps a decision that leaves the study as it is: `before` is what it changed beside the study, as that was.
     pub fn record_beside(&mut self, study: Study, label: String, before: B) {
         self.lost = std::mem::take(&mut self.future);
-        self.push(Step { label, study, beside: before });
+        self.push(Step {
+            label,
+            study,
+            beside: before,
+        });
         self.open = None;
     }
 
     /// Keeps `before`, the study of the dataset as it was before it was read again.
     pub fn record_reload(&mut self, before: Study, label: String) {
         self.future.clear();
-        self.push(Step { label, study: before, beside: B::default() });
+        self.push(Step {
+            label,
+            study: before,
+            beside: B::default(),
+        });
         self.open = None;
     }
 
@@ -373,7 +456,11 @@ impl<B: Default> History<B> {
     pub fn undo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
         let step = self.past.pop()?;
         self.open = None;
-        self.future.push(Step { label: step.label, study: now.clone(), beside: exchange(step.beside) });
+        self.future.push(Step {
+            label: step.label,
+            study: now.clone(),
+            beside: exchange(step.beside),
+        });
         Some(step.study)
     }
 
@@ -393,7 +480,11 @@ impl<B: Default> History<B> {
     pub fn redo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
         let step = self.future.pop()?;
         self.open = None;
-        self.past.push(Step { label: step.label, study: now.clone(), beside: exchange(step.beside) });
+        self.past.push(Step {
+            label: step.label,
+            study: now.clone(),
+            beside: exchange(step.beside),
+        });
         Some(step.study)
     }
 

@@ -51,17 +51,31 @@ pub enum Repeated {
 impl Remark {
     /// A remark that offers nothing.
     pub fn new(kind: RemarkKind, text: String) -> Self {
-        Self { kind, text, ignore: None, phase: None, turn: None, repeated: None }
+        Self {
+            kind,
+            text,
+            ignore: None,
+            phase: None,
+            turn: None,
+            repeated: None,
+        }
     }
 
     /// The remark, as one that many conditions have.
     pub(super) fn repeated(self, repeated: Repeated) -> Self {
-        Self { repeated: Some(repeated), ..self }
+        Self {
+            repeated: Some(repeated),
+            ..self
+        }
     }
 }
 
 /// Which held gains and delays were matched, which were not and why, and the cautions of the condition and of the schedule.
-pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Schedule>) -> Vec<Remark> {
+pub fn remarks(
+    study: &Study,
+    result: &ConditionAnalysis,
+    schedule: Option<&Schedule>,
+) -> Vec<Remark> {
     let mut remarks = sign_remarks(study, result);
     remarks.extend(gain_remarks(study, result));
     if study.settings.phase == PhaseCorrection::Delay {
@@ -73,7 +87,8 @@ pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Sche
     remarks.extend(worse_remark(study, result));
     remarks.extend(others_worse_remark(study, result));
     if !study.choice(result.condition.id()).scheduled {
-        let text = "This condition is left out of the schedule: its gains do not count in it.".to_owned();
+        let text =
+            "This condition is left out of the schedule: its gains do not count in it.".to_owned();
         remarks.push(Remark::new(RemarkKind::Caution, text));
     }
     let pair_name = |pair| study.dataset.pair_name(pair);
@@ -83,8 +98,12 @@ pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Sche
     }));
     if let Some(schedule) = schedule {
         let (inputs, outputs) = study.dataset.names_of_channels();
-        let cautions = schedule.cautions.iter().filter(|caution| caution.concerns(result.condition.id()));
-        let words = cautions.map(|caution| format!("Schedule: {}.", caution.words(&inputs, &outputs)));
+        let cautions = schedule
+            .cautions
+            .iter()
+            .filter(|caution| caution.concerns(result.condition.id()));
+        let words =
+            cautions.map(|caution| format!("Schedule: {}.", caution.words(&inputs, &outputs)));
         remarks.extend(words.map(|text| Remark::new(RemarkKind::Caution, text)));
     }
     remarks
@@ -93,13 +112,18 @@ pub fn remarks(study: &Study, result: &ConditionAnalysis, schedule: Option<&Sche
 /// Signs and units to be asked after, before anything is blamed for them; then what has been turned.
 fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let doubts = result.doubts.iter().map(|doubt| Remark {
-        turn: doubt.turns().map(|channel| (channel, Some(SignRole::Identified))),
+        turn: doubt
+            .turns()
+            .map(|channel| (channel, Some(SignRole::Identified))),
         ..Remark::new(RemarkKind::Caution, doubt.words(&study.dataset))
     });
     let turned = study.signs.iter().map(|(channel, of)| {
         let (name, of) = (channel.name_in(&study.dataset), of.models());
         let text = format!("{name} of {of} is turned: its sign is not that of the file.");
-        Remark { turn: Some((*channel, None)), ..Remark::new(RemarkKind::Good, text) }
+        Remark {
+            turn: Some((*channel, None)),
+            ..Remark::new(RemarkKind::Good, text)
+        }
     });
     doubts.chain(turned).collect()
 }
@@ -111,24 +135,40 @@ fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
             0 => "No gain is held.".to_owned(),
             1 => "The held gain is matched exactly.".to_owned(),
             count if !result.gains.agreeing.is_empty() => {
-                format!("All {count} held gains are matched within {} dB.", number(study.settings.agreement_db))
+                format!(
+                    "All {count} held gains are matched within {} dB.",
+                    number(study.settings.agreement_db)
+                )
             }
             count => format!("All {count} held gains are matched exactly."),
         };
         return vec![Remark::new(RemarkKind::Good, text)];
     }
     let (inputs, outputs) = study.dataset.names_of_channels();
-    let remedy = result.gains.remedy.iter().map(|remedy| remedy.words(&inputs, &outputs));
+    let remedy = result
+        .gains
+        .remedy
+        .iter()
+        .map(|remedy| remedy.words(&inputs, &outputs));
     let texts = miss_words(study, &result.gains).chain(remedy.filter(|words| !words.is_empty()));
-    texts.map(|text| Remark::new(RemarkKind::Trouble, text)).collect()
+    texts
+        .map(|text| Remark::new(RemarkKind::Trouble, text))
+        .collect()
 }
 
 /// What held responses get in place of what they want, then each conflict behind that.
 pub(super) fn miss_words(study: &Study, solution: &Solution) -> impl Iterator<Item = String> {
     let (inputs, outputs) = study.dataset.names_of_channels();
     let top = study.settings.band.max();
-    let misses: Vec<String> = solution.unmatched.iter().map(|miss| miss.words(top, &inputs, &outputs)).collect();
-    let conflicts = solution.conflicts.iter().map(move |conflict| conflict.words(&inputs, &outputs));
+    let misses: Vec<String> = solution
+        .unmatched
+        .iter()
+        .map(|miss| miss.words(top, &inputs, &outputs))
+        .collect();
+    let conflicts = solution
+        .conflicts
+        .iter()
+        .map(move |conflict| conflict.words(&inputs, &outputs));
     std::iter::once(misses.join(" ")).chain(conflicts)
 }
 
@@ -136,23 +176,41 @@ pub(super) fn miss_words(study: &Study, solution: &Solution) -> impl Iterator<It
 fn agreement_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let (inputs, outputs) = study.dataset.names_of_channels();
     let loops = result.gains.agreeing.iter().chain(&result.delays.agreeing);
-    loops.map(|of| Remark::new(RemarkKind::Good, of.agreement_words(&inputs, &outputs))).collect()
+    loops
+        .map(|of| Remark::new(RemarkKind::Good, of.agreement_words(&inputs, &outputs)))
+        .collect()
 }
 
 /// That coherence weighs, where it leaves nothing out; a caution says so where it does (M4a).
 fn coherence_remark(result: &ConditionAnalysis) -> Option<Remark> {
     let mismatches = result.comparison.representative.mismatch.iter();
-    let weighed =
-        mismatches.filter(|(_, entry)| entry.as_ref().is_some_and(|entry| entry.coherence_weights.is_some())).count();
-    let is_told = result.cautions.iter().any(|caution| matches!(caution, Caution::NotCoherent { .. }));
-    (weighed > 0 && !is_told)
-        .then(|| Remark::new(RemarkKind::Good, format!("Coherence weighs J, G and D of {weighed} responses.")))
+    let weighed = mismatches
+        .filter(|(_, entry)| {
+            entry
+                .as_ref()
+                .is_some_and(|entry| entry.coherence_weights.is_some())
+        })
+        .count();
+    let is_told = result
+        .cautions
+        .iter()
+        .any(|caution| matches!(caution, Caution::NotCoherent { .. }));
+    (weighed > 0 && !is_told).then(|| {
+        Remark::new(
+            RemarkKind::Good,
+            format!("Coherence weighs J, G and D of {weighed} responses."),
+        )
+    })
 }
 
 /// The held responses that the correction takes away from flight.
 fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     // Half is a rise of J that nobody sees; of leads every one is told (M15.6).
-    let notable = if study.settings.phase == PhaseCorrection::Lead { 0.0 } else { 0.5 };
+    let notable = if study.settings.phase == PhaseCorrection::Lead {
+        0.0
+    } else {
+        0.5
+    };
     let worse = result.held().marked().filter_map(|pair| {
         let change = result.cost[pair]?;
         let (before, after) = told_apart(change.uncorrected.total(), change.corrected.total(), 0);
@@ -161,7 +219,10 @@ fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     });
     let (pairs, worse): (Vec<Pair>, Vec<String>) = worse.unzip();
     (!worse.is_empty()).then(|| {
-        let text = format!("Held, yet farther from flight than without a correction: {}.", worse.join(", "));
+        let text = format!(
+            "Held, yet farther from flight than without a correction: {}.",
+            worse.join(", ")
+        );
         Remark::new(RemarkKind::Caution, text).repeated(Repeated::Farther(pairs))
     })
 }
@@ -169,7 +230,9 @@ fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
 /// How many of the responses that are not held leads take away from flight (M15.6).
 fn others_worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let others = result.cost.iter().filter(|(pair, _)| !result.held()[*pair]);
-    let changes: Vec<f64> = others.filter_map(|(_, change)| Some(change.as_ref()?.total())).collect();
+    let changes: Vec<f64> = others
+        .filter_map(|(_, change)| Some(change.as_ref()?.total()))
+        .collect();
     let worse = changes.iter().filter(|change| **change > 0.0).count();
     (study.settings.phase == PhaseCorrection::Lead && worse > 0).then(|| {
         let text = format!(
@@ -183,15 +246,26 @@ fn others_worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Rema
 fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let (held, unmatched) = (result.held().marked().count(), &result.delays.unmatched);
     if unmatched.is_empty() {
-        let how = if result.delays.agreeing.is_empty() { "exactly" } else { "as far as can be told" };
+        let how = if result.delays.agreeing.is_empty() {
+            "exactly"
+        } else {
+            "as far as can be told"
+        };
         let text = format!("All {held} held delays are matched {how}.");
-        return if held == 0 { Vec::new() } else { vec![Remark::new(RemarkKind::Good, text)] };
+        return if held == 0 {
+            Vec::new()
+        } else {
+            vec![Remark::new(RemarkKind::Good, text)]
+        };
     }
     let needed = unmatched.iter().filter(|unmatched| unmatched.delta < 0.0);
-    let needed: Vec<(Pair, String)> =
-        needed.map(|unmatched| (unmatched.pair, telling(-s_to_ms(unmatched.delta), 0))).collect();
-    let lead: Vec<String> =
-        needed.iter().map(|(pair, lead_ms)| format!("{} {lead_ms} ms", study.dataset.pair_name(*pair))).collect();
+    let needed: Vec<(Pair, String)> = needed
+        .map(|unmatched| (unmatched.pair, telling(-s_to_ms(unmatched.delta), 0)))
+        .collect();
+    let lead: Vec<String> = needed
+        .iter()
+        .map(|(pair, lead_ms)| format!("{} {lead_ms} ms", study.dataset.pair_name(*pair)))
+        .collect();
     let mut remarks = Vec::new();
     if !lead.is_empty() {
         let who = match (lead.len(), held) {
@@ -200,13 +274,18 @@ fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
             (count, _) if count == held => format!("All {held} held responses need"),
             (count, _) => format!("{count} of {held} held responses need"),
         };
-        let text = format!("{who} lead, because the physics model lags: {}. A delay cannot give it.", lead.join(", "));
+        let text = format!(
+            "{who} lead, because the physics model lags: {}. A delay cannot give it.",
+            lead.join(", ")
+        );
         remarks.push(Remark::new(RemarkKind::Caution, text).repeated(Repeated::NeedsLead(needed)));
     }
     let (inputs, outputs) = study.dataset.names_of_channels();
     let top = study.settings.band.max();
     let others = unmatched.iter().filter(|unmatched| unmatched.delta >= 0.0);
-    remarks.extend(others.map(|unmatched| Remark::new(RemarkKind::Caution, unmatched.words(top, &inputs, &outputs))));
+    remarks.extend(others.map(|unmatched| {
+        Remark::new(RemarkKind::Caution, unmatched.words(top, &inputs, &outputs))
+    }));
     remarks
 }
 
@@ -220,9 +299,17 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     details.extend(result.gains.proof.local_minima.iter().skip(1).map(|other| {
         let worse = 100.0 * (other.objective / result.gains.objective - 1.0);
         let figures = |names: &[String], gains: &[f64]| {
-            names.iter().zip(gains).map(|(name, gain)| format!("{name} {gain:.3}")).collect::<Vec<_>>().join(", ")
+            names
+                .iter()
+                .zip(gains)
+                .map(|(name, gain)| format!("{name} {gain:.3}"))
+                .collect::<Vec<_>>()
+                .join(", ")
         };
-        let (of_inputs, of_outputs) = (figures(&inputs, &other.inputs), figures(&outputs, &other.outputs));
+        let (of_inputs, of_outputs) = (
+            figures(&inputs, &other.inputs),
+            figures(&outputs, &other.outputs),
+        );
         format!("Another set of gains is only {worse:.2} % worse: {of_inputs}; {of_outputs}.")
     }));
     let top = study.settings.band.max();
@@ -232,9 +319,18 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
             "The program of delays and leads is convex: KKT residual {residual_s:.0e} s, which proves its optimum."
         ));
     }
-    details.extend(result.delays.unmatched.iter().map(|unmatched| unmatched.words(top, &inputs, &outputs)));
+    details.extend(
+        result
+            .delays
+            .unmatched
+            .iter()
+            .map(|unmatched| unmatched.words(top, &inputs, &outputs)),
+    );
     let notable = |sensitivity: &Sensitivity| sensitivity.share_per_unit.abs() > NOTABLE;
-    for (problem, solution) in [(&result.gain_problem, &result.gains), (&result.delay_problem, &result.delays)] {
+    for (problem, solution) in [
+        (&result.gain_problem, &result.gains),
+        (&result.delay_problem, &result.delays),
+    ] {
         let all = sensitivities(problem, solution).into_iter().filter(notable);
         details.extend(all.map(|sensitivity| sensitivity.words(&inputs, &outputs)));
     }

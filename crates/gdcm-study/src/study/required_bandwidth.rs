@@ -9,8 +9,9 @@
 use std::borrow::Cow;
 
 use gdcm_method::requirements::{
-    AboveBand, AttitudeOutput, AttitudeResponse, AttitudeResponseError, Bandwidth, BandwidthRule, BandwidthSettings,
-    Metric, NoMetric, PairBand, PhaseLine, ResponseAt, SampledModel, search_frequencies, substitution_bar,
+    AboveBand, AttitudeOutput, AttitudeResponse, AttitudeResponseError, Bandwidth, BandwidthRule,
+    BandwidthSettings, Metric, NoMetric, PairBand, PhaseLine, ResponseAt, SampledModel,
+    search_frequencies, substitution_bar,
 };
 use gdcm_method::uncertainty::{Figures, student_quantile};
 use gdcm_model::dataset::ModelBands;
@@ -72,8 +73,13 @@ pub struct BandwidthFinding {
 }
 
 /// Names of the numbers that are read from a response, in the order of [`metrics`].
-const METRICS: [&str; 5] =
-    ["omega_bw_rad_s", "omega_phase_rad_s", "omega_gain_rad_s", "omega_180_rad_s", "phase_delay_s"];
+const METRICS: [&str; 5] = [
+    "omega_bw_rad_s",
+    "omega_phase_rad_s",
+    "omega_gain_rad_s",
+    "omega_180_rad_s",
+    "phase_delay_s",
+];
 /// Name of the departure of the phase from a straight line.
 const DEPARTURE: &str = "phase_departure_deg";
 
@@ -102,7 +108,14 @@ pub(super) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFin
     let models = PreparedModels::of(asked);
     let pairs = asked.analysis.study.dataset.measuring_pairs();
     let roles = || asked.roles();
-    pairs.marked().flat_map(|pair| roles().map(|role| models.finding(pair, role)).collect::<Vec<_>>()).collect()
+    pairs
+        .marked()
+        .flat_map(|pair| {
+            roles()
+                .map(|role| models.finding(pair, role))
+                .collect::<Vec<_>>()
+        })
+        .collect()
 }
 
 /// A model made ready for its response.
@@ -125,7 +138,11 @@ enum Between {
 impl<'a> ReadModel<'a> {
     fn of(dynamics: Cow<'a, Dynamics>, bands: Option<&'a ModelBands>, band: Band) -> Self {
         let sampled = SampledModel::of(&dynamics, band);
-        Self { dynamics, bands, sampled }
+        Self {
+            dynamics,
+            bands,
+            sampled,
+        }
     }
 }
 
@@ -138,23 +155,35 @@ struct PairCorrection {
 }
 
 impl PairCorrection {
-    const NONE: Self = Self { multiplier: GainDelay::NONE, has_leads: false };
+    const NONE: Self = Self {
+        multiplier: GainDelay::NONE,
+        has_leads: false,
+    };
 
     /// None where the net gain is not positive.
     fn of(correction: &ChannelCorrection, pair: Pair) -> Option<Self> {
-        let has_leads = Channel::of(pair).into_iter().any(|channel| correction.lead(channel).is_some());
-        Some(Self { multiplier: correction.on(pair)?, has_leads })
+        let has_leads = Channel::of(pair)
+            .into_iter()
+            .any(|channel| correction.lead(channel).is_some());
+        Some(Self {
+            multiplier: correction.on(pair)?,
+            has_leads,
+        })
     }
 
     /// Of the figures of a swap; none where one of them does not exist.
     fn of_swap(figures: &Figures, pair: Pair, leads: Option<&ChannelLeads>) -> Option<Self> {
         let gain = figures[Scalar::NetGain(pair)]?.exp();
-        let [output_s, input_s] = Channel::of(pair).map(|channel| figures[Scalar::ChannelDelay(channel)]);
+        let [output_s, input_s] =
+            Channel::of(pair).map(|channel| figures[Scalar::ChannelDelay(channel)]);
         let taus_s = [output_s?, input_s?];
         let filters = taus_s.map(|tau_s| leads.and_then(|leads| leads.design.filter(tau_s)));
         let delay_s = taus_s.iter().map(|tau_s| tau_s.max(0.0)).sum();
         let has_leads = filters.iter().any(Option::is_some);
-        Some(Self { multiplier: GainDelay::new(gain, delay_s).led(filters), has_leads })
+        Some(Self {
+            multiplier: GainDelay::new(gain, delay_s).led(filters),
+            has_leads,
+        })
     }
 }
 
@@ -176,11 +205,15 @@ struct PreparedModels<'a> {
 impl<'a> PreparedModels<'a> {
     fn of(asked: &'a AskedCondition<'a>) -> Self {
         let uncertainty = asked.analysis.uncertainty.as_deref();
-        let of_condition = uncertainty.and_then(|uncertainty| uncertainty.conditions.get(&asked.id()));
+        let of_condition =
+            uncertainty.and_then(|uncertainty| uncertainty.conditions.get(&asked.id()));
         let swaps: &[Swap] = of_condition.map_or(&[], |of| &of.substitutions.substitutions);
         let bundle = |kind| asked.result.condition.bundle(kind);
         let physics = asked.result.comparison.physics.model;
-        let others = swaps.iter().filter(|(kind, ..)| *kind == BundleKind::Physics).map(|(_, model, _)| *model);
+        let others = swaps
+            .iter()
+            .filter(|(kind, ..)| *kind == BundleKind::Physics)
+            .map(|(_, model, _)| *model);
         let models: Vec<usize> = std::iter::once(physics).chain(others).collect();
         let band = asked.analysis.study.settings.band;
         let prepared = |&model: &usize| {
@@ -190,14 +223,36 @@ impl<'a> PreparedModels<'a> {
         let of_physics = models.iter().map(prepared).collect();
         let coupled = |&model: &usize| {
             let matrices = bundle(BundleKind::Physics)[model].state_space()?;
-            let of = asked.result.coupled_model(matrices, Pade::default()).ok()?.into_owned();
-            Some((model, ReadModel::of(Cow::Owned(Dynamics::StateSpace(of)), None, band)))
+            let of = asked
+                .result
+                .coupled_model(matrices, Pade::default())
+                .ok()?
+                .into_owned();
+            Some((
+                model,
+                ReadModel::of(Cow::Owned(Dynamics::StateSpace(of)), None, band),
+            ))
         };
         let is_coupled = asked.result.coupled.is_some();
-        let of_coupled = models.iter().filter(|_| is_coupled).filter_map(coupled).collect();
+        let of_coupled = models
+            .iter()
+            .filter(|_| is_coupled)
+            .filter_map(coupled)
+            .collect();
         let flight = asked.result.representative_model(BundleKind::Identified);
-        let identified = ReadModel::of(Cow::Borrowed(&flight.dynamics), flight.bands.as_deref(), band);
-        Self { asked, physics, of_physics, of_coupled, identified, swaps }
+        let identified = ReadModel::of(
+            Cow::Borrowed(&flight.dynamics),
+            flight.bands.as_deref(),
+            band,
+        );
+        Self {
+            asked,
+            physics,
+            of_physics,
+            of_coupled,
+            identified,
+            swaps,
+        }
     }
 
     /// Bandwidth and phase delay of a response of a model under a correction, and its phase where that speaks for a reversed channel.
@@ -215,7 +270,9 @@ impl<'a> PreparedModels<'a> {
         let interpolated = model.sampled.interpolated(pair, correction.multiplier);
         let (response, omega): (&ResponseAt<'_>, _) = match (&*model.dynamics, between) {
             (Dynamics::StateSpace(_), Between::Exact) => (&exact, search_frequencies(band)),
-            (Dynamics::StateSpace(_), Between::Interpolated) => (&interpolated, search_frequencies(band)),
+            (Dynamics::StateSpace(_), Between::Interpolated) => {
+                (&interpolated, search_frequencies(band))
+            }
             (Dynamics::Measured(measured), _) => (&exact, measured.omega().to_vec()),
         };
         let attitude = AttitudeResponse::new(response, output, &omega, band)?;
@@ -224,10 +281,21 @@ impl<'a> PreparedModels<'a> {
             Dynamics::StateSpace(_) => attitude.sampled_by(&interpolated),
             Dynamics::Measured(_) => attitude,
         };
-        let above_band = if correction.has_leads { AboveBand::Refused } else { AboveBand::Marked };
-        let settings = BandwidthSettings { command: study.requirements.command_of(&channel.name), band, above_band };
+        let above_band = if correction.has_leads {
+            AboveBand::Refused
+        } else {
+            AboveBand::Marked
+        };
+        let settings = BandwidthSettings {
+            command: study.requirements.command_of(&channel.name),
+            band,
+            above_band,
+        };
         let deviation = model.bands.map(|bands| PairBand { bands, pair });
-        Ok((Bandwidth::of(&attitude, &settings, deviation), attitude.reversed_phase_deg()))
+        Ok((
+            Bandwidth::of(&attitude, &settings, deviation),
+            attitude.reversed_phase_deg(),
+        ))
     }
 
     fn finding(&self, pair: Pair, role: RequirementRole) -> BandwidthFinding {
@@ -244,7 +312,11 @@ impl<'a> PreparedModels<'a> {
         };
         match self.bandwidth(pair, role) {
             Err(why) => {
-                finding.absent = finding.quantities().into_iter().map(|(name, _)| (name, why.clone())).collect();
+                finding.absent = finding
+                    .quantities()
+                    .into_iter()
+                    .map(|(name, _)| (name, why.clone()))
+                    .collect();
             }
             Ok((bandwidth, reversed_phase_deg)) => {
                 finding.reversed_phase_deg = reversed_phase_deg;
@@ -256,7 +328,11 @@ impl<'a> PreparedModels<'a> {
     }
 
     /// The bandwidth of the model of a role, or why it has none.
-    fn bandwidth(&self, pair: Pair, role: RequirementRole) -> Result<(Bandwidth, Option<f64>), String> {
+    fn bandwidth(
+        &self,
+        pair: Pair,
+        role: RequirementRole,
+    ) -> Result<(Bandwidth, Option<f64>), String> {
         let correction = match self.asked.correction(role) {
             None => PairCorrection::NONE,
             Some(of) => PairCorrection::of(of, pair).ok_or("the net gain is not positive")?,
@@ -265,15 +341,22 @@ impl<'a> PreparedModels<'a> {
             RequirementRole::Identified => &self.identified,
             _ => self.physics_of(role, self.physics)?,
         };
-        self.read(model, pair, correction, Between::Exact).map_err(|error| error.to_string())
+        self.read(model, pair, correction, Between::Exact)
+            .map_err(|error| error.to_string())
     }
 
     /// A physics model as a role has it: with the couplings where it is corrected.
-    fn physics_of(&self, role: RequirementRole, model: usize) -> Result<&ReadModel<'a>, &'static str> {
+    fn physics_of(
+        &self,
+        role: RequirementRole,
+        model: usize,
+    ) -> Result<&ReadModel<'a>, &'static str> {
         if role == RequirementRole::Physics || self.asked.result.coupled.is_none() {
             return Ok(&self.of_physics[&model]);
         }
-        self.of_coupled.get(&model).ok_or("the physics model has no matrices that couplings can be put into")
+        self.of_coupled
+            .get(&model)
+            .ok_or("the physics model has no matrices that couplings can be put into")
     }
 
     fn add_intervals(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
@@ -284,7 +367,10 @@ impl<'a> PreparedModels<'a> {
             }
             RequirementRole::Scheduled => "the schedule is not made again for each swap of models",
             RequirementRole::Identified => {
-                finding.take_deviations(bandwidth, self.asked.analysis.study.settings.uncertainty.level);
+                finding.take_deviations(
+                    bandwidth,
+                    self.asked.analysis.study.settings.uncertainty.level,
+                );
                 match (&*self.identified.dynamics, self.identified.bands) {
                     (_, Some(_)) => "the band of the identified model does not reach so far",
                     (Dynamics::Measured(_), None) => "the measured response carries no band",
@@ -302,14 +388,22 @@ impl<'a> PreparedModels<'a> {
         let level = self.asked.analysis.study.settings.uncertainty.level;
         let of_bundle = |kind: BundleKind| -> Vec<MetricValues> {
             let swaps = self.swaps.iter().filter(|(of, ..)| *of == kind);
-            swaps.map(|swap| self.swapped(swap, finding.pair, finding.role)).collect()
+            swaps
+                .map(|swap| self.swapped(swap, finding.pair, finding.role))
+                .collect()
         };
         let physics = of_bundle(BundleKind::Physics);
         let is_corrected = finding.role == RequirementRole::Corrected;
-        let identified = if is_corrected { of_bundle(BundleKind::Identified) } else { Vec::new() };
+        let identified = if is_corrected {
+            of_bundle(BundleKind::Identified)
+        } else {
+            Vec::new()
+        };
         for (index, metric) in metrics(bandwidth).into_iter().enumerate() {
             let Ok(metric) = metric else { continue };
-            let of_metric = |swaps: &[MetricValues]| swaps.iter().map(|values| values[index]).collect::<Vec<_>>();
+            let of_metric = |swaps: &[MetricValues]| {
+                swaps.iter().map(|values| values[index]).collect::<Vec<_>>()
+            };
             let bar = substitution_bar(metric.value, &of_metric(&physics), &of_metric(&identified));
             if let Some(interval) = bar.interval(level) {
                 finding.interval.insert(METRICS[index], interval);
@@ -321,19 +415,27 @@ impl<'a> PreparedModels<'a> {
     }
 
     /// The numbers of a response after a swap.
-    fn swapped(&self, (kind, model, figures): &Swap, pair: Pair, role: RequirementRole) -> MetricValues {
+    fn swapped(
+        &self,
+        (kind, model, figures): &Swap,
+        pair: Pair,
+        role: RequirementRole,
+    ) -> MetricValues {
         let leads = self.asked.result.correction.leads.as_ref();
         let correction = match role {
-            RequirementRole::Corrected => {
-                figures.as_ref().and_then(|figures| PairCorrection::of_swap(figures, pair, leads))
-            }
+            RequirementRole::Corrected => figures
+                .as_ref()
+                .and_then(|figures| PairCorrection::of_swap(figures, pair, leads)),
             _ => Some(PairCorrection::NONE),
         };
         let model = self.physics_of(role, kind.pick(*model, self.physics)).ok();
-        let bandwidth = correction
-            .zip(model)
-            .and_then(|(correction, model)| self.read(model, pair, correction, Between::Interpolated).ok());
-        bandwidth.map_or([None; 5], |(bandwidth, _)| metrics(&bandwidth).map(|of| of.ok().map(|of| of.value)))
+        let bandwidth = correction.zip(model).and_then(|(correction, model)| {
+            self.read(model, pair, correction, Between::Interpolated)
+                .ok()
+        });
+        bandwidth.map_or([None; 5], |(bandwidth, _)| {
+            metrics(&bandwidth).map(|of| of.ok().map(|of| of.value))
+        })
     }
 }
 
@@ -341,8 +443,13 @@ impl BandwidthFinding {
     /// Takes what was read from a response.
     fn take(&mut self, bandwidth: &Bandwidth) {
         let read = metrics(bandwidth);
-        let [omega_bw, omega_phase, omega_gain, omega_180, phase_delay] = read.map(|of| of.ok().map(|of| of.value));
-        (self.omega_bw_rad_s, self.omega_phase_rad_s, self.omega_gain_rad_s) = (omega_bw, omega_phase, omega_gain);
+        let [omega_bw, omega_phase, omega_gain, omega_180, phase_delay] =
+            read.map(|of| of.ok().map(|of| of.value));
+        (
+            self.omega_bw_rad_s,
+            self.omega_phase_rad_s,
+            self.omega_gain_rad_s,
+        ) = (omega_bw, omega_phase, omega_gain);
         (self.omega_180_rad_s, self.phase_delay_s) = (omega_180, phase_delay);
         (self.rule, self.gain_limited) = (bandwidth.rule, bandwidth.is_gain_limited());
         // Where leads refuse the phase delay, the line that it would be read from rests on them too.
@@ -352,8 +459,10 @@ impl BandwidthFinding {
         for (name, metric) in METRICS.into_iter().zip(read) {
             match metric {
                 Ok(metric) => {
-                    self.rests_above_band.extend(metric.rests_above_band.then_some(name));
-                    self.rests_below_band.extend(metric.rests_below_band.then_some(name));
+                    self.rests_above_band
+                        .extend(metric.rests_above_band.then_some(name));
+                    self.rests_below_band
+                        .extend(metric.rests_below_band.then_some(name));
                 }
                 Err(why) => {
                     self.absent.insert(name, why.to_string());
@@ -369,9 +478,15 @@ impl BandwidthFinding {
     fn take_deviations(&mut self, bandwidth: &Bandwidth, level: f64) {
         let factor = student_quantile(level, f64::INFINITY);
         for (name, metric) in METRICS.into_iter().zip(metrics(bandwidth)) {
-            if let Ok(Metric { value, deviation: Some(deviation), .. }) = metric {
+            if let Ok(Metric {
+                value,
+                deviation: Some(deviation),
+                ..
+            }) = metric
+            {
                 let half = factor * deviation;
-                self.interval.insert(name, [(value - half).max(0.0), value + half]);
+                self.interval
+                    .insert(name, [(value - half).max(0.0), value + half]);
             }
         }
     }
@@ -379,5 +494,11 @@ impl BandwidthFinding {
 
 /// What is read from a response, in the order of [`METRICS`].
 fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
-    [bandwidth.omega_bw, bandwidth.omega_phase, bandwidth.omega_gain, bandwidth.omega_180, bandwidth.phase_delay_s]
+    [
+        bandwidth.omega_bw,
+        bandwidth.omega_phase,
+        bandwidth.omega_gain,
+        bandwidth.omega_180,
+        bandwidth.phase_delay_s,
+    ]
 }

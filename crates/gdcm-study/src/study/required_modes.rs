@@ -48,7 +48,11 @@ impl ModeNumbers {
         let values = mode.values;
         let reasons = [
             ("period_s", values.period_s, "it does not oscillate"),
-            ("time_to_half_s", values.time_to_half_s, "it neither decays nor grows"),
+            (
+                "time_to_half_s",
+                values.time_to_half_s,
+                "it neither decays nor grows",
+            ),
             ("damping_ratio", values.damping_ratio, "its pole is at zero"),
         ];
         let absent = reasons.into_iter().filter(|(_, value, _)| value.is_none());
@@ -110,19 +114,39 @@ pub struct ModeFinding {
 ///
 /// # Errors
 /// Why there are none, in words.
-pub(super) fn mode_findings(asked: &AskedCondition<'_>, known: &KnownPoles) -> Result<Vec<ModeFinding>, String> {
+pub(super) fn mode_findings(
+    asked: &AskedCondition<'_>,
+    known: &KnownPoles,
+) -> Result<Vec<ModeFinding>, String> {
     let tolerances = &asked.analysis.study.requirements.mode_tolerances;
-    let [physics, identified] = BundleKind::BOTH.map(|kind| asked.result.representative_model(kind));
+    let [physics, identified] =
+        BundleKind::BOTH.map(|kind| asked.result.representative_model(kind));
     let (of_physics, of_identified) = (known_modes(physics)?, known_modes(identified)?);
     let of_corrected = coupled_modes(asked, physics)?;
-    let flown = ModelModes { modes: &of_identified, states: &identified.states };
+    let flown = ModelModes {
+        modes: &of_identified,
+        states: &identified.states,
+    };
     let models: Vec<ModelModes<'_>> = std::iter::once(&of_physics)
         .chain(&of_corrected)
-        .map(|modes| ModelModes { modes, states: &physics.states })
+        .map(|modes| ModelModes {
+            modes,
+            states: &physics.states,
+        })
         .collect();
-    let rows = compare_modes(flown, &models, known.of(asked.id()), asked.analysis.study.settings.band, tolerances);
+    let rows = compare_modes(
+        flown,
+        &models,
+        known.of(asked.id()),
+        asked.analysis.study.settings.band,
+        tolerances,
+    );
     let numbers = |row: &ModeRow, of: usize| {
-        row.models.get(of).copied().flatten().map(|mode| ModeNumbers::of(&mode, &physics.name))
+        row.models
+            .get(of)
+            .copied()
+            .flatten()
+            .map(|mode| ModeNumbers::of(&mode, &physics.name))
     };
     let finding = |(index, row): (usize, ModeRow)| ModeFinding {
         condition: asked.id(),
@@ -130,7 +154,11 @@ pub(super) fn mode_findings(asked: &AskedCondition<'_>, known: &KnownPoles) -> R
         number: index + 1,
         name: row.name,
         named_by: row.named_by,
-        verdict: row.verdicts.first().copied().unwrap_or(ModeVerdict::NotPaired),
+        verdict: row
+            .verdicts
+            .first()
+            .copied()
+            .unwrap_or(ModeVerdict::NotPaired),
         identified: ModeNumbers::of(&row.flown, &identified.name),
         identified_deviation: row.deviation,
         physics: numbers(&row, 0),
@@ -143,16 +171,30 @@ pub(super) fn mode_findings(asked: &AskedCondition<'_>, known: &KnownPoles) -> R
 
 /// The modes of a physics model with the couplings of the study; none without couplings.
 fn coupled_modes(asked: &AskedCondition<'_>, physics: &Model) -> Result<Option<Vec<Mode>>, String> {
-    let Some(matrices) = physics.state_space().filter(|_| asked.result.coupled.is_some()) else { return Ok(None) };
-    let named = |error: &dyn std::fmt::Display| format!("\"{}\" with couplings: {error}", physics.name);
-    let coupled = asked.result.coupled_model(matrices, Pade::default()).map_err(|error| named(&error))?;
-    modes_of(&Dynamics::StateSpace(coupled.into_owned())).map(Some).map_err(|error| named(&error))
+    let Some(matrices) = physics
+        .state_space()
+        .filter(|_| asked.result.coupled.is_some())
+    else {
+        return Ok(None);
+    };
+    let named =
+        |error: &dyn std::fmt::Display| format!("\"{}\" with couplings: {error}", physics.name);
+    let coupled = asked
+        .result
+        .coupled_model(matrices, Pade::default())
+        .map_err(|error| named(&error))?;
+    modes_of(&Dynamics::StateSpace(coupled.into_owned()))
+        .map(Some)
+        .map_err(|error| named(&error))
 }
 
 /// The modes of a model, or why they are not known.
 fn known_modes(model: &Model) -> Result<Vec<Mode>, String> {
     if model.state_space().is_none() {
-        return Err(format!("\"{}\" is a measured response: it has no poles", model.name));
+        return Err(format!(
+            "\"{}\" is a measured response: it has no poles",
+            model.name
+        ));
     }
     modes_of(&model.dynamics).map_err(|error| format!("\"{}\": {error}", model.name))
 }
@@ -166,9 +208,15 @@ mod tests {
 
     #[test]
     fn modes_of_the_example_are_paired_and_named_once_and_within_the_distance() {
-        let found = requirements_of(&EXAMPLE.analysis, &KnownPoles::default(), &Execution::sequential()).unwrap();
+        let found = requirements_of(
+            &EXAMPLE.analysis,
+            &KnownPoles::default(),
+            &Execution::sequential(),
+        )
+        .unwrap();
         let least = EXAMPLE.analysis.study.settings.band.min();
-        let pole = |of: &ModeNumbers| nalgebra::Complex::new(of.pole_real_rad_s, of.pole_imaginary_rad_s);
+        let pole =
+            |of: &ModeNumbers| nalgebra::Complex::new(of.pole_real_rad_s, of.pole_imaginary_rad_s);
         for condition in EXAMPLE.analysis.conditions.keys() {
             let modes = || found.modes.iter().filter(|of| of.condition == *condition);
             let mut names: Vec<ModeName> = modes().filter_map(|of| of.name).collect();
@@ -184,34 +232,74 @@ mod tests {
                 };
                 let (flown, physics) = (pole(&mode.identified), pole(physics));
                 let largest = flown.norm().max(physics.norm()).max(least);
-                assert!((flown - physics).norm() <= LARGEST_PAIR_DISTANCE * largest, "{condition}: {flown} {physics}");
-                assert!(!partners.contains(&physics), "condition {condition}: {physics} twice");
+                assert!(
+                    (flown - physics).norm() <= LARGEST_PAIR_DISTANCE * largest,
+                    "{condition}: {flown} {physics}"
+                );
+                assert!(
+                    !partners.contains(&physics),
+                    "condition {condition}: {physics} twice"
+                );
                 partners.push(physics);
             }
-            assert!(modes().any(|of| of.name == Some(ModeName::DutchRoll) && of.physics.is_some()), "{condition}");
+            assert!(
+                modes().any(|of| of.name == Some(ModeName::DutchRoll) && of.physics.is_some()),
+                "{condition}"
+            );
         }
-        assert!(found.modes.iter().any(|of| of.physics.is_none()), "some flown poles are no helicopter's");
+        assert!(
+            found.modes.iter().any(|of| of.physics.is_none()),
+            "some flown poles are no helicopter's"
+        );
     }
 
     #[test]
     fn a_mode_whose_deviation_is_beyond_the_tolerance_is_not_determined() {
-        let of = |known: &KnownPoles| requirements_of(&EXAMPLE.analysis, known, &Execution::sequential()).unwrap();
+        let of = |known: &KnownPoles| {
+            requirements_of(&EXAMPLE.analysis, known, &Execution::sequential()).unwrap()
+        };
         let unknown = of(&KnownPoles::default());
-        let judged = |mode: &&ModeFinding| matches!(mode.verdict, ModeVerdict::Within | ModeVerdict::Outside);
-        let mode = unknown.modes.iter().find(judged).expect("a Dutch roll within the band");
+        let judged = |mode: &&ModeFinding| {
+            matches!(mode.verdict, ModeVerdict::Within | ModeVerdict::Outside)
+        };
+        let mode = unknown
+            .modes
+            .iter()
+            .find(judged)
+            .expect("a Dutch roll within the band");
         assert_eq!(mode.identified_deviation, None);
-        assert!(unknown.mode_table(mode.condition).title.contains("not known"));
+        assert!(
+            unknown
+                .mode_table(mode.condition)
+                .title
+                .contains("not known")
+        );
         let verdict = |sd: f64, moved: f64| {
             let numbers = &mode.identified;
-            let pole = nalgebra::Complex::new(numbers.pole_real_rad_s * moved, numbers.pole_imaginary_rad_s * moved);
-            let estimate = PoleEstimate { pole, sd_re: sd * pole.norm(), sd_im: sd * pole.norm(), determined: true };
+            let pole = nalgebra::Complex::new(
+                numbers.pole_real_rad_s * moved,
+                numbers.pole_imaginary_rad_s * moved,
+            );
+            let estimate = PoleEstimate {
+                pole,
+                sd_re: sd * pole.norm(),
+                sd_im: sd * pole.norm(),
+                determined: true,
+            };
             let found = of(&KnownPoles::from_iter([(mode.condition, vec![estimate])]));
-            let same =
-                found.modes.iter().find(|of| (of.condition, of.number) == (mode.condition, mode.number)).unwrap();
+            let same = found
+                .modes
+                .iter()
+                .find(|of| (of.condition, of.number) == (mode.condition, mode.number))
+                .unwrap();
             (same.verdict, same.identified_deviation.is_some())
         };
         assert_eq!(verdict(1e-3, 1.0), (mode.verdict, true));
         assert_eq!(verdict(0.4, 1.0), (ModeVerdict::NotDetermined, true));
-        assert_eq!(verdict(0.4, 1.1), (mode.verdict, false), "an estimate of another model says nothing");
+        assert_eq!(
+            verdict(0.4, 1.1),
+            (mode.verdict, false),
+            "an estimate of another model says nothing"
+        );
     }
 }

@@ -3,7 +3,9 @@
 
 use gdcm_method::correction::CorrectedModelError;
 use gdcm_method::couplings::{CoupledModelError, without_delays};
-use gdcm_method::requirements::{CommandType, LevelBoundaries, ModeToleranceTable, Summary, SummarySource, TestInput};
+use gdcm_method::requirements::{
+    CommandType, LevelBoundaries, ModeToleranceTable, Summary, SummarySource, TestInput,
+};
 
 use super::*;
 
@@ -45,7 +47,11 @@ pub struct OverviewLimits {
 
 impl Default for OverviewLimits {
     fn default() -> Self {
-        Self { bandwidth: 0.1, phase_delay_s: 0.02, share_inside: 0.9 }
+        Self {
+            bandwidth: 0.1,
+            phase_delay_s: 0.02,
+            share_inside: 0.9,
+        }
     }
 }
 
@@ -65,9 +71,20 @@ impl OverviewLimits {
     /// # Errors
     /// [`OverviewLimitsError`] where one is not a number above zero.
     pub fn checked(self) -> Result<Self, OverviewLimitsError> {
-        let Self { bandwidth, phase_delay_s, share_inside } = self;
-        let limits = [("bandwidth", bandwidth), ("phase_delay_s", phase_delay_s), ("share_inside", share_inside)];
-        match limits.into_iter().find(|(_, value)| !value.is_finite() || *value <= 0.0) {
+        let Self {
+            bandwidth,
+            phase_delay_s,
+            share_inside,
+        } = self;
+        let limits = [
+            ("bandwidth", bandwidth),
+            ("phase_delay_s", phase_delay_s),
+            ("share_inside", share_inside),
+        ];
+        match limits
+            .into_iter()
+            .find(|(_, value)| !value.is_finite() || *value <= 0.0)
+        {
             Some((name, found)) => Err(OverviewLimitsError { name, found }),
             None => Ok(self),
         }
@@ -86,7 +103,11 @@ impl Analysis {
 impl RequirementSettings {
     /// How an axis answers to its stick, by the name of its output.
     pub fn command_of(&self, output: &str) -> CommandType {
-        if self.attitude_command.contains(output) { CommandType::Attitude } else { CommandType::Rate }
+        if self.attitude_command.contains(output) {
+            CommandType::Attitude
+        } else {
+            CommandType::Rate
+        }
     }
 
     /// What names outputs that the dataset does not have, in words.
@@ -94,9 +115,12 @@ impl RequirementSettings {
         let (_, outputs) = dataset.names_of_channels();
         let unknown = |name: &&String| !outputs.contains(name);
         let commands = self.attitude_command.iter().filter(unknown);
-        let commands = commands.map(|name| format!("attitude command of {name}: the dataset has no such output"));
+        let commands = commands
+            .map(|name| format!("attitude command of {name}: the dataset has no such output"));
         let levels = self.levels.unknown_axes(&outputs).into_iter();
-        commands.chain(levels.map(|name| format!("levels of {name}: the dataset has no such output"))).collect()
+        commands
+            .chain(levels.map(|name| format!("levels of {name}: the dataset has no such output")))
+            .collect()
     }
 }
 
@@ -117,11 +141,20 @@ pub enum RequirementRole {
 
 impl RequirementRole {
     /// Every role, in the order of tables.
-    pub const ALL: [Self; 4] = [Self::Physics, Self::Corrected, Self::Scheduled, Self::Identified];
+    pub const ALL: [Self; 4] = [
+        Self::Physics,
+        Self::Corrected,
+        Self::Scheduled,
+        Self::Identified,
+    ];
 
     /// The bundle whose representative it is of.
     pub fn bundle(self) -> BundleKind {
-        if self == Self::Identified { BundleKind::Identified } else { BundleKind::Physics }
+        if self == Self::Identified {
+            BundleKind::Identified
+        } else {
+            BundleKind::Physics
+        }
     }
 
     /// Its name.
@@ -245,13 +278,19 @@ impl AskedCondition<'_> {
     /// The roles that there is a model for.
     pub(super) fn roles(&self) -> impl Iterator<Item = RequirementRole> + use<> {
         let has_schedule = self.scheduled.is_some();
-        RequirementRole::ALL.into_iter().filter(move |role| has_schedule || *role != RequirementRole::Scheduled)
+        RequirementRole::ALL
+            .into_iter()
+            .filter(move |role| has_schedule || *role != RequirementRole::Scheduled)
     }
 
     fn summary(&self, role: RequirementRole) -> SummaryFinding {
         let on_axis = self.analysis.study.dataset.measuring_pairs();
         let correction = self.correction(role);
-        let multiplier = |pair: Pair| correction.map_or(Some(gdcm_model::response::GainDelay::NONE), |of| of.on(pair));
+        let multiplier = |pair: Pair| {
+            correction.map_or(Some(gdcm_model::response::GainDelay::NONE), |of| {
+                of.on(pair)
+            })
+        };
         let summary = Summary::of(&SummarySource {
             mismatch: &self.result.comparison.representative.mismatch,
             correction: &multiplier,
@@ -272,9 +311,16 @@ impl AskedCondition<'_> {
             muad_share_all: summary.muad.all,
             absent: BTreeMap::new(),
         };
-        let absent = finding.quantities().into_iter().filter(|(_, value)| value.is_none());
+        let absent = finding
+            .quantities()
+            .into_iter()
+            .filter(|(_, value)| value.is_none());
         let why = |name: &str| {
-            let which = if name.ends_with("on_axis") { "no on-axis response" } else { "no response" };
+            let which = if name.ends_with("on_axis") {
+                "no on-axis response"
+            } else {
+                "no response"
+            };
             format!("{which} of the two models can be compared")
         };
         finding.absent = absent.map(|(name, _)| (name, why(name))).collect();
@@ -285,19 +331,34 @@ impl AskedCondition<'_> {
 /// What is found of one condition.
 fn findings_of(analysis: &Analysis, known: &KnownPoles, id: ConditionId) -> Requirements {
     let mut found = Requirements::default();
-    let missing = |what, why: String| MissingFinding { condition: Some(id), what, why };
+    let missing = |what, why: String| MissingFinding {
+        condition: Some(id),
+        what,
+        why,
+    };
     let result = match analysis.result(id) {
         Ok(result) => result,
-        Err(why) => return Requirements { missing: vec![missing("all", why)], ..found },
+        Err(why) => {
+            return Requirements {
+                missing: vec![missing("all", why)],
+                ..found
+            };
+        }
     };
     let scheduled = AssessedCorrection::Scheduled.of(analysis, result).ok();
-    let asked = AskedCondition { analysis, result, scheduled };
+    let asked = AskedCondition {
+        analysis,
+        result,
+        scheduled,
+    };
     found.bandwidth = bandwidth_findings(&asked);
     match mode_findings(&asked, known) {
         Ok(modes) => found.modes = modes,
         Err(why) => found.missing.push(missing("modes", why)),
     }
-    let against_flight = asked.roles().filter(|role| *role != RequirementRole::Identified);
+    let against_flight = asked
+        .roles()
+        .filter(|role| *role != RequirementRole::Identified);
     found.summary = against_flight.map(|role| asked.summary(role)).collect();
     found.cautions = reversed_phases(analysis, &found.bandwidth);
     found
@@ -315,7 +376,9 @@ pub fn requirements_of(
 ) -> Result<Requirements, Cancelled> {
     let settings = &analysis.study.settings;
     let ids: Vec<ConditionId> = analysis.study.dataset.ids().collect();
-    let found = execution.each(ids.len(), 1, |index| findings_of(analysis, known, ids[index]))?;
+    let found = execution.each(ids.len(), 1, |index| {
+        findings_of(analysis, known, ids[index])
+    })?;
     let mut requirements = Requirements {
         band_rad_s: [settings.band.min(), settings.band.max()],
         interval_level: settings.uncertainty.level,
@@ -323,7 +386,11 @@ pub fn requirements_of(
         ..Requirements::default()
     };
     if let Err(error) = &analysis.schedule {
-        requirements.missing.push(MissingFinding { condition: None, what: "scheduled", why: error.to_string() });
+        requirements.missing.push(MissingFinding {
+            condition: None,
+            what: "scheduled",
+            why: error.to_string(),
+        });
     }
     for of_condition in found {
         requirements.cautions.extend(of_condition.cautions);
@@ -346,14 +413,21 @@ impl Engine {
         known: &KnownPoles,
         progress: &dyn Progress,
     ) -> Result<Requirements, Cancelled> {
-        requirements_of(analysis, known, &Execution::new(self.executor(), progress, analysis.conditions.len()))
+        requirements_of(
+            analysis,
+            known,
+            &Execution::new(self.executor(), progress, analysis.conditions.len()),
+        )
     }
 }
 
 /// A caution for each response whose phase speaks for a reversed channel, with the models that it is of.
 fn reversed_phases(analysis: &Analysis, findings: &[BandwidthFinding]) -> Vec<RequirementCaution> {
     let mut reversed: Vec<(Pair, ConditionId, Vec<&str>)> = Vec::new();
-    for finding in findings.iter().filter(|finding| finding.reversed_phase_deg.is_some()) {
+    for finding in findings
+        .iter()
+        .filter(|finding| finding.reversed_phase_deg.is_some())
+    {
         match reversed.iter_mut().find(|(pair, ..)| *pair == finding.pair) {
             Some((_, _, roles)) => roles.push(finding.role.name()),
             None => reversed.push((finding.pair, finding.condition, vec![finding.role.name()])),
@@ -404,16 +478,29 @@ impl Analysis {
     /// # Errors
     /// [`RoleModelError`] where the model has no matrices or acts in discrete time, there is no schedule, or matrices cannot be
     /// computed with.
-    pub fn role_model(&self, of: &ConditionAnalysis, role: RequirementRole) -> Result<StateSpace, RoleModelError> {
-        let representative = |kind: BundleKind| continuous(&of.condition.bundle(kind)[of.representative(kind).model]);
+    pub fn role_model(
+        &self,
+        of: &ConditionAnalysis,
+        role: RequirementRole,
+    ) -> Result<StateSpace, RoleModelError> {
+        let representative = |kind: BundleKind| {
+            continuous(&of.condition.bundle(kind)[of.representative(kind).model])
+        };
         let corrected = |by: AssessedCorrection| -> Result<StateSpace, RoleModelError> {
             let correction = by.of(self, of)?;
-            Ok(of.corrected_model(representative(BundleKind::Physics)?, &correction, Pade::default())?.model)
+            Ok(of
+                .corrected_model(
+                    representative(BundleKind::Physics)?,
+                    &correction,
+                    Pade::default(),
+                )?
+                .model)
         };
         match role {
-            RequirementRole::Physics | RequirementRole::Identified => {
-                Ok(without_delays(representative(role.bundle())?, Pade::default())?)
-            }
+            RequirementRole::Physics | RequirementRole::Identified => Ok(without_delays(
+                representative(role.bundle())?,
+                Pade::default(),
+            )?),
             RequirementRole::Corrected => corrected(AssessedCorrection::Own),
             RequirementRole::Scheduled => corrected(AssessedCorrection::Scheduled),
         }
@@ -423,7 +510,9 @@ impl Analysis {
 /// The matrices of a model of continuous time.
 fn continuous(model: &Model) -> Result<&StateSpace, RoleModelError> {
     let name = || model.name.clone();
-    let matrices = model.state_space().ok_or_else(|| RoleModelError::Measured { model: name() })?;
+    let matrices = model
+        .state_space()
+        .ok_or_else(|| RoleModelError::Measured { model: name() })?;
     match matrices.timing().sample_time_s {
         None => Ok(matrices),
         Some(_) => Err(RoleModelError::Discrete { model: name() }),
@@ -437,17 +526,36 @@ mod tests {
 
     #[test]
     fn what_was_not_decided_is_not_written_and_what_was_comes_back() {
-        assert_eq!(serde_json::to_string(&RequirementSettings::default()).unwrap(), "{}");
-        let row = Tolerance { absolute: 4.0, ..ToleranceTable::default().rows()[0].clone() };
+        assert_eq!(
+            serde_json::to_string(&RequirementSettings::default()).unwrap(),
+            "{}"
+        );
+        let row = Tolerance {
+            absolute: 4.0,
+            ..ToleranceTable::default().rows()[0].clone()
+        };
         let settings = RequirementSettings {
             attitude_command: BTreeSet::from(["Q".to_owned()]),
             tolerances: ToleranceTable::new("our own", vec![row]).unwrap(),
-            overview: OverviewLimits { bandwidth: 0.15, ..OverviewLimits::default() },
-            test: TestInput { shape: TestInputShape::Doublet, ..TestInput::default() },
+            overview: OverviewLimits {
+                bandwidth: 0.15,
+                ..OverviewLimits::default()
+            },
+            test: TestInput {
+                shape: TestInputShape::Doublet,
+                ..TestInput::default()
+            },
             ..RequirementSettings::default()
         };
         let text = serde_json::to_string(&settings).unwrap();
-        assert_eq!(serde_json::from_str::<RequirementSettings>(&text).unwrap(), settings, "{text}");
-        assert_eq!((settings.command_of("Q"), settings.command_of("P")), (CommandType::Attitude, CommandType::Rate));
+        assert_eq!(
+            serde_json::from_str::<RequirementSettings>(&text).unwrap(),
+            settings,
+            "{text}"
+        );
+        assert_eq!(
+            (settings.command_of("Q"), settings.command_of("P")),
+            (CommandType::Attitude, CommandType::Rate)
+        );
     }
 }

@@ -30,11 +30,21 @@ impl Job for RequirementsJob {
     type Tools = Box<dyn Executor>;
     type Output = Arc<Requirements>;
 
-    fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let analysis =
-            Analysis { uncertainty: self.uncertainty.as_deref().cloned(), ..self.analysis.asked_with(&self.settings) };
+    fn run(
+        &self,
+        executor: &mut Self::Tools,
+        progress: &dyn Progress,
+    ) -> Result<Self::Output, Cancelled> {
+        let analysis = Analysis {
+            uncertainty: self.uncertainty.as_deref().cloned(),
+            ..self.analysis.asked_with(&self.settings)
+        };
         let execution = Execution::new(executor.as_ref(), progress, analysis.conditions.len());
-        Ok(Arc::new(requirements_of(&analysis, &self.known, &execution)?))
+        Ok(Arc::new(requirements_of(
+            &analysis,
+            &self.known,
+            &execution,
+        )?))
     }
 }
 
@@ -42,13 +52,19 @@ impl Job for RequirementsJob {
 const MODULUS: &str = "|\u{3bb}| [rad/s]";
 
 fn cell(value: Option<f64>, digits: usize) -> String {
-    value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}").replace('-', "\u{2212}"))
+    value.map_or_else(
+        || "-".to_owned(),
+        |value| format!("{value:.digits$}").replace('-', "\u{2212}"),
+    )
 }
 
 /// Modulus, damping ratio and period of a mode; dashes where there is none.
 fn mode_cells(of: Option<&ModeNumbers>) -> [String; 3] {
     [
-        cell(of.map(|of| of.pole_real_rad_s.hypot(of.pole_imaginary_rad_s)), 2),
+        cell(
+            of.map(|of| of.pole_real_rad_s.hypot(of.pole_imaginary_rad_s)),
+            2,
+        ),
         cell(of.and_then(|of| of.values.damping_ratio), 2),
         cell(of.and_then(|of| of.values.period_s), 1),
     ]
@@ -71,7 +87,12 @@ impl Requirements {
         ];
         let mut table = Table::new("Bandwidth and phase delay of the attitudes", columns);
         for of in &self.bandwidth {
-            let crossings = [of.omega_bw_rad_s, of.omega_phase_rad_s, of.omega_gain_rad_s, of.omega_180_rad_s];
+            let crossings = [
+                of.omega_bw_rad_s,
+                of.omega_phase_rad_s,
+                of.omega_gain_rad_s,
+                of.omega_180_rad_s,
+            ];
             let [bandwidth, phase, gain, neutral] = crossings.map(|value| cell(value, 2));
             table.row([
                 of.condition.to_string(),
@@ -91,7 +112,9 @@ impl Requirements {
 
     /// Why a condition has no modes to compare; none where it has.
     pub fn no_modes(&self, condition: ConditionId) -> Option<&str> {
-        let is_of = |of: &&MissingFinding| of.condition == Some(condition) && matches!(of.what, "modes" | "all");
+        let is_of = |of: &&MissingFinding| {
+            of.condition == Some(condition) && matches!(of.what, "modes" | "all")
+        };
         self.missing.iter().find(is_of).map(|of| of.why.as_str())
     }
 
@@ -99,12 +122,22 @@ impl Requirements {
     pub fn mode_table(&self, condition: ConditionId) -> Table {
         let modes = || self.modes.iter().filter(|of| of.condition == condition);
         let is_coupled = modes().any(|of| of.corrected_verdict.is_some());
-        let heads = |model: &str| [MODULUS, "\u{3b6}", "period [s]"].map(|what| format!("{model} {what}"));
+        let heads =
+            |model: &str| [MODULUS, "\u{3b6}", "period [s]"].map(|what| format!("{model} {what}"));
         let verdict_of = |model: &str| format!("{model}: tolerance");
         let mut columns = vec!["mode".to_owned(), "named by".to_owned()];
-        columns.extend(heads("flown").into_iter().chain(heads("physics")).chain([verdict_of("physics")]));
+        columns.extend(
+            heads("flown")
+                .into_iter()
+                .chain(heads("physics"))
+                .chain([verdict_of("physics")]),
+        );
         if is_coupled {
-            columns.extend(heads("corrected").into_iter().chain([verdict_of("corrected")]));
+            columns.extend(
+                heads("corrected")
+                    .into_iter()
+                    .chain([verdict_of("corrected")]),
+            );
         }
         let deviations = if modes().any(|of| of.identified_deviation.is_some()) {
             "standard deviations of flown modes known"
@@ -112,17 +145,37 @@ impl Requirements {
             "standard deviations of flown modes not known (they are of a model identified in this session): not determined is what lies below \
              the band"
         };
-        let mut table = Table::new(format!("Modes of condition {condition}; {deviations}"), columns);
+        let mut table = Table::new(
+            format!("Modes of condition {condition}; {deviations}"),
+            columns,
+        );
         for of in modes() {
-            let name = of.name.map_or_else(|| format!("mode {}", of.number), |name| name.to_string());
-            let named_by = if of.named_by == NamedBy::States { "states" } else { "frequency" };
-            let entry = of.tolerance.as_ref().map_or_else(String::new, |of| format!(" ({})", of.entry));
+            let name = of
+                .name
+                .map_or_else(|| format!("mode {}", of.number), |name| name.to_string());
+            let named_by = if of.named_by == NamedBy::States {
+                "states"
+            } else {
+                "frequency"
+            };
+            let entry = of
+                .tolerance
+                .as_ref()
+                .map_or_else(String::new, |of| format!(" ({})", of.entry));
             let verdict = |of: ModeVerdict| format!("{}{entry}", mode_verdict_words(of));
             let mut cells = vec![name, named_by.to_owned()];
             cells.extend(mode_cells(Some(&of.identified)));
-            cells.extend(mode_cells(of.physics.as_ref()).into_iter().chain([verdict(of.verdict)]));
+            cells.extend(
+                mode_cells(of.physics.as_ref())
+                    .into_iter()
+                    .chain([verdict(of.verdict)]),
+            );
             if let Some(corrected) = of.corrected_verdict {
-                cells.extend(mode_cells(of.corrected.as_ref()).into_iter().chain([verdict(corrected)]));
+                cells.extend(
+                    mode_cells(of.corrected.as_ref())
+                        .into_iter()
+                        .chain([verdict(corrected)]),
+                );
             }
             table.row(cells);
         }
@@ -142,39 +195,74 @@ impl Requirements {
             "in MUAD of all [%]",
         ];
         let of_records = histories.filter(|of| !of.records.is_empty());
-        let columns = heads.map(str::to_owned).into_iter().chain(of_records.into_iter().flat_map(|of| of.cost_heads()));
+        let columns = heads
+            .map(str::to_owned)
+            .into_iter()
+            .chain(of_records.into_iter().flat_map(|of| of.cost_heads()));
         let weights = match of_records {
-            Some(of) => format!("; J_rms over all records of a condition, {}", of.weights_words()),
+            Some(of) => format!(
+                "; J_rms over all records of a condition, {}",
+                of.weights_words()
+            ),
             None => String::new(),
         };
         let mut table = Table::new(format!("Summary: models against flight{weights}"), columns);
-        let over_time = |id, role| of_records.into_iter().flat_map(move |found| found.costs(id, role));
+        let over_time = |id, role| {
+            of_records
+                .into_iter()
+                .flat_map(move |found| found.costs(id, role))
+        };
         for of in &self.summary {
             let [on_axis, all] = [of.mean_j_on_axis, of.mean_j_all].map(|value| cell(value, 1));
             let shares = [of.muad_share_on_axis, of.muad_share_all];
-            let [on_axis_share, all_share] = shares.map(|value| cell(value.map(|share| 100.0 * share), 0));
-            let head = [of.condition.to_string(), telling(of.airspeed_kt, 0), of.role.name().to_owned()];
+            let [on_axis_share, all_share] =
+                shares.map(|value| cell(value.map(|share| 100.0 * share), 0));
+            let head = [
+                of.condition.to_string(),
+                telling(of.airspeed_kt, 0),
+                of.role.name().to_owned(),
+            ];
             let numbers = [on_axis, all, on_axis_share, all_share];
-            table.row(head.into_iter().chain(numbers).chain(over_time(of.condition, of.role)));
+            table.row(
+                head.into_iter()
+                    .chain(numbers)
+                    .chain(over_time(of.condition, of.role)),
+            );
         }
         // The others are compared with it: over time only is there something to say of it.
         let role = RequirementRole::Identified;
-        for of in of_records.into_iter().flat_map(|found| found.records.iter().filter(|of| of.role == role)) {
-            let head = [of.condition.to_string(), telling(of.airspeed_kt, 0), role.name().to_owned()];
-            let row = head.into_iter().chain([(); 4].map(|()| "-".to_owned())).chain(over_time(of.condition, role));
+        for of in of_records
+            .into_iter()
+            .flat_map(|found| found.records.iter().filter(|of| of.role == role))
+        {
+            let head = [
+                of.condition.to_string(),
+                telling(of.airspeed_kt, 0),
+                role.name().to_owned(),
+            ];
+            let row = head
+                .into_iter()
+                .chain([(); 4].map(|()| "-".to_owned()))
+                .chain(over_time(of.condition, role));
             let row: Vec<String> = row.collect();
             if !table.rows.contains(&row) {
                 table.row(row);
             }
         }
-        table.rows.sort_by_key(|row| row[0].parse::<i64>().unwrap_or(i64::MAX));
+        table
+            .rows
+            .sort_by_key(|row| row[0].parse::<i64>().unwrap_or(i64::MAX));
         table
     }
 
     /// The summary of a row of [`Requirements::summary_table`]; none of the identified model, which the others are compared with.
     pub fn summary_of(&self, row: &[String]) -> Option<&SummaryFinding> {
-        let [condition, _, role, ..] = row else { return None };
-        self.summary.iter().find(|of| of.condition.to_string() == *condition && of.role.name() == role)
+        let [condition, _, role, ..] = row else {
+            return None;
+        };
+        self.summary
+            .iter()
+            .find(|of| of.condition.to_string() == *condition && of.role.name() == role)
     }
 
     /// What a condition's model has of a response.
@@ -184,7 +272,9 @@ impl Requirements {
         pair: gdcm_model::dataset::Pair,
         role: RequirementRole,
     ) -> Option<&BandwidthFinding> {
-        self.bandwidth.iter().find(|of| (of.condition, of.pair, of.role) == (condition, pair, role))
+        self.bandwidth
+            .iter()
+            .find(|of| (of.condition, of.pair, of.role) == (condition, pair, role))
     }
 }
 
@@ -192,7 +282,11 @@ impl BandwidthFinding {
     /// What has to be known of it, or why it has no number.
     pub fn remark(&self) -> String {
         let mut words = Vec::new();
-        if let Some(why) = self.absent.get("omega_bw_rad_s").or_else(|| self.absent.get("phase_delay_s")) {
+        if let Some(why) = self
+            .absent
+            .get("omega_bw_rad_s")
+            .or_else(|| self.absent.get("phase_delay_s"))
+        {
             words.push(why.clone());
         }
         let limit = self.rule.map(|rule| match rule {
@@ -200,7 +294,11 @@ impl BandwidthFinding {
             BandwidthRule::Phase => "of the phase margin",
             BandwidthRule::PhaseGainUnknown => "of the phase margin; the gain margin is not known",
         });
-        words.extend(limit.filter(|_| self.gain_limited || words.is_empty()).map(str::to_owned));
+        words.extend(
+            limit
+                .filter(|_| self.gain_limited || words.is_empty())
+                .map(str::to_owned),
+        );
         if !self.rests_above_band.is_empty() {
             words.push("rests on the model above the band".to_owned());
         }
@@ -241,7 +339,11 @@ const HEADS: [&str; 3] = ["requirement", "unit", "limit"];
 impl RequirementsOverview {
     /// Whether a cell is beyond its limit.
     pub fn is_outside(&self, row: usize, column: usize) -> bool {
-        self.outside.get(row).and_then(|row| row.get(column)).copied().unwrap_or(false)
+        self.outside
+            .get(row)
+            .and_then(|row| row.get(column))
+            .copied()
+            .unwrap_or(false)
     }
 
     /// Columns before the first condition.
@@ -259,46 +361,94 @@ impl Requirements {
         histories: Option<&TimeHistories>,
         limits: &OverviewLimits,
     ) -> RequirementsOverview {
-        let ids: Vec<ConditionId> =
-            self.summary.iter().filter(|of| of.role == RequirementRole::Corrected).map(|of| of.condition).collect();
-        let columns = HEADS.map(str::to_owned).into_iter().chain(ids.iter().map(ToString::to_string));
-        let title =
-            "Corrected against identified models, condition by condition; the limits are the program's, of no standard";
-        let mut overview = RequirementsOverview { table: Table::new(title, columns), outside: Vec::new() };
+        let ids: Vec<ConditionId> = self
+            .summary
+            .iter()
+            .filter(|of| of.role == RequirementRole::Corrected)
+            .map(|of| of.condition)
+            .collect();
+        let columns = HEADS
+            .map(str::to_owned)
+            .into_iter()
+            .chain(ids.iter().map(ToString::to_string));
+        let title = "Corrected against identified models, condition by condition; the limits are the program's, of no standard";
+        let mut overview = RequirementsOverview {
+            table: Table::new(title, columns),
+            outside: Vec::new(),
+        };
         let mut row = |heads: [String; 3], cell: &dyn Fn(ConditionId) -> Option<Judged>| {
             let judged: Vec<Option<Judged>> = ids.iter().map(|id| cell(*id)).collect();
-            let is_outside = judged.iter().map(|cell| cell.as_ref().is_some_and(|(_, is_outside)| *is_outside));
-            overview.outside.push([false; HEADS.len()].into_iter().chain(is_outside).collect());
-            let cells = judged.into_iter().map(|cell| cell.map_or_else(|| "-".to_owned(), |(text, _)| text));
+            let is_outside = judged
+                .iter()
+                .map(|cell| cell.as_ref().is_some_and(|(_, is_outside)| *is_outside));
+            overview
+                .outside
+                .push([false; HEADS.len()].into_iter().chain(is_outside).collect());
+            let cells = judged
+                .into_iter()
+                .map(|cell| cell.map_or_else(|| "-".to_owned(), |(text, _)| text));
             overview.table.row(heads.into_iter().chain(cells));
         };
         let about = |value: f64| format!("\u{b1}{}", limit(value));
-        let has_number = |of: &BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
-        let is_known = |pair: &Pair| self.bandwidth.iter().any(|of| of.pair == *pair && has_number(of));
+        let has_number =
+            |of: &BandwidthFinding| of.omega_bw_rad_s.is_some() || of.phase_delay_s.is_some();
+        let is_known = |pair: &Pair| {
+            self.bandwidth
+                .iter()
+                .any(|of| of.pair == *pair && has_number(of))
+        };
         for pair in dataset.measuring_pairs().marked().filter(is_known) {
             let both = |id: ConditionId, value: fn(&BandwidthFinding) -> Option<f64>| {
                 let of = |role| self.bandwidth_of(id, pair, role).and_then(value);
                 of(RequirementRole::Corrected).zip(of(RequirementRole::Identified))
             };
             let name = dataset.pair_name(pair);
-            row([format!("{name}: bandwidth"), "%".to_owned(), about(100.0 * limits.bandwidth)], &|id| {
-                let (corrected, identified) = both(id, |of| of.omega_bw_rad_s)?;
-                let change = corrected / identified - 1.0;
-                Some((signed(100.0 * change, 0), change.abs() > limits.bandwidth))
-            });
-            row([format!("{name}: phase delay"), "ms".to_owned(), about(s_to_ms(limits.phase_delay_s))], &|id| {
-                let (corrected, identified) = both(id, |of| of.phase_delay_s)?;
-                let change_s = corrected - identified;
-                Some((signed(s_to_ms(change_s), 0), change_s.abs() > limits.phase_delay_s))
-            });
+            row(
+                [
+                    format!("{name}: bandwidth"),
+                    "%".to_owned(),
+                    about(100.0 * limits.bandwidth),
+                ],
+                &|id| {
+                    let (corrected, identified) = both(id, |of| of.omega_bw_rad_s)?;
+                    let change = corrected / identified - 1.0;
+                    Some((signed(100.0 * change, 0), change.abs() > limits.bandwidth))
+                },
+            );
+            row(
+                [
+                    format!("{name}: phase delay"),
+                    "ms".to_owned(),
+                    about(s_to_ms(limits.phase_delay_s)),
+                ],
+                &|id| {
+                    let (corrected, identified) = both(id, |of| of.phase_delay_s)?;
+                    let change_s = corrected - identified;
+                    Some((
+                        signed(s_to_ms(change_s), 0),
+                        change_s.abs() > limits.phase_delay_s,
+                    ))
+                },
+            );
         }
         // Of tolerances those of what is measured itself.
-        for quantity in histories.into_iter().flat_map(TimeHistories::measured_quantities) {
+        for quantity in histories
+            .into_iter()
+            .flat_map(TimeHistories::measured_quantities)
+        {
             let at_least = format!("\u{2265} {}", limit(100.0 * limits.share_inside));
-            row([format!("{quantity} inside"), "% of time".to_owned(), at_least], &|id| {
-                let share = histories?.share_inside(id, RequirementRole::Corrected, quantity)?;
-                Some((percent(Some(share)), share < limits.share_inside))
-            });
+            row(
+                [
+                    format!("{quantity} inside"),
+                    "% of time".to_owned(),
+                    at_least,
+                ],
+                &|id| {
+                    let share =
+                        histories?.share_inside(id, RequirementRole::Corrected, quantity)?;
+                    Some((percent(Some(share)), share < limits.share_inside))
+                },
+            );
         }
         let of_modes = ["modes beyond tolerance", "of those with a tolerance", "0"];
         row(of_modes.map(str::to_owned), &|id| self.modes_outside(id));
@@ -309,7 +459,9 @@ impl Requirements {
     fn modes_outside(&self, id: ConditionId) -> Option<Judged> {
         let of_condition = self.modes.iter().filter(|of| of.condition == id);
         // Gains and delays move no pole: without couplings the physics model's are those of the corrected one.
-        let verdicts: Vec<ModeVerdict> = of_condition.map(|of| of.corrected_verdict.unwrap_or(of.verdict)).collect();
+        let verdicts: Vec<ModeVerdict> = of_condition
+            .map(|of| of.corrected_verdict.unwrap_or(of.verdict))
+            .collect();
         let count = |verdict| verdicts.iter().filter(|of| **of == verdict).count();
         let (within, outside) = (count(ModeVerdict::Within), count(ModeVerdict::Outside));
         (within + outside > 0).then(|| (format!("{outside} of {}", within + outside), outside > 0))
@@ -331,25 +483,52 @@ mod tests {
     fn what_is_beyond_its_limit_is_marked_and_nothing_else() {
         let analysis = &EXAMPLE.analysis;
         let dataset = &analysis.study.dataset;
-        let found = requirements_of(analysis, &KnownPoles::default(), &Execution::sequential()).unwrap();
+        let found =
+            requirements_of(analysis, &KnownPoles::default(), &Execution::sequential()).unwrap();
         let usual = found.overview(dataset, None, &OverviewLimits::default());
         let heads = RequirementsOverview::HEADS;
         assert_eq!(usual.table.columns.len() - heads, analysis.conditions.len());
-        let row = usual.table.rows.iter().position(|row| row[0] == "LAT \u{2192} P: bandwidth").unwrap();
+        let row = usual
+            .table
+            .rows
+            .iter()
+            .position(|row| row[0] == "LAT \u{2192} P: bandwidth")
+            .unwrap();
         assert_eq!(usual.table.rows[row][1..heads], ["%", "\u{b1}10"]);
-        let pair = found.bandwidth.iter().find(|of| of.output == "P" && of.input == "LAT").unwrap().pair;
+        let pair = found
+            .bandwidth
+            .iter()
+            .find(|of| of.output == "P" && of.input == "LAT")
+            .unwrap()
+            .pair;
         for (column, id) in usual.table.columns.iter().enumerate().skip(heads) {
             let id = ConditionId(id.parse().unwrap());
-            let of = |role| found.bandwidth_of(id, pair, role).and_then(|of| of.omega_bw_rad_s);
-            let change =
-                of(RequirementRole::Corrected).zip(of(RequirementRole::Identified)).map(|(of, by)| of / by - 1.0);
-            let shown = usual.table.rows[row][column].replace('\u{2212}', "-").parse::<f64>().ok();
+            let of = |role| {
+                found
+                    .bandwidth_of(id, pair, role)
+                    .and_then(|of| of.omega_bw_rad_s)
+            };
+            let change = of(RequirementRole::Corrected)
+                .zip(of(RequirementRole::Identified))
+                .map(|(of, by)| of / by - 1.0);
+            let shown = usual.table.rows[row][column]
+                .replace('\u{2212}', "-")
+                .parse::<f64>()
+                .ok();
             assert_eq!(shown, change.map(|change| (100.0 * change).round()), "{id}");
-            assert_eq!(usual.is_outside(row, column), change.is_some_and(|change| change.abs() > 0.1));
+            assert_eq!(
+                usual.is_outside(row, column),
+                change.is_some_and(|change| change.abs() > 0.1)
+            );
         }
-        let strict = OverviewLimits { bandwidth: 1e-9, ..OverviewLimits::default() };
+        let strict = OverviewLimits {
+            bandwidth: 1e-9,
+            ..OverviewLimits::default()
+        };
         let strict = found.overview(dataset, None, &strict);
-        let known = (heads..strict.table.columns.len()).find(|column| strict.table.rows[row][*column] != "-").unwrap();
+        let known = (heads..strict.table.columns.len())
+            .find(|column| strict.table.rows[row][*column] != "-")
+            .unwrap();
         assert!(strict.is_outside(row, known) && !strict.is_outside(row, 0));
     }
 }

@@ -36,11 +36,15 @@ impl DelayedChannel {
             Channel::Output(_) => "output",
         };
         let name = self.channel.name_in(dataset);
-        let Some(longest) = self.delays.first() else { return format!("delay of {side} {name}: none") };
+        let Some(longest) = self.delays.first() else {
+            return format!("delay of {side} {name}: none");
+        };
         let (delay_ms, condition) = (s_to_ms(longest.delay_s), longest.condition);
         match self.delays.len() {
             1 => format!("delay of {side} {name}: {delay_ms:.1} ms in condition {condition}"),
-            2 => format!("delay of {side} {name}: up to {delay_ms:.1} ms, in condition {condition} and in 1 other"),
+            2 => format!(
+                "delay of {side} {name}: up to {delay_ms:.1} ms, in condition {condition} and in 1 other"
+            ),
             count => {
                 let others = count - 1;
                 format!(
@@ -58,7 +62,9 @@ impl Analysis {
         for channel in Channel::all_of(&self.study.dataset) {
             let mut delays = Vec::new();
             for &condition in conditions {
-                let Some(result) = self.condition(condition) else { continue };
+                let Some(result) = self.condition(condition) else {
+                    continue;
+                };
                 let delay_s = result.correction.pure_delay_s(channel);
                 if delay_s >= NO_DELAY_S {
                     delays.push(OwnDelay { condition, delay_s });
@@ -84,7 +90,11 @@ impl Analysis {
 /// The conditions that the schedule leaves with more than twice the J of their own correction (M12).
 pub(super) fn schedule_cost_cautions(analysis: &Analysis) -> Vec<ScheduleCaution> {
     let mut cautions = Vec::new();
-    for result in analysis.conditions.values().filter_map(|outcome| outcome.as_ref().ok()) {
+    for result in analysis
+        .conditions
+        .values()
+        .filter_map(|outcome| outcome.as_ref().ok())
+    {
         if let Some(cost) = scheduled_cost(analysis, result).filter(ScheduledCost::is_notable) {
             cautions.push(ScheduleCaution::CostsMore(cost));
         }
@@ -98,9 +108,17 @@ fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<Sch
     let schedule = analysis.schedule.as_ref().ok()?;
     let condition = &result.condition;
     let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()].name;
-    let is_rejected = analysis.study.choice(condition.id()).physics.rejected.contains(nominal);
+    let is_rejected = analysis
+        .study
+        .choice(condition.id())
+        .physics
+        .rejected
+        .contains(nominal);
     let (model, models) = if is_rejected {
-        (result.representative_name(BundleKind::Physics), &result.comparison.representative)
+        (
+            result.representative_name(BundleKind::Physics),
+            &result.comparison.representative,
+        )
     } else {
         (nominal.as_str(), &result.comparison.nominal)
     };
@@ -126,7 +144,12 @@ fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<Sch
 }
 
 /// J of a response of a model under a correction.
-fn cost_of(analysis: &Analysis, models: &ModelMismatch, correction: &ChannelCorrection, pair: Pair) -> Option<f64> {
+fn cost_of(
+    analysis: &Analysis,
+    models: &ModelMismatch,
+    correction: &ChannelCorrection,
+    pair: Pair,
+) -> Option<f64> {
     let mismatch = models.mismatch[pair].as_ref()?;
     let average = analysis.study.settings.cost_average;
     Some(corrected_cost_on(mismatch, correction, pair, &analysis.omega, average)?.total())

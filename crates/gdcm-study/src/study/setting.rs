@@ -17,40 +17,90 @@ const fn row([name, key, option]: [&'static str; 3], help: &'static str, kind: K
         digits: Digits::Significant,
         applies: |_| true,
     };
-    Setting { name, key, option, bare: None, help, unit: Unit { file: "", shown: "", scale: 1.0 }, kind, control }
+    Setting {
+        name,
+        key,
+        option,
+        bare: None,
+        help,
+        unit: Unit {
+            file: "",
+            shown: "",
+            scale: 1.0,
+        },
+        kind,
+        control,
+    }
 }
 
 impl Setting {
     const fn unit(self, file: &'static str, shown: &'static str, scale: f64) -> Self {
-        Self { unit: Unit { file, shown, scale }, ..self }
+        Self {
+            unit: Unit { file, shown, scale },
+            ..self
+        }
     }
 
     /// The word that its option stands for without a value.
     const fn bare(self, word: &'static str) -> Self {
-        Self { bare: Some(word), ..self }
+        Self {
+            bare: Some(word),
+            ..self
+        }
     }
 
     /// Where its control stands, after which caption, under which accessible name.
     const fn at(self, place: Place, caption: &'static str, label: &'static str) -> Self {
-        Self { control: Control { place, caption, label, ..self.control }, ..self }
+        Self {
+            control: Control {
+                place,
+                caption,
+                label,
+                ..self.control
+            },
+            ..self
+        }
     }
 
     /// By how much its number is dragged, and with how many decimals it stands there.
     const fn digits(self, step: f64, digits: Digits) -> Self {
-        Self { control: Control { step, digits, ..self.control }, ..self }
+        Self {
+            control: Control {
+                step,
+                digits,
+                ..self.control
+            },
+            ..self
+        }
     }
 
     const fn where_it(self, applies: fn(&Study) -> bool) -> Self {
-        Self { control: Control { applies, ..self.control }, ..self }
+        Self {
+            control: Control {
+                applies,
+                ..self.control
+            },
+            ..self
+        }
     }
 }
 
 const fn real(range: [f64; 2], get: fn(&Settings) -> f64, set: fn(&mut Settings, f64)) -> Kind {
-    Kind::Number { range, whole: false, get, set }
+    Kind::Number {
+        range,
+        whole: false,
+        get,
+        set,
+    }
 }
 
 const fn whole(range: [f64; 2], get: fn(&Settings) -> f64, set: fn(&mut Settings, f64)) -> Kind {
-    Kind::Number { range, whole: true, get, set }
+    Kind::Number {
+        range,
+        whole: true,
+        get,
+        set,
+    }
 }
 
 const fn choice(
@@ -65,7 +115,11 @@ const fn choice(
 pub static ALPHA_GAIN: Setting = row(
     ["α of the gains", "alpha_gain", "--alpha"],
     "Weight that keeps the output gains, eq. (7), near 1; 0 is the limit α → 0",
-    real([0.0, 1e6], |of| of.alpha_gain, |of, alpha| of.alpha_gain = alpha),
+    real(
+        [0.0, 1e6],
+        |of| of.alpha_gain,
+        |of, alpha| of.alpha_gain = alpha,
+    ),
 )
 .at(Place::Slider, "α gains", "α gains");
 
@@ -119,8 +173,16 @@ pub static LEAD_ORDER: Setting = row(
     "Order of every lead filter (M15.3)",
     choice(
         &[
-            ["2", "2", "Butterworth damping: the gain within the band stays"],
-            ["1", "1", "(1 + as)/(1 + bs): the gain rises within the band"],
+            [
+                "2",
+                "2",
+                "Butterworth damping: the gain within the band stays",
+            ],
+            [
+                "1",
+                "1",
+                "(1 + as)/(1 + bs): the gain rises within the band",
+            ],
         ],
         |of| of.lead.order.index(),
         |of, index| of.lead.order = LeadOrder::ALL[index],
@@ -197,7 +259,11 @@ pub static BAND: Setting = row(
 pub static POINTS: Setting = row(
     ["number of frequencies", "points", "--points"],
     "Number of logarithmically spaced frequencies in the band",
-    whole([2.0, 5000.0], |of| of.points as f64, |of, points| of.points = points as usize),
+    whole(
+        [2.0, 5000.0],
+        |of| of.points as f64,
+        |of, points| of.points = points as usize,
+    ),
 )
 .at(Place::Line, "Points", "Frequencies in the band")
 .digits(1.0, Digits::Decimals(0));
@@ -206,7 +272,11 @@ pub static POINTS: Setting = row(
 pub static QUANTILE: Setting = row(
     ["bound quantile", "quantile", "--quantile"],
     "Bounds are this quantile, and its complement, of |H_ref|/|H_sim| and of Δφ/ω",
-    real([0.0, 0.5], |of| of.quantile, |of, quantile| of.quantile = quantile),
+    real(
+        [0.0, 0.5],
+        |of| of.quantile,
+        |of, quantile| of.quantile = quantile,
+    ),
 )
 .unit("", "%", 100.0)
 .at(Place::Beside, "bound quantile", "Bound quantile")
@@ -250,7 +320,11 @@ pub static DELAY_UPPER: Setting = row(
 pub static AGREEMENT: Setting = row(
     ["loop tolerance", "agreement_db", "--agreement"],
     "A loop of held gains that disagrees by no more than this [dB] counts as agreeing",
-    real([0.0, 3.0], |of| of.agreement_db, |of, tolerance| of.agreement_db = tolerance),
+    real(
+        [0.0, 3.0],
+        |of| of.agreement_db,
+        |of, tolerance| of.agreement_db = tolerance,
+    ),
 )
 .unit("dB", "dB", 1.0)
 .at(Place::Line, "Loop tolerance", "Loop tolerance");
@@ -261,8 +335,16 @@ pub static COST_AVERAGE: Setting = row(
     "How squared errors are averaged over frequency in J",
     choice(
         &[
-            ["median", "J median", "J takes the median over frequency (the paper)"],
-            ["mean", "J mean", "J takes the mean over frequency (Tischler)"],
+            [
+                "median",
+                "J median",
+                "J takes the median over frequency (the paper)",
+            ],
+            [
+                "mean",
+                "J mean",
+                "J takes the mean over frequency (Tischler)",
+            ],
         ],
         |of| of.cost_average.index(),
         |of, index| of.cost_average = CostAverage::ALL[index],
@@ -272,12 +354,24 @@ pub static COST_AVERAGE: Setting = row(
 
 /// What the gains minimise.
 pub static GAIN_OBJECTIVE: Setting = row(
-    ["objective of the gains", "gain_objective", "--gain-objective"],
+    [
+        "objective of the gains",
+        "gain_objective",
+        "--gain-objective",
+    ],
     "What the gains minimise",
     choice(
         &[
-            ["ratio", "ratio", "Gains minimise squared errors of the ratios, eq. (7)"],
-            ["dB", "dB", "Gains minimise squared errors in dB: up and down count alike"],
+            [
+                "ratio",
+                "ratio",
+                "Gains minimise squared errors of the ratios, eq. (7)",
+            ],
+            [
+                "dB",
+                "dB",
+                "Gains minimise squared errors in dB: up and down count alike",
+            ],
         ],
         |of| of.gain_objective.index(),
         |of, index| of.gain_objective = GainObjective::ALL[index],
@@ -291,8 +385,16 @@ pub static GAIN_SOURCE: Setting = row(
     "What G is taken from: the two representatives, or the mean over all pairs of kept models",
     choice(
         &[
-            ["representatives", "representatives", "G of the two representatives (the paper)"],
-            ["mean", "mean of pairs", "G is the mean of ln G over all pairs of kept models"],
+            [
+                "representatives",
+                "representatives",
+                "G of the two representatives (the paper)",
+            ],
+            [
+                "mean",
+                "mean of pairs",
+                "G is the mean of ln G over all pairs of kept models",
+            ],
         ],
         |of| of.gain_source.index(),
         |of, index| of.gain_source = GainSource::ALL[index],
@@ -304,7 +406,11 @@ pub static GAIN_SOURCE: Setting = row(
 pub static LEVEL: Setting = row(
     ["confidence level", "error_bars.level", "--level"],
     "Level of every error bar, interval and test",
-    real([0.5, 0.999], |of| of.uncertainty.level, |of, level| of.uncertainty.level = level),
+    real(
+        [0.5, 0.999],
+        |of| of.uncertainty.level,
+        |of, level| of.uncertainty.level = level,
+    ),
 )
 .unit("", "%", 100.0)
 .at(Place::Line, "Confidence level", "Confidence level")
@@ -337,7 +443,11 @@ pub static COHERENCE: Setting = row(
 
 /// Number of averages of measured responses that do not say it.
 pub static AVERAGES: Setting = row(
-    ["averages of measured responses", "error_bars.averages", "--averages"],
+    [
+        "averages of measured responses",
+        "error_bars.averages",
+        "--averages",
+    ],
     "Number of independent averages of measured responses whose files do not say it",
     Kind::Optional {
         range: limits::AVERAGES,
@@ -350,7 +460,11 @@ pub static AVERAGES: Setting = row(
 
 /// Length of the windows of measured responses that do not say it \[s\].
 pub static WINDOW: Setting = row(
-    ["windows of measured responses", "error_bars.window_s", "--averaging-window"],
+    [
+        "windows of measured responses",
+        "error_bars.window_s",
+        "--averaging-window",
+    ],
     "Length of the windows of measured responses whose files do not say it",
     Kind::Optional {
         range: limits::WINDOW_S,
@@ -364,7 +478,11 @@ pub static WINDOW: Setting = row(
 
 /// Whether those windows overlap by half.
 pub static HALF_OVERLAP: Setting = row(
-    ["windows overlap", "error_bars.half_overlap", "--half-overlap"],
+    [
+        "windows overlap",
+        "error_bars.half_overlap",
+        "--half-overlap",
+    ],
     "The windows of measured responses overlap by half",
     Kind::Flag {
         words: ["not", "by half"],
@@ -383,7 +501,11 @@ pub static SCHEDULE: Setting = row(
             ["1", "degree 1", "Polynomial of degree 1 in airspeed"],
             ["2", "degree 2", "Polynomial of degree 2 in airspeed"],
             ["3", "degree 3", "Polynomial of degree 3 in airspeed"],
-            ["table", "table", "Mean of each cluster of airspeeds, linear between"],
+            [
+                "table",
+                "table",
+                "Mean of each cluster of airspeeds, linear between",
+            ],
         ],
         |of| of.schedule.kind.index(),
         |of, index| of.schedule.kind = ScheduleKind::ALL[index],
@@ -397,7 +519,11 @@ pub static SCHEDULED_QUANTITY: Setting = row(
     "What is regressed on airspeed",
     choice(
         &[
-            ["ln-k", "of ln k", "The product of regressions is the regression of the product"],
+            [
+                "ln-k",
+                "of ln k",
+                "The product of regressions is the regression of the product",
+            ],
             ["k", "of k", "Regresses the gain itself"],
         ],
         |of| of.schedule.quantity.index(),
@@ -452,7 +578,11 @@ pub static TAU_DEGREE: Setting = row(
 
 /// Airspeeds this close to the next one are one \[kt\].
 pub static AIRSPEED_TOLERANCE: Setting = row(
-    ["airspeed tolerance", "schedule.airspeed_tolerance_kt", "--airspeed-tolerance"],
+    [
+        "airspeed tolerance",
+        "schedule.airspeed_tolerance_kt",
+        "--airspeed-tolerance",
+    ],
     "Airspeeds this close to the next one [kt] count as one, for the table and for the degree",
     real(
         [0.0, 100.0],
@@ -466,19 +596,35 @@ pub static AIRSPEED_TOLERANCE: Setting = row(
 
 /// What is scheduled beside airspeed.
 pub static SECOND_VARIABLE: Setting = row(
-    ["second variable", "schedule.second_variable", "--second-variable"],
+    [
+        "second variable",
+        "schedule.second_variable",
+        "--second-variable",
+    ],
     "Schedule gains with a second variable beside airspeed",
     choice(
         &[
             ["none", "airspeed only", "The paper"],
-            ["altitude", "and altitude", "Only where the view Evidence says that it is needed"],
-            ["mass", "and mass", "Only where the view Evidence says that it is needed"],
+            [
+                "altitude",
+                "and altitude",
+                "Only where the view Evidence says that it is needed",
+            ],
+            [
+                "mass",
+                "and mass",
+                "Only where the view Evidence says that it is needed",
+            ],
         ],
         |of| of.schedule.second.index(),
         |of, index| of.schedule.second = <Option<SecondVariable>>::ALL[index],
     ),
 )
-.at(Place::Line, "Scheduled over", "Second variable of the schedule");
+.at(
+    Place::Line,
+    "Scheduled over",
+    "Second variable of the schedule",
+);
 
 /// Every setting but which responses are held and ignored, in the order in which they are told.
 pub static SETTINGS: [&Setting; 29] = [

@@ -163,7 +163,10 @@ pub trait Choice: Copy + PartialEq + 'static {
 
     /// Its index among all.
     fn index(self) -> usize {
-        Self::ALL.iter().position(|one| *one == self).unwrap_or_default()
+        Self::ALL
+            .iter()
+            .position(|one| *one == self)
+            .unwrap_or_default()
     }
 }
 
@@ -208,7 +211,11 @@ impl Choice for ScheduledQuantity {
 }
 
 impl Choice for Option<SecondVariable> {
-    const ALL: &'static [Self] = &[None, Some(SecondVariable::Altitude), Some(SecondVariable::Mass)];
+    const ALL: &'static [Self] = &[
+        None,
+        Some(SecondVariable::Altitude),
+        Some(SecondVariable::Mass),
+    ];
 }
 
 impl<C: Choice> From<C> for Value {
@@ -249,7 +256,9 @@ impl From<Band> for Value {
 
 impl From<Option<GainBounds>> for Value {
     fn from(bounds: Option<GainBounds>) -> Self {
-        bounds.map_or(Self::Nothing, |bounds| Self::Range([bounds.lower, bounds.upper]))
+        bounds.map_or(Self::Nothing, |bounds| {
+            Self::Range([bounds.lower, bounds.upper])
+        })
     }
 }
 
@@ -295,42 +304,75 @@ impl Setting {
     /// Refuses a value that the setting may not have.
     pub fn check(&self, value: Value) -> Result<(), EditRefusal> {
         match (self.kind, value) {
-            (Kind::Number { range, whole: true, .. }, Value::Number(found)) if found.fract() == 0.0 => {
-                self.check_range("a whole number", found, range)
-            }
-            (Kind::Number { range, whole: true, .. }, Value::Number(found)) => {
-                Err(self.out_of_range("a whole number", found, range))
-            }
+            (
+                Kind::Number {
+                    range, whole: true, ..
+                },
+                Value::Number(found),
+            ) if found.fract() == 0.0 => self.check_range("a whole number", found, range),
+            (
+                Kind::Number {
+                    range, whole: true, ..
+                },
+                Value::Number(found),
+            ) => Err(self.out_of_range("a whole number", found, range)),
             (Kind::Number { range, .. } | Kind::Optional { range, .. }, Value::Number(found)) => {
                 self.check_range(&self.a_number(), found, range)
             }
             // The band, which cannot be nothing, says itself what it may be.
-            (Kind::Range { nothing: None, .. }, Value::Range([min, max])) => Ok(Band::new(min, max).map(drop)?),
-            (Kind::Range { range: [least, most], .. }, Value::Range([lower, upper])) => {
+            (Kind::Range { nothing: None, .. }, Value::Range([min, max])) => {
+                Ok(Band::new(min, max).map(drop)?)
+            }
+            (
+                Kind::Range {
+                    range: [least, most],
+                    ..
+                },
+                Value::Range([lower, upper]),
+            ) => {
                 self.check_range("a lower end", lower, [least, most])?;
                 self.check_range("an upper end", upper, [lower, most])
             }
-            (Kind::Choice { words, .. }, Value::Choice(index)) => {
-                self.check_range("a whole number", index as f64, [0.0, words.len() as f64 - 1.0])
-            }
+            (Kind::Choice { words, .. }, Value::Choice(index)) => self.check_range(
+                "a whole number",
+                index as f64,
+                [0.0, words.len() as f64 - 1.0],
+            ),
             (Kind::Flag { .. }, Value::Flag(_)) | (Kind::Optional { .. }, Value::Nothing) => Ok(()),
-            (Kind::Range { nothing: Some(_), .. }, Value::Nothing) => Ok(()),
+            (
+                Kind::Range {
+                    nothing: Some(_), ..
+                },
+                Value::Nothing,
+            ) => Ok(()),
             _ => Err(EditRefusal::NotAValue { setting: self.name }),
         }
     }
 
     fn check_range(&self, what: &str, found: f64, range: [f64; 2]) -> Result<(), EditRefusal> {
         let is_within = (range[0]..=range[1]).contains(&found);
-        if is_within { Ok(()) } else { Err(self.out_of_range(what, found, range)) }
+        if is_within {
+            Ok(())
+        } else {
+            Err(self.out_of_range(what, found, range))
+        }
     }
 
     fn out_of_range(&self, what: &str, found: f64, [least, most]: [f64; 2]) -> EditRefusal {
         let expected = format!("{what} from {} to {}", number(least), number(most));
-        EditRefusal::OutOfRange { setting: self.name, expected, found }
+        EditRefusal::OutOfRange {
+            setting: self.name,
+            expected,
+            found,
+        }
     }
 
     fn a_number(&self) -> String {
-        if self.unit.file.is_empty() { "a number".to_owned() } else { format!("a number of {}", self.unit.file) }
+        if self.unit.file.is_empty() {
+            "a number".to_owned()
+        } else {
+            format!("a number of {}", self.unit.file)
+        }
     }
 
     /// Its value in words.
@@ -341,15 +383,30 @@ impl Setting {
     /// A value in words, with at most six significant digits: "20 ms", "by the quantile", "median".
     pub fn text(&self, value: Value) -> String {
         let Unit { shown, scale, .. } = self.unit;
-        let unit = if shown.is_empty() { String::new() } else { format!(" {shown}") };
+        let unit = if shown.is_empty() {
+            String::new()
+        } else {
+            format!(" {shown}")
+        };
         match (self.kind, value) {
             (_, Value::Number(value)) => format!("{}{unit}", six_digits(scale * value)),
             (_, Value::Range([lower, upper])) => {
-                format!("{} to {}{unit}", six_digits(scale * lower), six_digits(scale * upper))
+                format!(
+                    "{} to {}{unit}",
+                    six_digits(scale * lower),
+                    six_digits(scale * upper)
+                )
             }
             (Kind::Flag { words, .. }, Value::Flag(flag)) => words[usize::from(flag)].to_owned(),
             (Kind::Choice { words, .. }, Value::Choice(index)) => words[index][1].to_owned(),
-            (Kind::Optional { nothing, .. } | Kind::Range { nothing: Some(nothing), .. }, _) => nothing[1].to_owned(),
+            (
+                Kind::Optional { nothing, .. }
+                | Kind::Range {
+                    nothing: Some(nothing),
+                    ..
+                },
+                _,
+            ) => nothing[1].to_owned(),
             _ => String::new(),
         }
     }
@@ -359,11 +416,19 @@ impl Setting {
         match self.kind {
             Kind::Number { .. } => "NUMBER".to_owned(),
             Kind::Optional { nothing, on, .. } => {
-                format!("{}{}|NUMBER", nothing[0], if on.is_some() { "|on" } else { "" })
+                format!(
+                    "{}{}|NUMBER",
+                    nothing[0],
+                    if on.is_some() { "|on" } else { "" }
+                )
             }
             Kind::Range { .. } => "LO HI".to_owned(),
             Kind::Flag { .. } => String::new(),
-            Kind::Choice { words, .. } => words.iter().map(|words| words[0]).collect::<Vec<_>>().join("|"),
+            Kind::Choice { words, .. } => words
+                .iter()
+                .map(|words| words[0])
+                .collect::<Vec<_>>()
+                .join("|"),
         }
     }
 
@@ -372,23 +437,40 @@ impl Setting {
     /// # Errors
     /// What was expected, and what was found.
     pub fn read(&self, said: &[&str]) -> Result<Value, String> {
-        let real = |text: &str| text.trim().parse::<f64>().map_err(|_| format!("expected a number, found {text}"));
+        let real = |text: &str| {
+            text.trim()
+                .parse::<f64>()
+                .map_err(|_| format!("expected a number, found {text}"))
+        };
         match (self.kind, said) {
             (Kind::Flag { .. }, _) => Ok(Value::Flag(true)),
-            (Kind::Optional { nothing, .. } | Kind::Range { nothing: Some(nothing), .. }, [word])
-                if *word == nothing[0] =>
-            {
-                Ok(Value::Nothing)
-            }
+            (
+                Kind::Optional { nothing, .. }
+                | Kind::Range {
+                    nothing: Some(nothing),
+                    ..
+                },
+                [word],
+            ) if *word == nothing[0] => Ok(Value::Nothing),
             (Kind::Optional { on: Some(on), .. }, ["on"]) => Ok(Value::Number(on)),
-            (Kind::Optional { nothing, on, .. }, [text]) => text.parse().map(Value::Number).map_err(|_| {
-                let on = if on.is_some() { ", on" } else { "" };
-                format!("expected {}{on} or a number, found {text}", nothing[0])
-            }),
-            (Kind::Number { range: [least, most], whole: true, .. }, [text]) => {
+            (Kind::Optional { nothing, on, .. }, [text]) => {
+                text.parse().map(Value::Number).map_err(|_| {
+                    let on = if on.is_some() { ", on" } else { "" };
+                    format!("expected {}{on} or a number, found {text}", nothing[0])
+                })
+            }
+            (
+                Kind::Number {
+                    range: [least, most],
+                    whole: true,
+                    ..
+                },
+                [text],
+            ) => {
                 let found = text.trim().parse::<usize>().ok().map(|count| count as f64);
                 let found = found.filter(|count| (least..=most).contains(count));
-                let expected = || format!("expected a whole number from {least} to {most}, found {text}");
+                let expected =
+                    || format!("expected a whole number from {least} to {most}, found {text}");
                 found.map(Value::Number).ok_or_else(expected)
             }
             (Kind::Number { .. }, [text]) => real(text).map(Value::Number),
@@ -396,12 +478,18 @@ impl Setting {
             (Kind::Choice { words, .. }, [text]) => {
                 let found = words.iter().position(|words| words[0] == *text);
                 found.map(Value::Choice).ok_or_else(|| {
-                    let (last, others) = words.split_last().map_or(("", words), |(last, others)| (last[0], others));
+                    let (last, others) = words
+                        .split_last()
+                        .map_or(("", words), |(last, others)| (last[0], others));
                     let others: Vec<&str> = others.iter().map(|words| words[0]).collect();
                     format!("expected {} or {last}, found {text}", others.join(", "))
                 })
             }
-            _ => Err(format!("expected {}, found {}", self.syntax(), said.join(" "))),
+            _ => Err(format!(
+                "expected {}, found {}",
+                self.syntax(),
+                said.join(" ")
+            )),
         }
     }
 }
@@ -412,8 +500,11 @@ impl Settings {
     /// # Errors
     /// The setting, and why its value is refused.
     pub fn check(&self) -> Result<(), (&'static Setting, EditRefusal)> {
-        let check =
-            |setting: &&'static Setting| setting.check(setting.value(self)).map_err(|refusal| (*setting, refusal));
+        let check = |setting: &&'static Setting| {
+            setting
+                .check(setting.value(self))
+                .map_err(|refusal| (*setting, refusal))
+        };
         SETTINGS.iter().try_for_each(check)
     }
 }

@@ -94,7 +94,9 @@ impl TryFrom<Vec<(String, String)>> for ResponseNames {
     fn try_from(names: Vec<(String, String)>) -> Result<Self, String> {
         let found = names.len();
         if found > MOST_PAIRS {
-            return Err(format!("expected at most {MOST_PAIRS} entries, found {found}"));
+            return Err(format!(
+                "expected at most {MOST_PAIRS} entries, found {found}"
+            ));
         }
         Ok(Self(names))
     }
@@ -247,7 +249,14 @@ impl Settings {
 
     /// The settings as files say them.
     pub fn named(&self, dataset: &Dataset) -> Settings<ResponseNames> {
-        self.with_responses(|_, table| ResponseNames(table.marked().map(|pair| dataset.channel_names(pair)).collect()))
+        self.with_responses(|_, table| {
+            ResponseNames(
+                table
+                    .marked()
+                    .map(|pair| dataset.channel_names(pair))
+                    .collect(),
+            )
+        })
     }
 
     /// Which responses the objective fits.
@@ -260,7 +269,9 @@ impl Settings {
     pub fn gain_source_words(&self) -> String {
         let words = self.gain_source.words();
         if self.gain_source == GainSource::MeanOfPairs && self.phase == PhaseCorrection::Lead {
-            return format!("{words}, without effect: with leads, G is that of what they leave of the representatives");
+            return format!(
+                "{words}, without effect: with leads, G is that of what they leave of the representatives"
+            );
         }
         words.to_owned()
     }

@@ -1,8 +1,8 @@
 //! Other models of the bundles in place of the representatives, one at a time (M13.1).
 
 use gdcm_method::uncertainty::{
-    BarSource, CoherenceError, ConditionSpread, Figures, IdentificationSource, ReportedUncertainty, ScalarTable,
-    VarianceComponent,
+    BarSource, CoherenceError, ConditionSpread, Figures, IdentificationSource, ReportedUncertainty,
+    ScalarTable, VarianceComponent,
 };
 use gdcm_model::response::{coherence_at, quantile};
 
@@ -40,13 +40,27 @@ pub(super) struct SubstitutedOptimum {
 impl SubstitutedOptimum {
     /// Of the representatives themselves.
     pub(super) fn of(analysis: &ConditionAnalysis) -> Self {
-        let delta = Delta { gain: analysis.gain_problem.delta.clone(), ..analysis.comparison.delta.clone() };
-        Self { correction: analysis.correction.clone(), delta }
+        let delta = Delta {
+            gain: analysis.gain_problem.delta.clone(),
+            ..analysis.comparison.delta.clone()
+        };
+        Self {
+            correction: analysis.correction.clone(),
+            delta,
+        }
     }
 
     /// Logarithms of gains and delays \[s\]; none where a figure is not defined.
     pub(super) fn figures(&self) -> Figures {
-        let Self { correction, delta: Delta { gain, delay_s, band_delay_s } } = self;
+        let Self {
+            correction,
+            delta:
+                Delta {
+                    gain,
+                    delay_s,
+                    band_delay_s,
+                },
+        } = self;
         ScalarTable::from_fn(gain.outputs(), gain.inputs(), |scalar| {
             let figure = match scalar {
                 Scalar::Gain(pair) => gain[pair]?.ln(),
@@ -63,7 +77,12 @@ impl SubstitutedOptimum {
 
 /// What a substitution depends on besides the two models: the settings of the analysis, the representatives, beside which phases lie, and
 /// the couplings.
-type SwapKey = (Settings, PairTable<bool>, [usize; 2], Option<Arc<FittedCouplings>>);
+type SwapKey = (
+    Settings,
+    PairTable<bool>,
+    [usize; 2],
+    Option<Arc<FittedCouplings>>,
+);
 
 /// The substitutions made last, by the physics and the identified model: a model that is rejected or restored leaves the others'.
 #[derive(Clone, Debug, Default)]
@@ -74,7 +93,10 @@ pub(super) struct SubstitutionMemo {
 
 impl Substituting<'_> {
     fn representatives(&self) -> [usize; 2] {
-        [self.analysis.comparison.physics.model, self.analysis.comparison.identified.model]
+        [
+            self.analysis.comparison.physics.model,
+            self.analysis.comparison.identified.model,
+        ]
     }
 
     /// The other kept models of a bundle, in file order; none that is set aside (M5b). A model that stands twice counts once, for
@@ -82,7 +104,8 @@ impl Substituting<'_> {
     fn others(&self, kind: BundleKind) -> Vec<usize> {
         let representative = self.analysis.representative(kind);
         let scores = representative.scores.iter().enumerate();
-        let kept = scores.filter(|(model, score)| score.is_some() && *model != representative.model);
+        let kept =
+            scores.filter(|(model, score)| score.is_some() && *model != representative.model);
         let (responses, mut distinct) = (self.responses.bundle(kind), Vec::new());
         // Models of the same numbers share their response.
         let is_copy = |a: usize, b: usize| Arc::ptr_eq(&responses[a], &responses[b]);
@@ -95,23 +118,39 @@ impl Substituting<'_> {
             }
         }
         copies.truncate(1);
-        if distinct.is_empty() { copies } else { distinct }
+        if distinct.is_empty() {
+            copies
+        } else {
+            distinct
+        }
     }
 
     /// The settings that a substitution depends on.
     fn key(&self) -> SwapKey {
-        let Study { settings, dataset, .. } = self.run.study;
+        let Study {
+            settings, dataset, ..
+        } = self.run.study;
         let mut settings = settings.clone();
         settings.schedule = Default::default();
         settings.schedule_delays = Default::default();
         settings.uncertainty = Default::default();
         settings.gain_source = GainSource::Representatives;
-        (settings, dataset.measuring_pairs(), self.representatives(), self.couplings.cloned())
+        (
+            settings,
+            dataset.measuring_pairs(),
+            self.representatives(),
+            self.couplings.cloned(),
+        )
     }
 
     fn compared(&self, kind: BundleKind, model: usize) -> Compared {
         let coherence = self.run.study.settings.coherence_threshold;
-        Compared::of(&self.analysis.condition, self.responses, (kind, model), (self.run.grid, coherence))
+        Compared::of(
+            &self.analysis.condition,
+            self.responses,
+            (kind, model),
+            (self.run.grid, coherence),
+        )
     }
 }
 
@@ -124,34 +163,65 @@ impl SubstitutionMemo {
     ) -> Result<ConditionSubstitutions, Cancelled> {
         let key = substituting.key();
         if self.key.as_ref() != Some(&key) {
-            *self = Self { key: Some(key), kept: BTreeMap::new() };
+            *self = Self {
+                key: Some(key),
+                kept: BTreeMap::new(),
+            };
         }
-        let of_bundle = |kind| substituting.others(kind).into_iter().map(move |model| (kind, model));
-        let swaps: Vec<(BundleKind, usize)> = BundleKind::BOTH.into_iter().flat_map(of_bundle).collect();
+        let of_bundle = |kind| {
+            substituting
+                .others(kind)
+                .into_iter()
+                .map(move |model| (kind, model))
+        };
+        let swaps: Vec<(BundleKind, usize)> =
+            BundleKind::BOTH.into_iter().flat_map(of_bundle).collect();
         let [physics, identified] = substituting.representatives();
-        let models = |&(kind, model): &(BundleKind, usize)| kind.pick([model, identified], [physics, model]);
+        let models =
+            |&(kind, model): &(BundleKind, usize)| kind.pick([model, identified], [physics, model]);
         // The mean over all pairs is no figure of the representatives: what changes are measured from is made too.
-        let Run { study, execution, .. } = substituting.run;
-        let base = (study.settings.gain_source == GainSource::MeanOfPairs).then_some([physics, identified]);
+        let Run {
+            study, execution, ..
+        } = substituting.run;
+        let base = (study.settings.gain_source == GainSource::MeanOfPairs)
+            .then_some([physics, identified]);
         let wanted = swaps.iter().map(models).chain(base);
-        let missing: Vec<[usize; 2]> = wanted.filter(|pair| !self.kept.contains_key(pair)).collect();
+        let missing: Vec<[usize; 2]> = wanted
+            .filter(|pair| !self.kept.contains_key(pair))
+            .collect();
         execution.step(swaps.len().saturating_sub(missing.len()));
         let made = make(substituting, &missing, optimum)?;
         self.kept.extend(missing.into_iter().zip(made));
         let kept = |pair: [usize; 2]| self.kept.get(&pair).cloned().flatten();
-        let substitutions: Vec<_> = swaps.iter().map(|swap| (swap.0, swap.1, kept(models(swap)))).collect();
+        let substitutions: Vec<_> = swaps
+            .iter()
+            .map(|swap| (swap.0, swap.1, kept(models(swap))))
+            .collect();
         let figures = |kind| -> Vec<Option<&Figures>> {
-            substitutions.iter().filter(|of| of.0 == kind).map(|of| of.2.as_deref()).collect()
+            substitutions
+                .iter()
+                .filter(|of| of.0 == kind)
+                .map(|of| of.2.as_deref())
+                .collect()
         };
         let base = match base {
             None => SubstitutedOptimum::of(substituting.analysis).figures(),
             Some(pair) => match kept(pair) {
                 Some(base) => Figures::clone(&base),
-                None => SubstitutedOptimum::of(substituting.analysis).figures().map(|_, _| None),
+                None => SubstitutedOptimum::of(substituting.analysis)
+                    .figures()
+                    .map(|_, _| None),
             },
         };
-        let spread = ConditionSpread::of(&base, &figures(BundleKind::Physics), &figures(BundleKind::Identified));
-        Ok(ConditionSubstitutions { spread, substitutions })
+        let spread = ConditionSpread::of(
+            &base,
+            &figures(BundleKind::Physics),
+            &figures(BundleKind::Identified),
+        );
+        Ok(ConditionSubstitutions {
+            spread,
+            substitutions,
+        })
     }
 }
 
@@ -169,8 +239,11 @@ fn make(
     let simulated = substituting.compared(BundleKind::Physics, physics);
     let reference = substituting.compared(BundleKind::Identified, identified);
     let omega = substituting.run.grid.omega();
-    let median_phases =
-        base.representative.mismatch.map(|_, mismatch| mismatch.as_ref().map(|mismatch| mismatch.median_phase(omega)));
+    let median_phases = base.representative.mismatch.map(|_, mismatch| {
+        mismatch
+            .as_ref()
+            .map(|mismatch| mismatch.median_phase(omega))
+    });
     let substitution = |place: usize| {
         let [a, b] = pairs[place];
         let other;
@@ -196,7 +269,12 @@ fn make(
         }
         Ok(optimum(&mismatch, delta)?.map(|optimum| Arc::new(optimum.figures())))
     };
-    substituting.run.execution.each(pairs.len(), 1, substitution)?.into_iter().collect()
+    substituting
+        .run
+        .execution
+        .each(pairs.len(), 1, substitution)?
+        .into_iter()
+        .collect()
 }
 
 /// Natural logarithm of a ratio of 1 dB.
@@ -222,16 +300,28 @@ pub(super) fn bar_source<'a>(
             degrees_of_freedom: degrees,
         };
         let coherence = by_coherence.as_ref().and_then(|told| told[pair]).map(part);
-        let band = by_band.as_ref().and_then(|told| told[pair]).map(|error| part((error, f64::INFINITY)));
-        let coherence = coherence.map(|part| ReportedUncertainty { part, source: IdentificationSource::Coherence });
-        let band = band.map(|part| ReportedUncertainty { part, source: IdentificationSource::ModelBand });
+        let band = by_band
+            .as_ref()
+            .and_then(|told| told[pair])
+            .map(|error| part((error, f64::INFINITY)));
+        let coherence = coherence.map(|part| ReportedUncertainty {
+            part,
+            source: IdentificationSource::Coherence,
+        });
+        let band = band.map(|part| ReportedUncertainty {
+            part,
+            source: IdentificationSource::ModelBand,
+        });
         coherence.or(band)
     });
     BarSource {
         figures,
         spread: &substitutions.spread,
         told,
-        delay_bounds_s: [result.delay_problem.bounds.lower, result.delay_problem.bounds.upper],
+        delay_bounds_s: [
+            result.delay_problem.bounds.lower,
+            result.delay_problem.bounds.upper,
+        ],
     }
 }
 
@@ -239,7 +329,9 @@ pub(super) fn bar_source<'a>(
 /// and matched, which are G (M13.2). The other net gains and the channels rest on the spread of the models alone: what one response's
 /// error does to them is not known without that of all responses together.
 pub(super) fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool {
-    let is_matched = |pair: Pair| result.held()[pair] && result.gains.unmatched.iter().all(|miss| miss.pair != pair);
+    let is_matched = |pair: Pair| {
+        result.held()[pair] && result.gains.unmatched.iter().all(|miss| miss.pair != pair)
+    };
     match scalar {
         Scalar::Gain(_) | Scalar::Delay(_) | Scalar::BandDelay(_) => true,
         Scalar::NetGain(pair) => is_matched(pair),
@@ -260,11 +352,15 @@ fn told_by_coherence(
 ) -> Option<PairTable<Option<(CoherenceError, f64)>>> {
     let settings = &analysis.study.settings;
     let identified = result.representative_model(BundleKind::Identified);
-    let (Dynamics::Measured(response), Some(threshold)) = (&identified.dynamics, settings.coherence_threshold) else {
+    let (Dynamics::Measured(response), Some(threshold)) =
+        (&identified.dynamics, settings.coherence_threshold)
+    else {
         return None;
     };
     let estimate = response.estimate();
-    let measurement = settings.uncertainty.measurement(estimate.averages, estimate.window_s)?;
+    let measurement = settings
+        .uncertainty
+        .measurement(estimate.averages, estimate.window_s)?;
     let coherence = coherence_at(response, &analysis.omega)?;
     Some(coherence.map(|_, coherence| {
         let error = measurement.error(&analysis.omega, coherence, threshold)?;
@@ -274,7 +370,10 @@ fn told_by_coherence(
 
 /// The error of each response of the identified representative that its own band tells: medians over the band of comparison. Its
 /// deviations are taken as known.
-fn told_by_band(analysis: &Analysis, result: &ConditionAnalysis) -> Option<PairTable<Option<CoherenceError>>> {
+fn told_by_band(
+    analysis: &Analysis,
+    result: &ConditionAnalysis,
+) -> Option<PairTable<Option<CoherenceError>>> {
     let identified = result.representative_model(BundleKind::Identified);
     let bands = identified.bands.as_ref()?;
     let band = analysis.study.settings.band;
@@ -287,16 +386,22 @@ fn told_by_band(analysis: &Analysis, result: &ConditionAnalysis) -> Option<PairT
             (!values.is_empty()).then(|| median(&mut values))
         };
         let ln_gain = within(sd_db, &|_, sd_db| LN_DB * sd_db)?;
-        let delay_s = within(&bands.sd_deg()[pair], &|omega, sd_deg| sd_deg.to_radians() / omega)?;
+        let delay_s = within(&bands.sd_deg()[pair], &|omega, sd_deg| {
+            sd_deg.to_radians() / omega
+        })?;
         Some(CoherenceError { ln_gain, delay_s })
     }))
 }
 
 /// `(Q84 - Q16) / 2` of `ln |H_ref| / |H_sim|` over the band.
 pub(super) fn left_in_band(result: &ConditionAnalysis) -> PairTable<Option<f64>> {
-    result.comparison.representative.mismatch.map(|_, mismatch| {
-        let mut errors: Vec<f64> = mismatch.as_ref()?.magnitude_db.clone();
-        let width = quantile(&mut errors, 0.84) - quantile(&mut errors, 0.16);
-        Some(0.5 * LN_DB * width)
-    })
+    result
+        .comparison
+        .representative
+        .mismatch
+        .map(|_, mismatch| {
+            let mut errors: Vec<f64> = mismatch.as_ref()?.magnitude_db.clone();
+            let width = quantile(&mut errors, 0.84) - quantile(&mut errors, 0.16);
+            Some(0.5 * LN_DB * width)
+        })
 }

@@ -18,13 +18,23 @@ pub struct Table {
 
 impl Table {
     /// A table without rows.
-    pub fn new(title: impl Into<String>, columns: impl IntoIterator<Item = impl Into<String>>) -> Self {
-        Self { title: title.into(), columns: columns.into_iter().map(Into::into).collect(), rows: Vec::new() }
+    pub fn new(
+        title: impl Into<String>,
+        columns: impl IntoIterator<Item = impl Into<String>>,
+    ) -> Self {
+        Self {
+            title: title.into(),
+            columns: columns.into_iter().map(Into::into).collect(),
+            rows: Vec::new(),
+        }
     }
 
     /// Adds a row; cells beyond the last column are left out, missing ones are empty, a zero has no sign.
     pub fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
-        let mut cells: Vec<String> = cells.into_iter().map(|cell| unsigned_zero(cell.into())).collect();
+        let mut cells: Vec<String> = cells
+            .into_iter()
+            .map(|cell| unsigned_zero(cell.into()))
+            .collect();
         cells.resize(self.columns.len(), String::new());
         self.rows.push(cells);
     }
@@ -35,16 +45,36 @@ impl Table {
         let records = || std::iter::once(&self.columns).chain(&self.rows);
         let cells_of = |column: usize| records().map(move |record| record[column].as_str());
         let widths: Vec<usize> = (0..self.columns.len())
-            .map(|column| cells_of(column).map(|cell| cell.chars().count()).max().unwrap_or(0))
+            .map(|column| {
+                cells_of(column)
+                    .map(|cell| cell.chars().count())
+                    .max()
+                    .unwrap_or(0)
+            })
             .collect();
-        let figures: Vec<bool> = (0..self.columns.len()).map(|column| self.has_numbers(column)).collect();
-        let mut text = if self.title.is_empty() { String::new() } else { format!("{}\n", self.title) };
+        let figures: Vec<bool> = (0..self.columns.len())
+            .map(|column| self.has_numbers(column))
+            .collect();
+        let mut text = if self.title.is_empty() {
+            String::new()
+        } else {
+            format!("{}\n", self.title)
+        };
         for record in records() {
-            let cells = record.iter().zip(&widths).zip(&figures).map(|((cell, &width), figures)| {
-                // Not by the width of a format, which holds no more than 65535.
-                let room = " ".repeat(width - cell.chars().count());
-                if *figures { format!("{room}{cell}") } else { format!("{cell}{room}") }
-            });
+            let cells =
+                record
+                    .iter()
+                    .zip(&widths)
+                    .zip(&figures)
+                    .map(|((cell, &width), figures)| {
+                        // Not by the width of a format, which holds no more than 65535.
+                        let room = " ".repeat(width - cell.chars().count());
+                        if *figures {
+                            format!("{room}{cell}")
+                        } else {
+                            format!("{cell}{room}")
+                        }
+                    });
             text.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
             text.push('\n');
         }
@@ -53,7 +83,12 @@ impl Table {
 
     /// Whether every cell of a column that is not empty is a number, and there is one.
     pub fn has_numbers(&self, column: usize) -> bool {
-        let mut cells = self.rows.iter().map(|row| row[column].as_str()).filter(|cell| !cell.is_empty()).peekable();
+        let mut cells = self
+            .rows
+            .iter()
+            .map(|row| row[column].as_str())
+            .filter(|cell| !cell.is_empty())
+            .peekable();
         cells.peek().is_some() && cells.all(is_number)
     }
 }
@@ -61,13 +96,20 @@ impl Table {
 /// The cell, a zero without its sign.
 fn unsigned_zero(cell: String) -> String {
     let unsigned = without_sign_of_zero(&cell);
-    if unsigned.len() == cell.len() { cell } else { unsigned.to_owned() }
+    if unsigned.len() == cell.len() {
+        cell
+    } else {
+        unsigned.to_owned()
+    }
 }
 
 /// Whether a text is a number, with whichever minus sign and a unit behind it or none, or the dash that stands for none.
 fn is_number(cell: &str) -> bool {
     let mut words = cell.split(' ');
-    let number = words.next().unwrap_or_default().replacen('\u{2212}', "-", 1);
+    let number = words
+        .next()
+        .unwrap_or_default()
+        .replacen('\u{2212}', "-", 1);
     matches!(cell, "–" | "—" | "-") || (words.count() < 2 && number.parse::<f64>().is_ok())
 }
 
@@ -84,12 +126,32 @@ fn percent(deviation: Option<f64>) -> String {
 }
 
 fn probability(p: Option<f64>) -> String {
-    p.map_or_else(|| NONE.to_owned(), |p| if p < 0.001 { "< 0.001".to_owned() } else { format!("{p:.3}") })
+    p.map_or_else(
+        || NONE.to_owned(),
+        |p| {
+            if p < 0.001 {
+                "< 0.001".to_owned()
+            } else {
+                format!("{p:.3}")
+            }
+        },
+    )
 }
 
 /// The differences of net gains at equal airspeed, the largest multiple of what is expected first, with the difference of each row.
-pub fn difference_table(dataset: &Dataset, uncertainty: &Uncertainty) -> (Table, Vec<AirspeedDifference>) {
-    let columns = ["response", "conditions", "airspeed [kt]", "difference [%]", "× expected", "Holm p", "verdict"];
+pub fn difference_table(
+    dataset: &Dataset,
+    uncertainty: &Uncertainty,
+) -> (Table, Vec<AirspeedDifference>) {
+    let columns = [
+        "response",
+        "conditions",
+        "airspeed [kt]",
+        "difference [%]",
+        "× expected",
+        "Holm p",
+        "verdict",
+    ];
     let mut table = Table::new("Differences at equal airspeed", columns);
     let mut differences = uncertainty.differences.clone();
     let ratio = |of: &AirspeedDifference| of.difference.ratio().unwrap_or_default();
@@ -123,7 +185,10 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
     ];
     let mut table = Table::new("Does the schedule need a second variable?", columns);
     for test in &uncertainty.second_variables {
-        let (name, variable) = (dataset.pair_name(test.pair), test.variable.name().to_owned());
+        let (name, variable) = (
+            dataset.pair_name(test.pair),
+            test.variable.name().to_owned(),
+        );
         let cells = match &test.effect {
             Err(error) => [vec![NONE.to_owned(); 5], vec![error.to_string()]].concat(),
             Ok(effect) => vec![
@@ -156,11 +221,20 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     let deviation = |variance: f64| percent(Some(variance.sqrt()));
     let interval = |split: &VarianceDecomposition| {
         let ends = split.unexplained_interval(uncertainty.level);
-        ends.map_or_else(|| NONE.to_owned(), |[low, high]| format!("{} to {}", percent(Some(low)), percent(Some(high))))
+        ends.map_or_else(
+            || NONE.to_owned(),
+            |[low, high]| format!("{} to {}", percent(Some(low)), percent(Some(high))),
+        )
     };
     for scatter in &uncertainty.scatter {
-        let splits = [("equal airspeed", &scatter.same_airspeed), ("the schedule", &scatter.about_schedule)];
-        for (about, split) in splits.into_iter().filter_map(|(about, split)| Some((about, split.as_ref()?))) {
+        let splits = [
+            ("equal airspeed", &scatter.same_airspeed),
+            ("the schedule", &scatter.about_schedule),
+        ];
+        for (about, split) in splits
+            .into_iter()
+            .filter_map(|(about, split)| Some((about, split.as_ref()?)))
+        {
             table.row([
                 dataset.pair_name(scatter.pair),
                 about.to_owned(),
@@ -193,7 +267,9 @@ pub fn bar_table(analysis: &Analysis, uncertainty: &Uncertainty) -> Table {
     let dataset = &analysis.study.dataset;
     for (id, of) in &uncertainty.conditions {
         for pair in dataset.measuring_pairs().marked() {
-            let Some(bar) = &of.bars[Scalar::NetGain(pair)] else { continue };
+            let Some(bar) = &of.bars[Scalar::NetGain(pair)] else {
+                continue;
+            };
             table.row([
                 id.to_string(),
                 dataset.pair_name(pair),
@@ -225,7 +301,10 @@ mod tests {
         let mut table = Table::new("Condition 3", ["response", "G [-]", "D [ms]"]);
         table.row(["LON → Q", "1.346", "−12.5"]);
         table.row(["COL → NZ", "0.9", ""]);
-        assert_eq!(table.text(), "Condition 3\nresponse  G [-]  D [ms]\nLON → Q   1.346   −12.5\nCOL → NZ    0.9\n");
+        assert_eq!(
+            table.text(),
+            "Condition 3\nresponse  G [-]  D [ms]\nLON → Q   1.346   −12.5\nCOL → NZ    0.9\n"
+        );
     }
 
     #[test]
@@ -239,7 +318,11 @@ mod tests {
     #[test]
     fn numbers_with_units_are_numbers_and_counts_of_others_are_words() {
         assert!(["120 kt", "−1.5", "-", "–"].into_iter().all(is_number));
-        assert!(["3 of 4", "V+5kt", "kt", ""].into_iter().all(|words| !is_number(words)));
+        assert!(
+            ["3 of 4", "V+5kt", "kt", ""]
+                .into_iter()
+                .all(|words| !is_number(words))
+        );
     }
 
     #[test]

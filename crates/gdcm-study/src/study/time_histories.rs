@@ -7,7 +7,9 @@
 //! 3  each row of the table of tolerances whose output and unit are there: share inside, largest excess, correlation
 //! ```
 
-use gdcm_method::requirements::{ChannelTolerance, RecordCheck, RmsCost, Tolerance, ToleranceCheck};
+use gdcm_method::requirements::{
+    ChannelTolerance, RecordCheck, RmsCost, Tolerance, ToleranceCheck,
+};
 use gdcm_model::dataset::Channel;
 use gdcm_sysid::identification::{Segment, ValidationSettings, ValidationWindow};
 use gdcm_sysid::records::LaidOutRecord;
@@ -48,9 +50,16 @@ impl HistoryRecords {
     ) -> Self {
         let used = records.into_iter().filter_map(|record| {
             let flight = Arc::clone(record.used_flight()?);
-            Some(HistoryRecord { flight: flight.into(), held_out: record.guess.held_out })
+            Some(HistoryRecord {
+                flight: flight.into(),
+                held_out: record.guess.held_out,
+            })
         });
-        Self { condition, records: used.collect(), preparation }
+        Self {
+            condition,
+            records: used.collect(),
+            preparation,
+        }
     }
 
     /// Steps of [`time_histories_of`]: one to prepare each record, one for each model's answer to it.
@@ -75,9 +84,22 @@ impl Job for TimeHistoriesJob {
     type Tools = Box<dyn Executor>;
     type Output = Arc<TimeHistories>;
 
-    fn run(&self, executor: &mut Self::Tools, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        let execution = Execution::new(executor.as_ref(), progress, HistoryRecords::steps(&self.records));
-        Ok(Arc::new(time_histories_of(&self.analysis, &self.records, &self.tolerances, &execution)?))
+    fn run(
+        &self,
+        executor: &mut Self::Tools,
+        progress: &dyn Progress,
+    ) -> Result<Self::Output, Cancelled> {
+        let execution = Execution::new(
+            executor.as_ref(),
+            progress,
+            HistoryRecords::steps(&self.records),
+        );
+        Ok(Arc::new(time_histories_of(
+            &self.analysis,
+            &self.records,
+            &self.tolerances,
+            &execution,
+        )?))
     }
 }
 
@@ -93,7 +115,12 @@ impl Engine {
         progress: &dyn Progress,
     ) -> Result<TimeHistories, Cancelled> {
         let execution = Execution::new(self.executor(), progress, HistoryRecords::steps(records));
-        time_histories_of(analysis, records, &analysis.study.requirements.tolerances, &execution)
+        time_histories_of(
+            analysis,
+            records,
+            &analysis.study.requirements.tolerances,
+            &execution,
+        )
     }
 }
 
@@ -111,7 +138,11 @@ impl Trend {
     /// Of an output that is off the axis of the input that moved most, by the correlation of simulated and flown; none on the axis.
     pub(super) fn of(correlation: Option<f64>, on_axis: Option<bool>) -> Option<Self> {
         let correlation = correlation.filter(|_| on_axis == Some(false))?;
-        Some(if correlation > 0.0 { Self::Correct } else { Self::Opposite })
+        Some(if correlation > 0.0 {
+            Self::Correct
+        } else {
+            Self::Opposite
+        })
     }
 
     /// Its name.
@@ -237,11 +268,21 @@ pub fn time_histories_of(
     let comparer = Comparer::of(analysis, tolerances, &mut missing);
     let prepared = prepared(analysis, records, execution, &mut missing)?;
     let models = role_models(analysis, &prepared, &mut missing);
-    let answers: Vec<(&PreparedHistory<'_>, RequirementRole, (&StateSpace, ValidationSettings))> = prepared
+    let answers: Vec<(
+        &PreparedHistory<'_>,
+        RequirementRole,
+        (&StateSpace, ValidationSettings),
+    )> = prepared
         .iter()
         .flat_map(|history| {
-            let of_condition = || models.get(&history.result.condition.id()).into_iter().flatten();
-            let settings = common_windows(of_condition().map(|(_, model)| model), &history.segments);
+            let of_condition = || {
+                models
+                    .get(&history.result.condition.id())
+                    .into_iter()
+                    .flatten()
+            };
+            let settings =
+                common_windows(of_condition().map(|(_, model)| model), &history.segments);
             of_condition().map(move |(role, model)| (history, *role, (model, settings)))
         })
         .collect();
@@ -249,13 +290,23 @@ pub fn time_histories_of(
         let (history, role, model) = answers[index];
         comparer.finding(history, role, model)
     })?;
-    let mut histories = TimeHistories { tolerance_table: tolerances.clone(), records: Vec::new(), missing };
+    let mut histories = TimeHistories {
+        tolerance_table: tolerances.clone(),
+        records: Vec::new(),
+        missing,
+    };
     for ((history, role, _), found) in answers.into_iter().zip(found) {
         match found {
             Ok(finding) => histories.records.push(finding),
             Err(why) => {
-                let why = format!("{} model, record \"{}\": {why}", role.name(), history.record.flight.name);
-                histories.missing.push(missing_of(Some(history.result.condition.id()), why));
+                let why = format!(
+                    "{} model, record \"{}\": {why}",
+                    role.name(),
+                    history.record.flight.name
+                );
+                histories
+                    .missing
+                    .push(missing_of(Some(history.result.condition.id()), why));
             }
         }
     }
@@ -271,17 +322,31 @@ pub(super) fn common_windows<'m>(
 }
 
 fn missing_of(condition: Option<ConditionId>, why: String) -> MissingFinding {
-    MissingFinding { condition, what: WHAT, why }
+    MissingFinding {
+        condition,
+        what: WHAT,
+        why,
+    }
 }
 
 /// The conditions that no record is of.
 fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<MissingFinding> {
-    let has_records = |id: ConditionId| records.iter().any(|of| of.condition == id && !of.records.is_empty());
+    let has_records = |id: ConditionId| {
+        records
+            .iter()
+            .any(|of| of.condition == id && !of.records.is_empty())
+    };
     if records.iter().all(|of| of.records.is_empty()) {
         return vec![missing_of(None, "no flight record was given".to_owned())];
     }
-    let without = analysis.study.dataset.ids().filter(|id| analysis.condition(*id).is_some() && !has_records(*id));
-    without.map(|id| missing_of(Some(id), "no flight record of it was given".to_owned())).collect()
+    let without = analysis
+        .study
+        .dataset
+        .ids()
+        .filter(|id| analysis.condition(*id).is_some() && !has_records(*id));
+    without
+        .map(|id| missing_of(Some(id), "no flight record of it was given".to_owned()))
+        .collect()
 }
 
 /// Every record of a condition with a result, prepared; the reasons for the others go to `missing`.
@@ -299,13 +364,20 @@ fn prepared<'a>(
         .collect();
     let segments = execution.each(all.len(), 1, |index| {
         let (_, of, record) = all[index];
-        let preparation = Preparation { least_segment_s: LEAST_PIECE_S, ..of.preparation.clone() };
+        let preparation = Preparation {
+            least_segment_s: LEAST_PIECE_S,
+            ..of.preparation.clone()
+        };
         segments_of(&record.flight, &preparation)
     })?;
     let mut prepared = Vec::new();
     for ((result, of, record), segments) in all.into_iter().zip(segments) {
         match segments {
-            Ok(segments) => prepared.push(PreparedHistory { result, record, segments }),
+            Ok(segments) => prepared.push(PreparedHistory {
+                result,
+                record,
+                segments,
+            }),
             Err(why) => {
                 let why = format!("record \"{}\": {why}", record.flight.name);
                 missing.push(missing_of(Some(of.condition), why));
@@ -330,7 +402,10 @@ fn role_models(
                 // Said once, of the schedule.
                 Err(RoleModelError::NoSchedule(_)) => None,
                 Err(why) => {
-                    missing.push(missing_of(Some(id), format!("{} model: {why}", role.name())));
+                    missing.push(missing_of(
+                        Some(id),
+                        format!("{} model: {why}", role.name()),
+                    ));
                     None
                 }
             };
@@ -355,7 +430,12 @@ impl<'a> Comparer<'a> {
             }
         }
         let on_axis = dataset.measuring_pairs();
-        Self { inputs: dataset.inputs(), outputs: dataset.outputs(), on_axis, rows }
+        Self {
+            inputs: dataset.inputs(),
+            outputs: dataset.outputs(),
+            on_axis,
+            rows,
+        }
     }
 
     /// The input that varies most over the segments of a record; none where the inputs cannot be compared.
@@ -386,14 +466,23 @@ impl<'a> Comparer<'a> {
         role: RequirementRole,
         (model, settings): (&StateSpace, ValidationSettings),
     ) -> Result<HistoryFinding, String> {
-        let PreparedHistory { result, record, segments } = history;
-        let validation = validate(model, segments, &settings, &Sequential).map_err(|error| error.to_string())?;
+        let PreparedHistory {
+            result,
+            record,
+            segments,
+        } = history;
+        let validation =
+            validate(model, segments, &settings, &Sequential).map_err(|error| error.to_string())?;
         let rms = RmsCost::of(&validation.windows, self.outputs);
         let moved = self.moved_input(segments);
-        let rows = self.rows.iter().map(|row| self.against(row, &validation.windows, moved));
+        let rows = self
+            .rows
+            .iter()
+            .map(|row| self.against(row, &validation.windows, moved));
         let theil = self.outputs.iter().zip(&validation.theil);
         let theil = theil.filter_map(|(output, theil)| Some((output.name.clone(), (*theil)?)));
-        let length_s = |window: &ValidationWindow| window.sample_time_s * window.measured.nrows() as f64;
+        let length_s =
+            |window: &ValidationWindow| window.sample_time_s * window.measured.nrows() as f64;
         Ok(HistoryFinding {
             condition: result.condition.id(),
             airspeed_kt: result.condition.flight_state().airspeed_kt,
@@ -402,7 +491,11 @@ impl<'a> Comparer<'a> {
             role,
             model: result.representative_name(role.bundle()).to_owned(),
             moved_input: moved.map(|input| self.inputs[input].name.clone()),
-            samples: validation.windows.iter().map(|window| window.measured.nrows()).sum(),
+            samples: validation
+                .windows
+                .iter()
+                .map(|window| window.measured.nrows())
+                .sum(),
             windows: validation.windows.len(),
             window_s: validation.windows.iter().map(length_s).fold(0.0, f64::max),
             j_rms: rms.as_ref().map(|cost| cost.value),
@@ -423,7 +516,8 @@ impl<'a> Comparer<'a> {
         windows: &[ValidationWindow],
         moved: Option<usize>,
     ) -> Result<ToleranceFinding, String> {
-        let checks = RecordCheck::of_windows(windows, of_channel).map_err(|error| error.to_string())?;
+        let checks =
+            RecordCheck::of_windows(windows, of_channel).map_err(|error| error.to_string())?;
         let check = checks.first().ok_or("there are no samples to compare")?;
         let worst: &ToleranceCheck = check.worst().ok_or("there are no samples to compare")?;
         let correlation = check.correlation();
@@ -455,33 +549,64 @@ mod tests {
     use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Pair, StateSpace};
     use gdcm_model::executor::Sequential;
     use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
-    use gdcm_sysid::identification::{FirstOrderHold, FlightRecord, Preparation, segments_of, validate};
+    use gdcm_sysid::identification::{
+        FirstOrderHold, FlightRecord, Preparation, segments_of, validate,
+    };
 
     const CONDITION: ConditionId = ConditionId(3);
     const SAMPLE_TIME_S: f64 = 0.02;
 
     /// A sweep of the first input alone, `samples` long, that the model of a role answers to.
     fn flown(analysis: &Analysis, role: RequirementRole, samples: usize) -> FlightRecord {
-        let model = analysis.role_model(analysis.condition(CONDITION).unwrap(), role).unwrap();
+        let model = analysis
+            .role_model(analysis.condition(CONDITION).unwrap(), role)
+            .unwrap();
         let time_s: Vec<f64> = (0..samples).map(|n| SAMPLE_TIME_S * n as f64).collect();
         let sweep = |t: f64| 5.0 * (t * (0.5 + 0.05 * t)).sin();
-        let inputs =
-            DMatrix::from_fn(samples, model.inputs(), |n, input| if input == 0 { sweep(time_s[n]) } else { 0.0 });
+        let inputs = DMatrix::from_fn(samples, model.inputs(), |n, input| {
+            if input == 0 { sweep(time_s[n]) } else { 0.0 }
+        });
         let held = FirstOrderHold::of(&model, SAMPLE_TIME_S).unwrap();
         let outputs = held.simulate(&DVector::zeros(model.order()), &inputs);
-        FlightRecord { name: "sweep".into(), time_s, inputs, outputs }
+        FlightRecord {
+            name: "sweep".into(),
+            time_s,
+            inputs,
+            outputs,
+        }
     }
 
     fn records(analysis: &Analysis, flight: FlightRecord) -> Vec<HistoryRecords> {
         let (inputs, outputs) = analysis.study.dataset.names_of_channels();
-        let [inputs, outputs]: [Vec<&str>; 2] = [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
-        let record = HistoryRecord { flight: Arc::new(flight).into(), held_out: true };
-        let preparation = Preparation { keep_frozen: true, ..Preparation::of(&inputs, &outputs) };
-        vec![HistoryRecords { condition: CONDITION, records: vec![record], preparation }]
+        let [inputs, outputs]: [Vec<&str>; 2] =
+            [&inputs, &outputs].map(|of| of.iter().map(String::as_str).collect());
+        let record = HistoryRecord {
+            flight: Arc::new(flight).into(),
+            held_out: true,
+        };
+        let preparation = Preparation {
+            keep_frozen: true,
+            ..Preparation::of(&inputs, &outputs)
+        };
+        vec![HistoryRecords {
+            condition: CONDITION,
+            records: vec![record],
+            preparation,
+        }]
     }
 
-    fn histories(analysis: &Analysis, flight: FlightRecord, table: &ToleranceTable) -> TimeHistories {
-        time_histories_of(analysis, &records(analysis, flight), table, &Execution::sequential()).unwrap()
+    fn histories(
+        analysis: &Analysis,
+        flight: FlightRecord,
+        table: &ToleranceTable,
+    ) -> TimeHistories {
+        time_histories_of(
+            analysis,
+            &records(analysis, flight),
+            table,
+            &Execution::sequential(),
+        )
+        .unwrap()
     }
 
     #[test]
@@ -492,54 +617,116 @@ mod tests {
         assert_eq!(found.records.len(), 4, "{:?}", found.missing);
         let of_role = |role| found.of_role(CONDITION, role).next().unwrap();
         let identified = of_role(RequirementRole::Identified);
-        assert_eq!((identified.samples, identified.moved_input.as_deref()), (1500, Some("LON")));
+        assert_eq!(
+            (identified.samples, identified.moved_input.as_deref()),
+            (1500, Some("LON"))
+        );
         for of in &identified.tolerances {
             assert!(of.share_inside == 1.0 && of.largest_excess < 0.0, "{of:?}");
             let trend = (of.on_axis == Some(false)).then_some(Trend::Correct);
-            assert!(of.trend == trend && of.correlation.unwrap() > 0.999_999, "{of:?}");
+            assert!(
+                of.trend == trend && of.correlation.unwrap() > 0.999_999,
+                "{of:?}"
+            );
         }
         // It is its own record, but for the least squares of the initial state.
-        assert!(identified.j_rms.unwrap() < 1e-6 && identified.theil["Q"] < 1e-7, "{identified:?}");
-        let [physics, corrected] = [RequirementRole::Physics, RequirementRole::Corrected].map(of_role);
-        assert!(physics.tolerances.iter().any(|of| of.share_inside < 1.0 && of.largest_excess > 0.0));
-        assert!(corrected.j_rms.unwrap() < physics.j_rms.unwrap(), "a correction brings the model nearer to flight");
-        let pitch = identified.tolerances.iter().find(|of| of.quantity == "pitch rate").unwrap();
+        assert!(
+            identified.j_rms.unwrap() < 1e-6 && identified.theil["Q"] < 1e-7,
+            "{identified:?}"
+        );
+        let [physics, corrected] =
+            [RequirementRole::Physics, RequirementRole::Corrected].map(of_role);
+        assert!(
+            physics
+                .tolerances
+                .iter()
+                .any(|of| of.share_inside < 1.0 && of.largest_excess > 0.0)
+        );
+        assert!(
+            corrected.j_rms.unwrap() < physics.j_rms.unwrap(),
+            "a correction brings the model nearer to flight"
+        );
+        let pitch = identified
+            .tolerances
+            .iter()
+            .find(|of| of.quantity == "pitch rate")
+            .unwrap();
         assert_eq!((pitch.on_axis, pitch.trend), (Some(true), None));
     }
 
     #[test]
     fn shares_of_a_condition_are_those_of_its_records_by_their_samples() {
         let analysis = &EXAMPLE.analysis;
-        let flights = [600, 1200].map(|samples| flown(analysis, RequirementRole::Identified, samples));
+        let flights =
+            [600, 1200].map(|samples| flown(analysis, RequirementRole::Identified, samples));
         let mut given = records(analysis, flights[0].clone());
-        given[0].records.push(HistoryRecord { flight: Arc::new(flights[1].clone()).into(), held_out: false });
+        given[0].records.push(HistoryRecord {
+            flight: Arc::new(flights[1].clone()).into(),
+            held_out: false,
+        });
         let table = ToleranceTable::default();
         let found = time_histories_of(analysis, &given, &table, &Execution::sequential()).unwrap();
         let role = RequirementRole::Physics;
-        let [short, long] = [0, 1].map(|n| &found.of_role(CONDITION, role).nth(n).unwrap().tolerances[2]);
-        let share = found.share_inside(CONDITION, role, &short.quantity).unwrap();
+        let [short, long] =
+            [0, 1].map(|n| &found.of_role(CONDITION, role).nth(n).unwrap().tolerances[2]);
+        let share = found
+            .share_inside(CONDITION, role, &short.quantity)
+            .unwrap();
         assert!((share - (short.share_inside + 2.0 * long.share_inside) / 3.0).abs() < 1e-12);
         assert_eq!(found.conditions(), [(CONDITION, 2)]);
         let shown = found.share_table();
-        assert_eq!(shown.rows[2][..3], ["3", "2", "pitch rate"].map(str::to_owned));
+        assert_eq!(
+            shown.rows[2][..3],
+            ["3", "2", "pitch rate"].map(str::to_owned)
+        );
         // Rounded down: what is not wholly inside is never 100.
-        assert_eq!(shown.rows[2][3].parse::<f64>().unwrap(), (1e3 * share).floor() / 10.0);
+        assert_eq!(
+            shown.rows[2][3].parse::<f64>().unwrap(),
+            (1e3 * share).floor() / 10.0
+        );
         assert_eq!(shown.rows[2][6], "100.0");
-        let squares = |n: usize| found.of_role(CONDITION, role).nth(n).unwrap().j_rms.unwrap().powi(2);
+        let squares = |n: usize| {
+            found
+                .of_role(CONDITION, role)
+                .nth(n)
+                .unwrap()
+                .j_rms
+                .unwrap()
+                .powi(2)
+        };
         let rms = ((squares(0) + 2.0 * squares(1)) / 3.0).sqrt();
         assert!((found.j_rms(CONDITION, role).unwrap() - rms).abs() < 1e-12);
         assert_eq!(found.cost_table().rows[0][3], format!("{rms:.2}"));
         let of_records = found.record_table(CONDITION);
-        let is_left = |of: &ToleranceFinding| of.largest_excess > 0.0 || of.trend == Some(Trend::Opposite);
-        let first = |n: usize| RequirementRole::ALL.map(|role| found.of_role(CONDITION, role).nth(n).unwrap());
+        let is_left =
+            |of: &ToleranceFinding| of.largest_excess > 0.0 || of.trend == Some(Trend::Opposite);
+        let first = |n: usize| {
+            RequirementRole::ALL.map(|role| found.of_role(CONDITION, role).nth(n).unwrap())
+        };
         let rows = found.records[0].tolerances.len();
-        let left = |n: usize| (0..rows).filter(|row| first(n).iter().any(|of| is_left(&of.tolerances[*row]))).count();
+        let left = |n: usize| {
+            (0..rows)
+                .filter(|row| first(n).iter().any(|of| is_left(&of.tolerances[*row])))
+                .count()
+        };
         let named = |name: &str| of_records.rows.iter().filter(|row| row[0] == name).count();
-        assert_eq!([named("sweep (held out)"), named("sweep")], [left(0), left(1)]);
-        assert!(of_records.title.contains(&format!("{} of {} rows", 2 * rows - left(0) - left(1), 2 * rows)));
-        let row = of_records.rows.iter().find(|row| row[0] == "sweep" && row[1] == long.quantity).unwrap();
+        assert_eq!(
+            [named("sweep (held out)"), named("sweep")],
+            [left(0), left(1)]
+        );
+        assert!(of_records.title.contains(&format!(
+            "{} of {} rows",
+            2 * rows - left(0) - left(1),
+            2 * rows
+        )));
+        let row = of_records
+            .rows
+            .iter()
+            .find(|row| row[0] == "sweep" && row[1] == long.quantity)
+            .unwrap();
         assert!(
-            long.largest_excess > 0.0 && row[2].contains(&format!("at {:.1} s", long.largest_excess_at_s)),
+            long.largest_excess > 0.0
+                && row[2].contains(&format!("at {:.1} s", long.largest_excess_at_s)),
             "{row:?}"
         );
         assert_eq!(row[5], "100.0", "the model that flew is always inside");
@@ -548,27 +735,52 @@ mod tests {
     #[test]
     fn what_is_not_compared_is_said() {
         let analysis = &EXAMPLE.analysis;
-        let words = |found: &TimeHistories| found.missing.iter().map(|of| of.why.clone()).collect::<Vec<_>>();
+        let words = |found: &TimeHistories| {
+            found
+                .missing
+                .iter()
+                .map(|of| of.why.clone())
+                .collect::<Vec<_>>()
+        };
         let table = ToleranceTable::default();
         let none = time_histories_of(analysis, &[], &table, &Execution::sequential()).unwrap();
-        assert_eq!((words(&none), none.records.len()), (vec!["no flight record was given".to_owned()], 0));
+        assert_eq!(
+            (words(&none), none.records.len()),
+            (vec!["no flight record was given".to_owned()], 0)
+        );
 
         let short = flown(analysis, RequirementRole::Identified, 50);
         let found = histories(analysis, short, &table);
         assert!(found.records.is_empty());
-        assert!(
-            words(&found)
-                .iter()
-                .any(|why| why.starts_with("record \"sweep\": ") && why.contains("2.0 s are the least"))
-        );
-        let others = found.missing.iter().filter(|of| of.why == "no flight record of it was given").count();
+        assert!(words(&found).iter().any(
+            |why| why.starts_with("record \"sweep\": ") && why.contains("2.0 s are the least")
+        ));
+        let others = found
+            .missing
+            .iter()
+            .filter(|of| of.why == "no flight record of it was given")
+            .count();
         assert_eq!(others, analysis.conditions.len() - 1);
 
-        let row = Tolerance { channel: "T".into(), quantity: "thrust".into(), ..table.rows()[0].clone() };
+        let row = Tolerance {
+            channel: "T".into(),
+            quantity: "thrust".into(),
+            ..table.rows()[0].clone()
+        };
         let other = ToleranceTable::new("mine", vec![row, table.rows()[2].clone()]).unwrap();
-        let found = histories(analysis, flown(analysis, RequirementRole::Identified, 600), &other);
-        assert!(words(&found).contains(&"\"thrust\" is not compared: there is no output \"T\"".to_owned()));
-        assert!(found.records.iter().all(|of| of.tolerances.len() == 1), "the rest is compared");
+        let found = histories(
+            analysis,
+            flown(analysis, RequirementRole::Identified, 600),
+            &other,
+        );
+        assert!(
+            words(&found)
+                .contains(&"\"thrust\" is not compared: there is no output \"T\"".to_owned())
+        );
+        assert!(
+            found.records.iter().all(|of| of.tolerances.len() == 1),
+            "the rest is compared"
+        );
     }
 
     #[test]
@@ -578,16 +790,24 @@ mod tests {
         flight.outputs.column_mut(1).fill(f64::NAN);
         let found = histories(analysis, flight, &ToleranceTable::default());
         assert!(found.records.is_empty());
-        assert!(found.missing.iter().any(|of| of.condition == Some(CONDITION) && of.why.contains("\"sweep\"")));
+        assert!(
+            found
+                .missing
+                .iter()
+                .any(|of| of.condition == Some(CONDITION) && of.why.contains("\"sweep\""))
+        );
     }
 
     #[test]
     fn a_corrected_model_answers_with_the_couplings_of_the_study() {
         let analysis = &COUPLED.1;
         let result = analysis.condition(CONDITION).unwrap();
-        let physics = &result.condition.bundle(BundleKind::Physics)[result.comparison.physics.model];
+        let physics =
+            &result.condition.bundle(BundleKind::Physics)[result.comparison.physics.model];
         let grid = FrequencyGrid::logarithmic(analysis.study.settings.band, 20);
-        let model = analysis.role_model(result, RequirementRole::Corrected).unwrap();
+        let model = analysis
+            .role_model(result, RequirementRole::Corrected)
+            .unwrap();
         let answered = FrequencyResponse::of(&Dynamics::StateSpace(model), &grid);
         let plain = FrequencyResponse::of(&physics.dynamics, &grid);
         let coupled = result.coupled_response(&plain);
@@ -596,11 +816,19 @@ mod tests {
         for (k, omega) in grid.omega().iter().enumerate() {
             let expected = coupled.curve(pair)[k] * correction.at(*omega);
             // What a Pade approximant of delays of tens of ms lags too little in the band.
-            assert!((answered.curve(pair)[k] - expected).norm() < 1e-4 * expected.norm(), "{omega}");
+            assert!(
+                (answered.curve(pair)[k] - expected).norm() < 1e-4 * expected.norm(),
+                "{omega}"
+            );
         }
-        let as_it_is = analysis.role_model(result, RequirementRole::Physics).unwrap();
+        let as_it_is = analysis
+            .role_model(result, RequirementRole::Physics)
+            .unwrap();
         let as_it_is = FrequencyResponse::of(&Dynamics::StateSpace(as_it_is), &grid);
-        assert!((as_it_is.curve(pair)[0] - plain.curve(pair)[0]).norm() < 1e-12 * plain.curve(pair)[0].norm());
+        assert!(
+            (as_it_is.curve(pair)[0] - plain.curve(pair)[0]).norm()
+                < 1e-12 * plain.curve(pair)[0].norm()
+        );
     }
 
     #[test]
@@ -613,27 +841,53 @@ mod tests {
             fn advanced(&self, _: usize, _: usize) {}
         }
         let analysis = Arc::new(EXAMPLE.analysis.clone());
-        let records = records(&analysis, flown(&analysis, RequirementRole::Identified, 600));
-        let job = TimeHistoriesJob { analysis: analysis.into(), records, tolerances: ToleranceTable::default() };
+        let records = records(
+            &analysis,
+            flown(&analysis, RequirementRole::Identified, 600),
+        );
+        let job = TimeHistoriesJob {
+            analysis: analysis.into(),
+            records,
+            tolerances: ToleranceTable::default(),
+        };
         let mut executor: Box<dyn gdcm_model::executor::Executor> = Box::new(Sequential);
         assert_eq!(job.run(&mut executor, &Stopped).unwrap_err(), Cancelled);
-        assert_eq!(job.run(&mut executor, &Unobserved).unwrap().records.len(), 4);
+        assert_eq!(
+            job.run(&mut executor, &Unobserved).unwrap().records.len(),
+            4
+        );
         assert_eq!(job, job.clone());
         let tolerances = ToleranceTable::new("mine", job.tolerances.rows()[..1].to_vec()).unwrap();
-        assert_ne!(TimeHistoriesJob { tolerances, ..job.clone() }, job);
-        assert_ne!(TimeHistoriesJob { records: Vec::new(), ..job.clone() }, job);
+        assert_ne!(
+            TimeHistoriesJob {
+                tolerances,
+                ..job.clone()
+            },
+            job
+        );
+        assert_ne!(
+            TimeHistoriesJob {
+                records: Vec::new(),
+                ..job.clone()
+            },
+            job
+        );
     }
 
     #[test]
     fn the_models_of_a_condition_are_compared_in_the_same_windows() {
         let analysis = &EXAMPLE.analysis;
         let flight = flown(analysis, RequirementRole::Identified, 1500);
-        let segments = segments_of(&flight, &records(analysis, flight.clone())[0].preparation).unwrap();
+        let segments =
+            segments_of(&flight, &records(analysis, flight.clone())[0].preparation).unwrap();
         let result = analysis.condition(CONDITION).unwrap();
-        let slow = analysis.role_model(result, RequirementRole::Physics).unwrap();
+        let slow = analysis
+            .role_model(result, RequirementRole::Physics)
+            .unwrap();
         // A mode that grows e-fold in 1 s is compared over 3 s.
         let fast = StateSpace::new(
-            slow.a() + DMatrix::from_diagonal_element(slow.order(), slow.order(), 1.0 - fastest(&slow)),
+            slow.a()
+                + DMatrix::from_diagonal_element(slow.order(), slow.order(), 1.0 - fastest(&slow)),
             slow.b().clone(),
             slow.c().clone(),
             slow.d().clone(),
@@ -641,10 +895,17 @@ mod tests {
         .unwrap();
         let alone = common_windows([&slow], &segments);
         let both = common_windows([&slow, &fast], &segments);
-        assert!(alone.longest_window_s > 3.5 && (both.longest_window_s - 3.0).abs() < 1e-6, "{alone:?} {both:?}");
+        assert!(
+            alone.longest_window_s > 3.5 && (both.longest_window_s - 3.0).abs() < 1e-6,
+            "{alone:?} {both:?}"
+        );
         let windows = |model: &StateSpace| -> Vec<(f64, usize)> {
             let found = validate(model, &segments, &both, &Sequential).unwrap();
-            found.windows.iter().map(|window| (window.start_s, window.measured.nrows())).collect()
+            found
+                .windows
+                .iter()
+                .map(|window| (window.start_s, window.measured.nrows()))
+                .collect()
         };
         assert_eq!(windows(&slow), windows(&fast));
         // One that diverges too fast to be compared at all shortens nobody's.
@@ -660,6 +921,11 @@ mod tests {
 
     /// Greatest real part of the poles \[rad/s\].
     fn fastest(model: &StateSpace) -> f64 {
-        model.a().complex_eigenvalues().iter().map(|pole| pole.re).fold(f64::NEG_INFINITY, f64::max)
+        model
+            .a()
+            .complex_eigenvalues()
+            .iter()
+            .map(|pole| pole.re)
+            .fold(f64::NEG_INFINITY, f64::max)
     }
 }

@@ -5,28 +5,54 @@ use super::*;
 impl TimeHistories {
     /// The conditions that have records, each with their number.
     pub fn conditions(&self) -> Vec<(ConditionId, usize)> {
-        let of_condition = self.records.chunk_by(|a, b| a.condition == b.condition).map(|of| of[0].condition);
+        let of_condition = self
+            .records
+            .chunk_by(|a, b| a.condition == b.condition)
+            .map(|of| of[0].condition);
         // A model may be missing; two records may have the same name.
-        let records = |id| RequirementRole::ALL.map(|role| self.of_role(id, role).count()).into_iter().max();
-        of_condition.map(|id| (id, records(id).unwrap_or_default())).collect()
+        let records = |id| {
+            RequirementRole::ALL
+                .map(|role| self.of_role(id, role).count())
+                .into_iter()
+                .max()
+        };
+        of_condition
+            .map(|id| (id, records(id).unwrap_or_default()))
+            .collect()
     }
 
     /// The findings of a condition and a role.
-    pub fn of_role(&self, condition: ConditionId, role: RequirementRole) -> impl Iterator<Item = &HistoryFinding> {
-        self.records.iter().filter(move |of| (of.condition, of.role) == (condition, role))
+    pub fn of_role(
+        &self,
+        condition: ConditionId,
+        role: RequirementRole,
+    ) -> impl Iterator<Item = &HistoryFinding> {
+        self.records
+            .iter()
+            .filter(move |of| (of.condition, of.role) == (condition, role))
     }
 
     /// Share of the samples of all records of a condition that are inside a tolerance, 0 to 1.
-    pub fn share_inside(&self, condition: ConditionId, role: RequirementRole, quantity: &str) -> Option<f64> {
+    pub fn share_inside(
+        &self,
+        condition: ConditionId,
+        role: RequirementRole,
+        quantity: &str,
+    ) -> Option<f64> {
         let share = |finding: &HistoryFinding| {
-            finding.tolerances.iter().find(|of| of.quantity == quantity).map(|of| of.share_inside)
+            finding
+                .tolerances
+                .iter()
+                .find(|of| of.quantity == quantity)
+                .map(|of| of.share_inside)
         };
         self.mean(condition, role, share)
     }
 
     /// `J_rms` of all records of a condition: the root of the mean square over their samples.
     pub fn j_rms(&self, condition: ConditionId, role: RequirementRole) -> Option<f64> {
-        self.mean(condition, role, |finding| Some(finding.j_rms?.powi(2))).map(f64::sqrt)
+        self.mean(condition, role, |finding| Some(finding.j_rms?.powi(2)))
+            .map(f64::sqrt)
     }
 
     /// The mean of what some records of a condition have, each by its samples.
@@ -36,34 +62,55 @@ impl TimeHistories {
         role: RequirementRole,
         value: impl Fn(&HistoryFinding) -> Option<f64>,
     ) -> Option<f64> {
-        let known = self.of_role(condition, role).filter_map(|of| Some((value(of)?, of.samples as f64)));
-        let sums = known.fold([0.0, 0.0], |[sum, all], (value, samples)| [sum + value * samples, all + samples]);
+        let known = self
+            .of_role(condition, role)
+            .filter_map(|of| Some((value(of)?, of.samples as f64)));
+        let sums = known.fold([0.0, 0.0], |[sum, all], (value, samples)| {
+            [sum + value * samples, all + samples]
+        });
         (sums[1] > 0.0).then(|| sums[0] / sums[1])
     }
 
     /// The rows of the table of tolerances that were applied, in its order.
     fn quantities(&self) -> impl Iterator<Item = &str> {
-        let rows = self.tolerance_table.rows().iter().map(|row| row.quantity.as_str());
-        let is_applied = |finding: &HistoryFinding, name: &str| finding.tolerances.iter().any(|of| of.quantity == name);
+        let rows = self
+            .tolerance_table
+            .rows()
+            .iter()
+            .map(|row| row.quantity.as_str());
+        let is_applied = |finding: &HistoryFinding, name: &str| {
+            finding.tolerances.iter().any(|of| of.quantity == name)
+        };
         rows.filter(move |name| self.records.iter().any(|finding| is_applied(finding, name)))
     }
 
     /// The same without those of integrals.
     pub(super) fn measured_quantities(&self) -> impl Iterator<Item = &str> {
-        let is_integral =
-            |name: &str| self.tolerance_table.rows().iter().any(|row| row.integrated && row.quantity == name);
+        let is_integral = |name: &str| {
+            self.tolerance_table
+                .rows()
+                .iter()
+                .any(|row| row.integrated && row.quantity == name)
+        };
         self.quantities().filter(move |name| !is_integral(name))
     }
 
     /// Share of time inside each tolerance over all records of each condition, model by model.
     pub fn share_table(&self) -> Table {
         let heads = ["condition", "records", "quantity"].map(str::to_owned);
-        let columns = heads.into_iter().chain(RequirementRole::ALL.map(|role| format!("{} [%]", role.name())));
+        let columns = heads
+            .into_iter()
+            .chain(RequirementRole::ALL.map(|role| format!("{} [%]", role.name())));
         let mut table = Table::new("Share of time inside the tolerances", columns);
         for (condition, records) in self.conditions() {
             for quantity in self.quantities() {
-                let shares = RequirementRole::ALL.map(|role| self.share_inside(condition, role, quantity));
-                let heads = [condition.to_string(), records.to_string(), quantity.to_owned()];
+                let shares =
+                    RequirementRole::ALL.map(|role| self.share_inside(condition, role, quantity));
+                let heads = [
+                    condition.to_string(),
+                    records.to_string(),
+                    quantity.to_owned(),
+                ];
                 table.row(heads.into_iter().chain(shares.map(percent)));
             }
         }
@@ -71,34 +118,64 @@ impl TimeHistories {
     }
 
     /// Theil's coefficient of an output over all records of a condition: their mean, each by its samples.
-    pub fn theil(&self, condition: ConditionId, role: RequirementRole, output: &str) -> Option<f64> {
-        self.mean(condition, role, |finding| finding.theil.get(output).copied())
+    pub fn theil(
+        &self,
+        condition: ConditionId,
+        role: RequirementRole,
+        output: &str,
+    ) -> Option<f64> {
+        self.mean(condition, role, |finding| {
+            finding.theil.get(output).copied()
+        })
     }
 
     /// The outputs that have a coefficient of Theil.
     fn moved_outputs(&self) -> BTreeSet<&str> {
-        self.records.iter().flat_map(|finding| finding.theil.keys()).map(String::as_str).collect()
+        self.records
+            .iter()
+            .flat_map(|finding| finding.theil.keys())
+            .map(String::as_str)
+            .collect()
     }
 
     /// Headings of [`TimeHistories::costs`].
     pub(super) fn cost_heads(&self) -> Vec<String> {
-        let theil = self.moved_outputs().into_iter().map(|output| format!("Theil {output}"));
+        let theil = self
+            .moved_outputs()
+            .into_iter()
+            .map(|output| format!("Theil {output}"));
         std::iter::once("J_rms".to_owned()).chain(theil).collect()
     }
 
     /// `J_rms` of a condition's model, and Theil's coefficient of every output, as they are shown.
     pub(super) fn costs(&self, condition: ConditionId, role: RequirementRole) -> Vec<String> {
-        let theil = self.moved_outputs().into_iter().map(|output| self.theil(condition, role, output));
-        std::iter::once(self.j_rms(condition, role)).chain(theil).map(|value| number(value, 2)).collect()
+        let theil = self
+            .moved_outputs()
+            .into_iter()
+            .map(|output| self.theil(condition, role, output));
+        std::iter::once(self.j_rms(condition, role))
+            .chain(theil)
+            .map(|value| number(value, 2))
+            .collect()
     }
 
     /// `J_rms` and Theil's coefficients over all records of each condition and model.
     pub fn cost_table(&self) -> Table {
-        let columns = ["condition", "records", "model"].map(str::to_owned).into_iter().chain(self.cost_heads());
-        let mut table = Table::new(format!("J_rms and Theil's coefficients; {}", self.weights_words()), columns);
+        let columns = ["condition", "records", "model"]
+            .map(str::to_owned)
+            .into_iter()
+            .chain(self.cost_heads());
+        let mut table = Table::new(
+            format!("J_rms and Theil's coefficients; {}", self.weights_words()),
+            columns,
+        );
         for (condition, records) in self.conditions() {
             for role in RequirementRole::ALL {
-                let heads = [condition.to_string(), records.to_string(), role.name().to_owned()];
+                let heads = [
+                    condition.to_string(),
+                    records.to_string(),
+                    role.name().to_owned(),
+                ];
                 table.row(heads.into_iter().chain(self.costs(condition, role)));
             }
         }
@@ -109,22 +186,46 @@ impl TimeHistories {
     /// inside of throughout, off the axis with the correct trend, is left out and counted.
     pub fn record_table(&self, condition: ConditionId) -> Table {
         let heads = ["record", "quantity"].map(str::to_owned);
-        let columns = heads.into_iter().chain(RequirementRole::ALL.map(|role| format!("{}: inside [%]", role.name())));
+        let columns = heads
+            .into_iter()
+            .chain(RequirementRole::ALL.map(|role| format!("{}: inside [%]", role.name())));
         let mut table = Table::new("", columns);
-        let of_condition: Vec<&HistoryFinding> =
-            self.records.iter().filter(|finding| finding.condition == condition).collect();
+        let of_condition: Vec<&HistoryFinding> = self
+            .records
+            .iter()
+            .filter(|finding| finding.condition == condition)
+            .collect();
         let mut all = 0;
         // Two records may have the same name: the roles rise within one.
         for of_record in of_condition.chunk_by(|a, b| a.record == b.record && a.role < b.role) {
             for (row, first) in of_record[0].tolerances.iter().enumerate() {
                 all += 1;
-                let of_role =
-                    |role| of_record.iter().filter(move |of| of.role == role).find_map(|of| of.tolerances.get(row));
+                let of_role = |role| {
+                    of_record
+                        .iter()
+                        .filter(move |of| of.role == role)
+                        .find_map(|of| of.tolerances.get(row))
+                };
                 let found = RequirementRole::ALL.map(of_role);
-                if found.iter().flatten().any(|of| of.largest_excess > 0.0 || of.trend == Some(Trend::Opposite)) {
-                    let held_out = if of_record[0].held_out { " (held out)" } else { "" };
-                    let heads = [format!("{}{held_out}", of_record[0].record), first.quantity.clone()];
-                    table.row(heads.into_iter().chain(found.map(|of| of.map_or("-".to_owned(), excess_words))));
+                if found
+                    .iter()
+                    .flatten()
+                    .any(|of| of.largest_excess > 0.0 || of.trend == Some(Trend::Opposite))
+                {
+                    let held_out = if of_record[0].held_out {
+                        " (held out)"
+                    } else {
+                        ""
+                    };
+                    let heads = [
+                        format!("{}{held_out}", of_record[0].record),
+                        first.quantity.clone(),
+                    ];
+                    table.row(
+                        heads
+                            .into_iter()
+                            .chain(found.map(|of| of.map_or("-".to_owned(), excess_words))),
+                    );
                 }
             }
         }
@@ -138,8 +239,12 @@ impl TimeHistories {
 
     /// How the outputs weigh in `J_rms`, and which do not count in it.
     pub fn weights_words(&self) -> String {
-        let left_out: BTreeSet<&str> =
-            self.records.iter().flat_map(|of| &of.j_rms_left_out).map(String::as_str).collect();
+        let left_out: BTreeSet<&str> = self
+            .records
+            .iter()
+            .flat_map(|of| &of.j_rms_left_out)
+            .map(String::as_str)
+            .collect();
         let without = if left_out.is_empty() {
             String::new()
         } else {
@@ -154,7 +259,11 @@ fn excess_words(of: &ToleranceFinding) -> String {
     let mut words = vec![percent(Some(of.share_inside))];
     if of.largest_excess > 0.0 {
         let at_s = number(Some(of.largest_excess_at_s), 1);
-        words.push(format!("{} {} at {at_s} s", telling(of.largest_excess, 2), of.unit));
+        words.push(format!(
+            "{} {} at {at_s} s",
+            telling(of.largest_excess, 2),
+            of.unit
+        ));
     }
     words.extend((of.trend == Some(Trend::Opposite)).then(|| "opposite trend".to_owned()));
     words.join("; ")

@@ -3,8 +3,9 @@
 
 use gdcm_method::schedule::airspeed_indicators;
 use gdcm_method::uncertainty::{
-    BandWidths, Bar, BarSource, Design, Difference, ScalarTable, ScheduleBand, SecondVariableDesign,
-    SecondVariableEffect, SecondVariableError, VarianceDecomposition, bars, holm,
+    BandWidths, Bar, BarSource, Design, Difference, ScalarTable, ScheduleBand,
+    SecondVariableDesign, SecondVariableEffect, SecondVariableError, VarianceDecomposition, bars,
+    holm,
 };
 use gdcm_model::dataset::FlightState;
 
@@ -106,42 +107,77 @@ impl ScheduleBands {
         }
         let design = Arc::new(Design::new(&schedule.design())?);
         let scalars = conditions.first()?.bars.iter().map(|(scalar, _)| scalar);
-        let scheduled = scalars.filter(|scalar| matches!(scalar, Scalar::NetGain(_) | Scalar::ChannelGain(_)));
+        let scheduled =
+            scalars.filter(|scalar| matches!(scalar, Scalar::NetGain(_) | Scalar::ChannelGain(_)));
         let band = |scalar| {
             let bars = bars_of(conditions, scalar)?;
-            Some((scalar, ScheduleBand::of(&design, &VarianceDecomposition::of(&design, &bars)?, level)))
+            Some((
+                scalar,
+                ScheduleBand::of(&design, &VarianceDecomposition::of(&design, &bars)?, level),
+            ))
         };
-        Some(Self { of: scheduled.filter_map(band).collect() })
+        Some(Self {
+            of: scheduled.filter_map(band).collect(),
+        })
     }
 }
 
 impl Uncertainty {
     /// What the substitutions of the conditions of an analysis say.
-    pub(super) fn of(analysis: &Analysis, substitutions: &[(ConditionId, ConditionSubstitutions)]) -> Self {
+    pub(super) fn of(
+        analysis: &Analysis,
+        substitutions: &[(ConditionId, ConditionSubstitutions)],
+    ) -> Self {
         let (study, level) = (&analysis.study, analysis.study.settings.uncertainty.level);
         let analysed: Vec<(&ConditionAnalysis, &ConditionSubstitutions)> = substitutions
             .iter()
             .filter_map(|(id, substitutions)| Some((analysis.condition(*id)?, substitutions)))
             .collect();
-        let sources: Vec<BarSource<'_>> =
-            analysed.iter().map(|(result, substitutions)| bar_source(analysis, result, substitutions)).collect();
+        let sources: Vec<BarSource<'_>> = analysed
+            .iter()
+            .map(|(result, substitutions)| bar_source(analysis, result, substitutions))
+            .collect();
         let made = bars(&sources, study.settings.uncertainty.prior_degrees);
-        let conditions = analysed.iter().zip(made).map(|(&(result, substitutions), bars)| {
-            let (left_in_band, substitutions) = (left_in_band(result), substitutions.clone());
-            (result.condition.id(), ConditionUncertainty { bars, left_in_band, substitutions })
-        });
+        let conditions = analysed
+            .iter()
+            .zip(made)
+            .map(|(&(result, substitutions), bars)| {
+                let (left_in_band, substitutions) = (left_in_band(result), substitutions.clone());
+                (
+                    result.condition.id(),
+                    ConditionUncertainty {
+                        bars,
+                        left_in_band,
+                        substitutions,
+                    },
+                )
+            });
         let conditions: BTreeMap<ConditionId, ConditionUncertainty> = conditions.collect();
         let scheduled = analysis.scheduled();
-        let of_schedule: Vec<&ConditionUncertainty> = scheduled.iter().filter_map(|id| conditions.get(id)).collect();
-        let schedule = analysis.schedule.as_ref().ok().filter(|_| of_schedule.len() == scheduled.len());
+        let of_schedule: Vec<&ConditionUncertainty> = scheduled
+            .iter()
+            .filter_map(|id| conditions.get(id))
+            .collect();
+        let schedule = analysis
+            .schedule
+            .as_ref()
+            .ok()
+            .filter(|_| of_schedule.len() == scheduled.len());
         let pairs: Vec<Pair> = study.dataset.measuring_pairs().marked().collect();
         let airspeeds = schedule.map(|schedule| schedule.airspeeds.values_kt.clone());
-        let same_airspeed = airspeeds.and_then(|of| Design::new(&airspeed_indicators(of, EQUAL_AIRSPEED_KT)));
+        let same_airspeed =
+            airspeeds.and_then(|of| Design::new(&airspeed_indicators(of, EQUAL_AIRSPEED_KT)));
         let about_schedule = schedule.and_then(|schedule| Design::new(&schedule.design()));
         let scatter = |&pair: &Pair| {
             let bars = bars_of(&of_schedule, Scalar::NetGain(pair));
-            let split = |design: &Option<Design>| VarianceDecomposition::of(design.as_ref()?, bars.as_ref()?);
-            PairScatter { pair, same_airspeed: split(&same_airspeed), about_schedule: split(&about_schedule) }
+            let split = |design: &Option<Design>| {
+                VarianceDecomposition::of(design.as_ref()?, bars.as_ref()?)
+            };
+            PairScatter {
+                pair,
+                same_airspeed: split(&same_airspeed),
+                about_schedule: split(&about_schedule),
+            }
         };
         let compared = differences(&study.dataset, &conditions, &pairs);
         Self {
@@ -151,8 +187,10 @@ impl Uncertainty {
             scatter: pairs.iter().map(scatter).collect(),
             bands: schedule.and_then(|schedule| ScheduleBands::of(schedule, &of_schedule, level)),
             second_variables: schedule.map_or_else(Vec::new, |schedule| {
-                let states: Vec<&FlightState> =
-                    scheduled.iter().filter_map(|id| Some(study.dataset.condition(*id)?.flight_state())).collect();
+                let states: Vec<&FlightState> = scheduled
+                    .iter()
+                    .filter_map(|id| Some(study.dataset.condition(*id)?.flight_state()))
+                    .collect();
                 second_variables(schedule, &states, &of_schedule, &pairs, level)
             }),
             conditions,
@@ -162,12 +200,16 @@ impl Uncertainty {
     /// For each airspeed the difference of a net gain that is the largest multiple of what is expected; none where they have no spread.
     pub fn greatest_differences(&self, pair: Pair) -> Vec<&AirspeedDifference> {
         let mut greatest: Vec<&AirspeedDifference> = Vec::new();
-        let compared = |of: &&AirspeedDifference| of.pair == pair && of.difference.ratio().is_some();
+        let compared =
+            |of: &&AirspeedDifference| of.pair == pair && of.difference.ratio().is_some();
         for found in self.differences.iter().filter(compared) {
-            let at_its_airspeed =
-                |of: &&mut &AirspeedDifference| (of.airspeed_kt - found.airspeed_kt).abs() <= EQUAL_AIRSPEED_KT;
+            let at_its_airspeed = |of: &&mut &AirspeedDifference| {
+                (of.airspeed_kt - found.airspeed_kt).abs() <= EQUAL_AIRSPEED_KT
+            };
             match greatest.iter_mut().find(at_its_airspeed) {
-                Some(known) if known.difference.ratio() < found.difference.ratio() => *known = found,
+                Some(known) if known.difference.ratio() < found.difference.ratio() => {
+                    *known = found
+                }
                 Some(_) => {}
                 None => greatest.push(found),
             }
@@ -177,7 +219,11 @@ impl Uncertainty {
 
     /// What the differences at equal airspeed come to, in a sentence.
     pub fn differences_in_words(&self) -> String {
-        let beyond = self.differences.iter().filter(|of| of.is_significant(self.level)).count();
+        let beyond = self
+            .differences
+            .iter()
+            .filter(|of| of.is_significant(self.level))
+            .count();
         match (self.differences.len(), beyond) {
             (0, _) => self.too_many_differences.map_or_else(
                 || "No two conditions fly at equal airspeed.".to_owned(),
@@ -202,7 +248,10 @@ impl Uncertainty {
 
 /// The bars of one figure in several conditions; none where one has none.
 fn bars_of(conditions: &[&ConditionUncertainty], scalar: Scalar) -> Option<Vec<Bar>> {
-    conditions.iter().map(|condition| condition.bars[scalar]).collect()
+    conditions
+        .iter()
+        .map(|condition| condition.bars[scalar])
+        .collect()
 }
 
 fn second_variables(
@@ -214,22 +263,43 @@ fn second_variables(
 ) -> Vec<SecondVariableTest> {
     let rows = schedule.airspeed_design();
     let designs = SecondVariable::BOTH.map(|variable| {
-        let values = variable.values(states).ok_or(SecondVariableError::NotVaried);
+        let values = variable
+            .values(states)
+            .ok_or(SecondVariableError::NotVaried);
         values.and_then(|values| SecondVariableDesign::of(&rows, &values))
     });
     let mut tests = Vec::new();
     for &pair in pairs {
-        let Some(bars) = bars_of(conditions, Scalar::NetGain(pair)) else { continue };
+        let Some(bars) = bars_of(conditions, Scalar::NetGain(pair)) else {
+            continue;
+        };
         let figures: Vec<f64> = bars.iter().map(|bar| bar.value).collect();
         for (variable, design) in SecondVariable::BOTH.into_iter().zip(&designs) {
-            let effect = design.as_ref().map(|design| design.effect(&figures, level)).map_err(|error| *error);
-            tests.push(SecondVariableTest { pair, variable, effect, p_holm: None, needed: false });
+            let effect = design
+                .as_ref()
+                .map(|design| design.effect(&figures, level))
+                .map_err(|error| *error);
+            tests.push(SecondVariableTest {
+                pair,
+                variable,
+                effect,
+                p_holm: None,
+                needed: false,
+            });
         }
     }
-    let probabilities: Vec<Option<f64>> = tests.iter().map(|test| Some(test.effect.as_ref().ok()?.p)).collect();
+    let probabilities: Vec<Option<f64>> = tests
+        .iter()
+        .map(|test| Some(test.effect.as_ref().ok()?.p))
+        .collect();
     for (test, p) in tests.iter_mut().zip(holm_where_known(&probabilities)) {
         test.p_holm = p;
-        test.needed = test.effect.as_ref().ok().zip(p).is_some_and(|(effect, p)| effect.is_needed(p, level));
+        test.needed = test
+            .effect
+            .as_ref()
+            .ok()
+            .zip(p)
+            .is_some_and(|(effect, p)| effect.is_needed(p, level));
     }
     tests
 }
@@ -274,11 +344,15 @@ impl AirspeedDifference {
     pub fn words(&self, level: f64) -> String {
         let [first, second] = self.conditions;
         let (airspeed, percent) = (self.airspeed_kt, 100.0 * self.difference.delta.abs());
-        let differ = format!("conditions {first} and {second} ({airspeed:.0} kt) differ by {percent:.0} %");
+        let differ =
+            format!("conditions {first} and {second} ({airspeed:.0} kt) differ by {percent:.0} %");
         let Some(ratio) = self.difference.ratio() else {
             return format!("{differ}; their bundles have no spread to compare that with");
         };
-        format!("{differ}, {ratio:.1} × expected from trim and identification uncertainty; {}", self.verdict(level))
+        format!(
+            "{differ}, {ratio:.1} × expected from trim and identification uncertainty; {}",
+            self.verdict(level)
+        )
     }
 }
 
@@ -297,9 +371,14 @@ pub(super) fn differences(
         .filter_map(|condition| Some((condition.as_ref(), conditions.get(&condition.id())?)))
         .collect();
     let airspeed = |condition: &Condition| condition.flight_state().airspeed_kt;
-    let mut rising: Vec<f64> = analysed.iter().map(|(condition, _)| airspeed(condition)).collect();
+    let mut rising: Vec<f64> = analysed
+        .iter()
+        .map(|(condition, _)| airspeed(condition))
+        .collect();
     rising.sort_by(f64::total_cmp);
-    let near = |(place, low): (usize, &f64)| rising.partition_point(|high| high - low <= EQUAL_AIRSPEED_KT) - place - 1;
+    let near = |(place, low): (usize, &f64)| {
+        rising.partition_point(|high| high - low <= EQUAL_AIRSPEED_KT) - place - 1
+    };
     let count = pairs.len() * rising.iter().enumerate().map(near).sum::<usize>();
     if count > MOST_DIFFERENCES {
         return Err(count);
@@ -309,17 +388,27 @@ pub(super) fn differences(
         for (place, (first, of_first)) in analysed.iter().enumerate() {
             for (second, of_second) in &analysed[place + 1..] {
                 let (a, b) = (airspeed(first), airspeed(second));
-                let bars = of_first.bars[Scalar::NetGain(pair)].zip(of_second.bars[Scalar::NetGain(pair)]);
+                let bars =
+                    of_first.bars[Scalar::NetGain(pair)].zip(of_second.bars[Scalar::NetGain(pair)]);
                 if let Some((one, other)) = bars.filter(|_| (a - b).abs() <= EQUAL_AIRSPEED_KT) {
                     let (conditions, airspeed_kt) = ([first.id(), second.id()], 0.5 * (a + b));
                     let difference = Difference::of(&one, &other);
-                    found.push(AirspeedDifference { pair, conditions, airspeed_kt, difference, p_holm: None });
+                    found.push(AirspeedDifference {
+                        pair,
+                        conditions,
+                        airspeed_kt,
+                        difference,
+                        p_holm: None,
+                    });
                 }
             }
         }
     }
     let corrected = holm_where_known(&found.iter().map(|of| of.difference.p()).collect::<Vec<_>>());
-    found.iter_mut().zip(corrected).for_each(|(difference, p)| difference.p_holm = p);
+    found
+        .iter_mut()
+        .zip(corrected)
+        .for_each(|(difference, p)| difference.p_holm = p);
     Ok(found)
 }
 
@@ -327,5 +416,8 @@ pub(super) fn differences(
 pub(super) fn holm_where_known(probabilities: &[Option<f64>]) -> Vec<Option<f64>> {
     let known: Vec<f64> = probabilities.iter().flatten().copied().collect();
     let mut corrected = holm(&known).into_iter();
-    probabilities.iter().map(|p| p.and_then(|_| corrected.next())).collect()
+    probabilities
+        .iter()
+        .map(|p| p.and_then(|_| corrected.next()))
+        .collect()
 }

@@ -44,11 +44,17 @@ impl Block {
                 let squared = half * half - a0;
                 if squared < 0.0 {
                     let imaginary = (-squared).sqrt();
-                    return vec![Complex::new(half, imaginary), Complex::new(half, -imaginary)];
+                    return vec![
+                        Complex::new(half, imaginary),
+                        Complex::new(half, -imaginary),
+                    ];
                 }
                 // The greater in modulus without cancellation, the other from the product.
                 let far = half + squared.sqrt().copysign(half);
-                vec![Complex::from(far), Complex::from(if far == 0.0 { 0.0 } else { a0 / far })]
+                vec![
+                    Complex::from(far),
+                    Complex::from(if far == 0.0 { 0.0 } else { a0 / far }),
+                ]
             }
         }
     }
@@ -96,14 +102,26 @@ impl BlockModel {
         }
         let (mut blocks, mut basis, mut next) = (Vec::new(), DMatrix::zeros(order, order), 0);
         for (block, columns) in modal_blocks(model)? {
-            columns.iter().enumerate().for_each(|(k, column)| basis.set_column(next + k, column));
+            columns
+                .iter()
+                .enumerate()
+                .for_each(|(k, column)| basis.set_column(next + k, column));
             next += block.size();
             blocks.push(block);
         }
         let (b, c) = (basis.clone().lu().solve(model.b())?, model.c() * basis);
-        let mut found = Self { blocks, b, c, d: model.d().clone() };
+        let mut found = Self {
+            blocks,
+            b,
+            c,
+            d: model.d().clone(),
+        };
         found.balance();
-        let finite = found.b.iter().chain(found.c.iter()).all(|entry| entry.is_finite());
+        let finite = found
+            .b
+            .iter()
+            .chain(found.c.iter())
+            .all(|entry| entry.is_finite());
         finite.then_some(found)
     }
 
@@ -111,7 +129,10 @@ impl BlockModel {
     fn balance(&mut self) {
         let rows: Vec<_> = self.rows().collect();
         for (first, block) in rows {
-            let (mut b, mut c) = (self.b.rows_mut(first, block.size()), self.c.columns_mut(first, block.size()));
+            let (mut b, mut c) = (
+                self.b.rows_mut(first, block.size()),
+                self.c.columns_mut(first, block.size()),
+            );
             let ratio = (c.norm() / b.norm()).sqrt();
             if ratio.is_finite() && ratio > 0.0 {
                 b.scale_mut(ratio);
@@ -255,15 +276,24 @@ fn modal_blocks(model: &StateSpace) -> Option<Vec<(Block, Vec<DVector<f64>>)>> {
     }
     let mut blocks = Vec::new();
     for (eigenvalue, vector) in &complex {
-        let block = Block::Pair { a0: eigenvalue.norm_sqr(), a1: -2.0 * eigenvalue.re };
+        let block = Block::Pair {
+            a0: eigenvalue.norm_sqr(),
+            a1: -2.0 * eigenvalue.re,
+        };
         let second = vector.map(|entry| entry.im);
         let image = vector.map(|entry| (entry * eigenvalue).im);
-        blocks.push((block, vec![image + &second * (-2.0 * eigenvalue.re), second]));
+        blocks.push((
+            block,
+            vec![image + &second * (-2.0 * eigenvalue.re), second],
+        ));
     }
     for pair in real.chunks(2) {
         match pair {
             [(one, first), (two, second)] => {
-                let block = Block::Pair { a0: one * two, a1: -(one + two) };
+                let block = Block::Pair {
+                    a0: one * two,
+                    a1: -(one + two),
+                };
                 // Of one on both: a real mode each.
                 let lower = (second - first) / (two - one);
                 let upper = (first * *two - second * *one) / (two - one);
@@ -298,7 +328,9 @@ mod tests {
             let expected = response_at(&model(), omega);
             // Eigenvectors of condition below 100.
             assert!((blocks.response(omega) - &expected).camax() < 1e-12);
-            assert!((response_at(&blocks.state_space().unwrap(), omega) - expected).camax() < 1e-12);
+            assert!(
+                (response_at(&blocks.state_space().unwrap(), omega) - expected).camax() < 1e-12
+            );
         }
         for pole in poles(&model()).unwrap() {
             let mut poles = blocks.blocks.iter().flat_map(|block| block.poles());
@@ -309,18 +341,36 @@ mod tests {
     #[test]
     fn every_parameter_has_its_place() {
         let blocks = BlockModel::of(&model()).unwrap();
-        let step = |place: usize| DVector::from_fn(blocks.parameters(), |k, _| if k == place { 1.0 } else { 0.0 });
+        let step = |place: usize| {
+            DVector::from_fn(
+                blocks.parameters(),
+                |k, _| if k == place { 1.0 } else { 0.0 },
+            )
+        };
         let stepped = |place| blocks.stepped(&step(place));
-        assert_eq!(stepped(blocks.place_of_b(3, 1)).b[(3, 1)], blocks.b[(3, 1)] + 1.0);
-        assert_eq!(stepped(blocks.place_of_c(1, 2)).c[(1, 2)], blocks.c[(1, 2)] + 1.0);
-        assert_eq!(stepped(blocks.place_of_d(1, 0)).d[(1, 0)], blocks.d[(1, 0)] + 1.0);
+        assert_eq!(
+            stepped(blocks.place_of_b(3, 1)).b[(3, 1)],
+            blocks.b[(3, 1)] + 1.0
+        );
+        assert_eq!(
+            stepped(blocks.place_of_c(1, 2)).c[(1, 2)],
+            blocks.c[(1, 2)] + 1.0
+        );
+        assert_eq!(
+            stepped(blocks.place_of_d(1, 0)).d[(1, 0)],
+            blocks.d[(1, 0)] + 1.0
+        );
         assert_ne!(stepped(4).blocks[2], blocks.blocks[2]);
     }
 
     #[test]
     fn two_equal_poles_give_a_word_and_no_infinity() {
-        let twice =
-            StateSpace::new(dmatrix![-1.0, 0.0; 0.0, -1.0], dmatrix![1.0; 2.0], dmatrix![1.0, 1.0], dmatrix![0.0]);
+        let twice = StateSpace::new(
+            dmatrix![-1.0, 0.0; 0.0, -1.0],
+            dmatrix![1.0; 2.0],
+            dmatrix![1.0, 1.0],
+            dmatrix![0.0],
+        );
         assert!(BlockModel::of(&twice.unwrap()).is_none_or(|model| model.state_space().is_some()));
     }
 }

@@ -35,7 +35,9 @@ pub enum IdentificationCaution {
         partial_coherence: f64,
     },
     /// Inputs were moved together.
-    #[error("the inputs were not moved independently (condition number {condition:.0}): sweep them one after another")]
+    #[error(
+        "the inputs were not moved independently (condition number {condition:.0}): sweep them one after another"
+    )]
     MovedTogether {
         /// Median condition number of their spectral matrix.
         condition: f64,
@@ -53,7 +55,9 @@ pub enum IdentificationCaution {
         shown: [f64; 2],
     },
     /// An output vibrates above the band, so that the projections were filtered lower.
-    #[error("{percent:.0} % of {signal} is vibration above the band: CT-PBSID was run below {cut_off:.0} rad/s")]
+    #[error(
+        "{percent:.0} % of {signal} is vibration above the band: CT-PBSID was run below {cut_off:.0} rad/s"
+    )]
     Vibration {
         /// The output.
         signal: Signal,
@@ -174,15 +178,19 @@ pub enum IdentificationCaution {
 impl IdentificationCaution {
     /// Whether it says that the effects of inputs cannot be told apart.
     pub(super) fn is_of_collinear_inputs(&self) -> bool {
-        matches!(self, Self::MovedTogether { .. } | Self::Records(RecordCaution::MovedTogether { .. }))
+        matches!(
+            self,
+            Self::MovedTogether { .. } | Self::Records(RecordCaution::MovedTogether { .. })
+        )
     }
 
     /// Whether another caution says no more than what comes of this one: a record that contradicts the others is unlike them, for
     /// another reason than its noise; and where signs cancel in the mean of the records no input seems to be swept.
     pub(super) fn explains(&self, other: &Self) -> bool {
-        let Self::Contradiction { records, .. } = self else { return false };
-        let is_turned =
-            |of: &ContradictingRecord| matches!(of.fault, Some(RecordFault::Gain(_, factor)) if factor < 0.0);
+        let Self::Contradiction { records, .. } = self else {
+            return false;
+        };
+        let is_turned = |of: &ContradictingRecord| matches!(of.fault, Some(RecordFault::Gain(_, factor)) if factor < 0.0);
         match other {
             Self::UnlikeRecord { record, .. } => records.iter().any(|of| of.record == *record),
             Self::Reweighed(_) => true,
@@ -196,35 +204,57 @@ impl IdentificationCaution {
 fn hidden_ends(band: [f64; 2], shown: [f64; 2]) -> String {
     let below = (shown[0] > band[0]).then(|| format!("below {:.2} rad/s", shown[0]));
     let above = (shown[1] < band[1]).then(|| format!("above {:.1} rad/s", shown[1]));
-    below.into_iter().chain(above).collect::<Vec<String>>().join(" and ")
+    below
+        .into_iter()
+        .chain(above)
+        .collect::<Vec<String>>()
+        .join(" and ")
 }
 
 /// `LON to P, LAT to P and LON to Q are`.
 fn responses_are(pairs: &[[Signal; 2]]) -> String {
-    let names: Vec<String> = pairs.iter().map(|[output, input]| format!("{input} to {output}")).collect();
-    format!("{} {}", listed(&names), if names.len() == 1 { "is" } else { "are" })
+    let names: Vec<String> = pairs
+        .iter()
+        .map(|[output, input]| format!("{input} to {output}"))
+        .collect();
+    format!(
+        "{} {}",
+        listed(&names),
+        if names.len() == 1 { "is" } else { "are" }
+    )
 }
 
 /// Which records contradict which, and what would mend it.
 fn contradiction(records: &[ContradictingRecord], contrast: f64) -> String {
     let names: Vec<&str> = records.iter().map(|of| of.name.as_str()).collect();
-    let faults: Vec<(&str, &RecordFault)> =
-        records.iter().filter_map(|of| Some((of.name.as_str(), of.fault.as_ref()?))).collect();
+    let faults: Vec<(&str, &RecordFault)> = records
+        .iter()
+        .filter_map(|of| Some((of.name.as_str(), of.fault.as_ref()?)))
+        .collect();
     let agreement = format!("(F {contrast:.0}; 1 is agreement)");
     if names.len() > 1 {
-        let words = faults.iter().map(|(name, fault)| format!(" If it is {name}, it looks as if there {fault}."));
+        let words = faults
+            .iter()
+            .map(|(name, fault)| format!(" If it is {name}, it looks as if there {fault}."));
         let (names, words) = (listed(&names), words.collect::<String>());
-        return format!("{names} contradict one another {agreement}; a third record would tell which is wrong.{words}");
+        return format!(
+            "{names} contradict one another {agreement}; a third record would tell which is wrong.{words}"
+        );
     }
-    let words = faults.first().map_or_else(String::new, |(_, fault)| format!(" It looks as if in it {fault}."));
+    let words = faults.first().map_or_else(String::new, |(_, fault)| {
+        format!(" It looks as if in it {fault}.")
+    });
     let name = names.first().copied().unwrap_or_default();
-    format!("{name} contradicts the other records {agreement}.{words} Correct it, or leave the record out")
+    format!(
+        "{name} contradicts the other records {agreement}.{words} Correct it, or leave the record out"
+    )
 }
 
 /// What the feedback does to the models.
 fn fed_back(level: FeedbackLevel, share: f64) -> String {
     let percent = 100.0 * share;
-    let remedy = "Sweep more strongly, or give the recorded reference that drove the loop (--reference)";
+    let remedy =
+        "Sweep more strongly, or give the recorded reference that drove the loop (--reference)";
     match level {
         FeedbackLevel::TooMuch => format!(
             "do not use this model: about {percent:.0} % of the measured response is what the feedback makes of gusts and noise, not the \
@@ -263,23 +293,38 @@ pub struct CautionNote {
 
 impl CautionNote {
     pub(super) fn of(code: &'static str) -> Self {
-        Self { code, ..Self::default() }
+        Self {
+            code,
+            ..Self::default()
+        }
     }
 
     pub(super) fn record(self, name: &str) -> Self {
-        Self { records: vec![name.to_owned()], ..self }
+        Self {
+            records: vec![name.to_owned()],
+            ..self
+        }
     }
 
     pub(super) fn channel<'s>(self, signal: impl Into<Option<&'s Signal>>) -> Self {
-        Self { channel: signal.into().map(|signal| signal.name.clone()), ..self }
+        Self {
+            channel: signal.into().map(|signal| signal.name.clone()),
+            ..self
+        }
     }
 
     fn pair(self, channels: [&Signal; 2]) -> Self {
-        Self { pair: Some(channels.map(|signal| signal.name.clone())), ..self }
+        Self {
+            pair: Some(channels.map(|signal| signal.name.clone())),
+            ..self
+        }
     }
 
     fn band(self, ends: [f64; 2]) -> Self {
-        Self { band_rad_s: Some(ends), ..self }
+        Self {
+            band_rad_s: Some(ends),
+            ..self
+        }
     }
 
     /// What it says in three words or fewer, for a mark.
@@ -322,23 +367,41 @@ impl IdentificationCaution {
         let of = CautionNote::of;
         let note = match self {
             Self::Records(caution) => caution.note(),
-            Self::Short { lowest, periods, .. } => of("short").band([*lowest, lowest * (5.0 / periods).max(1.0)]),
+            Self::Short {
+                lowest, periods, ..
+            } => of("short").band([*lowest, lowest * (5.0 / periods).max(1.0)]),
             Self::NotSwept { signal, .. } => of("not-swept").channel(signal),
             Self::MovedTogether { .. } => of("collinear-inputs"),
             Self::BandNotShown { shown, .. } => of("band-narrowed").band(*shown),
             Self::Vibration { signal, .. } => of("vibration").channel(signal),
-            Self::Inadequate { record, signal, .. } => of("inadequate").record(record).channel(signal),
+            Self::Inadequate { record, signal, .. } => {
+                of("inadequate").record(record).channel(signal)
+            }
             Self::UnlikeRecord { name, .. } => of("record").record(name),
             Self::Contradiction { records, .. } => {
                 let (code, channel) = common_fault(records);
                 let records = records.iter().map(|of| of.name.clone()).collect();
-                CautionNote { records, ..of(code).channel(channel) }
+                CautionNote {
+                    records,
+                    ..of(code).channel(channel)
+                }
             }
-            Self::Feedback { level: FeedbackLevel::TooMuch, .. } => of("feedback"),
+            Self::Feedback {
+                level: FeedbackLevel::TooMuch,
+                ..
+            } => of("feedback"),
             Self::Feedback { .. } => of("feedback-some"),
-            Self::LeavesPoints { output, input, band, .. } => of("points").pair([output, input]).band(*band),
+            Self::LeavesPoints {
+                output,
+                input,
+                band,
+                ..
+            } => of("points").pair([output, input]).band(*band),
             Self::OrderLimit { narrower, .. } => of("order-limit").band(*narrower),
-            Self::HeldOut { records, .. } => CautionNote { records: records.clone(), ..of("held-out") },
+            Self::HeldOut { records, .. } => CautionNote {
+                records: records.clone(),
+                ..of("held-out")
+            },
             Self::Reweighed(_) => of("reweighed"),
             Self::NotValidated(_) => of("not-validated"),
             Self::Unstable { .. } => of("unstable"),
@@ -347,7 +410,10 @@ impl IdentificationCaution {
                 _ => of("not-identified"),
             },
         };
-        CautionNote { text: self.to_string(), ..note }
+        CautionNote {
+            text: self.to_string(),
+            ..note
+        }
     }
 }
 
@@ -358,8 +424,16 @@ fn common_fault(records: &[ContradictingRecord]) -> (&'static str, Option<&Signa
         Some(RecordFault::Gain(_, factor)) if *factor < 0.0 => "sign",
         _ => "record",
     };
-    let mut signals = records.iter().map(|record| record.fault.as_ref().and_then(RecordFault::signal));
-    let code = records.first().map(of).filter(|code| records.iter().all(|record| of(record) == *code));
+    let mut signals = records
+        .iter()
+        .map(|record| record.fault.as_ref().and_then(RecordFault::signal));
+    let code = records
+        .first()
+        .map(of)
+        .filter(|code| records.iter().all(|record| of(record) == *code));
     let first = signals.next().flatten();
-    (code.unwrap_or("record"), first.filter(|_| signals.all(|signal| signal == first)))
+    (
+        code.unwrap_or("record"),
+        first.filter(|_| signals.all(|signal| signal == first)),
+    )
 }

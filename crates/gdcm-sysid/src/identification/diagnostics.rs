@@ -25,7 +25,9 @@ pub(super) struct Diagnostics<'a> {
 impl Diagnostics<'_> {
     /// The name of a record.
     pub(super) fn record_name(&self, record: usize) -> String {
-        self.records.get(record).map_or_else(String::new, |record| record.name.clone())
+        self.records
+            .get(record)
+            .map_or_else(String::new, |record| record.name.clone())
     }
 
     /// What the costs say.
@@ -34,29 +36,59 @@ impl Diagnostics<'_> {
         let mut cautions = Vec::new();
         let fitted = || fits.records.iter().filter(|fit| !fit.held_out);
         let worst = fitted().max_by(|a, b| a.cost.total_cmp(&b.cost));
-        let output = fits.outputs.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(output, _)| output);
+        let output = fits
+            .outputs
+            .iter()
+            .enumerate()
+            .max_by(|a, b| a.1.total_cmp(b.1))
+            .map_or(0, |(output, _)| output);
         if let Some(worst) = worst.filter(|_| cost > ADEQUATE) {
-            let (record, signal) = (self.record_name(worst.record), self.options.signal(ChannelSide::Output, output));
-            cautions.push(IdentificationCaution::Inadequate { cost, record, signal });
+            let (record, signal) = (
+                self.record_name(worst.record),
+                self.options.signal(ChannelSide::Output, output),
+            );
+            cautions.push(IdentificationCaution::Inadequate {
+                cost,
+                record,
+                signal,
+            });
         }
         for fit in fitted().filter(|fit| fit.cost > ADEQUATE.max(UNLIKE * cost)) {
             let name = self.record_name(fit.record);
-            cautions.push(IdentificationCaution::UnlikeRecord { record: fit.record, name, cost: fit.cost });
+            cautions.push(IdentificationCaution::UnlikeRecord {
+                record: fit.record,
+                name,
+                cost: fit.cost,
+            });
         }
-        if let Some((raw, normalised)) = fits.held_out.filter(|(_, normalised)| *normalised > HELD_OUT[1]) {
+        if let Some((raw, normalised)) = fits
+            .held_out
+            .filter(|(_, normalised)| *normalised > HELD_OUT[1])
+        {
             let held_out = fits.records.iter().filter(|fit| fit.held_out);
             let records = held_out.map(|fit| self.record_name(fit.record)).collect();
-            cautions.push(IdentificationCaution::HeldOut { records, raw, normalised });
+            cautions.push(IdentificationCaution::HeldOut {
+                records,
+                raw,
+                normalised,
+            });
         }
         cautions
     }
 
     /// Responses that are not identified, in words.
-    pub(super) fn unidentified_pairs(&self, pairs: &[(usize, usize)]) -> Option<IdentificationCaution> {
+    pub(super) fn unidentified_pairs(
+        &self,
+        pairs: &[(usize, usize)],
+    ) -> Option<IdentificationCaution> {
         let named = |&(output, input): &(usize, usize)| {
-            [self.options.signal(ChannelSide::Output, output), self.options.signal(ChannelSide::Input, input)]
+            [
+                self.options.signal(ChannelSide::Output, output),
+                self.options.signal(ChannelSide::Input, input),
+            ]
         };
-        (!pairs.is_empty()).then(|| IdentificationCaution::PairsNotIdentified(pairs.iter().map(named).collect()))
+        (!pairs.is_empty())
+            .then(|| IdentificationCaution::PairsNotIdentified(pairs.iter().map(named).collect()))
     }
 }
 
@@ -90,22 +122,39 @@ pub(super) struct RecordFits {
 
 impl RecordFits {
     /// The fits of a model; none where a cost is not finite or nothing has degrees of freedom.
-    pub(super) fn of(data: &PreparedData, model: &BlockModel, covariance: &ParameterCovariance) -> Option<Self> {
+    pub(super) fn of(
+        data: &PreparedData,
+        model: &BlockModel,
+        covariance: &ParameterCovariance,
+    ) -> Option<Self> {
         let (fitted, held_out) = (data.likelihood.parts(model)?, data.held_out.parts(model)?);
         let moved = covariance.moved_cost(&data.held_out, model, &held_out);
         let all = data.likelihood.freedom(model.order());
-        let spare = all.checked_sub(parameters_of_order(model.order(), model.b.ncols(), model.c.nrows()));
+        let spare = all.checked_sub(parameters_of_order(
+            model.order(),
+            model.b.ncols(),
+            model.c.nrows(),
+        ));
         let share = all as f64 / spare.filter(|spare| *spare > 0)? as f64;
-        let outputs = output_costs(&data.likelihood, model, &fitted).into_iter().map(|cost| cost * share).collect();
+        let outputs = output_costs(&data.likelihood, model, &fitted)
+            .into_iter()
+            .map(|cost| cost * share)
+            .collect();
         let mut records = fits_of_records(&data.likelihood, model, &fitted, false);
         records.iter_mut().for_each(|fit| fit.cost *= share);
         let held_out = fits_of_records(&data.held_out, model, &held_out, true);
         let freedom: usize = held_out.iter().map(|fit| fit.freedom).sum();
-        let of_held_out = mean_cost(&held_out).map(|raw| (raw, moved.map_or(raw, |moved| moved / freedom as f64)));
+        let of_held_out = mean_cost(&held_out)
+            .map(|raw| (raw, moved.map_or(raw, |moved| moved / freedom as f64)));
         let cost = mean_cost(&records)?;
         records.extend(held_out);
         records.sort_by_key(|fit| fit.record);
-        Some(Self { records, outputs, cost, held_out: of_held_out })
+        Some(Self {
+            records,
+            outputs,
+            cost,
+            held_out: of_held_out,
+        })
     }
 }
 
@@ -117,12 +166,29 @@ pub(super) fn fits_of_records(
     held_out: bool,
 ) -> Vec<RecordFit> {
     let of_record = |record: usize| {
-        let segments = || likelihood.segments.iter().zip(parts).filter(move |(segment, _)| segment.record == record);
-        let freedom = segments().map(|(segment, _)| segment.freedom(model.order())).sum();
+        let segments = || {
+            likelihood
+                .segments
+                .iter()
+                .zip(parts)
+                .filter(move |(segment, _)| segment.record == record)
+        };
+        let freedom = segments()
+            .map(|(segment, _)| segment.freedom(model.order()))
+            .sum();
         let cost = segments().map(|(_, part)| part.cost).sum::<f64>() / freedom as f64;
-        (freedom > 0).then_some(RecordFit { record, cost, freedom, held_out })
+        (freedom > 0).then_some(RecordFit {
+            record,
+            cost,
+            freedom,
+            held_out,
+        })
     };
-    likelihood.records().into_iter().filter_map(of_record).collect()
+    likelihood
+        .records()
+        .into_iter()
+        .filter_map(of_record)
+        .collect()
 }
 
 /// `J` per degree of freedom over records; none where they have none.
@@ -140,16 +206,21 @@ fn output_costs(likelihood: &Likelihood, model: &BlockModel, parts: &[SegmentCos
     for (segment, part) in likelihood.segments.iter().zip(parts) {
         for (weight, residual) in segment.weights.iter().zip(part.residual.column_iter()) {
             // The Cholesky factor of Cv / 2, by which the residual goes back to its outputs.
-            let Some(factor) = weight.solve_lower_triangular(&nalgebra::DMatrix::identity(outputs, outputs)) else {
+            let Some(factor) =
+                weight.solve_lower_triangular(&nalgebra::DMatrix::identity(outputs, outputs))
+            else {
                 continue;
             };
             for (o, sum) in sums.iter_mut().enumerate() {
-                let back: nalgebra::Complex<f64> = (0..=o).map(|k| residual[k] * factor[(o, k)]).sum();
+                let back: nalgebra::Complex<f64> =
+                    (0..=o).map(|k| residual[k] * factor[(o, k)]).sum();
                 *sum += back.norm_sqr() / factor.row(o).norm_squared();
             }
         }
     }
-    sums.into_iter().map(|sum| if freedom > 0.0 { sum / freedom } else { 0.0 }).collect()
+    sums.into_iter()
+        .map(|sum| if freedom > 0.0 { sum / freedom } else { 0.0 })
+        .collect()
 }
 
 // The model against its own measured points (M14.17).
@@ -174,20 +245,36 @@ pub(super) fn model_at_points(
     data: &PreparedData<'_>,
     options: &Options,
 ) -> Vec<DMatrix<Complex<f64>>> {
-    let omegas: Vec<f64> = data.measured.points.iter().map(|point| point.omega).collect();
+    let omegas: Vec<f64> = data
+        .measured
+        .points
+        .iter()
+        .map(|point| point.omega)
+        .collect();
     let predicted = data.spectra.iter().map(|lines| {
         let mut outputs = lines.outputs.clone();
-        for (mut column, (omega, inputs)) in
-            outputs.column_iter_mut().zip(lines.omega.iter().zip(lines.inputs.column_iter()))
+        for (mut column, (omega, inputs)) in outputs
+            .column_iter_mut()
+            .zip(lines.omega.iter().zip(lines.inputs.column_iter()))
         {
             column.copy_from(&(model.response(*omega) * inputs));
         }
-        Spectrum { outputs, ..lines.clone() }
+        Spectrum {
+            outputs,
+            ..lines.clone()
+        }
     });
     let predicted: Vec<Spectrum> = predicted.filter(|_| options.references == 0).collect();
     match local_polynomial(&predicted, &omegas, data.likelihood.executor) {
-        Ok(seen) => seen.points.into_iter().map(|point| point.response).collect(),
-        Err(_) => omegas.into_iter().map(|omega| model.response(omega)).collect(),
+        Ok(seen) => seen
+            .points
+            .into_iter()
+            .map(|point| point.response)
+            .collect(),
+        Err(_) => omegas
+            .into_iter()
+            .map(|omega| model.response(omega))
+            .collect(),
     }
 }
 
@@ -200,22 +287,32 @@ pub(super) fn departure(
     pair: (usize, usize),
 ) -> (f64, Option<([f64; 2], f64)>) {
     let is_tested = |(point, _): &(&EstimatePoint, &DMatrix<Complex<f64>>)| {
-        (band[0]..=band[1]).contains(&point.omega) && point.half_width <= NARROW_WINDOW * point.omega
+        (band[0]..=band[1]).contains(&point.omega)
+            && point.half_width <= NARROW_WINDOW * point.omega
     };
     let of_point = |(point, model): (&EstimatePoint, &DMatrix<Complex<f64>>)| {
         let (own, found) = (model[pair], point.response[pair]);
         let distance = (own - found).norm_sqr() / point.variance[pair].max(f64::MIN_POSITIVE);
         (point.omega, distance, (own / found - 1.0).norm())
     };
-    let tested: Vec<(f64, f64, f64)> = measured.points.iter().zip(model).filter(is_tested).map(of_point).collect();
+    let tested: Vec<(f64, f64, f64)> = measured
+        .points
+        .iter()
+        .zip(model)
+        .filter(is_tested)
+        .map(of_point)
+        .collect();
     let (mut greatest, mut left) = (0.0_f64, None);
     for near in tested.windows(POINTS) {
-        let mean = |part: fn(&(f64, f64, f64)) -> f64| near.iter().map(part).sum::<f64>() / POINTS as f64;
+        let mean =
+            |part: fn(&(f64, f64, f64)) -> f64| near.iter().map(part).sum::<f64>() / POINTS as f64;
         let (t, d) = (mean(|of| of.1), mean(|of| of.2));
         greatest = greatest.max(t);
         if t > LEAVES.0 && d > LEAVES.1 {
             let (from, to) = (near[0].0, near[POINTS - 1].0);
-            let before = left.map_or((from, 0.0), |([from, _], strength): ([f64; 2], f64)| (from, strength));
+            let before = left.map_or((from, 0.0), |([from, _], strength): ([f64; 2], f64)| {
+                (from, strength)
+            });
             left = Some(([before.0, to], t.max(before.1)));
         }
     }
@@ -229,10 +326,21 @@ impl Diagnostics<'_> {
         let pairs = (0..inputs).flat_map(|input| (0..outputs).map(move |output| (output, input)));
         let model = model_at_points(&self.fit.model, self.data, self.options);
         let caution = |(output, input)| {
-            let (band, strength) = departure(&model, &self.data.measured, self.options.band, (output, input)).1?;
+            let (band, strength) = departure(
+                &model,
+                &self.data.measured,
+                self.options.band,
+                (output, input),
+            )
+            .1?;
             let output = self.options.signal(ChannelSide::Output, output);
             let input = self.options.signal(ChannelSide::Input, input);
-            Some(IdentificationCaution::LeavesPoints { output, input, band, strength })
+            Some(IdentificationCaution::LeavesPoints {
+                output,
+                input,
+                band,
+                strength,
+            })
         };
         pairs.filter_map(caution).collect()
     }

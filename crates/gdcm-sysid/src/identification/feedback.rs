@@ -62,7 +62,9 @@ impl Feedback {
     /// What it makes of a model.
     #[must_use]
     pub fn level(&self) -> FeedbackLevel {
-        let beyond = |(share, significance): (f64, f64)| self.share >= share && self.significance >= significance;
+        let beyond = |(share, significance): (f64, f64)| {
+            self.share >= share && self.significance >= significance
+        };
         match () {
             () if beyond(TOO_MUCH) => FeedbackLevel::TooMuch,
             () if beyond(SOME) => FeedbackLevel::Some,
@@ -77,19 +79,29 @@ impl Feedback {
             return 0.0;
         }
         let smoothed = |k: usize| {
-            let near =
-                self.ratios[k.saturating_sub(1)..(k + 2).min(self.ratios.len())].iter().map(|of| of[pair].powi(2));
+            let near = self.ratios[k.saturating_sub(1)..(k + 2).min(self.ratios.len())]
+                .iter()
+                .map(|of| of[pair].powi(2));
             let count = near.len();
             (near.sum::<f64>() / count as f64).sqrt()
         };
-        let after = self.omega.partition_point(|at| *at <= omega).clamp(1, self.omega.len() - 1);
-        let place = (omega / self.omega[after - 1]).ln() / (self.omega[after] / self.omega[after - 1]).ln();
+        let after = self
+            .omega
+            .partition_point(|at| *at <= omega)
+            .clamp(1, self.omega.len() - 1);
+        let place =
+            (omega / self.omega[after - 1]).ln() / (self.omega[after] / self.omega[after - 1]).ln();
         let share = place.clamp(0.0, 1.0);
         (1.0 - share) * smoothed(after - 1) + share * smoothed(after)
     }
 
     /// What is fed back in the records of the fit beside a model of them; none where they are too short for a predictor.
-    pub(super) fn of(data: &PreparedData, model: &BlockModel, band: [f64; 2], executor: &dyn Executor) -> Option<Self> {
+    pub(super) fn of(
+        data: &PreparedData,
+        model: &BlockModel,
+        band: [f64; 2],
+        executor: &dyn Executor,
+    ) -> Option<Self> {
         /// Share by which sample times may differ in one predictor.
         const ALIKE: f64 = 0.01;
         let first = data.unfiltered.first()?;
@@ -98,33 +110,57 @@ impl Feedback {
         let step = ((STEP / (band[1] * first.sample_time_s)).round() as usize).max(1);
         let thinned = each(executor, &segments, |segment| thinned(segment, step));
         let predictor = Predictor::of(&thinned, (first.inputs.ncols(), first.outputs.ncols()))?;
-        let noise = each(executor, segments.iter().zip(&thinned), |(segment, samples)| {
-            let mut outputs = DMatrix::zeros(segment.outputs.nrows(), segment.outputs.ncols());
-            for (k, error) in predictor.errors(samples) {
-                outputs.row_mut(k * step).tr_copy_from(&(error * step as f64));
-            }
-            Segment { outputs, ..segment.clone() }
-        });
+        let noise = each(
+            executor,
+            segments.iter().zip(&thinned),
+            |(segment, samples)| {
+                let mut outputs = DMatrix::zeros(segment.outputs.nrows(), segment.outputs.ncols());
+                for (k, error) in predictor.errors(samples) {
+                    outputs
+                        .row_mut(k * step)
+                        .tr_copy_from(&(error * step as f64));
+                }
+                Segment {
+                    outputs,
+                    ..segment.clone()
+                }
+            },
+        );
         let mut fed = data.lines.of(&noise, executor);
         for spectrum in &mut fed {
             predictor.add_memory(spectrum, step as f64 * first.sample_time_s)?;
         }
         let omegas = log_spaced(band[0], band[1], POINTS);
-        Some(Self::beside(model, &local_polynomial(&fed, &omegas, executor).ok()?))
+        Some(Self::beside(
+            model,
+            &local_polynomial(&fed, &omegas, executor).ok()?,
+        ))
     }
 
     fn beside(model: &BlockModel, fed: &ResponseEstimate) -> Self {
-        let responses: Vec<DMatrix<f64>> =
-            fed.points.iter().map(|point| model.response(point.omega).map(|g| g.norm())).collect();
+        let responses: Vec<DMatrix<f64>> = fed
+            .points
+            .iter()
+            .map(|point| model.response(point.omega).map(|g| g.norm()))
+            .collect();
         let (outputs, inputs) = model.d.shape();
         let (mut sure, mut every) = (Vec::new(), Vec::new());
         for output in 0..outputs {
-            let largest = responses.iter().map(|g| g.row(output).max()).fold(0.0, f64::max);
+            let largest = responses
+                .iter()
+                .map(|g| g.row(output).max())
+                .fold(0.0, f64::max);
             for (g, point) in responses.iter().zip(&fed.points) {
                 for input in 0..inputs {
-                    let (own, of_noise, variance) =
-                        (g[(output, input)], point.response[(output, input)].norm(), point.variance[(output, input)]);
-                    let both = (of_noise / own, of_noise * of_noise / variance.max(f64::MIN_POSITIVE));
+                    let (own, of_noise, variance) = (
+                        g[(output, input)],
+                        point.response[(output, input)].norm(),
+                        point.variance[(output, input)],
+                    );
+                    let both = (
+                        of_noise / own,
+                        of_noise * of_noise / variance.max(f64::MIN_POSITIVE),
+                    );
                     every.push(both);
                     if own > LARGE * largest && variance.sqrt() < SURE * own {
                         sure.push(both);
@@ -132,9 +168,17 @@ impl Feedback {
                 }
             }
         }
-        let counted = if sure.len() as f64 >= LEAST_SHARE * every.len() as f64 { sure } else { every };
-        let of = |part: fn(&(f64, f64)) -> f64| median(&mut counted.iter().map(part).collect::<Vec<f64>>());
-        let ratio = |(g, point): (&DMatrix<f64>, &EstimatePoint)| g.zip_map(&point.response, |g, fed| fed.norm() / g);
+        let counted = if sure.len() as f64 >= LEAST_SHARE * every.len() as f64 {
+            sure
+        } else {
+            every
+        };
+        let of = |part: fn(&(f64, f64)) -> f64| {
+            median(&mut counted.iter().map(part).collect::<Vec<f64>>())
+        };
+        let ratio = |(g, point): (&DMatrix<f64>, &EstimatePoint)| {
+            g.zip_map(&point.response, |g, fed| fed.norm() / g)
+        };
         Self {
             share: of(|both| both.0),
             significance: of(|both| both.1),
@@ -149,7 +193,12 @@ fn thinned(segment: &Segment, step: usize) -> DMatrix<f64> {
     let (inputs, outputs) = (segment.inputs.ncols(), segment.outputs.ncols());
     let count = segment.inputs.nrows().div_ceil(step);
     let mut samples = DMatrix::zeros(inputs + outputs, count);
-    for (channel, column) in segment.inputs.column_iter().chain(segment.outputs.column_iter()).enumerate() {
+    for (channel, column) in segment
+        .inputs
+        .column_iter()
+        .chain(segment.outputs.column_iter())
+        .enumerate()
+    {
         let mean = column.mean();
         (0..count).for_each(|k| samples[(channel, k)] = column[k * step] - mean);
     }
@@ -182,21 +231,43 @@ impl Predictor {
         let scales = scale_columns(&mut normal);
         let size = scales.len();
         (0..size).for_each(|k| normal[(k, k)] += if scales[k] > 0.0 { RIDGE } else { 1.0 });
-        let scaled = DMatrix::from_fn(size, outputs, |row, column| right[(row, column)] * scales[row]);
+        let scaled = DMatrix::from_fn(size, outputs, |row, column| {
+            right[(row, column)] * scales[row]
+        });
         let mut coefficients = normal.cholesky()?.solve(&scaled);
-        coefficients.row_iter_mut().zip(scales.iter()).for_each(|(mut row, scale)| row *= *scale);
+        coefficients
+            .row_iter_mut()
+            .zip(scales.iter())
+            .for_each(|(mut row, scale)| row *= *scale);
         let finite = coefficients.iter().all(|value| value.is_finite());
-        finite.then_some(Self { inputs, past, coefficients })
+        finite.then_some(Self {
+            inputs,
+            past,
+            coefficients,
+        })
     }
 
     /// What it does not predict of a record, by instant.
-    fn errors<'r>(&'r self, record: &'r DMatrix<f64>) -> impl Iterator<Item = (usize, DVector<f64>)> + 'r {
+    fn errors<'r>(
+        &'r self,
+        record: &'r DMatrix<f64>,
+    ) -> impl Iterator<Item = (usize, DVector<f64>)> + 'r {
         let channels = record.nrows();
         (self.past..record.ncols()).map(move |k| {
-            let mut error = record.column(k).rows(self.inputs, channels - self.inputs).into_owned();
-            error.gemv_tr(-1.0, &self.coefficients.rows(0, self.inputs), &record.column(k).rows(0, self.inputs), 1.0);
+            let mut error = record
+                .column(k)
+                .rows(self.inputs, channels - self.inputs)
+                .into_owned();
+            error.gemv_tr(
+                -1.0,
+                &self.coefficients.rows(0, self.inputs),
+                &record.column(k).rows(0, self.inputs),
+                1.0,
+            );
             for lag in 1..=self.past {
-                let rows = self.coefficients.rows(self.inputs + (lag - 1) * channels, channels);
+                let rows = self
+                    .coefficients
+                    .rows(self.inputs + (lag - 1) * channels, channels);
                 error.gemv_tr(-1.0, &rows, &record.column(k - lag), 1.0);
             }
             (k, error)
@@ -218,7 +289,9 @@ impl Predictor {
                     }
                 }
             }
-            let line = memory.lu().solve(&spectrum.outputs.column(k).into_owned())?;
+            let line = memory
+                .lu()
+                .solve(&spectrum.outputs.column(k).into_owned())?;
             spectrum.outputs.set_column(k, &line);
         }
         Some(())
@@ -229,18 +302,30 @@ impl Predictor {
 fn add_lagged(gram: &mut DMatrix<f64>, record: &DMatrix<f64>, past: usize) {
     let (channels, samples) = record.shape();
     for lag in 0..=past {
-        let mut block = record.columns(past, samples - past) * record.columns(past - lag, samples - past).transpose();
+        let mut block = record.columns(past, samples - past)
+            * record.columns(past - lag, samples - past).transpose();
         for i in 0..=past - lag {
             let j = i + lag;
             let mut to = gram.view_mut((i * channels, j * channels), (channels, channels));
             to += &block;
             if lag > 0 {
-                let mut mirrored = gram.view_mut((j * channels, i * channels), (channels, channels));
+                let mut mirrored =
+                    gram.view_mut((j * channels, i * channels), (channels, channels));
                 mirrored += block.transpose();
             }
             if j < past {
-                block.gemm(1.0, &record.column(past - 1 - i), &record.column(past - 1 - j).transpose(), 1.0);
-                block.gemm(-1.0, &record.column(samples - 1 - i), &record.column(samples - 1 - j).transpose(), 1.0);
+                block.gemm(
+                    1.0,
+                    &record.column(past - 1 - i),
+                    &record.column(past - 1 - j).transpose(),
+                    1.0,
+                );
+                block.gemm(
+                    -1.0,
+                    &record.column(samples - 1 - i),
+                    &record.column(samples - 1 - j).transpose(),
+                    1.0,
+                );
             }
         }
     }
@@ -252,12 +337,16 @@ mod tests {
 
     #[test]
     fn lagged_products_are_those_of_the_rows() {
-        let record = DMatrix::from_fn(2, 15, |row, column| ((1.0 + row as f64) * 1.7 * column as f64).sin());
+        let record = DMatrix::from_fn(2, 15, |row, column| {
+            ((1.0 + row as f64) * 1.7 * column as f64).sin()
+        });
         let past = 3;
         let mut gram = DMatrix::zeros(8, 8);
         add_lagged(&mut gram, &record, past);
         let row = |k: usize| DVector::from_fn(8, |at, _| record[(at % 2, k - at / 2)]);
-        let expected = (past..15).fold(DMatrix::zeros(8, 8), |sum, k| sum + row(k) * row(k).transpose());
+        let expected = (past..15).fold(DMatrix::zeros(8, 8), |sum, k| {
+            sum + row(k) * row(k).transpose()
+        });
         assert!((gram - expected).amax() < 1e-12);
     }
 }

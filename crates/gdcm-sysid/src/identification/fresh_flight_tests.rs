@@ -11,7 +11,9 @@ use std::ops::Range;
 
 /// What is said of records, each code once.
 fn said((records, options): &(Vec<FlightRecord>, Options)) -> BTreeSet<&'static str> {
-    codes(&identify(records, options, &Sequential, &Unobserved).unwrap()).into_iter().collect()
+    codes(&identify(records, options, &Sequential, &Unobserved).unwrap())
+        .into_iter()
+        .collect()
 }
 
 fn calm(seed: u64) -> Flown {
@@ -21,13 +23,17 @@ fn calm(seed: u64) -> Flown {
 /// So many flights of a minute of fresh seeds.
 fn flights(count: u64, seed: u64, flown: impl Fn(u64) -> Flown) -> Vec<FlightRecord> {
     let file = known();
-    (0..count).map(|at| flown(10_000 + 10 * seed + at).record(&file).0).collect()
+    (0..count)
+        .map(|at| flown(10_000 + 10 * seed + at).record(&file).0)
+        .collect()
 }
 
 /// The last of so many flights is logged four samples late.
 fn last_late(count: u64, seed: u64) -> Vec<FlightRecord> {
     let mut records = flights(count, seed, calm);
-    let last = Flown::calm(10_000 + 10 * seed + count - 1, 4).record(&known()).0;
+    let last = Flown::calm(10_000 + 10 * seed + count - 1, 4)
+        .record(&known())
+        .0;
     records.pop();
     records.push(last);
     records
@@ -59,12 +65,28 @@ const TRAPS: [Trap; 11] = [
         // What gusts move is noise: the sweep stands out of it over a narrower band.
         follows: &["not-identified", "unstable", "band-narrowed"],
         flown: |seed| {
-            let gusty = |seed| Flown { gust: 2.0, amp: 0.4, noise: 0.02, feedback: 0.15, ..calm(seed) };
+            let gusty = |seed| Flown {
+                gust: 2.0,
+                amp: 0.4,
+                noise: 0.02,
+                feedback: 0.15,
+                ..calm(seed)
+            };
             (flights(3, seed, gusty), options())
         },
     },
-    Trap { name: "one late", code: "time-skew", follows: &[], flown: |seed| (last_late(3, seed), options()) },
-    Trap { name: "one of a pair late", code: "time-skew", follows: &[], flown: |seed| (last_late(2, seed), options()) },
+    Trap {
+        name: "one late",
+        code: "time-skew",
+        follows: &[],
+        flown: |seed| (last_late(3, seed), options()),
+    },
+    Trap {
+        name: "one of a pair late",
+        code: "time-skew",
+        follows: &[],
+        flown: |seed| (last_late(2, seed), options()),
+    },
     Trap {
         name: "one turned",
         code: "sign",
@@ -104,10 +126,18 @@ const TRAPS: [Trap; 11] = [
         name: "coarse",
         code: "coarse",
         // What rounding to coarse steps adds goes with the signal, as what is fed back does, and hides the weak upper end of the band.
-        follows: &["feedback", "feedback-some", "band-narrowed", "unstable", "points"],
+        follows: &[
+            "feedback",
+            "feedback-some",
+            "band-narrowed",
+            "unstable",
+            "points",
+        ],
         flown: |seed| {
             let step = 0.6 * deviation(&flights(1, seed, calm)[0]);
-            let coarse = |record: &mut FlightRecord| record.outputs.apply(|y| *y = (*y / step).round() * step);
+            let coarse = |record: &mut FlightRecord| {
+                record.outputs.apply(|y| *y = (*y / step).round() * step)
+            };
             (with_outputs(seed, coarse), options())
         },
     },
@@ -115,7 +145,15 @@ const TRAPS: [Trap; 11] = [
         name: "an order too low",
         code: "points",
         follows: &["inadequate"],
-        flown: |seed| (flights(3, seed, calm), Options { orders: Some(vec![1]), ..options() }),
+        flown: |seed| {
+            (
+                flights(3, seed, calm),
+                Options {
+                    orders: Some(vec![1]),
+                    ..options()
+                },
+            )
+        },
     },
     Trap {
         name: "inputs flown together",
@@ -126,10 +164,16 @@ const TRAPS: [Trap; 11] = [
             let together = |record: FlightRecord| {
                 let first = record.inputs.column(0).into_owned();
                 let second = first.map(|u| u + 0.02 * random.normal());
-                FlightRecord { inputs: DMatrix::from_columns(&[first, second]), ..record }
+                FlightRecord {
+                    inputs: DMatrix::from_columns(&[first, second]),
+                    ..record
+                }
             };
             let records = flights(3, seed, calm).into_iter().map(together).collect();
-            (records, Options::new([1.0, 12.0], Preparation::of(&["LON", "LAT"], &["Q"])))
+            (
+                records,
+                Options::new([1.0, 12.0], Preparation::of(&["LON", "LAT"], &["Q"])),
+            )
         },
     },
     Trap {
@@ -138,7 +182,15 @@ const TRAPS: [Trap; 11] = [
         // Of few lines a record is now and then unlike the others by chance: 4 of 30.
         follows: &["reweighed"],
         // 25 s are four periods of 1 rad/s.
-        flown: |seed| (flights(3, seed, |seed| Flown { seconds: 25.0, ..calm(seed) }), options()),
+        flown: |seed| {
+            (
+                flights(3, seed, |seed| Flown {
+                    seconds: 25.0,
+                    ..calm(seed)
+                }),
+                options(),
+            )
+        },
     },
     Trap {
         name: "held out and flown otherwise",
@@ -147,7 +199,13 @@ const TRAPS: [Trap; 11] = [
         flown: |seed| {
             let mut records = flights(3, seed, calm);
             records[2].outputs *= 1.6;
-            (records, Options { held_out: vec![2], ..options() })
+            (
+                records,
+                Options {
+                    held_out: vec![2],
+                    ..options()
+                },
+            )
         },
     },
 ];
@@ -155,20 +213,47 @@ const TRAPS: [Trap; 11] = [
 /// Calm flights are said nothing of, and each trap what it is and what follows from it: as often as M14.14 to M14.18 state.
 fn assert_cautions_over(seeds: Range<u64>) {
     let count = seeds.clone().count();
-    let good: Vec<BTreeSet<&str>> = seeds.clone().map(|seed| said(&(flights(3, seed, calm), options()))).collect();
+    let good: Vec<BTreeSet<&str>> = seeds
+        .clone()
+        .map(|seed| said(&(flights(3, seed, calm), options())))
+        .collect();
     // False alarms: feedback 3 of 30, points 4 of 126, the others none.
-    let falsely = |code: &str| good.iter().filter(|said| said.iter().any(|of| of.starts_with(code))).count();
-    assert!(falsely("feedback") <= count / 10 && falsely("points") <= count / 30, "{good:?}");
-    let others = good.iter().flatten().filter(|code| !code.starts_with("feedback") && **code != "points");
+    let falsely = |code: &str| {
+        good.iter()
+            .filter(|said| said.iter().any(|of| of.starts_with(code)))
+            .count()
+    };
+    assert!(
+        falsely("feedback") <= count / 10 && falsely("points") <= count / 30,
+        "{good:?}"
+    );
+    let others = good
+        .iter()
+        .flatten()
+        .filter(|code| !code.starts_with("feedback") && **code != "points");
     assert_eq!(others.count(), 0, "{good:?}");
     let mut wrong = Vec::new();
-    for Trap { name, code, follows, flown } in &TRAPS {
+    for Trap {
+        name,
+        code,
+        follows,
+        flown,
+    } in &TRAPS
+    {
         let all: Vec<BTreeSet<&str>> = seeds.clone().map(|seed| said(&flown(seed))).collect();
-        let missed = all.iter().filter(|said| !said.iter().any(|of| of.starts_with(code))).count();
+        let missed = all
+            .iter()
+            .filter(|said| !said.iter().any(|of| of.starts_with(code)))
+            .count();
         let is_other = |of: &&&str| !of.starts_with(code) && !follows.contains(of);
-        let others = all.iter().filter(|said| said.iter().any(|of| is_other(&of))).count();
+        let others = all
+            .iter()
+            .filter(|said| said.iter().any(|of| is_other(&of)))
+            .count();
         if missed > count / 10 || others > count / 10 {
-            wrong.push(format!("{name}: missed {missed}, others {others} of {count}: {all:?}"));
+            wrong.push(format!(
+                "{name}: missed {missed}, others {others} of {count}: {all:?}"
+            ));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -180,7 +265,11 @@ fn an_input_at_its_limit_is_a_fact_and_no_caution() {
     let facts = |records: &[FlightRecord]| {
         let prepared = prepare(records, &options().preparation, &Sequential).unwrap();
         assert_eq!(prepared.cautions, []);
-        prepared.records.iter().flat_map(RecordUse::facts).collect::<Vec<String>>()
+        prepared
+            .records
+            .iter()
+            .flat_map(RecordUse::facts)
+            .collect::<Vec<String>>()
     };
     assert_eq!(facts(&records), Vec::<String>::new());
     // A sweep of amplitude 1 is beyond 0.9 for 29 % of the time; what is added to it makes that less.
@@ -207,7 +296,8 @@ fn good_flights_raise_no_caution_and_each_trap_its_own_over_many_seeds() {
 fn aircraft(inputs: usize, outputs: usize, random: &mut Generator) -> StateSpace {
     let mut a = DMatrix::zeros(7, 7);
     for (at, omega) in [1.5, 3.0, 6.0].into_iter().enumerate() {
-        a.view_mut((2 * at, 2 * at), (2, 2)).copy_from(&nalgebra::dmatrix![0.0, omega; -omega, -omega]);
+        a.view_mut((2 * at, 2 * at), (2, 2))
+            .copy_from(&nalgebra::dmatrix![0.0, omega; -omega, -omega]);
     }
     a[(6, 6)] = -2.0;
     let b = DMatrix::from_fn(7, inputs, |_, _| random.normal());
@@ -227,7 +317,12 @@ fn sweeps(model: &StateSpace, random: &mut Generator) -> Vec<FlightRecord> {
             // 0.13 to 2.6 Hz, as often an octave as the next.
             let rate = 20f64.ln();
             let turns = 0.13 * 60.0 / rate * ((rate * time_s[k] / 60.0).exp() - 1.0);
-            slow[input] + if input == swept { (std::f64::consts::TAU * turns).sin() } else { 0.0 }
+            slow[input]
+                + if input == swept {
+                    (std::f64::consts::TAU * turns).sin()
+                } else {
+                    0.0
+                }
         });
         let inputs = inputs.transpose();
         let mut outputs = plant.simulate(&nalgebra::DVector::zeros(model.order()), &inputs);
@@ -235,7 +330,12 @@ fn sweeps(model: &StateSpace, random: &mut Generator) -> Vec<FlightRecord> {
             let noise = 0.02 * (column.norm_squared() / column.len() as f64).sqrt();
             column.apply(|y| *y += noise * random.normal());
         }
-        FlightRecord { name: format!("sweep {swept}"), time_s: time_s.clone(), inputs, outputs }
+        FlightRecord {
+            name: format!("sweep {swept}"),
+            time_s: time_s.clone(),
+            inputs,
+            outputs,
+        }
     };
     (0..model.inputs()).map(&mut sweep).collect()
 }
@@ -245,7 +345,11 @@ fn assert_identified(inputs: usize, outputs: usize) {
     let mut random = Generator::of(7 + 100 * inputs as u64 + outputs as u64);
     let truth = aircraft(inputs, outputs, &mut random);
     let records = sweeps(&truth, &mut random);
-    let names = |letter: char, count: usize| (0..count).map(|at| format!("{letter}{at}")).collect::<Vec<_>>();
+    let names = |letter: char, count: usize| {
+        (0..count)
+            .map(|at| format!("{letter}{at}"))
+            .collect::<Vec<_>>()
+    };
     let (of_inputs, of_outputs) = (names('u', inputs), names('y', outputs));
     let [of_inputs, of_outputs]: [Vec<&str>; 2] =
         [&of_inputs, &of_outputs].map(|names| names.iter().map(String::as_str).collect());
@@ -253,16 +357,24 @@ fn assert_identified(inputs: usize, outputs: usize) {
     let found = identify(&records, &options, &Sequential, &Unobserved).unwrap();
     let grid = FrequencyGrid::logarithmic(Band::new(1.2, 10.0).unwrap(), 8);
     let response = |dynamics: &Dynamics| PreparedModel::of(dynamics).response(&grid);
-    let (is, expected) = (response(&found.refined.dynamics), response(&Dynamics::StateSpace(truth)));
+    let (is, expected) = (
+        response(&found.refined.dynamics),
+        response(&Dynamics::StateSpace(truth)),
+    );
     for output in 0..outputs {
-        let strongest = (0..inputs).flat_map(|input| expected.curve(Pair::new(output, input))).map(|h| h.norm());
+        let strongest = (0..inputs)
+            .flat_map(|input| expected.curve(Pair::new(output, input)))
+            .map(|h| h.norm());
         let strongest = strongest.fold(0.0, f64::max);
         for input in 0..inputs {
             let pair = Pair::new(output, input);
             for (is, expected) in is.curve(pair).iter().zip(expected.curve(pair)) {
                 // Noise is a fiftieth of an output, whatever input moves it: what is weak is known less well.
                 let error = (is - expected).norm() / expected.norm().max(0.3 * strongest);
-                assert!(error < 0.06, "{inputs} x {outputs}, {pair:?}: {is} for {expected}");
+                assert!(
+                    error < 0.06,
+                    "{inputs} x {outputs}, {pair:?}: {is} for {expected}"
+                );
             }
         }
     }

@@ -4,7 +4,12 @@ use super::*;
 
 /// The names of `signals` in a row: `P, Q and R`.
 pub(super) fn names(signals: &[Signal]) -> String {
-    listed(&signals.iter().map(|signal| signal.name.as_str()).collect::<Vec<_>>())
+    listed(
+        &signals
+            .iter()
+            .map(|signal| signal.name.as_str())
+            .collect::<Vec<_>>(),
+    )
 }
 
 /// Words in a row: `P, Q and R`.
@@ -70,6 +75,10 @@ impl fmt::Display for Gap {
             Cause::Frozen(signals) => write!(f, "{} frozen", names(signals))?,
             Cause::SegmentTooShort(length_s) => write!(f, "only {length_s:.1} s between gaps")?,
         }
-        f.write_str(if self.treatment == Treatment::Bridged { ", bridged" } else { ", left out" })
+        f.write_str(if self.treatment == Treatment::Bridged {
+            ", bridged"
+        } else {
+            ", left out"
+        })
     }
 }

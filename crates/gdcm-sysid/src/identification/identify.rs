@@ -97,11 +97,22 @@ fn check(options: &Options) -> Result<(), IdentificationError> {
         return Err(IdentificationError::OnlyReferences);
     }
     let within = |list: &Option<Vec<usize>>, most: usize| {
-        list.as_ref().is_none_or(|list| !list.is_empty() && list.iter().all(|value| (1..=most).contains(value)))
+        list.as_ref().is_none_or(|list| {
+            !list.is_empty() && list.iter().all(|value| (1..=most).contains(value))
+        })
     };
-    let poles = !options.poles.is_empty() && options.poles.iter().all(|pole| pole.is_finite() && *pole > 0.0);
-    let right = within(&options.orders, HIGHEST_ORDER) && within(&options.pasts, LONGEST_PAST) && poles;
-    if right { Ok(()) } else { Err(IdentificationError::Settings) }
+    let poles = !options.poles.is_empty()
+        && options
+            .poles
+            .iter()
+            .all(|pole| pole.is_finite() && *pole > 0.0);
+    let right =
+        within(&options.orders, HIGHEST_ORDER) && within(&options.pasts, LONGEST_PAST) && poles;
+    if right {
+        Ok(())
+    } else {
+        Err(IdentificationError::Settings)
+    }
 }
 
 /// Uncertainty, bundle and validation of the recommended model.
@@ -115,10 +126,16 @@ fn report(
 ) -> Result<Identification, IdentificationError> {
     let no_model = || data.no_model();
     progress.next(0.8, "uncertainty")?;
-    let Refinement { search, fit, likelihood, .. } = refinement;
+    let Refinement {
+        search,
+        fit,
+        likelihood,
+        ..
+    } = refinement;
     let executor = likelihood.executor;
     let systems = fit.systems(likelihood).ok_or_else(no_model)?;
-    let covariance = ParameterCovariance::of(likelihood, fit, &systems, fit.cost).ok_or_else(no_model)?;
+    let covariance =
+        ParameterCovariance::of(likelihood, fit, &systems, fit.cost).ok_or_else(no_model)?;
     // By way of a reference the cost says nothing: what is known is what the lines as logged tell of this model (M14.15).
     let of_lines = |direct| ParameterCovariance::of_lines(direct, fit).ok_or_else(no_model);
     let logged = data.direct.as_ref().map(of_lines).transpose()?;
@@ -126,31 +143,68 @@ fn report(
     // By way of a reference nothing is fed back, and every record is seen as the same reference shows it.
     let is_direct = options.references == 0;
     // Of inputs that were moved only together nothing tells what is fed back.
-    let is_told = is_direct && !data.cautions.iter().any(IdentificationCaution::is_of_collinear_inputs);
-    let feedback = if is_told { Feedback::of(data, &fit.model, options.band, executor) } else { None };
+    let is_told = is_direct
+        && !data
+            .cautions
+            .iter()
+            .any(IdentificationCaution::is_of_collinear_inputs);
+    let feedback = if is_told {
+        Feedback::of(data, &fit.model, options.band, executor)
+    } else {
+        None
+    };
     let neighbours = search.neighbours();
     let omegas = log_spaced(options.band[0], options.band[1], BAND_POINTS);
-    let bands = known.bands(&fit.model, &neighbours, feedback.as_ref(), &omegas, executor).ok_or_else(no_model)?;
-    let bands = if is_direct { bands } else { data.measured.widened(&bands).ok_or_else(no_model)? };
+    let bands = known
+        .bands(
+            &fit.model,
+            &neighbours,
+            feedback.as_ref(),
+            &omegas,
+            executor,
+        )
+        .ok_or_else(no_model)?;
+    let bands = if is_direct {
+        bands
+    } else {
+        data.measured.widened(&bands).ok_or_else(no_model)?
+    };
     let not_identified = not_identified(&bands);
 
     progress.next(0.88, "models without each record")?;
     let without = without_each_record(likelihood, fit, &systems);
     progress.next(0.93, "validation")?;
     let fits = RecordFits::of(data, &fit.model, &covariance).ok_or_else(no_model)?;
-    let diagnostics = Diagnostics { records, options, data, fit };
+    let diagnostics = Diagnostics {
+        records,
+        options,
+        data,
+        fit,
+    };
     let mut cautions = data.cautions.clone();
     cautions.extend(refinement.caution.clone());
-    let level = feedback.as_ref().map_or(FeedbackLevel::None, Feedback::level);
-    cautions.extend(feedback.as_ref().filter(|_| level > FeedbackLevel::None).map(|of| {
-        let (share, significance) = (of.share, of.significance);
-        IdentificationCaution::Feedback { level, share, significance }
-    }));
+    let level = feedback
+        .as_ref()
+        .map_or(FeedbackLevel::None, Feedback::level);
+    cautions.extend(
+        feedback
+            .as_ref()
+            .filter(|_| level > FeedbackLevel::None)
+            .map(|of| {
+                let (share, significance) = (of.share, of.significance);
+                IdentificationCaution::Feedback {
+                    level,
+                    share,
+                    significance,
+                }
+            }),
+    );
     let mut contrasts = Vec::new();
     if is_direct {
         cautions.extend(diagnostics.adequacy(&fits));
         let first = refinement.before_weighing.as_ref().unwrap_or(fit);
-        let of_records = RecordContrasts::of(&data.likelihood, &data.spectra, first).ok_or_else(no_model)?;
+        let of_records =
+            RecordContrasts::of(&data.likelihood, &data.spectra, first).ok_or_else(no_model)?;
         let contradiction = of_records.caution(level > FeedbackLevel::None, &diagnostics);
         cautions.retain(|of| contradiction.as_ref().is_none_or(|why| !why.explains(of)));
         cautions.extend(contradiction);
@@ -159,23 +213,47 @@ fn report(
     cautions.extend(diagnostics.departures());
     if search.still_falls {
         let narrower = [options.band[0], NARROWER * options.band[1]];
-        cautions.push(IdentificationCaution::OrderLimit { order: search.order, narrower });
+        cautions.push(IdentificationCaution::OrderLimit {
+            order: search.order,
+            narrower,
+        });
     }
     cautions.extend(diagnostics.unidentified_pairs(&not_identified));
     let unstable = fast_unstable_pole(&fit.model, options.highest());
-    cautions.extend(unstable.map(|pole| IdentificationCaution::Unstable { pole, highest: options.highest() }));
+    cautions.extend(unstable.map(|pole| IdentificationCaution::Unstable {
+        pole,
+        highest: options.highest(),
+    }));
 
-    let unrefined = &proposal.starts.get(&search.order).ok_or_else(no_model)?.model;
+    let unrefined = &proposal
+        .starts
+        .get(&search.order)
+        .ok_or_else(no_model)?
+        .model;
     let model = |name: String, method: &str, model: &BlockModel, without: Option<usize>| {
         let dynamics = Dynamics::StateSpace(data.in_units(model)?);
-        let origin = Origin::Identified { method: Some(method.to_owned()), order: Some(model.order()) };
-        let source = Some(Provenance { records: options.fitted(records, without), ..Provenance::default() });
-        Some(Model { source, ..Model::new(name, origin, dynamics) })
+        let origin = Origin::Identified {
+            method: Some(method.to_owned()),
+            order: Some(model.order()),
+        };
+        let source = Some(Provenance {
+            records: options.fitted(records, without),
+            ..Provenance::default()
+        });
+        Some(Model {
+            source,
+            ..Model::new(name, origin, dynamics)
+        })
     };
-    let of_order = |method: &str, of: &BlockModel| model(format!("{method}, order {}", of.order()), method, of, None);
+    let of_order = |method: &str, of: &BlockModel| {
+        model(format!("{method}, order {}", of.order()), method, of, None)
+    };
     let mut refined = of_order(REFINED, &fit.model).ok_or_else(no_model)?;
     refined.bands = Some(Arc::new(bands));
-    let mut bundle: Vec<Model> = neighbours.iter().filter_map(|of| of_order(REFINED, of)).collect();
+    let mut bundle: Vec<Model> = neighbours
+        .iter()
+        .filter_map(|of| of_order(REFINED, of))
+        .collect();
     bundle.extend(without.iter().filter_map(|(record, left)| {
         let name = format!("{REFINED}, without {}", diagnostics.record_name(*record));
         model(name, REFINED, left, Some(*record))
@@ -188,7 +266,9 @@ fn report(
             let settings = ValidationSettings::filtered(options.highest());
             let model = data.in_units(&fit.model).ok_or_else(no_model)?;
             let validation = validate(&model, segments, &settings, executor);
-            validation.map_err(|why| cautions.push(IdentificationCaution::NotValidated(why))).ok()
+            validation
+                .map_err(|why| cautions.push(IdentificationCaution::NotValidated(why)))
+                .ok()
         }
     };
     progress.next(1.0, "done")?;
@@ -201,7 +281,11 @@ fn report(
         stabilisation: proposal.stabilisation,
         laguerre_pole: proposal.laguerre_pole,
         past: proposal.past,
-        criteria: search.criteria.iter().map(|(order, value)| (*order, *value)).collect(),
+        criteria: search
+            .criteria
+            .iter()
+            .map(|(order, value)| (*order, *value))
+            .collect(),
         cost: fits.cost,
         held_out_cost: fits.held_out.map(|(raw, _)| raw),
         held_out_normalised: fits.held_out.map(|(_, normalised)| normalised),
@@ -219,9 +303,13 @@ fn report(
 /// Output and input of the responses that are known too badly in the middle of the band.
 fn not_identified(bands: &ModelBands) -> Vec<(usize, usize)> {
     let (outputs, inputs) = (bands.sd_db().outputs(), bands.sd_db().inputs());
-    let pairs = (0..inputs).flat_map(|input| (0..outputs).map(move |output| Pair { output, input }));
+    let pairs =
+        (0..inputs).flat_map(|input| (0..outputs).map(move |output| Pair { output, input }));
     let is_wide = |pair: &Pair| bands.sd_db()[*pair][bands.omega().len() / 2] > NOT_IDENTIFIED;
-    pairs.filter(is_wide).map(|pair| (pair.output, pair.input)).collect()
+    pairs
+        .filter(is_wide)
+        .map(|pair| (pair.output, pair.input))
+        .collect()
 }
 
 // What an identification is asked for.
@@ -263,19 +351,31 @@ impl Options {
 
     /// Inputs of the model.
     pub(super) fn inputs(&self) -> usize {
-        self.preparation.inputs.len().saturating_sub(self.references)
+        self.preparation
+            .inputs
+            .len()
+            .saturating_sub(self.references)
     }
 
     /// Names of the records that models are fitted to, but for the one of the number `without`.
     pub(super) fn fitted(&self, records: &[FlightRecord], without: Option<usize>) -> Vec<String> {
         let fitted = |index: &usize| !self.held_out.contains(index) && Some(*index) != without;
-        (0..records.len()).filter(fitted).map(|index| records[index].name.clone()).collect()
+        (0..records.len())
+            .filter(fitted)
+            .map(|index| records[index].name.clone())
+            .collect()
     }
 
     /// A channel by its place, with its name.
     pub(super) fn signal(&self, role: ChannelSide, index: usize) -> Signal {
         let channels = role.of(&self.preparation.inputs, &self.preparation.outputs);
-        Signal { role, index, name: channels.get(index).map_or_else(String::new, |channel| channel.name.clone()) }
+        Signal {
+            role,
+            index,
+            name: channels
+                .get(index)
+                .map_or_else(String::new, |channel| channel.name.clone()),
+        }
     }
 
     /// Lowest line used \[rad/s\]: half the lower end of the band.
@@ -307,7 +407,11 @@ impl SearchSpace {
         options.orders = said(&self.orders).or(options.orders.take());
         options.pasts = said(&self.pasts).or(options.pasts.take());
         if !self.poles.is_empty() {
-            options.poles = self.poles.iter().map(|pole| pole / options.band[1]).collect();
+            options.poles = self
+                .poles
+                .iter()
+                .map(|pole| pole / options.band[1])
+                .collect();
         }
     }
 }
@@ -408,7 +512,9 @@ pub enum IdentificationError {
     #[error("{} move as one in every record: leave out all but one, or fly them apart", names(.0))]
     InputsDepend(Vec<Signal>),
     /// Outputs whose noise cannot be told apart.
-    #[error("the outputs depend on each other so closely that their noise cannot be weighed: leave out the copies")]
+    #[error(
+        "the outputs depend on each other so closely that their noise cannot be weighed: leave out the copies"
+    )]
     OutputsDepend,
     /// No model could be made.
     #[error(

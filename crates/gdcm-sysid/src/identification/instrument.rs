@@ -49,17 +49,32 @@ impl Instrument {
         outputs: usize,
         executor: &dyn Executor,
     ) -> Result<Self, LocalPolynomialError> {
-        let longest =
-            lines.iter().max_by(|a, b| a.duration_s.total_cmp(&b.duration_s)).ok_or(LocalPolynomialError::Nothing)?;
-        let within: Vec<f64> =
-            longest.omega.iter().copied().filter(|omega| (narrow[0]..=narrow[1]).contains(omega)).collect();
+        let longest = lines
+            .iter()
+            .max_by(|a, b| a.duration_s.total_cmp(&b.duration_s))
+            .ok_or(LocalPolynomialError::Nothing)?;
+        let within: Vec<f64> = longest
+            .omega
+            .iter()
+            .copied()
+            .filter(|omega| (narrow[0]..=narrow[1]).contains(omega))
+            .collect();
         let fits = local_fits(lines, &within, HALF_WIDTH, executor)?;
-        let points: Vec<InstrumentPoint> = fits.iter().map(|fit| InstrumentPoint::of(fit, outputs)).collect();
+        let points: Vec<InstrumentPoint> = fits
+            .iter()
+            .map(|fit| InstrumentPoint::of(fit, outputs))
+            .collect();
         let shown = |lines: &Spectrum| seen(&lines.between(narrow[0], narrow[1]), &points, outputs);
-        let spectra = lines.iter().map(shown).filter(|lines| !lines.omega.is_empty()).collect();
+        let spectra = lines
+            .iter()
+            .map(shown)
+            .filter(|lines| !lines.omega.is_empty())
+            .collect();
         Ok(Self {
             spectra,
-            measured: ResponseEstimate { points: points.into_iter().map(|point| point.estimate).collect() },
+            measured: ResponseEstimate {
+                points: points.into_iter().map(|point| point.estimate).collect(),
+            },
         })
     }
 }
@@ -68,7 +83,10 @@ impl InstrumentPoint {
     fn of(fit: &LocalFit, outputs: usize) -> Self {
         let gamma = fit.response();
         let inputs = gamma.nrows() - outputs;
-        let (of_outputs, of_inputs) = (gamma.rows(0, outputs).into_owned(), gamma.rows(outputs, inputs).into_owned());
+        let (of_outputs, of_inputs) = (
+            gamma.rows(0, outputs).into_owned(),
+            gamma.rows(outputs, inputs).into_owned(),
+        );
         let response = &of_outputs * pseudo_inverse(&of_inputs);
         // [I, -G] Cov N [I, -G]'.
         let mut left = DMatrix::zeros(outputs, outputs + inputs);
@@ -82,7 +100,9 @@ impl InstrumentPoint {
         let through = inverse.adjoint() * &spread * &inverse;
         let estimate = EstimatePoint {
             omega: fit.window.omega,
-            variance: DMatrix::from_fn(outputs, inputs, |o, i| noise[(o, o)] * through[(i, i)].re.max(0.0)),
+            variance: DMatrix::from_fn(outputs, inputs, |o, i| {
+                noise[(o, o)] * through[(i, i)].re.max(0.0)
+            }),
             noise,
             power: DVector::from_fn(outputs, |o, _| fit.power()[o]),
             coherence: DVector::from_fn(outputs, |o, _| coherence[o]),
@@ -92,7 +112,11 @@ impl InstrumentPoint {
             freedom: fit.freedom,
             response,
         };
-        Self { gamma, spread, estimate }
+        Self {
+            gamma,
+            spread,
+            estimate,
+        }
     }
 }
 
@@ -105,14 +129,22 @@ impl ResponseEstimate {
             PairTable::from_fn(table.outputs(), table.inputs(), |pair| {
                 let coherence = |omega: f64| {
                     let (before, after, share) = between(&omegas, omega);
-                    let at = |index: usize| self.points[index].partial_coherence[(pair.output, pair.input)];
+                    let at = |index: usize| {
+                        self.points[index].partial_coherence[(pair.output, pair.input)]
+                    };
                     (1.0 - share) * at(before) + share * at(after)
                 };
                 let sds = table[pair].iter().zip(bands.omega());
-                sds.map(|(sd, omega)| sd / coherence(*omega).clamp(LEAST_COHERENCE, 1.0).sqrt()).collect()
+                sds.map(|(sd, omega)| sd / coherence(*omega).clamp(LEAST_COHERENCE, 1.0).sqrt())
+                    .collect()
             })
         };
-        ModelBands::new(bands.omega().to_vec(), widened(bands.sd_db()), widened(bands.sd_deg())).ok()
+        ModelBands::new(
+            bands.omega().to_vec(),
+            widened(bands.sd_db()),
+            widened(bands.sd_deg()),
+        )
+        .ok()
     }
 }
 
@@ -124,8 +156,9 @@ fn seen(lines: &Spectrum, points: &[InstrumentPoint], outputs: usize) -> Spectru
         let (before, after, share) = between(&omegas, at);
         let (one, other) = (&points[before], &points[after]);
         let reference = lines.inputs.column(k);
-        let leverage =
-            |point: &InstrumentPoint| (reference.transpose() * &point.spread * reference.map(|r| r.conj()))[0].re;
+        let leverage = |point: &InstrumentPoint| {
+            (reference.transpose() * &point.spread * reference.map(|r| r.conj()))[0].re
+        };
         if (1.0 - share) * leverage(one) + share * leverage(other) >= LEVERAGE {
             continue;
         }
@@ -133,15 +166,27 @@ fn seen(lines: &Spectrum, points: &[InstrumentPoint], outputs: usize) -> Spectru
         omega.push(at);
         all.push(gamma * reference);
     }
-    let inputs = points.first().map_or(0, |point| point.gamma.nrows() - outputs);
-    let rows = |first: usize, count: usize| DMatrix::from_fn(count, all.len(), |row, k| all[k][first + row]);
-    Spectrum { inputs: rows(outputs, inputs), outputs: rows(0, outputs), omega, ..lines.clone() }
+    let inputs = points
+        .first()
+        .map_or(0, |point| point.gamma.nrows() - outputs);
+    let rows = |first: usize, count: usize| {
+        DMatrix::from_fn(count, all.len(), |row, k| all[k][first + row])
+    };
+    Spectrum {
+        inputs: rows(outputs, inputs),
+        outputs: rows(0, outputs),
+        omega,
+        ..lines.clone()
+    }
 }
 
 /// The pseudo-inverse, singular values below a share of the greatest left out; zero where it cannot be found.
 fn pseudo_inverse(matrix: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
     let none = || DMatrix::zeros(matrix.ncols(), matrix.nrows());
-    let Some(svd) = matrix.clone().try_svd(true, true, f64::EPSILON, 10_000) else { return none() };
+    let Some(svd) = matrix.clone().try_svd(true, true, f64::EPSILON, 10_000) else {
+        return none();
+    };
     let least = TOLERANCE * svd.singular_values.max();
-    svd.pseudo_inverse(least.max(f64::MIN_POSITIVE)).unwrap_or_else(|_| none())
+    svd.pseudo_inverse(least.max(f64::MIN_POSITIVE))
+        .unwrap_or_else(|_| none())
 }

@@ -8,7 +8,10 @@ use serde_json::Value;
 
 /// The whole file.
 pub(super) fn answers() -> Value {
-    serde_json::from_str(include_str!("../../../../tests/data/identification-known-answers.json")).unwrap()
+    serde_json::from_str(include_str!(
+        "../../../../tests/data/identification-known-answers.json"
+    ))
+    .unwrap()
 }
 
 /// A number.
@@ -34,28 +37,50 @@ pub(super) fn complex_matrix(value: &Value) -> DMatrix<Complex<f64>> {
 
 /// Complex matrices, one for each frequency.
 pub(super) fn response(value: &Value) -> Vec<DMatrix<Complex<f64>>> {
-    let part = |name: &str| value[name].as_array().unwrap().iter().map(matrix).collect::<Vec<_>>();
-    part("re").iter().zip(part("im")).map(|(re, im)| re.zip_map(&im, Complex::new)).collect()
+    let part = |name: &str| {
+        value[name]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(matrix)
+            .collect::<Vec<_>>()
+    };
+    part("re")
+        .iter()
+        .zip(part("im"))
+        .map(|(re, im)| re.zip_map(&im, Complex::new))
+        .collect()
 }
 
 /// The lines of all records of a case, of noise one.
 pub(super) fn known_records(known: &Value) -> Likelihood<'static> {
-    let segments = known["records"].as_array().unwrap().iter().enumerate().map(|(record, known)| {
-        let spectrum = Spectrum {
-            record,
-            duration_s: number(&known["T"]),
-            omega: numbers(&known["w"]),
-            inputs: complex_matrix(&known["U"]).transpose(),
-            outputs: complex_matrix(&known["Y"]).transpose(),
-        };
-        let weights = vec![DMatrix::identity(2, 2); spectrum.omega.len()];
-        SpectralLines::weighted(&spectrum, weights)
-    });
-    Likelihood { segments: segments.collect(), executor: &Sequential }
+    let segments =
+        known["records"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .enumerate()
+            .map(|(record, known)| {
+                let spectrum = Spectrum {
+                    record,
+                    duration_s: number(&known["T"]),
+                    omega: numbers(&known["w"]),
+                    inputs: complex_matrix(&known["U"]).transpose(),
+                    outputs: complex_matrix(&known["Y"]).transpose(),
+                };
+                let weights = vec![DMatrix::identity(2, 2); spectrum.omega.len()];
+                SpectralLines::weighted(&spectrum, weights)
+            });
+    Likelihood {
+        segments: segments.collect(),
+        executor: &Sequential,
+    }
 }
 
 /// The response of a model at a frequency.
 pub(super) fn response_at(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
     let response = gdcm_model::response::evaluate(model, &[omega]);
-    DMatrix::from_fn(model.outputs(), model.inputs(), |output, input| response.curve(Pair::new(output, input))[0])
+    DMatrix::from_fn(model.outputs(), model.inputs(), |output, input| {
+        response.curve(Pair::new(output, input))[0]
+    })
 }

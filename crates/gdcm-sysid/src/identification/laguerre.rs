@@ -28,7 +28,10 @@ impl LaguerreBank {
     /// The filters with the pole `-pole` rad/s for samples every `sample_time_s`.
     pub(super) fn new(pole: f64, sample_time_s: f64) -> Self {
         let c = 2.0 / sample_time_s;
-        Self { gain: (2.0 * pole).sqrt() / (pole + c), alpha: (pole - c) / (pole + c) }
+        Self {
+            gain: (2.0 * pole).sqrt() / (pole + c),
+            alpha: (pole - c) / (pole + c),
+        }
     }
 
     /// Projections at every sample of a signal that ends near 0, one column for each of k = 0 ... `past`.
@@ -36,7 +39,11 @@ impl LaguerreBank {
         let samples = signal.len();
         let mut projections = DMatrix::zeros(samples, past + 1);
         let (mut before, mut state) = (0.0, 0.0);
-        for (&now, to) in signal.iter().zip(projections.column_mut(0).iter_mut()).rev() {
+        for (&now, to) in signal
+            .iter()
+            .zip(projections.column_mut(0).iter_mut())
+            .rev()
+        {
             state = self.gain * (now + before) - self.alpha * state;
             before = now;
             *to = state;
@@ -45,7 +52,11 @@ impl LaguerreBank {
         for k in 1..=past {
             let (done, rest) = all.split_at_mut(k * samples);
             let (mut before, mut state) = (0.0, 0.0);
-            for (&now, to) in done[(k - 1) * samples..].iter().zip(&mut rest[..samples]).rev() {
+            for (&now, to) in done[(k - 1) * samples..]
+                .iter()
+                .zip(&mut rest[..samples])
+                .rev()
+            {
                 state = self.alpha * (now - state) + before;
                 before = now;
                 *to = state;
@@ -92,13 +103,21 @@ impl Projections {
         let channels = inputs + outputs;
         let mut rows = DMatrix::zeros(instants.len(), (self.past + 1) * channels);
         let bank = LaguerreBank::new(self.pole, segment.sample_time_s);
-        for (channel, signal) in segment.inputs.column_iter().chain(segment.outputs.column_iter()).enumerate() {
+        for (channel, signal) in segment
+            .inputs
+            .column_iter()
+            .chain(segment.outputs.column_iter())
+            .enumerate()
+        {
             let end = signal.iter().next_back().copied().unwrap_or_default();
             let signal: Vec<f64> = signal.iter().map(|sample| sample - end).collect();
             let projections = bank.projections(&signal, self.past);
             for (k, projection) in projections.column_iter().enumerate() {
                 let mut column = rows.column_mut(k * channels + channel);
-                column.iter_mut().zip(&instants).for_each(|(to, &instant)| *to = projection[instant]);
+                column
+                    .iter_mut()
+                    .zip(&instants)
+                    .for_each(|(to, &instant)| *to = projection[instant]);
             }
         }
         rows
@@ -111,7 +130,9 @@ impl Projections {
         /// Two parts keep two cores busy with three poles; merging a further one costs as much as a segment of 6 s.
         const PARTS: usize = 2;
         let part = |segments: &[Segment]| {
-            let channels = segments.first().map_or(0, |segment| segment.inputs.ncols() + segment.outputs.ncols());
+            let channels = segments.first().map_or(0, |segment| {
+                segment.inputs.ncols() + segment.outputs.ncols()
+            });
             let mut factor = TriangularFactor::empty((self.past + 1) * channels);
             for segment in segments {
                 let mut rows = self.rows(segment);
@@ -120,8 +141,15 @@ impl Projections {
             }
             factor
         };
-        let mut parts = each(executor, segments.chunks(segments.len().div_ceil(PARTS).max(1)), part).into_iter();
-        let Some(mut factor) = parts.next() else { return TriangularFactor::empty(0) };
+        let mut parts = each(
+            executor,
+            segments.chunks(segments.len().div_ceil(PARTS).max(1)),
+            part,
+        )
+        .into_iter();
+        let Some(mut factor) = parts.next() else {
+            return TriangularFactor::empty(0);
+        };
         for other in parts {
             factor.append(other.matrix());
         }
@@ -160,7 +188,13 @@ pub(super) fn continuous(pole: f64, law: &StateSpace) -> Option<StateSpace> {
     let m = (a + &identity).try_inverse()?;
     let (mb, cm) = (&m * b, c * &m);
     let root = (2.0 * pole).sqrt();
-    StateSpace::new(&m * (a - &identity) * pole, &mb * root, cm * root, d - c * mb).ok()
+    StateSpace::new(
+        &m * (a - &identity) * pole,
+        &mb * root,
+        cm * root,
+        d - c * mb,
+    )
+    .ok()
 }
 
 // The triangular factor of a tall matrix that arrives in blocks of rows.
@@ -214,8 +248,12 @@ impl TriangularFactor {
             if rest == 0 {
                 return;
             }
-            let (panel, mut right) = rows.columns_range_pair_mut(first..first + width, first + width..columns);
-            let mut w = self.0.view((first, first + width), (width, rest)).into_owned();
+            let (panel, mut right) =
+                rows.columns_range_pair_mut(first..first + width, first + width..columns);
+            let mut w = self
+                .0
+                .view((first, first + width), (width, rest))
+                .into_owned();
             w.gemm(1.0, &panel.transpose(), &right, 1.0);
             let w = t.transpose() * w;
             let mut upper = self.0.view_mut((first, first + width), (width, rest));
@@ -225,7 +263,12 @@ impl TriangularFactor {
     }
 
     /// Leaves the vectors of the reflectors in the panel's columns of `rows`; gives `T`.
-    fn reflect_panel(&mut self, rows: &mut DMatrix<f64>, first: usize, width: usize) -> DMatrix<f64> {
+    fn reflect_panel(
+        &mut self,
+        rows: &mut DMatrix<f64>,
+        first: usize,
+        width: usize,
+    ) -> DMatrix<f64> {
         let mut t = DMatrix::zeros(width, width);
         for j in 0..width {
             let column = first + j;
@@ -245,7 +288,8 @@ impl TriangularFactor {
                 *entry -= w;
                 other.axpy(-w, &v, 1.0);
             }
-            let products = DVector::from_fn(j, |k, _| rows.column(first + k).dot(&rows.column(column)));
+            let products =
+                DVector::from_fn(j, |k, _| rows.column(first + k).dot(&rows.column(column)));
             let above = t.view((0, 0), (j, j)) * products * -tau;
             t.view_mut((0, j), (j, 1)).copy_from(&above);
             t[(j, j)] = tau;
@@ -256,8 +300,16 @@ impl TriangularFactor {
 
 /// `X = argmin |A X - Y|^2 + ridge |N X|^2` from the triangular factor of `[A Y]`, `N` the lengths of the columns of `A`, of which
 /// there are `regressors`; none where they depend on each other.
-pub(super) fn ridge_solution(factor: DMatrixView<'_, f64>, regressors: usize, ridge: f64) -> Option<DMatrix<f64>> {
-    let lengths: Vec<f64> = factor.column_iter().take(regressors).map(|column| column.norm()).collect();
+pub(super) fn ridge_solution(
+    factor: DMatrixView<'_, f64>,
+    regressors: usize,
+    ridge: f64,
+) -> Option<DMatrix<f64>> {
+    let lengths: Vec<f64> = factor
+        .column_iter()
+        .take(regressors)
+        .map(|column| column.norm())
+        .collect();
     if lengths.contains(&0.0) {
         return None;
     }
@@ -271,14 +323,24 @@ pub(super) fn ridge_solution(factor: DMatrixView<'_, f64>, regressors: usize, ri
         stacked.append(&rows);
     }
     let targets = factor.ncols() - regressors;
-    let mut solution = stacked.0.view((0, regressors), (regressors, targets)).into_owned();
-    if !stacked.0.view((0, 0), (regressors, regressors)).solve_upper_triangular_mut(&mut solution) {
+    let mut solution = stacked
+        .0
+        .view((0, regressors), (regressors, targets))
+        .into_owned();
+    if !stacked
+        .0
+        .view((0, 0), (regressors, regressors))
+        .solve_upper_triangular_mut(&mut solution)
+    {
         return None;
     }
     for (mut row, length) in solution.row_iter_mut().zip(&lengths) {
         row.unscale_mut(*length);
     }
-    solution.iter().all(|entry| entry.is_finite()).then_some(solution)
+    solution
+        .iter()
+        .all(|entry| entry.is_finite())
+        .then_some(solution)
 }
 
 /// `X = argmin |A X - Y|^2`, by a triangular factor of the scaled columns; none where those of `A` depend on each other.
@@ -306,7 +368,9 @@ mod tests {
             for (sample, expected) in known["expected"].as_array().unwrap().iter().enumerate() {
                 for k in 0..count {
                     // Independent numpy code; the tolerance stands in its file.
-                    assert!((projections[(sample, k)] - number(&expected[k][channel])).abs() < 1e-12);
+                    assert!(
+                        (projections[(sample, k)] - number(&expected[k][channel])).abs() < 1e-12
+                    );
                 }
             }
         }
@@ -318,7 +382,12 @@ mod tests {
         let of = |name: &str| matrix(&known[name]);
         let matrices = StateSpace::new(of("Ao"), of("Bo"), of("Co"), of("Do")).unwrap();
         let model = continuous(number(&known["a"]), &matrices).unwrap();
-        for (found, name) in [(model.a(), "A"), (model.b(), "B"), (model.c(), "C"), (model.d(), "D")] {
+        for (found, name) in [
+            (model.a(), "A"),
+            (model.b(), "B"),
+            (model.c(), "C"),
+            (model.d(), "D"),
+        ] {
             // Independent numpy code; the tolerance stands in its file.
             assert!((found - of(name)).amax() < 1e-12, "{name}");
         }
@@ -332,7 +401,9 @@ mod tests {
     }
 
     fn sample(rows: usize, columns: usize) -> DMatrix<f64> {
-        DMatrix::from_fn(rows, columns, |row, column| ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin())
+        DMatrix::from_fn(rows, columns, |row, column| {
+            ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin()
+        })
     }
 
     #[test]
@@ -344,7 +415,11 @@ mod tests {
         let at_once = rows.qr().r();
         for (row, expected) in at_once.row_iter().enumerate() {
             let found = factor.matrix().row(row);
-            let sign = if found[row] * expected[row] < 0.0 { -1.0 } else { 1.0 };
+            let sign = if found[row] * expected[row] < 0.0 {
+                -1.0
+            } else {
+                1.0
+            };
             // Orthogonal transformations: the error is a few roundings of the norm of the matrix, 100.
             assert!((found * sign - expected).norm() < 1e-11, "row {row}");
         }

@@ -51,7 +51,11 @@ pub(super) struct SegmentCost {
 impl SpectralLines {
     /// The lines of a spectrum in scaled units with the weights of `noise`; none where it has no weight.
     pub(super) fn new(spectrum: &Spectrum, noise: &NoiseCovariance) -> Option<Self> {
-        let weights = spectrum.omega.iter().map(|&omega| noise.weight(omega)).collect::<Option<Vec<_>>>()?;
+        let weights = spectrum
+            .omega
+            .iter()
+            .map(|&omega| noise.weight(omega))
+            .collect::<Option<Vec<_>>>()?;
         Some(Self::weighted(spectrum, weights))
     }
 
@@ -59,12 +63,18 @@ impl SpectralLines {
     pub(super) fn weighted(spectrum: &Spectrum, weights: Vec<DMatrix<f64>>) -> Self {
         let (outputs, lines) = spectrum.outputs.shape();
         let mut whitened = DMatrix::zeros(outputs, lines);
-        let (mut constant, mut drift) =
-            (DMatrix::zeros(outputs * lines, outputs), DMatrix::zeros(outputs * lines, outputs));
+        let (mut constant, mut drift) = (
+            DMatrix::zeros(outputs * lines, outputs),
+            DMatrix::zeros(outputs * lines, outputs),
+        );
         for (k, weight) in weights.iter().enumerate() {
-            whiten(weight, spectrum.outputs.column(k).as_slice(), |o, value| whitened[(o, k)] = value);
+            whiten(weight, spectrum.outputs.column(k).as_slice(), |o, value| {
+                whitened[(o, k)] = value
+            });
             constant.rows_mut(k * outputs, outputs).copy_from(weight);
-            drift.rows_mut(k * outputs, outputs).copy_from(&(weight / spectrum.omega[k]));
+            drift
+                .rows_mut(k * outputs, outputs)
+                .copy_from(&(weight / spectrum.omega[k]));
         }
         Self {
             record: spectrum.record,
@@ -81,7 +91,11 @@ impl SpectralLines {
     pub(super) fn with_noise(&self, factor: f64) -> Self {
         let share = 1.0 / factor.sqrt();
         let weights = self.weights.iter().map(|weight| weight * share).collect();
-        Self { outputs: self.outputs.scale(share), weights, ..self.clone() }
+        Self {
+            outputs: self.outputs.scale(share),
+            weights,
+            ..self.clone()
+        }
     }
 
     /// Degrees of freedom for a model of an order: real numbers measured less the transient's.
@@ -100,9 +114,14 @@ impl SpectralLines {
             multiply(&model.b, input.as_slice(), &mut state);
             multiply(&model.d, input.as_slice(), &mut output);
             for (column, x) in cr.chunks_exact(outputs).zip(&state) {
-                column.iter().zip(&mut output).for_each(|(c, y)| *y += c * x);
+                column
+                    .iter()
+                    .zip(&mut output)
+                    .for_each(|(c, y)| *y += c * x);
             }
-            whiten(&self.weights[k], &output, |o, value| e0[o] = self.outputs[(o, k)] - value);
+            whiten(&self.weights[k], &output, |o, value| {
+                e0[o] = self.outputs[(o, k)] - value
+            });
         })
     }
 
@@ -112,7 +131,9 @@ impl SpectralLines {
         model: &BlockModel,
         column: &DMatrix<Complex<f64>>,
     ) -> Option<DMatrix<Complex<f64>>> {
-        let left = self.eliminated(model, |k, _, e0| e0.copy_from_slice(column.column(k).as_slice()))?;
+        let left = self.eliminated(model, |k, _, e0| {
+            e0.copy_from_slice(column.column(k).as_slice())
+        })?;
         Some(left.residual)
     }
 
@@ -126,8 +147,10 @@ impl SpectralLines {
         let (outputs, lines) = self.outputs.shape();
         let order = model.order();
         // Real and imaginary parts of [T e0], one row for each output of each line.
-        let (mut real, mut imaginary) =
-            (DMatrix::zeros(outputs * lines, order + 1), DMatrix::zeros(outputs * lines, order + 1));
+        let (mut real, mut imaginary) = (
+            DMatrix::zeros(outputs * lines, order + 1),
+            DMatrix::zeros(outputs * lines, order + 1),
+        );
         let mut cr = vec![Complex::default(); outputs * order];
         let mut e0 = vec![Complex::default(); outputs];
         for (k, (&omega, weight)) in self.omega.iter().zip(&self.weights).enumerate() {
@@ -140,7 +163,9 @@ impl SpectralLines {
             for (state, values) in cr.chunks_exact(outputs).enumerate() {
                 whiten(weight, values, |o, value| put(o, state, value));
             }
-            e0.iter().enumerate().for_each(|(o, value)| put(o, order, *value));
+            e0.iter()
+                .enumerate()
+                .for_each(|(o, value)| put(o, order, *value));
         }
         project_out(&self.constant, &mut real);
         project_out(&self.drift, &mut imaginary);
@@ -152,9 +177,16 @@ impl SpectralLines {
         let left = |part: &DMatrix<f64>| part.column(order) - part.columns(0, order) * &transient;
         let (real, imaginary) = (left(&real), left(&imaginary));
         let cost = real.norm_squared() + imaginary.norm_squared();
-        let residual = real.iter().zip(imaginary.iter()).map(|(re, im)| Complex::new(*re, *im));
+        let residual = real
+            .iter()
+            .zip(imaginary.iter())
+            .map(|(re, im)| Complex::new(*re, *im));
         let residual = DMatrix::from_iterator(outputs, lines, residual);
-        cost.is_finite().then_some(SegmentCost { cost, transient, residual })
+        cost.is_finite().then_some(SegmentCost {
+            cost,
+            transient,
+            residual,
+        })
     }
 }
 
@@ -170,12 +202,17 @@ pub(super) struct Likelihood<'a> {
 impl Likelihood<'_> {
     /// `N`: degrees of freedom for a model of an order.
     pub(super) fn freedom(&self, order: usize) -> usize {
-        self.segments.iter().map(|segment| segment.freedom(order)).sum()
+        self.segments
+            .iter()
+            .map(|segment| segment.freedom(order))
+            .sum()
     }
 
     /// Each segment's part of the cost; none where one is not finite.
     pub(super) fn parts(&self, model: &BlockModel) -> Option<Vec<SegmentCost>> {
-        each(self.executor, &self.segments, |segment| segment.cost(model)).into_iter().collect()
+        each(self.executor, &self.segments, |segment| segment.cost(model))
+            .into_iter()
+            .collect()
     }
 
     /// `J`, summed in the order of the segments.
@@ -194,14 +231,26 @@ impl Likelihood<'_> {
     /// The sum of the systems of the segments of one record, where `systems` are those of all segments.
     pub(super) fn system_of(&self, record: usize, systems: &[NormalSystem]) -> NormalSystem {
         let parameters = systems.first().map_or(0, |system| system.gradient.len());
-        let of_segments = self.segments.iter().zip(systems).filter(|(segment, _)| segment.record == record);
+        let of_segments = self
+            .segments
+            .iter()
+            .zip(systems)
+            .filter(|(segment, _)| segment.record == record);
         NormalSystem::sum(parameters, of_segments.map(|(_, system)| system))
     }
 
     /// The segments of all records but one.
     pub(super) fn without(&self, record: usize) -> Self {
-        let segments = self.segments.iter().filter(|segment| segment.record != record).cloned().collect();
-        Self { segments, executor: self.executor }
+        let segments = self
+            .segments
+            .iter()
+            .filter(|segment| segment.record != record)
+            .cloned()
+            .collect();
+        Self {
+            segments,
+            executor: self.executor,
+        }
     }
 }
 
@@ -209,12 +258,19 @@ impl Likelihood<'_> {
 fn multiply(a: &DMatrix<f64>, x: &[Complex<f64>], y: &mut [Complex<f64>]) {
     y.fill(Complex::default());
     for (column, x) in a.column_iter().zip(x) {
-        column.iter().zip(y.iter_mut()).for_each(|(a, y)| *y += x * *a);
+        column
+            .iter()
+            .zip(y.iter_mut())
+            .for_each(|(a, y)| *y += x * *a);
     }
 }
 
 /// `W x` for a lower triangular `W`, entry by entry to `take`.
-pub(super) fn whiten(weight: &DMatrix<f64>, x: &[Complex<f64>], mut take: impl FnMut(usize, Complex<f64>)) {
+pub(super) fn whiten(
+    weight: &DMatrix<f64>,
+    x: &[Complex<f64>],
+    mut take: impl FnMut(usize, Complex<f64>),
+) {
     for o in 0..x.len() {
         let mut sum = Complex::default();
         for (k, x) in x.iter().enumerate().take(o + 1) {
@@ -232,9 +288,17 @@ fn project_out(basis: &DMatrix<f64>, columns: &mut DMatrix<f64>) {
 
 /// Scales the columns that a Gram matrix is of to length one, and gives the factors; 0 is that of a column of zeros.
 pub(super) fn scale_columns(gram: &mut DMatrix<f64>) -> DVector<f64> {
-    let scales = gram.diagonal().map(|square| if square > 0.0 { 1.0 / square.sqrt() } else { 0.0 });
+    let scales = gram.diagonal().map(|square| {
+        if square > 0.0 {
+            1.0 / square.sqrt()
+        } else {
+            0.0
+        }
+    });
     let size = scales.len();
-    gram.iter_mut().enumerate().for_each(|(at, entry)| *entry *= scales[at % size] * scales[at / size]);
+    gram.iter_mut()
+        .enumerate()
+        .for_each(|(at, entry)| *entry *= scales[at % size] * scales[at / size]);
     scales
 }
 
@@ -247,7 +311,9 @@ pub(super) fn pseudo_inverse_root(mut gram: DMatrix<f64>, dependent: f64) -> Opt
     }
     let eigen = gram.try_symmetric_eigen(f64::EPSILON, 10_000)?;
     let least = dependent * eigen.eigenvalues.max();
-    let kept: Vec<usize> = (0..scales.len()).filter(|&k| eigen.eigenvalues[k] > least).collect();
+    let kept: Vec<usize> = (0..scales.len())
+        .filter(|&k| eigen.eigenvalues[k] > least)
+        .collect();
     let mut root = eigen.eigenvectors.select_columns(&kept);
     for (mut column, &k) in root.column_iter_mut().zip(&kept) {
         column.component_mul_assign(&scales);

@@ -85,11 +85,18 @@ pub(super) fn local_fits(
         return Err(LocalPolynomialError::ChannelsDiffer(other.record));
     }
     let finite = |lines: &DMatrix<Complex<f64>>| lines.norm_squared().is_finite();
-    let finite = spectra.iter().all(|s| finite(&s.inputs) && finite(&s.outputs));
+    let finite = spectra
+        .iter()
+        .all(|s| finite(&s.inputs) && finite(&s.outputs));
     if !finite || !omegas.iter().all(|w| w.is_finite() && *w > 0.0) {
         return Err(LocalPolynomialError::NotFinite);
     }
-    let fit = |&omega: &f64| Ok(LocalFit::of(spectra, Window::around(spectra, omega, share)?));
+    let fit = |&omega: &f64| {
+        Ok(LocalFit::of(
+            spectra,
+            Window::around(spectra, omega, share)?,
+        ))
+    };
     each(executor, omegas, fit).into_iter().collect()
 }
 
@@ -116,13 +123,27 @@ impl Window {
         with(TERMS).or_else(|_| with(FEWER_TERMS))
     }
 
-    fn with_terms(spectra: &[Spectrum], omega: f64, share: f64, terms: usize) -> Result<Self, LocalPolynomialError> {
+    fn with_terms(
+        spectra: &[Spectrum],
+        omega: f64,
+        share: f64,
+        terms: usize,
+    ) -> Result<Self, LocalPolynomialError> {
         let first = &spectra[0];
         let (inputs, outputs) = (first.inputs.nrows(), first.outputs.nrows());
-        let spare = if terms == TERMS { SPARE_LINES.0 } else { SPARE_LINES.1 };
-        let all: Vec<f64> =
-            spectra.iter().flat_map(|s| s.omega.first().into_iter().chain(s.omega.last()).copied()).collect();
-        let farthest = all.iter().map(|line| (line - omega).abs()).fold(0.0, f64::max);
+        let spare = if terms == TERMS {
+            SPARE_LINES.0
+        } else {
+            SPARE_LINES.1
+        };
+        let all: Vec<f64> = spectra
+            .iter()
+            .flat_map(|s| s.omega.first().into_iter().chain(s.omega.last()).copied())
+            .collect();
+        let farthest = all
+            .iter()
+            .map(|line| (line - omega).abs())
+            .fold(0.0, f64::max);
         let (mut half_width, mut wider) = (HALF_WIDTH.0.max(share * omega), WIDER.0);
         loop {
             let window = Self::of_width(spectra, omega, half_width, terms);
@@ -132,7 +153,10 @@ impl Window {
                 return Ok(window);
             }
             if half_width >= farthest {
-                return Err(LocalPolynomialError::TooFewLines { lines: window.count, needed });
+                return Err(LocalPolynomialError::TooFewLines {
+                    lines: window.count,
+                    needed,
+                });
             }
             half_width *= wider;
             wider = WIDER.1;
@@ -142,13 +166,27 @@ impl Window {
     fn of_width(spectra: &[Spectrum], omega: f64, half_width: f64, terms: usize) -> Self {
         let inside = |s: &Spectrum| {
             let from = s.omega.partition_point(|&w| w < omega - half_width);
-            let to = s.omega.partition_point(|&w| w <= omega + half_width).max(from);
-            if to - from > terms { (from, to) } else { (from, from) }
+            let to = s
+                .omega
+                .partition_point(|&w| w <= omega + half_width)
+                .max(from);
+            if to - from > terms {
+                (from, to)
+            } else {
+                (from, from)
+            }
         };
         let lines: Vec<_> = spectra.iter().map(inside).collect();
         let count = lines.iter().map(|(from, to)| to - from).sum();
         let transients = terms * lines.iter().filter(|(from, to)| to > from).count();
-        Self { omega, half_width, terms, lines, count, transients }
+        Self {
+            omega,
+            half_width,
+            terms,
+            lines,
+            count,
+            transients,
+        }
     }
 }
 
@@ -171,7 +209,14 @@ impl LocalFit {
         let (inputs, outputs) = (spectra[0].inputs.nrows(), spectra[0].outputs.nrows());
         let freedom = window.count - window.transients - window.terms * inputs;
         let (rows, power) = regression(spectra, &window);
-        Self { r: rows.qr().unpack_r(), inputs, outputs, power, freedom, window }
+        Self {
+            r: rows.qr().unpack_r(),
+            inputs,
+            outputs,
+            power,
+            freedom,
+            window,
+        }
     }
 
     fn unknowns(&self) -> usize {
@@ -185,20 +230,29 @@ impl LocalFit {
 
     /// `Cov V` of a line, outputs x outputs.
     pub(super) fn covariance(&self) -> DMatrix<Complex<f64>> {
-        let residual = self.r.view((self.unknowns(), self.unknowns()), (self.outputs, self.outputs));
+        let residual = self.r.view(
+            (self.unknowns(), self.unknowns()),
+            (self.outputs, self.outputs),
+        );
         (residual.adjoint() * residual).map(|value| value.conj() / self.freedom as f64)
     }
 
     /// `R11^-1` times something; zero, not missing, where it has none: the ridge keeps the diagonal away from 0.
     fn solve(&self, right: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
         let r11 = self.r.view((0, 0), (self.unknowns(), self.unknowns()));
-        r11.solve_upper_triangular(right).unwrap_or_else(|| right.map(|_| Complex::default()))
+        r11.solve_upper_triangular(right)
+            .unwrap_or_else(|| right.map(|_| Complex::default()))
     }
 
     /// `G0`, outputs x inputs.
     pub(super) fn response(&self) -> DMatrix<Complex<f64>> {
         let unknowns = self.unknowns();
-        let theta = self.solve(&self.r.view((0, unknowns), (unknowns, self.outputs)).clone_owned());
+        let theta = self.solve(
+            &self
+                .r
+                .view((0, unknowns), (unknowns, self.outputs))
+                .clone_owned(),
+        );
         theta.rows(0, self.inputs).transpose()
     }
 
@@ -211,14 +265,22 @@ impl LocalFit {
 
     /// `|B|^2` of each output from row `from` of the factor on.
     fn squares(&self, from: usize) -> Vec<f64> {
-        let column = |o: usize| self.r.column(self.unknowns() + o).rows_range(from..).norm_squared();
+        let column = |o: usize| {
+            self.r
+                .column(self.unknowns() + o)
+                .rows_range(from..)
+                .norm_squared()
+        };
         (0..self.outputs).map(column).collect()
     }
 
     /// Multiple coherence of each output.
     pub(super) fn coherence(&self) -> Vec<f64> {
         let (left, all) = (self.squares(self.unknowns()), self.squares(0));
-        left.into_iter().zip(all).map(|(left, all)| explained(left, all)).collect()
+        left.into_iter()
+            .zip(all)
+            .map(|(left, all)| explained(left, all))
+            .collect()
     }
 
     /// `|V|^2` of each output when input `i` is left out: the triangular factor without its columns, made triangular again.
@@ -227,7 +289,9 @@ impl LocalFit {
         let is_kept = |column: &usize| *column >= unknowns || column % self.inputs != i;
         let kept: Vec<usize> = (0..unknowns + self.outputs).filter(is_kept).collect();
         let smaller = self.r.select_columns(&kept).qr().unpack_r();
-        (0..self.outputs).map(|o| smaller.column(from + o).rows_range(from..).norm_squared()).collect()
+        (0..self.outputs)
+            .map(|o| smaller.column(from + o).rows_range(from..).norm_squared())
+            .collect()
     }
 
     /// The estimate; see [`local_polynomial`].
@@ -258,7 +322,11 @@ impl LocalFit {
 
 /// `1 - left / all`, between 0 and 1; 0 where there is nothing to explain.
 fn explained(left: f64, all: f64) -> f64 {
-    if all > 0.0 { (1.0 - left / all).clamp(0.0, 1.0) } else { 0.0 }
+    if all > 0.0 {
+        (1.0 - left / all).clamp(0.0, 1.0)
+    } else {
+        0.0
+    }
 }
 
 /// The rows `[A B]` of all records with the ridge below them, and the sum of `|Y|^2` of each output.
@@ -269,9 +337,15 @@ fn regression(spectra: &[Spectrum], window: &Window) -> (DMatrix<Complex<f64>>, 
     let mut power = DVector::zeros(outputs);
     let mut top = 0;
     for (spectrum, &(from, to)) in spectra.iter().zip(&window.lines) {
-        let x: Vec<f64> = spectrum.omega[from..to].iter().map(|w| (w - window.omega) / window.half_width).collect();
+        let x: Vec<f64> = spectrum.omega[from..to]
+            .iter()
+            .map(|w| (w - window.omega) / window.half_width)
+            .collect();
         for (k, x) in x.iter().enumerate() {
-            let (input, output) = (spectrum.inputs.column(from + k), spectrum.outputs.column(from + k));
+            let (input, output) = (
+                spectrum.inputs.column(from + k),
+                spectrum.outputs.column(from + k),
+            );
             for (i, u) in input.iter().enumerate() {
                 let mut term = *u;
                 for power in 0..terms {
@@ -296,7 +370,8 @@ fn regression(spectra: &[Spectrum], window: &Window) -> (DMatrix<Complex<f64>>, 
     }
     for column in 0..unknowns {
         let length = rows.column(column).norm();
-        rows[(top + column, column)] = Complex::from(if length > 0.0 { RIDGE * length } else { 1.0 });
+        rows[(top + column, column)] =
+            Complex::from(if length > 0.0 { RIDGE * length } else { 1.0 });
     }
     (rows, power)
 }
@@ -304,15 +379,29 @@ fn regression(spectra: &[Spectrum], window: &Window) -> (DMatrix<Complex<f64>>, 
 /// Square of the greatest singular value over the least.
 pub(super) fn condition(matrix: DMatrix<Complex<f64>>) -> f64 {
     let singular = matrix.singular_values();
-    (singular.max() / singular.min().max(f64::MIN_POSITIVE.sqrt() * singular.max())).powi(2)
+    (singular.max()
+        / singular
+            .min()
+            .max(f64::MIN_POSITIVE.sqrt() * singular.max()))
+    .powi(2)
 }
 
 /// The places before and after `x` among numbers that ascend, and how far it lies from the one to the other; beyond the ends the end.
 pub(super) fn between(ascending: &[f64], x: f64) -> (usize, usize, f64) {
-    let after = ascending.partition_point(|at| *at <= x).min(ascending.len() - 1);
+    let after = ascending
+        .partition_point(|at| *at <= x)
+        .min(ascending.len() - 1);
     let before = after.saturating_sub(1);
     let (from, to) = (ascending[before], ascending[after]);
-    (before, after, if to > from { ((x - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 })
+    (
+        before,
+        after,
+        if to > from {
+            ((x - from) / (to - from)).clamp(0.0, 1.0)
+        } else {
+            0.0
+        },
+    )
 }
 
 // The measured frequency response, with what speaks for it.
@@ -372,7 +461,8 @@ pub struct Excitation {
 impl Excitation {
     /// Inputs, counted from 0, whose column is not identified: median partial coherence below 0.3.
     pub fn not_identified(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.partial_coherence.len()).filter(|&i| self.partial_coherence[i] < LEAST_PARTIAL_COHERENCE)
+        (0..self.partial_coherence.len())
+            .filter(|&i| self.partial_coherence[i] < LEAST_PARTIAL_COHERENCE)
     }
 
     /// Whether some inputs were moved only together: median condition number over 1000.
@@ -394,7 +484,11 @@ impl EstimatePoint {
     fn greatest_coherence(&self, input: usize) -> f64 {
         let columns = super::local_polynomial::TERMS as f64;
         let freedom = self.freedom.max(1) as f64;
-        let greatest = self.partial_coherence.column(input).iter().fold(0.0, |a: f64, b| a.max(*b));
+        let greatest = self
+            .partial_coherence
+            .column(input)
+            .iter()
+            .fold(0.0, |a: f64, b| a.max(*b));
         (1.0 - (1.0 - greatest) * (freedom + columns) / freedom).max(0.0)
     }
 }
@@ -404,17 +498,29 @@ impl ResponseEstimate {
     /// is coherent with any output there. It ends at the last frequencies where one is.
     #[must_use]
     pub fn shown_band(&self, band: [f64; 2]) -> Option<[f64; 2]> {
-        let inside = self.points.iter().filter(|point| (band[0]..=band[1]).contains(&point.omega));
+        let inside = self
+            .points
+            .iter()
+            .filter(|point| (band[0]..=band[1]).contains(&point.omega));
         let is_shown = |point: &&EstimatePoint| {
-            (0..point.response.ncols()).any(|input| point.greatest_coherence(input) >= TRUSTED_COHERENCE)
+            (0..point.response.ncols())
+                .any(|input| point.greatest_coherence(input) >= TRUSTED_COHERENCE)
         };
         let mut shown = inside.filter(is_shown).map(|point| point.omega);
         let first = shown.next()?;
         let last = shown.next_back()?;
         let fifth = (band[1] / band[0]).powf(END);
         let part = [
-            if first > band[0] * fifth { first } else { band[0] },
-            if last < band[1] / fifth { last } else { band[1] },
+            if first > band[0] * fifth {
+                first
+            } else {
+                band[0]
+            },
+            if last < band[1] / fifth {
+                last
+            } else {
+                band[1]
+            },
         ];
         (part != band && part[1] > part[0] * fifth).then_some(part)
     }
@@ -424,12 +530,26 @@ impl ResponseEstimate {
     pub fn measured(&self) -> Option<MeasuredResponse> {
         let (outputs, inputs) = self.points.first()?.response.shape();
         let table = |value: &dyn Fn(&EstimatePoint, (usize, usize)) -> f64| {
-            let curve = |pair: Pair| self.points.iter().map(|point| value(point, (pair.output, pair.input))).collect();
+            let curve = |pair: Pair| {
+                self.points
+                    .iter()
+                    .map(|point| value(point, (pair.output, pair.input)))
+                    .collect()
+            };
             PairTable::<Vec<f64>>::from_fn(outputs, inputs, curve)
         };
-        let (re, im) = (table(&|point, at| point.response[at].re), table(&|point, at| point.response[at].im));
+        let (re, im) = (
+            table(&|point, at| point.response[at].re),
+            table(&|point, at| point.response[at].im),
+        );
         let coherence = table(&|point, at| point.partial_coherence[at].clamp(0.0, 1.0));
-        MeasuredResponse::new(self.points.iter().map(|point| point.omega).collect(), &re, &im, Some(coherence)).ok()
+        MeasuredResponse::new(
+            self.points.iter().map(|point| point.omega).collect(),
+            &re,
+            &im,
+            Some(coherence),
+        )
+        .ok()
     }
 
     /// How far the inputs were moved, each by itself.
@@ -438,10 +558,17 @@ impl ResponseEstimate {
     /// greatest partial coherence counts.
     #[must_use]
     pub fn excitation(&self) -> Excitation {
-        let inputs = self.points.first().map_or(0, |point| point.response.ncols());
-        let over = |of: &dyn Fn(&EstimatePoint) -> f64| median(&mut self.points.iter().map(of).collect::<Vec<f64>>());
+        let inputs = self
+            .points
+            .first()
+            .map_or(0, |point| point.response.ncols());
+        let over = |of: &dyn Fn(&EstimatePoint) -> f64| {
+            median(&mut self.points.iter().map(of).collect::<Vec<f64>>())
+        };
         Excitation {
-            partial_coherence: (0..inputs).map(|input| over(&|point| point.greatest_coherence(input))).collect(),
+            partial_coherence: (0..inputs)
+                .map(|input| over(&|point| point.greatest_coherence(input)))
+                .collect(),
             condition: over(&|point| point.condition),
         }
     }
@@ -453,12 +580,16 @@ impl ResponseEstimate {
         let outputs = DVector::from_column_slice(&scales.outputs);
         let point = |point: &EstimatePoint| EstimatePoint {
             response: point.response.zip_map(&of_response, |g, scale| g * scale),
-            variance: point.variance.zip_map(&of_response, |v, scale| v * scale * scale),
+            variance: point
+                .variance
+                .zip_map(&of_response, |v, scale| v * scale * scale),
             noise: point.noise.component_mul(&(&outputs * outputs.transpose())),
             power: point.power.component_mul(&outputs).component_mul(&outputs),
             ..point.clone()
         };
-        Self { points: self.points.iter().map(point).collect() }
+        Self {
+            points: self.points.iter().map(point).collect(),
+        }
     }
 }
 
@@ -488,20 +619,27 @@ impl NoiseCovariance {
             let reach = SMOOTHING.len() / 2;
             let (mut sum, mut weights) = (points[k].noise.scale(0.0), 0.0);
             for (weight, neighbour) in SMOOTHING.iter().zip(k..) {
-                if let Some(point) = neighbour.checked_sub(reach).and_then(|neighbour| points.get(neighbour)) {
+                if let Some(point) = neighbour
+                    .checked_sub(reach)
+                    .and_then(|neighbour| points.get(neighbour))
+                {
                     sum += point.noise.scale(*weight);
                     weights += weight;
                 }
             }
             let mut covariance = sum / weights;
             for o in 0..covariance.nrows() {
-                covariance[(o, o)] += ADDED * covariance[(o, o)] + FLOOR * points[k].power[o] + f64::MIN_POSITIVE;
+                covariance[(o, o)] +=
+                    ADDED * covariance[(o, o)] + FLOOR * points[k].power[o] + f64::MIN_POSITIVE;
             }
             covariance
         };
         let log_omega = points.iter().map(|point| point.omega.ln()).collect();
         let covariances = (0..points.len()).map(smoothed).collect();
-        (!points.is_empty()).then_some(Self { log_omega, covariances })
+        (!points.is_empty()).then_some(Self {
+            log_omega,
+            covariances,
+        })
     }
 
     /// `Cv` at `omega` \[rad/s\].
@@ -518,7 +656,8 @@ impl NoiseCovariance {
     #[must_use]
     pub fn weight(&self, omega: f64) -> Option<DMatrix<f64>> {
         let lower = self.at(omega).scale(0.5).cholesky()?.unpack();
-        let inverse = lower.solve_lower_triangular(&DMatrix::identity(lower.nrows(), lower.nrows()))?;
+        let inverse =
+            lower.solve_lower_triangular(&DMatrix::identity(lower.nrows(), lower.nrows()))?;
         inverse.iter().all(|w| w.is_finite()).then_some(inverse)
     }
 }

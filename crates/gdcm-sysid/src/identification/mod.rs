@@ -43,17 +43,18 @@ pub use gdcm_model::response::{PoleEstimate, log_spaced};
 use gdcm_model::response::{SchurForm, median, poles, quantile};
 use gdcm_model::simulation::centred;
 pub use gdcm_model::simulation::{
-    FirstOrderHold, FlightRecord, LowPass, Segment, Signal, Validation, ValidationError, ValidationSettings,
-    ValidationWindow, validate,
+    FirstOrderHold, FlightRecord, LowPass, Segment, Signal, Validation, ValidationError,
+    ValidationSettings, ValidationWindow, validate,
 };
 
 #[cfg(test)]
 use self::known_answers_tests::*;
 use self::{
-    blocks::*, instrument::*, laguerre::*, likelihood::*, mode_removal::*, normal_system::*, order::*, refinement::*,
-    sampling::*,
+    blocks::*, instrument::*, laguerre::*, likelihood::*, mode_removal::*, normal_system::*,
+    order::*, refinement::*, sampling::*,
 };
 pub use self::{
-    cautions::*, diagnostics::*, feedback::*, gaps::*, identify::*, local_polynomial::*, preparation::*,
-    prepared_data::*, record_cautions::*, record_contrast::*, spectrum::*, subspace::*, topics::*, uncertainty::*,
+    cautions::*, diagnostics::*, feedback::*, gaps::*, identify::*, local_polynomial::*,
+    preparation::*, prepared_data::*, record_cautions::*, record_contrast::*, spectrum::*,
+    subspace::*, topics::*, uncertainty::*,
 };

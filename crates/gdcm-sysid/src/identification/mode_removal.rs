@@ -11,20 +11,34 @@ use super::*;
 impl BlockModel {
     /// The model without the complex pair (`size` 2) or the real pole (`size` 1) that `measured` misses least; none where it has no
     /// such mode, or where the rest cannot be brought to blocks.
-    pub(super) fn without_least_mode(&self, size: usize, measured: &ResponseEstimate) -> Option<Self> {
+    pub(super) fn without_least_mode(
+        &self,
+        size: usize,
+        measured: &ResponseEstimate,
+    ) -> Option<Self> {
         let modes = self.modes();
-        let losses = modes.iter().enumerate().filter(|(_, mode)| mode.order() == size);
+        let losses = modes
+            .iter()
+            .enumerate()
+            .filter(|(_, mode)| mode.order() == size);
         let losses = losses.map(|(at, mode)| (at, mode.loss(measured)));
         let (at, (_, mean)) = losses.min_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
-        let kept: Vec<&Self> =
-            modes.iter().enumerate().filter(|(other, _)| *other != at).map(|(_, mode)| mode).collect();
+        let kept: Vec<&Self> = modes
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != at)
+            .map(|(_, mode)| mode)
+            .collect();
         if kept.is_empty() {
             return None;
         }
         let rows: Vec<_> = kept.iter().flat_map(|mode| mode.b.row_iter()).collect();
         let columns: Vec<_> = kept.iter().flat_map(|mode| mode.c.column_iter()).collect();
         let joined = Self {
-            blocks: kept.iter().flat_map(|mode| mode.blocks.iter().copied()).collect(),
+            blocks: kept
+                .iter()
+                .flat_map(|mode| mode.blocks.iter().copied())
+                .collect(),
             b: DMatrix::from_rows(&rows),
             c: DMatrix::from_columns(&columns),
             d: &self.d + mean,
@@ -35,12 +49,20 @@ impl BlockModel {
 
     /// What is lost with this mode, `sum |dH - mean dH|^2 / var G`, and the mean of its real part over frequency, which stays in `D`.
     fn loss(&self, measured: &ResponseEstimate) -> (f64, DMatrix<f64>) {
-        let lost: Vec<_> = measured.points.iter().map(|point| self.response(point.omega)).collect();
+        let lost: Vec<_> = measured
+            .points
+            .iter()
+            .map(|point| self.response(point.omega))
+            .collect();
         let mut mean = self.d.clone();
-        lost.iter().for_each(|of| mean += of.map(|value| value.re / lost.len() as f64));
+        lost.iter()
+            .for_each(|of| mean += of.map(|value| value.re / lost.len() as f64));
         let at_point = |(lost, point): (&DMatrix<Complex<f64>>, &EstimatePoint)| {
             let left = lost.zip_map(&mean, |lost, mean| (lost - mean).norm_sqr());
-            left.zip_map(&point.variance, |left, variance| left / variance.max(f64::MIN_POSITIVE)).sum()
+            left.zip_map(&point.variance, |left, variance| {
+                left / variance.max(f64::MIN_POSITIVE)
+            })
+            .sum()
         };
         (lost.iter().zip(&measured.points).map(at_point).sum(), mean)
     }
@@ -48,8 +70,12 @@ impl BlockModel {
     /// Each mode as a model without `D`: a complex pair, or a real pole.
     fn modes(&self) -> Vec<Self> {
         let nothing = DMatrix::zeros(self.c.nrows(), self.b.ncols());
-        let part =
-            |block: Block, b: DMatrix<f64>, c: DMatrix<f64>| Self { blocks: vec![block], b, c, d: nothing.clone() };
+        let part = |block: Block, b: DMatrix<f64>, c: DMatrix<f64>| Self {
+            blocks: vec![block],
+            b,
+            c,
+            d: nothing.clone(),
+        };
         let of_block = |(first, block): (usize, Block)| {
             let b = self.b.rows(first, block.size()).into_owned();
             let c = self.c.columns(first, block.size()).into_owned();
@@ -61,7 +87,11 @@ impl BlockModel {
                     let inverse = dmatrix![q, -1.0; -p, 1.0] / (q - p);
                     let (b, c) = (inverse * b, c * dmatrix![1.0, 1.0; p, q]);
                     let single = |row: usize, pole: f64| {
-                        part(Block::Single(pole), b.rows(row, 1).into_owned(), c.columns(row, 1).into_owned())
+                        part(
+                            Block::Single(pole),
+                            b.rows(row, 1).into_owned(),
+                            c.columns(row, 1).into_owned(),
+                        )
                     };
                     vec![single(0, p), single(1, q)]
                 }
@@ -113,7 +143,12 @@ fn real_basis(q: &DMatrix<Complex<f64>>, count: usize) -> DMatrix<f64> {
     // The projector on the span is real, with the eigenvalues one and zero.
     let leading = q.columns(0, count);
     let projector = DMatrix::from_fn(order, order, |row, column| {
-        leading.row(row).iter().zip(leading.row(column).iter()).map(|(x, y)| (x * y.conj()).re).sum()
+        leading
+            .row(row)
+            .iter()
+            .zip(leading.row(column).iter())
+            .map(|(x, y)| (x * y.conj()).re)
+            .sum()
     });
     let eigen = nalgebra::SymmetricEigen::<f64, nalgebra::Dyn>::new(projector);
     let mut by_size: Vec<usize> = (0..order).collect();
@@ -127,7 +162,11 @@ fn sylvester(a1: &DMatrix<f64>, a2: &DMatrix<f64>, a12: &DMatrix<f64>) -> Option
     let identity = |size| DMatrix::<f64>::identity(size, size);
     let system = identity(columns).kronecker(a1) - a2.transpose().kronecker(&identity(rows));
     let stacked = nalgebra::DVector::from_column_slice((-a12).as_slice());
-    Some(DMatrix::from_column_slice(rows, columns, system.lu().solve(&stacked)?.as_slice()))
+    Some(DMatrix::from_column_slice(
+        rows,
+        columns,
+        system.lu().solve(&stacked)?.as_slice(),
+    ))
 }
 
 #[cfg(test)]
@@ -157,7 +196,9 @@ mod tests {
             half_width: 0.5,
             freedom: 10,
         };
-        let measured = ResponseEstimate { points: log_spaced(0.5, 8.0, 20).into_iter().map(point).collect() };
+        let measured = ResponseEstimate {
+            points: log_spaced(0.5, 8.0, 20).into_iter().map(point).collect(),
+        };
         let less = model.without_least_mode(1, &measured).unwrap();
         assert_eq!(less.order(), 4);
         for omega in [0.5, 2.0, 8.0] {
@@ -166,23 +207,48 @@ mod tests {
             assert!(error < 0.2 * 10.0 / 60.0, "{omega} rad/s: {error}");
         }
         assert_eq!(model.without_least_mode(2, &measured).unwrap().order(), 3);
-        assert!(model.without_least_mode(2, &measured).unwrap().without_least_mode(2, &measured).is_none());
-        let last = less.without_least_mode(2, &measured).unwrap().without_least_mode(1, &measured).unwrap();
+        assert!(
+            model
+                .without_least_mode(2, &measured)
+                .unwrap()
+                .without_least_mode(2, &measured)
+                .is_none()
+        );
+        let last = less
+            .without_least_mode(2, &measured)
+            .unwrap()
+            .without_least_mode(1, &measured)
+            .unwrap();
         assert_eq!(last.order(), 1);
-        assert!(last.without_least_mode(1, &measured).is_none(), "no state would be left");
+        assert!(
+            last.without_least_mode(1, &measured).is_none(),
+            "no state would be left"
+        );
     }
 
     fn sample(size: usize) -> DMatrix<f64> {
-        DMatrix::from_fn(size, size, |row, column| ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin())
+        DMatrix::from_fn(size, size, |row, column| {
+            ((1.0 + 7.3 * row as f64) * (1.0 + 2.9 * column as f64)).sin()
+        })
     }
 
     #[test]
     fn a_model_of_fast_modes_alone_has_no_slow_part() {
         let model = |pole: f64| {
-            StateSpace::new(sample(2).map(|_| 0.0) + DMatrix::identity(2, 2) * pole, sample(2), sample(2), sample(2))
+            StateSpace::new(
+                sample(2).map(|_| 0.0) + DMatrix::identity(2, 2) * pole,
+                sample(2),
+                sample(2),
+                sample(2),
+            )
         };
         assert!(without_fast_modes(&model(-100.0).unwrap(), 50.0).is_none());
-        assert_eq!(without_fast_modes(&model(-10.0).unwrap(), 50.0).unwrap().order(), 2);
+        assert_eq!(
+            without_fast_modes(&model(-10.0).unwrap(), 50.0)
+                .unwrap()
+                .order(),
+            2
+        );
     }
 
     #[test]
@@ -191,10 +257,18 @@ mod tests {
         let mut form = SchurForm::of(&a).unwrap();
         let before: Vec<_> = form.t.diagonal().iter().copied().collect();
         let count = form.order_by(|eigenvalue| eigenvalue.re > 0.0);
-        assert_eq!(count, before.iter().filter(|eigenvalue| eigenvalue.re > 0.0).count());
+        assert_eq!(
+            count,
+            before
+                .iter()
+                .filter(|eigenvalue| eigenvalue.re > 0.0)
+                .count()
+        );
         assert!((0..9).all(|at| (form.t[(at, at)].re > 0.0) == (at < count)));
         // A few dozen rotations, each backward stable.
-        assert!((&form.q * &form.t * form.q.adjoint() - a.map(Complex::from)).norm() < 1e-13 * a.norm());
+        assert!(
+            (&form.q * &form.t * form.q.adjoint() - a.map(Complex::from)).norm() < 1e-13 * a.norm()
+        );
     }
 
     #[test]

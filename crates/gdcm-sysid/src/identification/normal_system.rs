@@ -26,7 +26,10 @@ pub(super) struct NormalSystem {
 impl NormalSystem {
     /// The sum of some; `parameters` says how large it is where there are none.
     pub(super) fn sum<'s>(parameters: usize, systems: impl IntoIterator<Item = &'s Self>) -> Self {
-        let mut sum = Self { matrix: DMatrix::zeros(parameters, parameters), gradient: DVector::zeros(parameters) };
+        let mut sum = Self {
+            matrix: DMatrix::zeros(parameters, parameters),
+            gradient: DVector::zeros(parameters),
+        };
         for system in systems {
             sum.matrix += &system.matrix;
             sum.gradient += &system.gradient;
@@ -36,7 +39,10 @@ impl NormalSystem {
 
     /// Takes another one off.
     pub(super) fn without(&self, other: &Self) -> Self {
-        Self { matrix: &self.matrix - &other.matrix, gradient: &self.gradient - &other.gradient }
+        Self {
+            matrix: &self.matrix - &other.matrix,
+            gradient: &self.gradient - &other.gradient,
+        }
     }
 
     /// The step of Levenberg and Marquardt, `(G + lambda diag G) d = g`; none where it is not finite.
@@ -46,7 +52,10 @@ impl NormalSystem {
         for (k, scale) in scales.iter().enumerate() {
             scaled[(k, k)] = if *scale > 0.0 { 1.0 + lambda } else { 1.0 };
         }
-        let step = scaled.cholesky()?.solve(&self.gradient.component_mul(&scales)).component_mul(&scales);
+        let step = scaled
+            .cholesky()?
+            .solve(&self.gradient.component_mul(&scales))
+            .component_mul(&scales);
         step.iter().all(|entry| entry.is_finite()).then_some(step)
     }
 }
@@ -58,11 +67,19 @@ pub(super) fn normal_systems(
     parts: &[SegmentCost],
 ) -> Option<Vec<NormalSystem>> {
     let segments = likelihood.segments.iter().zip(parts);
-    each(likelihood.executor, segments, |(lines, part)| Gram::new(lines, model, part).system()).into_iter().collect()
+    each(likelihood.executor, segments, |(lines, part)| {
+        Gram::new(lines, model, part).system()
+    })
+    .into_iter()
+    .collect()
 }
 
 /// `J'd` of one segment for the column `d` that stands in the place of the residual of `part`, its transient taken off.
-pub(super) fn gradient_along(lines: &SpectralLines, model: &BlockModel, part: &SegmentCost) -> DVector<f64> {
+pub(super) fn gradient_along(
+    lines: &SpectralLines,
+    model: &BlockModel,
+    part: &SegmentCost,
+) -> DVector<f64> {
     let mut gram = Gram::new(lines, model, part);
     gram.add_gradient();
     gram.gradient
@@ -90,8 +107,10 @@ impl<'a> Gram<'a> {
         let (order, inputs, outputs) = (model.order(), model.b.ncols(), model.c.nrows());
         let count = lines.omega.len();
         let mut resolvent = DMatrix::zeros(outputs, order * count);
-        let (mut resolvent_scalars, mut weight_scalars) =
-            (DMatrix::zeros(inputs + 1, count), DMatrix::zeros(order + inputs + 2, count));
+        let (mut resolvent_scalars, mut weight_scalars) = (
+            DMatrix::zeros(inputs + 1, count),
+            DMatrix::zeros(order + inputs + 2, count),
+        );
         let mut cr = vec![Complex::default(); outputs * order];
         for (k, &omega) in lines.omega.iter().enumerate() {
             model.output_resolvent(omega, &mut cr);
@@ -100,18 +119,34 @@ impl<'a> Gram<'a> {
                 whiten(&lines.weights[k], column, |o, value| to[o] = value);
             }
             let input = lines.inputs.column(k);
-            resolvent_scalars.view_mut((0, k), (inputs, 1)).copy_from(&input);
+            resolvent_scalars
+                .view_mut((0, k), (inputs, 1))
+                .copy_from(&input);
             resolvent_scalars[(inputs, k)] = Complex::from(1.0);
             let mut x = model.b.map(Complex::from) * input + part.transient.map(Complex::from);
             model.resolve(omega, x.as_mut_slice());
             weight_scalars.view_mut((0, k), (order, 1)).copy_from(&x);
-            weight_scalars.view_mut((order, k), (inputs, 1)).copy_from(&input);
+            weight_scalars
+                .view_mut((order, k), (inputs, 1))
+                .copy_from(&input);
             weight_scalars[(order + inputs, k)] = Complex::new(0.0, -1.0 / omega);
             weight_scalars[(order + inputs + 1, k)] = Complex::from(1.0);
         }
         let size = model.parameters() + order + 2 * outputs;
-        let (matrix, gradient) = (DMatrix::zeros(size, size), DVector::zeros(model.parameters()));
-        Self { model, lines, residual: &part.residual, resolvent, resolvent_scalars, weight_scalars, matrix, gradient }
+        let (matrix, gradient) = (
+            DMatrix::zeros(size, size),
+            DVector::zeros(model.parameters()),
+        );
+        Self {
+            model,
+            lines,
+            residual: &part.residual,
+            resolvent,
+            resolvent_scalars,
+            weight_scalars,
+            matrix,
+            gradient,
+        }
     }
 
     /// The system with the transient eliminated; none where an iteration does not end.
@@ -123,12 +158,21 @@ impl<'a> Gram<'a> {
         self.add_gradient();
         let (size, parameters) = (self.matrix.nrows(), self.model.parameters());
         let nuisance = size - parameters;
-        let transient = self.matrix.view((parameters, parameters), (nuisance, nuisance)).into_owned();
+        let transient = self
+            .matrix
+            .view((parameters, parameters), (nuisance, nuisance))
+            .into_owned();
         let root = pseudo_inverse_root(transient, DEPENDENT)?;
-        let mut matrix = self.matrix.view((0, 0), (parameters, parameters)).into_owned();
+        let mut matrix = self
+            .matrix
+            .view((0, 0), (parameters, parameters))
+            .into_owned();
         let explained = self.matrix.view((0, parameters), (parameters, nuisance)) * root;
         matrix.gemm(-1.0, &explained, &explained.transpose(), 1.0);
-        Some(NormalSystem { matrix, gradient: self.gradient })
+        Some(NormalSystem {
+            matrix,
+            gradient: self.gradient,
+        })
     }
 
     /// Column of the vector `(W C R)_state` times the scalar of this number.
@@ -142,7 +186,11 @@ impl<'a> Gram<'a> {
 
     /// Column of the vector `W e_output` times the scalar of this number.
     fn weight_column(&self, output: usize, scalar: usize) -> usize {
-        let (order, inputs, outputs) = (self.model.order(), self.model.b.ncols(), self.model.c.nrows());
+        let (order, inputs, outputs) = (
+            self.model.order(),
+            self.model.b.ncols(),
+            self.model.c.nrows(),
+        );
         if scalar < order {
             self.model.place_of_c(output, scalar)
         } else if scalar < order + inputs {
@@ -160,12 +208,22 @@ impl<'a> Gram<'a> {
     /// `(W C R)_i^H (W C R)_i'` at line `k`.
     fn resolvent_product(&self, k: usize, i: usize, other: usize) -> Complex<f64> {
         let order = self.model.order();
-        let (left, right) = (self.resolvent.column(k * order + i), self.resolvent.column(k * order + other));
-        left.iter().zip(right.iter()).map(|(a, b)| a.conj() * b).sum()
+        let (left, right) = (
+            self.resolvent.column(k * order + i),
+            self.resolvent.column(k * order + other),
+        );
+        left.iter()
+            .zip(right.iter())
+            .map(|(a, b)| a.conj() * b)
+            .sum()
     }
 
     /// Real and imaginary part of a product of each row at each line: two columns a line.
-    fn line_products(&self, rows: usize, product: impl Fn(usize, usize) -> Complex<f64>) -> DMatrix<f64> {
+    fn line_products(
+        &self,
+        rows: usize,
+        product: impl Fn(usize, usize) -> Complex<f64>,
+    ) -> DMatrix<f64> {
         let mut products = DMatrix::zeros(rows, 2 * self.lines.omega.len());
         for k in 0..self.lines.omega.len() {
             let (mut real, mut imaginary) = products.columns_range_pair_mut(2 * k, 2 * k + 1);
@@ -180,13 +238,28 @@ impl<'a> Gram<'a> {
     /// `B` and tau with themselves.
     fn add_resolvent(&mut self) {
         let (order, scalars) = (self.model.order(), self.resolvent_scalars.nrows());
-        let pairs: Vec<_> = (0..order).flat_map(|i| (i..order).map(move |other| (i, other))).collect();
-        let left = self.line_products(pairs.len(), |k, row| self.resolvent_product(k, pairs[row].0, pairs[row].1));
-        let scalar_pairs: Vec<_> = (0..scalars).flat_map(|s| (0..scalars).map(move |t| (s, t))).collect();
-        let products = left * scalar_products(&self.resolvent_scalars, &self.resolvent_scalars, &scalar_pairs);
+        let pairs: Vec<_> = (0..order)
+            .flat_map(|i| (i..order).map(move |other| (i, other)))
+            .collect();
+        let left = self.line_products(pairs.len(), |k, row| {
+            self.resolvent_product(k, pairs[row].0, pairs[row].1)
+        });
+        let scalar_pairs: Vec<_> = (0..scalars)
+            .flat_map(|s| (0..scalars).map(move |t| (s, t)))
+            .collect();
+        let products = left
+            * scalar_products(
+                &self.resolvent_scalars,
+                &self.resolvent_scalars,
+                &scalar_pairs,
+            );
         for (row, &(i, other)) in pairs.iter().enumerate() {
             for (column, &(s, t)) in scalar_pairs.iter().enumerate() {
-                self.put(self.resolvent_column(i, s), self.resolvent_column(other, t), products[(row, column)]);
+                self.put(
+                    self.resolvent_column(i, s),
+                    self.resolvent_column(other, t),
+                    products[(row, column)],
+                );
             }
         }
     }
@@ -195,25 +268,40 @@ impl<'a> Gram<'a> {
     fn add_weight(&mut self) {
         let (outputs, scalars) = (self.model.c.nrows(), self.weight_scalars.nrows());
         let count = self.lines.omega.len();
-        let pairs: Vec<_> = (0..outputs).flat_map(|o| (o..outputs).map(move |other| (o, other))).collect();
+        let pairs: Vec<_> = (0..outputs)
+            .flat_map(|o| (o..outputs).map(move |other| (o, other)))
+            .collect();
         let mut left = DMatrix::<f64>::zeros(pairs.len(), count);
         for (k, weight) in self.lines.weights.iter().enumerate() {
             for (row, &(o, other)) in pairs.iter().enumerate() {
-                left[(row, k)] = (other..outputs).map(|below| weight[(below, o)] * weight[(below, other)]).sum();
+                left[(row, k)] = (other..outputs)
+                    .map(|below| weight[(below, o)] * weight[(below, other)])
+                    .sum();
             }
         }
-        let scalar_pairs: Vec<_> = (0..scalars).flat_map(|s| (s..scalars).map(move |t| (s, t))).collect();
+        let scalar_pairs: Vec<_> = (0..scalars)
+            .flat_map(|s| (s..scalars).map(move |t| (s, t)))
+            .collect();
         let mut right = DMatrix::<f64>::zeros(scalar_pairs.len(), count);
         for (k, weight_scalars) in self.weight_scalars.column_iter().enumerate() {
             for (to, &(s, t)) in right.column_mut(k).iter_mut().zip(&scalar_pairs) {
-                *to = weight_scalars[s].re * weight_scalars[t].re + weight_scalars[s].im * weight_scalars[t].im;
+                *to = weight_scalars[s].re * weight_scalars[t].re
+                    + weight_scalars[s].im * weight_scalars[t].im;
             }
         }
         let products = left * right.transpose();
         for (row, &(o, other)) in pairs.iter().enumerate() {
             for (column, &(s, t)) in scalar_pairs.iter().enumerate() {
-                self.put(self.weight_column(o, s), self.weight_column(other, t), products[(row, column)]);
-                self.put(self.weight_column(o, t), self.weight_column(other, s), products[(row, column)]);
+                self.put(
+                    self.weight_column(o, s),
+                    self.weight_column(other, t),
+                    products[(row, column)],
+                );
+                self.put(
+                    self.weight_column(o, t),
+                    self.weight_column(other, s),
+                    products[(row, column)],
+                );
             }
         }
     }
@@ -222,20 +310,30 @@ impl<'a> Gram<'a> {
     fn weight_product(&self, k: usize, o: usize, i: usize) -> Complex<f64> {
         let column = self.resolvent.column(k * self.model.order() + i);
         let weight = &self.lines.weights[k];
-        (o..column.len()).map(|below| column[below] * weight[(below, o)]).sum()
+        (o..column.len())
+            .map(|below| column[below] * weight[(below, o)])
+            .sum()
     }
 
     /// `B` and tau with `C`, `D`, c1 and c0.
     fn add_resolvent_with_weight(&mut self) {
         let (order, outputs) = (self.model.order(), self.model.c.nrows());
-        let product = |k: usize, row: usize| self.weight_product(k, row % outputs, row / outputs).conj();
+        let product =
+            |k: usize, row: usize| self.weight_product(k, row % outputs, row / outputs).conj();
         let left = self.line_products(order * outputs, product);
-        let (resolvent_count, weight_count) = (self.resolvent_scalars.nrows(), self.weight_scalars.nrows());
-        let scalar_pairs: Vec<_> = (0..resolvent_count).flat_map(|s| (0..weight_count).map(move |t| (s, t))).collect();
-        let products = left * scalar_products(&self.resolvent_scalars, &self.weight_scalars, &scalar_pairs);
+        let (resolvent_count, weight_count) =
+            (self.resolvent_scalars.nrows(), self.weight_scalars.nrows());
+        let scalar_pairs: Vec<_> = (0..resolvent_count)
+            .flat_map(|s| (0..weight_count).map(move |t| (s, t)))
+            .collect();
+        let products =
+            left * scalar_products(&self.resolvent_scalars, &self.weight_scalars, &scalar_pairs);
         for row in 0..order * outputs {
             for (column, &(s, t)) in scalar_pairs.iter().enumerate() {
-                let (p, q) = (self.resolvent_column(row / outputs, s), self.weight_column(row % outputs, t));
+                let (p, q) = (
+                    self.resolvent_column(row / outputs, s),
+                    self.weight_column(row % outputs, t),
+                );
                 self.put(p, q, products[(row, column)]);
             }
         }
@@ -253,23 +351,28 @@ impl<'a> Gram<'a> {
     /// The blocks with everything.
     fn add_blocks(&mut self) {
         let (order, outputs) = (self.model.order(), self.model.c.nrows());
-        let (resolvent_count, weight_count) = (self.resolvent_scalars.nrows(), self.weight_scalars.nrows());
+        let (resolvent_count, weight_count) =
+            (self.resolvent_scalars.nrows(), self.weight_scalars.nrows());
         let columns = self.block_columns();
-        let [resolvent_parts, weight_parts] = [&self.resolvent_scalars, &self.weight_scalars].map(parts);
+        let [resolvent_parts, weight_parts] =
+            [&self.resolvent_scalars, &self.weight_scalars].map(parts);
         for (p, &(vector, scalar, sign)) in columns.iter().enumerate() {
             // conj(s_p) goes into the left factor.
             let s = |k: usize| self.weight_scalars[(scalar, k)].conj() * sign;
             let product = |k: usize, i: usize| (self.resolvent_product(k, vector, i) * s(k)).conj();
             let with_resolvent = self.line_products(order, product);
-            let with_weight =
-                self.line_products(outputs, |k, o| (self.weight_product(k, o, vector).conj() * s(k)).conj());
+            let with_weight = self.line_products(outputs, |k, o| {
+                (self.weight_product(k, o, vector).conj() * s(k)).conj()
+            });
             let by_resolvent = &with_resolvent * &resolvent_parts;
             let by_weight = with_weight * &weight_parts;
             for i in 0..order {
-                (0..resolvent_count).for_each(|s| self.put(p, self.resolvent_column(i, s), by_resolvent[(i, s)]));
+                (0..resolvent_count)
+                    .for_each(|s| self.put(p, self.resolvent_column(i, s), by_resolvent[(i, s)]));
             }
             for o in 0..outputs {
-                (0..weight_count).for_each(|s| self.put(p, self.weight_column(o, s), by_weight[(o, s)]));
+                (0..weight_count)
+                    .for_each(|s| self.put(p, self.weight_column(o, s), by_weight[(o, s)]));
             }
             let by_states = with_resolvent * weight_parts.columns(0, order);
             for (q, &(other, other_scalar, other_sign)) in columns.iter().enumerate() {
@@ -280,7 +383,11 @@ impl<'a> Gram<'a> {
 
     /// `J'e`.
     fn add_gradient(&mut self) {
-        let (order, inputs, outputs) = (self.model.order(), self.model.b.ncols(), self.model.c.nrows());
+        let (order, inputs, outputs) = (
+            self.model.order(),
+            self.model.b.ncols(),
+            self.model.c.nrows(),
+        );
         let columns = self.block_columns();
         for k in 0..self.lines.omega.len() {
             let (e, weight) = (self.residual.column(k), &self.lines.weights[k]);
@@ -290,18 +397,23 @@ impl<'a> Gram<'a> {
             };
             let state_gradients: Vec<_> = (0..order).map(of_state).collect();
             for (p, &(vector, scalar, sign)) in columns.iter().enumerate() {
-                self.gradient[p] += sign * (self.weight_scalars[(scalar, k)].conj() * state_gradients[vector]).re;
+                self.gradient[p] +=
+                    sign * (self.weight_scalars[(scalar, k)].conj() * state_gradients[vector]).re;
             }
             for (i, own) in state_gradients.iter().enumerate() {
                 for j in 0..inputs {
-                    self.gradient[self.model.place_of_b(i, j)] += (self.resolvent_scalars[(j, k)].conj() * own).re;
+                    self.gradient[self.model.place_of_b(i, j)] +=
+                        (self.resolvent_scalars[(j, k)].conj() * own).re;
                 }
             }
             for o in 0..outputs {
-                let output_gradient: Complex<f64> = (o..outputs).map(|below| e[below] * weight[(below, o)]).sum();
+                let output_gradient: Complex<f64> = (o..outputs)
+                    .map(|below| e[below] * weight[(below, o)])
+                    .sum();
                 for s in 0..order + inputs {
                     let place = self.weight_column(o, s);
-                    self.gradient[place] += (self.weight_scalars[(s, k)].conj() * output_gradient).re;
+                    self.gradient[place] +=
+                        (self.weight_scalars[(s, k)].conj() * output_gradient).re;
                 }
             }
         }
@@ -340,7 +452,10 @@ mod tests {
     fn known_start(known: &Value) -> BlockModel {
         let start = &known["blocks_at_start"];
         let a = matrix(&start["A"]);
-        let pair = |first: usize| Block::Pair { a0: -a[(first + 1, first)], a1: -a[(first + 1, first + 1)] };
+        let pair = |first: usize| Block::Pair {
+            a0: -a[(first + 1, first)],
+            a1: -a[(first + 1, first + 1)],
+        };
         BlockModel {
             blocks: vec![pair(0), pair(2)],
             b: matrix(&start["B"]),
@@ -351,7 +466,10 @@ mod tests {
 
     fn total(likelihood: &Likelihood, model: &BlockModel) -> (f64, NormalSystem) {
         let parts = likelihood.parts(model).unwrap();
-        let sum = NormalSystem::sum(model.parameters(), &normal_systems(likelihood, model, &parts).unwrap());
+        let sum = NormalSystem::sum(
+            model.parameters(),
+            &normal_systems(likelihood, model, &parts).unwrap(),
+        );
         (parts.iter().map(|part| part.cost).sum(), sum)
     }
 
@@ -360,14 +478,29 @@ mod tests {
         let known = &answers()["likelihood_noise_free"];
         let (cost, system) = total(&known_records(known), &known_start(known));
         // Independent numpy code; the tolerance stands in its file, the cost is as good.
-        assert!((cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8, "{cost}");
-        let (gradient, diagonal) = (numbers(&known["g_at_start"]), numbers(&known["G_diagonal_at_start"]));
-        let largest = gradient.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+        assert!(
+            (cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8,
+            "{cost}"
+        );
+        let (gradient, diagonal) = (
+            numbers(&known["g_at_start"]),
+            numbers(&known["G_diagonal_at_start"]),
+        );
+        let largest = gradient
+            .iter()
+            .fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
         for (k, expected) in gradient.iter().enumerate() {
-            assert!((system.gradient[k] - expected).abs() < 1e-8 * largest, "g {k}: {} {expected}", system.gradient[k]);
+            assert!(
+                (system.gradient[k] - expected).abs() < 1e-8 * largest,
+                "g {k}: {} {expected}",
+                system.gradient[k]
+            );
         }
         for (k, expected) in diagonal.iter().enumerate() {
-            assert!((system.matrix[(k, k)] / expected - 1.0).abs() < 1e-8, "G {k}");
+            assert!(
+                (system.matrix[(k, k)] / expected - 1.0).abs() < 1e-8,
+                "G {k}"
+            );
         }
     }
 
@@ -384,7 +517,8 @@ mod tests {
                 inputs: segment.inputs.clone(),
                 outputs: segment.outputs.clone(),
             };
-            *segment = SpectralLines::weighted(&spectrum, (0..segment.omega.len()).map(weight).collect());
+            *segment =
+                SpectralLines::weighted(&spectrum, (0..segment.omega.len()).map(weight).collect());
         }
         let mut model = known_start(known);
         // A single pole beside the pairs.
@@ -395,7 +529,11 @@ mod tests {
         let step = 1e-5;
         for place in 0..model.parameters() {
             let at = |size: f64| {
-                let step = DVector::from_fn(model.parameters(), |k, _| if k == place { size } else { 0.0 });
+                let step =
+                    DVector::from_fn(
+                        model.parameters(),
+                        |k, _| if k == place { size } else { 0.0 },
+                    );
                 likelihood.cost(&model.stepped(&step)).unwrap()
             };
             let slope = (at(step) - at(-step)) / (2.0 * step);
@@ -418,19 +556,32 @@ mod tests {
         let part = segment.cost(&model).unwrap();
         let system = Gram::new(segment, &model, &part).system().unwrap();
         // Columns of the dense Jacobian by differences of W (G U + C R tau), exact up to rounding in B and D.
-        let places = [model.place_of_b(1, 1), model.place_of_b(2, 0), model.place_of_d(1, 0), model.place_of_c(1, 2)];
+        let places = [
+            model.place_of_b(1, 1),
+            model.place_of_b(2, 0),
+            model.place_of_d(1, 0),
+            model.place_of_c(1, 2),
+        ];
         let column = |place: usize| {
-            let step = DVector::from_fn(model.parameters(), |k, _| if k == place { 1.0 } else { 0.0 });
+            let step = DVector::from_fn(
+                model.parameters(),
+                |k, _| if k == place { 1.0 } else { 0.0 },
+            );
             let stepped = model.stepped(&step);
             let mut values = Vec::new();
             for (k, &omega) in segment.omega.iter().enumerate() {
                 let output = |model: &BlockModel| {
-                    let mut x =
-                        model.b.map(Complex::from) * segment.inputs.column(k) + part.transient.map(Complex::from);
+                    let mut x = model.b.map(Complex::from) * segment.inputs.column(k)
+                        + part.transient.map(Complex::from);
                     model.resolve(omega, x.as_mut_slice());
-                    model.c.map(Complex::from) * x + model.d.map(Complex::from) * segment.inputs.column(k)
+                    model.c.map(Complex::from) * x
+                        + model.d.map(Complex::from) * segment.inputs.column(k)
                 };
-                values.extend((output(&stepped) - output(&model)).iter().flat_map(|y| [y.re, y.im]));
+                values.extend(
+                    (output(&stepped) - output(&model))
+                        .iter()
+                        .flat_map(|y| [y.re, y.im]),
+                );
             }
             DVector::from_vec(values)
         };
@@ -452,7 +603,9 @@ mod tests {
                         [(re, w), (im, w)]
                     })
                 });
-                let values = values.enumerate().map(|(k, (unit, w))| unit * line(w)[k % 2]);
+                let values = values
+                    .enumerate()
+                    .map(|(k, (unit, w))| unit * line(w)[k % 2]);
                 DVector::from_iterator(4 * segment.omega.len(), values)
             };
             nuisance.push(of(&|_| [1.0, 0.0]));

@@ -48,7 +48,10 @@ pub(super) struct OrderSearch {
 
 impl OrderSearch {
     /// The unrefined model with which the search begins.
-    pub(super) fn first<'s>(starts: &'s BTreeMap<usize, Fit>, likelihood: &Likelihood) -> Option<&'s Fit> {
+    pub(super) fn first<'s>(
+        starts: &'s BTreeMap<usize, Fit>,
+        likelihood: &Likelihood,
+    ) -> Option<&'s Fit> {
         starts.get(&first(starts, likelihood)?)
     }
 
@@ -56,16 +59,31 @@ impl OrderSearch {
     pub(super) fn neighbours(&self) -> Vec<&BlockModel> {
         let below = self.fits.range(..self.order).next_back();
         let above = self.fits.range(self.order + 1..).next();
-        let most = STARVED * self.fits.get(&self.order).map_or(f64::INFINITY, |fit| fit.cost);
-        below.into_iter().chain(above).filter(|(_, fit)| fit.cost < most).map(|(_, fit)| &fit.model).collect()
+        let most = STARVED
+            * self
+                .fits
+                .get(&self.order)
+                .map_or(f64::INFINITY, |fit| fit.cost);
+        below
+            .into_iter()
+            .chain(above)
+            .filter(|(_, fit)| fit.cost < most)
+            .map(|(_, fit)| &fit.model)
+            .collect()
     }
 }
 
 /// The order at which the search begins.
 fn first(starts: &BTreeMap<usize, Fit>, likelihood: &Likelihood) -> Option<usize> {
     let of = |(order, fit): (&usize, &Fit)| Some((*order, criterion(fit, likelihood)?));
-    let (best, _) = starts.iter().filter_map(of).min_by(|a, b| a.1.total_cmp(&b.1))?;
-    starts.keys().copied().min_by_key(|order| order.abs_diff(best.min(FIRST)))
+    let (best, _) = starts
+        .iter()
+        .filter_map(of)
+        .min_by(|a, b| a.1.total_cmp(&b.1))?;
+    starts
+        .keys()
+        .copied()
+        .min_by_key(|order| order.abs_diff(best.min(FIRST)))
 }
 
 /// Parameters that matter of a model of an order: `n (m + l) + m l`.
@@ -80,7 +98,10 @@ pub(super) fn effective_parameters(fit: &Fit) -> usize {
 
 /// `BIC` of a fit; none where it has more parameters than degrees of freedom.
 fn criterion(fit: &Fit, likelihood: &Likelihood) -> Option<f64> {
-    let (k, n) = (effective_parameters(fit) as f64, likelihood.freedom(fit.model.order()) as f64);
+    let (k, n) = (
+        effective_parameters(fit) as f64,
+        likelihood.freedom(fit.model.order()) as f64,
+    );
     (n > k).then(|| fit.cost * (1.0 + k * n.ln() / (n - k)))
 }
 
@@ -92,45 +113,86 @@ impl PreparedData<'_> {
         progress: &Shares,
     ) -> Result<Option<OrderSearch>, IdentificationError> {
         let likelihood = &self.likelihood;
-        let Some(begin) = first(starts, likelihood) else { return Ok(None) };
-        let is_small = starts.get(&begin).is_some_and(|fit| effective_parameters(fit) <= SMALL);
+        let Some(begin) = first(starts, likelihood) else {
+            return Ok(None);
+        };
+        let is_small = starts
+            .get(&begin)
+            .is_some_and(|fit| effective_parameters(fit) <= SMALL);
         let orders: Vec<usize> = starts.keys().copied().collect();
         let at = orders.partition_point(|order| *order < begin);
         let reach = if is_small { BRACKET.0 } else { BRACKET.1 };
-        let mut range = (if is_small { 0 } else { at.saturating_sub(reach) }, (at + reach + 1).min(orders.len()));
+        let mut range = (
+            if is_small {
+                0
+            } else {
+                at.saturating_sub(reach)
+            },
+            (at + reach + 1).min(orders.len()),
+        );
         let mut fits = BTreeMap::new();
         loop {
-            let new: Vec<usize> = orders[range.0..range.1].iter().copied().filter(|n| !fits.contains_key(n)).collect();
-            let (steps, gain) = if is_small { (STEPS.0, LEAST_GAIN) } else { (STEPS.1, LEAST_GAIN_COMPARED) };
-            let refinement = |n: &usize| starts[n].clone().refined(likelihood, steps, gain, progress);
+            let new: Vec<usize> = orders[range.0..range.1]
+                .iter()
+                .copied()
+                .filter(|n| !fits.contains_key(n))
+                .collect();
+            let (steps, gain) = if is_small {
+                (STEPS.0, LEAST_GAIN)
+            } else {
+                (STEPS.1, LEAST_GAIN_COMPARED)
+            };
+            let refinement =
+                |n: &usize| starts[n].clone().refined(likelihood, steps, gain, progress);
             for (&n, fit) in new.iter().zip(each(likelihood.executor, &new, refinement)) {
                 fits.insert(n, fit?);
             }
             if is_small {
                 self.start_from_above(&mut fits, progress)?;
             }
-            let criteria: BTreeMap<usize, f64> =
-                fits.iter().filter_map(|(n, fit)| Some((*n, criterion(fit, likelihood)?))).collect();
-            let Some((&best, _)) = criteria.iter().min_by(|a, b| a.1.total_cmp(b.1)) else { return Ok(None) };
+            let criteria: BTreeMap<usize, f64> = fits
+                .iter()
+                .filter_map(|(n, fit)| Some((*n, criterion(fit, likelihood)?)))
+                .collect();
+            let Some((&best, _)) = criteria.iter().min_by(|a, b| a.1.total_cmp(b.1)) else {
+                return Ok(None);
+            };
             let at = orders.partition_point(|order| *order < best);
-            let wanted = (range.0.min(at.saturating_sub(reach)), range.1.max((at + reach + 1).min(orders.len())));
+            let wanted = (
+                range.0.min(at.saturating_sub(reach)),
+                range.1.max((at + reach + 1).min(orders.len())),
+            );
             if wanted == range {
                 let still_falls = starts.keys().last() == Some(&best) && criteria.len() > 1;
                 let order = self.decided(&fits, &criteria, best);
-                return Ok(Some(OrderSearch { fits, criteria, order, still_falls }));
+                return Ok(Some(OrderSearch {
+                    fits,
+                    criteria,
+                    order,
+                    still_falls,
+                }));
             }
             range = wanted;
         }
     }
 
     /// Gives each order, the higher ones first, a second start out of the two orders above it, and keeps the cheaper model.
-    fn start_from_above(&self, fits: &mut BTreeMap<usize, Fit>, progress: &Shares) -> Result<(), IdentificationError> {
+    fn start_from_above(
+        &self,
+        fits: &mut BTreeMap<usize, Fit>,
+        progress: &Shares,
+    ) -> Result<(), IdentificationError> {
         let orders: Vec<usize> = fits.keys().rev().copied().collect();
         for order in orders {
-            let above = [1, 2].into_iter().filter_map(|size| Some((size, &fits.get(&(order + size))?.model)));
-            let models = above.filter_map(|(size, model)| model.without_least_mode(size, &self.measured));
+            let above = [1, 2]
+                .into_iter()
+                .filter_map(|size| Some((size, &fits.get(&(order + size))?.model)));
+            let models =
+                above.filter_map(|(size, model)| model.without_least_mode(size, &self.measured));
             let started = models.filter_map(|model| Fit::start(&self.likelihood, model));
-            let Some(start) = started.min_by(|a, b| a.cost.total_cmp(&b.cost)) else { continue };
+            let Some(start) = started.min_by(|a, b| a.cost.total_cmp(&b.cost)) else {
+                continue;
+            };
             let fit = start.refined(&self.likelihood, STEPS.0, LEAST_GAIN, progress)?;
             if fits.get(&order).is_some_and(|own| fit.cost < own.cost) {
                 fits.insert(order, fit);
@@ -141,15 +203,29 @@ impl PreparedData<'_> {
 
     /// Of the orders whose criterion is about as good as that of `best` one without a fast unstable pole, and among those the one with the
     /// least cost on what was held out.
-    fn decided(&self, fits: &BTreeMap<usize, Fit>, criteria: &BTreeMap<usize, f64>, best: usize) -> usize {
-        let is_sound =
-            |order: &usize| fits.get(order).is_some_and(|fit| fast_unstable_pole(&fit.model, self.highest).is_none());
-        let least = |among: &mut dyn Iterator<Item = (usize, f64)>| among.min_by(|a, b| a.1.total_cmp(&b.1));
+    fn decided(
+        &self,
+        fits: &BTreeMap<usize, Fit>,
+        criteria: &BTreeMap<usize, f64>,
+        best: usize,
+    ) -> usize {
+        let is_sound = |order: &usize| {
+            fits.get(order)
+                .is_some_and(|fit| fast_unstable_pole(&fit.model, self.highest).is_none())
+        };
+        let least = |among: &mut dyn Iterator<Item = (usize, f64)>| {
+            among.min_by(|a, b| a.1.total_cmp(&b.1))
+        };
         let near = |of: f64, share: f64| {
             let most = (1.0 + share) * of;
-            criteria.iter().filter(move |(_, value)| **value <= most).map(|(order, value)| (*order, *value))
+            criteria
+                .iter()
+                .filter(move |(_, value)| **value <= most)
+                .map(|(order, value)| (*order, *value))
         };
-        let Some(&value) = criteria.get(&best) else { return best };
+        let Some(&value) = criteria.get(&best) else {
+            return best;
+        };
         let sound = least(&mut near(value, NEAR_UNSTABLE).filter(|(order, _)| is_sound(order)));
         let (best, value) = sound.unwrap_or((best, value));
         if self.held_out.segments.is_empty() {
@@ -157,7 +233,10 @@ impl PreparedData<'_> {
         }
         let cost = |order: usize| {
             let model = &fits.get(&order)?.model;
-            Some((order, self.held_out.cost(model)? / self.held_out.freedom(model.order()).max(1) as f64))
+            Some((
+                order,
+                self.held_out.cost(model)? / self.held_out.freedom(model.order()).max(1) as f64,
+            ))
         };
         let mut costs = near(value, NEAR)
             .filter(|(order, _)| is_sound(order) == is_sound(&best))
@@ -167,7 +246,10 @@ impl PreparedData<'_> {
 }
 
 /// An unstable pole faster than `highest` \[rad/s\], which no line shows.
-pub(super) fn fast_unstable_pole(model: &BlockModel, highest: f64) -> Option<nalgebra::Complex<f64>> {
+pub(super) fn fast_unstable_pole(
+    model: &BlockModel,
+    highest: f64,
+) -> Option<nalgebra::Complex<f64>> {
     let mut poles = model.blocks.iter().flat_map(|block| block.poles());
     poles.find(|pole| pole.re > 0.0 && pole.norm() > highest)
 }
@@ -217,8 +299,11 @@ impl Extent {
         let rows = self.radians / SPACING;
         let columns = |past: usize| ((past + 1) * self.channels()) as f64;
         let long = Some(LONG_PAST.0).filter(|_| self.channels() <= LONG_PAST.1);
-        let pasts: Vec<usize> =
-            PASTS.into_iter().chain(long).filter(|past| rows >= LEAST_ROWS.0 * columns(*past)).collect();
+        let pasts: Vec<usize> = PASTS
+            .into_iter()
+            .chain(long)
+            .filter(|past| rows >= LEAST_ROWS.0 * columns(*past))
+            .collect();
         if pasts.is_empty() {
             let block_columns = (rows / (LEAST_ROWS.1 * self.channels() as f64)) as usize;
             return vec![block_columns.saturating_sub(1).max(LEAST_PAST)];
@@ -229,12 +314,17 @@ impl Extent {
     /// Orders that the records can carry, with past windows up to `longest_past`.
     pub(super) fn orders(self, longest_past: usize) -> Vec<usize> {
         let most = longest_past.min(self.longest_future()) * self.outputs;
-        let is_tried = |order: &usize| *order <= 3 || order.is_multiple_of(2) || self.channels() <= ODD_ORDERS;
+        let is_tried =
+            |order: &usize| *order <= 3 || order.is_multiple_of(2) || self.channels() <= ODD_ORDERS;
         let is_carried = |order: &usize| {
-            FIGURES_AN_UNKNOWN * parameters_of_order(*order, self.inputs, self.outputs) <= self.figures
+            FIGURES_AN_UNKNOWN * parameters_of_order(*order, self.inputs, self.outputs)
+                <= self.figures
                 && *order <= most
         };
-        LOW_ORDERS.chain(HIGH_ORDERS.step_by(2)).filter(|order| is_tried(order) && is_carried(order)).collect()
+        LOW_ORDERS
+            .chain(HIGH_ORDERS.step_by(2))
+            .filter(|order| is_tried(order) && is_carried(order))
+            .collect()
     }
 }
 
@@ -245,21 +335,40 @@ mod tests {
     #[test]
     fn one_axis_of_thirty_seconds_carries_orders_to_14_and_all_past_windows() {
         // 74 lines of one output: known answer of independent code (identification-real.json, short_siso).
-        let extent = Extent { inputs: 1, outputs: 1, figures: 2 * 74 - 2, radians: 30.0 * 12.0 };
+        let extent = Extent {
+            inputs: 1,
+            outputs: 1,
+            figures: 2 * 74 - 2,
+            radians: 30.0 * 12.0,
+        };
         assert_eq!(extent.pasts(), [8, 10, 12, 16, 24]);
         assert_eq!(extent.orders(24), [1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14]);
     }
 
     #[test]
     fn many_channels_have_even_orders_and_short_records_short_windows() {
-        let extent = Extent { inputs: 8, outputs: 12, figures: 100_000, radians: 60.0 * 12.0 };
-        assert_eq!(extent.orders(8), [1, 2, 3, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24]);
+        let extent = Extent {
+            inputs: 8,
+            outputs: 12,
+            figures: 100_000,
+            radians: 60.0 * 12.0,
+        };
+        assert_eq!(
+            extent.orders(8),
+            [1, 2, 3, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24]
+        );
         // 600 rows of 20 channels: 1.5 (p + 1) 20 of them for p = 19, two for p = 14.
         assert_eq!(extent.pasts(), [8, 10, 12]);
-        let short = Extent { radians: 20.0 * 12.0, ..extent };
+        let short = Extent {
+            radians: 20.0 * 12.0,
+            ..extent
+        };
         assert_eq!(short.pasts(), [5]);
         // 340 rows: two for each column would take 360 of p = 8, and one and a half are there up to p = 10.
-        let between = Extent { radians: 34.0 * 12.0, ..extent };
+        let between = Extent {
+            radians: 34.0 * 12.0,
+            ..extent
+        };
         assert_eq!(between.pasts(), [10]);
     }
 }

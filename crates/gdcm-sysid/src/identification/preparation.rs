@@ -46,7 +46,10 @@ impl ChannelPreparation {
     /// A channel to be taken as it is.
     #[must_use]
     pub fn named(name: impl Into<String>) -> Self {
-        Self { name: name.into(), ..Self::default() }
+        Self {
+            name: name.into(),
+            ..Self::default()
+        }
     }
 
     /// How much later than its own time a sample is logged \[s\].
@@ -80,7 +83,12 @@ impl Preparation {
     /// Every channel as it is, gaps of 3 samples bridged, segments of 10 s.
     #[must_use]
     pub fn of(inputs: &[&str], outputs: &[&str]) -> Self {
-        let channels = |names: &[&str]| names.iter().map(|name| ChannelPreparation::named(*name)).collect();
+        let channels = |names: &[&str]| {
+            names
+                .iter()
+                .map(|name| ChannelPreparation::named(*name))
+                .collect()
+        };
         Self {
             inputs: channels(inputs),
             outputs: channels(outputs),
@@ -95,24 +103,42 @@ impl Preparation {
     pub(super) fn channels(&self) -> impl Iterator<Item = (Signal, &ChannelPreparation)> {
         let of_role = |role: ChannelSide| {
             let channels = role.of(&self.inputs, &self.outputs).iter().enumerate();
-            channels.map(move |(index, channel)| (Signal { role, index, name: channel.name.clone() }, channel))
+            channels.map(move |(index, channel)| {
+                (
+                    Signal {
+                        role,
+                        index,
+                        name: channel.name.clone(),
+                    },
+                    channel,
+                )
+            })
         };
         of_role(ChannelSide::Input).chain(of_role(ChannelSide::Output))
     }
 
     /// How a channel is prepared.
     pub fn channel(&self, signal: &Signal) -> Option<&ChannelPreparation> {
-        signal.role.of(&self.inputs, &self.outputs).get(signal.index)
+        signal
+            .role
+            .of(&self.inputs, &self.outputs)
+            .get(signal.index)
     }
 
     /// How a channel is prepared, to change.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
-        signal.role.of(&mut self.inputs, &mut self.outputs).get_mut(signal.index)
+        signal
+            .role
+            .of(&mut self.inputs, &mut self.outputs)
+            .get_mut(signal.index)
     }
 
     fn checked(&self) -> Result<(), PreparationError> {
         let is_missing = |role: &ChannelSide| role.of(&self.inputs, &self.outputs).is_empty();
-        if let Some(role) = [ChannelSide::Input, ChannelSide::Output].into_iter().find(is_missing) {
+        if let Some(role) = [ChannelSide::Input, ChannelSide::Output]
+            .into_iter()
+            .find(is_missing)
+        {
             return Err(PreparationError::NoChannels(role));
         }
         for (signal, channel) in self.channels() {
@@ -157,18 +183,37 @@ impl RecordUse {
     /// What is no fault of it, in words.
     pub fn facts(&self) -> impl Iterator<Item = String> {
         self.inputs_at_limit.iter().map(|(signal, percent)| {
-            format!("{}: {signal} is at its limit for {percent:.1} % of it, and used as it is", self.record)
+            format!(
+                "{}: {signal} is at its limit for {percent:.1} % of it, and used as it is",
+                self.record
+            )
         })
     }
 
     /// First and last time \[s\] of each part of the record between what was cut out of it.
     pub fn spans(&self, record: &FlightRecord) -> Vec<[f64; 2]> {
-        let cut = || self.gaps.iter().filter(|gap| gap.treatment == Treatment::CutOut);
-        let finite = || record.time_s.iter().copied().filter(|time| time.is_finite());
-        let (Some(first), Some(last)) = (finite().next(), finite().next_back()) else { return Vec::new() };
+        let cut = || {
+            self.gaps
+                .iter()
+                .filter(|gap| gap.treatment == Treatment::CutOut)
+        };
+        let finite = || {
+            record
+                .time_s
+                .iter()
+                .copied()
+                .filter(|time| time.is_finite())
+        };
+        let (Some(first), Some(last)) = (finite().next(), finite().next_back()) else {
+            return Vec::new();
+        };
         let starts = std::iter::once(first).chain(cut().map(|gap| gap.end_s));
         let ends = cut().map(|gap| gap.start_s).chain([last]);
-        starts.zip(ends).filter(|(start, end)| start < end).map(|(start, end)| [start, end]).collect()
+        starts
+            .zip(ends)
+            .filter(|(start, end)| start < end)
+            .map(|(start, end)| [start, end])
+            .collect()
     }
 }
 
@@ -205,7 +250,9 @@ pub enum PreparationError {
         named: usize,
     },
     /// The columns of a record are not of the same length.
-    #[error("record {record} has {stamps} time stamps, {inputs} samples of the inputs and {outputs} of the outputs")]
+    #[error(
+        "record {record} has {stamps} time stamps, {inputs} samples of the inputs and {outputs} of the outputs"
+    )]
     LengthsDiffer {
         /// The record's name.
         record: String,
@@ -217,7 +264,9 @@ pub enum PreparationError {
         outputs: usize,
     },
     /// A delay or a hold that is not finite or too long.
-    #[error("a delay or hold of {seconds} s for {signal}: it must be a number of at most {LONGEST_SHIFT_S} s")]
+    #[error(
+        "a delay or hold of {seconds} s for {signal}: it must be a number of at most {LONGEST_SHIFT_S} s"
+    )]
     Shift {
         /// The channel.
         signal: Signal,
@@ -295,7 +344,9 @@ pub fn prepare(
     if records.is_empty() {
         return Err(PreparationError::NoRecords);
     }
-    let prepared = each(executor, records.iter().enumerate(), |(k, record)| prepare_record(k, record, preparation));
+    let prepared = each(executor, records.iter().enumerate(), |(k, record)| {
+        prepare_record(k, record, preparation)
+    });
     let prepared = prepared.into_iter().collect::<Result<Vec<_>, _>>()?;
     let longest_s = prepared.iter().map(|one| one.longest_s).fold(0.0, f64::max);
     let (mut segments, mut uses, mut cautions) = (Vec::new(), Vec::new(), Vec::new());
@@ -305,16 +356,26 @@ pub fn prepare(
         cautions.extend(one.cautions);
     }
     if segments.is_empty() {
-        return Err(PreparationError::NothingLeft { longest_s, least_s: preparation.least_segment_s });
+        return Err(PreparationError::NothingLeft {
+            longest_s,
+            least_s: preparation.least_segment_s,
+        });
     }
     let signals: Vec<Signal> = preparation.channels().map(|(signal, _)| signal).collect();
-    let constant: Vec<Signal> = signals.into_iter().filter(|signal| is_constant(&segments, signal)).collect();
+    let constant: Vec<Signal> = signals
+        .into_iter()
+        .filter(|signal| is_constant(&segments, signal))
+        .collect();
     if !constant.is_empty() {
         return Err(PreparationError::Constant(constant));
     }
     cautions.extend(uses.iter().filter_map(stuck_caution));
     cautions.extend(channel_cautions(records, &segments, preparation));
-    Ok(Prepared { segments, records: uses, cautions })
+    Ok(Prepared {
+        segments,
+        records: uses,
+        cautions,
+    })
 }
 
 /// The segments of one record that a model is compared with in time, as [`prepare`] makes them; a channel that never moved is no
@@ -322,11 +383,21 @@ pub fn prepare(
 ///
 /// # Errors
 /// Settings out of range, a record that does not fit them, time that does not increase or is uneven, no segment left.
-pub fn segments_of(record: &FlightRecord, preparation: &Preparation) -> Result<Vec<Segment>, PreparationError> {
+pub fn segments_of(
+    record: &FlightRecord,
+    preparation: &Preparation,
+) -> Result<Vec<Segment>, PreparationError> {
     preparation.checked()?;
-    let PreparedRecord { segments, longest_s, .. } = prepare_record(0, record, preparation)?;
+    let PreparedRecord {
+        segments,
+        longest_s,
+        ..
+    } = prepare_record(0, record, preparation)?;
     if segments.is_empty() {
-        return Err(PreparationError::NothingLeft { longest_s, least_s: preparation.least_segment_s });
+        return Err(PreparationError::NothingLeft {
+            longest_s,
+            least_s: preparation.least_segment_s,
+        });
     }
     Ok(segments)
 }
@@ -360,9 +431,15 @@ fn prepare_record(
     if clock.is_uneven() {
         let (name, percent) = (record.name.clone(), clock.jitter_percent);
         if !preparation.resample {
-            return Err(PreparationError::UnevenSampling { record: name, percent });
+            return Err(PreparationError::UnevenSampling {
+                record: name,
+                percent,
+            });
         }
-        cautions.push(RecordCaution::Resampled { record: name, percent });
+        cautions.push(RecordCaution::Resampled {
+            record: name,
+            percent,
+        });
     }
     let (tracks, mut gaps) = Track::all(record, &clock, preparation);
     gaps.extend(clock.gaps());
@@ -370,7 +447,10 @@ fn prepare_record(
 
     let (mut segments, mut longest_s) = (Vec::new(), 0.0_f64);
     for run in runs {
-        let (start_s, samples) = (clock.start_s + clock.sample_time_s * run.first, run.rows.len() / tracks.len());
+        let (start_s, samples) = (
+            clock.start_s + clock.sample_time_s * run.first,
+            run.rows.len() / tracks.len(),
+        );
         let length_s = clock.sample_time_s * samples as f64;
         longest_s = longest_s.max(length_s);
         // A hair of tolerance, so that 500 samples of 0.02 s are 10 s.
@@ -378,8 +458,17 @@ fn prepare_record(
             segments.push(run.segment(index, start_s, clock.sample_time_s, preparation));
         } else {
             let (cause, treatment) = (Cause::SegmentTooShort(length_s), Treatment::CutOut);
-            gaps.push(Gap { start_s, end_s: start_s + length_s, cause, treatment });
-            cautions.push(RecordCaution::SegmentDropped { record: record.name.clone(), start_s, length_s });
+            gaps.push(Gap {
+                start_s,
+                end_s: start_s + length_s,
+                cause,
+                treatment,
+            });
+            cautions.push(RecordCaution::SegmentDropped {
+                record: record.name.clone(),
+                start_s,
+                length_s,
+            });
         }
     }
     if segments.is_empty() {
@@ -387,11 +476,22 @@ fn prepare_record(
     }
     gaps.sort_by(|a, b| a.start_s.total_cmp(&b.start_s));
     let inputs_at_limit = inputs_at_limit(record, preparation);
-    let used_s = segments.iter().map(|segment| segment.sample_time_s * segment.inputs.nrows() as f64).sum();
-    let (record, sample_time_s, logged_s) = (record.name.clone(), clock.sample_time_s, clock.logged_s());
+    let used_s = segments
+        .iter()
+        .map(|segment| segment.sample_time_s * segment.inputs.nrows() as f64)
+        .sum();
+    let (record, sample_time_s, logged_s) =
+        (record.name.clone(), clock.sample_time_s, clock.logged_s());
     Ok(PreparedRecord {
         segments,
-        used: RecordUse { record, sample_time_s, logged_s, used_s, gaps, inputs_at_limit },
+        used: RecordUse {
+            record,
+            sample_time_s,
+            logged_s,
+            used_s,
+            gaps,
+            inputs_at_limit,
+        },
         cautions,
         longest_s,
     })
@@ -402,12 +502,26 @@ fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), P
         let found = role.of(&record.inputs, &record.outputs).ncols();
         let named = role.of(&preparation.inputs, &preparation.outputs).len();
         if found != named {
-            return Err(PreparationError::ChannelsDiffer { record: record.name.clone(), role, found, named });
+            return Err(PreparationError::ChannelsDiffer {
+                record: record.name.clone(),
+                role,
+                found,
+                named,
+            });
         }
     }
-    let (stamps, inputs, outputs) = (record.time_s.len(), record.inputs.nrows(), record.outputs.nrows());
+    let (stamps, inputs, outputs) = (
+        record.time_s.len(),
+        record.inputs.nrows(),
+        record.outputs.nrows(),
+    );
     if stamps != inputs || stamps != outputs {
-        return Err(PreparationError::LengthsDiffer { record: record.name.clone(), stamps, inputs, outputs });
+        return Err(PreparationError::LengthsDiffer {
+            record: record.name.clone(),
+            stamps,
+            inputs,
+            outputs,
+        });
     }
     Ok(())
 }
@@ -421,7 +535,13 @@ struct Run {
 }
 
 impl Run {
-    fn segment(self, record: usize, start_s: f64, sample_time_s: f64, preparation: &Preparation) -> Segment {
+    fn segment(
+        self,
+        record: usize,
+        start_s: f64,
+        sample_time_s: f64,
+        preparation: &Preparation,
+    ) -> Segment {
         let (inputs, outputs) = (preparation.inputs.len(), preparation.outputs.len());
         let width = inputs + outputs;
         let samples = self.rows.len() / width;
@@ -444,13 +564,20 @@ fn runs(clock: &Clock, tracks: &[Track]) -> Vec<Run> {
         let mut open = false;
         for k in (0..points).map(|point| first + point as f64) {
             let t = k * clock.sample_time_s;
-            let complete = readers.iter_mut().zip(&mut row).fold(true, |complete, (reader, value)| {
-                let read = reader.at(t);
-                *value = read.unwrap_or(0.0);
-                complete && read.is_some()
-            });
+            let complete =
+                readers
+                    .iter_mut()
+                    .zip(&mut row)
+                    .fold(true, |complete, (reader, value)| {
+                        let read = reader.at(t);
+                        *value = read.unwrap_or(0.0);
+                        complete && read.is_some()
+                    });
             if complete && !open {
-                runs.push(Run { first: k, rows: Vec::new() });
+                runs.push(Run {
+                    first: k,
+                    rows: Vec::new(),
+                });
             }
             if let (true, Some(run)) = (complete, runs.last_mut()) {
                 run.rows.extend_from_slice(&row);

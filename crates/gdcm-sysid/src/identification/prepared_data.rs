@@ -50,51 +50,105 @@ impl<'a> PreparedData<'a> {
         executor: &'a dyn Executor,
         progress: &Shares,
     ) -> Result<Self, IdentificationError> {
-        if let Some(&record) = options.held_out.iter().find(|record| **record >= records.len()) {
-            return Err(IdentificationError::HeldOutMissing { record, records: records.len() });
+        if let Some(&record) = options
+            .held_out
+            .iter()
+            .find(|record| **record >= records.len())
+        {
+            return Err(IdentificationError::HeldOutMissing {
+                record,
+                records: records.len(),
+            });
         }
         let prepared = prepare(records, &options.preparation, executor)?;
         check_sampling(&prepared.segments, options)?;
-        let (mut held_out_segments, mut segments): (Vec<Segment>, Vec<Segment>) =
-            prepared.segments.into_iter().partition(|segment| options.held_out.contains(&segment.record));
-        held_out_segments.iter_mut().for_each(|segment| drop(split_references(segment, options.references)));
-        let references: Vec<DMatrix<f64>> =
-            segments.iter_mut().map(|segment| split_references(segment, options.references)).collect();
+        let (mut held_out_segments, mut segments): (Vec<Segment>, Vec<Segment>) = prepared
+            .segments
+            .into_iter()
+            .partition(|segment| options.held_out.contains(&segment.record));
+        held_out_segments
+            .iter_mut()
+            .for_each(|segment| drop(split_references(segment, options.references)));
+        let references: Vec<DMatrix<f64>> = segments
+            .iter_mut()
+            .map(|segment| split_references(segment, options.references))
+            .collect();
         if segments.is_empty() {
             return Err(IdentificationError::NothingToFit);
         }
         let scales = Scales::of(&segments)?;
-        let scaled = |segments: &[Segment]| segments.iter().map(|segment| scales.scaled(segment)).collect::<Vec<_>>();
+        let scaled = |segments: &[Segment]| {
+            segments
+                .iter()
+                .map(|segment| scales.scaled(segment))
+                .collect::<Vec<_>>()
+        };
         let segments = scaled(&segments);
         check_inputs(&segments, options)?;
 
         progress.next(0.02, "measured response")?;
         let (lowest, highest) = (options.lowest(), options.highest());
-        let lines = LineRange { lowest, highest: BEYOND * highest };
+        let lines = LineRange {
+            lowest,
+            highest: BEYOND * highest,
+        };
         let wide = lines.of(&segments, executor);
-        let narrow: Vec<Spectrum> = wide.iter().map(|lines| lines.between(lowest, highest)).collect();
+        let narrow: Vec<Spectrum> = wide
+            .iter()
+            .map(|lines| lines.between(lowest, highest))
+            .collect();
         let too_short = checked_length(&segments, &narrow, options)?;
-        let first = wide.iter().filter_map(|lines| lines.omega.first().copied()).fold(highest, f64::min);
-        let logged = || local_polynomial(&wide, &log_spaced(first, highest, MEASURED_POINTS), executor);
+        let first = wide
+            .iter()
+            .filter_map(|lines| lines.omega.first().copied())
+            .fold(highest, f64::min);
+        let logged = || {
+            local_polynomial(
+                &wide,
+                &log_spaced(first, highest, MEASURED_POINTS),
+                executor,
+            )
+        };
         let likelihood = |spectra: &[Spectrum], measured: &ResponseEstimate| {
             let noise = NoiseCovariance::of(measured).ok_or(IdentificationError::OutputsDepend)?;
-            let segments: Option<_> = spectra.iter().map(|lines| SpectralLines::new(lines, &noise)).collect();
-            segments.map(|segments| Likelihood { segments, executor }).ok_or(IdentificationError::OutputsDepend)
+            let segments: Option<_> = spectra
+                .iter()
+                .map(|lines| SpectralLines::new(lines, &noise))
+                .collect();
+            segments
+                .map(|segments| Likelihood { segments, executor })
+                .ok_or(IdentificationError::OutputsDepend)
         };
         let (measured, narrow, direct) = if options.references == 0 {
             (logged()?, narrow, None)
         } else {
-            let driven = segments.iter().zip(references).map(|(segment, reference)| driven(segment, reference));
+            let driven = segments
+                .iter()
+                .zip(references)
+                .map(|(segment, reference)| driven(segment, reference));
             let driven: Vec<Segment> = driven.collect();
             let scales = Scales::of(&driven)?;
-            let seen = lines.of(&driven.iter().map(|segment| scales.scaled(segment)).collect::<Vec<_>>(), executor);
+            let seen = lines.of(
+                &driven
+                    .iter()
+                    .map(|segment| scales.scaled(segment))
+                    .collect::<Vec<_>>(),
+                executor,
+            );
             let outputs = options.preparation.outputs.len();
             let instrument = Instrument::of(&seen, [lowest, highest], outputs, executor)?;
-            (instrument.measured, instrument.spectra, Some(likelihood(&narrow, &logged()?)?))
+            (
+                instrument.measured,
+                instrument.spectra,
+                Some(likelihood(&narrow, &logged()?)?),
+            )
         };
         let (fit, held_out) = (
             likelihood(&narrow, &measured)?,
-            likelihood(&LineRange { lowest, highest }.of(&scaled(&held_out_segments), executor), &measured)?,
+            likelihood(
+                &LineRange { lowest, highest }.of(&scaled(&held_out_segments), executor),
+                &measured,
+            )?,
         );
 
         progress.next(0.07, "low-pass")?;
@@ -104,7 +158,9 @@ impl<'a> PreparedData<'a> {
             RecordCaution::MovedTogether { signals, .. } => {
                 signals.iter().all(|signal| signal.index < options.inputs())
             }
-            RecordCaution::Copy { of, .. } => of.role == ChannelSide::Output || of.index < options.inputs(),
+            RecordCaution::Copy { of, .. } => {
+                of.role == ChannelSide::Output || of.index < options.inputs()
+            }
             _ => true,
         };
         let of_records = prepared.cautions.into_iter().filter(is_of_model);
@@ -113,7 +169,10 @@ impl<'a> PreparedData<'a> {
         cautions.extend(vibration_cautions(&cut_off, options));
         cautions.extend(excitation_cautions(&measured, options));
         let shown = measured.shown_band(options.band);
-        cautions.extend(shown.map(|shown| IdentificationCaution::BandNotShown { band: options.band, shown }));
+        cautions.extend(shown.map(|shown| IdentificationCaution::BandNotShown {
+            band: options.band,
+            shown,
+        }));
         Ok(Self {
             record_uses: prepared.records,
             scales,
@@ -134,18 +193,38 @@ impl<'a> PreparedData<'a> {
     /// What CT-PBSID is run with: what the options say, and where they say nothing what the records can carry (M14.13).
     pub(super) fn subspace_settings(&self, options: &Options) -> SubspaceSettings {
         let (inputs, outputs) = (self.scales.inputs.len(), self.scales.outputs.len());
-        let lines: usize = self.spectra.iter().map(|spectrum| spectrum.omega.len()).sum();
-        let seconds: f64 = self.spectra.iter().map(|spectrum| spectrum.duration_s).sum();
+        let lines: usize = self
+            .spectra
+            .iter()
+            .map(|spectrum| spectrum.omega.len())
+            .sum();
+        let seconds: f64 = self
+            .spectra
+            .iter()
+            .map(|spectrum| spectrum.duration_s)
+            .sum();
         let figures = 2 * outputs * lines.saturating_sub(self.spectra.len());
-        let extent = Extent { inputs, outputs, figures, radians: seconds * options.band[1] };
+        let extent = Extent {
+            inputs,
+            outputs,
+            figures,
+            radians: seconds * options.band[1],
+        };
         let pasts = options.pasts.clone().unwrap_or_else(|| extent.pasts());
         let longest = pasts.iter().copied().max().unwrap_or_default();
-        let mut orders = options.orders.clone().unwrap_or_else(|| extent.orders(longest));
+        let mut orders = options
+            .orders
+            .clone()
+            .unwrap_or_else(|| extent.orders(longest));
         orders.sort_unstable();
         orders.dedup();
         SubspaceSettings {
             highest: options.band[1],
-            poles: options.poles.iter().map(|pole| pole * options.band[1]).collect(),
+            poles: options
+                .poles
+                .iter()
+                .map(|pole| pole * options.band[1])
+                .collect(),
             pasts,
             orders,
             longest_future: extent.longest_future(),
@@ -169,8 +248,16 @@ impl<'a> PreparedData<'a> {
     /// That no model came of this.
     pub(super) fn no_model(&self) -> IdentificationError {
         IdentificationError::NoModel {
-            lines: self.spectra.iter().map(|spectrum| spectrum.omega.len()).sum(),
-            seconds: self.spectra.iter().map(|spectrum| spectrum.duration_s).sum(),
+            lines: self
+                .spectra
+                .iter()
+                .map(|spectrum| spectrum.omega.len())
+                .sum(),
+            seconds: self
+                .spectra
+                .iter()
+                .map(|spectrum| spectrum.duration_s)
+                .sum(),
         }
     }
 }
@@ -178,15 +265,26 @@ impl<'a> PreparedData<'a> {
 /// Takes the last `references` inputs off a segment, and gives them.
 fn split_references(segment: &mut Segment, references: usize) -> DMatrix<f64> {
     let inputs = segment.inputs.ncols().saturating_sub(references);
-    let taken = segment.inputs.columns(inputs, segment.inputs.ncols() - inputs).into_owned();
+    let taken = segment
+        .inputs
+        .columns(inputs, segment.inputs.ncols() - inputs)
+        .into_owned();
     segment.inputs = segment.inputs.columns(0, inputs).into_owned();
     taken
 }
 
 /// A segment with the references as what drives it, and outputs and inputs as what comes of that.
 fn driven(segment: &Segment, reference: DMatrix<f64>) -> Segment {
-    let both: Vec<_> = segment.outputs.column_iter().chain(segment.inputs.column_iter()).collect();
-    Segment { inputs: reference, outputs: DMatrix::from_columns(&both), ..segment.clone() }
+    let both: Vec<_> = segment
+        .outputs
+        .column_iter()
+        .chain(segment.inputs.column_iter())
+        .collect();
+    Segment {
+        inputs: reference,
+        outputs: DMatrix::from_columns(&both),
+        ..segment.clone()
+    }
 }
 
 /// Which lines of the segments are used.
@@ -201,19 +299,33 @@ pub(super) struct LineRange {
 impl LineRange {
     /// The lines of the segments that have any here, from the second of each on.
     pub(super) fn of(self, segments: &[Segment], executor: &dyn Executor) -> Vec<Spectrum> {
-        let used = |lines: Spectrum| lines.between(self.lowest.max(FIRST_LINE * TAU / lines.duration_s), self.highest);
-        let lines = spectra(segments, self.highest, executor).into_iter().map(used);
+        let used = |lines: Spectrum| {
+            lines.between(
+                self.lowest.max(FIRST_LINE * TAU / lines.duration_s),
+                self.highest,
+            )
+        };
+        let lines = spectra(segments, self.highest, executor)
+            .into_iter()
+            .map(used);
         lines.filter(|lines| !lines.omega.is_empty()).collect()
     }
 }
 
 fn check_sampling(segments: &[Segment], options: &Options) -> Result<(), IdentificationError> {
-    let sample_time_s = segments.iter().map(|segment| segment.sample_time_s).fold(0.0, f64::max);
+    let sample_time_s = segments
+        .iter()
+        .map(|segment| segment.sample_time_s)
+        .fold(0.0, f64::max);
     let seen = std::f64::consts::PI / sample_time_s;
     if options.highest() <= seen {
         return Ok(());
     }
-    Err(IdentificationError::SampledTooSlowly { highest: options.band[1], sample_time_s, limit: 0.75 * seen })
+    Err(IdentificationError::SampledTooSlowly {
+        highest: options.band[1],
+        sample_time_s,
+        limit: 0.75 * seen,
+    })
 }
 
 /// Periods of the lower end of the band that the longest record lasts at least, and that it should last (M14.12).
@@ -233,23 +345,46 @@ fn checked_length(
     let (lowest, period_s) = (options.band[0], TAU / options.band[0]);
     let length_s = |segment: &Segment| segment.sample_time_s * segment.inputs.nrows() as f64;
     let longest_s = segments.iter().map(length_s).fold(0.0, f64::max);
-    let of_inputs = if segments.len() == 1 { options.inputs() as f64 * PERIODS_AN_INPUT } else { 0.0 };
+    let of_inputs = if segments.len() == 1 {
+        options.inputs() as f64 * PERIODS_AN_INPUT
+    } else {
+        0.0
+    };
     let better_s = PERIODS.1.max(of_inputs) * period_s;
     let needed_s = PERIODS.0 * TAU / lowest;
     if longest_s < needed_s {
         let enough = PERIODS.0 * TAU / longest_s;
-        return Err(IdentificationError::TooShort { longest_s, lowest, needed_s, better_s, enough });
+        return Err(IdentificationError::TooShort {
+            longest_s,
+            lowest,
+            needed_s,
+            better_s,
+            enough,
+        });
     }
-    let (inputs, outputs) = lines.first().map_or((0, 0), |of| (of.inputs.nrows(), of.outputs.nrows()));
+    let (inputs, outputs) = lines
+        .first()
+        .map_or((0, 0), |of| (of.inputs.nrows(), of.outputs.nrows()));
     let count: usize = lines.iter().map(|of| of.omega.len()).sum();
     let figures = (2 * outputs * count).saturating_sub(2 * outputs * segments.len());
     let unknowns = parameters_of_order(1, inputs, outputs);
     let needed = FIGURES_AN_UNKNOWN * unknowns;
     if figures < needed {
-        return Err(IdentificationError::TooFewFigures { figures, needed, unknowns });
+        return Err(IdentificationError::TooFewFigures {
+            figures,
+            needed,
+            unknowns,
+        });
     }
     let periods = longest_s * lowest / TAU;
-    Ok((periods < PERIODS.1).then_some(IdentificationCaution::Short { longest_s, lowest, periods, better_s }))
+    Ok(
+        (periods < PERIODS.1).then_some(IdentificationCaution::Short {
+            longest_s,
+            lowest,
+            periods,
+            better_s,
+        }),
+    )
 }
 
 /// Refuses inputs of which one is a sum of others, by the condition of their correlations.
@@ -269,7 +404,9 @@ fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), Identific
     }
     let vector = eigen.eigenvectors.column(least);
     let involved = (0..inputs).filter(|&input| vector[input].abs() > 0.1 * vector.amax());
-    let signals = involved.map(|input| options.signal(ChannelSide::Input, input)).collect();
+    let signals = involved
+        .map(|input| options.signal(ChannelSide::Input, input))
+        .collect();
     Err(IdentificationError::InputsDepend(signals))
 }
 
@@ -282,7 +419,10 @@ fn vibration_cautions(cut_off: &CutOff, options: &Options) -> Vec<Identification
     cut_off.vibrating.iter().map(caution).collect()
 }
 
-fn excitation_cautions(measured: &ResponseEstimate, options: &Options) -> Vec<IdentificationCaution> {
+fn excitation_cautions(
+    measured: &ResponseEstimate,
+    options: &Options,
+) -> Vec<IdentificationCaution> {
     let excitation = measured.excitation();
     let not_swept = |input| IdentificationCaution::NotSwept {
         signal: options.signal(ChannelSide::Input, input),
@@ -290,7 +430,9 @@ fn excitation_cautions(measured: &ResponseEstimate, options: &Options) -> Vec<Id
     };
     let mut cautions: Vec<_> = excitation.not_identified().map(not_swept).collect();
     if excitation.moved_together() {
-        cautions.push(IdentificationCaution::MovedTogether { condition: excitation.condition });
+        cautions.push(IdentificationCaution::MovedTogether {
+            condition: excitation.condition,
+        });
     }
     cautions
 }
@@ -348,7 +490,9 @@ impl Scales {
         }
         let scales = |role, side: fn(&Segment) -> &DMatrix<f64>| {
             let scales = rms(segments, side)?.into_iter().enumerate();
-            let moved = |(index, scale): (usize, Option<f64>)| scale.ok_or(ScalingError::Constant { role, index });
+            let moved = |(index, scale): (usize, Option<f64>)| {
+                scale.ok_or(ScalingError::Constant { role, index })
+            };
             scales.map(moved).collect::<Result<Vec<f64>, _>>()
         };
         Ok(Self {
@@ -361,7 +505,10 @@ impl Scales {
     #[must_use]
     pub fn scaled(&self, segment: &Segment) -> Segment {
         let mut scaled = segment.clone();
-        for (samples, scales) in [(&mut scaled.inputs, &self.inputs), (&mut scaled.outputs, &self.outputs)] {
+        for (samples, scales) in [
+            (&mut scaled.inputs, &self.inputs),
+            (&mut scaled.outputs, &self.outputs),
+        ] {
             for (mut column, scale) in samples.column_iter_mut().zip(scales) {
                 column /= *scale;
             }
@@ -372,19 +519,29 @@ impl Scales {
     /// What a response `[output, input]` in scaled units is multiplied with to be in the units of the file.
     #[must_use]
     pub fn of_response(&self) -> DMatrix<f64> {
-        DMatrix::from_fn(self.outputs.len(), self.inputs.len(), |o, i| self.outputs[o] / self.inputs[i])
+        DMatrix::from_fn(self.outputs.len(), self.inputs.len(), |o, i| {
+            self.outputs[o] / self.inputs[i]
+        })
     }
 }
 
 /// The rms of each channel about its mean in each segment, over all segments; none for a constant channel.
-fn rms(segments: &[Segment], side: fn(&Segment) -> &DMatrix<f64>) -> Result<Vec<Option<f64>>, ScalingError> {
+fn rms(
+    segments: &[Segment],
+    side: fn(&Segment) -> &DMatrix<f64>,
+) -> Result<Vec<Option<f64>>, ScalingError> {
     let channels = segments.first().map_or(0, |segment| side(segment).ncols());
-    let (mut squares, mut greatest, mut samples) = (vec![0.0; channels], vec![0.0_f64; channels], 0);
+    let (mut squares, mut greatest, mut samples) =
+        (vec![0.0; channels], vec![0.0_f64; channels], 0);
     for (index, segment) in segments.iter().enumerate() {
         let rows = side(segment).nrows();
         samples += rows;
         for (c, column) in side(segment).column_iter().enumerate() {
-            let mean = if rows == 0 { 0.0 } else { column.sum() / rows as f64 };
+            let mean = if rows == 0 {
+                0.0
+            } else {
+                column.sum() / rows as f64
+            };
             squares[c] += column.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
             if !squares[c].is_finite() {
                 return Err(ScalingError::NotFinite(index));
@@ -393,7 +550,11 @@ fn rms(segments: &[Segment], side: fn(&Segment) -> &DMatrix<f64>) -> Result<Vec<
         }
     }
     let scale = |(square, greatest): (&f64, &f64)| {
-        let rms = if samples == 0 { 0.0 } else { (square / samples as f64).sqrt() };
+        let rms = if samples == 0 {
+            0.0
+        } else {
+            (square / samples as f64).sqrt()
+        };
         (rms > 0.0 && rms > CONSTANT * greatest).then_some(rms)
     };
     Ok(squares.iter().zip(&greatest).map(scale).collect())

@@ -17,7 +17,9 @@ const COPY: f64 = 0.9999;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RecordCaution {
     /// A record with uneven sample times was interpolated, as allowed.
-    #[error("{record}: the sample time varies by {percent:.0} %; it was interpolated to even steps")]
+    #[error(
+        "{record}: the sample time varies by {percent:.0} %; it was interpolated to even steps"
+    )]
     Resampled {
         /// The record's name.
         record: String,
@@ -127,7 +129,11 @@ pub enum RecordCaution {
 fn hold_choices(role: ChannelSide, hold_ms: f64) -> String {
     let half = 0.5 * hold_ms;
     let command = format!("a command held and logged once a hold (moved {half:.0} ms later), ");
-    let command = if role == ChannelSide::Input { command } else { String::new() };
+    let command = if role == ChannelSide::Input {
+        command
+    } else {
+        String::new()
+    };
     format!("{command}a slow sensor (only fresh samples kept, or moved {half:.0} ms earlier), ")
 }
 
@@ -140,17 +146,33 @@ pub(super) fn channel_cautions(
     let mut cautions = Vec::new();
     for (signal, channel) in preparation.channels() {
         let of_record = |record| samples(record, &signal);
-        let greatest = segments.iter().map(|segment| segment.channel(&signal).amax()).fold(0.0, f64::max);
+        let greatest = segments
+            .iter()
+            .map(|segment| segment.channel(&signal).amax())
+            .fold(0.0, f64::max);
         if let Some(limit) = channel.limit.filter(|limit| greatest > *limit) {
-            cautions.push(RecordCaution::UnlikelyUnit { signal: signal.clone(), greatest, limit });
+            cautions.push(RecordCaution::UnlikelyUnit {
+                signal: signal.clone(),
+                greatest,
+                limit,
+            });
         }
         // Stairs of an output in coarse steps are those steps.
-        let all = || records.iter().flat_map(|record| finite(record, &signal)).collect::<Vec<f64>>();
+        let all = || {
+            records
+                .iter()
+                .flat_map(|record| finite(record, &signal))
+                .collect::<Vec<f64>>()
+        };
         if channel.hold == Hold::None
             && (signal.role == ChannelSide::Input || !is_coarse(&all()))
             && let Some((share, hold_s)) = sample_hold(records.iter().map(of_record))
         {
-            cautions.push(RecordCaution::SampleHold { signal, percent: 100.0 * share, hold_s });
+            cautions.push(RecordCaution::SampleHold {
+                signal,
+                percent: 100.0 * share,
+                hold_s,
+            });
         }
     }
     cautions.extend(output_cautions(records, preparation));
@@ -170,14 +192,20 @@ pub(super) fn stuck_caution(used: &RecordUse) -> Option<RecordCaution> {
         seconds += length_s;
     }
     let signals: Vec<Signal> = all.into_iter().collect();
-    (!signals.is_empty()).then(|| RecordCaution::Stuck { record: used.record.clone(), signals, seconds })
+    (!signals.is_empty()).then(|| RecordCaution::Stuck {
+        record: used.record.clone(),
+        signals,
+        seconds,
+    })
 }
 
 /// Stamps and values of a channel in `record` where both are there.
 fn samples(record: &FlightRecord, signal: &Signal) -> Vec<(f64, f64)> {
     let column = record.channel(signal);
     let stamped = record.time_s.iter().copied().zip(column.iter().copied());
-    stamped.filter(|(time, value)| time.is_finite() && value.is_finite()).collect()
+    stamped
+        .filter(|(time, value)| time.is_finite() && value.is_finite())
+        .collect()
 }
 
 /// Share of equal consecutive samples in a channel while it moves, and the median time between changes \[s\]; none where
@@ -203,7 +231,10 @@ fn correlated(segments: &[Segment], preparation: &Preparation) -> Vec<RecordCaut
     let signals: Vec<Signal> = preparation.channels().map(|(signal, _)| signal).collect();
     let mut covariance = DMatrix::zeros(signals.len(), signals.len());
     for segment in segments {
-        let samples: Vec<_> = signals.iter().map(|signal| segment.channel(signal)).collect();
+        let samples: Vec<_> = signals
+            .iter()
+            .map(|signal| segment.channel(signal))
+            .collect();
         let centred = centred(DMatrix::from_columns(&samples));
         covariance += centred.tr_mul(&centred);
     }
@@ -214,10 +245,16 @@ fn correlated(segments: &[Segment], preparation: &Preparation) -> Vec<RecordCaut
             let correlation: f64 = covariance[(first, second)] / power;
             match b.role {
                 ChannelSide::Input if correlation.abs() > TOGETHER => {
-                    cautions.push(RecordCaution::MovedTogether { signals: [a.clone(), b.clone()], correlation });
+                    cautions.push(RecordCaution::MovedTogether {
+                        signals: [a.clone(), b.clone()],
+                        correlation,
+                    });
                 }
                 ChannelSide::Output if correlation.abs() > COPY => {
-                    cautions.push(RecordCaution::Copy { copy: b.clone(), of: a.clone() })
+                    cautions.push(RecordCaution::Copy {
+                        copy: b.clone(),
+                        of: a.clone(),
+                    })
                 }
                 ChannelSide::Input | ChannelSide::Output => {}
             }
@@ -262,21 +299,51 @@ pub(super) struct Clipping {
 pub(super) fn clipping(samples: &[f64]) -> Clipping {
     let steps = samples.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let flat = FLAT * steps.sum::<f64>() / samples.len().saturating_sub(1).max(1) as f64;
-    let (least, greatest) = samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+    let (least, greatest) = samples
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+            (a.min(*x), b.max(*x))
+        });
     let outer = OUTER * (greatest - least);
     let runs: Vec<&[f64]> = samples.chunk_by(|a, b| (b - a).abs() <= flat).collect();
     let is_outer = |run: &[f64]| {
         let mean = run.iter().sum::<f64>() / run.len() as f64;
         mean >= greatest - outer || mean <= least + outer
     };
-    let (at_ends, elsewhere): (Vec<&[f64]>, Vec<&[f64]>) = runs.into_iter().partition(|run| is_outer(run));
-    let mut lengths: Vec<f64> = elsewhere.iter().filter(|run| run.len() > 1).map(|run| run.len() as f64).collect();
-    let usual = if lengths.is_empty() { 1.0 } else { quantile(&mut lengths, USUAL) };
+    let (at_ends, elsewhere): (Vec<&[f64]>, Vec<&[f64]>) =
+        runs.into_iter().partition(|run| is_outer(run));
+    let mut lengths: Vec<f64> = elsewhere
+        .iter()
+        .filter(|run| run.len() > 1)
+        .map(|run| run.len() as f64)
+        .collect();
+    let usual = if lengths.is_empty() {
+        1.0
+    } else {
+        quantile(&mut lengths, USUAL)
+    };
     let shortest = SHORTEST.max(OVER_USUAL * usual);
     let share = |count: usize| count as f64 / samples.len().max(1) as f64;
-    let at_limit = at_ends.iter().filter(|run| run.len() as f64 >= shortest).map(|run| run.len()).sum();
-    let held = share(elsewhere.iter().filter(|run| run.len() > 1).map(|run| run.len()).sum());
-    Clipping { share: share(at_limit), most: if held > HELD_SHARE { TOO_MANY.1 } else { TOO_MANY.0 } }
+    let at_limit = at_ends
+        .iter()
+        .filter(|run| run.len() as f64 >= shortest)
+        .map(|run| run.len())
+        .sum();
+    let held = share(
+        elsewhere
+            .iter()
+            .filter(|run| run.len() > 1)
+            .map(|run| run.len())
+            .sum(),
+    );
+    Clipping {
+        share: share(at_limit),
+        most: if held > HELD_SHARE {
+            TOO_MANY.1
+        } else {
+            TOO_MANY.0
+        },
+    }
 }
 
 /// Whether a channel has so few values that to stand still is nothing unusual.
@@ -287,43 +354,79 @@ pub(super) fn is_coarse(samples: &[f64]) -> bool {
 /// The least step between two values over the standard deviation; none where nothing moves.
 fn coarseness(samples: &[f64]) -> Option<f64> {
     let mean = samples.iter().sum::<f64>() / samples.len().max(1) as f64;
-    let deviation = (samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples.len().max(1) as f64).sqrt();
+    let deviation = (samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>()
+        / samples.len().max(1) as f64)
+        .sqrt();
     let mut values = samples.to_vec();
     values.sort_by(f64::total_cmp);
-    let steps = values.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > FLAT * deviation);
+    let steps = values
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .filter(|step| *step > FLAT * deviation);
     let least = steps.fold(f64::INFINITY, f64::min);
     (deviation > 0.0 && least.is_finite()).then_some(least / deviation)
 }
 
 /// The samples of a channel that are numbers.
 pub(super) fn finite(record: &FlightRecord, signal: &Signal) -> Vec<f64> {
-    record.channel(signal).iter().copied().filter(|x| x.is_finite()).collect()
+    record
+        .channel(signal)
+        .iter()
+        .copied()
+        .filter(|x| x.is_finite())
+        .collect()
 }
 
 /// The inputs of a record that stand at their limit, and for which share of it \[%\].
-pub(super) fn inputs_at_limit(record: &FlightRecord, preparation: &Preparation) -> Vec<(Signal, f64)> {
-    let inputs = preparation.channels().filter(|(signal, _)| signal.role == ChannelSide::Input);
+pub(super) fn inputs_at_limit(
+    record: &FlightRecord,
+    preparation: &Preparation,
+) -> Vec<(Signal, f64)> {
+    let inputs = preparation
+        .channels()
+        .filter(|(signal, _)| signal.role == ChannelSide::Input);
     let clipped = inputs.map(|(signal, _)| {
         let found = clipping(&finite(record, &signal));
         (signal, found)
     });
-    clipped.filter(|(_, found)| found.share > found.most).map(|(signal, found)| (signal, 100.0 * found.share)).collect()
+    clipped
+        .filter(|(_, found)| found.share > found.most)
+        .map(|(signal, found)| (signal, 100.0 * found.share))
+        .collect()
 }
 
 /// What is wrong with the outputs as they were logged, one caution a channel: of the record in which it is worst.
-pub(super) fn output_cautions(records: &[FlightRecord], preparation: &Preparation) -> Vec<RecordCaution> {
+pub(super) fn output_cautions(
+    records: &[FlightRecord],
+    preparation: &Preparation,
+) -> Vec<RecordCaution> {
     let mut cautions = Vec::new();
-    for (signal, _) in preparation.channels().filter(|(signal, _)| signal.role == ChannelSide::Output) {
-        let of_records: Vec<(&FlightRecord, Vec<f64>)> =
-            records.iter().map(|record| (record, finite(record, &signal))).collect();
-        let clipped = of_records.iter().map(|(record, samples)| (record, clipping(samples)));
+    for (signal, _) in preparation
+        .channels()
+        .filter(|(signal, _)| signal.role == ChannelSide::Output)
+    {
+        let of_records: Vec<(&FlightRecord, Vec<f64>)> = records
+            .iter()
+            .map(|record| (record, finite(record, &signal)))
+            .collect();
+        let clipped = of_records
+            .iter()
+            .map(|(record, samples)| (record, clipping(samples)));
         let clipped = clipped.filter(|(_, clipping)| clipping.share > clipping.most);
         let count = clipped.clone().count();
         if let Some((record, clipping)) = clipped.max_by(|a, b| a.1.share.total_cmp(&b.1.share)) {
             let (record, percent) = (record.name.clone(), 100.0 * clipping.share);
-            cautions.push(RecordCaution::AtLimit { record, signal: signal.clone(), percent, records: count });
+            cautions.push(RecordCaution::AtLimit {
+                record,
+                signal: signal.clone(),
+                percent,
+                records: count,
+            });
         }
-        let all: Vec<f64> = of_records.into_iter().flat_map(|(_, samples)| samples).collect();
+        let all: Vec<f64> = of_records
+            .into_iter()
+            .flat_map(|(_, samples)| samples)
+            .collect();
         if let Some(steps) = coarseness(&all).filter(|steps| *steps > COARSE) {
             cautions.push(RecordCaution::Coarse { signal, steps });
         }
@@ -337,13 +440,20 @@ impl RecordCaution {
         let of = CautionNote::of;
         match self {
             Self::Resampled { record, .. } => of("resampled").record(record),
-            Self::SegmentDropped { record, .. } | Self::RecordUnused(record) => of("gap").record(record),
+            Self::SegmentDropped { record, .. } | Self::RecordUnused(record) => {
+                of("gap").record(record)
+            }
             Self::SampleHold { signal, .. } => of("held").channel(signal),
             Self::UnlikelyUnit { signal, .. } => of("unit").channel(signal),
-            Self::MovedTogether { signals: [_, second], .. } => of("collinear-inputs").channel(second),
+            Self::MovedTogether {
+                signals: [_, second],
+                ..
+            } => of("collinear-inputs").channel(second),
             Self::Copy { copy, .. } => of("copy").channel(copy),
             Self::AtLimit { record, signal, .. } => of("clipped").record(record).channel(signal),
-            Self::Stuck { record, signals, .. } => of("stuck").record(record).channel(signals.first()),
+            Self::Stuck {
+                record, signals, ..
+            } => of("stuck").record(record).channel(signals.first()),
             Self::Coarse { signal, .. } => of("coarse").channel(signal),
         }
     }

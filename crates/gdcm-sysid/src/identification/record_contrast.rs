@@ -52,14 +52,26 @@ impl RecordFault {
     /// What puts it right, by channel; a factor near -1 is a sign, and nothing else.
     #[must_use]
     pub fn remedies(&self, outputs: &[Signal]) -> Vec<(Signal, ChannelRemedy)> {
-        let late = |delay_s: f64| ChannelRemedy { delay_s, ..ChannelRemedy::NONE };
+        let late = |delay_s: f64| ChannelRemedy {
+            delay_s,
+            ..ChannelRemedy::NONE
+        };
         match self {
-            Self::OutputsLate(delay_s) => outputs.iter().map(|output| (output.clone(), late(*delay_s))).collect(),
+            Self::OutputsLate(delay_s) => outputs
+                .iter()
+                .map(|output| (output.clone(), late(*delay_s)))
+                .collect(),
             Self::Late(signal, delay_s) => vec![(signal.clone(), late(*delay_s))],
             Self::Gain(signal, factor) => {
                 let is_sign = (factor + 1.0).abs() < NEAR_A_SIGN;
                 let factor = if is_sign { -1.0 } else { *factor };
-                vec![(signal.clone(), ChannelRemedy { factor, ..ChannelRemedy::NONE })]
+                vec![(
+                    signal.clone(),
+                    ChannelRemedy {
+                        factor,
+                        ..ChannelRemedy::NONE
+                    },
+                )]
             }
         }
     }
@@ -76,11 +88,16 @@ impl RecordFault {
 
 impl fmt::Display for RecordFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let late = |delay_s: f64| format!("{:.0} ms {}", 1e3 * delay_s.abs(), late_or_early(delay_s));
+        let late =
+            |delay_s: f64| format!("{:.0} ms {}", 1e3 * delay_s.abs(), late_or_early(delay_s));
         match self {
-            Self::OutputsLate(delay_s) => write!(f, "all its outputs are logged {}", late(*delay_s)),
+            Self::OutputsLate(delay_s) => {
+                write!(f, "all its outputs are logged {}", late(*delay_s))
+            }
             Self::Late(signal, delay_s) => write!(f, "{signal} is logged {}", late(*delay_s)),
-            Self::Gain(signal, factor) if *factor < 0.0 => write!(f, "{signal} has the other sign (times {factor:.2})"),
+            Self::Gain(signal, factor) if *factor < 0.0 => {
+                write!(f, "{signal} has the other sign (times {factor:.2})")
+            }
             Self::Gain(signal, factor) => write!(f, "{signal} is to be multiplied by {factor:.2}"),
         }
     }
@@ -121,11 +138,17 @@ pub(super) struct RecordContrasts<'a> {
 
 impl<'a> RecordContrasts<'a> {
     /// The contrasts; none where an iteration does not end.
-    pub(super) fn of(likelihood: &'a Likelihood<'a>, spectra: &'a [Spectrum], fit: &'a Fit) -> Option<Self> {
+    pub(super) fn of(
+        likelihood: &'a Likelihood<'a>,
+        spectra: &'a [Spectrum],
+        fit: &'a Fit,
+    ) -> Option<Self> {
         let systems = fit.systems(likelihood)?;
         let whole = NormalSystem::sum(fit.model.parameters(), &systems);
-        let spare =
-            likelihood.freedom(fit.model.order()).checked_sub(effective_parameters(fit)).filter(|spare| *spare > 0)?;
+        let spare = likelihood
+            .freedom(fit.model.order())
+            .checked_sub(effective_parameters(fit))
+            .filter(|spare| *spare > 0)?;
         let dispersion = fit.cost / spare as f64;
         let root = pseudo_inverse_root(whole.matrix.clone(), FREEDOM_OF_SCALE)?;
         let gradient = root.tr_mul(&whole.gradient);
@@ -140,34 +163,63 @@ impl<'a> RecordContrasts<'a> {
                 .filter(|&k| KNOWN.0 < eigen.eigenvalues[k] && eigen.eigenvalues[k] < KNOWN.1)
                 .map(|k| along[k].powi(2) / (eigen.eigenvalues[k] * (1.0 - eigen.eigenvalues[k])))
                 .collect();
-            let contrast = compared.iter().sum::<f64>() / (compared.len().max(1) as f64 * dispersion);
+            let contrast =
+                compared.iter().sum::<f64>() / (compared.len().max(1) as f64 * dispersion);
             Some(RecordContrast { record, contrast })
         };
         let contrasts = match records.len() {
             0 | 1 => Vec::new(),
-            _ => each(likelihood.executor, &records, contrast).into_iter().collect::<Option<Vec<_>>>()?,
+            _ => each(likelihood.executor, &records, contrast)
+                .into_iter()
+                .collect::<Option<Vec<_>>>()?,
         };
-        Some(Self { likelihood, spectra, fit, whole, root, contrasts })
+        Some(Self {
+            likelihood,
+            spectra,
+            fit,
+            whole,
+            root,
+            contrasts,
+        })
     }
 
     /// The record that contradicts the others, or the two that contradict one another, each with what would be wrong with it.
-    pub(super) fn caution(&self, in_gusts: bool, names: &Diagnostics) -> Option<IdentificationCaution> {
+    pub(super) fn caution(
+        &self,
+        in_gusts: bool,
+        names: &Diagnostics,
+    ) -> Option<IdentificationCaution> {
         let mut worst = self.contrasts.clone();
         worst.sort_by(|a, b| b.contrast.total_cmp(&a.contrast));
         let (first, second) = (worst.first()?, worst.get(1)?);
-        let limit = if in_gusts { CONTRADICTS_IN_GUSTS } else { CONTRADICTS };
+        let limit = if in_gusts {
+            CONTRADICTS_IN_GUSTS
+        } else {
+            CONTRADICTS
+        };
         if first.contrast.is_nan() || first.contrast <= limit {
             return None;
         }
         let alone = worst.len() > 2 && first.contrast >= ALONE * second.contrast;
-        let mut records: Vec<usize> = worst.iter().take(if alone { 1 } else { 2 }).map(|of| of.record).collect();
+        let mut records: Vec<usize> = worst
+            .iter()
+            .take(if alone { 1 } else { 2 })
+            .map(|of| of.record)
+            .collect();
         records.sort_unstable();
         let named = |record| {
             let (name, fault) = (names.record_name(record), self.fault(record, names.options));
-            ContradictingRecord { record, name, fault }
+            ContradictingRecord {
+                record,
+                name,
+                fault,
+            }
         };
         let records = records.into_iter().map(named).collect();
-        Some(IdentificationCaution::Contradiction { records, contrast: first.contrast })
+        Some(IdentificationCaution::Contradiction {
+            records,
+            contrast: first.contrast,
+        })
     }
 
     /// What is wrong with a record, by the fault that explains most of what the model leaves of it.
@@ -178,14 +230,31 @@ impl<'a> RecordContrasts<'a> {
         let faults: Vec<RecordFault> = std::iter::once(RecordFault::OutputsLate(0.0))
             .chain((0..outputs).map(|index| RecordFault::Late(output(index), 0.0)))
             // One input that is early is the same as all outputs late.
-            .chain((0..inputs).filter(|_| inputs > 1).map(|index| RecordFault::Late(input(index), 0.0)))
+            .chain(
+                (0..inputs)
+                    .filter(|_| inputs > 1)
+                    .map(|index| RecordFault::Late(input(index), 0.0)),
+            )
             .chain((0..outputs).map(|index| RecordFault::Gain(output(index), 1.0)))
             .collect();
-        let sums = each(self.likelihood.executor, &faults, |fault| self.sums(record, fault));
-        let gain = |sums: &(f64, f64)| if sums.1 > 0.0 { sums.0 * sums.0 / sums.1 } else { 0.0 };
-        let found: Vec<(RecordFault, (f64, f64))> =
-            faults.into_iter().zip(sums).filter_map(|(fault, sums)| Some((fault, sums?))).collect();
-        let best = found.iter().max_by(|a, b| gain(&a.1).total_cmp(&gain(&b.1)))?;
+        let sums = each(self.likelihood.executor, &faults, |fault| {
+            self.sums(record, fault)
+        });
+        let gain = |sums: &(f64, f64)| {
+            if sums.1 > 0.0 {
+                sums.0 * sums.0 / sums.1
+            } else {
+                0.0
+            }
+        };
+        let found: Vec<(RecordFault, (f64, f64))> = faults
+            .into_iter()
+            .zip(sums)
+            .filter_map(|(fault, sums)| Some((fault, sums?)))
+            .collect();
+        let best = found
+            .iter()
+            .max_by(|a, b| gain(&a.1).total_cmp(&gain(&b.1)))?;
         let all = found
             .iter()
             .find(|(fault, _)| matches!(fault, RecordFault::OutputsLate(_)))
@@ -204,24 +273,45 @@ impl<'a> RecordContrasts<'a> {
         let model = &self.fit.model;
         let (mut with_residual, mut square) = (0.0, 0.0);
         let mut with_parameters = DVector::zeros(model.parameters());
-        for ((lines, part), spectrum) in self.likelihood.segments.iter().zip(&self.fit.parts).zip(self.spectra) {
+        for ((lines, part), spectrum) in self
+            .likelihood
+            .segments
+            .iter()
+            .zip(&self.fit.parts)
+            .zip(self.spectra)
+        {
             if lines.record != record {
                 continue;
             }
             let column = lines.without_transient(model, &fault.column(lines, spectrum, model))?;
             with_residual += column.dotc(&part.residual).re;
             square += column.norm_squared();
-            with_parameters += gradient_along(lines, model, &SegmentCost { residual: column, ..part.clone() });
+            with_parameters += gradient_along(
+                lines,
+                model,
+                &SegmentCost {
+                    residual: column,
+                    ..part.clone()
+                },
+            );
         }
         let known = self.root.tr_mul(&with_parameters);
         let optimum = self.root.tr_mul(&self.whole.gradient);
-        Some((with_residual - known.dot(&optimum), square - known.norm_squared()))
+        Some((
+            with_residual - known.dot(&optimum),
+            square - known.norm_squared(),
+        ))
     }
 }
 
 impl RecordFault {
     /// What it adds to the whitened residual, outputs x lines, but for its size and sign.
-    fn column(&self, lines: &SpectralLines, spectrum: &Spectrum, model: &BlockModel) -> DMatrix<Complex<f64>> {
+    fn column(
+        &self,
+        lines: &SpectralLines,
+        spectrum: &Spectrum,
+        model: &BlockModel,
+    ) -> DMatrix<Complex<f64>> {
         let (outputs, count) = lines.outputs.shape();
         let mut column = DMatrix::zeros(outputs, count);
         for (k, (&omega, weight)) in lines.omega.iter().zip(&lines.weights).enumerate() {
@@ -229,12 +319,28 @@ impl RecordFault {
             let mut raw = vec![Complex::default(); outputs];
             match self {
                 Self::OutputsLate(_) => {
-                    raw.iter_mut().zip(spectrum.outputs.column(k).iter()).for_each(|(to, y)| *to = turn * y);
+                    raw.iter_mut()
+                        .zip(spectrum.outputs.column(k).iter())
+                        .for_each(|(to, y)| *to = turn * y);
                 }
-                Self::Late(Signal { role: ChannelSide::Output, index, .. }, _) => {
+                Self::Late(
+                    Signal {
+                        role: ChannelSide::Output,
+                        index,
+                        ..
+                    },
+                    _,
+                ) => {
                     raw[*index] = turn * spectrum.outputs[(*index, k)];
                 }
-                Self::Late(Signal { role: ChannelSide::Input, index, .. }, _) => {
+                Self::Late(
+                    Signal {
+                        role: ChannelSide::Input,
+                        index,
+                        ..
+                    },
+                    _,
+                ) => {
                     let moved = turn * spectrum.inputs[(*index, k)];
                     raw.iter_mut()
                         .zip(model.response(omega).column(*index).iter())

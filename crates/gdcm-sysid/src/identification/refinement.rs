@@ -39,7 +39,13 @@ impl Fit {
     pub(super) fn start(likelihood: &Likelihood, model: BlockModel) -> Option<Self> {
         let parts = likelihood.parts(&model)?;
         let cost = total(&parts);
-        cost.is_finite().then_some(Self { model, parts, cost, damping: FIRST_DAMPING, gain: f64::INFINITY })
+        cost.is_finite().then_some(Self {
+            model,
+            parts,
+            cost,
+            damping: FIRST_DAMPING,
+            gain: f64::INFINITY,
+        })
     }
 
     /// The model after at most `count` further steps, each of which is told, as long as each gains `least_gain` of the cost.
@@ -54,7 +60,10 @@ impl Fit {
             if self.gain < least_gain {
                 break;
             }
-            progress.advance(SHARE, &format!("order {}, step {step} of {count}", self.model.order()))?;
+            progress.advance(
+                SHARE,
+                &format!("order {}, step {step} of {count}", self.model.order()),
+            )?;
             self.step(likelihood);
         }
         Ok(self)
@@ -164,8 +173,17 @@ pub(super) fn propose(
         progress.progress().first_model(&first);
     }
     let stabilisation = stabilisation(&settings.poles_by_order(best, data.likelihood.executor));
-    let &Candidate { pole: laguerre_pole, past, .. } = best;
-    Ok(Proposal { laguerre_pole, past, starts, stabilisation })
+    let &Candidate {
+        pole: laguerre_pole,
+        past,
+        ..
+    } = best;
+    Ok(Proposal {
+        laguerre_pole,
+        past,
+        starts,
+        stabilisation,
+    })
 }
 
 /// Chooses the order and polishes its model further.
@@ -175,19 +193,39 @@ pub(super) fn refine<'a>(
     progress: &Shares,
 ) -> Result<Refinement<'a>, IdentificationError> {
     progress.next(0.4, "order")?;
-    let search = data.search_order(&proposal.starts, progress)?.ok_or_else(|| data.no_model())?;
-    let chosen = search.fits.get(&search.order).ok_or_else(|| data.no_model())?.clone();
+    let search = data
+        .search_order(&proposal.starts, progress)?
+        .ok_or_else(|| data.no_model())?;
+    let chosen = search
+        .fits
+        .get(&search.order)
+        .ok_or_else(|| data.no_model())?
+        .clone();
     progress.next(0.7, "refinement")?;
     let fit = chosen.refined(&data.likelihood, FURTHER_STEPS, LEAST_GAIN, progress)?;
     let (likelihood, before_weighing) = (data.likelihood.clone(), None);
-    let unweighed = Refinement { search, fit, before_weighing, likelihood, caution: None };
-    Ok(match reweighed(&data.likelihood, &unweighed.fit, progress)? {
-        Some((likelihood, fit, caution)) => {
-            let before_weighing = Some(unweighed.fit);
-            Refinement { fit, before_weighing, likelihood, caution: Some(caution), ..unweighed }
-        }
-        None => unweighed,
-    })
+    let unweighed = Refinement {
+        search,
+        fit,
+        before_weighing,
+        likelihood,
+        caution: None,
+    };
+    Ok(
+        match reweighed(&data.likelihood, &unweighed.fit, progress)? {
+            Some((likelihood, fit, caution)) => {
+                let before_weighing = Some(unweighed.fit);
+                Refinement {
+                    fit,
+                    before_weighing,
+                    likelihood,
+                    caution: Some(caution),
+                    ..unweighed
+                }
+            }
+            None => unweighed,
+        },
+    )
 }
 
 /// Weighs records of unlike turbulence by what the model leaves of them, once; none where they are alike.
@@ -200,23 +238,38 @@ fn reweighed<'a>(
     fit: &Fit,
     progress: &Shares,
 ) -> Result<Option<(Likelihood<'a>, Fit, IdentificationCaution)>, IdentificationError> {
-    let costs: Vec<f64> =
-        fits_of_records(likelihood, &fit.model, &fit.parts, false).iter().map(|record| record.cost).collect();
-    let (least, greatest) = costs.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), cost| (a.min(*cost), b.max(*cost)));
+    let costs: Vec<f64> = fits_of_records(likelihood, &fit.model, &fit.parts, false)
+        .iter()
+        .map(|record| record.cost)
+        .collect();
+    let (least, greatest) = costs.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), cost| {
+        (a.min(*cost), b.max(*cost))
+    });
     if !(least > 0.0 && greatest > ALIKE * least) {
         return Ok(None);
     }
     let mean = (costs.iter().map(|cost| cost.ln()).sum::<f64>() / costs.len() as f64).exp();
     let records = likelihood.records();
     let weigh = |segment: &SpectralLines| {
-        let cost = records.iter().position(|record| *record == segment.record).and_then(|k| costs.get(k));
+        let cost = records
+            .iter()
+            .position(|record| *record == segment.record)
+            .and_then(|k| costs.get(k));
         cost.map_or_else(|| segment.clone(), |cost| segment.with_noise(cost / mean))
     };
-    let weighed =
-        Likelihood { segments: likelihood.segments.iter().map(weigh).collect(), executor: likelihood.executor };
-    let Some(start) = Fit::start(&weighed, fit.model.clone()) else { return Ok(None) };
+    let weighed = Likelihood {
+        segments: likelihood.segments.iter().map(weigh).collect(),
+        executor: likelihood.executor,
+    };
+    let Some(start) = Fit::start(&weighed, fit.model.clone()) else {
+        return Ok(None);
+    };
     let fit = start.refined(&weighed, STEPS_AFTER_WEIGHING, LEAST_GAIN, progress)?;
-    Ok(Some((weighed, fit, IdentificationCaution::Reweighed(greatest / least))))
+    Ok(Some((
+        weighed,
+        fit,
+        IdentificationCaution::Reweighed(greatest / least),
+    )))
 }
 
 #[cfg(test)]
@@ -231,10 +284,20 @@ mod tests {
         let likelihood = known_records(known);
         let fit = Fit::start(&likelihood, BlockModel::of(&start).unwrap()).unwrap();
         // Independent numpy code; the tolerances stand in its file.
-        assert!((fit.cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8, "{}", fit.cost);
+        assert!(
+            (fit.cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8,
+            "{}",
+            fit.cost
+        );
         let count = number(&known["max_iterations"]) as usize;
-        let fit = fit.refined(&likelihood, count, LEAST_GAIN, &Shares::new(&Unobserved)).unwrap();
-        assert!(fit.cost <= number(&known["cost_after_at_most"]), "{}", fit.cost);
+        let fit = fit
+            .refined(&likelihood, count, LEAST_GAIN, &Shares::new(&Unobserved))
+            .unwrap();
+        assert!(
+            fit.cost <= number(&known["cost_after_at_most"]),
+            "{}",
+            fit.cost
+        );
         for (omega, expected) in numbers(&known["w"]).into_iter().zip(response(&known["H"])) {
             assert!((fit.model.response(omega) - expected).camax() < 1e-6);
         }

@@ -26,26 +26,50 @@ pub(super) struct Clock {
 impl Clock {
     /// The clock of `record`; gaps of `longest_bridge` samples are bridged.
     pub fn of(record: &FlightRecord, longest_bridge: usize) -> Result<Self, PreparationError> {
-        let rows: Vec<usize> = (0..record.time_s.len()).filter(|&row| record.time_s[row].is_finite()).collect();
+        let rows: Vec<usize> = (0..record.time_s.len())
+            .filter(|&row| record.time_s[row].is_finite())
+            .collect();
         let start_s = rows.first().map_or(0.0, |&row| record.time_s[row]);
-        let times: Vec<f64> = rows.iter().map(|&row| record.time_s[row] - start_s).collect();
+        let times: Vec<f64> = rows
+            .iter()
+            .map(|&row| record.time_s[row] - start_s)
+            .collect();
         for (pair, place) in rows.windows(2).zip(0..) {
             // Counted from the first stamp: huge stamps may differ, and yet not when they are counted so.
             let step = times[place + 1] - times[place];
             if !(step > 0.0 && step.is_finite()) {
                 let (previous_s, time_s) = (record.time_s[pair[0]], record.time_s[pair[1]]);
                 let record = record.name.clone();
-                return Err(PreparationError::TimeNotIncreasing { record, row: pair[1], previous_s, time_s });
+                return Err(PreparationError::TimeNotIncreasing {
+                    record,
+                    row: pair[1],
+                    previous_s,
+                    time_s,
+                });
             }
         }
         let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         // A record of one stamp has no steps.
-        let of_steps = |mut values: Vec<f64>, q: f64| if values.is_empty() { 0.0 } else { quantile(&mut values, q) };
+        let of_steps = |mut values: Vec<f64>, q: f64| {
+            if values.is_empty() {
+                0.0
+            } else {
+                quantile(&mut values, q)
+            }
+        };
         let sample_time_s = of_steps(steps.clone(), 0.5);
-        let off = |step: &f64| (step / sample_time_s - (step / sample_time_s).round().max(1.0)).abs();
+        let off =
+            |step: &f64| (step / sample_time_s - (step / sample_time_s).round().max(1.0)).abs();
         let jitter_percent = 100.0 * of_steps(steps.iter().map(off).collect(), COUNTED);
         let longest_step_s = (longest_bridge as f64 + 1.5) * sample_time_s;
-        Ok(Self { start_s, sample_time_s, jitter_percent, rows, times, longest_step_s })
+        Ok(Self {
+            start_s,
+            sample_time_s,
+            jitter_percent,
+            rows,
+            times,
+            longest_step_s,
+        })
     }
 
     /// Whether the stamps are more than 20 % off the multiples of the sample time.
@@ -83,7 +107,11 @@ impl Clock {
         (1..self.times.len()).filter_map(|k| {
             let step = self.times[k] - self.times[k - 1];
             let stamp_missing = self.rows[k] > self.rows[k - 1] + 1;
-            let cause = if stamp_missing { Cause::StampsMissing } else { Cause::RowsMissing };
+            let cause = if stamp_missing {
+                Cause::StampsMissing
+            } else {
+                Cause::RowsMissing
+            };
             (stamp_missing || step > 1.5 * self.sample_time_s).then(|| Gap {
                 start_s: self.start_s + self.times[k - 1],
                 end_s: self.start_s + self.times[k],
@@ -122,13 +150,23 @@ pub(super) struct Track {
 
 impl Track {
     /// The tracks of all channels of `record`, inputs first, and the gaps in them; channels with the same gap share it.
-    pub fn all(record: &FlightRecord, clock: &Clock, preparation: &Preparation) -> (Vec<Self>, Vec<Gap>) {
+    pub fn all(
+        record: &FlightRecord,
+        clock: &Clock,
+        preparation: &Preparation,
+    ) -> (Vec<Self>, Vec<Gap>) {
         let mut found: BTreeMap<(usize, usize, bool, Treatment), Vec<Signal>> = BTreeMap::new();
-        let columns: Vec<Column> =
-            preparation.channels().map(|(signal, _)| Column::of(record, clock, signal)).collect();
+        let columns: Vec<Column> = preparation
+            .channels()
+            .map(|(signal, _)| Column::of(record, clock, signal))
+            .collect();
         let mut tracks = Vec::new();
         for ((signal, channel), column) in preparation.channels().zip(&columns) {
-            let moves = |from, to| columns.iter().any(|other| other.signal != signal && other.moves_between(from, to));
+            let moves = |from, to| {
+                columns
+                    .iter()
+                    .any(|other| other.signal != signal && other.moves_between(from, to))
+            };
             let frozen = match signal.role {
                 ChannelSide::Output if !preparation.keep_frozen => column.frozen(clock, &moves),
                 ChannelSide::Output | ChannelSide::Input => Vec::new(),
@@ -137,14 +175,26 @@ impl Track {
             let track = Self::of(column, &counts, clock, channel);
             for (from, to, is_frozen) in column.gaps(&counts, &frozen) {
                 let treatment = track.treatment(clock, from, to);
-                found.entry((from, to, is_frozen, treatment)).or_default().push(signal.clone());
+                found
+                    .entry((from, to, is_frozen, treatment))
+                    .or_default()
+                    .push(signal.clone());
             }
             tracks.push(track);
         }
         let named = |((from, to, is_frozen, treatment), signals)| {
             let (start, end) = around(clock, from, to);
-            let cause = if is_frozen { Cause::Frozen(signals) } else { Cause::SamplesMissing(signals) };
-            Gap { start_s: clock.start_s + start, end_s: clock.start_s + end, cause, treatment }
+            let cause = if is_frozen {
+                Cause::Frozen(signals)
+            } else {
+                Cause::SamplesMissing(signals)
+            };
+            Gap {
+                start_s: clock.start_s + start,
+                end_s: clock.start_s + end,
+                cause,
+                treatment,
+            }
         };
         (tracks, found.into_iter().map(named).collect())
     }
@@ -174,13 +224,19 @@ impl Track {
 
     /// Reads the track at times that increase.
     pub fn reader(&self) -> Reader<'_> {
-        Reader { track: self, next: 0 }
+        Reader {
+            track: self,
+            next: 0,
+        }
     }
 }
 
 /// Times of the samples before and after the places `from..to`, or of the first and the last of them at an end.
 fn around(clock: &Clock, from: usize, to: usize) -> (f64, f64) {
-    (clock.times[from.saturating_sub(1)], clock.times[to.min(clock.times.len() - 1)])
+    (
+        clock.times[from.saturating_sub(1)],
+        clock.times[to.min(clock.times.len() - 1)],
+    )
 }
 
 /// Reads a track at times that increase.
@@ -207,7 +263,8 @@ impl Reader<'_> {
             return Some(value);
         }
         let share = (t - time) / (after - time);
-        (after - time <= self.track.longest_step_s).then(|| value + share * (values[self.next] - value))
+        (after - time <= self.track.longest_step_s)
+            .then(|| value + share * (values[self.next] - value))
     }
 }
 
@@ -217,7 +274,11 @@ impl Reader<'_> {
 /// differ) has passed since the last fresh one: equal readings are readings.
 fn fresh(column: &Column, clock: &Clock, places: &mut Vec<usize>) -> f64 {
     let differs = |pair: &[usize]| column.values[pair[0]] != column.values[pair[1]];
-    let changes: Vec<f64> = places.windows(2).filter(|pair| differs(pair)).map(|pair| clock.times[pair[1]]).collect();
+    let changes: Vec<f64> = places
+        .windows(2)
+        .filter(|pair| differs(pair))
+        .map(|pair| clock.times[pair[1]])
+        .collect();
     let mut holds: Vec<f64> = changes.windows(2).map(|pair| pair[1] - pair[0]).collect();
     // The median of no holds is not a number, and the greater of the two the other one.
     let held_s = median(&mut holds).max(clock.sample_time_s);
@@ -245,7 +306,10 @@ struct Column {
 impl Column {
     fn of(record: &FlightRecord, clock: &Clock, signal: Signal) -> Self {
         let samples = record.channel(&signal);
-        Self { values: clock.rows.iter().map(|&row| samples[row]).collect(), signal }
+        Self {
+            values: clock.rows.iter().map(|&row| samples[row]).collect(),
+            signal,
+        }
     }
 
     /// Which places count: a finite value outside the frozen runs.
@@ -259,7 +323,11 @@ impl Column {
 
     /// Whether it changes at half the steps between the places `from` and `to`, or more.
     fn moves_between(&self, from: usize, to: usize) -> bool {
-        let samples: Vec<f64> = self.values[from..=to].iter().copied().filter(|value| value.is_finite()).collect();
+        let samples: Vec<f64> = self.values[from..=to]
+            .iter()
+            .copied()
+            .filter(|value| value.is_finite())
+            .collect();
         let changes = samples.windows(2).filter(|pair| pair[0] != pair[1]).count();
         samples.len() > 1 && 2 * changes >= samples.len() - 1
     }
@@ -270,23 +338,47 @@ impl Column {
     /// runs do not reach (so that a slow sensor is not frozen), in a channel that moves at other times and while
     /// another channel changes at every second sample or more often. Only outputs freeze: an input that does not change is
     /// held. A coarse output stands still by itself, and one that comes back to its least or greatest value is at its limit.
-    fn frozen(&self, clock: &Clock, others_move: &dyn Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
-        let places: Vec<usize> = (0..self.values.len()).filter(|&k| self.values[k].is_finite()).collect();
-        let equal: Vec<&[usize]> = places.chunk_by(|&a, &b| self.values[a] == self.values[b]).collect();
+    fn frozen(
+        &self,
+        clock: &Clock,
+        others_move: &dyn Fn(usize, usize) -> bool,
+    ) -> Vec<(usize, usize)> {
+        let places: Vec<usize> = (0..self.values.len())
+            .filter(|&k| self.values[k].is_finite())
+            .collect();
+        let equal: Vec<&[usize]> = places
+            .chunk_by(|&a, &b| self.values[a] == self.values[b])
+            .collect();
         let samples: Vec<f64> = places.iter().map(|place| self.values[*place]).collect();
         if equal.len() < RUNS_OF_A_MOVING || is_coarse(&samples) {
             return Vec::new();
         }
-        let (least, greatest) =
-            samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| (least.min(*x), most.max(*x)));
-        let stands_at =
-            |value: f64| equal.iter().filter(|run| run.len() >= RUN_AT_A_LIMIT && self.values[run[0]] == value).count();
+        let (least, greatest) = samples
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| {
+                (least.min(*x), most.max(*x))
+            });
+        let stands_at = |value: f64| {
+            equal
+                .iter()
+                .filter(|run| run.len() >= RUN_AT_A_LIMIT && self.values[run[0]] == value)
+                .count()
+        };
         let is_limit = |value: f64| (value == least || value == greatest) && stands_at(value) > 1;
-        let usual = quantile(&mut equal.iter().map(|run| run.len() as f64).collect::<Vec<f64>>(), USUAL);
-        let longest_s = FROZEN_S.max(UNUSUAL * usual * clock.sample_time_s).max(clock.longest_step_s);
+        let usual = quantile(
+            &mut equal
+                .iter()
+                .map(|run| run.len() as f64)
+                .collect::<Vec<f64>>(),
+            USUAL,
+        );
+        let longest_s = FROZEN_S
+            .max(UNUSUAL * usual * clock.sample_time_s)
+            .max(clock.longest_step_s);
         let frozen = |run: &&[usize]| {
             let (first, last) = (run[0], run[run.len() - 1]);
-            let stands = clock.times[last] - clock.times[first] > longest_s && !is_limit(self.values[first]);
+            let stands =
+                clock.times[last] - clock.times[first] > longest_s && !is_limit(self.values[first]);
             (stands && others_move(first, last)).then_some((first + 1, last + 1))
         };
         equal.iter().filter_map(frozen).collect()
@@ -299,7 +391,9 @@ impl Column {
         for run in counts.chunk_by(|a, b| a == b) {
             let to = from + run.len();
             if !run[0] {
-                let before = frozen.partition_point(|&(first, _)| first < to).checked_sub(1);
+                let before = frozen
+                    .partition_point(|&(first, _)| first < to)
+                    .checked_sub(1);
                 gaps.push((from, to, before.is_some_and(|k| from < frozen[k].1)));
             }
             from = to;

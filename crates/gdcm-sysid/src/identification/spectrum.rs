@@ -45,24 +45,42 @@ impl Spectrum {
 #[must_use]
 pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
     let mut planner = FourierPlanner::default();
-    let plans: Vec<_> = segments.iter().map(|segment| planner.plan(segment.inputs.nrows())).collect();
-    each(executor, segments.iter().zip(plans), |(segment, plan)| spectrum(segment, highest, &plan))
+    let plans: Vec<_> = segments
+        .iter()
+        .map(|segment| planner.plan(segment.inputs.nrows()))
+        .collect();
+    each(executor, segments.iter().zip(plans), |(segment, plan)| {
+        spectrum(segment, highest, &plan)
+    })
 }
 
 /// The lines of one segment up to `highest`, by the transform `plan` of its length.
 fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectrum {
     let duration_s = segment.sample_time_s * segment.inputs.nrows() as f64;
     let below_nyquist = segment.inputs.nrows().saturating_sub(1) / 2;
-    let omega: Vec<f64> =
-        (1..=below_nyquist).map(|k| TAU * k as f64 / duration_s).take_while(|&w| w <= highest).collect();
+    let omega: Vec<f64> = (1..=below_nyquist)
+        .map(|k| TAU * k as f64 / duration_s)
+        .take_while(|&w| w <= highest)
+        .collect();
     let factor = segment.sample_time_s / duration_s.sqrt();
     let inputs = transform(&segment.inputs, omega.len(), factor, plan);
     let outputs = transform(&segment.outputs, omega.len(), factor, plan);
-    Spectrum { record: segment.record, duration_s, omega, inputs, outputs }
+    Spectrum {
+        record: segment.record,
+        duration_s,
+        omega,
+        inputs,
+        outputs,
+    }
 }
 
 /// Spectral lines 1 to `lines` of each column of `samples`, times `factor`: one row a channel.
-fn transform(samples: &DMatrix<f64>, lines: usize, factor: f64, plan: &FourierTransform) -> DMatrix<Complex<f64>> {
+fn transform(
+    samples: &DMatrix<f64>,
+    lines: usize,
+    factor: f64,
+    plan: &FourierTransform,
+) -> DMatrix<Complex<f64>> {
     let mut transformed = DMatrix::zeros(samples.ncols(), lines);
     if lines == 0 {
         return transformed;
@@ -72,7 +90,9 @@ fn transform(samples: &DMatrix<f64>, lines: usize, factor: f64, plan: &FourierTr
         let mut centred: Vec<f64> = column.iter().map(|sample| sample - mean).collect();
         let spectrum = plan.of(&mut centred).unwrap_or_default();
         let row = transformed.row_mut(channel);
-        row.into_iter().zip(spectrum.iter().skip(1)).for_each(|(y, line)| *y = line * factor);
+        row.into_iter()
+            .zip(spectrum.iter().skip(1))
+            .for_each(|(y, line)| *y = line * factor);
     }
     transformed
 }
@@ -100,24 +120,43 @@ impl CutOff {
     /// of the variance of an output lies above that (M14, 1.5).
     #[must_use]
     pub fn choose(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Self {
-        let outputs = segments.first().map_or(0, |segment| segment.outputs.ncols());
+        let outputs = segments
+            .first()
+            .map_or(0, |segment| segment.outputs.ncols());
         let (mut all, mut above) = (vec![0.0; outputs], vec![0.0; outputs]);
         for spectrum in spectra(segments, f64::INFINITY, executor) {
             for (k, omega) in spectrum.omega.iter().enumerate() {
                 for (output, line) in spectrum.outputs.column(k).iter().enumerate().take(outputs) {
                     all[output] += line.norm_sqr();
-                    above[output] += if *omega > VIBRATING * highest { line.norm_sqr() } else { 0.0 };
+                    above[output] += if *omega > VIBRATING * highest {
+                        line.norm_sqr()
+                    } else {
+                        0.0
+                    };
                 }
             }
         }
         let shares = above.iter().zip(&all).map(|(above, all)| above / all);
-        let vibrating: Vec<_> = shares.enumerate().filter(|(_, share)| *share > VIBRATION_SHARE).collect();
-        Self { omega: highest * if vibrating.is_empty() { USUAL } else { VIBRATING }, vibrating }
+        let vibrating: Vec<_> = shares
+            .enumerate()
+            .filter(|(_, share)| *share > VIBRATION_SHARE)
+            .collect();
+        Self {
+            omega: highest
+                * if vibrating.is_empty() {
+                    USUAL
+                } else {
+                    VIBRATING
+                },
+            vibrating,
+        }
     }
 
     /// `segments`, every channel through the low-pass of this cut-off; as they are where there is nothing to take off.
     #[must_use]
     pub fn apply(&self, segments: &[Segment], executor: &dyn Executor) -> Vec<Segment> {
-        each(executor, segments, |segment| LowPass::applied(self.omega, segment))
+        each(executor, segments, |segment| {
+            LowPass::applied(self.omega, segment)
+        })
     }
 }

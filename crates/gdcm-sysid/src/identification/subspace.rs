@@ -51,15 +51,27 @@ impl Subspace {
         let mut map = DMatrix::zeros(future * outputs, width);
         for row in 0..future {
             let kept = (past - row) * channels;
-            map.view_mut((row * outputs, row * channels), (outputs, kept)).copy_from(&theta.columns(0, kept));
+            map.view_mut((row * outputs, row * channels), (outputs, kept))
+                .copy_from(&theta.columns(0, kept));
         }
         // The left factors of the transposed triangular factor of (Gamma K Z0')' are those of Gamma K Z0'.
         let mut transposed = TriangularFactor::empty(future * outputs);
         transposed.append(&(factor.view((0, 0), (width, width)) * map.transpose()));
-        let decomposition = transposed.matrix().transpose().try_svd(true, false, f64::EPSILON, 10_000)?;
+        let decomposition =
+            transposed
+                .matrix()
+                .transpose()
+                .try_svd(true, false, f64::EPSILON, 10_000)?;
         let singular_values: Vec<f64> = decomposition.singular_values.iter().copied().collect();
         let finite = singular_values.iter().all(|value| value.is_finite());
-        finite.then_some(Self { pole, inputs, factor, map, left: decomposition.u?, singular_values })
+        finite.then_some(Self {
+            pole,
+            inputs,
+            factor,
+            map,
+            left: decomposition.u?,
+            singular_values,
+        })
     }
 
     /// The model of an order in continuous time; none where the data do not hold so many states.
@@ -68,7 +80,11 @@ impl Subspace {
         let (inputs, width) = (self.inputs, self.map.ncols());
         let channels = all - width;
         let outputs = channels - inputs;
-        let roots = self.singular_values.get(..order)?.iter().map(|value| value.sqrt());
+        let roots = self
+            .singular_values
+            .get(..order)?
+            .iter()
+            .map(|value| value.sqrt());
         let mut states = self.left.columns(0, order).transpose() * &self.map;
         for (mut row, root) in states.row_iter_mut().zip(roots) {
             if root == 0.0 {
@@ -79,14 +95,23 @@ impl Subspace {
         let transposed = states.transpose();
         let before = self.factor.columns(0, width) * &transposed;
         let after = self.factor.columns(channels, width) * &transposed;
-        let (u, y) = (self.factor.columns(width, inputs), self.factor.columns(width + inputs, outputs));
+        let (u, y) = (
+            self.factor.columns(width, inputs),
+            self.factor.columns(width + inputs, outputs),
+        );
         let regressors = side_by_side(&[before.as_view(), u.as_view()]);
         let outputs_of = least_squares(&regressors, &y.into_owned())?;
         let innovation = y - &regressors * &outputs_of;
-        let states_of = least_squares(&side_by_side(&[regressors.as_view(), innovation.as_view()]), &after)?;
+        let states_of = least_squares(
+            &side_by_side(&[regressors.as_view(), innovation.as_view()]),
+            &after,
+        )?;
         let part = |solution: &DMatrix<f64>, from, count| solution.rows(from, count).transpose();
         let (a, b) = (part(&states_of, 0, order), part(&states_of, order, inputs));
-        let (c, d) = (part(&outputs_of, 0, order), part(&outputs_of, order, inputs));
+        let (c, d) = (
+            part(&outputs_of, 0, order),
+            part(&outputs_of, order, inputs),
+        );
         continuous(self.pole, &StateSpace::new(a, b, c, d).ok()?)
     }
 }
@@ -152,7 +177,8 @@ impl SubspaceSettings {
         progress: &Shares,
     ) -> Result<Vec<Candidate>, IdentificationError> {
         let pasts = &self.pasts;
-        let (Some(&longest), Some(order)) = (pasts.iter().max(), self.ranking_order(segments)) else {
+        let (Some(&longest), Some(order)) = (pasts.iter().max(), self.ranking_order(segments))
+        else {
             return Ok(Vec::new());
         };
         let executor = likelihood.executor;
@@ -165,9 +191,13 @@ impl SubspaceSettings {
                 progress.advance(share, &format!("{told}, past {past}"))?;
                 Ok(self.candidate(&factor, (pole, past), order, segments, likelihood))
             };
-            each(executor, pasts, of_past).into_iter().collect::<Result<Vec<_>, IdentificationError>>()
+            each(executor, pasts, of_past)
+                .into_iter()
+                .collect::<Result<Vec<_>, IdentificationError>>()
         };
-        let all = each(executor, self.poles.iter().enumerate(), of_pole).into_iter().collect::<Result<Vec<_>, _>>()?;
+        let all = each(executor, self.poles.iter().enumerate(), of_pole)
+            .into_iter()
+            .collect::<Result<Vec<_>, _>>()?;
         let mut found: Vec<Candidate> = all.into_iter().flatten().flatten().collect();
         found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         found.truncate(KEPT);
@@ -175,13 +205,23 @@ impl SubspaceSettings {
     }
 
     /// For each order the cheaper of the models of `candidates`, with its cost.
-    pub(super) fn starts(&self, candidates: &[Candidate], likelihood: &Likelihood) -> BTreeMap<usize, Fit> {
+    pub(super) fn starts(
+        &self,
+        candidates: &[Candidate],
+        likelihood: &Likelihood,
+    ) -> BTreeMap<usize, Fit> {
         let cheapest = |&order: &usize| {
-            let models = candidates.iter().filter_map(|candidate| self.model(&candidate.subspace, order));
+            let models = candidates
+                .iter()
+                .filter_map(|candidate| self.model(&candidate.subspace, order));
             let fits = models.filter_map(|model| Fit::start(likelihood, model));
-            fits.min_by(|a, b| a.cost.total_cmp(&b.cost)).map(|fit| (order, fit))
+            fits.min_by(|a, b| a.cost.total_cmp(&b.cost))
+                .map(|fit| (order, fit))
         };
-        each(likelihood.executor, &self.orders, cheapest).into_iter().flatten().collect()
+        each(likelihood.executor, &self.orders, cheapest)
+            .into_iter()
+            .flatten()
+            .collect()
     }
 
     /// The poles of the models of each order that a candidate proposes.
@@ -190,19 +230,31 @@ impl SubspaceSettings {
         candidate: &Candidate,
         executor: &dyn Executor,
     ) -> Vec<(usize, Vec<nalgebra::Complex<f64>>)> {
-        let of_order = |&order: &usize| Some((order, poles(&self.slow(&candidate.subspace, order)?)?));
-        each(executor, &self.orders, of_order).into_iter().flatten().collect()
+        let of_order =
+            |&order: &usize| Some((order, poles(&self.slow(&candidate.subspace, order)?)?));
+        each(executor, &self.orders, of_order)
+            .into_iter()
+            .flatten()
+            .collect()
     }
 
     fn projections(&self, pole: f64, past: usize) -> Projections {
-        Projections { pole, past, spacing_s: SPACING / self.highest }
+        Projections {
+            pole,
+            past,
+            spacing_s: SPACING / self.highest,
+        }
     }
 
     /// The order at which poles and past windows are compared: one that the shortest past window has states for.
     fn ranking_order(&self, segments: &[Segment]) -> Option<usize> {
         let outputs = segments.first()?.outputs.ncols();
         let future = self.pasts.iter().min()?.min(&self.longest_future);
-        Some(RANKING_ORDER.min(*self.orders.last()?).min(future * outputs))
+        Some(
+            RANKING_ORDER
+                .min(*self.orders.last()?)
+                .min(future * outputs),
+        )
     }
 
     fn candidate(
@@ -217,7 +269,12 @@ impl SubspaceSettings {
         let channels = (segment.inputs.ncols(), segment.outputs.ncols());
         let subspace = Subspace::new(factor, pole, channels, past, self.longest_future, RIDGE)?;
         let cost = likelihood.cost(&self.model(&subspace, order)?)?;
-        Some(Candidate { pole, past, cost, subspace })
+        Some(Candidate {
+            pole,
+            past,
+            cost,
+            subspace,
+        })
     }
 
     /// The model of an order without modes far above the band.
@@ -250,12 +307,22 @@ pub struct StabilisationPoint {
 /// The diagram from the poles of each order, ascending.
 pub(super) fn stabilisation(poles: &[(usize, Vec<Complex<f64>>)]) -> Vec<StabilisationPoint> {
     let of_order = |(order, own): &(usize, Vec<Complex<f64>>)| {
-        let before = poles.iter().find(|(other, _)| other + 2 == *order).map(|(_, poles)| poles);
+        let before = poles
+            .iter()
+            .find(|(other, _)| other + 2 == *order)
+            .map(|(_, poles)| poles);
         let point = |pole: Complex<f64>| {
             let near = |other: &Complex<f64>| (other - pole).norm() < STABLE * pole.norm();
-            StabilisationPoint { order: *order, pole, stable: before.is_some_and(|before| before.iter().any(near)) }
+            StabilisationPoint {
+                order: *order,
+                pole,
+                stable: before.is_some_and(|before| before.iter().any(near)),
+            }
         };
-        own.iter().filter(|pole| pole.im >= 0.0).map(|pole| point(*pole)).collect::<Vec<_>>()
+        own.iter()
+            .filter(|pole| pole.im >= 0.0)
+            .map(|pole| point(*pole))
+            .collect::<Vec<_>>()
     };
     poles.iter().flat_map(of_order).collect()
 }
@@ -270,14 +337,28 @@ mod tests {
         let (inputs, outputs) = (matrix(&known["u"]), matrix(&known["y"]));
         let channels = (inputs.ncols(), outputs.ncols());
         let (dt, past) = (number(&known["dt"]), number(&known["p"]) as usize);
-        let segment = Segment { record: 0, start_s: 0.0, sample_time_s: dt, inputs, outputs };
-        let projections = Projections { pole: number(&known["a"]), past, spacing_s: dt };
+        let segment = Segment {
+            record: 0,
+            start_s: 0.0,
+            sample_time_s: dt,
+            inputs,
+            outputs,
+        };
+        let projections = Projections {
+            pole: number(&known["a"]),
+            past,
+            spacing_s: dt,
+        };
         let rows = projections.rows(&segment);
         let mut factor = TriangularFactor::empty(rows.ncols());
         factor.append(&rows);
         let subspace = Subspace::new(&factor, projections.pole, channels, past, 2, 0.0).unwrap();
         // Independent numpy code; the tolerances stand in its file.
-        for (found, expected) in subspace.singular_values.iter().zip(numbers(&known["singular_values"])) {
+        for (found, expected) in subspace
+            .singular_values
+            .iter()
+            .zip(numbers(&known["singular_values"]))
+        {
             assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
         }
         let model = subspace.model(4).unwrap();
@@ -291,10 +372,29 @@ mod tests {
         let pole = |re: f64, im: f64| Complex::new(re, im);
         let orders = [
             (2, vec![pole(-1.0, 2.0), pole(-1.0, -2.0)]),
-            (4, vec![pole(-1.0, 2.05), pole(-1.0, -2.05), pole(-3.0, 0.0), pole(-8.0, 0.0)]),
+            (
+                4,
+                vec![
+                    pole(-1.0, 2.05),
+                    pole(-1.0, -2.05),
+                    pole(-3.0, 0.0),
+                    pole(-8.0, 0.0),
+                ],
+            ),
         ];
         let diagram = stabilisation(&orders);
-        let stable: Vec<_> = diagram.iter().map(|point| (point.order, point.pole.re, point.stable)).collect();
-        assert_eq!(stable, [(2, -1.0, false), (4, -1.0, true), (4, -3.0, false), (4, -8.0, false)]);
+        let stable: Vec<_> = diagram
+            .iter()
+            .map(|point| (point.order, point.pole.re, point.stable))
+            .collect();
+        assert_eq!(
+            stable,
+            [
+                (2, -1.0, false),
+                (4, -1.0, true),
+                (4, -3.0, false),
+                (4, -8.0, false)
+            ]
+        );
     }
 }

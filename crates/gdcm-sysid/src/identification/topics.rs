@@ -33,13 +33,17 @@ impl Topic {
     pub fn new(name: &str, time_s: &[f64], values: &[f64], held: bool) -> Result<Self, TopicError> {
         let (mut times, mut kept): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
         for (&time, &value) in time_s.iter().zip(values) {
-            if time.is_finite() && value.is_finite() && times.last().is_none_or(|last| time > *last) {
+            if time.is_finite() && value.is_finite() && times.last().is_none_or(|last| time > *last)
+            {
                 times.push(time);
                 kept.push(value);
             }
         }
         if times.len() < 3 {
-            return Err(TopicError::TooFew { topic: name.to_owned(), samples: times.len() });
+            return Err(TopicError::TooFew {
+                topic: name.to_owned(),
+                samples: times.len(),
+            });
         }
         let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let longest_s = LONGEST_STEP * median(&mut steps);
@@ -58,15 +62,31 @@ impl Topic {
             runs.push(runs.last().map_or(0, |run| run.end)..end);
         }
         let (steps, length_s) = runs.iter().fold((0, 0.0), |(steps, length_s), run| {
-            (steps + run.len() - 1, length_s + times[run.end - 1] - times[run.start])
+            (
+                steps + run.len() - 1,
+                length_s + times[run.end - 1] - times[run.start],
+            )
         });
-        let rate_hz = if length_s > 0.0 { steps as f64 / length_s } else { 0.0 };
-        Ok(Self { name: name.to_owned(), time_s: times, values: kept, runs, rate_hz })
+        let rate_hz = if length_s > 0.0 {
+            steps as f64 / length_s
+        } else {
+            0.0
+        };
+        Ok(Self {
+            name: name.to_owned(),
+            time_s: times,
+            values: kept,
+            runs,
+            rate_hz,
+        })
     }
 
     /// First and last stamp \[s\].
     pub fn span_s(&self) -> [f64; 2] {
-        [self.time_s.first().copied().unwrap_or(0.0), self.time_s.last().copied().unwrap_or(0.0)]
+        [
+            self.time_s.first().copied().unwrap_or(0.0),
+            self.time_s.last().copied().unwrap_or(0.0),
+        ]
     }
 
     /// Its values at times that increase, below a cut-off \[rad/s\]; not a number in its gaps and beyond its ends.
@@ -82,7 +102,14 @@ impl Topic {
                 run = runs.next();
             }
             let inside = run.filter(|run| t >= self.time_s[run.start] - 1e-9 * t.abs());
-            inside.map_or(f64::NAN, |run| low_passed(&self.time_s[run.clone()], &self.values[run.clone()], t, cutoff))
+            inside.map_or(f64::NAN, |run| {
+                low_passed(
+                    &self.time_s[run.clone()],
+                    &self.values[run.clone()],
+                    t,
+                    cutoff,
+                )
+            })
         };
         times_s.iter().map(value).collect()
     }
@@ -124,7 +151,11 @@ fn low_passed(time_s: &[f64], values: &[f64], t: f64, cutoff: f64) -> f64 {
         sum += weight * values[k];
         weights += weight;
     }
-    if weights > 0.0 { sum / weights } else { f64::NAN }
+    if weights > 0.0 {
+        sum / weights
+    } else {
+        f64::NAN
+    }
 }
 
 /// The uniform clock that topics are brought to.
@@ -156,8 +187,15 @@ impl CommonClock {
     /// # Errors
     /// [`TopicError::TooSlow`] where a topic, or the rate asked for, has fewer than 2.5 whi/2π samples in a second;
     /// [`TopicError::NoCommonTime`] where the topics share no time; [`TopicError::TooMany`] where a million million samples came of it.
-    pub fn of(topics: &[Topic], band_end: Option<f64>, rate_hz: Option<f64>) -> Result<Self, TopicError> {
-        let slowest = topics.iter().map(|topic| topic.rate_hz).fold(f64::INFINITY, f64::min);
+    pub fn of(
+        topics: &[Topic],
+        band_end: Option<f64>,
+        rate_hz: Option<f64>,
+    ) -> Result<Self, TopicError> {
+        let slowest = topics
+            .iter()
+            .map(|topic| topic.rate_hz)
+            .fold(f64::INFINITY, f64::min);
         let band_end = band_end.unwrap_or(TAU * slowest / (HIGHEST_LINE * 20.0));
         let highest_hz = HIGHEST_LINE * band_end / TAU;
         let needed_hz = 2.5 * highest_hz;
@@ -168,8 +206,10 @@ impl CommonClock {
             band_end,
             possible: band_end * rate_hz / needed_hz,
         };
-        if let Some(topic) =
-            topics.iter().filter(|topic| topic.rate_hz < needed_hz).min_by(|a, b| a.rate_hz.total_cmp(&b.rate_hz))
+        if let Some(topic) = topics
+            .iter()
+            .filter(|topic| topic.rate_hz < needed_hz)
+            .min_by(|a, b| a.rate_hz.total_cmp(&b.rate_hz))
         {
             return Err(slow(&topic.name, topic.rate_hz));
         }
@@ -177,36 +217,63 @@ impl CommonClock {
         if rate < needed_hz {
             return Err(slow("the resampled record", rate));
         }
-        let latest = topics.iter().max_by(|a, b| a.span_s()[0].total_cmp(&b.span_s()[0]));
-        let earliest = topics.iter().min_by(|a, b| a.span_s()[1].total_cmp(&b.span_s()[1]));
+        let latest = topics
+            .iter()
+            .max_by(|a, b| a.span_s()[0].total_cmp(&b.span_s()[0]));
+        let earliest = topics
+            .iter()
+            .min_by(|a, b| a.span_s()[1].total_cmp(&b.span_s()[1]));
         let (Some(latest), Some(earliest)) = (latest, earliest) else {
-            return Err(TopicError::TooFew { topic: "a record without channels".to_owned(), samples: 0 });
+            return Err(TopicError::TooFew {
+                topic: "a record without channels".to_owned(),
+                samples: 0,
+            });
         };
         let (start_s, end_s) = (latest.span_s()[0], earliest.span_s()[1]);
         if end_s <= start_s {
             let (first, second) = (earliest.name.clone(), latest.name.clone());
-            return Err(TopicError::NoCommonTime { first, first_end_s: end_s, second, second_start_s: start_s });
+            return Err(TopicError::NoCommonTime {
+                first,
+                first_end_s: end_s,
+                second,
+                second_start_s: start_s,
+            });
         }
         let samples = ((end_s - start_s) * rate + 1e-6).floor() + 1.0;
         if samples > MOST_SAMPLES {
             return Err(TopicError::TooMany(samples));
         }
         let cutoff = (5.0 * TAU * highest_hz).min(0.8 * PI * slowest.min(rate));
-        Ok(Self { start_s, rate_hz: rate, samples: samples as usize, cutoff })
+        Ok(Self {
+            start_s,
+            rate_hz: rate,
+            samples: samples as usize,
+            cutoff,
+        })
     }
 
     /// Times of its samples \[s\].
     pub fn times_s(&self) -> Vec<f64> {
-        (0..self.samples).map(|k| self.start_s + k as f64 / self.rate_hz).collect()
+        (0..self.samples)
+            .map(|k| self.start_s + k as f64 / self.rate_hz)
+            .collect()
     }
 
     /// Its samples within a part of the time \[s\] alone.
     #[must_use]
     pub fn within(self, [from_s, to_s]: [f64; 2]) -> Self {
-        let first = ((from_s - self.start_s) * self.rate_hz - 1e-6).ceil().clamp(0.0, self.samples as f64);
-        let last = ((to_s - self.start_s) * self.rate_hz + 1e-6).floor().clamp(-1.0, self.samples as f64 - 1.0);
+        let first = ((from_s - self.start_s) * self.rate_hz - 1e-6)
+            .ceil()
+            .clamp(0.0, self.samples as f64);
+        let last = ((to_s - self.start_s) * self.rate_hz + 1e-6)
+            .floor()
+            .clamp(-1.0, self.samples as f64 - 1.0);
         let samples = (last - first + 1.0).max(0.0) as usize;
-        Self { start_s: self.start_s + first / self.rate_hz, samples, ..self }
+        Self {
+            start_s: self.start_s + first / self.rate_hz,
+            samples,
+            ..self
+        }
     }
 }
 
@@ -257,7 +324,9 @@ pub enum TopicError {
         second_start_s: f64,
     },
     /// A stamp is so far off that nothing could hold the record.
-    #[error("the topics would make a record of {0:.0} samples: a stamp is wrong, or the rate asked for is too high")]
+    #[error(
+        "the topics would make a record of {0:.0} samples: a stamp is wrong, or the rate asked for is too high"
+    )]
     TooMany(f64),
 }
 
@@ -272,7 +341,9 @@ mod tests {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             f64::from(state) / 2_f64.powi(32)
         };
-        (0..count).map(|k| step * k as f64 + shake * (draw() - 0.5)).collect()
+        (0..count)
+            .map(|k| step * k as f64 + shake * (draw() - 0.5))
+            .collect()
     }
 
     fn signal(t: f64) -> f64 {
@@ -281,8 +352,10 @@ mod tests {
 
     #[test]
     fn the_known_answer_is_met_to_rounding() {
-        let answer: serde_json::Value =
-            serde_json::from_str(include_str!("../../../../tests/data/resampling-known-answer.json")).unwrap();
+        let answer: serde_json::Value = serde_json::from_str(include_str!(
+            "../../../../tests/data/resampling-known-answer.json"
+        ))
+        .unwrap();
         let stamps = shaken(1500, 0.004, 0.0008);
         let values: Vec<f64> = stamps.iter().map(|t| signal(*t)).collect();
         let topic = Topic::new("v", &stamps, &values, false).unwrap();
@@ -290,27 +363,52 @@ mod tests {
         let asked: Vec<f64> = (0..100).map(|k| 2.0 + 0.02 * f64::from(k)).collect();
         let found = topic.at(&asked, number(&answer["wc"]));
         let expected = numbers(&answer["expected"]);
-        let worst = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let worst = found
+            .iter()
+            .zip(&expected)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
         assert!(worst < number(&answer["tolerance"]), "{worst}");
     }
 
     #[test]
     fn a_constant_stays_and_a_gap_stays_a_gap() {
-        let stamps: Vec<f64> = shaken(400, 0.01, 0.002).into_iter().filter(|t| !(1.0..2.0).contains(t)).collect();
+        let stamps: Vec<f64> = shaken(400, 0.01, 0.002)
+            .into_iter()
+            .filter(|t| !(1.0..2.0).contains(t))
+            .collect();
         let topic = Topic::new("v", &stamps, &vec![3.5; stamps.len()], false).unwrap();
         let found = topic.at(&[-1.0, 0.5, 0.97, 1.5, 2.05, 3.9, 9.0], 40.0);
         let is_missing: Vec<bool> = found.iter().map(|x| x.is_nan()).collect();
         assert_eq!(is_missing, [true, false, false, true, false, false, true]);
-        assert!(found.iter().filter(|x| x.is_finite()).all(|x| (x - 3.5).abs() < 1e-12), "rounding alone");
+        assert!(
+            found
+                .iter()
+                .filter(|x| x.is_finite())
+                .all(|x| (x - 3.5).abs() < 1e-12),
+            "rounding alone"
+        );
     }
 
     #[test]
     fn stamps_that_stand_or_run_backwards_are_dropped() {
         let stamps = [0.0, 0.1, 0.1, 0.2, 0.15, 0.3, f64::NAN, 0.4];
-        let topic = Topic::new("v", &stamps, &[0.0, 1.0, 9.0, 2.0, 9.0, 3.0, 9.0, 4.0], false).unwrap();
-        assert_eq!((topic.time_s, topic.values), (vec![0.0, 0.1, 0.2, 0.3, 0.4], vec![0.0, 1.0, 2.0, 3.0, 4.0]));
+        let topic = Topic::new(
+            "v",
+            &stamps,
+            &[0.0, 1.0, 9.0, 2.0, 9.0, 3.0, 9.0, 4.0],
+            false,
+        )
+        .unwrap();
+        assert_eq!(
+            (topic.time_s, topic.values),
+            (vec![0.0, 0.1, 0.2, 0.3, 0.4], vec![0.0, 1.0, 2.0, 3.0, 4.0])
+        );
         let error = Topic::new("v", &[0.0, 1.0], &[1.0, 2.0], false).unwrap_err();
-        assert_eq!(error.to_string(), "v has 2 samples with a stamp: at least 3 are needed");
+        assert_eq!(
+            error.to_string(),
+            "v has 2 samples with a stamp: at least 3 are needed"
+        );
     }
 
     #[test]
@@ -321,26 +419,42 @@ mod tests {
         let topic = Topic::new("u", &stamps, &values, true).unwrap();
         let asked: Vec<f64> = (0..100).map(|k| 3.0 + 0.031 * f64::from(k)).collect();
         let found = topic.at(&asked, 80.0);
-        assert!(asked.iter().zip(found).all(|(t, x)| (x - signal(*t)).abs() < 2e-3));
+        assert!(
+            asked
+                .iter()
+                .zip(found)
+                .all(|(t, x)| (x - signal(*t)).abs() < 2e-3)
+        );
         assert!(is_held(&[1.0, 1.0, 1.0, 2.0, 2.0, 2.0]) && !is_held(&[1.0, 2.0, 2.0, 3.0]));
     }
 
     #[test]
     fn the_clock_is_that_of_the_slowest_topic_as_far_as_the_band_needs_it() {
         let topic = |name: &str, rate: f64, from: f64, to: f64| {
-            let stamps: Vec<f64> = (0..((to - from) * rate) as usize).map(|k| from + k as f64 / rate).collect();
+            let stamps: Vec<f64> = (0..((to - from) * rate) as usize)
+                .map(|k| from + k as f64 / rate)
+                .collect();
             Topic::new(name, &stamps, &vec![1.0; stamps.len()], false).unwrap()
         };
-        let fast = [topic("M", 250.0, 0.0, 20.0), topic("q", 100.0, 1.0, 22.0), topic("v", 50.0, 0.5, 21.0)];
+        let fast = [
+            topic("M", 250.0, 0.0, 20.0),
+            topic("q", 100.0, 1.0, 22.0),
+            topic("v", 50.0, 0.5, 21.0),
+        ];
         let clock = CommonClock::of(&fast, Some(12.0), None).unwrap();
-        assert!((clock.rate_hz - 50.0).abs() < 1e-6 && (clock.cutoff - 80.0).abs() < 1e-9, "{clock:?}");
+        assert!(
+            (clock.rate_hz - 50.0).abs() < 1e-6 && (clock.cutoff - 80.0).abs() < 1e-9,
+            "{clock:?}"
+        );
         assert!(clock.start_s == 1.0 && clock.times_s().last().unwrap() <= &20.0);
         let part = clock.within([5.0, 10.0]);
         assert_eq!((part.samples, part.start_s), (251, 5.0));
         // 20 · 4/3 · 3 rad/s are 12.7 Hz.
         assert!((CommonClock::of(&fast, Some(3.0), None).unwrap().rate_hz - 12.73).abs() < 0.01);
         let slow = [topic("M", 250.0, 0.0, 20.0), topic("gps", 5.0, 0.0, 20.0)];
-        let words = CommonClock::of(&slow, Some(12.0), None).unwrap_err().to_string();
+        let words = CommonClock::of(&slow, Some(12.0), None)
+            .unwrap_err()
+            .to_string();
         let expected = "gps has 5.0 samples in a second, and a band to 12.000 rad/s takes 6.4: log it faster, or end the band at 9.42 rad/s";
         assert_eq!(words, expected);
         assert!(
@@ -348,6 +462,9 @@ mod tests {
                 && CommonClock::of(&fast, Some(12.0), Some(80.0)).is_ok()
         );
         let apart = [topic("M", 50.0, 0.0, 5.0), topic("q", 50.0, 9.0, 22.0)];
-        assert!(matches!(CommonClock::of(&apart, Some(12.0), None), Err(TopicError::NoCommonTime { .. })));
+        assert!(matches!(
+            CommonClock::of(&apart, Some(12.0), None),
+            Err(TopicError::NoCommonTime { .. })
+        ));
     }
 }

@@ -35,25 +35,48 @@ impl ParameterCovariance {
     /// `phi G^+`; none where an iteration does not end.
     pub(super) fn new(system: &NormalSystem, dispersion: f64) -> Option<Self> {
         let root = pseudo_inverse_root(system.matrix.clone(), FREEDOM_OF_SCALE)?;
-        Some(Self { covariance: &root * root.transpose() * dispersion, information: &system.matrix / dispersion })
+        Some(Self {
+            covariance: &root * root.transpose() * dispersion,
+            information: &system.matrix / dispersion,
+        })
     }
 
     /// That of a fit with these normal systems and this cost, per degree of freedom that the parameters leave; none where they leave none.
-    pub(super) fn of(likelihood: &Likelihood, fit: &Fit, systems: &[NormalSystem], cost: f64) -> Option<Self> {
+    pub(super) fn of(
+        likelihood: &Likelihood,
+        fit: &Fit,
+        systems: &[NormalSystem],
+        cost: f64,
+    ) -> Option<Self> {
         let freedom = likelihood.freedom(fit.model.order());
-        let spare = freedom.checked_sub(effective_parameters(fit)).filter(|spare| *spare > 0)?;
-        Self::new(&NormalSystem::sum(fit.model.parameters(), systems), cost / spare as f64)
+        let spare = freedom
+            .checked_sub(effective_parameters(fit))
+            .filter(|spare| *spare > 0)?;
+        Self::new(
+            &NormalSystem::sum(fit.model.parameters(), systems),
+            cost / spare as f64,
+        )
     }
 
     /// What other lines than those of a fit tell of its model.
     pub(super) fn of_lines(likelihood: &Likelihood, fit: &Fit) -> Option<Self> {
         let parts = likelihood.parts(&fit.model)?;
         let systems = normal_systems(likelihood, &fit.model, &parts)?;
-        Self::of(likelihood, fit, &systems, parts.iter().map(|part| part.cost).sum())
+        Self::of(
+            likelihood,
+            fit,
+            &systems,
+            parts.iter().map(|part| part.cost).sum(),
+        )
     }
 
     /// The cost over other records where the model may move within its uncertainty (M14.17): `r'r - r'J (G/phi + J'J)^-1 J'r`.
-    pub(super) fn moved_cost(&self, records: &Likelihood, model: &BlockModel, parts: &[SegmentCost]) -> Option<f64> {
+    pub(super) fn moved_cost(
+        &self,
+        records: &Likelihood,
+        model: &BlockModel,
+        parts: &[SegmentCost],
+    ) -> Option<f64> {
         let system = NormalSystem::sum(model.parameters(), &normal_systems(records, model, parts)?);
         let root = pseudo_inverse_root(&self.information + &system.matrix, FREEDOM_OF_SCALE)?;
         let cost: f64 = parts.iter().map(|part| part.cost).sum();
@@ -74,10 +97,21 @@ impl ParameterCovariance {
                     }
                 };
                 let most = UNKNOWN * pole.norm().max(lowest);
-                let sd = |variance: f64| if variance.is_finite() { variance.max(0.0).sqrt().min(most) } else { most };
+                let sd = |variance: f64| {
+                    if variance.is_finite() {
+                        variance.max(0.0).sqrt().min(most)
+                    } else {
+                        most
+                    }
+                };
                 let (sd_re, sd_im) = (sd(re), sd(im));
                 let determined = pole.norm() >= lowest && sd_re.hypot(sd_im) <= 0.5 * pole.norm();
-                estimates.push(PoleEstimate { pole, sd_re, sd_im, determined });
+                estimates.push(PoleEstimate {
+                    pole,
+                    sd_re,
+                    sd_im,
+                    determined,
+                });
             }
             place += block.size();
         }
@@ -107,16 +141,31 @@ impl ParameterCovariance {
         executor: &dyn Executor,
     ) -> Option<ModelBands> {
         let (outputs, inputs) = (model.c.nrows(), model.b.ncols());
-        let at: Vec<_> = omegas.iter().map(|&omega| Gradients::new(model, neighbours, omega)).collect();
+        let at: Vec<_> = omegas
+            .iter()
+            .map(|&omega| Gradients::new(model, neighbours, omega))
+            .collect();
         // Of each pair over frequency: dB and degrees.
         let of_pair = |pair: usize| {
             let (output, input) = (pair % outputs, pair / outputs);
-            let fed_back = |omega: &f64| feedback.map_or(0.0, |of| 0.5 * of.ratio(*omega, (output, input)).powi(2));
-            self.pair_bands(model, &at, &omegas.iter().map(fed_back).collect::<Vec<_>>(), (output, input))
+            let fed_back = |omega: &f64| {
+                feedback.map_or(0.0, |of| 0.5 * of.ratio(*omega, (output, input)).powi(2))
+            };
+            self.pair_bands(
+                model,
+                &at,
+                &omegas.iter().map(fed_back).collect::<Vec<_>>(),
+                (output, input),
+            )
         };
         let all: Vec<Vec<(f64, f64)>> = each(executor, 0..outputs * inputs, of_pair);
         let of = |part: fn(&(f64, f64)) -> f64| {
-            let curve = |pair: Pair| all[pair.input * outputs + pair.output].iter().map(part).collect();
+            let curve = |pair: Pair| {
+                all[pair.input * outputs + pair.output]
+                    .iter()
+                    .map(part)
+                    .collect()
+            };
             PairTable::from_fn(outputs, inputs, curve)
         };
         ModelBands::new(omegas.to_vec(), of(|sd| sd.0), of(|sd| sd.1)).ok()
@@ -135,23 +184,38 @@ impl ParameterCovariance {
             .chain((0..order).map(|state| model.place_of_c(output, state)))
             .chain([model.place_of_d(output, input)])
             .collect();
-        let covariance =
-            DMatrix::from_fn(places.len(), places.len(), |row, column| self.covariance[(places[row], places[column])]);
+        let covariance = DMatrix::from_fn(places.len(), places.len(), |row, column| {
+            self.covariance[(places[row], places[column])]
+        });
         // Real parts, then imaginary parts, one column a frequency.
         let mut gradients = DMatrix::zeros(places.len(), 2 * at.len());
         for (k, gradient) in at.iter().enumerate() {
-            for (row, value) in gradient.of_pair(model, output, input).into_iter().enumerate() {
+            for (row, value) in gradient
+                .of_pair(model, output, input)
+                .into_iter()
+                .enumerate()
+            {
                 (gradients[(row, k)], gradients[(row, at.len() + k)]) = (value.re, value.im);
             }
         }
         let products = covariance * &gradients;
-        let variance = |column: usize| products.column(column).dot(&gradients.column(column)).max(0.0);
+        let variance = |column: usize| {
+            products
+                .column(column)
+                .dot(&gradients.column(column))
+                .max(0.0)
+        };
         let sd = |column: usize, order: f64| {
-            (MEASURED_FACTOR * (variance(column) + order) + fed_back[column % at.len()]).sqrt().min(UNKNOWN)
+            (MEASURED_FACTOR * (variance(column) + order) + fed_back[column % at.len()])
+                .sqrt()
+                .min(UNKNOWN)
         };
         let bands = |(k, gradients): (usize, &Gradients)| {
             let order = gradients.order_variance[(output, input)];
-            (neper_to_db(sd(k, order.re)), sd(at.len() + k, order.im).to_degrees())
+            (
+                neper_to_db(sd(k, order.re)),
+                sd(at.len() + k, order.im).to_degrees(),
+            )
         };
         at.iter().enumerate().map(bands).collect()
     }
@@ -181,11 +245,22 @@ impl Gradients {
         for neighbour in neighbours {
             order_variance += neighbour.response(omega).zip_map(&response, |other, own| {
                 let ratio = (other / own).ln();
-                let finite = |part: f64| if part.is_finite() { part * part } else { UNKNOWN };
+                let finite = |part: f64| {
+                    if part.is_finite() {
+                        part * part
+                    } else {
+                        UNKNOWN
+                    }
+                };
                 Complex::new(finite(ratio.re), finite(ratio.im)) / neighbours.len() as f64
             });
         }
-        Self { response, outputs, states, order_variance }
+        Self {
+            response,
+            outputs,
+            states,
+            order_variance,
+        }
     }
 
     /// The gradient of `ln H` of a pair: by the blocks, its column of `B`, its row of `C`, its entry of `D`.
@@ -194,7 +269,9 @@ impl Gradients {
         let mut gradient = Vec::with_capacity(3 * model.order() + 1);
         for (first, block) in model.rows() {
             match block {
-                Block::Pair { .. } => gradient.extend([-cr[first + 1] * x[first], -cr[first + 1] * x[first + 1]]),
+                Block::Pair { .. } => {
+                    gradient.extend([-cr[first + 1] * x[first], -cr[first + 1] * x[first + 1]])
+                }
                 Block::Single(_) => gradient.push(cr[first] * x[first]),
             }
         }
@@ -203,9 +280,16 @@ impl Gradients {
         gradient.push(Complex::from(1.0));
         let response = self.response[(output, input)];
         let finite = |value: Complex<f64>| {
-            if value.re.is_finite() && value.im.is_finite() { value } else { Complex::from(UNKNOWN) }
+            if value.re.is_finite() && value.im.is_finite() {
+                value
+            } else {
+                Complex::from(UNKNOWN)
+            }
         };
-        gradient.into_iter().map(|value| finite(value / response)).collect()
+        gradient
+            .into_iter()
+            .map(|value| finite(value / response))
+            .collect()
     }
 }
 
@@ -234,10 +318,22 @@ pub(super) fn without_each_record(
     let without = |&record: &usize| {
         let system = all.without(&likelihood.system_of(record, systems));
         let segments = likelihood.segments.iter().zip(&fit.parts);
-        let cost = segments.filter(|(segment, _)| segment.record != record).map(|(_, part)| part.cost).sum();
+        let cost = segments
+            .filter(|(segment, _)| segment.record != record)
+            .map(|(_, part)| part.cost)
+            .sum();
         // Where no step lowers the cost the full model is the best without the record as well.
-        let stepped = damped(&likelihood.without(record), &fit.model, &system, cost, FIRST_DAMPING);
-        (record, stepped.map_or_else(|| fit.model.clone(), |(model, ..)| model))
+        let stepped = damped(
+            &likelihood.without(record),
+            &fit.model,
+            &system,
+            cost,
+            FIRST_DAMPING,
+        );
+        (
+            record,
+            stepped.map_or_else(|| fit.model.clone(), |(model, ..)| model),
+        )
     };
     each(likelihood.executor, &records, without)
 }
@@ -249,14 +345,18 @@ mod tests {
 
     /// Turns the second of two real modes of a block around, which a model does not show but the path of its refinement does.
     fn turned(model: &BlockModel) -> BlockModel {
-        let Block::Pair { a0, a1 } = model.blocks[0] else { panic!("a pair") };
+        let Block::Pair { a0, a1 } = model.blocks[0] else {
+            panic!("a pair")
+        };
         let poles = model.blocks[0].poles();
         // alpha + beta F has the eigenvalues 1 and -1.
         let beta = 2.0 / (poles[0].re - poles[1].re);
         let alpha = 1.0 - beta * poles[0].re;
         let turn = dmatrix![alpha, beta; -beta * a0, alpha - beta * a1];
         let mut turned = model.clone();
-        turned.b.copy_from(&(turn.clone().try_inverse().unwrap() * &model.b));
+        turned
+            .b
+            .copy_from(&(turn.clone().try_inverse().unwrap() * &model.b));
         turned.c.copy_from(&(&model.c * turn));
         let ratio = (turned.c.norm() / turned.b.norm()).sqrt();
         turned.b *= ratio;
@@ -273,31 +373,63 @@ mod tests {
             .iter()
             .map(|known| {
                 let (inputs, outputs) = (matrix(&known["u"]), matrix(&known["y"]));
-                let time_s = (0..inputs.nrows()).map(|sample| sample as f64 * number(&known["dt"])).collect();
-                FlightRecord { name: String::new(), time_s, inputs, outputs }
+                let time_s = (0..inputs.nrows())
+                    .map(|sample| sample as f64 * number(&known["dt"]))
+                    .collect();
+                FlightRecord {
+                    name: String::new(),
+                    time_s,
+                    inputs,
+                    outputs,
+                }
             })
             .collect();
         let band = numbers(&known["band"]);
         let preparation = Preparation::of(&["U1", "U2"], &["Y1", "Y2"]);
-        let options = Options { held_out: vec![4], ..Options::new([band[0], band[1]], preparation) };
+        let options = Options {
+            held_out: vec![4],
+            ..Options::new([band[0], band[1]], preparation)
+        };
         let progress = Shares::new(&Unobserved);
         let data = PreparedData::new(&records, &options, &Sequential, &progress).unwrap();
         // Those figures are of all lines around the band, the first of a record too (M14, 2), which does not count any more (M14.12).
         let [lowest, highest] = [0.5 * band[0], 4.0 / 3.0 * band[1]];
         let between = |lines: Spectrum| lines.between(lowest / 1.3, 1.3 * highest);
-        let wide: Vec<Spectrum> =
-            spectra(&data.unfiltered, 1.3 * highest, &Sequential).into_iter().map(between).collect();
-        let measured = local_polynomial(&wide, &log_spaced(lowest, highest, 40), &Sequential).unwrap();
+        let wide: Vec<Spectrum> = spectra(&data.unfiltered, 1.3 * highest, &Sequential)
+            .into_iter()
+            .map(between)
+            .collect();
+        let measured =
+            local_polynomial(&wide, &log_spaced(lowest, highest, 40), &Sequential).unwrap();
         let noise = NoiseCovariance::of(&measured).unwrap();
-        let whitened = |lines: &Spectrum| SpectralLines::new(&lines.between(lowest, highest), &noise).unwrap();
-        let likelihood = &Likelihood { segments: wide.iter().map(whitened).collect(), executor: &Sequential };
-        let whole = |name: &str| numbers(&known[name]).into_iter().map(|value| value as usize).collect::<Vec<_>>();
+        let whitened =
+            |lines: &Spectrum| SpectralLines::new(&lines.between(lowest, highest), &noise).unwrap();
+        let likelihood = &Likelihood {
+            segments: wide.iter().map(whitened).collect(),
+            executor: &Sequential,
+        };
+        let whole = |name: &str| {
+            numbers(&known[name])
+                .into_iter()
+                .map(|value| value as usize)
+                .collect::<Vec<_>>()
+        };
         let (poles, pasts, orders) = (numbers(&known["poles_a"]), whole("pasts"), whole("orders"));
-        let settings = SubspaceSettings { highest: band[1], poles, pasts, orders, longest_future: 12 };
-        let candidates = settings.candidates(&data.segments, likelihood, &progress).unwrap();
+        let settings = SubspaceSettings {
+            highest: band[1],
+            poles,
+            pasts,
+            orders,
+            longest_future: 12,
+        };
+        let candidates = settings
+            .candidates(&data.segments, likelihood, &progress)
+            .unwrap();
         let starts = settings.starts(&candidates, likelihood);
         let refined = |model: BlockModel, count| {
-            Fit::start(likelihood, model).unwrap().refined(likelihood, count, 1e-3, &progress)
+            Fit::start(likelihood, model)
+                .unwrap()
+                .refined(likelihood, count, 1e-3, &progress)
         };
         let fit = refined(starts[&4].model.clone(), 8).unwrap();
         let below = refined(turned(&starts[&2].model), 3).unwrap();
@@ -308,7 +440,13 @@ mod tests {
         let covariance = ParameterCovariance::new(&system, fit.cost / spare as f64).unwrap();
         let expected = &known["expected"];
         let bands = covariance
-            .bands(&fit.model, &[&below.model, &above.model], None, &numbers(&expected["w"]), &Sequential)
+            .bands(
+                &fit.model,
+                &[&below.model, &above.model],
+                None,
+                &numbers(&expected["w"]),
+                &Sequential,
+            )
             .unwrap();
         let tolerance = number(&expected["sd_tolerance_relative"]);
         for (found, name) in [(bands.sd_db(), "sd_db"), (bands.sd_deg(), "sd_deg")] {
@@ -316,7 +454,10 @@ mod tests {
                 for (k, found) in found.iter().enumerate() {
                     let expected = matrix(&expected[name][k])[(output, input)];
                     // Independent numpy code; the tolerance stands in its file.
-                    assert!((found / expected - 1.0).abs() < tolerance, "{name} {k}: {found}, not {expected}");
+                    assert!(
+                        (found / expected - 1.0).abs() < tolerance,
+                        "{name} {k}: {found}, not {expected}"
+                    );
                 }
             }
         }

@@ -22,28 +22,49 @@ pub struct RecordGuess {
 const MANOEUVRES: [(RecordKind, &[&str]); 3] = [
     (RecordKind::Sweep, &["sweep", "chirp", "swp"]),
     (RecordKind::Multisine, &["multisine", "schroeder", "msine"]),
-    (RecordKind::ThreeTwoOneOne, &["3211", "doublet", "dblt", "step"]),
+    (
+        RecordKind::ThreeTwoOneOne,
+        &["3211", "doublet", "dblt", "step"],
+    ),
 ];
-const VALIDATION: [&str; 5] = ["validation", "validate", "verification", "holdout", "heldout"];
+const VALIDATION: [&str; 5] = [
+    "validation",
+    "validate",
+    "verification",
+    "holdout",
+    "heldout",
+];
 /// Words that say so too, but stand in others ("value", "testbed").
 const VALIDATION_WORDS: [&str; 4] = ["val", "valid", "check", "verif"];
 
 /// What names of recorded references end with: pilot's and position references, setpoints, injected signals; short ones stand alone.
-const REFERENCES: &str = "ref reference cmd command sp setpoint des desired targ target chirp excitation x0";
+const REFERENCES: &str =
+    "ref reference cmd command sp setpoint des desired targ target chirp excitation x0";
 
 /// Whether a word of a name says that it is a recorded reference: "pos_ref", "RATE.RDes", "SIDD.Targ".
 fn names_reference(name: &str) -> bool {
     let lower = name.to_lowercase();
     let mut words = lower.split(|letter: char| !letter.is_alphanumeric());
-    words.any(|word| REFERENCES.split(' ').any(|end| word == end || end.len() > 2 && word.ends_with(end)))
+    words.any(|word| {
+        REFERENCES
+            .split(' ')
+            .any(|end| word == end || end.len() > 2 && word.ends_with(end))
+    })
 }
 
 impl RecordGuess {
     /// Reads the names of a record, of its file, and of the file in an archive that it is.
     pub fn of_table(table: &RecordTable, patterns: &[NamePattern]) -> Self {
         let source = &table.source;
-        let names = [Some(source.file.as_str()), source.variable.as_deref(), Some(table.name.as_str())];
-        Self::of(&names.into_iter().flatten().collect::<Vec<_>>().join("/"), patterns)
+        let names = [
+            Some(source.file.as_str()),
+            source.variable.as_deref(),
+            Some(table.name.as_str()),
+        ];
+        Self::of(
+            &names.into_iter().flatten().collect::<Vec<_>>().join("/"),
+            patterns,
+        )
     }
 
     /// The condition that the name says; none where it says none, or one that `dataset` does not have.
@@ -58,12 +79,22 @@ impl RecordGuess {
         // "3-2-1-1" and "hold_out" are "3211" and "holdout".
         let joined = folded_name(name);
         let holds = |words: &[&str]| words.iter().any(|word| joined.contains(word));
-        let kind = MANOEUVRES.into_iter().find(|(_, words)| holds(words)).map_or(RecordKind::Other, |(kind, _)| kind);
+        let kind = MANOEUVRES
+            .into_iter()
+            .find(|(_, words)| holds(words))
+            .map_or(RecordKind::Other, |(kind, _)| kind);
         let mut words = lower.split(|c: char| !c.is_alphabetic());
         let held_out = holds(&VALIDATION) || words.any(|word| VALIDATION_WORDS.contains(&word));
         let mut row = Row::default();
-        patterns.iter().for_each(|pattern| pattern.read(name, &mut row));
-        Self { kind, held_out, condition: row.condition, airspeed_kt: row.airspeed_kt }
+        patterns
+            .iter()
+            .for_each(|pattern| pattern.read(name, &mut row));
+        Self {
+            kind,
+            held_out,
+            condition: row.condition,
+            airspeed_kt: row.airspeed_kt,
+        }
     }
 }
 
@@ -88,18 +119,54 @@ pub struct LaidOutRecord {
 
 impl LaidOutRecord {
     /// A record with these columns for its channels.
-    pub fn new(table: Arc<RecordTable>, layout: RecordLayout, guess: RecordGuess, channels: &RecordChannels) -> Self {
-        let (problems, cautions) = (layout.problems(&table, channels), layout.cautions(&table, channels));
+    pub fn new(
+        table: Arc<RecordTable>,
+        layout: RecordLayout,
+        guess: RecordGuess,
+        channels: &RecordChannels,
+    ) -> Self {
+        let (problems, cautions) = (
+            layout.problems(&table, channels),
+            layout.cautions(&table, channels),
+        );
         let flight = layout.flight_record(&table, channels).ok().map(Arc::new);
-        Self { table, layout, guess, used: true, problems, cautions, flight }
+        Self {
+            table,
+            layout,
+            guess,
+            used: true,
+            problems,
+            cautions,
+            flight,
+        }
     }
 
     /// A record with the columns proposed for its channels, and what was chosen, a line a choice.
-    pub fn proposed(table: RecordTable, channels: &RecordChannels, time: &TimeWish) -> (Self, Vec<String>) {
-        let LayoutProposal { layout, notes, problems, cautions } = RecordLayout::proposed(&table, channels, time);
+    pub fn proposed(
+        table: RecordTable,
+        channels: &RecordChannels,
+        time: &TimeWish,
+    ) -> (Self, Vec<String>) {
+        let LayoutProposal {
+            layout,
+            notes,
+            problems,
+            cautions,
+        } = RecordLayout::proposed(&table, channels, time);
         let guess = RecordGuess::of_table(&table, standard_patterns());
         let flight = layout.flight_record(&table, channels).ok().map(Arc::new);
-        (Self { table: Arc::new(table), layout, guess, used: true, problems, cautions, flight }, notes)
+        (
+            Self {
+                table: Arc::new(table),
+                layout,
+                guess,
+                used: true,
+                problems,
+                cautions,
+                flight,
+            },
+            notes,
+        )
     }
 
     /// A record with its channels. One that the dataset itself names is as that says: in its units where the file says none, times
@@ -117,7 +184,11 @@ impl LaidOutRecord {
         let (record, mut notes) = Self::proposed(table, &channels, time);
         let mut remedies = BTreeMap::new();
         for (name, remedy) in &entry.remedies {
-            let factor = if channels.said.contains_key(name) { 1.0 } else { remedy.factor };
+            let factor = if channels.said.contains_key(name) {
+                1.0
+            } else {
+                remedy.factor
+            };
             let kept = ChannelRemedy { factor, ..*remedy };
             if kept != ChannelRemedy::NONE {
                 let (times, less_s) = (kept.factor, kept.delay_s);
@@ -125,13 +196,22 @@ impl LaidOutRecord {
                 remedies.insert(name.clone(), kept);
             }
         }
-        let entry = ConditionRecord { remedies, ..entry.clone() };
+        let entry = ConditionRecord {
+            remedies,
+            ..entry.clone()
+        };
         (record.as_said(&entry, &channels), notes)
     }
 
     /// First and last time \[s\] of its samples, on its own clock; none while there are problems, or where no stamp is a number.
     pub fn span_s(&self) -> Option<[f64; 2]> {
-        let mut stamps = self.flight.as_ref()?.time_s.iter().copied().filter(|time_s| time_s.is_finite());
+        let mut stamps = self
+            .flight
+            .as_ref()?
+            .time_s
+            .iter()
+            .copied()
+            .filter(|time_s| time_s.is_finite());
         let first_s = stamps.next()?;
         Some([first_s, stamps.next_back().unwrap_or(first_s)])
     }
@@ -139,7 +219,15 @@ impl LaidOutRecord {
     /// The same record with other columns for its channels.
     #[must_use]
     pub fn laid_out(&self, layout: RecordLayout, channels: &RecordChannels) -> Self {
-        Self { used: self.used, ..Self::new(Arc::clone(&self.table), layout, self.guess.clone(), channels) }
+        Self {
+            used: self.used,
+            ..Self::new(
+                Arc::clone(&self.table),
+                layout,
+                self.guess.clone(),
+                channels,
+            )
+        }
     }
 
     /// The record as a dataset says of it: with its remedies, held out or not, used or not.
@@ -152,24 +240,58 @@ impl LaidOutRecord {
             layout.put_right(&entry.remedies, channels);
             self.laid_out(layout, channels)
         };
-        let guess = RecordGuess { kind: entry.kind, held_out: entry.held_out, ..record.guess };
-        Self { used: entry.used, guess, ..record }
+        let guess = RecordGuess {
+            kind: entry.kind,
+            held_out: entry.held_out,
+            ..record.guess
+        };
+        Self {
+            used: entry.used,
+            guess,
+            ..record
+        }
     }
 
     /// The columns that may have driven a loop from outside (M14.15), which move and are neither the time nor a channel, and whether
     /// their names say that they did; those first.
     pub fn possible_references(&self) -> Vec<(&str, bool)> {
-        let RecordLayout { time, inputs, outputs } = &self.layout;
-        let channels = inputs.iter().chain(outputs).flatten().map(|used| used.column);
-        let time = time.and_then(|time| if let TimeBase::Column { column, .. } = time { Some(column) } else { None });
+        let RecordLayout {
+            time,
+            inputs,
+            outputs,
+        } = &self.layout;
+        let channels = inputs
+            .iter()
+            .chain(outputs)
+            .flatten()
+            .map(|used| used.column);
+        let time = time.and_then(|time| {
+            if let TimeBase::Column { column, .. } = time {
+                Some(column)
+            } else {
+                None
+            }
+        });
         let taken: Vec<usize> = channels.chain(time).collect();
-        let columns = self.table.columns.iter().enumerate().filter(|(index, _)| !taken.contains(index));
-        let moves = |column: &RecordColumn| column.range().is_some_and(|(least, most)| least < most);
+        let columns = self
+            .table
+            .columns
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| !taken.contains(index));
+        let moves =
+            |column: &RecordColumn| column.range().is_some_and(|(least, most)| least < most);
         // What the documentation of a system knows as a signal of the aircraft is none.
-        let is_free = |column: &RecordColumn| column.meaning.is_none_or(|meaning| meaning == "TARG");
+        let is_free =
+            |column: &RecordColumn| column.meaning.is_none_or(|meaning| meaning == "TARG");
         let mut found: Vec<(&str, bool)> = columns
             .filter(|(_, column)| moves(column))
-            .map(|(_, column)| (column.name.as_str(), is_free(column) && names_reference(&column.name)))
+            .map(|(_, column)| {
+                (
+                    column.name.as_str(),
+                    is_free(column) && names_reference(&column.name),
+                )
+            })
             .collect();
         found.sort_by_key(|(_, is_named)| !is_named);
         found
@@ -182,8 +304,16 @@ impl LaidOutRecord {
 
     /// What a dataset says of it: where it is, what its name tells, and the parts of it that an identification used.
     pub fn entry(&self, found: &RecordUse, channels: &RecordChannels) -> ConditionRecord {
-        let used_s = self.flight.as_ref().map_or_else(Vec::new, |flight| found.spans(flight));
-        ConditionRecord { used_s, ..self.layout.condition_record(&self.table, &self.guess, channels) }
+        let used_s = self
+            .flight
+            .as_ref()
+            .map_or_else(Vec::new, |flight| found.spans(flight));
+        ConditionRecord {
+            used_s,
+            ..self
+                .layout
+                .condition_record(&self.table, &self.guess, channels)
+        }
     }
 }
 
@@ -193,10 +323,20 @@ pub fn leave_out_copies(records: &mut [LaidOutRecord]) {
     for index in 1..records.len() {
         let (before, from) = records.split_at_mut(index);
         let record = &mut from[0];
-        let Some(flight) = record.used_flight() else { continue };
-        let is_it = |other: &&LaidOutRecord| other.used_flight().is_some_and(|other| is_copy(other, flight));
-        let Some(first) = before.iter().find(is_it) else { continue };
-        let caution = LayoutCaution::Copy { first: first.table.name.clone() };
+        let Some(flight) = record.used_flight() else {
+            continue;
+        };
+        let is_it = |other: &&LaidOutRecord| {
+            other
+                .used_flight()
+                .is_some_and(|other| is_copy(other, flight))
+        };
+        let Some(first) = before.iter().find(is_it) else {
+            continue;
+        };
+        let caution = LayoutCaution::Copy {
+            first: first.table.name.clone(),
+        };
         if !record.cautions.contains(&caution) {
             record.used = false;
             record.cautions.push(caution);
@@ -207,7 +347,10 @@ pub fn leave_out_copies(records: &mut [LaidOutRecord]) {
 /// Whether all samples are the same to the last bit; the clocks may differ.
 fn is_copy(a: &FlightRecord, b: &FlightRecord) -> bool {
     let same = |a: &DMatrix<f64>, b: &DMatrix<f64>| {
-        a.shape() == b.shape() && a.iter().zip(b.iter()).all(|(a, b)| a.to_bits() == b.to_bits())
+        a.shape() == b.shape()
+            && a.iter()
+                .zip(b.iter())
+                .all(|(a, b)| a.to_bits() == b.to_bits())
     };
     same(&a.inputs, &b.inputs) && same(&a.outputs, &b.outputs)
 }
@@ -218,14 +361,28 @@ mod tests {
 
     #[test]
     fn columns_that_may_have_driven_the_loop_are_named_those_first_whose_names_say_so() {
-        let moving = |name: &str| RecordColumn::new(name, (0..60).map(|k| f64::from(k) * 0.02).collect());
-        let known = |name: &str, meaning| RecordColumn { meaning: Some(meaning), ..moving(name) };
+        let moving =
+            |name: &str| RecordColumn::new(name, (0..60).map(|k| f64::from(k) * 0.02).collect());
+        let known = |name: &str, meaning| RecordColumn {
+            meaning: Some(meaning),
+            ..moving(name)
+        };
         let still = RecordColumn::new("yaw_ref", vec![1.0; 60]);
-        let columns = ["t", "M", "q", "theta", "x0", "RATE.RDes"].map(moving).to_vec();
-        let more = vec![known("SIDD.Targ", "TARG"), known("torque_setpoint", "LAT"), still];
+        let columns = ["t", "M", "q", "theta", "x0", "RATE.RDes"]
+            .map(moving)
+            .to_vec();
+        let more = vec![
+            known("SIDD.Targ", "TARG"),
+            known("torque_setpoint", "LAT"),
+            still,
+        ];
         let table = RecordTable::new("log", [columns, more].concat());
         let rules = |name: &str| vec![ChannelRule::named(name)];
-        let channels = RecordChannels { inputs: rules("M"), outputs: rules("q"), ..RecordChannels::default() };
+        let channels = RecordChannels {
+            inputs: rules("M"),
+            outputs: rules("q"),
+            ..RecordChannels::default()
+        };
         let (record, _) = LaidOutRecord::proposed(table, &channels, &TimeWish::default());
         let named = [("x0", true), ("RATE.RDes", true), ("SIDD.Targ", true)];
         assert_eq!(
@@ -239,14 +396,37 @@ mod tests {
         let patterns = standard_patterns();
         let guess = |name: &str| {
             let guess = RecordGuess::of(name, patterns);
-            (guess.kind, guess.held_out, guess.condition, guess.airspeed_kt)
+            (
+                guess.kind,
+                guess.held_out,
+                guess.condition,
+                guess.airspeed_kt,
+            )
         };
-        assert_eq!(guess("cond01_sweep_LON_1.csv"), (RecordKind::Sweep, false, Some(1), None));
-        assert_eq!(guess("cond11_validation.csv"), (RecordKind::Other, true, Some(11), None));
-        assert_eq!(guess("c03_045kt/LatChirp2.mat"), (RecordKind::Sweep, false, Some(3), Some(45.0)));
-        assert_eq!(guess("fc-7/3-2-1-1 ped.txt"), (RecordKind::ThreeTwoOneOne, false, Some(7), None));
-        assert_eq!(guess("doublet_val_2.csv"), (RecordKind::ThreeTwoOneOne, true, None, None));
-        assert_eq!(guess("multi_sine_1_hold-out"), (RecordKind::Multisine, true, None, None));
+        assert_eq!(
+            guess("cond01_sweep_LON_1.csv"),
+            (RecordKind::Sweep, false, Some(1), None)
+        );
+        assert_eq!(
+            guess("cond11_validation.csv"),
+            (RecordKind::Other, true, Some(11), None)
+        );
+        assert_eq!(
+            guess("c03_045kt/LatChirp2.mat"),
+            (RecordKind::Sweep, false, Some(3), Some(45.0))
+        );
+        assert_eq!(
+            guess("fc-7/3-2-1-1 ped.txt"),
+            (RecordKind::ThreeTwoOneOne, false, Some(7), None)
+        );
+        assert_eq!(
+            guess("doublet_val_2.csv"),
+            (RecordKind::ThreeTwoOneOne, true, None, None)
+        );
+        assert_eq!(
+            guess("multi_sine_1_hold-out"),
+            (RecordKind::Multisine, true, None, None)
+        );
         assert_eq!(guess("values.csv"), (RecordKind::Other, false, None, None));
     }
 }

@@ -125,7 +125,9 @@ pub enum LayoutProblem {
         to: String,
     },
     /// Two channels are one column.
-    #[error("{first} and {second} are both taken from column {column}; choose another for one of them")]
+    #[error(
+        "{first} and {second} are both taken from column {column}; choose another for one of them"
+    )]
     OneColumn {
         /// One channel.
         first: String,

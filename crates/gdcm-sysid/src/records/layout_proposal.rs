@@ -36,35 +36,70 @@ impl RecordLayout {
     /// factor   from the file's unit to the channel's; of a file that says none, from what is said of the channel, else from the only
     ///          unit that its samples can be in, else it is asked for
     /// ```
-    pub fn proposed(table: &RecordTable, channels: &RecordChannels, time: &TimeWish) -> LayoutProposal {
-        let mut proposer = Proposer { table, channels, notes: Vec::new(), problems: Vec::new() };
+    pub fn proposed(
+        table: &RecordTable,
+        channels: &RecordChannels,
+        time: &TimeWish,
+    ) -> LayoutProposal {
+        let mut proposer = Proposer {
+            table,
+            channels,
+            notes: Vec::new(),
+            problems: Vec::new(),
+        };
         let time = proposer.time(time);
         let time_column = match time {
             Some(TimeBase::Column { column, .. }) => Some(column),
             _ => None,
         };
         let mut rules = channels.inputs.iter().chain(&channels.outputs);
-        let (inputs, outputs) = if table.named || rules.clone().any(|rule| !rule.aliases.is_empty()) {
+        let (inputs, outputs) = if table.named || rules.clone().any(|rule| !rule.aliases.is_empty())
+        {
             let inputs = proposer.named(ChannelSide::Input, time_column);
             (inputs, proposer.named(ChannelSide::Output, time_column))
         } else {
-            let channel = rules.next().map(|rule| rule.name.clone()).unwrap_or_default();
-            proposer.problems.push(LayoutProblem::Unnamed { channel, found: table.columns.len() });
-            (vec![None; channels.inputs.len()], vec![None; channels.outputs.len()])
+            let channel = rules
+                .next()
+                .map(|rule| rule.name.clone())
+                .unwrap_or_default();
+            proposer.problems.push(LayoutProblem::Unnamed {
+                channel,
+                found: table.columns.len(),
+            });
+            (
+                vec![None; channels.inputs.len()],
+                vec![None; channels.outputs.len()],
+            )
         };
-        let layout = RecordLayout { time, inputs, outputs };
-        let Proposer { mut notes, problems: told, .. } = proposer;
+        let layout = RecordLayout {
+            time,
+            inputs,
+            outputs,
+        };
+        let Proposer {
+            mut notes,
+            problems: told,
+            ..
+        } = proposer;
         // Where something was said of a channel already, that it has no column is no news.
-        let rest = layout.problems(table, channels).into_iter().filter(|problem| match problem {
-            LayoutProblem::NoColumn { .. } | LayoutProblem::NoTime(_) => told.is_empty(),
-            _ => true,
-        });
+        let rest = layout
+            .problems(table, channels)
+            .into_iter()
+            .filter(|problem| match problem {
+                LayoutProblem::NoColumn { .. } | LayoutProblem::NoTime(_) => told.is_empty(),
+                _ => true,
+            });
         let problems = told.iter().cloned().chain(rest).collect();
         if let Some(Ok(resampling)) = Resampling::of(&layout, table, channels) {
             notes.extend(resampling.words());
         }
         let cautions = layout.cautions(table, channels);
-        LayoutProposal { layout, notes, problems, cautions }
+        LayoutProposal {
+            layout,
+            notes,
+            problems,
+            cautions,
+        }
     }
 }
 
@@ -80,11 +115,13 @@ impl Proposer<'_> {
     fn time(&mut self, wish: &TimeWish) -> Option<TimeBase> {
         let table = self.table;
         if table.columns.iter().any(|column| column.topic.is_some()) {
-            self.notes.push("time from the stamps of each topic".to_owned());
+            self.notes
+                .push("time from the stamps of each topic".to_owned());
             return Some(TimeBase::Topics);
         }
         if let Some(step_s) = wish.sample_time_s {
-            self.notes.push(format!("one sample each {} s, as asked", number(step_s)));
+            self.notes
+                .push(format!("one sample each {} s, as asked", number(step_s)));
             return Some(TimeBase::SampleTime(step_s));
         }
         let column = match &wish.column {
@@ -92,7 +129,8 @@ impl Proposer<'_> {
                 Some(column) => Some(column),
                 None => {
                     let (name, found) = (name.clone(), table.column_names());
-                    self.problems.push(LayoutProblem::NoSuchColumn { name, found });
+                    self.problems
+                        .push(LayoutProblem::NoSuchColumn { name, found });
                     return None;
                 }
             },
@@ -104,10 +142,14 @@ impl Proposer<'_> {
             return Some(base);
         }
         if let Some(step_s) = table.sample_time_s {
-            self.notes.push(format!("one sample each {} s, as the file says", number(step_s)));
+            self.notes.push(format!(
+                "one sample each {} s, as the file says",
+                number(step_s)
+            ));
             return Some(TimeBase::SampleTime(step_s));
         }
-        self.problems.push(LayoutProblem::NoTime(table.column_names()));
+        self.problems
+            .push(LayoutProblem::NoTime(table.column_names()));
         None
     }
 
@@ -116,14 +158,29 @@ impl Proposer<'_> {
         let table = self.table;
         let rules = side.of(&self.channels.inputs, &self.channels.outputs);
         let free = |column: &usize| Some(*column) != time;
-        let candidates: Vec<Vec<usize>> =
-            rules.iter().map(|rule| candidates(table, rule, side).into_iter().filter(free).collect()).collect();
-        let of_side: Vec<usize> =
-            (0..table.columns.len()).filter(|&column| table.columns[column].side == Some(side)).collect();
-        if candidates.iter().all(Vec::is_empty) && of_side.len() == rules.len() && !rules.is_empty() {
-            self.notes
-                .push(format!("the file has as many {side}s under other names ({}): taken in order", rules.len()));
-            return rules.iter().zip(of_side).map(|(rule, column)| self.used(rule, column)).collect();
+        let candidates: Vec<Vec<usize>> = rules
+            .iter()
+            .map(|rule| {
+                candidates(table, rule, side)
+                    .into_iter()
+                    .filter(free)
+                    .collect()
+            })
+            .collect();
+        let of_side: Vec<usize> = (0..table.columns.len())
+            .filter(|&column| table.columns[column].side == Some(side))
+            .collect();
+        if candidates.iter().all(Vec::is_empty) && of_side.len() == rules.len() && !rules.is_empty()
+        {
+            self.notes.push(format!(
+                "the file has as many {side}s under other names ({}): taken in order",
+                rules.len()
+            ));
+            return rules
+                .iter()
+                .zip(of_side)
+                .map(|(rule, column)| self.used(rule, column))
+                .collect();
         }
         let mut uses = Vec::with_capacity(rules.len());
         for (rule, candidates) in rules.iter().zip(candidates) {
@@ -131,12 +188,24 @@ impl Proposer<'_> {
             uses.push(match candidates.as_slice() {
                 [column] => self.used(rule, *column),
                 [] => {
-                    self.problems.push(LayoutProblem::NoColumn { side, channel, found: table.column_names() });
+                    self.problems.push(LayoutProblem::NoColumn {
+                        side,
+                        channel,
+                        found: table.column_names(),
+                    });
                     None
                 }
                 several => {
-                    let found = several.iter().map(|&column| table.quoted(column)).collect::<Vec<_>>().join(", ");
-                    self.problems.push(LayoutProblem::SeveralColumns { side, channel, found });
+                    let found = several
+                        .iter()
+                        .map(|&column| table.quoted(column))
+                        .collect::<Vec<_>>()
+                        .join(", ");
+                    self.problems.push(LayoutProblem::SeveralColumns {
+                        side,
+                        channel,
+                        found,
+                    });
                     None
                 }
             });
@@ -147,8 +216,14 @@ impl Proposer<'_> {
     /// The column with its factor, turned where a mark in its name, or in what is asked for, says so; in words.
     fn used(&mut self, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
         let used = self.converted(rule, column)?;
-        let said = matches!(self.channels.said.get(&rule.name), Some(SaidConversion::Factor(_)));
-        let (name, quoted) = (self.table.columns[column].name.as_str(), self.table.quoted(column));
+        let said = matches!(
+            self.channels.said.get(&rule.name),
+            Some(SaidConversion::Factor(_))
+        );
+        let (name, quoted) = (
+            self.table.columns[column].name.as_str(),
+            self.table.quoted(column),
+        );
         let has_mark = |text: &&str| SignedName::of(text).name != text.trim();
         let of_alias = rule.aliases.iter().map(String::as_str).find(has_mark);
         let sign = match of_alias {
@@ -158,15 +233,29 @@ impl Proposer<'_> {
         };
         let Some(sign) = sign else {
             let (channel, column, plain) = (rule.name.clone(), name.to_owned(), plain(name));
-            self.problems.push(LayoutProblem::Sign { channel, column, plain });
+            self.problems.push(LayoutProblem::Sign {
+                channel,
+                column,
+                plain,
+            });
             return None;
         };
         if sign > 0.0 {
             return Some(used);
         }
-        let why = if of_alias.is_some() { "as asked" } else { "as its name says" };
-        self.notes.push(format!("{}: the sign of column {quoted} is turned, {why}", rule.name));
-        Some(ColumnUse { factor: -used.factor, ..used })
+        let why = if of_alias.is_some() {
+            "as asked"
+        } else {
+            "as its name says"
+        };
+        self.notes.push(format!(
+            "{}: the sign of column {quoted} is turned, {why}",
+            rule.name
+        ));
+        Some(ColumnUse {
+            factor: -used.factor,
+            ..used
+        })
     }
 
     /// The column with the factor from the file's unit to the channel's, and in words.
@@ -175,7 +264,11 @@ impl Proposer<'_> {
         let quoted = table.quoted(column);
         let said = match self.channels.said.get(&rule.name) {
             Some(SaidConversion::Factor(factor)) => {
-                self.notes.push(format!("{}: column {quoted}, × {} as asked", rule.name, number(*factor)));
+                self.notes.push(format!(
+                    "{}: column {quoted}, × {} as asked",
+                    rule.name,
+                    number(*factor)
+                ));
                 return Some(ColumnUse::times(column, *factor));
             }
             Some(SaidConversion::Unit(unit)) => Some(unit.as_str()),
@@ -183,7 +276,8 @@ impl Proposer<'_> {
         };
         if rule.unit.is_empty() {
             let unit = said.map_or_else(String::new, |unit| format!(", in {unit}"));
-            self.notes.push(format!("{}: column {quoted} as it is{unit}", rule.name));
+            self.notes
+                .push(format!("{}: column {quoted} as it is{unit}", rule.name));
             return Some(ColumnUse::as_it_is(column));
         }
         let Some(from) = said.or(rule.unit_in_files.as_deref()) else {
@@ -191,13 +285,26 @@ impl Proposer<'_> {
         };
         let Some(factor) = conversion_factor(from, &rule.unit) else {
             let (channel, from, to) = (rule.name.clone(), from.to_owned(), rule.unit.clone());
-            self.problems.push(LayoutProblem::Conversion { channel, column: quoted, from, to });
+            self.problems.push(LayoutProblem::Conversion {
+                channel,
+                column: quoted,
+                from,
+                to,
+            });
             return None;
         };
         self.notes.push(match (factor == 1.0, said) {
             (true, Some(unit)) => format!("{}: column {quoted}, in {unit}", rule.name),
-            (true, None) => format!("{}: column {quoted}, in {from} as is said of the channel", rule.name),
-            (false, _) => format!("{}: column {quoted}, {from} → {} (× {})", rule.name, rule.unit, number(factor)),
+            (true, None) => format!(
+                "{}: column {quoted}, in {from} as is said of the channel",
+                rule.name
+            ),
+            (false, _) => format!(
+                "{}: column {quoted}, {from} → {} (× {})",
+                rule.name,
+                rule.unit,
+                number(factor)
+            ),
         });
         Some(ColumnUse::times(column, factor))
     }
@@ -228,23 +335,52 @@ fn plain(name: &str) -> String {
 fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec<usize> {
     let mut found: Vec<usize>;
     let named = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
-        let other_side = |column: usize| table.columns[column].side.is_some_and(|of_file| of_file != side);
-        (0..table.columns.len()).filter(|&column| !other_side(column) && is_it(&table.columns[column].name)).collect()
+        let other_side = |column: usize| {
+            table.columns[column]
+                .side
+                .is_some_and(|of_file| of_file != side)
+        };
+        (0..table.columns.len())
+            .filter(|&column| !other_side(column) && is_it(&table.columns[column].name))
+            .collect()
     };
     // What the engineer says, however it is typed: "elev_yoke1" is "elev,yoke1", and no other name of the stick. The very name goes
     // before one with the mark of a sign, and that before what the field calls the same.
-    let aliases: Vec<String> = rule.aliases.iter().flat_map(|alias| [alias.clone(), plain(alias)]).collect();
+    let aliases: Vec<String> = rule
+        .aliases
+        .iter()
+        .flat_map(|alias| [alias.clone(), plain(alias)])
+        .collect();
     if aliases.is_empty() {
         let wanted = plain(&rule.name);
-        let ways: [&dyn Fn(&str) -> bool; 3] =
-            [&|name| name == rule.name, &|name| plain(name) == wanted, &|name| same_channel(&plain(name), &wanted)];
-        found = ways.into_iter().map(named).find(|found| !found.is_empty()).unwrap_or_default();
+        let ways: [&dyn Fn(&str) -> bool; 3] = [
+            &|name| name == rule.name,
+            &|name| plain(name) == wanted,
+            &|name| same_channel(&plain(name), &wanted),
+        ];
+        found = ways
+            .into_iter()
+            .map(named)
+            .find(|found| !found.is_empty())
+            .unwrap_or_default();
     } else {
         let find = |alias: &String| table.find(alias);
         let ways: [&dyn Fn(&str) -> bool; 3] = [
-            &|name| aliases.iter().any(|alias| folded_name(name) == folded_name(alias)),
-            &|name| aliases.iter().any(|alias| folded_name(&plain(name)) == folded_name(alias)),
-            &|name| aliases.iter().any(|alias| same_channel(&plain(name), alias)),
+            &|name| {
+                aliases
+                    .iter()
+                    .any(|alias| folded_name(name) == folded_name(alias))
+            },
+            &|name| {
+                aliases
+                    .iter()
+                    .any(|alias| folded_name(&plain(name)) == folded_name(alias))
+            },
+            &|name| {
+                aliases
+                    .iter()
+                    .any(|alias| same_channel(&plain(name), alias))
+            },
         ];
         found = named(&|name| rule.aliases.iter().any(|alias| alias == name));
         if found.is_empty() {
@@ -252,16 +388,28 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec
         }
         let is_number = aliases.iter().any(|alias| alias.starts_with('#'));
         if found.is_empty() && !is_number {
-            found = ways.into_iter().map(named).find(|found| !found.is_empty()).unwrap_or_default();
+            found = ways
+                .into_iter()
+                .map(named)
+                .find(|found| !found.is_empty())
+                .unwrap_or_default();
         }
     }
-    let names = if aliases.is_empty() { vec![rule.name.clone()] } else { aliases };
+    let names = if aliases.is_empty() {
+        vec![rule.name.clone()]
+    } else {
+        aliases
+    };
     let of_columns = |is_it: &dyn Fn(&RecordColumn) -> bool| -> Vec<usize> {
-        (0..table.columns.len()).filter(|&column| is_it(&table.columns[column])).collect()
+        (0..table.columns.len())
+            .filter(|&column| is_it(&table.columns[column]))
+            .collect()
     };
     if found.is_empty() {
         found = of_columns(&|column| {
-            column.meaning.is_some_and(|meaning| names.iter().any(|wanted| same_channel(meaning, wanted)))
+            column
+                .meaning
+                .is_some_and(|meaning| names.iter().any(|wanted| same_channel(meaning, wanted)))
         });
     }
     // In logs whose columns are known, a field of the same letter is another thing: "PIDR.P" is no roll rate.
@@ -292,7 +440,8 @@ fn is_position(table: &RecordTable, column: usize, rule: &ChannelRule) -> bool {
     const MOST_DEG: f64 = 0.5;
     /// Of its greatest value; where the column has the channel's very name, so little that no stick that is flown stands so still.
     const MOST_CHANGE: [f64; 2] = [0.02, 0.002];
-    let is_called = |column: &RecordColumn, names: &[&str]| names.contains(&folded_name(&column.name).as_str());
+    let is_called =
+        |column: &RecordColumn, names: &[&str]| names.contains(&folded_name(&column.name).as_str());
     let stands = |column: &RecordColumn, factor: f64| {
         column.range().is_some_and(|(least, most)| {
             (most - least) * factor < MOST_DEG && least.abs().max(most.abs()) * factor <= 180.0
@@ -309,7 +458,9 @@ fn is_position(table: &RecordTable, column: usize, rule: &ChannelRule) -> bool {
             let most_change = MOST_CHANGE[usize::from(own.name == rule.name)];
             let hardly = |names: &[&str]| {
                 table.columns.iter().any(|column| {
-                    let change = column.range().map(|(least, most)| (most - least) / least.abs().max(most.abs()));
+                    let change = column
+                        .range()
+                        .map(|(least, most)| (most - least) / least.abs().max(most.abs()));
                     is_called(column, names)
                         && stands(column, 1.0)
                         && change.is_some_and(|of| 0.0 < of && of < most_change)

@@ -28,13 +28,13 @@ use nalgebra::DMatrix;
 
 use crate::identification::FlightRecord;
 use gdcm_model::assembly::{
-    ChannelRule, Dimension, PhysicalUnit, SignedName, conversion_factor, folded_name, same_channel, sign_between,
-    standard_patterns, time_name_rank,
+    ChannelRule, Dimension, PhysicalUnit, SignedName, conversion_factor, folded_name, same_channel,
+    sign_between, standard_patterns, time_name_rank,
 };
 use gdcm_model::dataset::{Channel, ChannelRemedy, ChannelSide, ConditionRecord, Dataset};
 use gdcm_model::units::{number, telling};
 
 pub use self::{
-    laid_out_record::*, layout_problem::*, layout_proposal::*, record_channels::*, record_layout::*, record_table::*,
-    resampling::*, spectrogram::*, topic_tables::*,
+    laid_out_record::*, layout_problem::*, layout_proposal::*, record_channels::*,
+    record_layout::*, record_table::*, resampling::*, spectrogram::*, topic_tables::*,
 };

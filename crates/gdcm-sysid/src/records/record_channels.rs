@@ -3,8 +3,8 @@
 use super::*;
 use gdcm_model::assembly::standard_on_axis;
 use gdcm_model::dataset::{
-    Band, Condition, ConditionId, DatasetHeader, DraftFault, Dynamics, FlightState, Model, Origin, PairTable,
-    StateSpace,
+    Band, Condition, ConditionId, DatasetHeader, DraftFault, Dynamics, FlightState, Model, Origin,
+    PairTable, StateSpace,
 };
 use std::fmt;
 use std::str::FromStr;
@@ -35,13 +35,18 @@ pub struct RecordChannels {
 impl RecordChannels {
     /// The channels of a dataset, in its units.
     pub fn of_dataset(dataset: &Dataset) -> Self {
-        let rule =
-            |channel: &Channel| ChannelRule { unit: channel.unit.clone(), ..ChannelRule::named(channel.name.clone()) };
+        let rule = |channel: &Channel| ChannelRule {
+            unit: channel.unit.clone(),
+            ..ChannelRule::named(channel.name.clone())
+        };
         Self {
             inputs: dataset.inputs().iter().map(rule).collect(),
             outputs: dataset.outputs().iter().map(rule).collect(),
             said: BTreeMap::new(),
-            resampling: ResamplingWish { band_end: Some(dataset.band().max()), ..ResamplingWish::default() },
+            resampling: ResamplingWish {
+                band_end: Some(dataset.band().max()),
+                ..ResamplingWish::default()
+            },
         }
     }
 
@@ -56,9 +61,16 @@ impl RecordChannels {
 
     /// Gives channels without a unit that of the column that this layout takes for them, so that further records are converted.
     pub fn take_units(&mut self, layout: &RecordLayout, table: &RecordTable) {
-        let sides = [(&mut self.inputs, &layout.inputs), (&mut self.outputs, &layout.outputs)];
+        let sides = [
+            (&mut self.inputs, &layout.inputs),
+            (&mut self.outputs, &layout.outputs),
+        ];
         for (rules, uses) in sides {
-            for (rule, used) in rules.iter_mut().zip(uses).filter(|(rule, _)| rule.unit.is_empty()) {
+            for (rule, used) in rules
+                .iter_mut()
+                .zip(uses)
+                .filter(|(rule, _)| rule.unit.is_empty())
+            {
                 let of_file = || used.and_then(|used| table.columns.get(used.column)?.unit.clone());
                 let unit = match self.said.get(&rule.name) {
                     Some(SaidConversion::Unit(unit)) => Some(unit.clone()),
@@ -125,12 +137,19 @@ impl FromStr for SaidChannel {
         };
         // `xyz[0]` is an index.
         let is_index = |unit: &str| unit.bytes().all(|byte| byte.is_ascii_digit());
-        let bracket = name.strip_suffix(']').and_then(|rest| rest.rsplit_once('[')).filter(|(_, unit)| !is_index(unit));
+        let bracket = name
+            .strip_suffix(']')
+            .and_then(|rest| rest.rsplit_once('['))
+            .filter(|(_, unit)| !is_index(unit));
         let (name, unit) = bracket.map_or((name, ""), |(name, unit)| (name.trim(), unit.trim()));
         if name.is_empty() || column.is_some_and(str::is_empty) {
             return Err(ChannelListError::NoChannel(text.to_owned()));
         }
-        Ok(Self { name: name.to_owned(), unit: unit.to_owned(), column: column.map(str::to_owned) })
+        Ok(Self {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            column: column.map(str::to_owned),
+        })
     }
 }
 
@@ -138,9 +157,15 @@ impl FromStr for ChannelList {
     type Err = ChannelListError;
 
     fn from_str(text: &str) -> Result<Self, ChannelListError> {
-        let channels: Vec<SaidChannel> =
-            split_outside_quotes(text).into_iter().map(str::parse).collect::<Result<_, _>>()?;
-        let is_again = |at: &usize| channels[..*at].iter().any(|other| other.name == channels[*at].name);
+        let channels: Vec<SaidChannel> = split_outside_quotes(text)
+            .into_iter()
+            .map(str::parse)
+            .collect::<Result<_, _>>()?;
+        let is_again = |at: &usize| {
+            channels[..*at]
+                .iter()
+                .any(|other| other.name == channels[*at].name)
+        };
         match (0..channels.len()).find(is_again) {
             Some(at) => Err(ChannelListError::Twice(channels[at].name.clone())),
             None => Ok(Self { channels }),
@@ -196,17 +221,32 @@ pub fn dataset_of_records(
     records: Vec<ConditionRecord>,
 ) -> Result<Dataset, DraftFault> {
     let channel = |rule: &ChannelRule| {
-        let unit = if rule.unit.is_empty() { UNSAID_UNIT } else { &rule.unit };
+        let unit = if rule.unit.is_empty() {
+            UNSAID_UNIT
+        } else {
+            &rule.unit
+        };
         Channel::new(rule.name.clone(), unit)
     };
-    let (inputs, outputs): (Vec<Channel>, Vec<Channel>) =
-        (channels.inputs.iter().map(channel).collect(), channels.outputs.iter().map(channel).collect());
+    let (inputs, outputs): (Vec<Channel>, Vec<Channel>) = (
+        channels.inputs.iter().map(channel).collect(),
+        channels.outputs.iter().map(channel).collect(),
+    );
     let on_axis = on_axis(&inputs, &outputs);
     let (rows, columns, zeros) = (outputs.len(), inputs.len(), DMatrix::zeros);
-    let silent = StateSpace::new(-DMatrix::identity(1, 1), zeros(1, columns), zeros(rows, 1), zeros(rows, columns))?;
+    let silent = StateSpace::new(
+        -DMatrix::identity(1, 1),
+        zeros(1, columns),
+        zeros(rows, 1),
+        zeros(rows, columns),
+    )?;
     let origin = Origin::Nominal { perturbation: None };
     let physics = Model::new("no physics model yet", origin, Dynamics::StateSpace(silent));
-    let condition = Condition::new(FlightState::at(ConditionId(1), 0.0), vec![physics], Vec::new())?;
+    let condition = Condition::new(
+        FlightState::at(ConditionId(1), 0.0),
+        vec![physics],
+        Vec::new(),
+    )?;
     let header = DatasetHeader {
         name: name.to_owned(),
         description: "Made of flight records; a model that answers nothing stands for the physics model to come."
@@ -216,12 +256,17 @@ pub fn dataset_of_records(
         on_axis,
         band,
     };
-    Ok(Dataset::new(header, vec![condition.with_records(records)?])?)
+    Ok(Dataset::new(
+        header,
+        vec![condition.with_records(records)?],
+    )?)
 }
 
 fn on_axis(inputs: &[Channel], outputs: &[Channel]) -> PairTable<bool> {
     let known = |output: &Channel, input: &Channel| standard_on_axis(&output.name, &input.name);
-    let any = outputs.iter().any(|output| inputs.iter().any(|input| known(output, input)));
+    let any = outputs
+        .iter()
+        .any(|output| inputs.iter().any(|input| known(output, input)));
     PairTable::from_fn(outputs.len(), inputs.len(), |pair| match any {
         true => known(&outputs[pair.output], &inputs[pair.input]),
         false => pair.output % inputs.len().max(1) == pair.input,
@@ -253,18 +298,31 @@ mod tests {
             channel("xyz[0]", "", None),
         ];
         assert_eq!(said.channels, expected);
-        assert_eq!(list(&said.to_string()), Ok(said), "it is read as it is written");
+        assert_eq!(
+            list(&said.to_string()),
+            Ok(said),
+            "it is read as it is written"
+        );
     }
 
     #[test]
     fn what_is_no_channel_is_refused() {
-        assert!(list("").is_err() && list("P=").is_err() && list("P,,Q").is_err() && list("[deg/s]").is_err());
+        assert!(
+            list("").is_err()
+                && list("P=").is_err()
+                && list("P,,Q").is_err()
+                && list("[deg/s]").is_err()
+        );
         assert_eq!(list("P,Q,P").unwrap_err().to_string(), "P stands twice");
     }
 
     fn channels(inputs: &[&str], outputs: &[&str]) -> RecordChannels {
         let rules = |names: &[&str]| names.iter().map(|name| ChannelRule::named(*name)).collect();
-        RecordChannels { inputs: rules(inputs), outputs: rules(outputs), ..RecordChannels::default() }
+        RecordChannels {
+            inputs: rules(inputs),
+            outputs: rules(outputs),
+            ..RecordChannels::default()
+        }
     }
 
     #[test]
@@ -276,18 +334,35 @@ mod tests {
         let dataset = dataset_of_records("quadrotor", &of, band, records).unwrap();
         let condition = &dataset.conditions()[0];
         assert_eq!(condition.records()[0].file, "prbs.mat");
-        assert_eq!((dataset.inputs()[0].unit.as_str(), dataset.outputs()[0].unit.as_str()), ("?", "rad/s"));
+        assert_eq!(
+            (
+                dataset.inputs()[0].unit.as_str(),
+                dataset.outputs()[0].unit.as_str()
+            ),
+            ("?", "rad/s")
+        );
         assert!(dataset.on_axis()[Pair::new(0, 0)]);
-        assert_eq!(condition.bundle(BundleKind::Physics)[0].name, "no physics model yet");
+        assert_eq!(
+            condition.bundle(BundleKind::Physics)[0].name,
+            "no physics model yet"
+        );
         assert!(!condition.has_reference());
     }
 
     #[test]
     fn the_responses_that_matter_are_those_of_a_helicopter_where_there_are_such_channels() {
         let of = channels(&["LON", "LAT"], &["P", "Q"]);
-        let dataset = dataset_of_records("x", &of, Band::new(0.5, 12.0).unwrap(), Vec::new()).unwrap();
-        let marked: Vec<Pair> = dataset.on_axis().iter().filter(|(_, on)| **on).map(|(pair, _)| pair).collect();
+        let dataset =
+            dataset_of_records("x", &of, Band::new(0.5, 12.0).unwrap(), Vec::new()).unwrap();
+        let marked: Vec<Pair> = dataset
+            .on_axis()
+            .iter()
+            .filter(|(_, on)| **on)
+            .map(|(pair, _)| pair)
+            .collect();
         assert_eq!(marked, [Pair::new(0, 1), Pair::new(1, 0)]);
-        assert!(dataset_of_records("x", &channels(&[], &["P"]), dataset.band(), Vec::new()).is_err());
+        assert!(
+            dataset_of_records("x", &channels(&[], &["P"]), dataset.band(), Vec::new()).is_err()
+        );
     }
 }

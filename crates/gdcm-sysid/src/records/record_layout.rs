@@ -23,12 +23,20 @@ impl ColumnUse {
 
     /// The column times a factor.
     pub fn times(column: usize, factor: f64) -> Self {
-        Self { column, factor, is_unit_open: false, remedy: ChannelRemedy::NONE }
+        Self {
+            column,
+            factor,
+            is_unit_open: false,
+            remedy: ChannelRemedy::NONE,
+        }
     }
 
     /// The same without what is put right in one record.
     fn without_remedy(self) -> Self {
-        Self { remedy: ChannelRemedy::NONE, ..self }
+        Self {
+            remedy: ChannelRemedy::NONE,
+            ..self
+        }
     }
 
     /// What its samples are multiplied by in all.
@@ -56,15 +64,22 @@ impl RecordLayout {
     ) -> impl Iterator<Item = (ChannelSide, &'r ChannelRule, Option<ColumnUse>)> {
         let of_side = |side: ChannelSide| {
             let uses = side.of(&self.inputs, &self.outputs);
-            let rules = side.of(&channels.inputs, &channels.outputs).iter().enumerate();
+            let rules = side
+                .of(&channels.inputs, &channels.outputs)
+                .iter()
+                .enumerate();
             rules.map(move |(index, rule)| (side, rule, uses.get(index).copied().flatten()))
         };
         of_side(ChannelSide::Input).chain(of_side(ChannelSide::Output))
     }
 
     /// The channels for which a column is chosen.
-    fn chosen<'r>(&'r self, channels: &'r RecordChannels) -> impl Iterator<Item = (&'r ChannelRule, ColumnUse)> {
-        self.uses(channels).filter_map(|(_, rule, used)| Some((rule, used?)))
+    fn chosen<'r>(
+        &'r self,
+        channels: &'r RecordChannels,
+    ) -> impl Iterator<Item = (&'r ChannelRule, ColumnUse)> {
+        self.uses(channels)
+            .filter_map(|(_, rule, used)| Some((rule, used?)))
     }
 
     /// Everything that keeps the chosen columns from being used; nothing where [`RecordLayout::flight_record`] gives a record.
@@ -73,7 +88,11 @@ impl RecordLayout {
         for (side, rule, used) in self.uses(channels) {
             let missing = || {
                 let (channel, found) = (rule.name.clone(), table.column_names());
-                Some(LayoutProblem::NoColumn { side, channel, found })
+                Some(LayoutProblem::NoColumn {
+                    side,
+                    channel,
+                    found,
+                })
             };
             problems.extend(used.map_or_else(missing, |used| channel_problem(table, rule, used)));
         }
@@ -91,30 +110,50 @@ impl RecordLayout {
         let is_resampled = Resampling::of(self, table, channels).is_some();
         if let Some(time) = self.time {
             let samples = table.rows();
-            let count = time.times_s(table).iter().filter(|time| time.is_nan()).count();
+            let count = time
+                .times_s(table)
+                .iter()
+                .filter(|time| time.is_nan())
+                .count();
             cautions.extend((count > 0).then_some(LayoutCaution::MissingTime { count, samples }));
         }
         let all: Vec<_> = self.chosen(channels).collect();
         for (index, (rule, used)) in all.iter().enumerate() {
-            let Some(values) = table.columns.get(used.column).map(|column| &column.values) else { continue };
+            let Some(values) = table.columns.get(used.column).map(|column| &column.values) else {
+                continue;
+            };
             let (channel, column) = (rule.name.clone(), table.quoted(used.column));
-            let (samples, count) = (values.len(), values.iter().filter(|value| !value.is_finite()).count());
+            let (samples, count) = (
+                values.len(),
+                values.iter().filter(|value| !value.is_finite()).count(),
+            );
             if count > 0 && count < samples && !(is_resampled && has_holes(values)) {
                 let (channel, column) = (channel.clone(), column.clone());
-                cautions.push(LayoutCaution::Missing { channel, column, count, samples });
+                cautions.push(LayoutCaution::Missing {
+                    channel,
+                    column,
+                    count,
+                    samples,
+                });
             }
-            let is_constant = table.columns[used.column].range().is_some_and(|(least, most)| least == most);
+            let is_constant = table.columns[used.column]
+                .range()
+                .is_some_and(|(least, most)| least == most);
             if is_constant {
                 cautions.push(LayoutCaution::Constant { channel, column });
                 continue;
             }
             let same = all[..index].iter().find(|(_, other)| {
                 other.column != used.column
-                    && table.columns.get(other.column).is_some_and(|other| same_samples(&other.values, values))
+                    && table
+                        .columns
+                        .get(other.column)
+                        .is_some_and(|other| same_samples(&other.values, values))
             });
-            cautions.extend(
-                same.map(|(first, _)| LayoutCaution::Same { first: first.name.clone(), second: rule.name.clone() }),
-            );
+            cautions.extend(same.map(|(first, _)| LayoutCaution::Same {
+                first: first.name.clone(),
+                second: rule.name.clone(),
+            }));
         }
         cautions
     }
@@ -139,11 +178,29 @@ impl RecordLayout {
     fn as_logged(&self, table: &RecordTable, time: TimeBase) -> FlightRecord {
         let of_topic = || {
             let used = self.inputs.iter().chain(&self.outputs).flatten().next()?;
-            Some(table.columns.get(used.column)?.topic.as_ref()?.time_s.clone())
+            Some(
+                table
+                    .columns
+                    .get(used.column)?
+                    .topic
+                    .as_ref()?
+                    .time_s
+                    .clone(),
+            )
         };
-        let time_s = if time == TimeBase::Topics { of_topic().unwrap_or_default() } else { time.times_s(table) };
-        let is_of_part = |time: &f64| table.part_s.is_none_or(|[from, to]| (from..=to).contains(time));
-        let rows: Vec<usize> = (0..time_s.len()).filter(|row| is_of_part(&time_s[*row])).collect();
+        let time_s = if time == TimeBase::Topics {
+            of_topic().unwrap_or_default()
+        } else {
+            time.times_s(table)
+        };
+        let is_of_part = |time: &f64| {
+            table
+                .part_s
+                .is_none_or(|[from, to]| (from..=to).contains(time))
+        };
+        let rows: Vec<usize> = (0..time_s.len())
+            .filter(|row| is_of_part(&time_s[*row]))
+            .collect();
         FlightRecord {
             name: table.name.clone(),
             inputs: samples_of(table, &self.inputs, (&time_s, &rows)),
@@ -155,8 +212,13 @@ impl RecordLayout {
     /// Each channel with what was put right of it in the record that `other` is of.
     #[must_use]
     pub fn with_remedies_of(mut self, other: &Self) -> Self {
-        let sides = [(&mut self.inputs, &other.inputs), (&mut self.outputs, &other.outputs)];
-        let pairs = sides.into_iter().flat_map(|(uses, others)| uses.iter_mut().zip(others));
+        let sides = [
+            (&mut self.inputs, &other.inputs),
+            (&mut self.outputs, &other.outputs),
+        ];
+        let pairs = sides
+            .into_iter()
+            .flat_map(|(uses, others)| uses.iter_mut().zip(others));
         for (used, other) in pairs.filter_map(|(used, other)| used.as_mut().zip(*other)) {
             used.remedy = other.remedy;
         }
@@ -164,9 +226,19 @@ impl RecordLayout {
     }
 
     /// Puts channels right in this record alone, by their names, besides what was put right before.
-    pub fn put_right(&mut self, remedies: &BTreeMap<String, ChannelRemedy>, channels: &RecordChannels) {
-        let sides = [(&channels.inputs, &mut self.inputs), (&channels.outputs, &mut self.outputs)];
-        for (rule, used) in sides.into_iter().flat_map(|(rules, uses)| rules.iter().zip(uses)) {
+    pub fn put_right(
+        &mut self,
+        remedies: &BTreeMap<String, ChannelRemedy>,
+        channels: &RecordChannels,
+    ) {
+        let sides = [
+            (&channels.inputs, &mut self.inputs),
+            (&channels.outputs, &mut self.outputs),
+        ];
+        for (rule, used) in sides
+            .into_iter()
+            .flat_map(|(rules, uses)| rules.iter().zip(uses))
+        {
             if let Some((used, remedy)) = used.as_mut().zip(remedies.get(&rule.name)) {
                 used.remedy = used.remedy.then(*remedy);
             }
@@ -175,13 +247,20 @@ impl RecordLayout {
 
     /// How a channel is used, to change.
     pub fn channel_mut(&mut self, role: ChannelSide, index: usize) -> Option<&mut ColumnUse> {
-        role.of(&mut self.inputs, &mut self.outputs).get_mut(index)?.as_mut()
+        role.of(&mut self.inputs, &mut self.outputs)
+            .get_mut(index)?
+            .as_mut()
     }
 
     /// This layout of `table` with what differs between two layouts of `from`, channel by channel: what is said of the columns of one
     /// record, of another that has columns of these names. What is put right in one record alone stays as it is.
     #[must_use]
-    pub fn following(&self, table: &RecordTable, [before, after]: [&Self; 2], from: &RecordTable) -> Self {
+    pub fn following(
+        &self,
+        table: &RecordTable,
+        [before, after]: [&Self; 2],
+        from: &RecordTable,
+    ) -> Self {
         let mut layout = self.clone();
         if before.time != after.time {
             layout.time = match after.time {
@@ -199,12 +278,18 @@ impl RecordLayout {
         for (uses, before, after) in sides {
             for (index, own) in uses.iter_mut().enumerate() {
                 let [was, is] = [before, after].map(|uses| uses.get(index).copied().flatten());
-                let Some(is) = is.filter(|is| was.map(ColumnUse::without_remedy) != Some(is.without_remedy())) else {
+                let Some(is) =
+                    is.filter(|is| was.map(ColumnUse::without_remedy) != Some(is.without_remedy()))
+                else {
                     continue;
                 };
                 if let Some(column) = place(is.column, from, table) {
                     let remedy = own.map_or(ChannelRemedy::NONE, |own| own.remedy);
-                    *own = Some(ColumnUse { column, remedy, ..is });
+                    *own = Some(ColumnUse {
+                        column,
+                        remedy,
+                        ..is
+                    });
                 }
             }
         }
@@ -215,9 +300,20 @@ impl RecordLayout {
     #[must_use]
     pub fn in_units_of_channels(&self) -> Self {
         let closed = |uses: &[Option<ColumnUse>]| -> Vec<Option<ColumnUse>> {
-            uses.iter().map(|used| used.map(|used| ColumnUse { is_unit_open: false, ..used })).collect()
+            uses.iter()
+                .map(|used| {
+                    used.map(|used| ColumnUse {
+                        is_unit_open: false,
+                        ..used
+                    })
+                })
+                .collect()
         };
-        Self { inputs: closed(&self.inputs), outputs: closed(&self.outputs), ..self.clone() }
+        Self {
+            inputs: closed(&self.inputs),
+            outputs: closed(&self.outputs),
+            ..self.clone()
+        }
     }
 
     /// The same columns, by name, of another record; none where that lacks one of them.
@@ -225,16 +321,26 @@ impl RecordLayout {
         let place = |column: usize| place(column, from, other);
         let carry = |uses: &[Option<ColumnUse>]| -> Option<Vec<Option<ColumnUse>>> {
             let carried = |used: &Option<ColumnUse>| match used {
-                Some(used) => Some(Some(ColumnUse { column: place(used.column)?, ..*used })),
+                Some(used) => Some(Some(ColumnUse {
+                    column: place(used.column)?,
+                    ..*used
+                })),
                 None => Some(None),
             };
             uses.iter().map(carried).collect()
         };
         let time = match self.time {
-            Some(TimeBase::Column { column, seconds }) => Some(TimeBase::Column { column: place(column)?, seconds }),
+            Some(TimeBase::Column { column, seconds }) => Some(TimeBase::Column {
+                column: place(column)?,
+                seconds,
+            }),
             other => other,
         };
-        Some(Self { time, inputs: carry(&self.inputs)?, outputs: carry(&self.outputs)? })
+        Some(Self {
+            time,
+            inputs: carry(&self.inputs)?,
+            outputs: carry(&self.outputs)?,
+        })
     }
 
     /// What a dataset says of this record: where it is, and what its name tells.
@@ -244,15 +350,22 @@ impl RecordLayout {
         guess: &RecordGuess,
         channels: &RecordChannels,
     ) -> ConditionRecord {
-        let remedies = self.chosen(channels).map(|(rule, used)| (rule.name.clone(), used.kept_remedy(table, rule)));
+        let remedies = self
+            .chosen(channels)
+            .map(|(rule, used)| (rule.name.clone(), used.kept_remedy(table, rule)));
         ConditionRecord {
-            remedies: remedies.filter(|(_, remedy)| *remedy != ChannelRemedy::NONE).collect(),
+            remedies: remedies
+                .filter(|(_, remedy)| *remedy != ChannelRemedy::NONE)
+                .collect(),
             variable: table.source.variable.clone(),
             sha256: Some(table.source.sha256.clone()).filter(|hash| !hash.is_empty()),
             kind: guess.kind,
             held_out: guess.held_out,
             part_s: table.part_s,
-            sample_time_s: self.time.and_then(|time| time.step_s(table)).filter(|step_s| *step_s > 0.0),
+            sample_time_s: self
+                .time
+                .and_then(|time| time.step_s(table))
+                .filter(|step_s| *step_s > 0.0),
             ..ConditionRecord::new(table.name.clone(), table.source.file.clone())
         }
     }
@@ -265,10 +378,18 @@ impl RecordLayout {
             Some(time @ TimeBase::Column { column, .. }) if column < table.columns.len() => {
                 let quoted = table.quoted(column);
                 let step = time.step_s(table).filter(|step_s| *step_s > LONGEST_STEP_S);
-                let step = step.map(|step_s| LayoutProblem::TimeStep { column: quoted.clone(), step_s });
-                order_problem(&time.times_s(table), quoted).into_iter().chain(step).collect()
+                let step = step.map(|step_s| LayoutProblem::TimeStep {
+                    column: quoted.clone(),
+                    step_s,
+                });
+                order_problem(&time.times_s(table), quoted)
+                    .into_iter()
+                    .chain(step)
+                    .collect()
             }
-            Some(TimeBase::Column { .. }) | None => vec![LayoutProblem::NoTime(table.column_names())],
+            Some(TimeBase::Column { .. }) | None => {
+                vec![LayoutProblem::NoTime(table.column_names())]
+            }
         }
     }
 
@@ -281,8 +402,13 @@ impl RecordLayout {
         let mut problems = Vec::new();
         for (rule, used) in self.chosen(channels) {
             if let Some((_, second)) = taken.iter().find(|(column, _)| *column == used.column) {
-                let (first, second, column) = (rule.name.clone(), second.clone(), table.quoted(used.column));
-                problems.push(LayoutProblem::OneColumn { first, second, column });
+                let (first, second, column) =
+                    (rule.name.clone(), second.clone(), table.quoted(used.column));
+                problems.push(LayoutProblem::OneColumn {
+                    first,
+                    second,
+                    column,
+                });
             }
             taken.push((used.column, rule.name.clone()));
         }
@@ -293,19 +419,37 @@ impl RecordLayout {
 /// Where a column of one record is in another, by its name.
 fn place(column: usize, from: &RecordTable, other: &RecordTable) -> Option<usize> {
     let name = &from.columns.get(column)?.name;
-    if other.columns.get(column).is_some_and(|same| same.name == *name) { Some(column) } else { other.find(name) }
+    if other
+        .columns
+        .get(column)
+        .is_some_and(|same| same.name == *name)
+    {
+        Some(column)
+    } else {
+        other.find(name)
+    }
 }
 
-fn channel_problem(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
+fn channel_problem(
+    table: &RecordTable,
+    rule: &ChannelRule,
+    used: ColumnUse,
+) -> Option<LayoutProblem> {
     let (channel, column) = (rule.name.clone(), table.quoted(used.column));
     if !used.gain().is_finite() || used.gain() == 0.0 {
-        return Some(LayoutProblem::Factor { channel, factor: used.gain() });
+        return Some(LayoutProblem::Factor {
+            channel,
+            factor: used.gain(),
+        });
     }
     let delay_s = used.remedy.delay_s;
     if !(-LONGEST_DELAY_S..=LONGEST_DELAY_S).contains(&delay_s) {
         return Some(LayoutProblem::Delay { channel, delay_s });
     }
-    let range = table.columns.get(used.column).and_then(|column| column.range());
+    let range = table
+        .columns
+        .get(used.column)
+        .and_then(|column| column.range());
     if range.is_none() {
         return Some(LayoutProblem::Empty { channel, column });
     }
@@ -315,7 +459,11 @@ fn channel_problem(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> 
 fn order_problem(times_s: &[f64], column: String) -> Option<LayoutProblem> {
     let mut last: Option<f64> = None;
     let (mut count, mut first) = (0, None);
-    for (sample, &after) in times_s.iter().enumerate().filter(|(_, time)| time.is_finite()) {
+    for (sample, &after) in times_s
+        .iter()
+        .enumerate()
+        .filter(|(_, time)| time.is_finite())
+    {
         if let Some(before) = last.filter(|before| after <= *before) {
             count += 1;
             first = first.or(Some((sample + 1, before, after)));
@@ -323,26 +471,54 @@ fn order_problem(times_s: &[f64], column: String) -> Option<LayoutProblem> {
         last = Some(after);
     }
     let samples = times_s.len();
-    first.map(|(sample, before, after)| LayoutProblem::TimeOrder { column, count, samples, sample, before, after })
+    first.map(|(sample, before, after)| LayoutProblem::TimeOrder {
+        column,
+        count,
+        samples,
+        sample,
+        before,
+        after,
+    })
 }
 
 /// Whether numbers are the same, missing ones in the same places.
 pub(super) fn same_samples(first: &[f64], second: &[f64]) -> bool {
-    first.len() == second.len() && first.iter().zip(second).all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
+    first.len() == second.len()
+        && first
+            .iter()
+            .zip(second)
+            .all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
 }
 
 /// The samples of these rows, one column a channel; not a number where a sample is missing.
-fn samples_of(table: &RecordTable, uses: &[Option<ColumnUse>], (time_s, rows): (&[f64], &[usize])) -> DMatrix<f64> {
+fn samples_of(
+    table: &RecordTable,
+    uses: &[Option<ColumnUse>],
+    (time_s, rows): (&[f64], &[usize]),
+) -> DMatrix<f64> {
     let mut samples = DMatrix::from_element(rows.len(), uses.len(), f64::NAN);
     for (mut into, used) in samples.column_iter_mut().zip(uses) {
-        let Some((column, used)) = used.and_then(|used| Some((table.columns.get(used.column)?, used))) else {
+        let Some((column, used)) =
+            used.and_then(|used| Some((table.columns.get(used.column)?, used)))
+        else {
             continue;
         };
-        let advanced = (used.remedy.delay_s != 0.0).then(|| advanced(time_s, &column.values, used.remedy.delay_s));
+        let advanced = (used.remedy.delay_s != 0.0)
+            .then(|| advanced(time_s, &column.values, used.remedy.delay_s));
         let values = advanced.as_deref().unwrap_or(&column.values);
-        let values = rows.iter().map(|row| values.get(*row).copied().unwrap_or(f64::NAN));
-        for (sample, value) in into.iter_mut().zip(values).filter(|(_, value)| value.is_finite()) {
-            *sample = if used.gain() == 1.0 { value } else { value * used.gain() };
+        let values = rows
+            .iter()
+            .map(|row| values.get(*row).copied().unwrap_or(f64::NAN));
+        for (sample, value) in into
+            .iter_mut()
+            .zip(values)
+            .filter(|(_, value)| value.is_finite())
+        {
+            *sample = if used.gain() == 1.0 {
+                value
+            } else {
+                value * used.gain()
+            };
         }
     }
     samples
@@ -360,15 +536,23 @@ fn advanced(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
         while next < time_s.len() && (time_s[next] <= t || time_s[next].is_nan()) {
             next += 1;
         }
-        let Some(before) = next.checked_sub(1) else { return f64::NAN };
+        let Some(before) = next.checked_sub(1) else {
+            return f64::NAN;
+        };
         let value = |row: usize| values.get(row).copied().unwrap_or(f64::NAN);
         if time_s[before] == t {
             return value(before);
         }
-        let Some(after) = time_s.get(next) else { return f64::NAN };
+        let Some(after) = time_s.get(next) else {
+            return f64::NAN;
+        };
         let step = after - time_s[before];
         let part = (t - time_s[before]) / step;
-        if step <= longest_s { value(before) + part * (value(next) - value(before)) } else { f64::NAN }
+        if step <= longest_s {
+            value(before) + part * (value(next) - value(before))
+        } else {
+            f64::NAN
+        }
     };
     time_s.iter().map(|t| t + delay_s).map(at).collect()
 }
@@ -393,8 +577,8 @@ const MOST: [(Dimension, f64, &str); 7] = [
 
 /// The units that channels are logged in.
 const LOGGED: [&str; 21] = [
-    "rad/s", "deg/s", "rad", "deg", "rad/s^2", "deg/s^2", "g", "m/s^2", "ft/s^2", "m/s", "ft/s", "kt", "%", "1", "m",
-    "cm", "mm", "ft", "in", "N", "lb",
+    "rad/s", "deg/s", "rad", "deg", "rad/s^2", "deg/s^2", "g", "m/s^2", "ft/s^2", "m/s", "ft/s",
+    "kt", "%", "1", "m", "cm", "mm", "ft", "in", "N", "lb",
 ];
 
 /// The most that a helicopter has of what a unit measures, in that unit.
@@ -406,21 +590,32 @@ fn most(unit: &str) -> Option<f64> {
 
 /// The greatest sample without its sign.
 fn peak(column: &RecordColumn) -> Option<f64> {
-    column.range().map(|(least, most)| least.abs().max(most.abs()))
+    column
+        .range()
+        .map(|(least, most)| least.abs().max(most.abs()))
 }
 
 /// The units that the samples of a column can be in, for a channel of this unit, which stands first: those of the same dimension in
 /// which no helicopter has less than the greatest sample. Samples that are all zero, and a unit that is not known, leave nothing open.
 pub(super) fn possible_units<'u>(column: &RecordColumn, unit: &'u str) -> Vec<&'u str> {
-    let Some(peak) = peak(column).filter(|peak| *peak > 0.0) else { return Vec::new() };
-    let is_other = |other: &&str| conversion_factor(other, unit).is_some_and(|factor| factor != 1.0);
+    let Some(peak) = peak(column).filter(|peak| *peak > 0.0) else {
+        return Vec::new();
+    };
+    let is_other =
+        |other: &&str| conversion_factor(other, unit).is_some_and(|factor| factor != 1.0);
     let units = std::iter::once(unit).filter(|unit| PhysicalUnit::of(unit).is_some());
     let units = units.chain(LOGGED.into_iter().filter(is_other));
-    units.filter(|unit| most(unit).is_none_or(|most| peak <= most)).collect()
+    units
+        .filter(|unit| most(unit).is_none_or(|most| peak <= most))
+        .collect()
 }
 
 /// The problem of a channel whose unit neither its file nor its samples say.
-pub(super) fn unsaid_unit(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
+pub(super) fn unsaid_unit(
+    table: &RecordTable,
+    rule: &ChannelRule,
+    used: ColumnUse,
+) -> Option<LayoutProblem> {
     let units = used.open_units(table, &rule.unit);
     let (last, rest) = units.split_last()?;
     Some(LayoutProblem::UnsaidUnit {
@@ -432,16 +627,28 @@ pub(super) fn unsaid_unit(table: &RecordTable, rule: &ChannelRule, used: ColumnU
 }
 
 /// The fault of a channel whose samples cannot be in its unit.
-pub(super) fn magnitude(table: &RecordTable, rule: &ChannelRule, used: ColumnUse) -> Option<LayoutProblem> {
+pub(super) fn magnitude(
+    table: &RecordTable,
+    rule: &ChannelRule,
+    used: ColumnUse,
+) -> Option<LayoutProblem> {
     // What a system's documentation says of its columns is no guess, and quadrotors turn faster than helicopters.
-    let column = table.columns.get(used.column).filter(|column| column.meaning.is_none())?;
+    let column = table
+        .columns
+        .get(used.column)
+        .filter(|column| column.meaning.is_none())?;
     let value = peak(column)? * used.gain().abs();
     let (unit, most) = (PhysicalUnit::of(&rule.unit)?, most(&rule.unit)?);
     if value <= most {
         return None;
     }
     let hint = match unit.dimension {
-        Dimension::AngularRate if column.unit.as_deref().is_some_and(|unit| unit.contains("rad")) => {
+        Dimension::AngularRate
+            if column
+                .unit
+                .as_deref()
+                .is_some_and(|unit| unit.contains("rad")) =>
+        {
             "; its samples look like deg/s"
         }
         Dimension::Part if rule.unit != "%" => "; its samples look like %",
@@ -461,12 +668,19 @@ impl ColumnUse {
     /// A column for a channel of this unit, by the unit that the file says or else by the only one that its samples can be in; the unit
     /// is open where they can be in several.
     pub fn by_unit(table: &RecordTable, column: usize, unit: &str) -> Self {
-        let Some(of) = table.columns.get(column) else { return Self::as_it_is(column) };
-        let said = of.said_unit().and_then(|said| conversion_factor(said, unit));
+        let Some(of) = table.columns.get(column) else {
+            return Self::as_it_is(column);
+        };
+        let said = of
+            .said_unit()
+            .and_then(|said| conversion_factor(said, unit));
         match (said, possible_units(of, unit).as_slice()) {
             (Some(factor), _) => Self::times(column, factor),
             (None, [only]) => Self::times(column, conversion_factor(only, unit).unwrap_or(1.0)),
-            (None, [_, _, ..]) if of.said_unit().is_none() => Self { is_unit_open: true, ..Self::as_it_is(column) },
+            (None, [_, _, ..]) if of.said_unit().is_none() => Self {
+                is_unit_open: true,
+                ..Self::as_it_is(column)
+            },
             _ => Self::as_it_is(column),
         }
     }
@@ -480,7 +694,11 @@ impl ColumnUse {
     /// The column in a unit that is said, for a channel of another.
     #[must_use]
     pub fn in_unit(self, said: &str, unit: &str) -> Self {
-        Self { factor: self.factor * conversion_factor(said, unit).unwrap_or(1.0), is_unit_open: false, ..self }
+        Self {
+            factor: self.factor * conversion_factor(said, unit).unwrap_or(1.0),
+            is_unit_open: false,
+            ..self
+        }
     }
 
     /// What is put right in this record, and whatever else was said of the column: what takes it from its file, in the dataset's units
@@ -488,11 +706,20 @@ impl ColumnUse {
     pub(super) fn kept_remedy(&self, table: &RecordTable, rule: &ChannelRule) -> ChannelRemedy {
         let of_file = table.columns.get(self.column).map_or(1.0, |column| {
             let unit = column.said_unit().filter(|_| !rule.unit.is_empty());
-            let factor = unit.and_then(|unit| conversion_factor(unit, &rule.unit)).unwrap_or(1.0);
+            let factor = unit
+                .and_then(|unit| conversion_factor(unit, &rule.unit))
+                .unwrap_or(1.0);
             factor * sign_between(&column.name, &rule.name).unwrap_or(1.0)
         });
-        let besides = if self.factor == of_file { 1.0 } else { self.factor / of_file };
-        ChannelRemedy { factor: self.remedy.factor * besides, ..self.remedy }
+        let besides = if self.factor == of_file {
+            1.0
+        } else {
+            self.factor / of_file
+        };
+        ChannelRemedy {
+            factor: self.remedy.factor * besides,
+            ..self.remedy
+        }
     }
 }
 
@@ -501,27 +728,66 @@ mod tests {
     use super::*;
 
     fn table(names: &[&str]) -> RecordTable {
-        let columns = names.iter().map(|name| RecordColumn::new(*name, vec![0.0, 1.0, 2.0])).collect();
+        let columns = names
+            .iter()
+            .map(|name| RecordColumn::new(*name, vec![0.0, 1.0, 2.0]))
+            .collect();
         RecordTable::new("record", columns)
     }
 
     #[test]
     fn what_is_said_of_one_channel_follows_in_other_records_and_leaves_their_other_channels() {
         let (from, other) = (table(&["t", "P", "Q"]), table(&["Q", "t", "P"]));
-        let time = |column| Some(TimeBase::Column { column, seconds: 1.0 });
-        let open = |column| Some(ColumnUse { is_unit_open: true, ..ColumnUse::as_it_is(column) });
-        let before = RecordLayout { time: time(0), inputs: Vec::new(), outputs: vec![open(1), open(2)] };
+        let time = |column| {
+            Some(TimeBase::Column {
+                column,
+                seconds: 1.0,
+            })
+        };
+        let open = |column| {
+            Some(ColumnUse {
+                is_unit_open: true,
+                ..ColumnUse::as_it_is(column)
+            })
+        };
+        let before = RecordLayout {
+            time: time(0),
+            inputs: Vec::new(),
+            outputs: vec![open(1), open(2)],
+        };
         let mut after = before.clone();
         after.outputs[0] = before.outputs[0].map(|used| used.in_unit("rad/s", "deg/s"));
-        let remedy = ChannelRemedy { delay_s: 0.1, ..ChannelRemedy::NONE };
-        let own = ColumnUse { remedy, ..ColumnUse::as_it_is(2) };
-        let layout = RecordLayout { time: time(1), inputs: Vec::new(), outputs: vec![Some(own), open(0)] };
+        let remedy = ChannelRemedy {
+            delay_s: 0.1,
+            ..ChannelRemedy::NONE
+        };
+        let own = ColumnUse {
+            remedy,
+            ..ColumnUse::as_it_is(2)
+        };
+        let layout = RecordLayout {
+            time: time(1),
+            inputs: Vec::new(),
+            outputs: vec![Some(own), open(0)],
+        };
         let found = layout.following(&other, [&before, &after], &from);
         let said = found.outputs[0].unwrap();
-        assert_eq!((said.column, said.is_unit_open, said.remedy), (2, false, remedy), "by its name, its remedy kept");
+        assert_eq!(
+            (said.column, said.is_unit_open, said.remedy),
+            (2, false, remedy),
+            "by its name, its remedy kept"
+        );
         assert!((said.factor - 180.0 / std::f64::consts::PI).abs() < 1e-12);
-        assert_eq!((found.outputs[1], found.time), (layout.outputs[1], layout.time), "nothing else");
+        assert_eq!(
+            (found.outputs[1], found.time),
+            (layout.outputs[1], layout.time),
+            "nothing else"
+        );
         let without = table(&["t", "Q"]);
-        assert_eq!(before.following(&without, [&before, &after], &from), before, "it has no such column");
+        assert_eq!(
+            before.following(&without, [&before, &after], &from),
+            before,
+            "it has no such column"
+        );
     }
 }

@@ -33,13 +33,23 @@ pub struct TopicClock {
 impl RecordColumn {
     /// A column of which nothing but its name is known.
     pub fn new(name: impl Into<String>, values: Vec<f64>) -> Self {
-        Self { name: name.into(), unit: None, side: None, values, topic: None, meaning: None }
+        Self {
+            name: name.into(),
+            unit: None,
+            side: None,
+            values,
+            topic: None,
+            meaning: None,
+        }
     }
 
     /// Its name within its topic: `xyz[0]` of `vehicle_angular_velocity.xyz[0]`.
     pub fn field(&self) -> &str {
         let topic = self.topic.as_ref().map_or("", |topic| topic.name.as_str());
-        self.name.strip_prefix(topic).and_then(|rest| rest.strip_prefix('.')).unwrap_or(&self.name)
+        self.name
+            .strip_prefix(topic)
+            .and_then(|rest| rest.strip_prefix('.'))
+            .unwrap_or(&self.name)
     }
 
     /// The unit that the file says, where it does.
@@ -49,9 +59,15 @@ impl RecordColumn {
 
     /// Least and greatest of the samples that are numbers; none where there are none.
     pub fn range(&self) -> Option<(f64, f64)> {
-        let finite = self.values.iter().copied().filter(|value| value.is_finite());
-        let (least, most) =
-            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value)));
+        let finite = self
+            .values
+            .iter()
+            .copied()
+            .filter(|value| value.is_finite());
+        let (least, most) = finite.fold(
+            (f64::INFINITY, f64::NEG_INFINITY),
+            |(least, most), value| (least.min(value), most.max(value)),
+        );
         (least <= most).then_some((least, most))
     }
 }
@@ -100,26 +116,45 @@ pub struct ModeSpan {
 impl RecordTable {
     /// A table of columns, of which nothing else is known.
     pub fn new(name: impl Into<String>, columns: Vec<RecordColumn>) -> Self {
-        Self { name: name.into(), columns, named: true, ..Self::default() }
+        Self {
+            name: name.into(),
+            columns,
+            named: true,
+            ..Self::default()
+        }
     }
 
     /// Number of samples; of topics with clocks of their own, of the one that has most.
     pub fn rows(&self) -> usize {
-        self.columns.iter().map(|column| column.values.len()).max().unwrap_or(0)
+        self.columns
+            .iter()
+            .map(|column| column.values.len())
+            .max()
+            .unwrap_or(0)
     }
 
     /// The column of this name, as it is written, else without case; `#30` is the thirtieth.
     pub fn find(&self, name: &str) -> Option<usize> {
-        let position = |is_it: &dyn Fn(&str) -> bool| self.columns.iter().position(|column| is_it(&column.name));
+        let position = |is_it: &dyn Fn(&str) -> bool| {
+            self.columns.iter().position(|column| is_it(&column.name))
+        };
         let numbered = || {
             let number: usize = name.trim().strip_prefix('#')?.parse().ok()?;
-            number.checked_sub(1).filter(|column| *column < self.columns.len())
+            number
+                .checked_sub(1)
+                .filter(|column| *column < self.columns.len())
         };
         // A column of a matrix, counted from 0 as Python does or from 1 as MATLAB does.
         let indexed = || {
             let (matrix, index, first) = match name.trim().strip_suffix(']') {
-                Some(rest) => rest.rsplit_once('[').map(|(matrix, index)| (matrix, index, 0))?,
-                None => name.trim().strip_suffix(')')?.rsplit_once('(').map(|(matrix, index)| (matrix, index, 1))?,
+                Some(rest) => rest
+                    .rsplit_once('[')
+                    .map(|(matrix, index)| (matrix, index, 0))?,
+                None => name
+                    .trim()
+                    .strip_suffix(')')?
+                    .rsplit_once('(')
+                    .map(|(matrix, index)| (matrix, index, 1))?,
             };
             let index: usize = index.trim().parse().ok()?;
             let column = format!("{matrix}_{}", index.checked_sub(first)? + 1);
@@ -132,13 +167,19 @@ impl RecordTable {
     }
 
     /// What a dataset says of the record, and the condition: by its name in a file of the same name, or in an archive of another.
-    pub fn entry_of_dataset<'d>(&self, dataset: &'d Dataset) -> Option<(ConditionId, &'d ConditionRecord)> {
+    pub fn entry_of_dataset<'d>(
+        &self,
+        dataset: &'d Dataset,
+    ) -> Option<(ConditionId, &'d ConditionRecord)> {
         let source = &self.source;
         for condition in dataset.conditions() {
             for entry in condition.records() {
                 let same_file = file_name(&entry.file) == file_name(&source.file);
                 let same_name = entry.variable.is_some() && entry.name == self.name;
-                if (same_file || same_name) && entry.variable == source.variable && entry.part_s.is_none() {
+                if (same_file || same_name)
+                    && entry.variable == source.variable
+                    && entry.part_s.is_none()
+                {
                     return Some((condition.id(), entry));
                 }
             }
@@ -153,20 +194,28 @@ impl RecordTable {
             && !self.source.sha256.is_empty()
             && file_name(&self.source.file) == file_name(&other.source.file);
         let is_same_source = is_same_file && self.source.variable == other.source.variable;
-        let is_same_content = self.name == other.name && same_columns(&self.columns, &other.columns);
+        let is_same_content =
+            self.name == other.name && same_columns(&self.columns, &other.columns);
         self.part_s == other.part_s && (is_same_source || is_same_content)
     }
 
     /// The name of a column in quotation marks.
     pub(super) fn quoted(&self, column: usize) -> String {
-        self.columns
-            .get(column)
-            .map_or_else(|| format!("column {}", column + 1), |column| format!("\"{}\"", column.name))
+        self.columns.get(column).map_or_else(
+            || format!("column {}", column + 1),
+            |column| format!("\"{}\"", column.name),
+        )
     }
 
     /// The names of all columns, no more than a message can bear.
     pub(super) fn column_names(&self) -> String {
-        shown(&self.columns.iter().map(|column| column.name.as_str()).collect::<Vec<_>>())
+        shown(
+            &self
+                .columns
+                .iter()
+                .map(|column| column.name.as_str())
+                .collect::<Vec<_>>(),
+        )
     }
 }
 
@@ -179,7 +228,9 @@ fn file_name(path: &str) -> &str {
 fn same_columns(first: &[RecordColumn], second: &[RecordColumn]) -> bool {
     let same = |a: &RecordColumn, b: &RecordColumn| {
         let values = a.values.iter().map(|value| value.to_bits());
-        a.name == b.name && a.unit == b.unit && values.eq(b.values.iter().map(|value| value.to_bits()))
+        a.name == b.name
+            && a.unit == b.unit
+            && values.eq(b.values.iter().map(|value| value.to_bits()))
     };
     first.len() == second.len() && first.iter().zip(second).all(|(a, b)| same(a, b))
 }
@@ -216,7 +267,9 @@ impl Separation {
             NUMBERS.split(' ').any(|word| word == name) && {
                 let runs = runs_of(&column.values);
                 runs.len() > 1
-                    && runs.iter().all(|run| run.len() >= Self::FEWEST && column.values[run.start].fract() == 0.0)
+                    && runs.iter().all(|run| {
+                        run.len() >= Self::FEWEST && column.values[run.start].fract() == 0.0
+                    })
             }
         };
         if let Some(column) = (0..table.columns.len()).find(numbers) {
@@ -226,7 +279,9 @@ impl Separation {
             let parts = rising_parts(&table.columns[*column].values);
             parts.len() > 1 && parts.iter().all(|part| part.len() >= Self::FEWEST)
         };
-        TimeBase::find(table).filter(restarts).map_or(Self::None, Self::ByTime)
+        TimeBase::find(table)
+            .filter(restarts)
+            .map_or(Self::None, Self::ByTime)
     }
 }
 
@@ -236,31 +291,51 @@ impl RecordTable {
         let (parts, why): (Vec<(Range<usize>, String)>, String) = match separation {
             Separation::None => return vec![self],
             Separation::ByColumn(column) => {
-                let Some(numbers) = self.columns.get(column) else { return vec![self] };
+                let Some(numbers) = self.columns.get(column) else {
+                    return vec![self];
+                };
                 let mut seen: Vec<f64> = Vec::new();
                 let named = |run: Range<usize>| {
                     let value = numbers.values[run.start];
                     seen.push(value);
                     let times = seen.iter().filter(|other| **other == value).count();
-                    let again = if times > 1 { format!(", part {times}") } else { String::new() };
+                    let again = if times > 1 {
+                        format!(", part {times}")
+                    } else {
+                        String::new()
+                    };
                     (run, format!("{} {}{again}", numbers.name, number(value)))
                 };
                 let runs = runs_of(&numbers.values).into_iter().map(named).collect();
                 (runs, format!("column {} changes", self.quoted(column)))
             }
             Separation::ByTime(column) => {
-                let Some(stamps) = self.columns.get(column) else { return vec![self] };
+                let Some(stamps) = self.columns.get(column) else {
+                    return vec![self];
+                };
                 let parts = rising_parts(&stamps.values).into_iter().enumerate();
-                let parts = parts.map(|(index, part)| (part, format!("part {}", index + 1))).collect();
+                let parts = parts
+                    .map(|(index, part)| (part, format!("part {}", index + 1)))
+                    .collect();
                 (parts, "the time restarts".to_owned())
             }
         };
         let why = format!("one of {} records: {why}", parts.len());
-        parts.into_iter().map(|(rows, name)| self.part(rows, &name, &why)).collect()
+        parts
+            .into_iter()
+            .map(|(rows, name)| self.part(rows, &name, &why))
+            .collect()
     }
 
     fn part(&self, rows: Range<usize>, name: &str, why: &str) -> RecordTable {
-        let variable = self.source.variable.iter().map(String::as_str).chain([name]).collect::<Vec<_>>().join(", ");
+        let variable = self
+            .source
+            .variable
+            .iter()
+            .map(String::as_str)
+            .chain([name])
+            .collect::<Vec<_>>()
+            .join(", ");
         let columns = self.columns.iter().map(|column| RecordColumn {
             unit: column.unit.clone(),
             side: column.side,
@@ -270,7 +345,10 @@ impl RecordTable {
         RecordTable {
             named: self.named,
             sample_time_s: self.sample_time_s,
-            source: RecordSource { variable: Some(variable), ..self.source.clone() },
+            source: RecordSource {
+                variable: Some(variable),
+                ..self.source.clone()
+            },
             notes: self.notes.iter().cloned().chain([why.to_owned()]).collect(),
             modes: self.modes.clone(),
             ..RecordTable::new(format!("{}, {name}", self.name), columns.collect())
@@ -281,7 +359,11 @@ impl RecordTable {
 /// Ranges of samples with one number each; none for those without.
 fn runs_of(numbers: &[f64]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
-    for (sample, value) in numbers.iter().enumerate().filter(|(_, value)| value.is_finite()) {
+    for (sample, value) in numbers
+        .iter()
+        .enumerate()
+        .filter(|(_, value)| value.is_finite())
+    {
         match runs.last_mut() {
             Some(run) if run.end == sample && numbers[run.start] == *value => run.end += 1,
             _ => runs.push(sample..sample + 1),
@@ -293,9 +375,17 @@ fn runs_of(numbers: &[f64]) -> Vec<Range<usize>> {
 /// Ranges of samples between restarts: falls of the stamps that are not made good within some samples, as a slip is.
 fn rising_parts(stamps: &[f64]) -> Vec<Range<usize>> {
     let (mut parts, mut start, mut last) = (Vec::new(), 0, f64::NEG_INFINITY);
-    for (sample, stamp) in stamps.iter().enumerate().filter(|(_, stamp)| stamp.is_finite()) {
-        let stays_below =
-            || stamps[sample..].iter().take(Separation::FEWEST / 2).all(|later| later.is_nan() || *later < last);
+    for (sample, stamp) in stamps
+        .iter()
+        .enumerate()
+        .filter(|(_, stamp)| stamp.is_finite())
+    {
+        let stays_below = || {
+            stamps[sample..]
+                .iter()
+                .take(Separation::FEWEST / 2)
+                .all(|later| later.is_nan() || *later < last)
+        };
         if *stamp < last && stays_below() {
             parts.push(start..sample);
             start = sample;
@@ -334,11 +424,25 @@ impl TimeBase {
     /// Times of the samples \[s\]; not a number where a stamp is missing.
     pub fn times_s(self, table: &RecordTable) -> Vec<f64> {
         match self {
-            TimeBase::SampleTime(step_s) => (0..table.rows()).map(|sample| sample as f64 * step_s).collect(),
+            TimeBase::SampleTime(step_s) => (0..table.rows())
+                .map(|sample| sample as f64 * step_s)
+                .collect(),
             TimeBase::Topics => Vec::new(),
             TimeBase::Column { column, seconds } => {
-                let stamps = table.columns.get(column).map_or(&[][..], |column| &column.values);
-                stamps.iter().map(|stamp| if stamp.is_finite() { stamp * seconds } else { f64::NAN }).collect()
+                let stamps = table
+                    .columns
+                    .get(column)
+                    .map_or(&[][..], |column| &column.values);
+                stamps
+                    .iter()
+                    .map(|stamp| {
+                        if stamp.is_finite() {
+                            stamp * seconds
+                        } else {
+                            f64::NAN
+                        }
+                    })
+                    .collect()
             }
         }
     }
@@ -348,7 +452,9 @@ impl TimeBase {
         match self {
             TimeBase::SampleTime(step_s) => Some(step_s),
             TimeBase::Topics => None,
-            TimeBase::Column { column, seconds } => Some(median_step(&table.columns.get(column)?.values)? * seconds),
+            TimeBase::Column { column, seconds } => {
+                Some(median_step(&table.columns.get(column)?.values)? * seconds)
+            }
         }
     }
 
@@ -357,8 +463,15 @@ impl TimeBase {
         let stamps = &table.columns[column];
         let (unit, why) = unit_of(stamps);
         (
-            TimeBase::Column { column, seconds: unit.1 },
-            format!("time from column {}, in {}{why}", table.quoted(column), unit.0),
+            TimeBase::Column {
+                column,
+                seconds: unit.1,
+            },
+            format!(
+                "time from column {}, in {}{why}",
+                table.quoted(column),
+                unit.0
+            ),
         )
     }
 
@@ -366,7 +479,11 @@ impl TimeBase {
     pub(super) fn find(table: &RecordTable) -> Option<usize> {
         let rank = |index: usize| {
             let column = &table.columns[index];
-            let by_name = if table.named { time_name_rank(&column.name) } else { (index == 0).then_some(2) }?;
+            let by_name = if table.named {
+                time_name_rank(&column.name)
+            } else {
+                (index == 0).then_some(2)
+            }?;
             // A column that stands still or falls most of the time is a time by its name only.
             Some((u8::from(!mostly_rises(&column.values)), by_name, index))
         };
@@ -382,8 +499,18 @@ fn seconds_in(unit: &str) -> Option<(&'static str, f64)> {
 }
 
 fn unit_of(stamps: &RecordColumn) -> ((&'static str, f64), String) {
-    let last_word = stamps.name.rsplit(|c: char| !c.is_alphanumeric()).next().filter(|word| *word != stamps.name);
-    if let Some(unit) = stamps.unit.as_deref().into_iter().chain(last_word).find_map(seconds_in) {
+    let last_word = stamps
+        .name
+        .rsplit(|c: char| !c.is_alphanumeric())
+        .next()
+        .filter(|word| *word != stamps.name);
+    if let Some(unit) = stamps
+        .unit
+        .as_deref()
+        .into_iter()
+        .chain(last_word)
+        .find_map(seconds_in)
+    {
         return (unit, String::new());
     }
     let step = median_step(&stamps.values).unwrap_or(f64::NAN);
@@ -398,9 +525,15 @@ fn unit_of(stamps: &RecordColumn) -> ((&'static str, f64), String) {
     let units = [("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
     if step > LONGEST_STEP_S {
         let fits = |unit: &&(&str, f64)| (2e-4..=LONGEST_STEP_S).contains(&(step * unit.1));
-        return units.iter().find(fits).map_or((("s", 1.0), String::new()), |unit| (*unit, told("s")));
+        return units
+            .iter()
+            .find(fits)
+            .map_or((("s", 1.0), String::new()), |unit| (*unit, told("s")));
     }
-    if step > 0.0 && step < SHORTEST_STEP_S && (2e-4..=LONGEST_STEP_S).contains(&(step * SECONDS_A_DAY)) {
+    if step > 0.0
+        && step < SHORTEST_STEP_S
+        && (2e-4..=LONGEST_STEP_S).contains(&(step * SECONDS_A_DAY))
+    {
         return (("days", SECONDS_A_DAY), told("s"));
     }
     (("s", 1.0), " (the file does not say the unit)".to_owned())
@@ -415,8 +548,13 @@ pub fn median_step(stamps: &[f64]) -> Option<f64> {
 }
 
 fn mostly_rises(stamps: &[f64]) -> bool {
-    let steps = stamps.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| step.is_finite());
-    let (rising, all) = steps.fold((0, 0), |(rising, all), step| (rising + usize::from(step > 0.0), all + 1));
+    let steps = stamps
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .filter(|step| step.is_finite());
+    let (rising, all) = steps.fold((0, 0), |(rising, all), step| {
+        (rising + usize::from(step > 0.0), all + 1)
+    });
     all > 0 && 2 * rising > all
 }
 
@@ -425,7 +563,10 @@ mod tests {
     use super::*;
 
     fn table(columns: Vec<(&str, Vec<f64>)>) -> RecordTable {
-        let columns = columns.into_iter().map(|(name, values)| RecordColumn::new(name, values)).collect();
+        let columns = columns
+            .into_iter()
+            .map(|(name, values)| RecordColumn::new(name, values))
+            .collect();
         RecordTable::new("log", columns)
     }
 
@@ -435,12 +576,25 @@ mod tests {
 
     #[test]
     fn a_column_that_numbers_records_tells_them_apart() {
-        let runs = [vec![1.0; 30], vec![f64::NAN; 5], vec![2.0; 25], vec![1.0; 40]].concat();
-        let log = table(vec![("t", counted(0, 100)), ("Run No.", runs), ("P", counted(0, 100))]);
+        let runs = [
+            vec![1.0; 30],
+            vec![f64::NAN; 5],
+            vec![2.0; 25],
+            vec![1.0; 40],
+        ]
+        .concat();
+        let log = table(vec![
+            ("t", counted(0, 100)),
+            ("Run No.", runs),
+            ("P", counted(0, 100)),
+        ]);
         assert_eq!(Separation::proposed(&log), Separation::ByColumn(1));
         let records = log.separated(Separation::ByColumn(1));
         let names: Vec<&str> = records.iter().map(|record| record.name.as_str()).collect();
-        assert_eq!(names, ["log, Run No. 1", "log, Run No. 2", "log, Run No. 1, part 2"]);
+        assert_eq!(
+            names,
+            ["log, Run No. 1", "log, Run No. 2", "log, Run No. 1, part 2"]
+        );
         assert_eq!(records[1].columns[2].values, counted(35, 60));
         assert_eq!(records[1].source.variable.as_deref(), Some("Run No. 2"));
     }
@@ -450,7 +604,11 @@ mod tests {
         let twice = [counted(0, 40), counted(0, 30)].concat();
         let log = table(vec![("time", twice.clone()), ("P", twice)]);
         assert_eq!(Separation::proposed(&log), Separation::ByTime(0));
-        let lengths: Vec<usize> = log.separated(Separation::ByTime(0)).iter().map(RecordTable::rows).collect();
+        let lengths: Vec<usize> = log
+            .separated(Separation::ByTime(0))
+            .iter()
+            .map(RecordTable::rows)
+            .collect();
         assert_eq!(lengths, [40, 30]);
         let mut slip = counted(0, 70);
         slip[35] = 30.5;
@@ -466,10 +624,16 @@ mod tests {
     }
 
     fn table_with(name: &str, unit: Option<&str>, stamps: Vec<f64>) -> RecordTable {
-        let column = RecordColumn { unit: unit.map(str::to_owned), ..RecordColumn::new(name, stamps) };
+        let column = RecordColumn {
+            unit: unit.map(str::to_owned),
+            ..RecordColumn::new(name, stamps)
+        };
         RecordTable {
             name: "r".into(),
-            columns: vec![RecordColumn::new("time constant", vec![1.0; column.values.len()]), column],
+            columns: vec![
+                RecordColumn::new("time constant", vec![1.0; column.values.len()]),
+                column,
+            ],
             named: true,
             sample_time_s: None,
             ..RecordTable::new("r", Vec::new())
@@ -477,42 +641,85 @@ mod tests {
     }
 
     fn stamps(step: f64) -> Vec<f64> {
-        (0..50).map(|sample| 3.0 + step * f64::from(sample)).collect()
+        (0..50)
+            .map(|sample| 3.0 + step * f64::from(sample))
+            .collect()
     }
 
     #[test]
     fn the_time_is_found_by_its_name_and_by_rising() {
-        for name in ["t", "Time", "time_s", "TIME [s]", "Elapsed", "real,_time", "t_ms", "timestamp"] {
-            assert_eq!(TimeBase::find(&table_with(name, None, stamps(0.02))), Some(1), "{name}");
+        for name in [
+            "t",
+            "Time",
+            "time_s",
+            "TIME [s]",
+            "Elapsed",
+            "real,_time",
+            "t_ms",
+            "timestamp",
+        ] {
+            assert_eq!(
+                TimeBase::find(&table_with(name, None, stamps(0.02))),
+                Some(1),
+                "{name}"
+            );
         }
-        assert_eq!(TimeBase::find(&table_with("theta", None, stamps(0.02))), Some(0), "by its name only");
+        assert_eq!(
+            TimeBase::find(&table_with("theta", None, stamps(0.02))),
+            Some(0),
+            "by its name only"
+        );
         let mut unnamed = table_with("column 2", None, stamps(0.02));
         unnamed.named = false;
-        assert_eq!(TimeBase::find(&unnamed), None, "its first column does not rise");
+        assert_eq!(
+            TimeBase::find(&unnamed),
+            None,
+            "its first column does not rise"
+        );
         unnamed.columns.swap(0, 1);
         assert_eq!(TimeBase::find(&unnamed), Some(0));
     }
 
     #[test]
     fn the_unit_of_time_is_said_by_the_file_or_by_the_length_of_the_steps() {
-        let seconds = |name, unit, step| match TimeBase::of_column(&table_with(name, unit, stamps(step)), 1) {
+        let seconds = |name, unit, step| match TimeBase::of_column(
+            &table_with(name, unit, stamps(step)),
+            1,
+        ) {
             (TimeBase::Column { seconds, .. }, words) => (seconds, words),
             _ => panic!("it is a column"),
         };
-        assert_eq!(seconds("t", Some("ms"), 20.0), (1e-3, "time from column \"t\", in ms".to_owned()));
+        assert_eq!(
+            seconds("t", Some("ms"), 20.0),
+            (1e-3, "time from column \"t\", in ms".to_owned())
+        );
         assert_eq!(seconds("time_ms", None, 20.0).0, 1e-3);
-        assert_eq!(seconds("time_s", None, 20.0).0, 1.0, "as the file says: it is for the checks to doubt it");
+        assert_eq!(
+            seconds("time_s", None, 20.0).0,
+            1.0,
+            "as the file says: it is for the checks to doubt it"
+        );
         assert_eq!(
             seconds("t", None, 0.02),
-            (1.0, "time from column \"t\", in s (the file does not say the unit)".into())
+            (
+                1.0,
+                "time from column \"t\", in s (the file does not say the unit)".into()
+            )
         );
         let (by_steps, words) = seconds("t", None, 20.0);
         assert_eq!(
             (by_steps, words.as_str()),
-            (1e-3, "time from column \"t\", in ms (its steps are 20.000: s would be too long)")
+            (
+                1e-3,
+                "time from column \"t\", in ms (its steps are 20.000: s would be too long)"
+            )
         );
         assert_eq!(seconds("t", None, 20_000.0).0, 1e-6);
-        assert_eq!(seconds("t", None, 0.02 / 86_400.0).0, 86_400.0, "days, as Excel and MATLAB count them");
+        assert_eq!(
+            seconds("t", None, 0.02 / 86_400.0).0,
+            86_400.0,
+            "days, as Excel and MATLAB count them"
+        );
     }
 
     #[test]
@@ -522,7 +729,10 @@ mod tests {
         let table_with = table_with("t", Some("ms"), gaps);
         let base = TimeBase::of_column(&table_with, 1).0;
         assert!(base.times_s(&table_with)[7].is_nan());
-        assert!((base.step_s(&table_with).unwrap() - 0.02).abs() < 1e-15, "one rounding of the factor");
+        assert!(
+            (base.step_s(&table_with).unwrap() - 0.02).abs() < 1e-15,
+            "one rounding of the factor"
+        );
         assert_eq!(TimeBase::SampleTime(0.5).times_s(&table_with)[3], 1.5);
     }
 }

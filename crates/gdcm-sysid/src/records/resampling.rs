@@ -49,9 +49,13 @@ impl Resampling {
             let used = used?;
             chosen.push((side, rule, used, table.columns.get(used.column)?));
         }
-        let own: Vec<Arc<TopicClock>> = chosen.iter().filter_map(|(.., column)| column.topic.clone()).collect();
+        let own: Vec<Arc<TopicClock>> = chosen
+            .iter()
+            .filter_map(|(.., column)| column.topic.clone())
+            .collect();
         let one_clock = own.windows(2).all(|pair| pair[0].time_s == pair[1].time_s);
-        let of_topics = !own.is_empty() && (!one_clock || own.len() < chosen.len() || !is_even(&own[0].time_s));
+        let of_topics =
+            !own.is_empty() && (!one_clock || own.len() < chosen.len() || !is_even(&own[0].time_s));
         let with_holes = chosen.iter().any(|(.., column)| has_holes(&column.values));
         if chosen.is_empty() || !(of_topics || with_holes || wish.rate_hz.is_some()) {
             return None;
@@ -59,10 +63,21 @@ impl Resampling {
         let of_table = layout.time?.times_s(table);
         let mut held = Vec::new();
         let topics = chosen.iter().map(|(side, rule, used, column)| {
-            let stamps = column.topic.as_ref().map_or(&of_table, |topic| &topic.time_s);
-            let stamps: Vec<f64> = stamps.iter().map(|time| time - used.remedy.delay_s).collect();
-            let values: Vec<f64> = column.values.iter().map(|value| value * used.gain()).collect();
-            let holds = *side == ChannelSide::Input && (wish.held.contains(&rule.name) || is_held(&values));
+            let stamps = column
+                .topic
+                .as_ref()
+                .map_or(&of_table, |topic| &topic.time_s);
+            let stamps: Vec<f64> = stamps
+                .iter()
+                .map(|time| time - used.remedy.delay_s)
+                .collect();
+            let values: Vec<f64> = column
+                .values
+                .iter()
+                .map(|value| value * used.gain())
+                .collect();
+            let holds =
+                *side == ChannelSide::Input && (wish.held.contains(&rule.name) || is_held(&values));
             held.extend(holds.then(|| rule.name.clone()));
             Topic::new(&rule.name, &stamps, &values, holds)
         });
@@ -70,14 +85,22 @@ impl Resampling {
         Some(topics.and_then(|topics| {
             let clock = CommonClock::of(&topics, wish.band_end, wish.rate_hz)?;
             let clock = table.part_s.map_or(clock, |part| clock.within(part));
-            Ok(Self { topics, inputs: layout.inputs.len(), held, clock })
+            Ok(Self {
+                topics,
+                inputs: layout.inputs.len(),
+                held,
+                clock,
+            })
         }))
     }
 
     /// What is done, in words.
     pub(super) fn words(&self) -> Vec<String> {
-        let rates: Vec<String> =
-            self.topics.iter().map(|topic| format!("{} {} Hz", topic.name, telling(topic.rate_hz, 1))).collect();
+        let rates: Vec<String> = self
+            .topics
+            .iter()
+            .map(|topic| format!("{} {} Hz", topic.name, telling(topic.rate_hz, 1)))
+            .collect();
         let resampled = format!(
             "resampled to {} Hz, every channel through the same low-pass at {} rad/s (logged: {})",
             telling(self.clock.rate_hz, 2),
@@ -85,7 +108,10 @@ impl Resampling {
             rates.join(", ")
         );
         let held = (!self.held.is_empty()).then(|| {
-            format!("{}: taken as held from sample to sample, so moved half a sample later", self.held.join(", "))
+            format!(
+                "{}: taken as held from sample to sample, so moved half a sample later",
+                self.held.join(", ")
+            )
         });
         std::iter::once(resampled).chain(held).collect()
     }
@@ -94,25 +120,40 @@ impl Resampling {
     pub(super) fn flight_record(&self, name: String) -> FlightRecord {
         let time_s = self.clock.times_s();
         let matrix = |topics: &[Topic]| {
-            let values: Vec<f64> = topics.iter().flat_map(|topic| topic.at(&time_s, self.clock.cutoff)).collect();
+            let values: Vec<f64> = topics
+                .iter()
+                .flat_map(|topic| topic.at(&time_s, self.clock.cutoff))
+                .collect();
             DMatrix::from_vec(time_s.len(), topics.len(), values)
         };
         let (inputs, outputs) = self.topics.split_at(self.inputs);
-        FlightRecord { name, inputs: matrix(inputs), outputs: matrix(outputs), time_s }
+        FlightRecord {
+            name,
+            inputs: matrix(inputs),
+            outputs: matrix(outputs),
+            time_s,
+        }
     }
 }
 
 /// Whether samples are missing again and again, as in a table that joins the rows of several clocks.
 pub(super) fn has_holes(values: &[f64]) -> bool {
-    let begin = values.windows(2).filter(|pair| pair[0].is_finite() && !pair[1].is_finite()).count();
+    let begin = values
+        .windows(2)
+        .filter(|pair| pair[0].is_finite() && !pair[1].is_finite())
+        .count();
     begin as f64 > SHARE_OF_HOLES * values.len() as f64
 }
 
 /// Whether 95 % of the steps are within 20 % of the median one, or of a multiple of it (M14, 1.1).
 fn is_even(time_s: &[f64]) -> bool {
-    let Some(middle) = median_step(time_s).filter(|step| *step > 0.0) else { return false };
+    let Some(middle) = median_step(time_s).filter(|step| *step > 0.0) else {
+        return false;
+    };
     let steps = time_s.windows(2).map(|pair| (pair[1] - pair[0]) / middle);
-    let even = steps.filter(|step| (step - step.round().max(1.0)).abs() <= 0.2).count();
+    let even = steps
+        .filter(|step| (step - step.round().max(1.0)).abs() <= 0.2)
+        .count();
     even as f64 >= 0.95 * (time_s.len() as f64 - 1.0)
 }
 
@@ -128,22 +169,44 @@ mod tests {
         RecordChannels {
             inputs: vec![ChannelRule::named("M")],
             outputs: vec![ChannelRule::named("q")],
-            resampling: ResamplingWish { band_end: Some(12.0), ..ResamplingWish::default() },
+            resampling: ResamplingWish {
+                band_end: Some(12.0),
+                ..ResamplingWish::default()
+            },
             ..RecordChannels::default()
         }
     }
 
     fn topic(name: &str, rate_hz: f64, from_s: f64) -> RecordColumn {
-        let time_s: Vec<f64> = (0..(20.0 * rate_hz) as usize).map(|k| from_s + k as f64 / rate_hz).collect();
+        let time_s: Vec<f64> = (0..(20.0 * rate_hz) as usize)
+            .map(|k| from_s + k as f64 / rate_hz)
+            .collect();
         let values = time_s.iter().map(|t| signal(*t)).collect();
-        let clock = TopicClock { name: name.to_owned(), time_s };
-        RecordColumn { topic: Some(Arc::new(clock)), ..RecordColumn::new(name, values) }
+        let clock = TopicClock {
+            name: name.to_owned(),
+            time_s,
+        };
+        RecordColumn {
+            topic: Some(Arc::new(clock)),
+            ..RecordColumn::new(name, values)
+        }
     }
 
-    fn proposed(table: &RecordTable, channels: &RecordChannels) -> (Vec<String>, Vec<String>, Option<FlightRecord>) {
-        let LayoutProposal { layout, notes, problems, .. } =
-            RecordLayout::proposed(table, channels, &TimeWish::default());
-        (notes, problems.iter().map(ToString::to_string).collect(), layout.flight_record(table, channels).ok())
+    fn proposed(
+        table: &RecordTable,
+        channels: &RecordChannels,
+    ) -> (Vec<String>, Vec<String>, Option<FlightRecord>) {
+        let LayoutProposal {
+            layout,
+            notes,
+            problems,
+            ..
+        } = RecordLayout::proposed(table, channels, &TimeWish::default());
+        (
+            notes,
+            problems.iter().map(ToString::to_string).collect(),
+            layout.flight_record(table, channels).ok(),
+        )
     }
 
     #[test]
@@ -156,9 +219,15 @@ mod tests {
         let flight = flight.unwrap();
         assert_eq!(flight.time_s[0], 0.3);
         let middle = flight.time_s.len() / 2;
-        for (value, name) in [(flight.inputs[(middle, 0)], "M"), (flight.outputs[(middle, 0)], "q")] {
+        for (value, name) in [
+            (flight.inputs[(middle, 0)], "M"),
+            (flight.outputs[(middle, 0)], "q"),
+        ] {
             // 3 rad/s is far below the cut-off.
-            assert!((value - signal(flight.time_s[middle])).abs() < 1e-3, "{name}");
+            assert!(
+                (value - signal(flight.time_s[middle])).abs() < 1e-3,
+                "{name}"
+            );
         }
     }
 
@@ -180,12 +249,28 @@ mod tests {
             m.push(if k % 2 == 0 { signal(time) } else { f64::NAN });
             q.push(if k % 5 == 0 { signal(time) } else { f64::NAN });
         }
-        let columns = vec![RecordColumn::new("t", t), RecordColumn::new("M", m), RecordColumn::new("q", q)];
+        let columns = vec![
+            RecordColumn::new("t", t),
+            RecordColumn::new("M", m),
+            RecordColumn::new("q", q),
+        ];
         let table = RecordTable::new("joined", columns);
         let (notes, problems, flight) = proposed(&table, &channels());
-        assert!(problems.is_empty() && notes.iter().any(|note| note.contains("M 125.0 Hz, q 50.0 Hz")), "{notes:?}");
+        assert!(
+            problems.is_empty()
+                && notes
+                    .iter()
+                    .any(|note| note.contains("M 125.0 Hz, q 50.0 Hz")),
+            "{notes:?}"
+        );
         let flight = flight.unwrap();
-        assert!(flight.outputs.iter().chain(&flight.inputs).all(|value| value.is_finite()));
+        assert!(
+            flight
+                .outputs
+                .iter()
+                .chain(&flight.inputs)
+                .all(|value| value.is_finite())
+        );
     }
 
     #[test]
@@ -193,7 +278,14 @@ mod tests {
         let stamps: Vec<f64> = (0..1000).map(|k| 0.01 * f64::from(k)).collect();
         let values: Vec<f64> = stamps.iter().map(|t| signal(*t)).collect();
         let columns = ["M", "q"].map(|name| RecordColumn::new(name, values.clone()));
-        let table = RecordTable::new("log", [vec![RecordColumn::new("t", stamps.clone())], columns.to_vec()].concat());
+        let table = RecordTable::new(
+            "log",
+            [
+                vec![RecordColumn::new("t", stamps.clone())],
+                columns.to_vec(),
+            ]
+            .concat(),
+        );
         let mut channels = channels();
         assert_eq!(proposed(&table, &channels).2.unwrap().time_s, stamps);
         channels.resampling.rate_hz = Some(50.0);
@@ -205,13 +297,16 @@ mod tests {
         let stamps: Vec<f64> = (0..1000).map(|k| 5.0 + 0.01 * f64::from(k)).collect();
         let columns = ["t", "M", "q"].map(|name| RecordColumn::new(name, stamps.clone()));
         let plain = RecordTable::new("log", columns.to_vec()).part_of_time([6.0, 8.0]);
-        let topics =
-            RecordTable::new("log", vec![topic("M", 250.0, 0.0), topic("q", 100.0, 0.0)]).part_of_time([6.0, 8.0]);
+        let topics = RecordTable::new("log", vec![topic("M", 250.0, 0.0), topic("q", 100.0, 0.0)])
+            .part_of_time([6.0, 8.0]);
         assert_eq!(plain.name, "log, 6 to 8 s");
         for table in [plain, topics] {
             let flight = proposed(&table, &channels()).2.unwrap();
             let ends = [flight.time_s[0], *flight.time_s.last().unwrap()];
-            assert!((ends[0] - 6.0).abs() < 0.02 && (ends[1] - 8.0).abs() < 0.02, "{ends:?}");
+            assert!(
+                (ends[0] - 6.0).abs() < 0.02 && (ends[1] - 8.0).abs() < 0.02,
+                "{ends:?}"
+            );
             assert_eq!(flight.outputs.nrows(), flight.time_s.len());
         }
     }

@@ -6,7 +6,9 @@
 use super::*;
 
 /// Names of the one column that a topic has beside its stamps, which say nothing.
-const PLAIN: [&str; 8] = ["value", "values", "data", "signal", "signals", "x", "y", "val"];
+const PLAIN: [&str; 8] = [
+    "value", "values", "data", "signal", "signals", "x", "y", "val",
+];
 impl RecordTable {
     /// Which record of a file, or of a folder, it is that its topics make together.
     pub const TOPICS: &'static str = "its topics";
@@ -19,7 +21,11 @@ impl RecordTable {
         }
         let log = variable.strip_prefix(Self::TOPICS)?.strip_prefix(", ")?;
         let logs = logs_of(&topic_names(tables));
-        let of_log = tables.iter().zip(logs).filter(|(_, of)| of == log).map(|(table, _)| table.clone());
+        let of_log = tables
+            .iter()
+            .zip(logs)
+            .filter(|(_, of)| of == log)
+            .map(|(table, _)| table.clone());
         let of_log: Vec<RecordTable> = of_log.collect();
         (!of_log.is_empty()).then(|| Self::of_log(&of_log, log))
     }
@@ -28,21 +34,41 @@ impl RecordTable {
     fn of_log(tables: &[RecordTable], log: &str) -> RecordTable {
         let joined = Self::of_topics(tables);
         let variable = Some(format!("{}, {log}", Self::TOPICS));
-        RecordTable { name: log.to_owned(), source: RecordSource { variable, ..joined.source }, ..joined }
+        RecordTable {
+            name: log.to_owned(),
+            source: RecordSource {
+                variable,
+                ..joined.source
+            },
+            ..joined
+        }
     }
 
     /// The topics of one record, side by side; tables without a time are left out, and that is said.
     fn of_topics(tables: &[RecordTable]) -> RecordTable {
         let first = tables.first();
-        let file = first.map(|table| table.source.file.as_str()).unwrap_or_default();
+        let file = first
+            .map(|table| table.source.file.as_str())
+            .unwrap_or_default();
         let one_file = tables.iter().all(|table| table.source.file == file);
         let folder = file.rsplit_once('/').map_or("", |(folder, _)| folder);
         let file = if one_file { file } else { folder };
-        let sha256 = first.filter(|_| one_file).map(|table| table.source.sha256.clone()).unwrap_or_default();
+        let sha256 = first
+            .filter(|_| one_file)
+            .map(|table| table.source.sha256.clone())
+            .unwrap_or_default();
         let last = file.rsplit('/').next().unwrap_or_default();
-        let stem = if one_file { last.rsplit_once('.').map_or(last, |(stem, _)| stem) } else { last };
+        let stem = if one_file {
+            last.rsplit_once('.').map_or(last, |(stem, _)| stem)
+        } else {
+            last
+        };
         let mut joined = RecordTable {
-            source: RecordSource { file: file.to_owned(), sha256, variable: Some(Self::TOPICS.to_owned()) },
+            source: RecordSource {
+                file: file.to_owned(),
+                sha256,
+                variable: Some(Self::TOPICS.to_owned()),
+            },
             ..RecordTable::new(if stem.is_empty() { "topics" } else { stem }, Vec::new())
         };
         let names = topic_names(tables);
@@ -60,9 +86,15 @@ impl RecordTable {
             }
             joined.modes.extend(table.modes.iter().cloned());
         }
-        joined.notes.push(format!("one record of {} topics: {}", taken.len(), shown(&taken)));
+        joined.notes.push(format!(
+            "one record of {} topics: {}",
+            taken.len(),
+            shown(&taken)
+        ));
         if !left_out.is_empty() {
-            joined.notes.push(format!("without a time, left out: {}", shown(&left_out)));
+            joined
+                .notes
+                .push(format!("without a time, left out: {}", shown(&left_out)));
         }
         joined
     }
@@ -73,20 +105,28 @@ impl RecordTable {
     #[must_use]
     pub fn side_by_side(mut self) -> RecordTable {
         let is_time = |column: &RecordColumn| {
-            let name = column.name.trim_end_matches(|letter: char| letter.is_ascii_digit() || letter == '.');
+            let name = column
+                .name
+                .trim_end_matches(|letter: char| letter.is_ascii_digit() || letter == '.');
             time_name_rank(name).is_some() && rises(&column.values)
         };
-        let times: Vec<usize> = (0..self.columns.len()).filter(|&column| is_time(&self.columns[column])).collect();
+        let times: Vec<usize> = (0..self.columns.len())
+            .filter(|&column| is_time(&self.columns[column]))
+            .collect();
         let has_others = |pair: &[usize]| pair[1] > pair[0] + 1;
         let is_apart = times.len() > 1
             && times[0] == 0
             && times.windows(2).all(has_others)
-            && times.last().is_some_and(|last| last + 1 < self.columns.len());
+            && times
+                .last()
+                .is_some_and(|last| last + 1 < self.columns.len());
         if !self.named || !is_apart || self.columns.iter().any(|column| column.topic.is_some()) {
             return self;
         }
         let (base, _) = TimeBase::of_column(&self, 0);
-        let TimeBase::Column { seconds, .. } = base else { return self };
+        let TimeBase::Column { seconds, .. } = base else {
+            return self;
+        };
         let stamps = |column: usize| TimeBase::Column { column, seconds }.times_s(&self);
         let clocks: Vec<Vec<f64>> = times.iter().map(|column| stamps(*column)).collect();
         let ends = |clock: &Vec<f64>| {
@@ -98,14 +138,26 @@ impl RecordTable {
             (Some(a), Some(b)) => a.1.min(b.1) - a.0.max(b.0) > 0.5 * (a.1 - a.0).min(b.1 - b.0),
             _ => false,
         };
-        if !clocks.iter().all(overlaps) || clocks.iter().all(|clock| same_samples(clock, &clocks[0])) {
+        if !clocks.iter().all(overlaps)
+            || clocks.iter().all(|clock| same_samples(clock, &clocks[0]))
+        {
             return self;
         }
-        let ends = times.iter().skip(1).copied().chain([self.columns.len()]).collect::<Vec<_>>();
+        let ends = times
+            .iter()
+            .skip(1)
+            .copied()
+            .chain([self.columns.len()])
+            .collect::<Vec<_>>();
         for ((&time, &end), clock) in times.iter().zip(&ends).zip(&clocks) {
-            let rows: Vec<usize> = (0..clock.len()).filter(|row| clock[*row].is_finite()).collect();
+            let rows: Vec<usize> = (0..clock.len())
+                .filter(|row| clock[*row].is_finite())
+                .collect();
             let time_s = rows.iter().map(|row| clock[*row]).collect();
-            let topic = Arc::new(TopicClock { name: String::new(), time_s });
+            let topic = Arc::new(TopicClock {
+                name: String::new(),
+                time_s,
+            });
             for column in &mut self.columns[time + 1..end] {
                 column.values = rows.iter().map(|row| column.values[*row]).collect();
                 column.topic = Some(Arc::clone(&topic));
@@ -116,7 +168,10 @@ impl RecordTable {
             column += 1;
             !times.contains(&(column - 1))
         });
-        self.notes.push(format!("{} tables side by side, each behind its own stamps", times.len()));
+        self.notes.push(format!(
+            "{} tables side by side, each behind its own stamps",
+            times.len()
+        ));
         self
     }
 
@@ -124,7 +179,12 @@ impl RecordTable {
     #[must_use]
     pub fn part_of_time(&self, part_s: [f64; 2]) -> RecordTable {
         let mut part = self.clone();
-        part.name = format!("{}, {} to {} s", self.name, number(part_s[0]), number(part_s[1]));
+        part.name = format!(
+            "{}, {} to {} s",
+            self.name,
+            number(part_s[0]),
+            number(part_s[1])
+        );
         part.part_s = Some(part_s);
         part
     }
@@ -132,23 +192,37 @@ impl RecordTable {
 
 /// Tables of which several are topics of one record, as such: in each file or folder those that lack a channel and have all of them
 /// together; where these are topics of several logs, so that channels have several columns, those of each log. The rest is as it was.
-pub fn with_topics_joined(tables: Vec<RecordTable>, channels: &RecordChannels, time: &TimeWish) -> Vec<RecordTable> {
+pub fn with_topics_joined(
+    tables: Vec<RecordTable>,
+    channels: &RecordChannels,
+    time: &TimeWish,
+) -> Vec<RecordTable> {
     let lacks = |table: &RecordTable| {
         let problems = RecordLayout::proposed(table, channels, time).problems;
         problems.iter().any(|problem| {
             matches!(
                 problem,
-                LayoutProblem::NoColumn { .. } | LayoutProblem::SeveralColumns { .. } | LayoutProblem::Unnamed { .. }
+                LayoutProblem::NoColumn { .. }
+                    | LayoutProblem::SeveralColumns { .. }
+                    | LayoutProblem::Unnamed { .. }
             )
         })
     };
     let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (index, table) in tables.iter().enumerate().filter(|(_, table)| lacks(table)) {
-        groups.entry(group_of(&table.source)).or_default().push(index);
+        groups
+            .entry(group_of(&table.source))
+            .or_default()
+            .push(index);
     }
     let mut joined: BTreeMap<usize, RecordTable> = BTreeMap::new();
     let mut gone = vec![false; tables.len()];
-    let of_group = |group: &[usize]| group.iter().map(|index| tables[*index].clone()).collect::<Vec<_>>();
+    let of_group = |group: &[usize]| {
+        group
+            .iter()
+            .map(|index| tables[*index].clone())
+            .collect::<Vec<_>>()
+    };
     let mut join = |group: &[usize], together: RecordTable| {
         let is_record = !together.columns.is_empty() && !lacks(&together);
         if is_record {
@@ -166,17 +240,32 @@ pub fn with_topics_joined(tables: Vec<RecordTable>, channels: &RecordChannels, t
         for (index, log) in group.iter().zip(logs_of(&topic_names(&topics))) {
             of_logs.entry(log).or_default().push(*index);
         }
-        for (log, group) in of_logs.into_iter().filter(|(log, group)| !log.is_empty() && group.len() > 1) {
+        for (log, group) in of_logs
+            .into_iter()
+            .filter(|(log, group)| !log.is_empty() && group.len() > 1)
+        {
             join(&group, RecordTable::of_log(&of_group(&group), &log));
         }
     }
     let tables = tables.into_iter().enumerate();
-    tables.filter_map(|(index, table)| if gone[index] { joined.remove(&index) } else { Some(table) }).collect()
+    tables
+        .filter_map(|(index, table)| {
+            if gone[index] {
+                joined.remove(&index)
+            } else {
+                Some(table)
+            }
+        })
+        .collect()
 }
 
 /// Whether stamps rise, and are enough for a signal; behind the last one nothing may stand.
 fn rises(stamps: &[f64]) -> bool {
-    let known: Vec<f64> = stamps.iter().copied().take_while(|stamp| stamp.is_finite()).collect();
+    let known: Vec<f64> = stamps
+        .iter()
+        .copied()
+        .take_while(|stamp| stamp.is_finite())
+        .collect();
     let rest = &stamps[known.len()..];
     known.len() >= Separation::FEWEST
         && known.windows(2).all(|pair| pair[1] > pair[0])
@@ -187,15 +276,23 @@ fn rises(stamps: &[f64]) -> bool {
 fn group_of(source: &RecordSource) -> String {
     match &source.variable {
         Some(_) => source.file.clone(),
-        None => source.file.rsplit_once('/').map_or(String::new(), |(folder, _)| format!("{folder}/")),
+        None => source
+            .file
+            .rsplit_once('/')
+            .map_or(String::new(), |(folder, _)| format!("{folder}/")),
     }
 }
 
 /// What each of the topics is called.
 fn topic_names(tables: &[RecordTable]) -> Vec<String> {
     let first = tables.first().map(|table| table.source.file.as_str());
-    let one_file = tables.iter().all(|table| Some(table.source.file.as_str()) == first);
-    tables.iter().map(|table| topic_name(table, one_file)).collect()
+    let one_file = tables
+        .iter()
+        .all(|table| Some(table.source.file.as_str()) == first);
+    tables
+        .iter()
+        .map(|table| topic_name(table, one_file))
+        .collect()
 }
 
 /// Marks between the words of a name.
@@ -204,22 +301,44 @@ const MARKS: [char; 4] = ['_', '-', '.', ' '];
 /// The log that each topic is of: "log_7" of "log_7_rates" beside "log_8_rates". A topic begins at the first mark behind which another
 /// name is the same; one that only its own log has is of the longest log that its name begins with. Nothing where there is none.
 fn logs_of(names: &[String]) -> Vec<String> {
-    let parts = |name: &str| name.match_indices(MARKS).map(|(at, _)| at).collect::<Vec<usize>>();
+    let parts = |name: &str| {
+        name.match_indices(MARKS)
+            .map(|(at, _)| at)
+            .collect::<Vec<usize>>()
+    };
     let mut ends: BTreeMap<&str, usize> = BTreeMap::new();
     for name in names {
-        parts(name).into_iter().for_each(|at| *ends.entry(&name[at..]).or_default() += 1);
+        parts(name)
+            .into_iter()
+            .for_each(|at| *ends.entry(&name[at..]).or_default() += 1);
     }
     let log = |name: &String| {
-        let at = parts(name).into_iter().find(|at| ends.get(&name[*at..]).is_some_and(|count| *count > 1));
+        let at = parts(name)
+            .into_iter()
+            .find(|at| ends.get(&name[*at..]).is_some_and(|count| *count > 1));
         name[..at.unwrap_or(0)].to_owned()
     };
     let logs: Vec<String> = names.iter().map(log).collect();
-    let is_log = |log: &&String| !log.is_empty() && logs.iter().filter(|other| other == log).count() > 1;
+    let is_log =
+        |log: &&String| !log.is_empty() && logs.iter().filter(|other| other == log).count() > 1;
     let known: Vec<&String> = logs.iter().filter(is_log).collect();
     let of_topic = |(name, log): (&String, &String)| {
-        let begins = |log: &&&String| name.strip_prefix(log.as_str()).is_some_and(|rest| rest.starts_with(MARKS));
-        let own = || known.iter().filter(begins).max_by_key(|log| log.len()).map(|log| (*log).clone());
-        if is_log(&log) { log.clone() } else { own().unwrap_or_default() }
+        let begins = |log: &&&String| {
+            name.strip_prefix(log.as_str())
+                .is_some_and(|rest| rest.starts_with(MARKS))
+        };
+        let own = || {
+            known
+                .iter()
+                .filter(begins)
+                .max_by_key(|log| log.len())
+                .map(|log| (*log).clone())
+        };
+        if is_log(&log) {
+            log.clone()
+        } else {
+            own().unwrap_or_default()
+        }
     };
     names.iter().zip(&logs).map(of_topic).collect()
 }
@@ -227,20 +346,36 @@ fn logs_of(names: &[String]) -> Vec<String> {
 /// The variable of a file, or the file of a folder, without its ending.
 fn topic_name(table: &RecordTable, one_file: bool) -> String {
     let source = &table.source;
-    let name = source.variable.as_deref().filter(|_| one_file).unwrap_or(&source.file);
+    let name = source
+        .variable
+        .as_deref()
+        .filter(|_| one_file)
+        .unwrap_or(&source.file);
     let name = name.rsplit('/').next().unwrap_or(name);
     // An ending is one of letters: the number in "motor.1" is not.
-    let stem =
-        name.rsplit_once('.').filter(|(_, ending)| ["csv", "txt", "tsv", "dat", "mat", "npz", "json"].contains(ending));
+    let stem = name
+        .rsplit_once('.')
+        .filter(|(_, ending)| ["csv", "txt", "tsv", "dat", "mat", "npz", "json"].contains(ending));
     stem.map_or(name, |(stem, _)| stem).to_owned()
 }
 
 /// How many bytes all names begin with, up to a mark between words: "log_3_2024_" of "log_3_2024_q" and "log_3_2024_M".
 fn common_prefix(names: &[String]) -> usize {
-    let Some(first) = names.first().filter(|_| names.len() > 1) else { return 0 };
-    let same = |name: &String| first.bytes().zip(name.bytes()).take_while(|(a, b)| a == b).count();
+    let Some(first) = names.first().filter(|_| names.len() > 1) else {
+        return 0;
+    };
+    let same = |name: &String| {
+        first
+            .bytes()
+            .zip(name.bytes())
+            .take_while(|(a, b)| a == b)
+            .count()
+    };
     let length = names.iter().skip(1).map(same).min().unwrap_or(0);
-    first.as_bytes()[..length].iter().rposition(|byte| MARKS.contains(&char::from(*byte))).map_or(0, |at| at + 1)
+    first.as_bytes()[..length]
+        .iter()
+        .rposition(|byte| MARKS.contains(&char::from(*byte)))
+        .map_or(0, |at| at + 1)
 }
 
 /// Seconds in a unit of the stamps, by the name of their column: topics of one log count alike, and only fast ones tell the unit by
@@ -248,28 +383,52 @@ fn common_prefix(names: &[String]) -> usize {
 fn seconds_by_name(tables: &[RecordTable]) -> BTreeMap<String, f64> {
     let mut fastest: BTreeMap<String, (f64, f64)> = BTreeMap::new();
     for table in tables {
-        let Some(column) = TimeBase::find(table) else { continue };
-        let (TimeBase::Column { seconds, .. }, _) = TimeBase::of_column(table, column) else { continue };
+        let Some(column) = TimeBase::find(table) else {
+            continue;
+        };
+        let (TimeBase::Column { seconds, .. }, _) = TimeBase::of_column(table, column) else {
+            continue;
+        };
         let stamps = &table.columns[column];
-        let step = median_step(&stamps.values).filter(|step| *step > 0.0).unwrap_or(f64::INFINITY);
-        let known = fastest.entry(stamps.name.clone()).or_insert((step, seconds));
+        let step = median_step(&stamps.values)
+            .filter(|step| *step > 0.0)
+            .unwrap_or(f64::INFINITY);
+        let known = fastest
+            .entry(stamps.name.clone())
+            .or_insert((step, seconds));
         if step < known.0 {
             *known = (step, seconds);
         }
     }
-    fastest.into_iter().map(|(name, (_, seconds))| (name, seconds)).collect()
+    fastest
+        .into_iter()
+        .map(|(name, (_, seconds))| (name, seconds))
+        .collect()
 }
 
 /// The columns of a topic with its stamps; none where nothing says when they were taken.
-fn topic_columns(table: &RecordTable, name: &str, seconds: &BTreeMap<String, f64>) -> Option<Vec<RecordColumn>> {
+fn topic_columns(
+    table: &RecordTable,
+    name: &str,
+    seconds: &BTreeMap<String, f64>,
+) -> Option<Vec<RecordColumn>> {
     let (time_s, stamps) = match TimeBase::find(table) {
         Some(column) => {
             let seconds = *seconds.get(&table.columns[column].name)?;
-            (TimeBase::Column { column, seconds }.times_s(table), Some(column))
+            (
+                TimeBase::Column { column, seconds }.times_s(table),
+                Some(column),
+            )
         }
-        None => (TimeBase::SampleTime(table.sample_time_s?).times_s(table), None),
+        None => (
+            TimeBase::SampleTime(table.sample_time_s?).times_s(table),
+            None,
+        ),
     };
-    let clock = Arc::new(TopicClock { name: name.to_owned(), time_s });
+    let clock = Arc::new(TopicClock {
+        name: name.to_owned(),
+        time_s,
+    });
     let values: Vec<&RecordColumn> = table
         .columns
         .iter()
@@ -279,7 +438,10 @@ fn topic_columns(table: &RecordTable, name: &str, seconds: &BTreeMap<String, f64
         .collect();
     let plain = |column: &RecordColumn| PLAIN.contains(&column.name.to_lowercase().as_str());
     let named = |column: &RecordColumn| {
-        let numbered = column.name.rsplit_once('_').filter(|(stem, _)| PLAIN.contains(&stem.to_lowercase().as_str()));
+        let numbered = column
+            .name
+            .rsplit_once('_')
+            .filter(|(stem, _)| PLAIN.contains(&stem.to_lowercase().as_str()));
         match numbered {
             Some((_, number)) if number.parse::<usize>().is_ok() => format!("{name}.{number}"),
             _ if plain(column) && values.len() == 1 => name.to_owned(),
@@ -299,8 +461,17 @@ pub(super) fn shown(names: &[&str]) -> String {
     /// Enough to see what went wrong.
     const SHOWN: usize = 20;
     let more = names.len().saturating_sub(SHOWN);
-    let names = names.iter().take(SHOWN).copied().collect::<Vec<_>>().join(", ");
-    if more == 0 { names } else { format!("{names} and {more} more") }
+    let names = names
+        .iter()
+        .take(SHOWN)
+        .copied()
+        .collect::<Vec<_>>()
+        .join(", ");
+    if more == 0 {
+        names
+    } else {
+        format!("{names} and {more} more")
+    }
 }
 
 #[cfg(test)]
@@ -310,20 +481,38 @@ mod tests {
     fn topic(file: &str, variable: Option<&str>, columns: &[&str], step: f64) -> RecordTable {
         let stamps: Vec<f64> = (0..500).map(|k| step * f64::from(k)).collect();
         let values = stamps.iter().map(|t| (3.0 * t).sin()).collect::<Vec<_>>();
-        let columns = columns.iter().map(|name| RecordColumn::new(*name, values.clone()));
-        let columns = std::iter::once(RecordColumn::new("timestamp", stamps)).chain(columns).collect();
-        let source =
-            RecordSource { file: file.to_owned(), variable: variable.map(str::to_owned), ..RecordSource::default() };
-        RecordTable { source, ..RecordTable::new(file, columns) }
+        let columns = columns
+            .iter()
+            .map(|name| RecordColumn::new(*name, values.clone()));
+        let columns = std::iter::once(RecordColumn::new("timestamp", stamps))
+            .chain(columns)
+            .collect();
+        let source = RecordSource {
+            file: file.to_owned(),
+            variable: variable.map(str::to_owned),
+            ..RecordSource::default()
+        };
+        RecordTable {
+            source,
+            ..RecordTable::new(file, columns)
+        }
     }
 
     fn channels() -> RecordChannels {
         let rules = |names: &[&str]| names.iter().map(|name| ChannelRule::named(*name)).collect();
-        RecordChannels { inputs: rules(&["M"]), outputs: rules(&["q"]), ..RecordChannels::default() }
+        RecordChannels {
+            inputs: rules(&["M"]),
+            outputs: rules(&["q"]),
+            ..RecordChannels::default()
+        }
     }
 
     fn names(table: &RecordTable) -> Vec<&str> {
-        table.columns.iter().map(|column| column.name.as_str()).collect()
+        table
+            .columns
+            .iter()
+            .map(|column| column.name.as_str())
+            .collect()
     }
 
     #[test]
@@ -336,7 +525,13 @@ mod tests {
         let joined = with_topics_joined(tables, &channels(), &TimeWish::default());
         assert_eq!(joined.len(), 1);
         assert_eq!(names(&joined[0]), ["M", "q", "acc.1", "acc.2"]);
-        assert_eq!((joined[0].name.as_str(), joined[0].source.variable.as_deref()), ("log", Some("its topics")));
+        assert_eq!(
+            (
+                joined[0].name.as_str(),
+                joined[0].source.variable.as_deref()
+            ),
+            ("log", Some("its topics"))
+        );
         assert_eq!(joined[0].columns[1].topic.as_ref().unwrap().time_s[1], 0.01);
     }
 
@@ -348,9 +543,19 @@ mod tests {
             topic("fly/log_7_torque.csv", None, &["M"], 2e4),
         ];
         let joined = with_topics_joined(tables, &channels(), &TimeWish::default());
-        assert_eq!(names(&joined[0]), ["status.armed", "rates.p", "rates.q", "torque.M"]);
-        assert_eq!((joined[0].name.as_str(), joined[0].source.file.as_str()), ("fly", "fly"));
-        assert_eq!(joined[0].columns[0].topic.as_ref().unwrap().time_s[1], 5.0, "microseconds, as the fast ones tell");
+        assert_eq!(
+            names(&joined[0]),
+            ["status.armed", "rates.p", "rates.q", "torque.M"]
+        );
+        assert_eq!(
+            (joined[0].name.as_str(), joined[0].source.file.as_str()),
+            ("fly", "fly")
+        );
+        assert_eq!(
+            joined[0].columns[0].topic.as_ref().unwrap().time_s[1],
+            5.0,
+            "microseconds, as the fast ones tell"
+        );
     }
 
     #[test]
@@ -363,30 +568,60 @@ mod tests {
                 topic(&file(more), None, &["state"], 1.0),
             ]
         };
-        let tables = [of_log("12_30_05", "esc_status_0"), of_log("12_41_55", "vehicle_status_0")].concat();
+        let tables = [
+            of_log("12_30_05", "esc_status_0"),
+            of_log("12_41_55", "vehicle_status_0"),
+        ]
+        .concat();
         let joined = with_topics_joined(tables.clone(), &channels(), &TimeWish::default());
         let found: Vec<&str> = joined.iter().map(|table| table.name.as_str()).collect();
         assert_eq!(found, ["12_30_05", "12_41_55"]);
         assert_eq!(
             names(&joined[0]),
-            ["vehicle_rates_0.p", "vehicle_rates_0.q", "vehicle_torque_0.M", "esc_status_0.state"]
+            [
+                "vehicle_rates_0.p",
+                "vehicle_rates_0.q",
+                "vehicle_torque_0.M",
+                "esc_status_0.state"
+            ]
         );
         for log in &joined {
-            let again = RecordTable::of_topics_called(&tables, log.source.variable.as_deref().unwrap()).unwrap();
+            let again =
+                RecordTable::of_topics_called(&tables, log.source.variable.as_deref().unwrap())
+                    .unwrap();
             assert_eq!(&again, log, "a dataset finds each again by its name");
         }
-        assert_eq!(RecordTable::of_topics_called(&tables, "its topics, 12_50_00"), None);
+        assert_eq!(
+            RecordTable::of_topics_called(&tables, "its topics, 12_50_00"),
+            None
+        );
     }
 
     #[test]
     fn tables_side_by_side_are_topics_and_a_clock_of_another_origin_is_a_column() {
         let stamps = |rows: usize, step: f64, from: f64| {
-            (0..60).map(|k| if k < rows { from + step * k as f64 } else { f64::NAN }).collect::<Vec<f64>>()
+            (0..60)
+                .map(|k| {
+                    if k < rows {
+                        from + step * k as f64
+                    } else {
+                        f64::NAN
+                    }
+                })
+                .collect::<Vec<f64>>()
         };
         let table = |second: Vec<f64>| {
             let names = ["time", "M", "time.1", "q"];
-            let values = [stamps(60, 0.01, 0.0), stamps(60, 1.0, 0.0), second.clone(), second];
-            let columns = names.into_iter().zip(values).map(|(name, values)| RecordColumn::new(name, values));
+            let values = [
+                stamps(60, 0.01, 0.0),
+                stamps(60, 1.0, 0.0),
+                second.clone(),
+                second,
+            ];
+            let columns = names
+                .into_iter()
+                .zip(values)
+                .map(|(name, values)| RecordColumn::new(name, values));
             RecordTable::new("log", columns.collect())
         };
         let apart = table(stamps(30, 0.02, 0.0)).side_by_side();
@@ -398,9 +633,21 @@ mod tests {
 
     #[test]
     fn records_that_have_every_channel_stay_records() {
-        let tables = vec![topic("a.csv", None, &["M", "q"], 0.01), topic("b.csv", None, &["M", "q", "p"], 0.01)];
-        assert_eq!(with_topics_joined(tables.clone(), &channels(), &TimeWish::default()), tables);
-        let lacking = vec![topic("a.csv", None, &["q", "p"], 0.01), topic("b.csv", None, &["q", "p"], 0.01)];
-        assert_eq!(with_topics_joined(lacking.clone(), &channels(), &TimeWish::default()), lacking);
+        let tables = vec![
+            topic("a.csv", None, &["M", "q"], 0.01),
+            topic("b.csv", None, &["M", "q", "p"], 0.01),
+        ];
+        assert_eq!(
+            with_topics_joined(tables.clone(), &channels(), &TimeWish::default()),
+            tables
+        );
+        let lacking = vec![
+            topic("a.csv", None, &["q", "p"], 0.01),
+            topic("b.csv", None, &["q", "p"], 0.01),
+        ];
+        assert_eq!(
+            with_topics_joined(lacking.clone(), &channels(), &TimeWish::default()),
+            lacking
+        );
     }
 }

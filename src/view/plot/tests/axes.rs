@@ -9,7 +9,11 @@ use super::*;
 /// Frequencies and values in view.
 fn ranges(harness: &Harness<'_, Model>) -> ((f64, f64), Range, Range) {
     let view = &harness.state().view;
-    (view.omega_range(), view.value_range(Pane::Magnitude), view.value_range(Pane::Phase))
+    (
+        view.omega_range(),
+        view.value_range(Pane::Magnitude),
+        view.value_range(Pane::Phase),
+    )
 }
 
 fn middle_of(harness: &Harness<'_, Model>, label: &str) -> Pos2 {
@@ -30,7 +34,11 @@ fn the_wheel_over_an_axis_zooms_that_axis_alone() {
         harness.event(wheel(vec2(0.0, 120.0)));
         harness.run_steps(12);
         let after = ranges(&harness);
-        assert_eq!((after.0 != before.0, after.1 != before.1), (zooms_frequencies, !zooms_frequencies), "{axis}");
+        assert_eq!(
+            (after.0 != before.0, after.1 != before.1),
+            (zooms_frequencies, !zooms_frequencies),
+            "{axis}"
+        );
         assert_eq!(after.2, before.2, "{axis}");
     }
 }
@@ -41,9 +49,17 @@ fn dragging_an_axis_pans_that_axis_alone() {
         let mut harness = harness(three_curves());
         let before = ranges(&harness);
         let at = middle_of(&harness, axis);
-        drag(&mut harness, &[at, at + vec2(30.0, 30.0), at + vec2(60.0, 60.0)], PointerButton::Primary);
+        drag(
+            &mut harness,
+            &[at, at + vec2(30.0, 30.0), at + vec2(60.0, 60.0)],
+            PointerButton::Primary,
+        );
         let after = ranges(&harness);
-        assert_eq!((after.0 != before.0, after.1 != before.1), (pans_frequencies, !pans_frequencies), "{axis}");
+        assert_eq!(
+            (after.0 != before.0, after.1 != before.1),
+            (pans_frequencies, !pans_frequencies),
+            "{axis}"
+        );
         let same_width = (after.1.width() - before.1.width()).abs() < 1e-9;
         assert!(same_width && after.2 == before.2, "{axis}");
     }
@@ -72,8 +88,14 @@ fn limits_can_be_typed_and_are_refused_with_a_word_where_they_are_none() {
     type_limits(&mut harness, FREQUENCIES, ["2", "8"]);
     let (min, max) = ranges(&harness).0;
     // Through a logarithm and back.
-    assert!((min - 2.0).abs() < 1e-12 && (max - 8.0).abs() < 1e-12, "{min} {max}");
-    assert!(harness.query_by_label("Lower limit").is_none(), "the form is closed");
+    assert!(
+        (min - 2.0).abs() < 1e-12 && (max - 8.0).abs() < 1e-12,
+        "{min} {max}"
+    );
+    assert!(
+        harness.query_by_label("Lower limit").is_none(),
+        "the form is closed"
+    );
     harness.run_steps(40);
     type_limits(&mut harness, MAGNITUDES, ["10", "-10"]);
     harness.get_by_label("the lower limit has to be below the upper one");
@@ -84,7 +106,9 @@ fn limits_can_be_typed_and_are_refused_with_a_word_where_they_are_none() {
 fn a_plot_with_the_focus_is_panned_and_zoomed_from_the_keyboard() {
     let mut harness = harness(three_curves());
     let fitted = ranges(&harness);
-    harness.get_by_label("Magnitude of LON → Q, 3 curves").focus();
+    harness
+        .get_by_label("Magnitude of LON → Q, 3 curves")
+        .focus();
     harness.run();
     harness.key_press(Key::ArrowRight);
     harness.run();
@@ -97,7 +121,10 @@ fn a_plot_with_the_focus_is_panned_and_zoomed_from_the_keyboard() {
     harness.key_press_modifiers(Modifiers::SHIFT, Key::Plus);
     harness.run();
     let closer = ranges(&harness);
-    assert!(closer.0.1 / closer.0.0 < up.0.1 / up.0.0 && closer.1 == up.1, "Shift: frequencies only");
+    assert!(
+        closer.0.1 / closer.0.0 < up.0.1 / up.0.0 && closer.1 == up.1,
+        "Shift: frequencies only"
+    );
     harness.key_press(Key::Minus);
     harness.run();
     assert!(ranges(&harness).1.width() > closer.1.width());

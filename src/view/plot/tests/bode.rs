@@ -47,13 +47,21 @@ pub(super) fn harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
 }
 
 pub(super) fn three_curves() -> Vec<BodeCurve> {
-    vec![lag(1, 0.0, 1.0, Role::Nominal), lag(2, 3.0, 1.0, Role::Perturbed), lag(3, 20.0, 3.0, Role::Corrected)]
+    vec![
+        lag(1, 0.0, 1.0, Role::Nominal),
+        lag(2, 3.0, 1.0, Role::Perturbed),
+        lag(3, 20.0, 3.0, Role::Corrected),
+    ]
 }
 
 /// A point on the magnitude of curve `index` at the frequency of sample `k`.
 pub(super) fn point_on(harness: &Harness<'_, Model>, index: usize, k: usize) -> Pos2 {
     let curve = &harness.state().curves[index];
-    harness.state().view.screen_position(Pane::Magnitude, curve.omega[k], curve.magnitude_db[k]).unwrap()
+    harness
+        .state()
+        .view
+        .screen_position(Pane::Magnitude, curve.omega[k], curve.magnitude_db[k])
+        .unwrap()
 }
 
 /// A place in the magnitude plot that is far from every curve.
@@ -77,9 +85,19 @@ pub(super) fn wheel(delta: egui::Vec2) -> Event {
 }
 
 pub(super) fn clicks(harness: &Harness<'_, Model>) -> Vec<BodeEvent> {
-    let is_click =
-        |event: &&BodeEvent| matches!(event, BodeEvent::Clicked(_) | BodeEvent::TakenBack(_) | BodeEvent::Isolated(_));
-    harness.state().events.iter().filter(is_click).cloned().collect()
+    let is_click = |event: &&BodeEvent| {
+        matches!(
+            event,
+            BodeEvent::Clicked(_) | BodeEvent::TakenBack(_) | BodeEvent::Isolated(_)
+        )
+    };
+    harness
+        .state()
+        .events
+        .iter()
+        .filter(is_click)
+        .cloned()
+        .collect()
 }
 
 #[test]
@@ -90,7 +108,10 @@ fn a_click_names_the_nearest_curve() {
         // Clicks in one place within the time of a double click would be one.
         harness.run_steps(30);
         click(&mut harness, at);
-        assert_eq!(clicks(&harness).last(), Some(&BodeEvent::Clicked(numbered(id))));
+        assert_eq!(
+            clicks(&harness).last(),
+            Some(&BodeEvent::Clicked(numbered(id)))
+        );
     }
 }
 
@@ -120,7 +141,10 @@ fn hovering_is_told_once_when_it_begins_and_once_when_it_ends() {
     let away = empty_spot(&harness);
     harness.hover_at(away);
     harness.run();
-    let expected = [BodeEvent::Hovered(Some(numbered(1))), BodeEvent::Hovered(None)];
+    let expected = [
+        BodeEvent::Hovered(Some(numbered(1))),
+        BodeEvent::Hovered(None),
+    ];
     assert_eq!(harness.state().events, expected);
 }
 
@@ -128,13 +152,29 @@ fn hovering_is_told_once_when_it_begins_and_once_when_it_ends() {
 fn dragging_an_end_of_the_band_moves_it_and_not_the_plot() {
     let mut harness = harness(three_curves());
     let before = harness.state().view.omega_range();
-    let at =
-        |harness: &Harness<'_, Model>, omega| harness.state().view.screen_position(Pane::Phase, omega, -45.0).unwrap();
+    let at = |harness: &Harness<'_, Model>, omega| {
+        harness
+            .state()
+            .view
+            .screen_position(Pane::Phase, omega, -45.0)
+            .unwrap()
+    };
     let path = [at(&harness, 0.5), at(&harness, 0.8), at(&harness, 1.0)];
     drag(&mut harness, &path, PointerButton::Primary);
     let model = harness.state();
-    assert!((model.band.0 - 1.0).abs() < 1e-3 && model.band.1 == 12.0, "{:?}", model.band);
-    assert_eq!(model.events.iter().filter(|event| **event == BodeEvent::BandReleased).count(), 1);
+    assert!(
+        (model.band.0 - 1.0).abs() < 1e-3 && model.band.1 == 12.0,
+        "{:?}",
+        model.band
+    );
+    assert_eq!(
+        model
+            .events
+            .iter()
+            .filter(|event| **event == BodeEvent::BandReleased)
+            .count(),
+        1
+    );
     assert_eq!(model.view.omega_range(), before);
 }
 
@@ -143,24 +183,44 @@ fn panning_one_plot_pans_the_frequencies_of_both() {
     let mut harness = harness(three_curves());
     let (before, _) = harness.state().view.omega_range();
     let from = empty_spot(&harness);
-    drag(&mut harness, &[from, from + vec2(50.0, 0.0), from + vec2(100.0, 0.0)], PointerButton::Primary);
+    drag(
+        &mut harness,
+        &[from, from + vec2(50.0, 0.0), from + vec2(100.0, 0.0)],
+        PointerButton::Primary,
+    );
     let view = &harness.state().view;
     assert!(view.omega_range().0 < 0.9 * before);
-    let left = |transform: Option<&egui_plot::PlotTransform>| transform.map(|transform| transform.bounds().min()[0]);
-    assert_eq!(left(view.transform(Pane::Magnitude)), left(view.transform(Pane::Phase)));
+    let left = |transform: Option<&egui_plot::PlotTransform>| {
+        transform.map(|transform| transform.bounds().min()[0])
+    };
+    assert_eq!(
+        left(view.transform(Pane::Magnitude)),
+        left(view.transform(Pane::Phase))
+    );
 }
 
 #[test]
 fn a_box_drawn_with_the_secondary_button_is_zoomed_into() {
     let mut harness = harness(three_curves());
     let at = |harness: &Harness<'_, Model>, omega, db| {
-        harness.state().view.screen_position(Pane::Magnitude, omega, db).unwrap()
+        harness
+            .state()
+            .view
+            .screen_position(Pane::Magnitude, omega, db)
+            .unwrap()
     };
-    let path = [at(&harness, 1.0, 5.0), at(&harness, 2.0, 0.0), at(&harness, 3.0, -5.0)];
+    let path = [
+        at(&harness, 1.0, 5.0),
+        at(&harness, 2.0, 0.0),
+        at(&harness, 3.0, -5.0),
+    ];
     drag(&mut harness, &path, PointerButton::Secondary);
     let view = &harness.state().view;
     let (min, max) = view.omega_range();
-    assert!((min - 1.0).abs() < 0.02 && (max - 3.0).abs() < 0.05, "{min} {max}");
+    assert!(
+        (min - 1.0).abs() < 0.02 && (max - 3.0).abs() < 0.05,
+        "{min} {max}"
+    );
     assert!((view.value_range(Pane::Magnitude).max - 5.0).abs() < 0.2);
     assert_eq!(clicks(&harness), []);
 }
@@ -176,7 +236,10 @@ fn the_wheel_zooms_about_the_pointer() {
     // Scrolling is smooth: it takes some frames.
     harness.run_steps(12);
     let after = harness.state().view.omega_range();
-    assert!(after.0 > before.0 && after.1 < before.1, "{before:?} {after:?}");
+    assert!(
+        after.0 > before.0 && after.1 < before.1,
+        "{before:?} {after:?}"
+    );
     assert!(point_on(&harness, 1, 60).distance(at) < 0.1);
 }
 
@@ -200,12 +263,20 @@ fn one_notch_of_the_wheel_zooms_by_a_tenth_and_none_goes_far_beyond_what_is_comp
     harness.event(notch(1.0));
     harness.run_steps(30);
     // The smoothing of the toolkit adds up in single precision.
-    assert!((before / decades(&harness) - 1.1).abs() < 1e-3, "{before} {}", decades(&harness));
+    assert!(
+        (before / decades(&harness) - 1.1).abs() < 1e-3,
+        "{before} {}",
+        decades(&harness)
+    );
     for _ in 0..40 {
         harness.event(notch(-5.0));
         harness.run_steps(10);
     }
-    assert!(decades(&harness) <= before + 2.0 + 1e-6, "{before} {}", decades(&harness));
+    assert!(
+        decades(&harness) <= before + 2.0 + 1e-6,
+        "{before} {}",
+        decades(&harness)
+    );
 }
 
 #[test]
@@ -213,10 +284,17 @@ fn new_data_keep_the_zoom_and_a_double_click_fits_them() {
     let mut harness = harness(three_curves());
     let fitted = harness.state().view.omega_range();
     let from = empty_spot(&harness);
-    drag(&mut harness, &[from, from + vec2(80.0, 30.0)], PointerButton::Primary);
+    drag(
+        &mut harness,
+        &[from, from + vec2(80.0, 30.0)],
+        PointerButton::Primary,
+    );
     let panned = harness.state().view.omega_range();
     assert_ne!(panned, fitted);
-    harness.state_mut().curves.push(lag(4, -30.0, 1.0, Role::Perturbed));
+    harness
+        .state_mut()
+        .curves
+        .push(lag(4, -30.0, 1.0, Role::Perturbed));
     harness.run();
     assert_eq!(harness.state().view.omega_range(), panned);
     let empty = empty_spot(&harness);
@@ -225,19 +303,32 @@ fn new_data_keep_the_zoom_and_a_double_click_fits_them() {
     harness.run();
     let view = &harness.state().view;
     assert_eq!(view.omega_range(), fitted);
-    assert!(view.value_range(Pane::Magnitude).min < -56.0, "the new curve is in view");
+    assert!(
+        view.value_range(Pane::Magnitude).min < -56.0,
+        "the new curve is in view"
+    );
 }
 
 #[test]
 fn a_double_click_on_a_curve_takes_its_first_click_back_and_leaves_the_view() {
     let mut harness = harness(three_curves());
     let from = empty_spot(&harness);
-    drag(&mut harness, &[from, from + vec2(40.0, 0.0)], PointerButton::Primary);
+    drag(
+        &mut harness,
+        &[from, from + vec2(40.0, 0.0)],
+        PointerButton::Primary,
+    );
     let panned = harness.state().view.omega_range();
     let at = point_on(&harness, 1, 60);
     click(&mut harness, at);
     click(&mut harness, at);
-    assert_eq!(clicks(&harness), [BodeEvent::Clicked(numbered(2)), BodeEvent::TakenBack(numbered(2))]);
+    assert_eq!(
+        clicks(&harness),
+        [
+            BodeEvent::Clicked(numbered(2)),
+            BodeEvent::TakenBack(numbered(2))
+        ]
+    );
     harness.run();
     assert_eq!(harness.state().view.omega_range(), panned);
 }
@@ -256,14 +347,21 @@ fn values_are_fitted_to_other_curves_until_the_engineer_zooms_them() {
     let fitted = heights(&harness);
     assert!(fitted.min > first.min + 20.0, "{first:?} {fitted:?}");
     let from = empty_spot_of_one(&harness);
-    drag(&mut harness, &[from, from + vec2(0.0, 30.0)], PointerButton::Primary);
+    drag(
+        &mut harness,
+        &[from, from + vec2(0.0, 30.0)],
+        PointerButton::Primary,
+    );
     let panned = heights(&harness);
     assert_ne!(panned, fitted);
     other(&mut harness, 0.0);
     assert_eq!(heights(&harness), panned, "zoomed by hand");
     harness.state_mut().view.request_fit();
     harness.run();
-    assert!(heights(&harness).max < 5.0, "a fit of everything takes no notice of it");
+    assert!(
+        heights(&harness).max < 5.0,
+        "a fit of everything takes no notice of it"
+    );
 }
 
 #[test]
@@ -286,14 +384,26 @@ fn a_sideways_wheel_leaves_the_values_to_be_fitted() {
 #[test]
 fn the_axis_follows_the_frequencies_of_the_curves_unless_the_engineer_zoomed() {
     let mut harness = harness(three_curves());
-    let omega: Arc<[f64]> = (0..120).map(|k| 3.0 * (200.0f64 / 3.0).powf(f64::from(k) / 119.0)).collect();
-    let others = BodeCurve { omega, ..lag(1, 0.0, 1.0, Role::Nominal) };
+    let omega: Arc<[f64]> = (0..120)
+        .map(|k| 3.0 * (200.0f64 / 3.0).powf(f64::from(k) / 119.0))
+        .collect();
+    let others = BodeCurve {
+        omega,
+        ..lag(1, 0.0, 1.0, Role::Nominal)
+    };
     harness.state_mut().curves = vec![others];
     harness.run();
     let followed = harness.state().view.omega_range();
-    assert!((followed.0 - 3.0).abs() < 1e-9 && (followed.1 - 200.0).abs() < 1e-9, "{followed:?}");
+    assert!(
+        (followed.0 - 3.0).abs() < 1e-9 && (followed.1 - 200.0).abs() < 1e-9,
+        "{followed:?}"
+    );
     let from = empty_spot_of_one(&harness);
-    drag(&mut harness, &[from, from + vec2(30.0, 0.0)], PointerButton::Primary);
+    drag(
+        &mut harness,
+        &[from, from + vec2(30.0, 0.0)],
+        PointerButton::Primary,
+    );
     let panned = harness.state().view.omega_range();
     harness.state_mut().curves = three_curves();
     harness.run();
@@ -303,11 +413,18 @@ fn the_axis_follows_the_frequencies_of_the_curves_unless_the_engineer_zoomed() {
 #[test]
 fn values_that_are_not_finite_leave_gaps_and_nothing_panics() {
     let mut curves = three_curves();
-    curves[0].magnitude_db =
-        curves[0].magnitude_db.iter().enumerate().map(|(k, db)| if k % 7 == 0 { f64::NAN } else { *db }).collect();
+    curves[0].magnitude_db = curves[0]
+        .magnitude_db
+        .iter()
+        .enumerate()
+        .map(|(k, db)| if k % 7 == 0 { f64::NAN } else { *db })
+        .collect();
     curves[1].magnitude_db = vec![f64::NEG_INFINITY; 120].into();
     curves[2].phase_deg = vec![f64::NAN; 120].into();
-    curves.push(BodeCurve { omega: vec![0.0, -1.0].into(), ..lag(4, 0.0, 1.0, Role::Identified) });
+    curves.push(BodeCurve {
+        omega: vec![0.0, -1.0].into(),
+        ..lag(4, 0.0, 1.0, Role::Identified)
+    });
     let mut harness = harness(curves);
     let at = point_on(&harness, 0, 59);
     click(&mut harness, at);
@@ -324,7 +441,13 @@ fn without_curves_there_is_a_message() {
 #[test]
 fn every_size_can_be_drawn() {
     let mut harness = harness(three_curves());
-    for size in [vec2(40.0, 40.0), vec2(150.0, 140.0), vec2(320.0, 200.0), vec2(2000.0, 150.0), vec2(160.0, 1200.0)] {
+    for size in [
+        vec2(40.0, 40.0),
+        vec2(150.0, 140.0),
+        vec2(320.0, 200.0),
+        vec2(2000.0, 150.0),
+        vec2(160.0, 1200.0),
+    ] {
         harness.set_size(size);
         harness.run();
     }
@@ -336,8 +459,14 @@ fn a_chip_with_alt_shows_its_role_alone_and_with_shift_in_front() {
     let mut harness = harness(three_curves());
     let chip = harness.get_by_label("Show nominal").rect().center();
     for (modifiers, event) in [
-        (Modifiers::ALT, BodeEvent::Display(CurveCommand::ShowRoleAlone(Role::Nominal))),
-        (Modifiers::SHIFT, BodeEvent::Display(CurveCommand::RaiseRole(Role::Nominal))),
+        (
+            Modifiers::ALT,
+            BodeEvent::Display(CurveCommand::ShowRoleAlone(Role::Nominal)),
+        ),
+        (
+            Modifiers::SHIFT,
+            BodeEvent::Display(CurveCommand::RaiseRole(Role::Nominal)),
+        ),
     ] {
         harness.event(Event::ModifiersChanged(modifiers));
         press(&mut harness, chip, PointerButton::Primary, modifiers);
@@ -353,7 +482,12 @@ fn every_role_has_a_chip_that_is_a_switch_and_a_hidden_curve_is_neither_drawn_no
     let mut harness = harness(three_curves());
     harness.get_by_label("Show perturbed").click();
     harness.run();
-    assert_eq!(harness.state().events, [BodeEvent::Display(CurveCommand::ToggleRole(Role::Perturbed))]);
+    assert_eq!(
+        harness.state().events,
+        [BodeEvent::Display(CurveCommand::ToggleRole(
+            Role::Perturbed
+        ))]
+    );
     let at = point_on(&harness, 1, 60);
     harness.state_mut().hidden_roles.insert(Role::Perturbed);
     harness.state_mut().curves[1].hidden = true;
@@ -367,12 +501,24 @@ fn every_role_has_a_chip_that_is_a_switch_and_a_hidden_curve_is_neither_drawn_no
 fn a_box_drawn_with_shift_names_the_curves_it_touches_and_does_not_pan() {
     let mut harness = harness(three_curves());
     let before = harness.state().view.omega_range();
-    let (from, to) = (point_on(&harness, 0, 60) + vec2(-20.0, 30.0), point_on(&harness, 1, 60) + vec2(20.0, -20.0));
+    let (from, to) = (
+        point_on(&harness, 0, 60) + vec2(-20.0, 30.0),
+        point_on(&harness, 1, 60) + vec2(20.0, -20.0),
+    );
     harness.event(Event::ModifiersChanged(Modifiers::SHIFT));
-    drag(&mut harness, &[from, from.lerp(to, 0.5), to], PointerButton::Primary);
+    drag(
+        &mut harness,
+        &[from, from.lerp(to, 0.5), to],
+        PointerButton::Primary,
+    );
     harness.event(Event::ModifiersChanged(Modifiers::NONE));
     harness.run();
-    assert!(harness.state().events.contains(&BodeEvent::Boxed(vec![numbered(1), numbered(2)])));
+    assert!(
+        harness
+            .state()
+            .events
+            .contains(&BodeEvent::Boxed(vec![numbered(1), numbered(2)]))
+    );
     assert_eq!(harness.state().view.omega_range(), before);
 }
 
@@ -386,7 +532,11 @@ fn a_secondary_click_on_a_curve_says_what_can_be_done_with_it() {
     harness.get_by_label("Reject model").click();
     harness.run();
     let wished = BodeEvent::Wished(numbered(2), CurveWish::RejectOrRestore);
-    assert!(harness.state().events.contains(&wished), "{:?}", harness.state().events);
+    assert!(
+        harness.state().events.contains(&wished),
+        "{:?}",
+        harness.state().events
+    );
     assert_eq!(clicks(&harness), []);
 }
 
@@ -404,19 +554,35 @@ fn a_secondary_click_on_the_ground_marks_the_frequency_there() {
         BodeEvent::Display(CurveCommand::PinCursor(omega)) => Some(*omega),
         _ => None,
     });
-    assert!(marked.is_some_and(|marked| (marked / omega - 1.0).abs() < 1e-3), "{marked:?} {omega}");
+    assert!(
+        marked.is_some_and(|marked| (marked / omega - 1.0).abs() < 1e-3),
+        "{marked:?} {omega}"
+    );
 }
 
 /// Lines of many points that the last frame drew in place of an image.
 fn long_lines(harness: &Harness<'_, Model>) -> usize {
-    let is_long = |shape: &egui::Shape| matches!(shape, egui::Shape::Path(path) if path.points.len() > 10);
-    harness.output().shapes.iter().filter(|clipped| is_long(&clipped.shape)).count()
+    let is_long =
+        |shape: &egui::Shape| matches!(shape, egui::Shape::Path(path) if path.points.len() > 10);
+    harness
+        .output()
+        .shapes
+        .iter()
+        .filter(|clipped| is_long(&clipped.shape))
+        .count()
 }
 
 #[test]
 fn three_hundred_perturbed_curves_at_rest_are_one_image_and_the_one_pointed_at_a_line_on_top() {
     let mut curves = three_curves();
-    curves.extend((0..300u32).map(|k| lag(u64::from(k) + 10, -3.0 - 0.01 * f64::from(k), 1.0, Role::Perturbed)));
+    curves.extend((0..300u32).map(|k| {
+        lag(
+            u64::from(k) + 10,
+            -3.0 - 0.01 * f64::from(k),
+            1.0,
+            Role::Perturbed,
+        )
+    }));
     let mut harness = harness(curves);
     // Corrected, in both panes; dashes and dots of the nominal model are short.
     assert_eq!(long_lines(&harness), 2);

@@ -16,7 +16,11 @@ use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 
 /// The curve of a physics model with this number for a name.
 pub(super) fn numbered(number: u64) -> CurveId {
-    CurveId::Model(ModelId::new(ConditionId(1), BundleKind::Physics, number.to_string()))
+    CurveId::Model(ModelId::new(
+        ConditionId(1),
+        BundleKind::Physics,
+        number.to_string(),
+    ))
 }
 
 /// A curve of three values, an octave apart, the same in both panes.
@@ -26,11 +30,21 @@ pub(super) fn sample_curve(id: u64, values: &[f64]) -> BodeCurve {
 }
 
 /// Presses and releases a button at `at`.
-fn press<State>(harness: &mut Harness<'_, State>, at: Pos2, button: PointerButton, modifiers: Modifiers) {
+fn press<State>(
+    harness: &mut Harness<'_, State>,
+    at: Pos2,
+    button: PointerButton,
+    modifiers: Modifiers,
+) {
     harness.hover_at(at);
     harness.step();
     for pressed in [true, false] {
-        harness.event(Event::PointerButton { pos: at, button, pressed, modifiers });
+        harness.event(Event::PointerButton {
+            pos: at,
+            button,
+            pressed,
+            modifiers,
+        });
         harness.step();
     }
     harness.step();
@@ -47,22 +61,40 @@ fn drag<State>(harness: &mut Harness<'_, State>, path: &[Pos2], button: PointerB
     };
     harness.hover_at(*first);
     harness.step();
-    harness.event(Event::PointerButton { pos: *first, button, pressed: true, modifiers: Modifiers::NONE });
+    harness.event(Event::PointerButton {
+        pos: *first,
+        button,
+        pressed: true,
+        modifiers: Modifiers::NONE,
+    });
     harness.step();
     for at in path {
         harness.hover_at(*at);
         harness.step();
     }
-    harness.event(Event::PointerButton { pos: *last, button, pressed: false, modifiers: Modifiers::NONE });
+    harness.event(Event::PointerButton {
+        pos: *last,
+        button,
+        pressed: false,
+        modifiers: Modifiers::NONE,
+    });
     harness.step();
     harness.step();
 }
 
 /// A first-order lag of this gain \[dB\] and corner frequency \[rad/s\] on 120 frequencies from 0.3 to 20 rad/s.
 fn lag(id: u64, gain_db: f64, corner: f64, role: Role) -> BodeCurve {
-    let omega: Arc<[f64]> = (0..120).map(|k| 0.3 * (20.0f64 / 0.3).powf(f64::from(k) / 119.0)).collect();
-    let magnitude_db = omega.iter().map(|w| gain_db - 10.0 * (1.0 + (w / corner).powi(2)).log10()).collect();
-    let phase_deg = omega.iter().map(|w| -(w / corner).atan().to_degrees()).collect();
+    let omega: Arc<[f64]> = (0..120)
+        .map(|k| 0.3 * (20.0f64 / 0.3).powf(f64::from(k) / 119.0))
+        .collect();
+    let magnitude_db = omega
+        .iter()
+        .map(|w| gain_db - 10.0 * (1.0 + (w / corner).powi(2)).log10())
+        .collect();
+    let phase_deg = omega
+        .iter()
+        .map(|w| -(w / corner).atan().to_degrees())
+        .collect();
     BodeCurve {
         id: numbered(id),
         label: format!("model {id}"),

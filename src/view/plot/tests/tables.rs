@@ -13,9 +13,14 @@ struct Model {
 }
 
 fn overview_harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
-    let model = Model { curves, ..Model::default() };
-    let mut harness =
-        Harness::builder().with_size(vec2(800.0, 600.0)).with_context_setup(palette::apply).build_ui_state(
+    let model = Model {
+        curves,
+        ..Model::default()
+    };
+    let mut harness = Harness::builder()
+        .with_size(vec2(800.0, 600.0))
+        .with_context_setup(palette::apply)
+        .build_ui_state(
             |ui, model: &mut Model| {
                 let inputs = ["LON", "LAT", "PED", "COL"].map(String::from);
                 let outputs = ["P", "Q", "R", "NX", "NY", "NZ"].map(String::from);
@@ -47,9 +52,18 @@ fn overview_harness(curves: Vec<BodeCurve>) -> Harness<'static, Model> {
 #[test]
 fn a_click_on_a_small_plot_names_its_pair() {
     let mut harness = overview_harness(vec![lag(1, 0.0, 1.0, Role::Nominal)]);
-    let at = harness.state().overview.screen_position(Pair::new(4, 2)).unwrap();
+    let at = harness
+        .state()
+        .overview
+        .screen_position(Pair::new(4, 2))
+        .unwrap();
     click(&mut harness, at);
-    assert!(harness.state().pairs.contains(&OverviewEvent::PairClicked(Pair::new(4, 2))));
+    assert!(
+        harness
+            .state()
+            .pairs
+            .contains(&OverviewEvent::PairClicked(Pair::new(4, 2)))
+    );
 }
 
 #[test]
@@ -57,7 +71,12 @@ fn a_small_plot_is_found_by_its_name() {
     let mut harness = overview_harness(vec![lag(1, 0.0, 1.0, Role::Nominal)]);
     harness.get_by_label("LON → Q: J 75").click();
     harness.run();
-    assert!(harness.state().pairs.contains(&OverviewEvent::PairClicked(Pair::new(1, 0))));
+    assert!(
+        harness
+            .state()
+            .pairs
+            .contains(&OverviewEvent::PairClicked(Pair::new(1, 0)))
+    );
 }
 
 #[test]

@@ -32,7 +32,9 @@ pub(crate) const BLACKBOX: Importer = Importer {
     endings: &["bbl", "bfl"],
     recognises: |bytes, _| bytes.starts_with(MARK),
     read: |bytes, path, budget| {
-        read_blackbox(bytes, budget).map(Contents::Logs).map_err(|fault| FileError::variables(path, fault))
+        read_blackbox(bytes, budget)
+            .map(Contents::Logs)
+            .map_err(|fault| FileError::variables(path, fault))
     },
 };
 
@@ -46,23 +48,36 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
     }
     let count = begins.len();
     if count > MOST_RECORDS {
-        return Err(VariableFault::TooMuchWork { variable: String::new(), most_millions: 0 });
+        return Err(VariableFault::TooMuchWork {
+            variable: String::new(),
+            most_millions: 0,
+        });
     }
     let mut flights = Vec::new();
     let mut without = 0;
     let ends = begins.iter().skip(1).copied().chain([bytes.len()]);
     for (index, (&begin, end)) in begins.iter().zip(ends).enumerate() {
-        let name = if count == 1 { String::new() } else { format!("flight {}", index + 1) };
+        let name = if count == 1 {
+            String::new()
+        } else {
+            format!("flight {}", index + 1)
+        };
         match Flight::read(&bytes[begin..end], &name, budget)? {
             Some(flight) => flights.push(flight.columns(name, budget)?),
             None => without += 1,
         }
     }
     if flights.is_empty() {
-        return Err(VariableFault::damaged("", "a blackbox without a flight of 50 frames", 0));
+        return Err(VariableFault::damaged(
+            "",
+            "a blackbox without a flight of 50 frames",
+            0,
+        ));
     }
     if without > 0 {
-        flights[0].notes.push(format!("{without} of {count} flights in the file have hardly any frames: left out"));
+        flights[0].notes.push(format!(
+            "{without} of {count} flights in the file have hardly any frames: left out"
+        ));
     }
     Ok(flights)
 }
@@ -81,15 +96,21 @@ impl Heading {
         let mut heading = Self::default();
         let mut at = 0;
         while bytes[at..].starts_with(b"H ") {
-            let Some(length) = bytes[at..].iter().position(|byte| *byte == b'\n') else { break };
+            let Some(length) = bytes[at..].iter().position(|byte| *byte == b'\n') else {
+                break;
+            };
             let line = String::from_utf8_lossy(&bytes[at + 2..at + length]);
             if let Some((key, value)) = line.split_once(':') {
-                heading.lines.insert(key.to_owned(), value.trim().to_owned());
+                heading
+                    .lines
+                    .insert(key.to_owned(), value.trim().to_owned());
             }
             at += length + 1;
         }
         for kind in *b"IPSGH" {
-            heading.frames.insert(kind, heading.fields(char::from(kind)));
+            heading
+                .frames
+                .insert(kind, heading.fields(char::from(kind)));
         }
         // What is told from whole frames is called as they are.
         let whole = heading.frames[&b'I'].clone();
@@ -110,13 +131,27 @@ impl Heading {
 
     fn fields(&self, kind: char) -> FrameFields {
         let list = |what: &str| {
-            let line = self.lines.get(&format!("Field {kind} {what}")).map_or("", String::as_str);
-            line.split(',').filter(|cell| !cell.is_empty()).map(str::to_owned).collect::<Vec<String>>()
+            let line = self
+                .lines
+                .get(&format!("Field {kind} {what}"))
+                .map_or("", String::as_str);
+            line.split(',')
+                .filter(|cell| !cell.is_empty())
+                .map(str::to_owned)
+                .collect::<Vec<String>>()
         };
-        let numbers = |what: &str| list(what).iter().map(|cell| cell.parse().unwrap_or(u8::MAX)).collect::<Vec<u8>>();
+        let numbers = |what: &str| {
+            list(what)
+                .iter()
+                .map(|cell| cell.parse().unwrap_or(u8::MAX))
+                .collect::<Vec<u8>>()
+        };
         FrameFields {
             names: list("name"),
-            signed: numbers("signed").into_iter().map(|signed| signed == 1).collect(),
+            signed: numbers("signed")
+                .into_iter()
+                .map(|signed| signed == 1)
+                .collect(),
             predictors: numbers("predictor"),
             encodings: numbers("encoding"),
         }
@@ -148,7 +183,11 @@ enum Frame {
 
 impl Flight {
     /// The frames of a flight; none where there are hardly any.
-    fn read(bytes: &[u8], name: &str, budget: &ReadingBudget<'_>) -> Result<Option<Self>, VariableFault> {
+    fn read(
+        bytes: &[u8],
+        name: &str,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Option<Self>, VariableFault> {
         let (heading, mut at) = Heading::read(bytes);
         budget.take(at as u64, 2, name)?;
         let version = heading.lines.get("Data version").map_or("", String::as_str);
@@ -157,33 +196,56 @@ impl Flight {
                 "a blackbox of data version \"{}\", or of fields of a later one",
                 &version.chars().take(9).collect::<String>()
             );
-            return Err(VariableFault::unsupported(name, what, "save it as CSV: blackbox_decode \"{file}\""));
+            return Err(VariableFault::unsupported(
+                name,
+                what,
+                "save it as CSV: blackbox_decode \"{file}\"",
+            ));
         };
         let time = fields.names.iter().position(|field| field == "time");
         let count = fields.names.len();
-        let mut flight = Self { values: vec![Vec::new(); count], modes: Default::default(), damaged: 0, heading };
+        let mut flight = Self {
+            values: vec![Vec::new(); count],
+            modes: Default::default(),
+            damaged: 0,
+            heading,
+        };
         let mut before: [Option<Vec<i64>>; 2] = [None, None];
         while at < bytes.len() {
             budget.work(count as u64, name)?;
             let mut bits = Bits::new(bytes, at + 1);
             let frame = flight.heading.parse(bytes[at], &mut bits, &before);
             // The next one begins where it ends.
-            let follows = bytes.get(bits.at).is_none_or(|next| b"IPSGHE".contains(next));
+            let follows = bytes
+                .get(bits.at)
+                .is_none_or(|next| b"IPSGHE".contains(next));
             let is_next = |frame: &Vec<i64>| {
-                let (Some(time), Some(last)) = (time, &before[0]) else { return true };
+                let (Some(time), Some(last)) = (time, &before[0]) else {
+                    return true;
+                };
                 (0..=LONGEST_STEP).contains(&(frame[time] - last[time]))
             };
             match frame.filter(|_| follows) {
                 Some(Frame::End) => break,
                 Some(Frame::Main(values)) if is_next(&values) => {
                     budget.take(count as u64, 8, name)?;
-                    flight.values.iter_mut().zip(&values).for_each(|(column, value)| column.push(*value as f64));
-                    let earlier = if bytes[at] == b'I' { None } else { before[0].take() };
+                    flight
+                        .values
+                        .iter_mut()
+                        .zip(&values)
+                        .for_each(|(column, value)| column.push(*value as f64));
+                    let earlier = if bytes[at] == b'I' {
+                        None
+                    } else {
+                        before[0].take()
+                    };
                     before = [Some(values), earlier];
                     at = bits.at;
                 }
                 Some(Frame::Slow(values)) => {
-                    if let (Some(time), Some(flags), Some(last)) = (time, values.first(), &before[0]) {
+                    if let (Some(time), Some(flags), Some(last)) =
+                        (time, values.first(), &before[0])
+                    {
                         budget.take(2, 8, name)?;
                         flight.modes.0.push(last[time] as f64);
                         flight.modes.1.push(*flags as f64);
@@ -204,36 +266,59 @@ impl Flight {
 
     /// The columns of the flight, with the sums of the controller's terms.
     fn columns(self, name: String, budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
-        let names = self.heading.frames.get(&b'I').map_or_else(Vec::new, |fields| fields.names.clone());
+        let names = self
+            .heading
+            .frames
+            .get(&b'I')
+            .map_or_else(Vec::new, |fields| fields.names.clone());
         let mut columns: Vec<RecordColumn> = Vec::new();
         for (field, values) in names.iter().zip(self.values) {
             let unit = (field == "time").then(|| "µs".to_owned());
             if field != "loopIteration" {
-                columns.push(RecordColumn { unit, ..RecordColumn::new(field.clone(), values) });
+                columns.push(RecordColumn {
+                    unit,
+                    ..RecordColumn::new(field.clone(), values)
+                });
             }
         }
         for axis in 0..3 {
             let is_term = |column: &&RecordColumn| {
-                ["axisP", "axisI", "axisD", "axisF"].iter().any(|term| column.name == format!("{term}[{axis}]"))
+                ["axisP", "axisI", "axisD", "axisF"]
+                    .iter()
+                    .any(|term| column.name == format!("{term}[{axis}]"))
             };
             let terms: Vec<&RecordColumn> = columns.iter().filter(is_term).collect();
             if let Some(first) = terms.first() {
                 let rows = first.values.len();
                 budget.take(rows as u64, 8, &name)?;
-                let sum = (0..rows).map(|row| terms.iter().map(|term| term.values[row]).sum()).collect();
+                let sum = (0..rows)
+                    .map(|row| terms.iter().map(|term| term.values[row]).sum())
+                    .collect();
                 columns.push(RecordColumn::new(format!("axisSum[{axis}]"), sum));
             }
         }
-        let mut notes = vec!["a log of Betaflight; axisSum is the sum of the terms of the controller".to_owned()];
+        let mut notes = vec![
+            "a log of Betaflight; axisSum is the sum of the terms of the controller".to_owned(),
+        ];
         // 1 as an IEEE 754 number: rates are in deg/s.
-        let is_degrees = self.heading.lines.get("gyro_scale").is_some_and(|scale| scale == "0x3f800000");
+        let is_degrees = self
+            .heading
+            .lines
+            .get("gyro_scale")
+            .is_some_and(|scale| scale == "0x3f800000");
         if is_degrees {
             notes.extend(give_meanings(&mut columns, &BETAFLIGHT));
         } else {
-            notes.push("gyro_scale is not 1: the unit of gyroADC is not known, no channels are proposed".to_owned());
+            notes.push(
+                "gyro_scale is not 1: the unit of gyroADC is not known, no channels are proposed"
+                    .to_owned(),
+            );
         }
         if self.damaged > 0 {
-            notes.push(format!("{} frames are damaged: left out, up to the next whole one", self.damaged));
+            notes.push(format!(
+                "{} frames are damaged: left out, up to the next whole one",
+                self.damaged
+            ));
         }
         let seconds: Vec<f64> = self.modes.0.iter().map(|time| time * 1e-6).collect();
         // `flightModeFlags`: 1 is angle, 2 is horizon, neither is acro.
@@ -244,18 +329,31 @@ impl Flight {
         };
         let modes = mode_spans(&seconds, self.modes.1, named);
         notes.extend(modes_note(&modes));
-        Ok(Columns { notes, modes, ..Columns::new(name, columns) })
+        Ok(Columns {
+            notes,
+            modes,
+            ..Columns::new(name, columns)
+        })
     }
 }
 
 impl Heading {
     /// The frame of a letter; none where it is none, or damaged.
-    fn parse(&self, kind: u8, bits: &mut Bits<'_>, before: &[Option<Vec<i64>>; 2]) -> Option<Frame> {
+    fn parse(
+        &self,
+        kind: u8,
+        bits: &mut Bits<'_>,
+        before: &[Option<Vec<i64>>; 2],
+    ) -> Option<Frame> {
         if kind == b'E' {
             return event(bits);
         }
         let fields = self.frame(kind)?;
-        let before = if kind == b'P' { [Some(before[0].as_ref()?), before[1].as_ref()] } else { [None, None] };
+        let before = if kind == b'P' {
+            [Some(before[0].as_ref()?), before[1].as_ref()]
+        } else {
+            [None, None]
+        };
         let differences = fields.differences(bits)?;
         Some(match kind {
             b'G' | b'H' => Frame::Other,
@@ -278,7 +376,9 @@ fn event(bits: &mut Bits<'_>) -> Option<Frame> {
             _ => drop((bits.byte()?, bits.byte()?, bits.byte()?, bits.byte()?)),
         },
         255 => {
-            let is_end = b"End of log".iter().all(|letter| bits.byte() == Some(*letter));
+            let is_end = b"End of log"
+                .iter()
+                .all(|letter| bits.byte() == Some(*letter));
             return is_end.then_some(Frame::End);
         }
         _ => return None,
@@ -395,7 +495,11 @@ impl<'b> Bits<'b> {
                 };
                 bits = bits << 4 | u32::from(next);
             }
-            *value = if halves == 0 { 0 } else { extended(bits, 4 * halves) };
+            *value = if halves == 0 {
+                0
+            } else {
+                extended(bits, 4 * halves)
+            };
         }
         Some(values)
     }
@@ -413,7 +517,11 @@ impl FrameFields {
         let count = self.names.len();
         let known = |encoding: &u8| matches!(encoding, 0 | 1 | 3 | 6 | 7 | 8 | 9);
         (1..=MOST_FIELDS).contains(&count)
-            && [self.signed.len(), self.predictors.len(), self.encodings.len()] == [count; 3]
+            && [
+                self.signed.len(),
+                self.predictors.len(),
+                self.encodings.len(),
+            ] == [count; 3]
             && self.encodings.iter().all(known)
     }
 
@@ -429,10 +537,18 @@ impl FrameFields {
                 3 => values.push(i64::from(bits.negative_14()?)),
                 6 => {
                     // As many as follow one another, up to eight; a bit for each says whether it is more than 0.
-                    let count = self.encodings[from..].iter().take(8).take_while(|other| **other == encoding).count();
+                    let count = self.encodings[from..]
+                        .iter()
+                        .take(8)
+                        .take_while(|other| **other == encoding)
+                        .count();
                     let tags = if count == 1 { 1 } else { bits.byte()? };
                     for index in 0..count {
-                        values.push(if tags >> index & 1 == 1 { i64::from(bits.signed()?) } else { 0 });
+                        values.push(if tags >> index & 1 == 1 {
+                            i64::from(bits.signed()?)
+                        } else {
+                            0
+                        });
                     }
                 }
                 7 => values.extend(bits.three()?.map(i64::from)),
@@ -445,17 +561,31 @@ impl FrameFields {
     }
 
     /// The numbers of a frame by their predictions from the frame before and the one before that.
-    pub(super) fn values(&self, mut values: Vec<i64>, before: [Option<&Vec<i64>>; 2], known: Known) -> Vec<i64> {
+    pub(super) fn values(
+        &self,
+        mut values: Vec<i64>,
+        before: [Option<&Vec<i64>>; 2],
+        known: Known,
+    ) -> Vec<i64> {
         let motor = self.names.iter().position(|name| name == "motor[0]");
         for at in 0..values.len() {
-            let last = before[0].and_then(|frame| frame.get(at)).copied().unwrap_or(0);
-            let earlier = before[1].and_then(|frame| frame.get(at)).copied().unwrap_or(last);
+            let last = before[0]
+                .and_then(|frame| frame.get(at))
+                .copied()
+                .unwrap_or(0);
+            let earlier = before[1]
+                .and_then(|frame| frame.get(at))
+                .copied()
+                .unwrap_or(last);
             let predicted = match self.predictors[at] {
                 1 => last,
                 2 => 2 * last - earlier,
                 3 => (last + earlier) / 2,
                 4 => known.least_throttle,
-                5 => motor.and_then(|motor| values.get(motor)).copied().unwrap_or(0),
+                5 => motor
+                    .and_then(|motor| values.get(motor))
+                    .copied()
+                    .unwrap_or(0),
                 6 => last + 1,
                 8 => 1500,
                 9 => known.battery,
@@ -464,7 +594,11 @@ impl FrameFields {
             };
             // As the logger reckons, in 32 bits.
             let low = values[at].wrapping_add(predicted) as u32;
-            values[at] = if self.signed[at] { i64::from(low.cast_signed()) } else { i64::from(low) };
+            values[at] = if self.signed[at] {
+                i64::from(low.cast_signed())
+            } else {
+                i64::from(low)
+            };
         }
         values
     }
@@ -495,11 +629,26 @@ mod tests {
         for frame in 0..frames {
             if frame % 10 == 0 {
                 bytes.push(b'I');
-                bytes.extend([packed(frame), packed(5000 + 1000 * frame), signed(3), signed(4)].concat());
+                bytes.extend(
+                    [
+                        packed(frame),
+                        packed(5000 + 1000 * frame),
+                        signed(3),
+                        signed(4),
+                    ]
+                    .concat(),
+                );
                 bytes.extend(signed(frame as i32));
             } else {
                 let first = frame % 10 == 1;
-                let (last, earlier) = (frame as i32 - 1, if first { frame as i32 - 1 } else { frame as i32 - 2 });
+                let (last, earlier) = (
+                    frame as i32 - 1,
+                    if first {
+                        frame as i32 - 1
+                    } else {
+                        frame as i32 - 2
+                    },
+                );
                 bytes.push(b'P');
                 // After a whole frame the time is predicted to stand still.
                 bytes.extend([signed(if first { 1000 } else { 0 }), vec![0]].concat());
@@ -517,17 +666,39 @@ mod tests {
     #[test]
     fn every_flight_of_a_file_is_a_record() {
         let flights = read(&[flight(100), flight(70), flight(3)].concat()).unwrap();
-        let names: Vec<&str> = flights.iter().map(|flight| flight.variable.as_str()).collect();
+        let names: Vec<&str> = flights
+            .iter()
+            .map(|flight| flight.variable.as_str())
+            .collect();
         assert_eq!(names, ["flight 1", "flight 2"]);
         let columns = &flights[1].columns;
         let named: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
-        assert_eq!(named, ["time", "axisP[0]", "axisI[0]", "gyroADC[0]", "axisSum[0]"]);
-        let stamps: Vec<f64> = (0..70).map(|frame| 5000.0 + 1000.0 * f64::from(frame)).collect();
-        assert_eq!((&columns[0].values, columns[0].unit.as_deref()), (&stamps, Some("µs")));
-        assert_eq!(columns[3].values, (0..70).map(f64::from).collect::<Vec<_>>());
-        assert_eq!((columns[3].meaning, columns[3].unit.as_deref()), (Some("P"), Some("deg/s")));
+        assert_eq!(
+            named,
+            ["time", "axisP[0]", "axisI[0]", "gyroADC[0]", "axisSum[0]"]
+        );
+        let stamps: Vec<f64> = (0..70)
+            .map(|frame| 5000.0 + 1000.0 * f64::from(frame))
+            .collect();
+        assert_eq!(
+            (&columns[0].values, columns[0].unit.as_deref()),
+            (&stamps, Some("µs"))
+        );
+        assert_eq!(
+            columns[3].values,
+            (0..70).map(f64::from).collect::<Vec<_>>()
+        );
+        assert_eq!(
+            (columns[3].meaning, columns[3].unit.as_deref()),
+            (Some("P"), Some("deg/s"))
+        );
         assert!(columns[4].values.iter().all(|sum| *sum == 7.0));
-        assert!(flights[0].notes.iter().any(|note| note.starts_with("1 of 3 flights")));
+        assert!(
+            flights[0]
+                .notes
+                .iter()
+                .any(|note| note.starts_with("1 of 3 flights"))
+        );
     }
 
     #[test]
@@ -558,26 +729,43 @@ mod frame_tests {
     fn packed_numbers_are_those_of_the_format_s_description() {
         assert_eq!(Bits::new(&[0xff, 0x01], 0).unsigned(), Some(255));
         assert_eq!(Bits::new(&[0x80; 6], 0).unsigned(), None, "it does not end");
-        assert_eq!([0, 1, 2, 3].map(|byte| Bits::new(&[byte], 0).signed()), [0, -1, 1, -2].map(Some));
+        assert_eq!(
+            [0, 1, 2, 3].map(|byte| Bits::new(&[byte], 0).signed()),
+            [0, -1, 1, -2].map(Some)
+        );
         assert_eq!(Bits::new(&[0xff, 0x3f], 0).negative_14(), Some(-0x1fff));
         assert_eq!(Bits::new(&[0b0001_1011], 0).three(), Some([1, -2, -1]));
-        assert_eq!(Bits::new(&[0b0100_0111, 0x9f], 0).three(), Some([7, -7, -1]));
-        assert_eq!(Bits::new(&[0b1100_0001, 0x34, 0x12, 0xff, 0x05], 0).three(), Some([0x1234, -1, 5]));
+        assert_eq!(
+            Bits::new(&[0b0100_0111, 0x9f], 0).three(),
+            Some([7, -7, -1])
+        );
+        assert_eq!(
+            Bits::new(&[0b1100_0001, 0x34, 0x12, 0xff, 0x05], 0).three(),
+            Some([0x1234, -1, 5])
+        );
         // 4 bits, 8 bits, none, 16 bits: 1, -2, 0, 0x1234.
-        assert_eq!(Bits::new(&[0b1100_1001, 0x1f, 0xe1, 0x23, 0x40], 0).four(), Some([1, -2, 0, 0x1234]));
+        assert_eq!(
+            Bits::new(&[0b1100_1001, 0x1f, 0xe1, 0x23, 0x40], 0).four(),
+            Some([1, -2, 0, 0x1234])
+        );
         assert_eq!(Bits::new(&[0b1100_1001, 0x1f], 0).four(), None);
     }
 
     #[test]
     fn predictions_take_the_frames_before() {
         let fields = FrameFields {
-            names: ["time", "a", "b", "motor[0]", "motor[1]"].map(str::to_owned).to_vec(),
+            names: ["time", "a", "b", "motor[0]", "motor[1]"]
+                .map(str::to_owned)
+                .to_vec(),
             signed: vec![false, true, true, false, false],
             predictors: vec![2, 1, 3, 11, 5],
             encodings: vec![0; 5],
         };
         assert!(fields.is_whole());
-        let known = Known { least_motor: 158, ..Known::default() };
+        let known = Known {
+            least_motor: 158,
+            ..Known::default()
+        };
         let (last, earlier) = (vec![200, -5, 8, 0, 0], vec![100, 0, 4, 0, 0]);
         let values = fields.values(vec![1, 1, 1, 2, 3], [Some(&last), Some(&earlier)], known);
         assert_eq!(values, [301, -4, 7, 160, 163]);

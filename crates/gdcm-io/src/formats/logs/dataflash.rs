@@ -28,7 +28,8 @@ pub(crate) const DATAFLASH: Importer = Importer {
     endings: &["bin"],
     recognises: |bytes, _| bytes.starts_with(&[MARK[0], MARK[1], FORMAT]),
     read: |bytes, path, budget| {
-        let columns = read_dataflash(bytes, budget).map_err(|fault| FileError::variables(path, fault))?;
+        let columns =
+            read_dataflash(bytes, budget).map_err(|fault| FileError::variables(path, fault))?;
         Ok(Contents::Logs(vec![columns]))
     },
 };
@@ -69,7 +70,10 @@ impl FieldKind {
             'Z' | 'a' => return Some(Self::Other(64)),
             _ => return None,
         };
-        Some(Self::Number(StoredNumber::little_endian(class, size), factor))
+        Some(Self::Number(
+            StoredNumber::little_endian(class, size),
+            factor,
+        ))
     }
 
     fn size(self) -> usize {
@@ -102,7 +106,12 @@ impl Layout {
             offset += kind.size();
         }
         let is_whole = !name.is_empty() && names.split(',').count() <= letters.chars().count();
-        is_whole.then(|| Self { name: name.to_owned(), fields, units: Vec::new(), multipliers: Vec::new() })
+        is_whole.then(|| Self {
+            name: name.to_owned(),
+            fields,
+            units: Vec::new(),
+            multipliers: Vec::new(),
+        })
     }
 }
 
@@ -146,21 +155,51 @@ impl<'l> Taken<'l> {
             return None;
         }
         let place = |wanted: &str| layout.fields.iter().position(|(.., name)| name == wanted);
-        let stamp = place("TimeUS").map(|at| (at, 1e-6)).or_else(|| place("TimeMS").map(|at| (at, 1e-3)))?;
-        let instance = layout.units.iter().position(|unit| *unit == '#').filter(|at| *at < layout.fields.len());
+        let stamp = place("TimeUS")
+            .map(|at| (at, 1e-6))
+            .or_else(|| place("TimeMS").map(|at| (at, 1e-3)))?;
+        let instance = layout
+            .units
+            .iter()
+            .position(|unit| *unit == '#')
+            .filter(|at| *at < layout.fields.len());
         let number = |(at, (kind, ..)): (usize, &(FieldKind, usize, String))| {
-            let FieldKind::Number(_, factor) = *kind else { return None };
+            let FieldKind::Number(_, factor) = *kind else {
+                return None;
+            };
             if at == stamp.0 || Some(at) == instance {
                 return None;
             }
-            let multiplier = layout.multipliers.get(at).and_then(|letter| layouts.multipliers.get(letter));
+            let multiplier = layout
+                .multipliers
+                .get(at)
+                .and_then(|letter| layouts.multipliers.get(letter));
             // The letters of the format that are hundredths say so in the multiplier too.
-            let multiplier = multiplier.copied().filter(|by| factor == 1.0 && *by != 0.0 && by.is_finite());
-            let unit = layout.units.get(at).and_then(|letter| layouts.units.get(letter));
-            Some((at, multiplier.unwrap_or(1.0), unit.map(|unit| spelt(unit)).filter(|unit| !unit.is_empty())))
+            let multiplier = multiplier
+                .copied()
+                .filter(|by| factor == 1.0 && *by != 0.0 && by.is_finite());
+            let unit = layout
+                .units
+                .get(at)
+                .and_then(|letter| layouts.units.get(letter));
+            Some((
+                at,
+                multiplier.unwrap_or(1.0),
+                unit.map(|unit| spelt(unit)).filter(|unit| !unit.is_empty()),
+            ))
         };
-        let numbers: Vec<_> = layout.fields.iter().enumerate().filter_map(number).collect();
-        (!numbers.is_empty()).then_some(Self { layout, stamp, instance, numbers })
+        let numbers: Vec<_> = layout
+            .fields
+            .iter()
+            .enumerate()
+            .filter_map(number)
+            .collect();
+        (!numbers.is_empty()).then_some(Self {
+            layout,
+            stamp,
+            instance,
+            numbers,
+        })
     }
 }
 
@@ -182,20 +221,34 @@ impl Topics {
         value: impl Fn(usize) -> Option<f64>,
         budget: &ReadingBudget<'_>,
     ) -> Result<(), VariableFault> {
-        let Some(time) = value(taken.stamp.0) else { return Ok(()) };
-        let instance = taken.instance.and_then(&value).filter(|of| (0.0..=255.0).contains(of)).unwrap_or(0.0) as u64;
+        let Some(time) = value(taken.stamp.0) else {
+            return Ok(());
+        };
+        let instance = taken
+            .instance
+            .and_then(&value)
+            .filter(|of| (0.0..=255.0).contains(of))
+            .unwrap_or(0.0) as u64;
         let name = &taken.layout.name;
         let topic = match self.by_name.entry((name.clone(), instance)) {
             std::collections::btree_map::Entry::Occupied(known) => known.into_mut(),
             std::collections::btree_map::Entry::Vacant(new) => {
                 budget.take(taken.numbers.len() as u64 + 1, 128, name)?;
-                let full = if instance == 0 { name.clone() } else { format!("{name}[{instance}]") };
-                let field =
-                    |(at, _, unit): &(usize, f64, Option<String>)| (taken.layout.fields[*at].2.clone(), unit.clone());
+                let full = if instance == 0 {
+                    name.clone()
+                } else {
+                    format!("{name}[{instance}]")
+                };
+                let field = |(at, _, unit): &(usize, f64, Option<String>)| {
+                    (taken.layout.fields[*at].2.clone(), unit.clone())
+                };
                 new.insert(TopicSamples::new(full, taken.numbers.iter().map(field)))
             }
         };
-        let values = taken.numbers.iter().map(|(at, factor, _)| value(*at).map_or(f64::NAN, |value| value * factor));
+        let values = taken
+            .numbers
+            .iter()
+            .map(|(at, factor, _)| value(*at).map_or(f64::NAN, |value| value * factor));
         topic.push(time * taken.stamp.1, values, budget)
     }
 
@@ -208,17 +261,35 @@ impl Topics {
         };
         let mut modes = Vec::new();
         if let Some((times, values)) = states("ARM", "ArmState") {
-            modes.extend(mode_spans(&times, values, |state| (state != 0.0).then(|| "armed".to_owned())));
+            modes.extend(mode_spans(&times, values, |state| {
+                (state != 0.0).then(|| "armed".to_owned())
+            }));
         }
-        if let Some((times, values)) = states("MODE", "ModeNum").or_else(|| states("MODE", "Mode")) {
-            modes.extend(mode_spans(&times, values, |mode| Some(format!("mode {mode}"))));
+        if let Some((times, values)) = states("MODE", "ModeNum").or_else(|| states("MODE", "Mode"))
+        {
+            modes.extend(mode_spans(&times, values, |mode| {
+                Some(format!("mode {mode}"))
+            }));
         }
-        let columns = self.by_name.into_values().flat_map(TopicSamples::columns).collect();
-        let mut columns = Columns { notes, ..Columns::new(String::new(), columns) };
+        let columns = self
+            .by_name
+            .into_values()
+            .flat_map(TopicSamples::columns)
+            .collect();
+        let mut columns = Columns {
+            notes,
+            ..Columns::new(String::new(), columns)
+        };
         if columns.columns.is_empty() {
-            return Err(VariableFault::damaged("", "a log without a message that has stamps and numbers", 0));
+            return Err(VariableFault::damaged(
+                "",
+                "a log without a message that has stamps and numbers",
+                0,
+            ));
         }
-        columns.notes.extend(give_meanings(&mut columns.columns, &ARDUPILOT));
+        columns
+            .notes
+            .extend(give_meanings(&mut columns.columns, &ARDUPILOT));
         columns.notes.extend(modes_note(&modes));
         columns.modes = modes;
         Ok(columns)
@@ -235,22 +306,35 @@ fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, V
         describe(kind, content, &mut layouts, lengths);
         Ok(())
     })?;
-    let taken: BTreeMap<u8, Taken<'_>> =
-        layouts.by_type.iter().filter_map(|(kind, layout)| Some((*kind, Taken::of(layout, &layouts)?))).collect();
+    let taken: BTreeMap<u8, Taken<'_>> = layouts
+        .by_type
+        .iter()
+        .filter_map(|(kind, layout)| Some((*kind, Taken::of(layout, &layouts)?)))
+        .collect();
     let mut topics = Topics::default();
-    each_message(bytes, &mut lengths, budget, |kind, content, _| match taken.get(&kind) {
-        None => Ok(()),
-        Some(taken) => {
-            let value = |at: usize| match taken.layout.fields.get(at)? {
-                (FieldKind::Number(number, factor), offset, _) => Some(number.at(content, *offset)? * factor),
-                _ => None,
-            };
-            topics.take(taken, value, budget)
-        }
-    })?;
-    let mut notes = vec!["a log of ArduPilot; time in seconds since the autopilot was started".to_owned()];
+    each_message(
+        bytes,
+        &mut lengths,
+        budget,
+        |kind, content, _| match taken.get(&kind) {
+            None => Ok(()),
+            Some(taken) => {
+                let value = |at: usize| match taken.layout.fields.get(at)? {
+                    (FieldKind::Number(number, factor), offset, _) => {
+                        Some(number.at(content, *offset)? * factor)
+                    }
+                    _ => None,
+                };
+                topics.take(taken, value, budget)
+            }
+        },
+    )?;
+    let mut notes =
+        vec!["a log of ArduPilot; time in seconds since the autopilot was started".to_owned()];
     if skipped > 0 {
-        notes.push(format!("{skipped} bytes between messages are none: left out"));
+        notes.push(format!(
+            "{skipped} bytes between messages are none: left out"
+        ));
     }
     topics.columns(notes)
 }
@@ -284,10 +368,17 @@ fn each_message(
 /// Learns what a message says of others.
 fn describe(kind: u8, content: &[u8], layouts: &mut Layouts, lengths: &mut [usize; 256]) {
     if kind == FORMAT {
-        let Some([of, length]) = array::<2>(content, 0) else { return };
+        let Some([of, length]) = array::<2>(content, 0) else {
+            return;
+        };
         let text = |from: usize, to: usize| letters(content.get(from..to).unwrap_or_default());
         if let Some(layout) = Layout::of(&text(2, 6), &text(6, 22), &text(22, 86)) {
-            let needed = layout.fields.iter().map(|(kind, offset, _)| offset + kind.size()).max().unwrap_or(0);
+            let needed = layout
+                .fields
+                .iter()
+                .map(|(kind, offset, _)| offset + kind.size())
+                .max()
+                .unwrap_or(0);
             // The length of a description is known; of others it stands here.
             if of != FORMAT && usize::from(length) >= needed + 3 {
                 lengths[usize::from(of)] = usize::from(length);
@@ -296,7 +387,9 @@ fn describe(kind: u8, content: &[u8], layouts: &mut Layouts, lengths: &mut [usiz
         }
         return;
     }
-    let Some(layout) = layouts.by_type.get(&kind).cloned() else { return };
+    let Some(layout) = layouts.by_type.get(&kind).cloned() else {
+        return;
+    };
     let place = |wanted: &str| layout.fields.iter().find(|(.., name)| name == wanted);
     let byte = |name: &str| place(name).and_then(|(_, offset, _)| content.get(*offset).copied());
     let text = |name: &str| {
@@ -305,7 +398,9 @@ fn describe(kind: u8, content: &[u8], layouts: &mut Layouts, lengths: &mut [usiz
     };
     match layout.name.as_str() {
         "FMTU" => {
-            if let (Some(of), Some(units), Some(by)) = (byte("FmtType"), text("UnitIds"), text("MultIds")) {
+            if let (Some(of), Some(units), Some(by)) =
+                (byte("FmtType"), text("UnitIds"), text("MultIds"))
+            {
                 layouts.describe(of, &units, &by);
             }
         }
@@ -315,8 +410,9 @@ fn describe(kind: u8, content: &[u8], layouts: &mut Layouts, lengths: &mut [usiz
             }
         }
         "MULT" => {
-            let by = place("Mult")
-                .and_then(|(_, offset, _)| StoredNumber::little_endian(NumberClass::Float, 8).at(content, *offset));
+            let by = place("Mult").and_then(|(_, offset, _)| {
+                StoredNumber::little_endian(NumberClass::Float, 8).at(content, *offset)
+            });
             if let (Some(letter), Some(by)) = (byte("Id"), by) {
                 layouts.multipliers.insert(char::from(letter), by);
             }
@@ -327,7 +423,11 @@ fn describe(kind: u8, content: &[u8], layouts: &mut Layouts, lengths: &mut [usiz
 
 /// Letters up to the first that is none.
 fn letters(bytes: &[u8]) -> String {
-    bytes.iter().take_while(|byte| (32..127).contains(*byte)).map(|byte| char::from(*byte)).collect()
+    bytes
+        .iter()
+        .take_while(|byte| (32..127).contains(*byte))
+        .map(|byte| char::from(*byte))
+        .collect()
 }
 
 // The form as text: a line for each message, `NAME, value, value`, with what describes messages in FMT, FMTU, UNIT and MULT lines.
@@ -338,11 +438,17 @@ pub(crate) const DATAFLASH_TEXT: Importer = Importer {
     name: "a DataFlash log of ArduPilot as text",
     endings: &["log"],
     recognises: |bytes, _| {
-        let start: Vec<u8> = bytes.iter().take(40).copied().filter(|byte| *byte != b' ').collect();
+        let start: Vec<u8> = bytes
+            .iter()
+            .take(40)
+            .copied()
+            .filter(|byte| *byte != b' ')
+            .collect();
         start.starts_with(b"FMT,128,89,FMT,")
     },
     read: |bytes, path, budget| {
-        let columns = read_text(bytes, budget).map_err(|fault| FileError::variables(path, fault))?;
+        let columns =
+            read_text(bytes, budget).map_err(|fault| FileError::variables(path, fault))?;
         Ok(Contents::Logs(vec![columns]))
     },
 };
@@ -360,11 +466,15 @@ fn read_text(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
     for line in text.lines() {
         budget.work(line.len() as u64, "")?;
         let mut cells = line.split(',').map(str::trim);
-        let Some(taken) = cells.next().and_then(|name| by_name.get(name)) else { continue };
+        let Some(taken) = cells.next().and_then(|name| by_name.get(name)) else {
+            continue;
+        };
         let cells: Vec<&str> = cells.collect();
         topics.take(taken, |at| cells.get(at)?.parse::<f64>().ok(), budget)?;
     }
-    topics.columns(vec!["a log of ArduPilot as text; time in seconds since the autopilot was started".to_owned()])
+    topics.columns(vec![
+        "a log of ArduPilot as text; time in seconds since the autopilot was started".to_owned(),
+    ])
 }
 
 /// What the lines that describe others say.
@@ -377,7 +487,12 @@ fn layouts_of(text: &str) -> Layouts {
             "FMTU" | "UNIT" | "MULT" => rest.split(',').map(str::trim).collect(),
             _ => continue,
         };
-        let letter = |cell: &str| cell.parse::<u8>().map(char::from).ok().or_else(|| cell.chars().next());
+        let letter = |cell: &str| {
+            cell.parse::<u8>()
+                .map(char::from)
+                .ok()
+                .or_else(|| cell.chars().next())
+        };
         match (name.trim(), cells.as_slice()) {
             ("FMT", [kind, _, name, letters, names]) => {
                 if let (Ok(kind), Some(layout)) = (kind.parse(), Layout::of(name, letters, names)) {
@@ -385,10 +500,14 @@ fn layouts_of(text: &str) -> Layouts {
                 }
             }
             ("FMTU", [_, kind, units, by]) => {
-                kind.parse().into_iter().for_each(|kind| layouts.describe(kind, units, by));
+                kind.parse()
+                    .into_iter()
+                    .for_each(|kind| layouts.describe(kind, units, by));
             }
             ("UNIT", [_, id, label]) => {
-                letter(id).into_iter().for_each(|id| drop(layouts.units.insert(id, (*label).to_owned())));
+                letter(id)
+                    .into_iter()
+                    .for_each(|id| drop(layouts.units.insert(id, (*label).to_owned())));
             }
             // Values of a text are multiplied already.
             _ => {}
@@ -412,36 +531,80 @@ pub(super) mod tests {
     }
 
     fn format(kind: u8, length: u8, name: &str, letters: &str, names: &str) -> Vec<u8> {
-        message(FORMAT, &[vec![kind, length], padded(name, 4), padded(letters, 16), padded(names, 64)].concat())
+        message(
+            FORMAT,
+            &[
+                vec![kind, length],
+                padded(name, 4),
+                padded(letters, 16),
+                padded(names, 64),
+            ]
+            .concat(),
+        )
     }
 
     /// A log of `samples` rates and of two instances of an inertial unit.
     pub(in crate::formats::logs) fn log(samples: u64) -> Vec<u8> {
-        let mut bytes = format(FORMAT, 89, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns");
-        bytes.extend(format(130, 44, "FMTU", "QBNN", "TimeUS,FmtType,UnitIds,MultIds"));
+        let mut bytes = format(
+            FORMAT,
+            89,
+            "FMT",
+            "BBnNZ",
+            "Type,Length,Name,Format,Columns",
+        );
+        bytes.extend(format(
+            130,
+            44,
+            "FMTU",
+            "QBNN",
+            "TimeUS,FmtType,UnitIds,MultIds",
+        ));
         bytes.extend(format(131, 76, "UNIT", "QbZ", "TimeUS,Id,Label"));
         bytes.extend(format(132, 20, "MULT", "Qbd", "TimeUS,Id,Mult"));
         bytes.extend(format(140, 19, "RATE", "Qff", "TimeUS,R,ROut"));
         bytes.extend(format(141, 14, "IMU", "QBh", "TimeUS,I,GyrX"));
         bytes.extend(format(142, 12, "ARM", "QB", "TimeUS,ArmState"));
         for (letter, label) in [(b'k', "deg/s"), (b'E', "rad/s"), (b's', "s")] {
-            bytes.extend(message(131, &[0_u64.to_le_bytes().to_vec(), vec![letter], padded(label, 64)].concat()));
+            bytes.extend(message(
+                131,
+                &[
+                    0_u64.to_le_bytes().to_vec(),
+                    vec![letter],
+                    padded(label, 64),
+                ]
+                .concat(),
+            ));
         }
         for (letter, by) in [(b'C', 0.01_f64), (b'F', 1e-6)] {
-            bytes.extend(message(132, &[&0_u64.to_le_bytes()[..], &[letter], &by.to_le_bytes()].concat()));
+            bytes.extend(message(
+                132,
+                &[&0_u64.to_le_bytes()[..], &[letter], &by.to_le_bytes()].concat(),
+            ));
         }
         for (kind, units, by) in [(140, "sk-", "F--"), (141, "s#E", "F-C")] {
             bytes.extend(message(
                 130,
-                &[0_u64.to_le_bytes().to_vec(), vec![kind], padded(units, 16), padded(by, 16)].concat(),
+                &[
+                    0_u64.to_le_bytes().to_vec(),
+                    vec![kind],
+                    padded(units, 16),
+                    padded(by, 16),
+                ]
+                .concat(),
             ));
         }
         for k in 0..samples {
             let stamp = (2_000_000 + 2500 * k).to_le_bytes();
-            let rate: Vec<u8> = [k as f32, 0.5 * k as f32].iter().flat_map(|value| value.to_le_bytes()).collect();
+            let rate: Vec<u8> = [k as f32, 0.5 * k as f32]
+                .iter()
+                .flat_map(|value| value.to_le_bytes())
+                .collect();
             bytes.extend(message(140, &[&stamp[..], &rate].concat()));
             for instance in [0, 1] {
-                bytes.extend(message(141, &[&stamp[..], &[instance], &(100 * k as i16).to_le_bytes()].concat()));
+                bytes.extend(message(
+                    141,
+                    &[&stamp[..], &[instance], &(100 * k as i16).to_le_bytes()].concat(),
+                ));
             }
             if k % 20 == 0 {
                 bytes.extend(message(142, &[&stamp[..], &[1]].concat()));
@@ -457,11 +620,25 @@ pub(super) mod tests {
     #[test]
     fn a_log_that_describes_itself_is_read_with_units_instances_and_modes() {
         let columns = read(&log(40)).unwrap();
-        let names: Vec<&str> = columns.columns.iter().map(|column| column.name.as_str()).collect();
-        assert_eq!(names, ["IMU.GyrX", "IMU[1].GyrX", "RATE.R", "RATE.ROut"], "two states are no signal");
+        let names: Vec<&str> = columns
+            .columns
+            .iter()
+            .map(|column| column.name.as_str())
+            .collect();
+        assert_eq!(
+            names,
+            ["IMU.GyrX", "IMU[1].GyrX", "RATE.R", "RATE.ROut"],
+            "two states are no signal"
+        );
         let (imu, rate) = (&columns.columns[0], &columns.columns[2]);
-        assert_eq!((imu.values[3], imu.unit.as_deref(), imu.meaning), (3.0, Some("rad/s"), None));
-        assert_eq!((rate.values[3], rate.unit.as_deref(), rate.meaning), (3.0, Some("deg/s"), Some("P")));
+        assert_eq!(
+            (imu.values[3], imu.unit.as_deref(), imu.meaning),
+            (3.0, Some("rad/s"), None)
+        );
+        assert_eq!(
+            (rate.values[3], rate.unit.as_deref(), rate.meaning),
+            (3.0, Some("deg/s"), Some("P"))
+        );
         assert!((rate.topic.as_ref().unwrap().time_s[1] - 2.0025).abs() < 1e-12);
         assert_eq!(columns.modes[0].name, "armed");
     }
@@ -472,7 +649,14 @@ pub(super) mod tests {
         let at = bytes.len() - 100;
         bytes.splice(at..at, [0xa3, 0x95, 7, 0]);
         let columns = read(&bytes[..bytes.len() - 5]).unwrap();
-        assert!(columns.notes.iter().any(|note| note.contains("bytes between messages")), "{:?}", columns.notes);
+        assert!(
+            columns
+                .notes
+                .iter()
+                .any(|note| note.contains("bytes between messages")),
+            "{:?}",
+            columns.notes
+        );
         assert!(read(&bytes[..200]).is_err() && read(&[]).is_err());
     }
 }
@@ -487,13 +671,25 @@ mod text_tests {
                         FMT, 140, 19, RATE, Qff, TimeUS,R,ROut\nUNIT, 0, 107, deg/s\nFMTU, 0, 140, sk-, F--\n"
             .to_owned();
         for k in 0..30 {
-            text += &format!("RATE, {}, {k}, 0.{k}\nMSG, {k}, hello, there\n", 1_000_000 + 2500 * k);
+            text += &format!(
+                "RATE, {}, {k}, 0.{k}\nMSG, {k}, hello, there\n",
+                1_000_000 + 2500 * k
+            );
         }
         assert!((DATAFLASH_TEXT.recognises)(text.as_bytes(), "log"));
         let columns = read_text(text.as_bytes(), &ReadingBudget::new(1 << 20)).unwrap();
         let rate = &columns.columns[0];
-        assert_eq!((rate.name.as_str(), rate.unit.as_deref(), rate.meaning), ("RATE.R", Some("deg/s"), Some("P")));
+        assert_eq!(
+            (rate.name.as_str(), rate.unit.as_deref(), rate.meaning),
+            ("RATE.R", Some("deg/s"), Some("P"))
+        );
         assert_eq!((rate.values[4], columns.columns.len()), (4.0, 2));
-        assert!(read_text(b"FMT, 128, 89, FMT, BBnNZ, Type\n", &ReadingBudget::new(1 << 20)).is_err());
+        assert!(
+            read_text(
+                b"FMT, 128, 89, FMT, BBnNZ, Type\n",
+                &ReadingBudget::new(1 << 20)
+            )
+            .is_err()
+        );
     }
 }

@@ -41,8 +41,16 @@ struct TopicField {
 impl TopicSamples {
     /// A topic of these fields, none of which has a sample yet.
     fn new(name: String, fields: impl IntoIterator<Item = (String, Option<String>)>) -> Self {
-        let fields = fields.into_iter().map(|(name, unit)| TopicField { name, unit, values: Vec::new() });
-        Self { name, fields: fields.collect(), time_s: Vec::new() }
+        let fields = fields.into_iter().map(|(name, unit)| TopicField {
+            name,
+            unit,
+            values: Vec::new(),
+        });
+        Self {
+            name,
+            fields: fields.collect(),
+            time_s: Vec::new(),
+        }
     }
 
     /// Takes a sample: a value for each field, in order.
@@ -54,7 +62,10 @@ impl TopicSamples {
     ) -> Result<(), VariableFault> {
         budget.take(self.fields.len() as u64 + 1, 8, &self.name)?;
         self.time_s.push(time_s);
-        self.fields.iter_mut().zip(values).for_each(|(field, value)| field.values.push(value));
+        self.fields
+            .iter_mut()
+            .zip(values)
+            .for_each(|(field, value)| field.values.push(value));
         Ok(())
     }
 
@@ -63,7 +74,10 @@ impl TopicSamples {
         if self.time_s.len() < FEWEST {
             return Vec::new();
         }
-        let clock = Arc::new(TopicClock { name: self.name, time_s: self.time_s });
+        let clock = Arc::new(TopicClock {
+            name: self.name,
+            time_s: self.time_s,
+        });
         let column = |field: TopicField| RecordColumn {
             unit: field.unit,
             topic: Some(Arc::clone(&clock)),
@@ -90,7 +104,10 @@ fn mode_spans(
                 open.ends_s[1] = time;
             }
             if let Some(name) = name(value).filter(|_| spans.len() < MOST_MODES) {
-                spans.push(ModeSpan { name, ends_s: [time, time] });
+                spans.push(ModeSpan {
+                    name,
+                    ends_s: [time, time],
+                });
             }
         } else if let Some(open) = spans.last_mut().filter(|_| name(value).is_some()) {
             open.ends_s[1] = time;
@@ -103,10 +120,19 @@ fn mode_spans(
 /// Spans in words: "armed 3.2 to 88.1 s".
 fn modes_note(spans: &[ModeSpan]) -> Option<String> {
     const SHOWN: usize = 8;
-    let words = |span: &ModeSpan| format!("{} {:.1} to {:.1} s", span.name, span.ends_s[0], span.ends_s[1]);
+    let words = |span: &ModeSpan| {
+        format!(
+            "{} {:.1} to {:.1} s",
+            span.name, span.ends_s[0], span.ends_s[1]
+        )
+    };
     let shown: Vec<String> = spans.iter().take(SHOWN).map(words).collect();
     let more = spans.len().saturating_sub(SHOWN);
-    let more = if more == 0 { String::new() } else { format!(" and {more} more") };
+    let more = if more == 0 {
+        String::new()
+    } else {
+        format!(" and {more} more")
+    };
     (!shown.is_empty()).then(|| format!("{}{more}", shown.join(", ")))
 }
 
@@ -208,12 +234,17 @@ pub(super) const BETAFLIGHT: Meanings = Meanings {
 pub(super) fn give_meanings(columns: &mut [RecordColumn], meanings: &Meanings) -> Option<String> {
     let mut given: Vec<(&str, &str)> = Vec::new();
     for &(name, channel, unit) in meanings.columns {
-        let moves = |column: &&mut RecordColumn| column.range().is_some_and(|(least, most)| least < most);
-        let Some(column) = columns.iter_mut().find(|column| column.name == name) else { continue };
+        let moves =
+            |column: &&mut RecordColumn| column.range().is_some_and(|(least, most)| least < most);
+        let Some(column) = columns.iter_mut().find(|column| column.name == name) else {
+            continue;
+        };
         if column.unit.is_none() {
             column.unit = Some(unit.to_owned()).filter(|unit| !unit.is_empty());
         }
-        if Some(&mut *column).as_ref().is_some_and(moves) && given.iter().all(|(taken, _)| *taken != channel) {
+        if Some(&mut *column).as_ref().is_some_and(moves)
+            && given.iter().all(|(taken, _)| *taken != channel)
+        {
             column.meaning = Some(channel);
             given.push((channel, name));
         }
@@ -221,8 +252,15 @@ pub(super) fn give_meanings(columns: &mut [RecordColumn], meanings: &Meanings) -
     if given.is_empty() {
         return None;
     }
-    let words: Vec<String> = given.iter().map(|(channel, name)| format!("{channel} = {name}")).collect();
-    Some(format!("by the system's documentation: {}; {}", words.join(", "), meanings.signs))
+    let words: Vec<String> = given
+        .iter()
+        .map(|(channel, name)| format!("{channel} = {name}"))
+        .collect();
+    Some(format!(
+        "by the system's documentation: {}; {}",
+        words.join(", "),
+        meanings.signs
+    ))
 }
 
 #[cfg(test)]
@@ -250,12 +288,22 @@ mod meaning_tests {
             RecordColumn::new("RATE.P", moving.clone()),
             RecordColumn::new("RATE.R", moving.clone()),
             RecordColumn::new("SIDD.Gx", vec![1.0; 3]),
-            RecordColumn { unit: Some("deg".into()), ..RecordColumn::new("IMU.GyrY", moving) },
+            RecordColumn {
+                unit: Some("deg".into()),
+                ..RecordColumn::new("IMU.GyrY", moving)
+            },
         ];
         let words = give_meanings(&mut columns, &ARDUPILOT).unwrap();
         let found: Vec<_> = columns.iter().map(|column| column.meaning).collect();
         assert_eq!(found, [Some("Q"), Some("P"), None, None], "{words}");
-        assert_eq!(columns[3].unit.as_deref(), Some("deg"), "what the file says stays");
-        assert!(words.starts_with("by the system's documentation: P = RATE.R, Q = RATE.P; signs"), "{words}");
+        assert_eq!(
+            columns[3].unit.as_deref(),
+            Some("deg"),
+            "what the file says stays"
+        );
+        assert!(
+            words.starts_with("by the system's documentation: P = RATE.R, Q = RATE.P; signs"),
+            "{words}"
+        );
     }
 }

@@ -31,7 +31,8 @@ pub(crate) const ULOG: Importer = Importer {
     endings: &["ulg", "ulog"],
     recognises: |bytes, _| bytes.starts_with(MAGIC),
     read: |bytes, path, budget| {
-        let columns = read_ulog(bytes, budget).map_err(|fault| FileError::variables(path, fault))?;
+        let columns =
+            read_ulog(bytes, budget).map_err(|fault| FileError::variables(path, fault))?;
         Ok(Contents::Logs(vec![columns]))
     },
 };
@@ -87,16 +88,31 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
 /// Where data were appended.
 fn offsets_of(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
     let unknown = flags.get(8..16).unwrap_or_default().iter().enumerate();
-    if unknown.into_iter().any(|(index, byte)| *byte & !(if index == 0 { APPENDED } else { 0 }) != 0) {
+    if unknown
+        .into_iter()
+        .any(|(index, byte)| *byte & !(if index == 0 { APPENDED } else { 0 }) != 0)
+    {
         let remedy = "save its topics as CSV: ulog2csv \"{file}\"";
-        return Err(VariableFault::unsupported("", "a ULog with parts of a later version", remedy));
+        return Err(VariableFault::unsupported(
+            "",
+            "a ULog with parts of a later version",
+            remedy,
+        ));
     }
     let offsets = (0..3).filter_map(|index| array(flags, 16 + 8 * index).map(u64::from_le_bytes));
-    Ok(offsets.filter(|offset| *offset > 0).filter_map(|offset| usize::try_from(offset).ok()).collect())
+    Ok(offsets
+        .filter(|offset| *offset > 0)
+        .filter_map(|offset| usize::try_from(offset).ok())
+        .collect())
 }
 
 impl<'b> Messages<'b> {
-    fn take(&mut self, kind: u8, content: &'b [u8], budget: &ReadingBudget<'_>) -> Result<(), VariableFault> {
+    fn take(
+        &mut self,
+        kind: u8,
+        content: &'b [u8],
+        budget: &ReadingBudget<'_>,
+    ) -> Result<(), VariableFault> {
         match kind {
             b'F' => {
                 let text = std::str::from_utf8(content).unwrap_or_default();
@@ -109,7 +125,8 @@ impl<'b> Messages<'b> {
             b'D' => {
                 let number = array(content, 0).map(u16::from_le_bytes);
                 let data = content.get(2..).unwrap_or_default();
-                let Some(topic) = number.and_then(|number| self.subscriptions.get_mut(&number)) else {
+                let Some(topic) = number.and_then(|number| self.subscriptions.get_mut(&number))
+                else {
                     self.unread += 1;
                     return Ok(());
                 };
@@ -118,12 +135,17 @@ impl<'b> Messages<'b> {
                     self.unread += 1;
                     return Ok(());
                 };
-                let values = topic.places.iter().map(|place| place.number.at(data, place.offset).unwrap_or(f64::NAN));
+                let values = topic
+                    .places
+                    .iter()
+                    .map(|place| place.number.at(data, place.offset).unwrap_or(f64::NAN));
                 topic.samples.push(time_us * 1e-6, values, budget)?;
             }
             b'O' => {
                 self.dropouts += 1;
-                self.lost_ms += array(content, 0).map(u16::from_le_bytes).map_or(0, u64::from);
+                self.lost_ms += array(content, 0)
+                    .map(u16::from_le_bytes)
+                    .map_or(0, u64::from);
             }
             _ => {}
         }
@@ -131,9 +153,15 @@ impl<'b> Messages<'b> {
     }
 
     /// Takes a topic and its instance under a number; one whose layout is damaged or has no stamp is left out.
-    fn subscribe(&mut self, content: &'b [u8], budget: &ReadingBudget<'_>) -> Result<(), VariableFault> {
-        let (Some([instance]), Some(number)) = (array::<1>(content, 0), array(content, 1).map(u16::from_le_bytes))
-        else {
+    fn subscribe(
+        &mut self,
+        content: &'b [u8],
+        budget: &ReadingBudget<'_>,
+    ) -> Result<(), VariableFault> {
+        let (Some([instance]), Some(number)) = (
+            array::<1>(content, 0),
+            array(content, 1).map(u16::from_le_bytes),
+        ) else {
             return Ok(());
         };
         let name = std::str::from_utf8(content.get(3..).unwrap_or_default()).unwrap_or_default();
@@ -142,34 +170,75 @@ impl<'b> Messages<'b> {
             Err(_) => return Ok(()),
             Ok(places) => places,
         };
-        let is_stamp = |place: &Place| place.name == "timestamp" && Some(place.number) == number_of("uint64_t");
-        let Some(stamp) = places.iter().find(|place| is_stamp(place)).cloned() else { return Ok(()) };
-        let places: Vec<Place> = places.into_iter().filter(|place| !is_stamp(place)).collect();
-        let least = places.iter().chain([&stamp]).map(|place| place.offset + place.number.size()).max().unwrap_or(0);
-        let name = if instance == 0 { name.to_owned() } else { format!("{name}[{instance}]") };
-        let samples = TopicSamples::new(name, places.iter().map(|place| (place.name.clone(), None)));
-        self.subscriptions.entry(number).or_insert(Subscription { samples, stamp, places, least });
+        let is_stamp = |place: &Place| {
+            place.name == "timestamp" && Some(place.number) == number_of("uint64_t")
+        };
+        let Some(stamp) = places.iter().find(|place| is_stamp(place)).cloned() else {
+            return Ok(());
+        };
+        let places: Vec<Place> = places
+            .into_iter()
+            .filter(|place| !is_stamp(place))
+            .collect();
+        let least = places
+            .iter()
+            .chain([&stamp])
+            .map(|place| place.offset + place.number.size())
+            .max()
+            .unwrap_or(0);
+        let name = if instance == 0 {
+            name.to_owned()
+        } else {
+            format!("{name}[{instance}]")
+        };
+        let samples =
+            TopicSamples::new(name, places.iter().map(|place| (place.name.clone(), None)));
+        self.subscriptions.entry(number).or_insert(Subscription {
+            samples,
+            stamp,
+            places,
+            least,
+        });
         Ok(())
     }
 
     fn columns(self, is_cut: bool) -> Result<Columns, VariableFault> {
-        let topics: Vec<TopicSamples> = self.subscriptions.into_values().map(|topic| topic.samples).collect();
+        let topics: Vec<TopicSamples> = self
+            .subscriptions
+            .into_values()
+            .map(|topic| topic.samples)
+            .collect();
         let modes = modes_of(&topics);
-        let mut columns = Columns::new(String::new(), topics.into_iter().flat_map(TopicSamples::columns).collect());
+        let mut columns = Columns::new(
+            String::new(),
+            topics.into_iter().flat_map(TopicSamples::columns).collect(),
+        );
         if columns.columns.is_empty() {
             return Err(VariableFault::cut_off("", HEADER));
         }
-        columns.notes.push("a log of PX4; time in seconds since the autopilot was started".to_owned());
-        columns.notes.extend(give_meanings(&mut columns.columns, &PX4));
+        columns
+            .notes
+            .push("a log of PX4; time in seconds since the autopilot was started".to_owned());
+        columns
+            .notes
+            .extend(give_meanings(&mut columns.columns, &PX4));
         if self.dropouts > 0 {
             let lost_s = self.lost_ms as f64 * 1e-3;
-            columns.notes.push(format!("{} dropouts of the logger, {lost_s:.2} s together: gaps", self.dropouts));
+            columns.notes.push(format!(
+                "{} dropouts of the logger, {lost_s:.2} s together: gaps",
+                self.dropouts
+            ));
         }
         if self.unread > 0 {
-            columns.notes.push(format!("{} messages that are of no topic, or too short: left out", self.unread));
+            columns.notes.push(format!(
+                "{} messages that are of no topic, or too short: left out",
+                self.unread
+            ));
         }
         if is_cut {
-            columns.notes.push("the file is cut off: read as far as it goes".to_owned());
+            columns
+                .notes
+                .push("the file is cut off: read as far as it goes".to_owned());
         }
         columns.notes.extend(modes_note(&modes));
         columns.modes = modes;
@@ -179,15 +248,31 @@ impl<'b> Messages<'b> {
 
 /// When the aircraft was armed, and its modes (`vehicle_status`: `arming_state` 2 is armed, `nav_state` by PX4's message).
 fn modes_of(topics: &[TopicSamples]) -> Vec<ModeSpan> {
-    let Some(status) = topics.iter().find(|topic| topic.name == "vehicle_status") else { return Vec::new() };
-    let values = |name: &str| status.fields.iter().find(|field| field.name == name).map(|field| field.values.clone());
+    let Some(status) = topics.iter().find(|topic| topic.name == "vehicle_status") else {
+        return Vec::new();
+    };
+    let values = |name: &str| {
+        status
+            .fields
+            .iter()
+            .find(|field| field.name == name)
+            .map(|field| field.values.clone())
+    };
     let mut modes = Vec::new();
     if let Some(values) = values("arming_state") {
-        modes.extend(mode_spans(&status.time_s, values, |state| (state == 2.0).then(|| "armed".to_owned())));
+        modes.extend(mode_spans(&status.time_s, values, |state| {
+            (state == 2.0).then(|| "armed".to_owned())
+        }));
     }
     if let Some(values) = values("nav_state") {
-        let name = |state| NAVIGATION.iter().find(|(number, _)| f64::from(*number) == state);
-        modes.extend(mode_spans(&status.time_s, values, |state| name(state).map(|(_, name)| (*name).to_owned())));
+        let name = |state| {
+            NAVIGATION
+                .iter()
+                .find(|(number, _)| f64::from(*number) == state)
+        };
+        modes.extend(mode_spans(&status.time_s, values, |state| {
+            name(state).map(|(_, name)| (*name).to_owned())
+        }));
     }
     modes
 }
@@ -237,7 +322,12 @@ pub(super) fn places_of(
     formats: &Formats<'_>,
     budget: &ReadingBudget<'_>,
 ) -> Result<(Vec<Place>, usize), VariableFault> {
-    let mut flat = Flat { formats, budget, message: name, places: Vec::new() };
+    let mut flat = Flat {
+        formats,
+        budget,
+        message: name,
+        places: Vec::new(),
+    };
     let size = flat.add(name, "", 0, DEEPEST)?;
     Ok((flat.places, size))
 }
@@ -255,32 +345,62 @@ impl Flat<'_> {
     }
 
     /// Adds the numbers of a layout from a place on; gives where it ends.
-    fn add(&mut self, name: &str, prefix: &str, mut offset: usize, deeper: usize) -> Result<usize, VariableFault> {
+    fn add(
+        &mut self,
+        name: &str,
+        prefix: &str,
+        mut offset: usize,
+        deeper: usize,
+    ) -> Result<usize, VariableFault> {
         if deeper == 0 {
             return Err(VariableFault::too_deep(self.message));
         }
         let Some(fields) = self.formats.get(name) else {
             return Err(self.damaged(format!("the layout of \"{}\" is missing", short(name))));
         };
-        for field in fields.split(';').map(str::trim).filter(|field| !field.is_empty()) {
+        for field in fields
+            .split(';')
+            .map(str::trim)
+            .filter(|field| !field.is_empty())
+        {
             let Some((kind, field)) = field.split_once(' ') else {
                 return Err(self.damaged(format!("\"{}\" is no field", short(field))));
             };
             let is_array = kind.ends_with(']');
             let (kind, count) = match kind.strip_suffix(']').and_then(|kind| kind.split_once('[')) {
-                Some((kind, count)) => (kind, count.parse::<usize>().ok().filter(|count| *count <= LARGEST)),
+                Some((kind, count)) => (
+                    kind,
+                    count
+                        .parse::<usize>()
+                        .ok()
+                        .filter(|count| *count <= LARGEST),
+                ),
                 None => (kind, Some(1)),
             };
-            let Some(count) = count else { return Err(self.damaged(format!("\"{}\" has no length", short(field)))) };
+            let Some(count) = count else {
+                return Err(self.damaged(format!("\"{}\" has no length", short(field))));
+            };
             for index in 0..count {
-                let label = if is_array { format!("{prefix}{field}[{index}]") } else { format!("{prefix}{field}") };
+                let label = if is_array {
+                    format!("{prefix}{field}[{index}]")
+                } else {
+                    format!("{prefix}{field}")
+                };
                 let begin = offset;
                 self.budget.work(1, self.message)?;
                 offset = match number_of(kind) {
                     Some(number) => {
                         if !field.starts_with("_padding") {
-                            self.budget.take(1, (size_of::<Place>() + label.len()) as u64, self.message)?;
-                            self.places.push(Place { name: label, number, offset });
+                            self.budget.take(
+                                1,
+                                (size_of::<Place>() + label.len()) as u64,
+                                self.message,
+                            )?;
+                            self.places.push(Place {
+                                name: label,
+                                number,
+                                offset,
+                            });
                         }
                         offset + number.size()
                     }
@@ -289,7 +409,10 @@ impl Flat<'_> {
                 };
                 // What has no bytes could stand there any number of times.
                 if offset == begin || offset > LARGEST {
-                    return Err(self.damaged(format!("the field \"{}\" has no length, or too much", short(field))));
+                    return Err(self.damaged(format!(
+                        "the field \"{}\" has no length, or too much",
+                        short(field)
+                    )));
                 }
             }
         }
@@ -318,7 +441,10 @@ fn number_of(kind: &str) -> Option<StoredNumber> {
 
 /// As much of a name as a message can bear.
 fn short(name: &str) -> String {
-    name.chars().take(60).filter(|letter| !letter.is_control()).collect()
+    name.chars()
+        .take(60)
+        .filter(|letter| !letter.is_control())
+        .collect()
 }
 
 #[cfg(test)]
@@ -333,14 +459,29 @@ mod tests {
     fn log(samples: u64) -> Vec<u8> {
         let mut bytes = [MAGIC, &[1], &0_u64.to_le_bytes()].concat();
         bytes.extend(message(b'B', &[0; 40]));
-        bytes.extend(message(b'F', b"vehicle_angular_velocity:uint64_t timestamp;float[3] xyz;uint8_t[4] _padding0;"));
-        bytes.extend(message(b'F', b"vehicle_status:uint64_t timestamp;uint8_t arming_state;uint8_t nav_state;"));
-        bytes.extend(message(b'A', &[&[0, 1, 0][..], b"vehicle_angular_velocity"].concat()));
-        bytes.extend(message(b'A', &[&[1, 2, 0][..], b"vehicle_angular_velocity"].concat()));
+        bytes.extend(message(
+            b'F',
+            b"vehicle_angular_velocity:uint64_t timestamp;float[3] xyz;uint8_t[4] _padding0;",
+        ));
+        bytes.extend(message(
+            b'F',
+            b"vehicle_status:uint64_t timestamp;uint8_t arming_state;uint8_t nav_state;",
+        ));
+        bytes.extend(message(
+            b'A',
+            &[&[0, 1, 0][..], b"vehicle_angular_velocity"].concat(),
+        ));
+        bytes.extend(message(
+            b'A',
+            &[&[1, 2, 0][..], b"vehicle_angular_velocity"].concat(),
+        ));
         bytes.extend(message(b'A', &[&[0, 3, 0][..], b"vehicle_status"].concat()));
         for k in 0..samples {
             let stamp = (1_000_000 + 4000 * k).to_le_bytes();
-            let xyz: Vec<u8> = [k as f32, 2.0, 3.0].iter().flat_map(|value| value.to_le_bytes()).collect();
+            let xyz: Vec<u8> = [k as f32, 2.0, 3.0]
+                .iter()
+                .flat_map(|value| value.to_le_bytes())
+                .collect();
             for number in [1, 2] {
                 bytes.extend(message(b'D', &[&[number, 0][..], &stamp, &xyz].concat()));
             }
@@ -359,14 +500,30 @@ mod tests {
     #[test]
     fn topics_instances_dropouts_and_modes_are_read() {
         let columns = read(&log(40)).unwrap();
-        let names: Vec<&str> = columns.columns.iter().map(|column| column.name.as_str()).collect();
+        let names: Vec<&str> = columns
+            .columns
+            .iter()
+            .map(|column| column.name.as_str())
+            .collect();
         assert_eq!(names[0], "vehicle_angular_velocity.xyz[0]");
         assert_eq!(names[3], "vehicle_angular_velocity[1].xyz[0]");
         let rate = &columns.columns[0];
-        assert_eq!((rate.meaning, rate.unit.as_deref(), rate.values[7]), (Some("P"), Some("rad/s"), 7.0));
+        assert_eq!(
+            (rate.meaning, rate.unit.as_deref(), rate.values[7]),
+            (Some("P"), Some("rad/s"), 7.0)
+        );
         assert!((rate.topic.as_ref().unwrap().time_s[1] - 1.004).abs() < 1e-12);
-        assert!(columns.notes.iter().any(|note| note == "1 dropouts of the logger, 0.25 s together: gaps"));
-        let modes: Vec<&str> = columns.modes.iter().map(|span| span.name.as_str()).collect();
+        assert!(
+            columns
+                .notes
+                .iter()
+                .any(|note| note == "1 dropouts of the logger, 0.25 s together: gaps")
+        );
+        let modes: Vec<&str> = columns
+            .modes
+            .iter()
+            .map(|span| span.name.as_str())
+            .collect();
         assert_eq!(modes, ["armed", "stabilized"]);
     }
 
@@ -397,16 +554,33 @@ mod layout_tests {
             ("one", "int16_t rpm;char[4] name;float v"),
         ]);
         let (places, size) = places_of("esc", &formats, &ReadingBudget::new(1 << 20)).unwrap();
-        let found: Vec<(&str, usize)> = places.iter().map(|place| (place.name.as_str(), place.offset)).collect();
-        let expected = [("timestamp", 0), ("esc[0].rpm", 8), ("esc[0].v", 14), ("esc[1].rpm", 18), ("esc[1].v", 24)];
+        let found: Vec<(&str, usize)> = places
+            .iter()
+            .map(|place| (place.name.as_str(), place.offset))
+            .collect();
+        let expected = [
+            ("timestamp", 0),
+            ("esc[0].rpm", 8),
+            ("esc[0].v", 14),
+            ("esc[1].rpm", 18),
+            ("esc[1].v", 24),
+        ];
         assert_eq!((found, size), (expected.to_vec(), 31));
     }
 
     #[test]
     fn circles_and_layouts_without_bytes_are_refused() {
-        let formats = Formats::from([("a", "a x"), ("b", "none[60000] x"), ("none", ""), ("c", "float[99999999] x")]);
+        let formats = Formats::from([
+            ("a", "a x"),
+            ("b", "none[60000] x"),
+            ("none", ""),
+            ("c", "float[99999999] x"),
+        ]);
         for name in ["a", "b", "c", "d"] {
-            assert!(places_of(name, &formats, &ReadingBudget::new(1 << 20)).is_err(), "{name}");
+            assert!(
+                places_of(name, &formats, &ReadingBudget::new(1 << 20)).is_err(),
+                "{name}"
+            );
         }
     }
 }

@@ -36,14 +36,19 @@ pub(super) fn begins(bytes: &[u8]) -> bool {
 }
 
 /// All variables of a file.
-pub(super) fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub(super) fn read(
+    bytes: &[u8],
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<Variable>, VariableFault> {
     let mut file = Cursor::file(bytes, ByteOrder::Little);
     let (mut variables, mut names) = (Vec::new(), HashSet::new());
     while !file.is_empty() {
         budget.take(1, 2 * size_of::<Variable>() as u64, "")?;
         let header = header(&mut file)?;
         let name = name_of(file.take(header.name_length)?.rest());
-        let value = header.value(&mut file, budget).map_err(|fault| FieldPath::start(&name).name(fault))?;
+        let value = header
+            .value(&mut file, budget)
+            .map_err(|fault| FieldPath::start(&name).name(fault))?;
         if !names.insert(name.clone()) {
             return Err(VariableFault::Duplicate { name });
         }
@@ -63,7 +68,8 @@ fn header(file: &mut Cursor<'_>) -> Result<Header, VariableFault> {
         *size = i32::try_from(file.u32()?).map_err(|_| damaged("a negative size"))? as usize;
     }
     let [rows, columns, complex, name_length] = sizes;
-    let stored = stored_number(kind / 10 % 10, order).ok_or_else(|| damaged("an unknown kind of numbers"))?;
+    let stored = stored_number(kind / 10 % 10, order)
+        .ok_or_else(|| damaged("an unknown kind of numbers"))?;
     let meaning = match kind % 10 {
         0 => Meaning::Numbers,
         1 => Meaning::Text,
@@ -73,7 +79,14 @@ fn header(file: &mut Cursor<'_>) -> Result<Header, VariableFault> {
     if complex > 1 || name_length == 0 {
         return Err(damaged("no matrix"));
     }
-    Ok(Header { stored, meaning, rows, columns, complex: complex == 1, name_length })
+    Ok(Header {
+        stored,
+        meaning,
+        rows,
+        columns,
+        complex: complex == 1,
+        name_length,
+    })
 }
 
 /// The order of bytes: the type is less than 2000 in the right one, its thousands 0 (little) or 1 (big), its hundreds 0.
@@ -83,7 +96,11 @@ fn order(bytes: &[u8]) -> Option<ByteOrder> {
     if fits(ByteOrder::Little, 0) {
         return Some(ByteOrder::Little);
     }
-    if fits(ByteOrder::Big, 1) { Some(ByteOrder::Big) } else { None }
+    if fits(ByteOrder::Big, 1) {
+        Some(ByteOrder::Big)
+    } else {
+        None
+    }
 }
 
 /// The numbers that P of the type MOPT stands for.
@@ -101,13 +118,26 @@ fn stored_number(kind: u32, order: ByteOrder) -> Option<StoredNumber> {
 }
 
 impl Header {
-    fn value(&self, file: &mut Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
+    fn value(
+        &self,
+        file: &mut Cursor<'_>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Value, VariableFault> {
         let start = *file;
         let re = self.numbers(file, budget)?;
-        let im = if self.complex { Some(self.numbers(file, budget)?) } else { None };
+        let im = if self.complex {
+            Some(self.numbers(file, budget)?)
+        } else {
+            None
+        };
         let shape = vec![self.rows, self.columns];
         match self.meaning {
-            Meaning::Numbers => Ok(Value::Array(Array { shape, kind: self.stored.kind(), re, im })),
+            Meaning::Numbers => Ok(Value::Array(Array {
+                shape,
+                kind: self.stored.kind(),
+                re,
+                im,
+            })),
             Meaning::Text => {
                 budget.take(re.len() as u64, 16, "")?;
                 let characters: Vec<u32> = re.iter().map(|&number| number as u32).collect();
@@ -117,15 +147,28 @@ impl Header {
         }
     }
 
-    fn numbers(&self, file: &mut Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Vec<f64>, VariableFault> {
+    fn numbers(
+        &self,
+        file: &mut Cursor<'_>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Vec<f64>, VariableFault> {
         let count = count(&[self.rows, self.columns]);
         let bytes = file.take(count.saturating_mul(self.stored.size()))?;
         budget.take(count as u64, 8, "")?;
-        Ok(bytes.rest().chunks_exact(self.stored.size()).map(|number| self.stored.decode(number)).collect())
+        Ok(bytes
+            .rest()
+            .chunks_exact(self.stored.size())
+            .map(|number| self.stored.decode(number))
+            .collect())
     }
 
     /// Columns of rows, of columns, of numbers and of their imaginary parts; the last row says how large the matrix is.
-    fn sparse(&self, columns: &[f64], start: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Array, VariableFault> {
+    fn sparse(
+        &self,
+        columns: &[f64],
+        start: Cursor<'_>,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Array, VariableFault> {
         let damaged = || start.damaged("a sparse matrix whose numbers do not fit it");
         budget.take(columns.len() as u64, 8, "")?;
         let parts: Vec<&[f64]> = columns.chunks_exact(self.rows.max(1)).collect();
@@ -134,16 +177,33 @@ impl Header {
             [rows, columns, re, im] => (rows, columns, re, Some(im)),
             _ => return Err(damaged()),
         };
-        let whole = |number: f64| if number >= 0.0 { Some(number as usize) } else { None };
+        let whole = |number: f64| {
+            if number >= 0.0 {
+                Some(number as usize)
+            } else {
+                None
+            }
+        };
         let (&height, rows) = rows.split_last().ok_or_else(damaged)?;
         let (&width, columns) = columns.split_last().ok_or_else(damaged)?;
-        let shape = whole(height).zip(whole(width)).map(|(height, width)| [height, width]).ok_or_else(damaged)?;
+        let shape = whole(height)
+            .zip(whole(width))
+            .map(|(height, width)| [height, width])
+            .ok_or_else(damaged)?;
         let place = |&number: &f64| whole(number)?.checked_sub(1);
         let entries = Entries {
             shape,
             kind: self.stored.kind(),
-            rows: rows.iter().map(place).collect::<Option<_>>().ok_or_else(damaged)?,
-            columns: columns.iter().map(place).collect::<Option<_>>().ok_or_else(damaged)?,
+            rows: rows
+                .iter()
+                .map(place)
+                .collect::<Option<_>>()
+                .ok_or_else(damaged)?,
+            columns: columns
+                .iter()
+                .map(place)
+                .collect::<Option<_>>()
+                .ok_or_else(damaged)?,
             re: re.to_vec(),
             im: im.map(<[f64]>::to_vec),
         };
@@ -158,8 +218,18 @@ mod tests {
 
     /// One matrix, written by a machine of either kind.
     fn matrix(kind: u32, sizes: [u32; 4], order: ByteOrder, data: &[u8]) -> Vec<u8> {
-        let word = |word: u32| if order == ByteOrder::Little { word.to_le_bytes() } else { word.to_be_bytes() };
-        let head: Vec<u8> = [&[kind][..], &sizes].concat().into_iter().flat_map(word).collect();
+        let word = |word: u32| {
+            if order == ByteOrder::Little {
+                word.to_le_bytes()
+            } else {
+                word.to_be_bytes()
+            }
+        };
+        let head: Vec<u8> = [&[kind][..], &sizes]
+            .concat()
+            .into_iter()
+            .flat_map(word)
+            .collect();
         [head, b"x\0".to_vec(), data.to_vec()].concat()
     }
 
@@ -172,16 +242,28 @@ mod tests {
 
     #[test]
     fn numbers_are_read_in_both_orders_of_bytes() {
-        let wanted = Array { kind: ElementKind::Integer, ..Array::matrix(1, 2, vec![-2.0, 3.0]) };
+        let wanted = Array {
+            kind: ElementKind::Integer,
+            ..Array::matrix(1, 2, vec![-2.0, 3.0])
+        };
         let little = [-2_i16, 3].map(i16::to_le_bytes).concat();
-        assert_eq!(first(&matrix(30, [1, 2, 0, 2], ByteOrder::Little, &little)), Ok(Value::Array(wanted.clone())));
+        assert_eq!(
+            first(&matrix(30, [1, 2, 0, 2], ByteOrder::Little, &little)),
+            Ok(Value::Array(wanted.clone()))
+        );
         let big = [-2_i16, 3].map(i16::to_be_bytes).concat();
-        assert_eq!(first(&matrix(1030, [1, 2, 0, 2], ByteOrder::Big, &big)), Ok(Value::Array(wanted)));
+        assert_eq!(
+            first(&matrix(1030, [1, 2, 0, 2], ByteOrder::Big, &big)),
+            Ok(Value::Array(wanted))
+        );
     }
 
     #[test]
     fn text_is_stored_as_numbers_of_characters() {
-        let Ok(Value::Text(text)) = first(&matrix(51, [2, 2, 0, 2], ByteOrder::Little, b"acbd")) else { panic!() };
+        let Ok(Value::Text(text)) = first(&matrix(51, [2, 2, 0, 2], ByteOrder::Little, b"acbd"))
+        else {
+            panic!()
+        };
         assert_eq!(text.texts, ["ab", "cd"]);
     }
 
@@ -191,24 +273,57 @@ mod tests {
             let data = numbers.map(f64::to_le_bytes).concat();
             first(&matrix(2, [2, 3, 0, 2], ByteOrder::Little, &data))
         };
-        let Ok(Value::Array(array)) = sparse([2.0, 3.0, 1.0, 1.0, 7.0, 0.0]) else { panic!() };
+        let Ok(Value::Array(array)) = sparse([2.0, 3.0, 1.0, 1.0, 7.0, 0.0]) else {
+            panic!()
+        };
         assert_eq!((array.shape, array.re), (vec![3, 1], vec![0.0, 7.0, 0.0]));
-        for numbers in
-            [[4.0, 3.0, 1.0, 1.0, 7.0, 0.0], [0.0, 3.0, 1.0, 1.0, 7.0, 0.0], [2.0, f64::NAN, 1.0, 1.0, 7.0, 0.0]]
-        {
-            assert!(matches!(sparse(numbers), Err(VariableFault::Damaged { .. })), "{numbers:?}");
+        for numbers in [
+            [4.0, 3.0, 1.0, 1.0, 7.0, 0.0],
+            [0.0, 3.0, 1.0, 1.0, 7.0, 0.0],
+            [2.0, f64::NAN, 1.0, 1.0, 7.0, 0.0],
+        ] {
+            assert!(
+                matches!(sparse(numbers), Err(VariableFault::Damaged { .. })),
+                "{numbers:?}"
+            );
         }
         let large = sparse([2.0, 1e18, 1.0, 1e18, 7.0, 0.0]);
-        assert!(matches!(large, Err(VariableFault::TooLarge { .. })), "{large:?}");
+        assert!(
+            matches!(large, Err(VariableFault::TooLarge { .. })),
+            "{large:?}"
+        );
     }
 
     #[test]
     fn what_is_no_matrix_of_level_4_is_not_taken_for_one() {
         assert!(!begins(&[0; 20]));
-        assert!(!begins(&matrix(4000, [1, 1, 0, 2], ByteOrder::Little, &[0; 8])));
-        assert!(!begins(&matrix(60, [1, 1, 0, 2], ByteOrder::Little, &[0; 8])));
-        assert!(!begins(&matrix(0, [1, u32::MAX, 0, 2], ByteOrder::Little, &[0; 8])));
-        let claimed = first(&matrix(0, [1 << 30, 1 << 30, 0, 2], ByteOrder::Little, &[0; 8]));
-        assert!(matches!(claimed, Err(VariableFault::CutOff { .. })), "{claimed:?}");
+        assert!(!begins(&matrix(
+            4000,
+            [1, 1, 0, 2],
+            ByteOrder::Little,
+            &[0; 8]
+        )));
+        assert!(!begins(&matrix(
+            60,
+            [1, 1, 0, 2],
+            ByteOrder::Little,
+            &[0; 8]
+        )));
+        assert!(!begins(&matrix(
+            0,
+            [1, u32::MAX, 0, 2],
+            ByteOrder::Little,
+            &[0; 8]
+        )));
+        let claimed = first(&matrix(
+            0,
+            [1 << 30, 1 << 30, 0, 2],
+            ByteOrder::Little,
+            &[0; 8],
+        ));
+        assert!(
+            matches!(claimed, Err(VariableFault::CutOff { .. })),
+            "{claimed:?}"
+        );
     }
 }

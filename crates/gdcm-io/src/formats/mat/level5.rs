@@ -29,23 +29,36 @@ pub(super) fn version(bytes: &[u8]) -> Option<(ByteOrder, u8)> {
 }
 
 /// All variables of a file.
-pub(super) fn read(bytes: &[u8], order: ByteOrder, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub(super) fn read(
+    bytes: &[u8],
+    order: ByteOrder,
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<Variable>, VariableFault> {
     let objects = match mat::objects(bytes, objects_at(bytes, order), order, budget) {
         Ok(objects) => Ok(objects),
         Err(fault) if fault.is_of_the_budget() => return Err(fault),
-        Err(VariableFault::Damaged { what, .. }) => Err(format!("the objects of this file cannot be read: {what}")),
+        Err(VariableFault::Damaged { what, .. }) => {
+            Err(format!("the objects of this file cannot be read: {what}"))
+        }
         Err(fault) => Err(format!("the objects of this file cannot be read: {fault}")),
     };
-    let arrays = Arrays { budget, objects: objects.as_ref().map_err(String::as_str) };
+    let arrays = Arrays {
+        budget,
+        objects: objects.as_ref().map_err(String::as_str),
+    };
     let mut file = Cursor::file(bytes, order);
     file.pass(HEADER_BYTES)?;
     let (mut variables, mut names) = (Vec::new(), HashSet::new());
     while !file.is_empty() {
         budget.take(1, 2 * size_of::<Variable>() as u64, "")?;
         // Arrays without a name are the machine's own notes, above all the objects.
-        let Some(variable) = variable(&mut file, &arrays)? else { continue };
+        let Some(variable) = variable(&mut file, &arrays)? else {
+            continue;
+        };
         if !names.insert(variable.name.clone()) {
-            return Err(VariableFault::Duplicate { name: variable.name });
+            return Err(VariableFault::Duplicate {
+                name: variable.name,
+            });
         }
         variables.push(variable);
     }
@@ -55,7 +68,11 @@ pub(super) fn read(bytes: &[u8], order: ByteOrder, budget: &ReadingBudget<'_>) -
 /// Where the objects lie. Old versions leave blanks there.
 fn objects_at(bytes: &[u8], order: ByteOrder) -> Option<usize> {
     let place: [u8; 8] = bytes.get(OBJECTS_AT..VERSION_AT)?.try_into().ok()?;
-    if place == [b' '; 8] || place == [0; 8] { None } else { usize::try_from(order.u64(place)).ok() }
+    if place == [b' '; 8] || place == [0; 8] {
+        None
+    } else {
+        usize::try_from(order.u64(place)).ok()
+    }
 }
 
 fn variable(file: &mut Cursor<'_>, arrays: &Arrays<'_>) -> Result<Option<Variable>, VariableFault> {
@@ -72,14 +89,20 @@ fn variable(file: &mut Cursor<'_>, arrays: &Arrays<'_>) -> Result<Option<Variabl
     named(&mut matrix(Element::read(&mut inner)?)?, arrays)
 }
 
-fn named(contents: &mut Cursor<'_>, arrays: &Arrays<'_>) -> Result<Option<Variable>, VariableFault> {
+fn named(
+    contents: &mut Cursor<'_>,
+    arrays: &Arrays<'_>,
+) -> Result<Option<Variable>, VariableFault> {
     let header = Header::read(contents, arrays.budget)?;
     if header.name.is_empty() {
         Element::pass_all(contents)?;
         return Ok(None);
     }
     let value = arrays.contents(&header, contents, &FieldPath::start(&header.name))?;
-    Ok(Some(Variable { name: header.name, value }))
+    Ok(Some(Variable {
+        name: header.name,
+        value,
+    }))
 }
 
 /// Where the next array begins: behind the array that began at `start`, whose `unread` bytes are no part of it if nothing begins
@@ -102,7 +125,9 @@ pub(super) fn behind<'b>(
 pub(super) fn matrix(element: Element<'_>) -> Result<Cursor<'_>, VariableFault> {
     match element.kind {
         DataKind::Matrix => Ok(element.data),
-        _ => Err(element.data.damaged("something else where an array should stand")),
+        _ => Err(element
+            .data
+            .damaged("something else where an array should stand")),
     }
 }
 
@@ -143,12 +168,22 @@ enum Stretch {
 impl<'b> Cursor<'b> {
     /// At the beginning of a file.
     pub(super) fn file(bytes: &'b [u8], order: ByteOrder) -> Self {
-        Self { bytes, order, offset: 0, stretch: Stretch::File }
+        Self {
+            bytes,
+            order,
+            offset: 0,
+            stretch: Stretch::File,
+        }
     }
 
     /// At the beginning of what was unpacked, or stands as data, at `offset` of the file.
     pub(super) fn unpacked(bytes: &'b [u8], order: ByteOrder, offset: u64) -> Self {
-        Self { bytes, order, offset, stretch: Stretch::Unpacked }
+        Self {
+            bytes,
+            order,
+            offset,
+            stretch: Stretch::Unpacked,
+        }
     }
 
     /// The bytes that are left.
@@ -168,9 +203,21 @@ impl<'b> Cursor<'b> {
 
     /// The next `length` bytes, as an element of their own.
     pub(super) fn take(&mut self, length: usize) -> Result<Cursor<'b>, VariableFault> {
-        let (bytes, rest) = self.bytes.split_at_checked(length).ok_or_else(|| self.too_short())?;
-        let stretch = if self.stretch == Stretch::File { Stretch::Element } else { self.stretch };
-        let taken = Cursor { bytes, order: self.order, offset: self.offset, stretch };
+        let (bytes, rest) = self
+            .bytes
+            .split_at_checked(length)
+            .ok_or_else(|| self.too_short())?;
+        let stretch = if self.stretch == Stretch::File {
+            Stretch::Element
+        } else {
+            self.stretch
+        };
+        let taken = Cursor {
+            bytes,
+            order: self.order,
+            offset: self.offset,
+            stretch,
+        };
         self.bytes = rest;
         if self.stretch != Stretch::Unpacked {
             self.offset = self.offset.saturating_add(length as u64);
@@ -209,7 +256,10 @@ impl<'b> Cursor<'b> {
 
     fn too_short(&self) -> VariableFault {
         match self.stretch {
-            Stretch::File => VariableFault::CutOff { variable: String::new(), offset: self.offset },
+            Stretch::File => VariableFault::CutOff {
+                variable: String::new(),
+                offset: self.offset,
+            },
             _ => self.damaged("an element is longer than the one it lies in"),
         }
     }
@@ -289,7 +339,10 @@ const KINDS: [(DataKind, Option<(NumberClass, usize)>); 15] = [
 
 impl DataKind {
     fn of(number: u32) -> Option<Self> {
-        KINDS.iter().map(|(kind, _)| *kind).find(|kind| *kind as u32 == number)
+        KINDS
+            .iter()
+            .map(|(kind, _)| *kind)
+            .find(|kind| *kind as u32 == number)
     }
 
     /// How its numbers are stored, where it holds any.
@@ -311,19 +364,31 @@ impl<'b> Element<'b> {
             let number = first & 0xffff;
             let kind = DataKind::of(number).ok_or_else(|| unknown(number))?;
             let data = cursor.take(4)?.take(small as usize)?;
-            return Ok(Self { kind, data, whole: true });
+            return Ok(Self {
+                kind,
+                data,
+                whole: true,
+            });
         }
         let kind = DataKind::of(first).ok_or_else(|| unknown(first))?;
         let length = cursor.u32()? as usize;
         if kind == DataKind::Matrix && length > cursor.len() {
             // GNU Octave takes some arrays for a few bytes longer than they are.
-            return Ok(Self { kind, data: cursor.take_all()?, whole: false });
+            return Ok(Self {
+                kind,
+                data: cursor.take_all()?,
+                whole: false,
+            });
         }
         let data = cursor.take(length)?;
         if kind != DataKind::Packed {
             cursor.pass(length.wrapping_neg() % 8)?;
         }
-        Ok(Self { kind, data, whole: true })
+        Ok(Self {
+            kind,
+            data,
+            whole: true,
+        })
     }
 
     /// Whether an array begins here, or nothing follows.
@@ -345,9 +410,14 @@ impl<'b> Element<'b> {
     /// Number of numbers in it.
     pub(super) fn count(&self) -> Result<usize, VariableFault> {
         let stored = self.kind.stored(self.data.order);
-        let width = stored.ok_or_else(|| self.data.damaged("a matrix where numbers should stand"))?.size();
+        let width = stored
+            .ok_or_else(|| self.data.damaged("a matrix where numbers should stand"))?
+            .size();
         if !self.data.len().is_multiple_of(width) {
-            return Err(self.data.damaged(format!("{} bytes of numbers of {width} bytes each", self.data.len())));
+            return Err(self.data.damaged(format!(
+                "{} bytes of numbers of {width} bytes each",
+                self.data.len()
+            )));
         }
         Ok(self.data.len() / width)
     }
@@ -380,7 +450,10 @@ const MOST_EXPANSION: u64 = 1040;
 const CHUNK: u64 = 1 << 20;
 
 /// The bytes of a packed element: its tag, which says how many follow, and those.
-pub(super) fn unpacked(packed: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, VariableFault> {
+pub(super) fn unpacked(
+    packed: Cursor<'_>,
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<u8>, VariableFault> {
     let mut decoder = ZlibDecoder::new(packed.rest());
     let mut bytes = Vec::new();
     unpack_more(&mut decoder, 8, &mut bytes, packed, budget)?;
@@ -388,11 +461,16 @@ pub(super) fn unpacked(packed: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result
     tag.pass(4)?;
     let length = u64::from(tag.u32()?);
     if length > (packed.len() as u64).saturating_mul(MOST_EXPANSION) {
-        return Err(packed.damaged(format!("{} packed bytes that claim to hold {length}", packed.len())));
+        return Err(packed.damaged(format!(
+            "{} packed bytes that claim to hold {length}",
+            packed.len()
+        )));
     }
     unpack_more(&mut decoder, length, &mut bytes, packed, budget)?;
     // At the end lies a checksum, which is compared when the end is looked for.
-    let more = decoder.read(&mut [0]).map_err(|_| packed.damaged("the packed bytes were changed"))?;
+    let more = decoder
+        .read(&mut [0])
+        .map_err(|_| packed.damaged("the packed bytes were changed"))?;
     if more != 0 {
         return Err(packed.damaged("more packed bytes than they say themselves"));
     }
@@ -411,10 +489,14 @@ fn unpack_more(
         let chunk = left.min(CHUNK);
         // Vectors grow by doubling.
         budget.take(2 * chunk, 1, "")?;
-        let found = decoder.by_ref().take(chunk).read_to_end(bytes).map_err(|error| match error.kind() {
-            ErrorKind::UnexpectedEof => packed.damaged("the packed bytes end too early"),
-            _ => packed.damaged("the packed bytes were changed"),
-        })?;
+        let found = decoder
+            .by_ref()
+            .take(chunk)
+            .read_to_end(bytes)
+            .map_err(|error| match error.kind() {
+                ErrorKind::UnexpectedEof => packed.damaged("the packed bytes end too early"),
+                _ => packed.damaged("the packed bytes were changed"),
+            })?;
         if (found as u64) < chunk {
             // GNU Octave counts too many bytes; whether too few are left is found out when they are read.
             return Ok(());
@@ -444,7 +526,10 @@ mod level5_tests {
     #[test]
     fn the_header_says_how_the_file_is_written() {
         assert_eq!(version(&file(&[])), Some((ByteOrder::Little, 1)));
-        assert_eq!(version(&[&[b' '; 124][..], b"\x01\0MI"].concat()), Some((ByteOrder::Big, 1)));
+        assert_eq!(
+            version(&[&[b' '; 124][..], b"\x01\0MI"].concat()),
+            Some((ByteOrder::Big, 1))
+        );
         assert_eq!(version(&[b' '; 128]), None);
     }
 
@@ -452,16 +537,35 @@ mod level5_tests {
     fn arrays_that_octave_counts_too_long_are_read_with_what_follows_them() {
         let text = too_long(chars("ch", "acbd"));
         let last = too_long(doubles("last", &[1, 1], &[2.0]));
-        let found = variables(&file(&[text, doubles("x", &[1, 1], &[1.0]), last].concat())).unwrap();
-        assert_eq!(found.iter().map(|variable| variable.name.as_str()).collect::<Vec<_>>(), ["ch", "x", "last"]);
+        let found =
+            variables(&file(&[text, doubles("x", &[1, 1], &[1.0]), last].concat())).unwrap();
+        assert_eq!(
+            found
+                .iter()
+                .map(|variable| variable.name.as_str())
+                .collect::<Vec<_>>(),
+            ["ch", "x", "last"]
+        );
     }
 
     #[test]
     fn arrays_within_others_that_octave_counts_too_long_are_read_too() {
-        let fields = [("a", too_long(chars("", "acbd"))), ("b", too_long(doubles("", &[1, 1], &[1.0])))];
+        let fields = [
+            ("a", too_long(chars("", "acbd"))),
+            ("b", too_long(doubles("", &[1, 1], &[1.0]))),
+        ];
         let found = variables(&file(&too_long(record("s", &fields)))).unwrap();
-        let Value::Struct(records) = &found[0].value else { panic!() };
-        assert_eq!(records.field("b").unwrap(), [Value::Array(crate::variables::Array::matrix(1, 1, vec![1.0]))]);
+        let Value::Struct(records) = &found[0].value else {
+            panic!()
+        };
+        assert_eq!(
+            records.field("b").unwrap(),
+            [Value::Array(crate::variables::Array::matrix(
+                1,
+                1,
+                vec![1.0]
+            ))]
+        );
     }
 
     #[test]
@@ -474,8 +578,14 @@ mod level5_tests {
 
     #[test]
     fn numbers_where_a_variable_should_stand_are_damage() {
-        assert!(matches!(variables(&file(&element(9, &[0; 8]))), Err(VariableFault::Damaged { .. })));
-        assert!(matches!(variables(&file(&matrix(99, &[1, 1], "x", &[]))), Err(VariableFault::Damaged { .. })));
+        assert!(matches!(
+            variables(&file(&element(9, &[0; 8]))),
+            Err(VariableFault::Damaged { .. })
+        ));
+        assert!(matches!(
+            variables(&file(&matrix(99, &[1, 1], "x", &[]))),
+            Err(VariableFault::Damaged { .. })
+        ));
     }
 }
 
@@ -493,8 +603,14 @@ mod cursor_tests {
     fn the_end_of_the_file_is_not_the_end_of_an_element() {
         let mut file = Cursor::file(&[0; 6], ByteOrder::Little);
         let mut element = file.take(3).unwrap();
-        assert!(matches!(element.u32(), Err(VariableFault::Damaged { offset: 0, .. })));
-        assert!(matches!(file.u32(), Err(VariableFault::CutOff { offset: 3, .. })));
+        assert!(matches!(
+            element.u32(),
+            Err(VariableFault::Damaged { offset: 0, .. })
+        ));
+        assert!(matches!(
+            file.u32(),
+            Err(VariableFault::CutOff { offset: 3, .. })
+        ));
         assert!(file.pass(9).is_ok() && file.is_empty());
     }
 }
@@ -510,13 +626,23 @@ mod element_tests {
     #[test]
     fn small_data_stand_in_the_tag() {
         let element = read(&[1, 0, 3, 0, b'a', b'b', b'c', 0]).unwrap();
-        assert_eq!((element.kind, element.name().unwrap().as_str()), (DataKind::I8, "abc"));
-        assert!(matches!(read(&[1, 0, 5, 0, 0, 0, 0, 0]), Err(VariableFault::Damaged { .. })));
+        assert_eq!(
+            (element.kind, element.name().unwrap().as_str()),
+            (DataKind::I8, "abc")
+        );
+        assert!(matches!(
+            read(&[1, 0, 5, 0, 0, 0, 0, 0]),
+            Err(VariableFault::Damaged { .. })
+        ));
     }
 
     #[test]
     fn the_next_element_begins_at_a_multiple_of_eight_bytes() {
-        let bytes = [&[2, 0, 0, 0, 5, 0, 0, 0, 1, 2, 3, 4, 5, 0, 0, 0][..], &[2, 0, 1, 0, 7, 0, 0, 0]].concat();
+        let bytes = [
+            &[2, 0, 0, 0, 5, 0, 0, 0, 1, 2, 3, 4, 5, 0, 0, 0][..],
+            &[2, 0, 1, 0, 7, 0, 0, 0],
+        ]
+        .concat();
         let mut cursor = Cursor::file(&bytes, ByteOrder::Little);
         assert_eq!(Element::read(&mut cursor).unwrap().count(), Ok(5));
         assert_eq!(Element::read(&mut cursor).unwrap().data.rest(), [7]);
@@ -526,14 +652,21 @@ mod element_tests {
     fn an_array_begins_where_its_tag_fits_what_follows() {
         let begins = |bytes: &[u8]| Element::begins_array(&Cursor::file(bytes, ByteOrder::Little));
         assert!(begins(&[]) && begins(&[14, 0, 0, 0, 0, 0, 0, 0]));
-        for bytes in [&[14, 0, 0, 0, 1, 0, 0, 0][..], &[9, 0, 0, 0, 0, 0, 0, 0], &[14, 0, 0, 0]] {
+        for bytes in [
+            &[14, 0, 0, 0, 1, 0, 0, 0][..],
+            &[9, 0, 0, 0, 0, 0, 0, 0],
+            &[14, 0, 0, 0],
+        ] {
             assert!(!begins(bytes), "{bytes:?}");
         }
     }
 
     #[test]
     fn an_unknown_kind_and_half_numbers_are_damage() {
-        assert!(matches!(read(&[8, 0, 0, 0, 0, 0, 0, 0]), Err(VariableFault::Damaged { .. })));
+        assert!(matches!(
+            read(&[8, 0, 0, 0, 0, 0, 0, 0]),
+            Err(VariableFault::Damaged { .. })
+        ));
         assert!(read(&[4, 0, 3, 0, 0, 0, 0, 0]).unwrap().count().is_err());
     }
 
@@ -558,29 +691,47 @@ mod inflate_tests {
     }
 
     fn read(bytes: &[u8], most: u64) -> Result<Vec<u8>, VariableFault> {
-        unpacked(Cursor::file(bytes, ByteOrder::Little), &ReadingBudget::new(most))
+        unpacked(
+            Cursor::file(bytes, ByteOrder::Little),
+            &ReadingBudget::new(most),
+        )
     }
 
     #[test]
     fn as_much_is_unpacked_as_the_tag_says() {
         for length in [3, 4] {
-            assert_eq!(read(&packed(length, &[1, 2, 3]), 100).unwrap()[8..], [1, 2, 3]);
+            assert_eq!(
+                read(&packed(length, &[1, 2, 3]), 100).unwrap()[8..],
+                [1, 2, 3]
+            );
         }
-        assert!(matches!(read(&packed(2, &[1, 2, 3]), 100), Err(VariableFault::Damaged { .. })));
+        assert!(matches!(
+            read(&packed(2, &[1, 2, 3]), 100),
+            Err(VariableFault::Damaged { .. })
+        ));
     }
 
     #[test]
     fn what_unpacks_to_too_much_is_refused_before_it_is_unpacked() {
         let bomb = packed(1 << 22, &vec![0; 1 << 22]);
         assert!(bomb.len() < 1 << 13);
-        assert!(matches!(read(&bomb, 1 << 20), Err(VariableFault::TooLarge { .. })));
-        assert!(matches!(read(&packed(u32::MAX, &[0; 99]), u64::MAX), Err(VariableFault::Damaged { .. })));
+        assert!(matches!(
+            read(&bomb, 1 << 20),
+            Err(VariableFault::TooLarge { .. })
+        ));
+        assert!(matches!(
+            read(&packed(u32::MAX, &[0; 99]), u64::MAX),
+            Err(VariableFault::Damaged { .. })
+        ));
     }
 
     #[test]
     fn changed_bytes_are_found_by_their_checksum() {
         let mut bytes = packed(3, &[1, 2, 3]);
         *bytes.last_mut().unwrap() ^= 1;
-        assert!(matches!(read(&bytes, 100), Err(VariableFault::Damaged { .. })));
+        assert!(matches!(
+            read(&bytes, 100),
+            Err(VariableFault::Damaged { .. })
+        ));
     }
 }

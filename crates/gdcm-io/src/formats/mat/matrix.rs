@@ -6,7 +6,9 @@ use crate::formats::mat::level5::{Cursor, DataKind, Element, behind, matrix};
 use crate::formats::mat::subsystem::{Reference, Subsystem};
 use crate::formats::mat::{ArrayClass, FieldPath, Header, Step, count, export_line};
 use crate::strides::Entries;
-use crate::variables::{Array, CellArray, Object, RECORD, ReadingBudget, StructArray, TextArray, Value, VariableFault};
+use crate::variables::{
+    Array, CellArray, Object, RECORD, ReadingBudget, StructArray, TextArray, Value, VariableFault,
+};
 
 /// What reading an array takes besides its bytes.
 #[derive(Clone, Copy)]
@@ -26,27 +28,39 @@ impl Arrays<'_> {
         trail: &FieldPath<'_>,
     ) -> Result<Value, VariableFault> {
         let value = match header.class {
-            ArrayClass::Float | ArrayClass::Integer => self.array(header, contents).map(Value::Array),
-            ArrayClass::Sparse => self.sparse(header, contents).map(Value::Array),
-            ArrayClass::Char => {
-                Element::read(contents).and_then(|element| text(&element, &header.shape, self.budget)).map(Value::Text)
+            ArrayClass::Float | ArrayClass::Integer => {
+                self.array(header, contents).map(Value::Array)
             }
+            ArrayClass::Sparse => self.sparse(header, contents).map(Value::Array),
+            ArrayClass::Char => Element::read(contents)
+                .and_then(|element| text(&element, &header.shape, self.budget))
+                .map(Value::Text),
             ArrayClass::Cell => self.cell(header, contents, trail).map(Value::Cell),
             ArrayClass::Struct => self.records(header, contents, trail).map(Value::Struct),
             ArrayClass::Object => self.object(header, contents, trail).map(Value::Object),
-            ArrayClass::FunctionHandle => Element::pass_all(contents).map(|()| unread("function_handle", trail)),
+            ArrayClass::FunctionHandle => {
+                Element::pass_all(contents).map(|()| unread("function_handle", trail))
+            }
             ArrayClass::Opaque => opaque_value(self, contents, trail),
         };
         value.map_err(|fault| trail.name(fault))
     }
 
     /// The next array, which lies in another.
-    pub(super) fn inner(&self, contents: &mut Cursor<'_>, trail: &FieldPath<'_>) -> Result<Value, VariableFault> {
+    pub(super) fn inner(
+        &self,
+        contents: &mut Cursor<'_>,
+        trail: &FieldPath<'_>,
+    ) -> Result<Value, VariableFault> {
         let value = self.next(contents, trail);
         value.map_err(|fault| trail.name(fault))
     }
 
-    fn next(&self, contents: &mut Cursor<'_>, trail: &FieldPath<'_>) -> Result<Value, VariableFault> {
+    fn next(
+        &self,
+        contents: &mut Cursor<'_>,
+        trail: &FieldPath<'_>,
+    ) -> Result<Value, VariableFault> {
         let start = *contents;
         let element = Element::read(contents)?;
         let mut data = matrix(element)?;
@@ -62,8 +76,17 @@ impl Arrays<'_> {
     fn array(&self, header: &Header, contents: &mut Cursor<'_>) -> Result<Array, VariableFault> {
         let count = header.count;
         let re = numbers(&Element::read(contents)?, count, self.budget)?;
-        let im = if header.complex { Some(numbers(&Element::read(contents)?, count, self.budget)?) } else { None };
-        Ok(Array { shape: header.shape.clone(), kind: header.element_kind(), re, im })
+        let im = if header.complex {
+            Some(numbers(&Element::read(contents)?, count, self.budget)?)
+        } else {
+            None
+        };
+        Ok(Array {
+            shape: header.shape.clone(),
+            kind: header.element_kind(),
+            re,
+            im,
+        })
     }
 
     fn sparse(&self, header: &Header, contents: &mut Cursor<'_>) -> Result<Array, VariableFault> {
@@ -77,7 +100,10 @@ impl Arrays<'_> {
         let mut part = || {
             let mut element = Element::read(contents)?;
             // MATLAB says of true and false in sparse matrices that they take eight bytes each, and writes one.
-            if header.logical && element.kind == DataKind::F64 && element.data.len() < stored.saturating_mul(8) {
+            if header.logical
+                && element.kind == DataKind::F64
+                && element.data.len() < stored.saturating_mul(8)
+            {
                 element.kind = DataKind::U8;
             }
             numbers(&element, element.count()?, self.budget)
@@ -85,9 +111,17 @@ impl Arrays<'_> {
         let re = part()?;
         let im = if header.complex { Some(part()?) } else { None };
         self.budget.take(stored as u64, 8, "")?;
-        Entries::of_columns([height, width], header.element_kind(), rows, &starts, (re, im))
-            .ok_or_else(|| start.damaged("a sparse matrix whose columns do not fit its numbers"))?
-            .filled("", self.budget, || start.damaged("a number outside its sparse matrix"))
+        Entries::of_columns(
+            [height, width],
+            header.element_kind(),
+            rows,
+            &starts,
+            (re, im),
+        )
+        .ok_or_else(|| start.damaged("a sparse matrix whose columns do not fit its numbers"))?
+        .filled("", self.budget, || {
+            start.damaged("a number outside its sparse matrix")
+        })
     }
 
     fn cell(
@@ -98,7 +132,10 @@ impl Arrays<'_> {
     ) -> Result<CellArray, VariableFault> {
         let count = self.room(header.count, contents)?;
         let values = (0..count).map(|at| self.inner(contents, &trail.step(Step::Cell(at))?));
-        Ok(CellArray { shape: header.shape.clone(), values: values.collect::<Result<_, _>>()? })
+        Ok(CellArray {
+            shape: header.shape.clone(),
+            values: values.collect::<Result<_, _>>()?,
+        })
     }
 
     fn object(
@@ -108,7 +145,10 @@ impl Arrays<'_> {
         trail: &FieldPath<'_>,
     ) -> Result<Object, VariableFault> {
         let class = Element::read(contents)?.name()?;
-        Ok(Object { class, records: self.records(header, contents, trail)? })
+        Ok(Object {
+            class,
+            records: self.records(header, contents, trail)?,
+        })
     }
 
     fn records(
@@ -135,7 +175,10 @@ impl Arrays<'_> {
                 values.push(self.inner(contents, &trail.step(Step::Field(name))?)?);
             }
         }
-        Ok(StructArray { shape: header.shape.clone(), fields })
+        Ok(StructArray {
+            shape: header.shape.clone(),
+            fields,
+        })
     }
 
     /// Counts `count` values that follow, each of which takes eight bytes of the file at least.
@@ -144,26 +187,37 @@ impl Arrays<'_> {
             return Err(contents.damaged(format!("{count} values in {} bytes", contents.len())));
         }
         // Vectors grow by doubling.
-        self.budget.take(count as u64, 2 * size_of::<Value>() as u64, "")?;
+        self.budget
+            .take(count as u64, 2 * size_of::<Value>() as u64, "")?;
         Ok(count)
     }
 }
 
 /// The names of the fields of records, which stand before them.
-pub(super) fn field_names(contents: &mut Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Vec<String>, VariableFault> {
+pub(super) fn field_names(
+    contents: &mut Cursor<'_>,
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<String>, VariableFault> {
     let lengths = Element::read(contents)?;
     let &[length] = places(&lengths, budget)?.as_slice() else {
-        return Err(lengths.data.damaged("records without a length of their names"));
+        return Err(lengths
+            .data
+            .damaged("records without a length of their names"));
     };
     let names = Element::read(contents)?;
     let bytes = names.data.rest();
     if (length == 0 && !bytes.is_empty()) || (length != 0 && !bytes.len().is_multiple_of(length)) {
-        return Err(names.data.damaged("names of fields that do not fit their length"));
+        return Err(names
+            .data
+            .damaged("names of fields that do not fit their length"));
     }
     budget.take((bytes.len() / length.max(1)) as u64, 128, "")?;
     let mut seen = std::collections::HashSet::new();
     let mut found = Vec::new();
-    for name in bytes.chunks_exact(length.max(1)).map(crate::formats::mat::level5::name_of) {
+    for name in bytes
+        .chunks_exact(length.max(1))
+        .map(crate::formats::mat::level5::name_of)
+    {
         if !seen.insert(name.clone()) {
             return Err(VariableFault::Duplicate { name });
         }
@@ -184,35 +238,69 @@ pub(super) fn numbers(
 ) -> Result<Vec<f64>, VariableFault> {
     let found = element.count()?;
     if found != count {
-        return Err(element.data.damaged(format!("{found} numbers where there should be {count}")));
+        return Err(element
+            .data
+            .damaged(format!("{found} numbers where there should be {count}")));
     }
     budget.take(count as u64, 8, "")?;
-    let Some(stored) = element.kind.stored(element.data.order) else { return Ok(Vec::new()) };
-    Ok(element.data.rest().chunks_exact(stored.size()).map(|number| stored.decode(number)).collect())
+    let Some(stored) = element.kind.stored(element.data.order) else {
+        return Ok(Vec::new());
+    };
+    Ok(element
+        .data
+        .rest()
+        .chunks_exact(stored.size())
+        .map(|number| stored.decode(number))
+        .collect())
 }
 
 /// All whole numbers of an element: sizes and places.
-pub(super) fn places(element: &Element<'_>, budget: &ReadingBudget<'_>) -> Result<Vec<usize>, VariableFault> {
+pub(super) fn places(
+    element: &Element<'_>,
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<usize>, VariableFault> {
     match element.kind {
         DataKind::I32 | DataKind::U32 => {}
-        _ => return Err(element.data.damaged("numbers of another kind where sizes should stand")),
+        _ => {
+            return Err(element
+                .data
+                .damaged("numbers of another kind where sizes should stand"));
+        }
     }
     let count = element.count()?;
     budget.take(count as u64, 8, "")?;
     let values = numbers(element, count, budget)?;
-    let place = |value: f64| if value < 0.0 { None } else { Some(value as usize) };
+    let place = |value: f64| {
+        if value < 0.0 {
+            None
+        } else {
+            Some(value as usize)
+        }
+    };
     let places: Option<Vec<usize>> = values.into_iter().map(place).collect();
     places.ok_or_else(|| element.data.damaged("a negative size"))
 }
 
 /// All whole numbers of 64 bits of an element, if it holds such.
-pub(super) fn long_words(element: &Element<'_>, budget: &ReadingBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+pub(super) fn long_words(
+    element: &Element<'_>,
+    budget: &ReadingBudget<'_>,
+) -> Result<Option<Vec<u64>>, VariableFault> {
     if element.kind != DataKind::U64 {
         return Ok(None);
     }
     budget.take(element.count()? as u64, 8, "")?;
     let order = element.data.order;
-    Ok(Some(element.data.rest().as_chunks().0.iter().map(|&bytes| order.u64(bytes)).collect()))
+    Ok(Some(
+        element
+            .data
+            .rest()
+            .as_chunks()
+            .0
+            .iter()
+            .map(|&bytes| order.u64(bytes))
+            .collect(),
+    ))
 }
 
 // Arrays of characters.
@@ -232,7 +320,9 @@ pub(super) fn text(
     }
     if characters.len() != wanted {
         let found = characters.len();
-        return Err(element.data.damaged(format!("{found} characters where there should be {wanted}")));
+        return Err(element
+            .data
+            .damaged(format!("{found} characters where there should be {wanted}")));
     }
     rows(&characters, shape, "", budget)
 }
@@ -246,7 +336,10 @@ pub(crate) fn rows(
     variable: &str,
     budget: &ReadingBudget<'_>,
 ) -> Result<TextArray, VariableFault> {
-    let (height, length) = (shape.first().copied().unwrap_or(1), shape.get(1).copied().unwrap_or(1));
+    let (height, length) = (
+        shape.first().copied().unwrap_or(1),
+        shape.get(1).copied().unwrap_or(1),
+    );
     let pages = shape.get(2..).unwrap_or_default();
     if characters.is_empty() && height <= 1 {
         return Ok(TextArray::one(""));
@@ -258,11 +351,16 @@ pub(crate) fn rows(
     budget.take(characters.len() as u64, 3, variable)?;
     let page = height.saturating_mul(length);
     let row = |text: usize| {
-        let first = (text / height).saturating_mul(page).saturating_add(text % height);
+        let first = (text / height)
+            .saturating_mul(page)
+            .saturating_add(text % height);
         let places = (0..length).map(|column| first.saturating_add(column.saturating_mul(height)));
         written(places.filter_map(|place| characters.get(place).copied()))
     };
-    Ok(TextArray { shape, texts: (0..texts).map(row).collect() })
+    Ok(TextArray {
+        shape,
+        texts: (0..texts).map(row).collect(),
+    })
 }
 
 /// Text of characters' numbers, whether those beyond 16 bits are one number or two (as in UTF-16).
@@ -277,12 +375,19 @@ fn written(numbers: impl Iterator<Item = u32>) -> String {
     String::from_utf16_lossy(&units)
 }
 
-fn characters(element: &Element<'_>, wanted: usize, budget: &ReadingBudget<'_>) -> Result<Vec<u32>, VariableFault> {
+fn characters(
+    element: &Element<'_>,
+    wanted: usize,
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<u32>, VariableFault> {
     if element.kind == DataKind::Utf8 {
         return Ok(of_utf8(element.data.rest(), wanted));
     }
     let found = element.count()?;
-    Ok(numbers(element, found, budget)?.into_iter().map(|number| number as u32).collect())
+    Ok(numbers(element, found, budget)?
+        .into_iter()
+        .map(|number| number as u32)
+        .collect())
 }
 
 /// The shape counts units of UTF-16 in files of MATLAB, characters in those of some other programs, and bytes in those that
@@ -325,7 +430,9 @@ pub(super) fn opaque_value(
     };
     match (&contents, Reference::of(&contents)) {
         (_, Some(reference)) => objects.referred(&reference, trail, arrays.budget),
-        (Value::Struct(records), None) => objects.enumeration(records, &class, trail, arrays.budget),
+        (Value::Struct(records), None) => {
+            objects.enumeration(records, &class, trail, arrays.budget)
+        }
         _ => Ok(unread_because(&class, "it refers to no object", &variable)),
     }
 }
@@ -354,26 +461,43 @@ mod matrix_tests {
 
     #[test]
     fn the_other_order_of_bytes_is_read() {
-        let Ok(Value::Array(array)) = first(&big_file("x", &[1, 2], &[1.0, -2.0])) else { panic!() };
+        let Ok(Value::Array(array)) = first(&big_file("x", &[1, 2], &[1.0, -2.0])) else {
+            panic!()
+        };
         assert_eq!((array.shape, array.re), (vec![1, 2], vec![1.0, -2.0]));
     }
 
     #[test]
     fn an_old_object_has_a_class_and_fields() {
-        let fields = [element(5, &8_i32.to_le_bytes()), element(1, b"a\0\0\0\0\0\0\0b\0\0\0\0\0\0\0")].concat();
+        let fields = [
+            element(5, &8_i32.to_le_bytes()),
+            element(1, b"a\0\0\0\0\0\0\0b\0\0\0\0\0\0\0"),
+        ]
+        .concat();
         let values = [doubles("", &[1, 1], &[1.0]), doubles("", &[1, 1], &[2.0])].concat();
-        let Ok(Value::Object(object)) = first(&file(&matrix(3, &[1, 1], "sys", &[element(1, b"ss"), fields, values])))
-        else {
+        let Ok(Value::Object(object)) = first(&file(&matrix(
+            3,
+            &[1, 1],
+            "sys",
+            &[element(1, b"ss"), fields, values],
+        ))) else {
             panic!()
         };
         assert_eq!(object.class, "ss");
-        assert_eq!(object.records.field("b").unwrap()[0], Value::Array(Array::matrix(1, 1, vec![2.0])));
+        assert_eq!(
+            object.records.field("b").unwrap()[0],
+            Value::Array(Array::matrix(1, 1, vec![2.0]))
+        );
     }
 
     #[test]
     fn a_function_handle_says_how_to_save_it() {
-        let Ok(Value::Opaque { class, why }) = first(&file(&matrix(16, &[1, 1], "f", &[doubles("", &[1, 1], &[1.0])])))
-        else {
+        let Ok(Value::Opaque { class, why }) = first(&file(&matrix(
+            16,
+            &[1, 1],
+            "f",
+            &[doubles("", &[1, 1], &[1.0])],
+        ))) else {
             panic!()
         };
         assert_eq!(class, "function_handle");
@@ -384,18 +508,37 @@ mod matrix_tests {
     fn true_and_false_in_a_sparse_matrix_take_a_byte_each() {
         let rows = element(5, &[0, 1].map(i32::to_le_bytes).concat());
         let starts = element(5, &[0, 1, 2].map(i32::to_le_bytes).concat());
-        let sparse = matrix(5 | 0x0200, &[2, 2], "x", &[rows, starts, element(9, &[1, 1])]);
-        let Ok(Value::Array(array)) = first(&file(&sparse)) else { panic!() };
+        let sparse = matrix(
+            5 | 0x0200,
+            &[2, 2],
+            "x",
+            &[rows, starts, element(9, &[1, 1])],
+        );
+        let Ok(Value::Array(array)) = first(&file(&sparse)) else {
+            panic!()
+        };
         assert_eq!(array.re, [1.0, 0.0, 0.0, 1.0]);
     }
 
     #[test]
     fn sparse_matrices_that_contradict_themselves_are_damaged() {
-        let places =
-            |places: &[i32]| element(5, &places.iter().flat_map(|place| place.to_le_bytes()).collect::<Vec<_>>());
+        let places = |places: &[i32]| {
+            element(
+                5,
+                &places
+                    .iter()
+                    .flat_map(|place| place.to_le_bytes())
+                    .collect::<Vec<_>>(),
+            )
+        };
         let sparse = |rows: &[i32], starts: &[i32]| {
             let numbers = element(9, &[1.0_f64, 2.0].map(f64::to_le_bytes).concat());
-            first(&file(&matrix(5, &[2, 2], "x", &[places(rows), places(starts), numbers])))
+            first(&file(&matrix(
+                5,
+                &[2, 2],
+                "x",
+                &[places(rows), places(starts), numbers],
+            )))
         };
         assert!(sparse(&[0, 1], &[0, 1, 2]).is_ok());
         for (rows, starts) in [
@@ -406,7 +549,10 @@ mod matrix_tests {
             (&[0, 1], &[0, 1, 3]),
             (&[0, -1], &[0, 1, 2]),
         ] {
-            assert!(matches!(sparse(rows, starts), Err(VariableFault::Damaged { .. })), "{rows:?} {starts:?}");
+            assert!(
+                matches!(sparse(rows, starts), Err(VariableFault::Damaged { .. })),
+                "{rows:?} {starts:?}"
+            );
         }
     }
 
@@ -416,21 +562,48 @@ mod matrix_tests {
         let none = element(5, &[]);
         let zeros = element(5, &0_i32.to_le_bytes());
         for class in [1, 2, 4, 5, 6, 12] {
-            let name = [element(5, &8_i32.to_le_bytes()), element(1, b"a\0\0\0\0\0\0\0")].concat();
-            let contents = if class == 2 { vec![name] } else { vec![none.clone(), zeros.clone(), none.clone()] };
-            assert!(first(&file(&matrix(class, &large, "x", &contents))).is_err(), "{class}");
+            let name = [
+                element(5, &8_i32.to_le_bytes()),
+                element(1, b"a\0\0\0\0\0\0\0"),
+            ]
+            .concat();
+            let contents = if class == 2 {
+                vec![name]
+            } else {
+                vec![none.clone(), zeros.clone(), none.clone()]
+            };
+            assert!(
+                first(&file(&matrix(class, &large, "x", &contents))).is_err(),
+                "{class}"
+            );
         }
-        let overflow = first(&file(&matrix(2, &[i32::MAX, i32::MAX, i32::MAX, 0], "x", &[zeros, none])));
-        assert!(matches!(overflow, Err(VariableFault::TooLarge { .. })), "{overflow:?}");
+        let overflow = first(&file(&matrix(
+            2,
+            &[i32::MAX, i32::MAX, i32::MAX, 0],
+            "x",
+            &[zeros, none],
+        )));
+        assert!(
+            matches!(overflow, Err(VariableFault::TooLarge { .. })),
+            "{overflow:?}"
+        );
         let negative = first(&file(&doubles("x", &[-1, 1], &[])));
-        assert!(matches!(negative, Err(VariableFault::Damaged { .. })), "{negative:?}");
+        assert!(
+            matches!(negative, Err(VariableFault::Damaged { .. })),
+            "{negative:?}"
+        );
     }
 
     #[test]
     fn two_fields_of_one_name_are_refused() {
         let fields = [element(5, &2_i32.to_le_bytes()), element(1, b"a\0a\0")].concat();
         let twice = first(&file(&matrix(2, &[1, 1], "s", &[fields])));
-        assert_eq!(twice, Err(VariableFault::Duplicate { name: "a".to_owned() }));
+        assert_eq!(
+            twice,
+            Err(VariableFault::Duplicate {
+                name: "a".to_owned()
+            })
+        );
     }
 }
 
@@ -453,13 +626,22 @@ mod numbers_tests {
         assert_eq!(read(5, &(-3_i32).to_le_bytes(), 1), Ok(vec![-3.0]));
         assert_eq!(read(7, &0.5_f32.to_le_bytes(), 1), Ok(vec![0.5]));
         assert_eq!(read(12, &(-4_i64).to_le_bytes(), 1), Ok(vec![-4.0]));
-        assert_eq!(read(13, &u64::MAX.to_le_bytes(), 1), Ok(vec![18_446_744_073_709_551_616.0]));
+        assert_eq!(
+            read(13, &u64::MAX.to_le_bytes(), 1),
+            Ok(vec![18_446_744_073_709_551_616.0])
+        );
     }
 
     #[test]
     fn too_few_numbers_are_damage_and_too_many_are_not_taken() {
-        assert!(matches!(read(9, &[0; 8], 2), Err(VariableFault::Damaged { .. })));
-        assert!(matches!(read(2, &[0; 200], 200), Err(VariableFault::TooLarge { .. })));
+        assert!(matches!(
+            read(9, &[0; 8], 2),
+            Err(VariableFault::Damaged { .. })
+        ));
+        assert!(matches!(
+            read(2, &[0; 200], 200),
+            Err(VariableFault::TooLarge { .. })
+        ));
     }
 }
 
@@ -478,9 +660,21 @@ mod text_tests {
     #[test]
     fn the_rows_of_an_array_are_texts() {
         let found = read(16, b"adbecf", &[2, 3]).unwrap();
-        assert_eq!(found, TextArray { shape: vec![2, 1], texts: vec!["abc".to_owned(), "def".to_owned()] });
+        assert_eq!(
+            found,
+            TextArray {
+                shape: vec![2, 1],
+                texts: vec!["abc".to_owned(), "def".to_owned()]
+            }
+        );
         let paged = read(16, b"abcd", &[1, 2, 2]).unwrap();
-        assert_eq!(paged, TextArray { shape: vec![1, 1, 2], texts: vec!["ab".to_owned(), "cd".to_owned()] });
+        assert_eq!(
+            paged,
+            TextArray {
+                shape: vec![1, 1, 2],
+                texts: vec!["ab".to_owned(), "cd".to_owned()]
+            }
+        );
     }
 
     #[test]
@@ -489,17 +683,35 @@ mod text_tests {
             let found = read(16, "\u{1f681}".as_bytes(), &[1, length]).unwrap();
             assert_eq!(found.texts[0] == "\u{1f681}", length < 4);
         }
-        assert_eq!(read(17, &[0x3d, 0xd8, 0x81, 0xde], &[1, 2]).unwrap().texts, ["\u{1f681}"]);
-        assert_eq!(read(18, &[0x81, 0xf6, 1, 0], &[1, 1]).unwrap().texts, ["\u{1f681}"]);
+        assert_eq!(
+            read(17, &[0x3d, 0xd8, 0x81, 0xde], &[1, 2]).unwrap().texts,
+            ["\u{1f681}"]
+        );
+        assert_eq!(
+            read(18, &[0x81, 0xf6, 1, 0], &[1, 1]).unwrap().texts,
+            ["\u{1f681}"]
+        );
     }
 
     #[test]
     fn nothing_is_one_empty_text_and_blanks_that_were_left_out_come_back() {
-        assert_eq!(read(4, &[], &[0, 0]).unwrap(), TextArray { shape: vec![1, 1], texts: vec![String::new()] });
+        assert_eq!(
+            read(4, &[], &[0, 0]).unwrap(),
+            TextArray {
+                shape: vec![1, 1],
+                texts: vec![String::new()]
+            }
+        );
         assert_eq!(read(4, &[], &[3, 0]).unwrap().texts, ["", "", ""]);
         assert_eq!(read(4, &[], &[1, 3]).unwrap().texts, ["   "]);
-        assert!(matches!(read(4, &[65, 0], &[1, 3]), Err(VariableFault::Damaged { .. })));
-        assert!(matches!(read(4, &[], &[1 << 20, 1 << 20]), Err(VariableFault::TooLarge { .. })));
+        assert!(matches!(
+            read(4, &[65, 0], &[1, 3]),
+            Err(VariableFault::Damaged { .. })
+        ));
+        assert!(matches!(
+            read(4, &[], &[1 << 20, 1 << 20]),
+            Err(VariableFault::TooLarge { .. })
+        ));
     }
 }
 
@@ -510,7 +722,11 @@ mod opaque_tests {
     use crate::variables::{ReadingBudget, Value};
 
     fn first(bytes: &[u8]) -> (String, String) {
-        match read(bytes, &ReadingBudget::new(1 << 16)).unwrap().remove(0).value {
+        match read(bytes, &ReadingBudget::new(1 << 16))
+            .unwrap()
+            .remove(0)
+            .value
+        {
             Value::Opaque { class, why } => (class, why),
             other => panic!("{other:?}"),
         }
@@ -521,7 +737,8 @@ mod opaque_tests {
         let (class, why) = first(&file(&opaque("sys", "tf", reference(&[1], 1))));
         assert_eq!(class, "tf");
         assert!(
-            why.contains("nowhere") && why.ends_with("[num,den,Ts] = tfdata(sys); save out.mat num den Ts"),
+            why.contains("nowhere")
+                && why.ends_with("[num,den,Ts] = tfdata(sys); save out.mat num den Ts"),
             "{why}"
         );
     }
@@ -529,7 +746,9 @@ mod opaque_tests {
     #[test]
     fn objects_of_other_systems_are_named_and_not_read() {
         let flags = element(6, &[17, 0, 0, 0, 0, 0, 0, 0]);
-        let names = ["x", "java", "java.util.Date"].map(|name| element(1, name.as_bytes())).concat();
+        let names = ["x", "java", "java.util.Date"]
+            .map(|name| element(1, name.as_bytes()))
+            .concat();
         let (class, _) = first(&file(&element(14, &[flags, names].concat())));
         assert_eq!(class, "java.util.Date (java)");
     }

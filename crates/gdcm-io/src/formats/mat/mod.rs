@@ -29,7 +29,9 @@ const EXPECTED: &str = "a .mat file of MATLAB up to version 7";
 pub(crate) const MAT: Importer = Importer {
     name: "a .mat file of MATLAB up to version 7",
     endings: &["mat"],
-    recognises: |bytes, ending| ending == "mat" || matches!(level5::version(bytes), Some((_, LEVEL_5))),
+    recognises: |bytes, ending| {
+        ending == "mat" || matches!(level5::version(bytes), Some((_, LEVEL_5)))
+    },
     read: |bytes, path, budget| Contents::variables(read(bytes, budget), path),
 };
 
@@ -39,16 +41,22 @@ pub(crate) const MAT: Importer = Importer {
 /// fault of the whole file.
 pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     if is_hdf5(bytes) {
-        return Err(VariableFault::format(EXPECTED, "an HDF5 file, as MATLAB writes with -v7.3"));
+        return Err(VariableFault::format(
+            EXPECTED,
+            "an HDF5 file, as MATLAB writes with -v7.3",
+        ));
     }
     // The text that a file of level 5 begins with is what tells it from one of level 4: four bytes that are not zero.
     let text = bytes.get(..4).is_some_and(|start| !start.contains(&0));
     match level5::version(bytes) {
-        Some((order, LEVEL_5)) if text || !level4::begins(bytes) => level5::read(bytes, order, budget),
-        _ if level4::begins(bytes) => level4::read(bytes, budget),
-        Some((_, version)) if text => {
-            Err(VariableFault::format(EXPECTED, format!("a .mat file of the unknown version {version}")))
+        Some((order, LEVEL_5)) if text || !level4::begins(bytes) => {
+            level5::read(bytes, order, budget)
         }
+        _ if level4::begins(bytes) => level4::read(bytes, budget),
+        Some((_, version)) if text => Err(VariableFault::format(
+            EXPECTED,
+            format!("a .mat file of the unknown version {version}"),
+        )),
         _ => Err(VariableFault::format(EXPECTED, beginning(bytes))),
     }
 }
@@ -56,8 +64,13 @@ pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, V
 /// Whether this is an HDF5 file, as MATLAB writes with `-v7.3`.
 pub fn is_hdf5(bytes: &[u8]) -> bool {
     // The signature stands at the beginning, or at byte 512, 1024, 2048 and so on ("HDF5 File Format Specification", II.A).
-    let doubled = std::iter::successors(Some(512_usize), |at| at.checked_mul(2)).take_while(|&at| at < bytes.len());
-    let signed = |at: usize| bytes.get(at..).is_some_and(|rest| rest.starts_with(&HDF5_SIGNATURE));
+    let doubled = std::iter::successors(Some(512_usize), |at| at.checked_mul(2))
+        .take_while(|&at| at < bytes.len());
+    let signed = |at: usize| {
+        bytes
+            .get(at..)
+            .is_some_and(|rest| rest.starts_with(&HDF5_SIGNATURE))
+    };
     std::iter::once(0).chain(doubled).any(signed)
 }
 
@@ -66,8 +79,14 @@ fn beginning(bytes: &[u8]) -> String {
     if start.is_empty() {
         return "an empty file".to_owned();
     }
-    if start.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace()) {
-        return format!("a text that begins with {:?}", String::from_utf8_lossy(start));
+    if start
+        .iter()
+        .all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace())
+    {
+        return format!(
+            "a text that begins with {:?}",
+            String::from_utf8_lossy(start)
+        );
     }
     let bytes: Vec<String> = start.iter().map(|byte| format!("{byte:02x}")).collect();
     format!("a file that begins with the bytes {}", bytes.join(" "))
@@ -132,7 +151,10 @@ fn within(array: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Subsystem, Va
 fn wrapped(wrapper: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Subsystem, VariableFault> {
     let mut wrapper = wrapper;
     let opaque = Header::read(&mut wrapper, budget)?.class == ArrayClass::Opaque;
-    let (system, class) = (Element::read(&mut wrapper)?.name()?, Element::read(&mut wrapper)?.name()?);
+    let (system, class) = (
+        Element::read(&mut wrapper)?.name()?,
+        Element::read(&mut wrapper)?.name()?,
+    );
     if !opaque || system != SYSTEM || class != WRAPPER {
         return Err(wrapper.damaged("they do not lie in a FileWrapper__"));
     }
@@ -142,7 +164,10 @@ fn wrapped(wrapper: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Subsystem,
         return Err(contents.damaged("they do not lie in cells"));
     }
     let trail = FieldPath::start(WRAPPER);
-    let arrays = Arrays { budget, objects: Err("it lies in the objects of the file") };
+    let arrays = Arrays {
+        budget,
+        objects: Err("it lies in the objects of the file"),
+    };
     let (mut cells, mut words) = (Vec::new(), Vec::new());
     for at in 0..header.count {
         let cell = contents;
@@ -155,14 +180,22 @@ fn wrapped(wrapper: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Subsystem,
 }
 
 /// The numbers of a cell to the last digit, if they are whole numbers of 64 bits.
-fn exact(cell: Cursor<'_>, value: &Value, budget: &ReadingBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+fn exact(
+    cell: Cursor<'_>,
+    value: &Value,
+    budget: &ReadingBudget<'_>,
+) -> Result<Option<Vec<u64>>, VariableFault> {
     if !matches!(value, Value::Array(array) if !array.is_empty()) {
         return Ok(None);
     }
     let mut cell = cell;
     let mut contents = Element::read(&mut cell)?.data;
     let header = Header::read(&mut contents, budget)?;
-    if header.long_words { long_words(&Element::read(&mut contents)?, budget) } else { Ok(None) }
+    if header.long_words {
+        long_words(&Element::read(&mut contents)?, budget)
+    } else {
+        Ok(None)
+    }
 }
 
 // The way to a value within a variable.
@@ -194,7 +227,11 @@ enum Step<'t> {
 impl<'t> FieldPath<'t> {
     /// At the variable itself.
     fn start(name: &'t str) -> Self {
-        Self { before: None, step: Step::Start(name), depth: 0 }
+        Self {
+            before: None,
+            step: Step::Start(name),
+            depth: 0,
+        }
     }
 
     /// One step on.
@@ -202,7 +239,11 @@ impl<'t> FieldPath<'t> {
         if self.depth >= DEEPEST {
             return Err(VariableFault::too_deep(&self.words()));
         }
-        Ok(FieldPath { before: Some(self), step, depth: self.depth + 1 })
+        Ok(FieldPath {
+            before: Some(self),
+            step,
+            depth: self.depth + 1,
+        })
     }
 
     /// The way as MATLAB writes it: "sys.A", "models{3}.B".
@@ -268,9 +309,16 @@ impl Header {
         }
         let bits = { flags.data }.u32()?;
         let number = bits & 0xff;
-        let class = ArrayClass::of(number)
-            .ok_or_else(|| flags.data.damaged(format!("an array of the unknown class {number}")))?;
-        let shape = if class == ArrayClass::Opaque { vec![1, 1] } else { shape(contents, budget)? };
+        let class = ArrayClass::of(number).ok_or_else(|| {
+            flags
+                .data
+                .damaged(format!("an array of the unknown class {number}"))
+        })?;
+        let shape = if class == ArrayClass::Opaque {
+            vec![1, 1]
+        } else {
+            shape(contents, budget)?
+        };
         // Nobody who multiplies the sides shall come beyond what can be counted, not even on the way to none.
         if crate::strides::count(&shape).is_none() {
             budget.take(u64::MAX, 1, "")?;
@@ -315,11 +363,16 @@ impl ArrayClass {
 
 /// Number of elements of an array of this shape, or the most that can be counted.
 fn count(shape: &[usize]) -> usize {
-    let product = shape.iter().fold(1_usize, |product, &length| product.saturating_mul(length));
+    let product = shape
+        .iter()
+        .fold(1_usize, |product, &length| product.saturating_mul(length));
     if shape.contains(&0) { 0 } else { product }
 }
 
-fn shape(contents: &mut Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Vec<usize>, VariableFault> {
+fn shape(
+    contents: &mut Cursor<'_>,
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<usize>, VariableFault> {
     let mut shape = places(&Element::read(contents)?, budget)?;
     while shape.len() < 2 {
         shape.push(1);
@@ -335,21 +388,40 @@ fn shape(contents: &mut Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Vec<us
 pub fn export_line(class: &str, variable: &str) -> String {
     let sys = if variable.is_empty() { "x" } else { variable };
     let (assignment, names) = match class {
-        "ss" => (format!("[A,B,C,D] = ssdata({sys}); Ts = {sys}.Ts;"), "A B C D Ts"),
-        "idss" | "idgrey" => (format!("[A,B,C,D,K] = idssdata({sys}); Ts = {sys}.Ts;"), "A B C D K Ts"),
+        "ss" => (
+            format!("[A,B,C,D] = ssdata({sys}); Ts = {sys}.Ts;"),
+            "A B C D Ts",
+        ),
+        "idss" | "idgrey" => (
+            format!("[A,B,C,D,K] = idssdata({sys}); Ts = {sys}.Ts;"),
+            "A B C D K Ts",
+        ),
         "tf" | "idtf" => (format!("[num,den,Ts] = tfdata({sys});"), "num den Ts"),
         "zpk" => (format!("[z,p,k,Ts] = zpkdata({sys});"), "z p k Ts"),
-        "frd" | "idfrd" => {
-            (format!("H = {sys}.ResponseData; w = {sys}.Frequency; unit = {sys}.FrequencyUnit;"), "H w unit")
-        }
-        "iddata" => (format!("u = {sys}.InputData; y = {sys}.OutputData; Ts = {sys}.Ts;"), "u y Ts"),
+        "frd" | "idfrd" => (
+            format!("H = {sys}.ResponseData; w = {sys}.Frequency; unit = {sys}.FrequencyUnit;"),
+            "H w unit",
+        ),
+        "iddata" => (
+            format!("u = {sys}.InputData; y = {sys}.OutputData; Ts = {sys}.Ts;"),
+            "u y Ts",
+        ),
         "timeseries" => (format!("t = {sys}.Time; y = {sys}.Data;"), "t y"),
         "string" | "categorical" => (format!("text = cellstr({sys});"), "text"),
         "datetime" => (format!("t = posixtime({sys});"), "t"),
         "duration" => (format!("t = seconds({sys});"), "t"),
-        "table" => (format!("data = table2struct({sys}, 'ToScalar', true);"), "data"),
-        "timetable" => (format!("data = table2struct(timetable2table({sys}), 'ToScalar', true);"), "data"),
-        "containers.Map" => (format!("names = keys({sys}); data = values({sys});"), "names data"),
+        "table" => (
+            format!("data = table2struct({sys}, 'ToScalar', true);"),
+            "data",
+        ),
+        "timetable" => (
+            format!("data = table2struct(timetable2table({sys}), 'ToScalar', true);"),
+            "data",
+        ),
+        "containers.Map" => (
+            format!("names = keys({sys}); data = values({sys});"),
+            "names data",
+        ),
         "function_handle" => (format!("text = func2str({sys});"), "text"),
         _ => (format!("data = struct({sys});"), "data"),
     };
@@ -380,11 +452,21 @@ mod mat_tests {
     }
 
     fn value(bytes: &[u8], name: &str) -> Value {
-        read(bytes).unwrap().into_iter().find(|variable| variable.name == name).unwrap().value
+        read(bytes)
+            .unwrap()
+            .into_iter()
+            .find(|variable| variable.name == name)
+            .unwrap()
+            .value
     }
 
     fn numbers(shape: &[usize], kind: ElementKind, re: &[f64]) -> Value {
-        Value::Array(Array { shape: shape.to_vec(), kind, re: re.to_vec(), im: None })
+        Value::Array(Array {
+            shape: shape.to_vec(),
+            kind,
+            re: re.to_vec(),
+            im: None,
+        })
     }
 
     #[test]
@@ -396,46 +478,82 @@ mod mat_tests {
 
     #[test]
     fn numbers_of_scipy_are_read_in_both_levels() {
-        let matrix = numbers(&[2, 3], ElementKind::Float, &[1.0, 4.0, 2.0, 5.5, 3.0, -6.0]);
+        let matrix = numbers(
+            &[2, 3],
+            ElementKind::Float,
+            &[1.0, 4.0, 2.0, 5.5, 3.0, -6.0],
+        );
         let sparse = numbers(&[3, 2], ElementKind::Float, &[0.0, 3.0, 0.0, 2.0, 0.0, 4.0]);
         for file in [PLAIN, OLD] {
             assert_eq!(value(file, "matrix"), matrix);
             assert_eq!(value(file, "sparse"), sparse);
-            assert_eq!(value(file, "whole"), numbers(&[1, 2], ElementKind::Integer, &[-3.0, 300.0]));
-            let Value::Array(complex) = value(file, "sparse_complex") else { panic!() };
+            assert_eq!(
+                value(file, "whole"),
+                numbers(&[1, 2], ElementKind::Integer, &[-3.0, 300.0])
+            );
+            let Value::Array(complex) = value(file, "sparse_complex") else {
+                panic!()
+            };
             assert_eq!(complex.im, Some(vec![0.0, 0.0, 2.0, 0.0]));
         }
-        assert_eq!(value(PLAIN, "flags"), numbers(&[1, 2], ElementKind::Logical, &[1.0, 0.0]));
-        assert_eq!(value(PLAIN, "long"), numbers(&[1, 1], ElementKind::Integer, &[9_007_199_254_740_992.0]));
-        assert_eq!(value(PLAIN, "empty"), numbers(&[0, 3], ElementKind::Float, &[]));
+        assert_eq!(
+            value(PLAIN, "flags"),
+            numbers(&[1, 2], ElementKind::Logical, &[1.0, 0.0])
+        );
+        assert_eq!(
+            value(PLAIN, "long"),
+            numbers(&[1, 1], ElementKind::Integer, &[9_007_199_254_740_992.0])
+        );
+        assert_eq!(
+            value(PLAIN, "empty"),
+            numbers(&[0, 3], ElementKind::Float, &[])
+        );
     }
 
     #[test]
     fn texts_of_scipy_are_read_in_both_levels() {
         for file in [PLAIN, OLD] {
-            let Value::Text(rows) = value(file, "rows") else { panic!() };
-            assert_eq!((rows.shape, rows.texts), (vec![2, 1], vec!["ab".to_owned(), "cd".to_owned()]));
+            let Value::Text(rows) = value(file, "rows") else {
+                panic!()
+            };
+            assert_eq!(
+                (rows.shape, rows.texts),
+                (vec![2, 1], vec!["ab".to_owned(), "cd".to_owned()])
+            );
         }
-        let Value::Text(letters) = value(PLAIN, "letters") else { panic!() };
+        let Value::Text(letters) = value(PLAIN, "letters") else {
+            panic!()
+        };
         assert_eq!(letters.texts, ["\u{e4}\u{3a9}\u{1f681}"]);
     }
 
     #[test]
     fn records_and_cells_of_scipy_keep_their_shape() {
-        let Value::Struct(records) = value(PLAIN, "records") else { panic!() };
+        let Value::Struct(records) = value(PLAIN, "records") else {
+            panic!()
+        };
         assert_eq!(records.shape, [1, 2]);
-        assert_eq!(records.field("a").unwrap()[1], numbers(&[1, 1], ElementKind::Float, &[2.0]));
-        let Value::Cell(cells) = value(PLAIN, "cells") else { panic!() };
+        assert_eq!(
+            records.field("a").unwrap()[1],
+            numbers(&[1, 1], ElementKind::Float, &[2.0])
+        );
+        let Value::Cell(cells) = value(PLAIN, "cells") else {
+            panic!()
+        };
         assert_eq!((cells.shape, cells.values.len()), (vec![1, 2], 2));
     }
 
     #[test]
     fn a_model_of_octave_is_an_old_object() {
-        let Value::Object(model) = value(OCTAVE, "sys") else { panic!() };
+        let Value::Object(model) = value(OCTAVE, "sys") else {
+            panic!()
+        };
         assert_eq!(model.class, "ss");
         let a = numbers(&[2, 2], ElementKind::Float, &[1.0, 3.0, 2.0, 4.0]);
         assert_eq!(model.records.field("a").unwrap(), [a]);
-        let Value::Object(common) = &model.records.field("lti").unwrap()[0] else { panic!() };
+        let Value::Object(common) = &model.records.field("lti").unwrap()[0] else {
+            panic!()
+        };
         assert!(common.class == "lti" && common.records.field("tsam").is_some());
     }
 
@@ -456,39 +574,65 @@ mod mat_tests {
     #[test]
     fn two_variables_of_one_name_are_refused() {
         let twice = [doubles("x", &[1, 1], &[1.0]), doubles("x", &[1, 1], &[1.0])].concat();
-        assert_eq!(read(&file(&twice)), Err(VariableFault::Duplicate { name: "x".to_owned() }));
+        assert_eq!(
+            read(&file(&twice)),
+            Err(VariableFault::Duplicate {
+                name: "x".to_owned()
+            })
+        );
     }
 
     #[test]
     fn a_fault_names_the_value_and_the_byte() {
         let wrong = matrix(6, &[2, 2], "", &[element(9, &[0; 8])]);
-        let names = [element(5, &8_i32.to_le_bytes()), element(1, b"A\0\0\0\0\0\0\0")].concat();
+        let names = [
+            element(5, &8_i32.to_le_bytes()),
+            element(1, b"A\0\0\0\0\0\0\0"),
+        ]
+        .concat();
         let record = matrix(2, &[1, 1], "", &[names, wrong]);
         let cells = matrix(1, &[1, 2], "models", &[chars("", "a"), record]);
-        let Err(VariableFault::Damaged { variable, offset, .. }) = read(&file(&cells)) else { panic!() };
+        let Err(VariableFault::Damaged {
+            variable, offset, ..
+        }) = read(&file(&cells))
+        else {
+            panic!()
+        };
         assert_eq!(variable, "models{2}.A");
         assert!((128..file(&cells).len() as u64).contains(&offset));
     }
 
     #[test]
     fn cut_off_files_say_so() {
-        let Err(fault) = read(&PLAIN[..PLAIN.len() - 9]) else { panic!() };
+        let Err(fault) = read(&PLAIN[..PLAIN.len() - 9]) else {
+            panic!()
+        };
         assert!(matches!(fault, VariableFault::CutOff { .. }), "{fault:?}");
-        assert!(matches!(read(&OLD[..OLD.len() - 9]), Err(VariableFault::CutOff { .. })));
+        assert!(matches!(
+            read(&OLD[..OLD.len() - 9]),
+            Err(VariableFault::CutOff { .. })
+        ));
     }
 
     #[test]
     fn values_nested_too_deeply_are_refused() {
-        let nested = (0..80).fold(doubles("", &[1, 1], &[1.0]), |inner, _| matrix(1, &[1, 1], "", &[inner]));
+        let nested = (0..80).fold(doubles("", &[1, 1], &[1.0]), |inner, _| {
+            matrix(1, &[1, 1], "", &[inner])
+        });
         let nested = matrix(1, &[1, 1], "deep", &[nested]);
-        let Err(VariableFault::TooDeep { variable }) = read(&file(&nested)) else { panic!() };
+        let Err(VariableFault::TooDeep { variable }) = read(&file(&nested)) else {
+            panic!()
+        };
         assert!(variable.starts_with("deep{1}{1}"));
     }
 
     #[test]
     fn a_reader_that_shall_stop_stops() {
         assert_eq!(
-            super::read(PLAIN, &ReadingBudget::new(MOST).stopped_by(std::sync::Arc::new(true.into()))),
+            super::read(
+                PLAIN,
+                &ReadingBudget::new(MOST).stopped_by(std::sync::Arc::new(true.into()))
+            ),
             Err(VariableFault::Stopped)
         );
     }
@@ -541,7 +685,12 @@ mod workspace_tests {
     }
 
     fn read(bytes: &[u8], at: usize) -> Result<Subsystem, VariableFault> {
-        objects(bytes, Some(at), ByteOrder::Little, &ReadingBudget::new(1 << 16))
+        objects(
+            bytes,
+            Some(at),
+            ByteOrder::Little,
+            &ReadingBudget::new(1 << 16),
+        )
     }
 
     #[test]
@@ -573,22 +722,37 @@ mod trail_tests {
         let start = FieldPath::start("models");
         let cell = start.step(Step::Cell(2)).unwrap();
         let record = cell.step(Step::Record(0)).unwrap();
-        assert_eq!(record.step(Step::Field("B")).unwrap().words(), "models{3}(1).B");
+        assert_eq!(
+            record.step(Step::Field("B")).unwrap().words(),
+            "models{3}(1).B"
+        );
     }
 
     #[test]
     fn the_first_name_stays() {
-        let fault = VariableFault::TooDeep { variable: String::new() };
+        let fault = VariableFault::TooDeep {
+            variable: String::new(),
+        };
         let named = FieldPath::start("a").name(fault);
-        assert_eq!(FieldPath::start("b").name(named), VariableFault::TooDeep { variable: "a".to_owned() });
+        assert_eq!(
+            FieldPath::start("b").name(named),
+            VariableFault::TooDeep {
+                variable: "a".to_owned()
+            }
+        );
     }
 
     #[test]
     fn the_way_ends() {
         fn deeper(trail: &FieldPath<'_>) -> VariableFault {
-            trail.step(Step::Cell(0)).map_or_else(|fault| fault, |next| deeper(&next))
+            trail
+                .step(Step::Cell(0))
+                .map_or_else(|fault| fault, |next| deeper(&next))
         }
-        assert!(matches!(deeper(&FieldPath::start("a")), VariableFault::TooDeep { .. }));
+        assert!(matches!(
+            deeper(&FieldPath::start("a")),
+            VariableFault::TooDeep { .. }
+        ));
     }
 }
 

@@ -11,20 +11,34 @@ pub(super) fn element(kind: u32, data: &[u8]) -> Vec<u8> {
 /// An array of a class (and flags) with these contents.
 pub(super) fn matrix(class: u32, shape: &[i32], name: &str, contents: &[Vec<u8>]) -> Vec<u8> {
     let flags = element(6, &[class.to_le_bytes(), [0; 4]].concat());
-    let shape = element(5, &shape.iter().flat_map(|side| side.to_le_bytes()).collect::<Vec<_>>());
+    let shape = element(
+        5,
+        &shape
+            .iter()
+            .flat_map(|side| side.to_le_bytes())
+            .collect::<Vec<_>>(),
+    );
     let name = element(1, name.as_bytes());
     element(14, &[&[flags, shape, name][..], contents].concat().concat())
 }
 
 /// An array of numbers.
 pub(super) fn doubles(name: &str, shape: &[i32], numbers: &[f64]) -> Vec<u8> {
-    let data: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    let data: Vec<u8> = numbers
+        .iter()
+        .flat_map(|number| number.to_le_bytes())
+        .collect();
     matrix(6, shape, name, &[element(9, &data)])
 }
 
 /// A text.
 pub(super) fn chars(name: &str, text: &str) -> Vec<u8> {
-    matrix(4, &[1, text.len() as i32], name, &[element(16, text.as_bytes())])
+    matrix(
+        4,
+        &[1, text.len() as i32],
+        name,
+        &[element(16, text.as_bytes())],
+    )
 }
 
 /// A record.
@@ -35,7 +49,11 @@ pub(super) fn record(name: &str, fields: &[(&str, Vec<u8>)]) -> Vec<u8> {
         bytes
     });
     let values = fields.iter().flat_map(|(_, value)| value.clone());
-    let contents = [element(5, &32_i32.to_le_bytes()), element(1, &names.collect::<Vec<_>>()), values.collect()];
+    let contents = [
+        element(5, &32_i32.to_le_bytes()),
+        element(1, &names.collect::<Vec<_>>()),
+        values.collect(),
+    ];
     matrix(2, &[1, 1], name, &contents)
 }
 
@@ -53,7 +71,12 @@ pub(super) fn opaque(name: &str, class: &str, contents: Vec<u8>) -> Vec<u8> {
 
 /// The numbers that refer to objects.
 pub(super) fn reference(objects: &[u32], class: u32) -> Vec<u8> {
-    let words = [&[0xdd00_0000, 2, 1, objects.len() as u32][..], objects, &[class]].concat();
+    let words = [
+        &[0xdd00_0000, 2, 1, objects.len() as u32][..],
+        objects,
+        &[class],
+    ]
+    .concat();
     words_of(&words)
 }
 
@@ -78,14 +101,23 @@ pub(super) fn file(elements: &[u8]) -> Vec<u8> {
 pub(super) fn file_with_objects(elements: &[u8], cells: Option<&[Vec<u8>]>) -> Vec<u8> {
     let mut bytes = b"MATLAB 5.0 MAT-file, by hand".to_vec();
     bytes.resize(116, b' ');
-    let at = if cells.is_some() { 128 + elements.len() as u64 } else { 0 };
+    let at = if cells.is_some() {
+        128 + elements.len() as u64
+    } else {
+        0
+    };
     bytes.extend(at.to_le_bytes());
     bytes.extend(b"\0\x01IM");
     bytes.extend(elements);
     if let Some(cells) = cells {
         let wrapper = record("", &[("MCOS", opaque("", "FileWrapper__", column(cells)))]);
         let inner = [b"\0\x01IM\0\0\0\0".to_vec(), wrapper].concat();
-        bytes.extend(matrix(9, &[1, inner.len() as i32], "", &[element(2, &inner)]));
+        bytes.extend(matrix(
+            9,
+            &[1, inner.len() as i32],
+            "",
+            &[element(2, &inner)],
+        ));
     }
     bytes
 }
@@ -106,9 +138,21 @@ pub(super) fn big_file(name: &str, shape: &[i32], numbers: &[f64]) -> Vec<u8> {
     };
     let contents = [
         element(6, &[6_u32.to_be_bytes(), [0; 4]].concat()),
-        element(5, &shape.iter().flat_map(|side| side.to_be_bytes()).collect::<Vec<_>>()),
+        element(
+            5,
+            &shape
+                .iter()
+                .flat_map(|side| side.to_be_bytes())
+                .collect::<Vec<_>>(),
+        ),
         small(name),
-        element(9, &numbers.iter().flat_map(|number| number.to_be_bytes()).collect::<Vec<_>>()),
+        element(
+            9,
+            &numbers
+                .iter()
+                .flat_map(|number| number.to_be_bytes())
+                .collect::<Vec<_>>(),
+        ),
     ];
     let mut bytes = vec![b' '; 124];
     bytes.extend(b"\x01\0MI");
@@ -140,7 +184,11 @@ impl Directory<'_> {
     }
 
     fn bytes(&self) -> Vec<u8> {
-        let mut names: Vec<u8> = self.names.iter().flat_map(|name| [name.as_bytes(), b"\0"].concat()).collect();
+        let mut names: Vec<u8> = self
+            .names
+            .iter()
+            .flat_map(|name| [name.as_bytes(), b"\0"].concat())
+            .collect();
         names.resize(names.len().next_multiple_of(8), 0);
         let lists = |lists: &[&[[u32; 3]]]| {
             let list = |list: &&[[u32; 3]]| {
@@ -148,16 +196,30 @@ impl Directory<'_> {
                 words.resize(words.len().next_multiple_of(2), 0);
                 words
             };
-            [0, 0].into_iter().chain(lists.iter().flat_map(list)).collect::<Vec<u32>>()
+            [0, 0]
+                .into_iter()
+                .chain(lists.iter().flat_map(list))
+                .collect::<Vec<u32>>()
         };
-        let classes: Vec<u32> =
-            [[0; 2]].iter().chain(self.classes).flat_map(|&[package, name]| [package, name, 0, 0]).collect();
+        let classes: Vec<u32> = [[0; 2]]
+            .iter()
+            .chain(self.classes)
+            .flat_map(|&[package, name]| [package, name, 0, 0])
+            .collect();
         let objects: Vec<u32> = [[0; 3]]
             .iter()
             .chain(self.objects)
             .flat_map(|&[class, made, plain]| [class, 0, 0, made, plain, 0])
             .collect();
-        let regions = [classes, lists(self.made), objects, lists(self.plain), vec![0, 0], vec![], vec![0, 0]];
+        let regions = [
+            classes,
+            lists(self.made),
+            objects,
+            lists(self.plain),
+            vec![0, 0],
+            vec![],
+            vec![0, 0],
+        ];
         let mut at = 40 + names.len() as u32;
         let mut head = vec![self.version, self.names.len() as u32];
         for region in &regions {
@@ -165,7 +227,12 @@ impl Directory<'_> {
             at += 4 * region.len() as u32;
         }
         head.push(at);
-        let words = |words: Vec<u32>| words.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<u8>>();
+        let words = |words: Vec<u32>| {
+            words
+                .into_iter()
+                .flat_map(u32::to_le_bytes)
+                .collect::<Vec<u8>>()
+        };
         [words(head), names, words(regions.concat())].concat()
     }
 }

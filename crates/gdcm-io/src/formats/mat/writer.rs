@@ -8,7 +8,9 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
 use crate::formats::mat::level5::DataKind as Kind;
-use crate::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable, VariableFault};
+use crate::variables::{
+    Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable, VariableFault,
+};
 
 /// What the file begins with, filled up with blanks: MATLAB looks at the first words.
 const HEADER_TEXT: &str = "MATLAB 5.0 MAT-file, written by gdcm";
@@ -31,7 +33,10 @@ pub fn write_packed(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
     file(variables, packed)
 }
 
-fn file(variables: &[Variable], packing: impl Fn(Vec<u8>) -> Vec<u8>) -> Result<Vec<u8>, VariableFault> {
+fn file(
+    variables: &[Variable],
+    packing: impl Fn(Vec<u8>) -> Vec<u8>,
+) -> Result<Vec<u8>, VariableFault> {
     let mut bytes = HEADER_TEXT.as_bytes().to_vec();
     bytes.resize(HEADER_TEXT_BYTES, b' ');
     // No objects, version 1.0, and the mark by which the order of bytes is known.
@@ -40,7 +45,10 @@ fn file(variables: &[Variable], packing: impl Fn(Vec<u8>) -> Vec<u8>) -> Result<
     for variable in variables {
         let contents = contents(&variable.value, &variable.name);
         if contents.len() as u64 > MOST_BYTES {
-            return Err(VariableFault::TooLarge { variable: variable.name.clone(), most_mib: MOST_BYTES >> 20 });
+            return Err(VariableFault::TooLarge {
+                variable: variable.name.clone(),
+                most_mib: MOST_BYTES >> 20,
+            });
         }
         let mut plain = Vec::new();
         element(&mut plain, Kind::Matrix, &contents);
@@ -55,7 +63,9 @@ fn packed(plain: Vec<u8>) -> Vec<u8> {
     if encoder.write_all(&plain).is_err() {
         return plain;
     }
-    let Ok(packed) = encoder.finish() else { return plain };
+    let Ok(packed) = encoder.finish() else {
+        return plain;
+    };
     let mut bytes = Vec::with_capacity(packed.len() + 8);
     element(&mut bytes, Kind::Packed, &packed);
     bytes
@@ -117,19 +127,28 @@ fn begun(class: Class, flags: u32, shape: &[usize], name: &str) -> Vec<u8> {
     let words = [(class as u32 | flags).to_le_bytes(), [0; 4]];
     element(&mut bytes, Kind::U32, words.as_flattened());
     // A length that does not fit belongs to an array that is refused for its size, or to one without elements.
-    let sides: Vec<u8> = shape.iter().flat_map(|&side| i32::try_from(side).unwrap_or(i32::MAX).to_le_bytes()).collect();
+    let sides: Vec<u8> = shape
+        .iter()
+        .flat_map(|&side| i32::try_from(side).unwrap_or(i32::MAX).to_le_bytes())
+        .collect();
     element(&mut bytes, Kind::I32, &sides);
     element(&mut bytes, Kind::I8, name.as_bytes());
     bytes
 }
 
 fn array(array: &Array, name: &str) -> Vec<u8> {
-    let within = |most: f64| move |&number: &f64| number.fract() == 0.0 && (-most..most).contains(&number);
-    let all = |fits: &dyn Fn(&f64) -> bool| array.re.iter().chain(array.im.iter().flatten()).all(fits);
+    let within =
+        |most: f64| move |&number: &f64| number.fract() == 0.0 && (-most..most).contains(&number);
+    let all =
+        |fits: &dyn Fn(&f64) -> bool| array.re.iter().chain(array.im.iter().flatten()).all(fits);
     let (class, flags, kind) = match array.kind {
-        ElementKind::Logical if all(&|&number| number == 0.0 || number == 1.0) => (Class::U8, LOGICAL, Kind::U8),
+        ElementKind::Logical if all(&|&number| number == 0.0 || number == 1.0) => {
+            (Class::U8, LOGICAL, Kind::U8)
+        }
         ElementKind::Integer if all(&within(2_147_483_648.0)) => (Class::I32, 0, Kind::I32),
-        ElementKind::Integer if all(&within(9_223_372_036_854_775_808.0)) => (Class::I64, 0, Kind::I64),
+        ElementKind::Integer if all(&within(9_223_372_036_854_775_808.0)) => {
+            (Class::I64, 0, Kind::I64)
+        }
         _ => (Class::Double, 0, Kind::F64),
     };
     let complex = if array.im.is_some() { COMPLEX } else { 0 };
@@ -143,25 +162,46 @@ fn array(array: &Array, name: &str) -> Vec<u8> {
 fn stored(kind: Kind, numbers: &[f64]) -> Vec<u8> {
     match kind {
         Kind::U8 => numbers.iter().map(|&number| number as u8).collect(),
-        Kind::I32 => numbers.iter().flat_map(|&number| (number as i32).to_le_bytes()).collect(),
-        Kind::I64 => numbers.iter().flat_map(|&number| (number as i64).to_le_bytes()).collect(),
-        _ => numbers.iter().flat_map(|&number| number.to_le_bytes()).collect(),
+        Kind::I32 => numbers
+            .iter()
+            .flat_map(|&number| (number as i32).to_le_bytes())
+            .collect(),
+        Kind::I64 => numbers
+            .iter()
+            .flat_map(|&number| (number as i64).to_le_bytes())
+            .collect(),
+        _ => numbers
+            .iter()
+            .flat_map(|&number| number.to_le_bytes())
+            .collect(),
     }
 }
 
 fn text(text: &TextArray, name: &str) -> Vec<u8> {
-    let units: Vec<Vec<u16>> = text.texts.iter().map(|text| text.encode_utf16().collect()).collect();
+    let units: Vec<Vec<u16>> = text
+        .texts
+        .iter()
+        .map(|text| text.encode_utf16().collect())
+        .collect();
     let length = units.first().map_or(0, Vec::len);
     let even = units.iter().all(|row| row.len() == length);
-    let &[height, 1, ref pages @ ..] = text.shape.as_slice() else { return texts(text, name) };
+    let &[height, 1, ref pages @ ..] = text.shape.as_slice() else {
+        return texts(text, name);
+    };
     if !even || units.is_empty() || units.len() != height.saturating_mul(pages.iter().product()) {
         return texts(text, name);
     }
     // `''` has no rows.
     let empty = units.len() == 1 && length == 0;
-    let shape: Vec<usize> = [if empty { 0 } else { height }, length].iter().chain(pages).copied().collect();
+    let shape: Vec<usize> = [if empty { 0 } else { height }, length]
+        .iter()
+        .chain(pages)
+        .copied()
+        .collect();
     let columns = |page: &[Vec<u16>]| -> Vec<u16> {
-        (0..length).flat_map(|column| page.iter().filter_map(move |row| row.get(column).copied())).collect()
+        (0..length)
+            .flat_map(|column| page.iter().filter_map(move |row| row.get(column).copied()))
+            .collect()
     };
     let characters: Vec<u16> = units.chunks(height.max(1)).flat_map(columns).collect();
     let mut bytes = begun(Class::Char, 0, &shape, name);
@@ -180,7 +220,13 @@ fn text(text: &TextArray, name: &str) -> Vec<u8> {
 
 /// Texts of different lengths, each in a cell.
 fn texts(texts: &TextArray, name: &str) -> Vec<u8> {
-    cell(&CellArray { shape: texts.shape.clone(), values: texts.texts.iter().map(Value::text).collect() }, name)
+    cell(
+        &CellArray {
+            shape: texts.shape.clone(),
+            values: texts.texts.iter().map(Value::text).collect(),
+        },
+        name,
+    )
 }
 
 fn cell(cell: &CellArray, name: &str) -> Vec<u8> {
@@ -193,8 +239,16 @@ fn cell(cell: &CellArray, name: &str) -> Vec<u8> {
 
 fn records(records: &StructArray, name: &str) -> Vec<u8> {
     let mut bytes = begun(Class::Struct, 0, &records.shape, name);
-    let longest = records.fields.iter().map(|(field, _)| field.len() + 1).max().unwrap_or(1);
-    let length = NAME_LENGTHS.into_iter().find(|&length| longest <= length).unwrap_or(longest);
+    let longest = records
+        .fields
+        .iter()
+        .map(|(field, _)| field.len() + 1)
+        .max()
+        .unwrap_or(1);
+    let length = NAME_LENGTHS
+        .into_iter()
+        .find(|&length| longest <= length)
+        .unwrap_or(longest);
     element(&mut bytes, Kind::I32, &(length as u32).to_le_bytes());
     let mut names = Vec::with_capacity(length * records.fields.len());
     for (at, (field, _)) in records.fields.iter().enumerate() {
@@ -202,11 +256,19 @@ fn records(records: &StructArray, name: &str) -> Vec<u8> {
         names.resize(length * (at + 1), 0);
     }
     element(&mut bytes, Kind::I8, &names);
-    let count = records.fields.iter().map(|(_, values)| values.len()).max().unwrap_or(0);
+    let count = records
+        .fields
+        .iter()
+        .map(|(_, values)| values.len())
+        .max()
+        .unwrap_or(0);
     for at in 0..count {
         for (_, values) in &records.fields {
             // An element of no bytes is an empty array.
-            let value = values.get(at).map(|value| contents(value, "")).unwrap_or_default();
+            let value = values
+                .get(at)
+                .map(|value| contents(value, ""))
+                .unwrap_or_default();
             element(&mut bytes, Kind::Matrix, &value);
         }
     }
@@ -218,7 +280,9 @@ mod writer_tests {
     use proptest::prelude::*;
 
     use crate::formats::mat::read;
-    use crate::variables::{Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value};
+    use crate::variables::{
+        Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value,
+    };
 
     use super::*;
 
@@ -227,11 +291,17 @@ mod writer_tests {
     }
 
     fn named(name: &str, value: Value) -> Variable {
-        Variable { name: name.to_owned(), value }
+        Variable {
+            name: name.to_owned(),
+            value,
+        }
     }
 
     fn text(texts: &[&str], shape: &[usize]) -> Value {
-        Value::Text(TextArray { shape: shape.to_vec(), texts: texts.iter().map(|&text| text.to_owned()).collect() })
+        Value::Text(TextArray {
+            shape: shape.to_vec(),
+            texts: texts.iter().map(|&text| text.to_owned()).collect(),
+        })
     }
 
     fn shape() -> impl Strategy<Value = Vec<usize>> {
@@ -239,7 +309,8 @@ mod writer_tests {
     }
 
     fn numbers() -> impl Strategy<Value = Value> {
-        let whole = (-9_000_000_000_000_000_i64..9_000_000_000_000_000).prop_map(|number| number as f64);
+        let whole =
+            (-9_000_000_000_000_000_i64..9_000_000_000_000_000).prop_map(|number| number as f64);
         // As many as the largest shape has room for.
         let both = |kind: ElementKind, number: BoxedStrategy<f64>| {
             let part = prop::collection::vec(number, 27);
@@ -248,29 +319,49 @@ mod writer_tests {
         let parts = prop_oneof![
             both(ElementKind::Float, prop::num::f64::NORMAL.boxed()),
             both(ElementKind::Integer, whole.boxed()),
-            both(ElementKind::Integer, (-9..9_i32).prop_map(f64::from).boxed()),
+            both(
+                ElementKind::Integer,
+                (-9..9_i32).prop_map(f64::from).boxed()
+            ),
             both(ElementKind::Logical, (0..2_i32).prop_map(f64::from).boxed()),
         ];
         (shape(), parts, any::<bool>()).prop_map(|(shape, (kind, mut re, mut im), complex)| {
             let count = shape.iter().product();
             re.truncate(count);
             im.truncate(count);
-            let im = if complex && kind != ElementKind::Logical { Some(im) } else { None };
-            Value::Array(Array { shape, kind, re, im })
+            let im = if complex && kind != ElementKind::Logical {
+                Some(im)
+            } else {
+                None
+            };
+            Value::Array(Array {
+                shape,
+                kind,
+                re,
+                im,
+            })
         })
     }
 
     fn value() -> impl Strategy<Value = Value> {
         let text = "\\PC{0,9}".prop_map(|text| super::writer_tests::text(&[&text], &[1, 1]));
         prop_oneof![numbers(), text].prop_recursive(3, 24, 9, |inner| {
-            let cell = (shape(), prop::collection::vec(inner.clone(), 27)).prop_map(|(shape, mut values)| {
-                values.truncate(shape.iter().product());
-                Value::Cell(CellArray { shape, values })
-            });
+            let cell = (shape(), prop::collection::vec(inner.clone(), 27)).prop_map(
+                |(shape, mut values)| {
+                    values.truncate(shape.iter().product());
+                    Value::Cell(CellArray { shape, values })
+                },
+            );
             let fields = prop::collection::btree_map("[a-z][A-Za-z0-9_]{0,40}", inner, 0..4);
             let record = fields.prop_map(|fields| {
-                let fields = fields.into_iter().map(|(name, value)| (name, vec![value])).collect();
-                Value::Struct(StructArray { shape: vec![1, 1], fields })
+                let fields = fields
+                    .into_iter()
+                    .map(|(name, value)| (name, vec![value]))
+                    .collect();
+                Value::Struct(StructArray {
+                    shape: vec![1, 1],
+                    fields,
+                })
             });
             prop_oneof![cell, record]
         })
@@ -295,34 +386,79 @@ mod writer_tests {
         assert_eq!(back(&write(&variables).unwrap()), variables);
         let uneven = back(&write(&[named("uneven", text(&["a", "bc"], &[1, 2]))]).unwrap());
         let values = vec![text(&["a"], &[1, 1]), text(&["bc"], &[1, 1])];
-        assert_eq!(uneven[0].value, Value::Cell(CellArray { shape: vec![1, 2], values }));
+        assert_eq!(
+            uneven[0].value,
+            Value::Cell(CellArray {
+                shape: vec![1, 2],
+                values
+            })
+        );
     }
 
     #[test]
     fn several_records_are_read_again() {
-        let values = |numbers: [f64; 2]| numbers.map(|number| Value::Array(Array::matrix(1, 1, vec![number]))).to_vec();
-        let fields = vec![("a".to_owned(), values([1.0, 2.0])), ("b".to_owned(), values([3.0, 4.0]))];
-        let variables = [named("s", Value::Struct(StructArray { shape: vec![1, 2], fields }))];
+        let values = |numbers: [f64; 2]| {
+            numbers
+                .map(|number| Value::Array(Array::matrix(1, 1, vec![number])))
+                .to_vec()
+        };
+        let fields = vec![
+            ("a".to_owned(), values([1.0, 2.0])),
+            ("b".to_owned(), values([3.0, 4.0])),
+        ];
+        let variables = [named(
+            "s",
+            Value::Struct(StructArray {
+                shape: vec![1, 2],
+                fields,
+            }),
+        )];
         assert_eq!(back(&write(&variables).unwrap()), variables);
     }
 
     #[test]
     fn numbers_that_are_not_what_they_are_said_to_be_become_floating_point() {
         for kind in [ElementKind::Integer, ElementKind::Logical] {
-            let array = Array { kind, ..Array::matrix(1, 2, vec![1.5, 1e300]) };
+            let array = Array {
+                kind,
+                ..Array::matrix(1, 2, vec![1.5, 1e300])
+            };
             let found = back(&write(&[named("x", Value::Array(array.clone()))]).unwrap());
-            assert_eq!(found[0].value, Value::Array(Array { kind: ElementKind::Float, ..array }));
+            assert_eq!(
+                found[0].value,
+                Value::Array(Array {
+                    kind: ElementKind::Float,
+                    ..array
+                })
+            );
         }
     }
 
     #[test]
     fn objects_become_structs_and_what_was_not_read_is_empty() {
-        let fields = vec![("a".to_owned(), vec![Value::Opaque { class: "x".to_owned(), why: "y".to_owned() }])];
-        let records = StructArray { shape: vec![1, 1], fields };
-        let object = Value::Object(Object { class: "ss".to_owned(), records });
+        let fields = vec![(
+            "a".to_owned(),
+            vec![Value::Opaque {
+                class: "x".to_owned(),
+                why: "y".to_owned(),
+            }],
+        )];
+        let records = StructArray {
+            shape: vec![1, 1],
+            fields,
+        };
+        let object = Value::Object(Object {
+            class: "ss".to_owned(),
+            records,
+        });
         let found = back(&write(&[named("sys", object)]).unwrap());
-        let Value::Struct(records) = &found[0].value else { panic!("{found:?}") };
-        assert_eq!(records.field("a").unwrap()[0], Value::Array(Array::matrix(0, 0, Vec::new())));
+        let Value::Struct(records) = &found[0].value else {
+            panic!("{found:?}")
+        };
+        assert_eq!(
+            records.field("a").unwrap()[0],
+            Value::Array(Array::matrix(0, 0, Vec::new()))
+        );
     }
 }
 

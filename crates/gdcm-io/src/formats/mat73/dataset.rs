@@ -1,6 +1,8 @@
 //! The elements of a dataset, read within limits.
 
-use hdf5_pure::{Chunk, ChunkIndex, Dataset, Datatype, DatatypeByteOrder, EnumMember, FloatingPointLayout};
+use hdf5_pure::{
+    Chunk, ChunkIndex, Dataset, Datatype, DatatypeByteOrder, EnumMember, FloatingPointLayout,
+};
 
 use crate::formats::mat73::{damaged, fault};
 use crate::strides::{NumberClass, Places, StoredNumber, count, matrix_shape};
@@ -39,8 +41,11 @@ impl Elements {
         let datatype = dataset.datatype().map_err(failed)?;
         let sides = dataset.shape().map_err(failed)?;
         let size = dataset.element_size().map_err(failed)?;
-        let sides: Vec<usize> =
-            sides.iter().map(|&side| usize::try_from(side).ok()).collect::<Option<_>>().ok_or_else(too_many)?;
+        let sides: Vec<usize> = sides
+            .iter()
+            .map(|&side| usize::try_from(side).ok())
+            .collect::<Option<_>>()
+            .ok_or_else(too_many)?;
         let elements = count(&sides).ok_or_else(too_many)?;
         budget.take(elements as u64, size, path)?;
         check(dataset, &sides, size, path, budget)?;
@@ -56,11 +61,24 @@ impl Elements {
         };
         let none = bytes.is_empty() && elements == 1;
         // h5py's Empty has no shape and no element, which the library tells by the bytes alone.
-        let (shape, elements) = if none { (vec![0, 0], 0) } else { (shape, elements) };
+        let (shape, elements) = if none {
+            (vec![0, 0], 0)
+        } else {
+            (shape, elements)
+        };
         if elements.checked_mul(size) != Some(bytes.len()) {
-            return Err(damaged(path, "the dataset is not as long as its shape says"));
+            return Err(damaged(
+                path,
+                "the dataset is not as long as its shape says",
+            ));
         }
-        Ok(Self { datatype, shape, size, bytes, order })
+        Ok(Self {
+            datatype,
+            shape,
+            size,
+            bytes,
+            order,
+        })
     }
 
     /// Number of elements.
@@ -78,30 +96,62 @@ impl Elements {
 
     /// The bytes of the element at a place.
     pub(super) fn at(&self, place: usize) -> &[u8] {
-        self.bytes.get(place * self.size..(place + 1) * self.size).unwrap_or_default()
+        self.bytes
+            .get(place * self.size..(place + 1) * self.size)
+            .unwrap_or_default()
     }
 
     /// The numbers, if they are numbers.
-    pub(super) fn numbers(&self, path: &str, budget: &ReadingBudget<'_>) -> Result<Option<Array>, VariableFault> {
-        let Some(numbers) = NumberType::of(&self.datatype) else { return Ok(None) };
-        budget.take(self.count() as u64, if numbers.im.is_some() { 16 } else { 8 }, path)?;
+    pub(super) fn numbers(
+        &self,
+        path: &str,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Option<Array>, VariableFault> {
+        let Some(numbers) = NumberType::of(&self.datatype) else {
+            return Ok(None);
+        };
+        budget.take(
+            self.count() as u64,
+            if numbers.im.is_some() { 16 } else { 8 },
+            path,
+        )?;
         let part = |offset: usize| {
-            let decode = |place| numbers.number.decode(self.at(place).get(offset..).unwrap_or_default());
+            let decode = |place| {
+                numbers
+                    .number
+                    .decode(self.at(place).get(offset..).unwrap_or_default())
+            };
             self.places().map(decode).collect::<Vec<f64>>()
         };
         let (re, im) = (part(numbers.re), numbers.im.map(part));
-        Ok(Some(Array { shape: self.shape.clone(), kind: numbers.number.kind(), re, im }))
+        Ok(Some(Array {
+            shape: self.shape.clone(),
+            kind: numbers.number.kind(),
+            re,
+            im,
+        }))
     }
 
     /// Whole numbers of 64 bits without a sign, to the last digit, if that is what they are.
-    pub(super) fn words(&self, path: &str, budget: &ReadingBudget<'_>) -> Result<Option<Vec<u64>>, VariableFault> {
+    pub(super) fn words(
+        &self,
+        path: &str,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Option<Vec<u64>>, VariableFault> {
         let numbers = NumberType::of(&self.datatype);
-        let kind = numbers.filter(|numbers| numbers.im.is_none()).map(|numbers| numbers.number.kind());
+        let kind = numbers
+            .filter(|numbers| numbers.im.is_none())
+            .map(|numbers| numbers.number.kind());
         if self.size != 8 || kind != Some(ElementKind::Integer) {
             return Ok(None);
         }
         budget.take(self.count() as u64, 8, path)?;
-        let word = |place| self.at(place).iter().rev().fold(0, |word, &byte| word << 8 | u64::from(byte));
+        let word = |place| {
+            self.at(place)
+                .iter()
+                .rev()
+                .fold(0, |word, &byte| word << 8 | u64::from(byte))
+        };
         Ok(Some(self.places().map(word).collect()))
     }
 }
@@ -123,21 +173,34 @@ pub(super) fn check(
     budget: &ReadingBudget<'_>,
 ) -> Result<(), VariableFault> {
     let failed = |error| fault(&error, path);
-    let Some(shape) = dataset.chunk_shape().map_err(failed)? else { return Ok(()) };
+    let Some(shape) = dataset.chunk_shape().map_err(failed)? else {
+        return Ok(());
+    };
     if shape.contains(&0) || shape.len() != sides.len() {
         return Err(damaged(path, "the chunks have no size"));
     }
     let elements = shape.iter().copied().fold(1, u64::saturating_mul);
     let along = |(&side, &chunk): (&usize, &u64)| (side as u64).div_ceil(chunk);
-    let most = sides.iter().zip(&shape).map(along).fold(1, u64::saturating_mul);
+    let most = sides
+        .iter()
+        .zip(&shape)
+        .map(along)
+        .fold(1, u64::saturating_mul);
     budget.take(elements, size, path)?;
     budget.take(most, CHUNK, path)?;
     let index = dataset.chunk_index().map_err(failed)?;
     if index == Some(ChunkIndex::BTreeV2) {
         let remedy = "write it with a shape that is fixed";
-        return Err(VariableFault::unsupported(path, "a dataset that can grow in two directions", remedy));
+        return Err(VariableFault::unsupported(
+            path,
+            "a dataset that can grow in two directions",
+            remedy,
+        ));
     }
-    let longest = elements.saturating_mul(size).saturating_mul(2).saturating_add(OVERHEAD);
+    let longest = elements
+        .saturating_mul(size)
+        .saturating_mul(2)
+        .saturating_add(OVERHEAD);
     let chunks = dataset.chunks().map_err(failed)?;
     if chunks.iter().any(|chunk| chunk.storage_size > longest) {
         return Err(damaged(path, "a chunk is longer than it can be"));
@@ -152,7 +215,11 @@ pub(super) fn check(
 }
 
 fn outside(chunk: &Chunk, sides: &[usize]) -> bool {
-    chunk.offset.iter().zip(sides).any(|(&offset, &side)| offset >= side as u64)
+    chunk
+        .offset
+        .iter()
+        .zip(sides)
+        .any(|(&offset, &side)| offset >= side as u64)
 }
 
 // Types of datasets whose elements are numbers.
@@ -182,35 +249,71 @@ impl NumberType {
     /// The numbers that a dataset's type stands for, if it does.
     pub(super) fn of(datatype: &Datatype) -> Option<Self> {
         let Datatype::Compound { members, size } = datatype else {
-            return Some(Self { number: number(datatype)?, re: 0, im: None });
+            return Some(Self {
+                number: number(datatype)?,
+                re: 0,
+                im: None,
+            });
         };
         // MATLAB writes complex numbers as real and imag, h5py as r and i.
-        let [re, im] = members.as_slice() else { return None };
-        if !matches!((re.name.as_str(), im.name.as_str()), ("real", "imag") | ("r", "i")) {
+        let [re, im] = members.as_slice() else {
+            return None;
+        };
+        if !matches!(
+            (re.name.as_str(), im.name.as_str()),
+            ("real", "imag") | ("r", "i")
+        ) {
             return None;
         }
         let part = number(&re.datatype).filter(|part| number(&im.datatype) == Some(*part))?;
-        let inside = |offset: u64| usize::try_from(offset).ok().filter(|offset| offset + part.size() <= *size as usize);
-        Some(Self { number: part, re: inside(re.byte_offset)?, im: Some(inside(im.byte_offset)?) })
+        let inside = |offset: u64| {
+            usize::try_from(offset)
+                .ok()
+                .filter(|offset| offset + part.size() <= *size as usize)
+        };
+        Some(Self {
+            number: part,
+            re: inside(re.byte_offset)?,
+            im: Some(inside(im.byte_offset)?),
+        })
     }
 }
 
 fn number(datatype: &Datatype) -> Option<StoredNumber> {
     let (class, size, order) = match datatype {
-        Datatype::FixedPoint { size, byte_order, layout } => {
-            let whole = layout.bit_offset == 0 && u32::from(layout.bit_precision) == size.checked_mul(8)?;
-            let class = if layout.signed { NumberClass::Signed } else { NumberClass::Unsigned };
+        Datatype::FixedPoint {
+            size,
+            byte_order,
+            layout,
+        } => {
+            let whole =
+                layout.bit_offset == 0 && u32::from(layout.bit_precision) == size.checked_mul(8)?;
+            let class = if layout.signed {
+                NumberClass::Signed
+            } else {
+                NumberClass::Unsigned
+            };
             (whole.then_some(class)?, size, byte_order)
         }
-        Datatype::FloatingPoint { size, byte_order, layout } => {
+        Datatype::FloatingPoint {
+            size,
+            byte_order,
+            layout,
+        } => {
             let ieee = match size {
                 2 => HALF,
                 4 => FloatingPointLayout::IEEE754_BINARY32,
                 _ => FloatingPointLayout::IEEE754_BINARY64,
             };
-            ((*layout == ieee).then_some(NumberClass::Float)?, size, byte_order)
+            (
+                (*layout == ieee).then_some(NumberClass::Float)?,
+                size,
+                byte_order,
+            )
         }
-        Datatype::Enumeration { base_type, members, .. } => {
+        Datatype::Enumeration {
+            base_type, members, ..
+        } => {
             let base = number(base_type)?;
             return if truths(members) {
                 StoredNumber::new(NumberClass::Logical, base.size(), false)

@@ -18,8 +18,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use hdf5_pure::{
-    AttrValue, Dataset, Datatype, Error, File, FileAccessProperties, FormatError, Group, MetadataCacheConfig, Object,
-    ReferenceType, Source, is_hdf5_bytes,
+    AttrValue, Dataset, Datatype, Error, File, FileAccessProperties, FormatError, Group,
+    MetadataCacheConfig, Object, ReferenceType, Source, is_hdf5_bytes,
 };
 
 use crate::formats::mat::is_hdf5;
@@ -39,11 +39,18 @@ pub(crate) const HDF5: Importer = Importer {
     read: |bytes, path, budget| {
         let read = open(bytes, budget).and_then(|file| {
             let objects = Objects::read(&file, budget)?;
-            Reader { budget, objects: &objects }.variables(&file.root())
+            Reader {
+                budget,
+                objects: &objects,
+            }
+            .variables(&file.root())
         });
         // Where the library was stopped it says that the file cannot be read.
         Contents::variables(
-            budget.work(0, "").and(read).and_then(|variables| octave::unwrapped(variables, budget)),
+            budget
+                .work(0, "")
+                .and(read)
+                .and_then(|variables| octave::unwrapped(variables, budget)),
             path,
         )
     },
@@ -85,7 +92,10 @@ impl Reader<'_> {
         let value = match object {
             Object::Dataset(dataset) => self.dataset(dataset, path, depth),
             Object::Group(group) => group_value(self, group, path, depth),
-            _ => Ok(Value::opaque("an HDF5 object", "it is neither a dataset nor a group")),
+            _ => Ok(Value::opaque(
+                "an HDF5 object",
+                "it is neither a dataset nor a group",
+            )),
         };
         match value {
             // The other variables can be read all the same.
@@ -96,7 +106,11 @@ impl Reader<'_> {
 
     fn dataset(&self, dataset: &Dataset, path: &str, depth: usize) -> Result<Value, VariableFault> {
         let marks = MatlabAttributes::of(dataset.attrs(), path)?;
-        let order = if marks.class.is_some() { Order::Columns } else { Order::Rows };
+        let order = if marks.class.is_some() {
+            Order::Columns
+        } else {
+            Order::Rows
+        };
         let elements = Elements::read(dataset, order, path, self.budget)?;
         if marks.empty {
             return empty(&marks, &elements, path, self.budget);
@@ -122,12 +136,20 @@ impl Reader<'_> {
             return Ok(Value::Text(texts));
         }
         let records = records(&elements, path, self.budget)?;
-        Ok(records
-            .map_or_else(|| Value::opaque("an HDF5 dataset", "it holds neither numbers nor texts"), Value::Struct))
+        Ok(records.map_or_else(
+            || Value::opaque("an HDF5 dataset", "it holds neither numbers nor texts"),
+            Value::Struct,
+        ))
     }
 
     /// A cell for each reference.
-    fn cell(&self, dataset: &Dataset, elements: &Elements, path: &str, depth: usize) -> Result<Value, VariableFault> {
+    fn cell(
+        &self,
+        dataset: &Dataset,
+        elements: &Elements,
+        path: &str,
+        depth: usize,
+    ) -> Result<Value, VariableFault> {
         let objects = self.referred(dataset, path)?;
         let mut values = Vec::with_capacity(objects.len());
         for (index, place) in elements.places().enumerate() {
@@ -135,13 +157,21 @@ impl Reader<'_> {
                 values.push(self.value(object, &format!("{path}{{{}}}", index + 1), depth + 1)?);
             }
         }
-        Ok(Value::Cell(CellArray { shape: elements.shape.clone(), values }))
+        Ok(Value::Cell(CellArray {
+            shape: elements.shape.clone(),
+            values,
+        }))
     }
 
     /// What the references of a dataset lead to, in the order of the file.
     fn referred(&self, dataset: &Dataset, path: &str) -> Result<Vec<Object>, VariableFault> {
         let failed = |error| fault(&error, path);
-        let elements = dataset.shape().map_err(failed)?.iter().copied().fold(1, u64::saturating_mul);
+        let elements = dataset
+            .shape()
+            .map_err(failed)?
+            .iter()
+            .copied()
+            .fold(1, u64::saturating_mul);
         self.budget.take(elements, HEADER, path)?;
         dataset.dereference().map_err(failed)
     }
@@ -149,19 +179,30 @@ impl Reader<'_> {
 
 /// Whether the elements of a dataset are other datasets and groups.
 fn is_reference(datatype: &Datatype) -> bool {
-    matches!(datatype, Datatype::Reference { ref_type: ReferenceType::Object, .. })
+    matches!(
+        datatype,
+        Datatype::Reference {
+            ref_type: ReferenceType::Object,
+            ..
+        }
+    )
 }
 
 /// Opens a file, which is copied, and finds it whole; a user block such as MATLAB's may stand before it.
 fn open(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<File, VariableFault> {
     if !is_hdf5_bytes(bytes) {
-        return Err(VariableFault::other_bytes("a file of MATLAB 7.3 or HDF5", bytes));
+        return Err(VariableFault::other_bytes(
+            "a file of MATLAB 7.3 or HDF5",
+            bytes,
+        ));
     }
     budget.take(bytes.len() as u64, 1, "")?;
     // What a cache gave out would not count.
-    let properties = FileAccessProperties::new().with_metadata_cache(MetadataCacheConfig::disabled());
+    let properties =
+        FileAccessProperties::new().with_metadata_cache(MetadataCacheConfig::disabled());
     let source = Rationed::new(bytes.to_vec(), Arc::clone(budget.stop()));
-    let file = File::from_source_with_options(source, properties).map_err(|error| fault(&error, ""))?;
+    let file =
+        File::from_source_with_options(source, properties).map_err(|error| fault(&error, ""))?;
     // Chunks at the end may be missing without any structure reaching beyond it.
     if file.superblock().eof_address > bytes.len() as u64 {
         return Err(VariableFault::cut_off("", bytes.len()));
@@ -177,7 +218,9 @@ fn open(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<File, VariableFault>
 fn fault(error: &Error, path: &str) -> VariableFault {
     match error {
         Error::Format(FormatError::NestingDepthExceeded) => VariableFault::too_deep(path),
-        Error::Format(FormatError::UnexpectedEof { .. }) => damaged(path, "something lies beyond the end of the file"),
+        Error::Format(FormatError::UnexpectedEof { .. }) => {
+            damaged(path, "something lies beyond the end of the file")
+        }
         Error::Format(
             FormatError::UnsupportedFilter(_)
             | FormatError::UnsupportedVirtualLayout
@@ -222,7 +265,11 @@ struct Rationed {
 
 impl Rationed {
     fn new(bytes: Vec<u8>, stop: Arc<AtomicBool>) -> Self {
-        let left = AtomicU64::new((bytes.len() as u64).saturating_mul(TIMES).saturating_add(BESIDES));
+        let left = AtomicU64::new(
+            (bytes.len() as u64)
+                .saturating_mul(TIMES)
+                .saturating_add(BESIDES),
+        );
         Self { bytes, left, stop }
     }
 }
@@ -234,17 +281,25 @@ impl Source for Rationed {
 
     fn read_at(&self, offset: u64, buffer: &mut [u8]) -> Result<(), FormatError> {
         let cost = (buffer.len() as u64).max(LEAST);
-        let paid = self.left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(cost));
+        let paid = self
+            .left
+            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| {
+                left.checked_sub(cost)
+            });
         if self.stop.load(Ordering::Relaxed) {
             return Err(FormatError::Source("stopped".to_owned()));
         }
         if paid.is_err() {
-            return Err(FormatError::Source("its parts lead to one another too often".to_owned()));
+            return Err(FormatError::Source(
+                "its parts lead to one another too often".to_owned(),
+            ));
         }
         let start = usize::try_from(offset).unwrap_or(usize::MAX);
         let found = self.bytes.get(start..start.saturating_add(buffer.len()));
-        let end =
-            FormatError::UnexpectedEof { expected: start.saturating_add(buffer.len()), available: self.bytes.len() };
+        let end = FormatError::UnexpectedEof {
+            expected: start.saturating_add(buffer.len()),
+            available: self.bytes.len(),
+        };
         buffer.copy_from_slice(found.ok_or(end)?);
         Ok(())
     }
@@ -275,11 +330,16 @@ struct MatlabAttributes {
 }
 
 impl MatlabAttributes {
-    fn of(attributes: Result<HashMap<String, AttrValue>, Error>, path: &str) -> Result<Self, VariableFault> {
+    fn of(
+        attributes: Result<HashMap<String, AttrValue>, Error>,
+        path: &str,
+    ) -> Result<Self, VariableFault> {
         let attributes = attributes.map_err(|error| fault(&error, path))?;
         let number = |name| attributes.get(name).and_then(AttrValue::as_u64);
         let class = attributes.get("MATLAB_class").and_then(AttrValue::as_str);
-        let fields = attributes.get("MATLAB_fields").and_then(AttrValue::as_strings);
+        let fields = attributes
+            .get("MATLAB_fields")
+            .and_then(AttrValue::as_strings);
         Ok(Self {
             class: class.map(str::to_owned),
             empty: number("MATLAB_empty").is_some_and(|empty| empty != 0)
@@ -302,16 +362,24 @@ impl MatlabAttributes {
 const MEMBER: u64 = 256;
 
 /// The datasets and groups in a group, in the order of their names.
-fn members(group: &Group, path: &str, budget: &ReadingBudget<'_>) -> Result<Vec<(String, Object)>, VariableFault> {
+fn members(
+    group: &Group,
+    path: &str,
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<(String, Object)>, VariableFault> {
     let failed = |error| fault(&error, path);
     let datasets = group.iter_datasets().map_err(failed)?;
     let groups = group.iter_groups().map_err(failed)?;
     budget.take((datasets.len() + groups.len()) as u64, MEMBER, path)?;
     let datasets = datasets.map(|(name, dataset)| (name, Object::Dataset(Box::new(dataset))));
-    let mut members: Vec<_> = datasets.chain(groups.map(|(name, group)| (name, Object::Group(group)))).collect();
+    let mut members: Vec<_> = datasets
+        .chain(groups.map(|(name, group)| (name, Object::Group(group))))
+        .collect();
     members.sort_by(|(one, _), (other, _)| one.cmp(other));
     match members.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-        Some(pair) => Err(VariableFault::Duplicate { name: within(path, &pair[0].0) }),
+        Some(pair) => Err(VariableFault::Duplicate {
+            name: within(path, &pair[0].0),
+        }),
         None => Ok(members),
     }
 }
@@ -321,17 +389,30 @@ fn without_elements(value: &mut Value) {
     if let Value::Array(sides) = value
         && sides.re.contains(&0.0)
     {
-        *sides =
-            Array { shape: sides.re.iter().rev().map(|side| *side as usize).collect(), ..Array::matrix(0, 0, vec![]) };
+        *sides = Array {
+            shape: sides.re.iter().rev().map(|side| *side as usize).collect(),
+            ..Array::matrix(0, 0, vec![])
+        };
     }
 }
 
 /// The value of a group.
-fn group_value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize) -> Result<Value, VariableFault> {
+fn group_value(
+    reader: &Reader<'_>,
+    group: &Group,
+    path: &str,
+    depth: usize,
+) -> Result<Value, VariableFault> {
     let marks = MatlabAttributes::of(group.attrs(), path)?;
     let mut members = members(group, path, reader.budget)?;
     if let Some(rows) = marks.sparse {
-        return Ok(Value::Array(sparse(rows, &marks, &members, path, reader.budget)?));
+        return Ok(Value::Array(sparse(
+            rows,
+            &marks,
+            &members,
+            path,
+            reader.budget,
+        )?));
     }
     match (marks.decode, marks.class()) {
         (FUNCTION_HANDLE, _) | (_, "function_handle") => {
@@ -341,8 +422,17 @@ fn group_value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize) -> 
         _ => {}
     }
     // MATLAB says the order of fields only where it is not that of the names.
-    reader.budget.work((members.len() as u64).saturating_mul(marks.fields.len() as u64), path)?;
-    let order = |name: &str| marks.fields.iter().position(|field| field == name).unwrap_or(usize::MAX);
+    reader.budget.work(
+        (members.len() as u64).saturating_mul(marks.fields.len() as u64),
+        path,
+    )?;
+    let order = |name: &str| {
+        marks
+            .fields
+            .iter()
+            .position(|field| field == name)
+            .unwrap_or(usize::MAX)
+    };
     members.sort_by_cached_key(|(name, _)| order(name));
     let records = if is_array(&marks, &members, path)? {
         array(reader, &members, path, depth)?
@@ -353,23 +443,35 @@ fn group_value(reader: &Reader<'_>, group: &Group, path: &str, depth: usize) -> 
             fields.push((name, vec![value]));
         }
         if marks.empty {
-            fields.iter_mut().flat_map(|(_, values)| values).for_each(without_elements);
+            fields
+                .iter_mut()
+                .flat_map(|(_, values)| values)
+                .for_each(without_elements);
         }
         StructArray::one(fields)
     };
     Ok(match marks.decode {
-        OLD_OBJECT => Value::Object(variables::Object { class: marks.class().to_owned(), records }),
+        OLD_OBJECT => Value::Object(variables::Object {
+            class: marks.class().to_owned(),
+            records,
+        }),
         _ => Value::Struct(records),
     })
 }
 
 /// Whether a struct has several records: its fields are references that are not marked as cells.
-fn is_array(marks: &MatlabAttributes, members: &[(String, Object)], path: &str) -> Result<bool, VariableFault> {
+fn is_array(
+    marks: &MatlabAttributes,
+    members: &[(String, Object)],
+    path: &str,
+) -> Result<bool, VariableFault> {
     if marks.class.is_none() || members.is_empty() {
         return Ok(false);
     }
     for (_, object) in members {
-        let Object::Dataset(dataset) = object else { return Ok(false) };
+        let Object::Dataset(dataset) = object else {
+            return Ok(false);
+        };
         let marked = MatlabAttributes::of(dataset.attrs(), path)?.class.is_some();
         if marked || !is_reference(&dataset.datatype().map_err(|error| fault(&error, path))?) {
             return Ok(false);
@@ -384,15 +486,25 @@ fn array(
     path: &str,
     depth: usize,
 ) -> Result<StructArray, VariableFault> {
-    let mut records = StructArray { shape: Vec::new(), fields: Vec::with_capacity(members.len()) };
+    let mut records = StructArray {
+        shape: Vec::new(),
+        fields: Vec::with_capacity(members.len()),
+    };
     for (name, object) in members {
-        let Object::Dataset(dataset) = object else { continue };
+        let Object::Dataset(dataset) = object else {
+            continue;
+        };
         let shape = Elements::read(dataset, Order::Columns, path, reader.budget)?.shape;
         if !records.fields.is_empty() && records.shape != shape {
-            return Err(damaged(&within(path, name), "a field has not as many values as there are records"));
+            return Err(damaged(
+                &within(path, name),
+                "a field has not as many values as there are records",
+            ));
         }
         records.shape = shape;
-        records.fields.push((name.clone(), values(reader, dataset, (path, name), depth)?));
+        records
+            .fields
+            .push((name.clone(), values(reader, dataset, (path, name), depth)?));
     }
     Ok(records)
 }
@@ -405,12 +517,17 @@ fn values(
     depth: usize,
 ) -> Result<Vec<Value>, VariableFault> {
     let objects = reader.referred(dataset, path)?;
-    let value = |(index, object)| reader.value(object, &format!("{path}({}).{name}", index + 1), depth + 1);
+    let value =
+        |(index, object)| reader.value(object, &format!("{path}({}).{name}", index + 1), depth + 1);
     objects.iter().enumerate().map(value).collect()
 }
 
 fn within(path: &str, name: &str) -> String {
-    if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") }
+    if path.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{path}.{name}")
+    }
 }
 
 #[cfg(test)]
@@ -425,11 +542,19 @@ mod mat73_tests {
     /// [`Value::Opaque`](crate::variables::Value::Opaque).
     fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
         let objects = Objects::Unread("objects of classes are not read".to_owned());
-        Reader { budget, objects: &objects }.variables(&open(bytes, budget)?.root())
+        Reader {
+            budget,
+            objects: &objects,
+        }
+        .variables(&open(bytes, budget)?.root())
     }
 
     fn file(name: &str) -> Vec<u8> {
-        std::fs::read(format!("{}/../../tests/data/mat73/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap()
+        std::fs::read(format!(
+            "{}/../../tests/data/mat73/{name}",
+            env!("CARGO_MANIFEST_DIR")
+        ))
+        .unwrap()
     }
 
     fn read_file(name: &str) -> Result<Vec<Variable>, VariableFault> {
@@ -437,16 +562,26 @@ mod mat73_tests {
     }
 
     fn value(variables: &[Variable], name: &str) -> Value {
-        variables.iter().find(|variable| variable.name == name).unwrap_or_else(|| panic!("no {name}")).value.clone()
+        variables
+            .iter()
+            .find(|variable| variable.name == name)
+            .unwrap_or_else(|| panic!("no {name}"))
+            .value
+            .clone()
     }
 
     fn array(variables: &[Variable], name: &str) -> Array {
-        let Value::Array(array) = value(variables, name) else { panic!("{name} is no array") };
+        let Value::Array(array) = value(variables, name) else {
+            panic!("{name} is no array")
+        };
         array
     }
 
     fn texts(shape: &[usize], texts: &[&str]) -> Value {
-        Value::Text(TextArray { shape: shape.to_vec(), texts: texts.iter().map(|&text| text.to_owned()).collect() })
+        Value::Text(TextArray {
+            shape: shape.to_vec(),
+            texts: texts.iter().map(|&text| text.to_owned()).collect(),
+        })
     }
 
     fn number(value: f64) -> Value {
@@ -457,7 +592,11 @@ mod mat73_tests {
     fn a_matrix_keeps_its_rows_and_columns() {
         for name in ["numbers.mat", "plain.h5", "plain_latest.h5"] {
             let variables = read_file(name).unwrap();
-            assert_eq!(array(&variables, "A"), Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0]), "{name}");
+            assert_eq!(
+                array(&variables, "A"),
+                Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0]),
+                "{name}"
+            );
             // numpy.arange(24).reshape(2, 3, 4): element (i, j, k) is 12 i + 4 j + k.
             let cube = array(&variables, "cube");
             assert_eq!(
@@ -466,7 +605,10 @@ mod mat73_tests {
             );
             // numpy.arange(600).reshape(20, 30), in chunks that do not divide it.
             let packed = array(&variables, "packed");
-            assert_eq!((packed.shape.as_slice(), packed.re[1], packed.re[20]), ([20, 30].as_slice(), 30.0, 1.0));
+            assert_eq!(
+                (packed.shape.as_slice(), packed.re[1], packed.re[20]),
+                ([20, 30].as_slice(), 30.0, 1.0)
+            );
         }
     }
 
@@ -474,7 +616,10 @@ mod mat73_tests {
     fn every_class_of_numbers_of_matlab_is_read() {
         let variables = read_file("numbers.mat").unwrap();
         for name in ["int8", "int16", "int32", "int64"] {
-            let expected = Array { kind: ElementKind::Integer, ..Array::matrix(2, 1, vec![-3.0, 100.0]) };
+            let expected = Array {
+                kind: ElementKind::Integer,
+                ..Array::matrix(2, 1, vec![-3.0, 100.0])
+            };
             assert_eq!(array(&variables, name), expected, "{name}");
         }
         for name in ["uint8", "uint16", "uint32", "uint64"] {
@@ -482,9 +627,15 @@ mod mat73_tests {
         }
         assert_eq!(array(&variables, "single").re, [0.5, -0.25]);
         let flags = array(&variables, "flags");
-        assert_eq!((flags.kind, flags.shape, flags.re), (ElementKind::Logical, vec![1, 3], vec![1.0, 0.0, 1.0]));
+        assert_eq!(
+            (flags.kind, flags.shape, flags.re),
+            (ElementKind::Logical, vec![1, 3], vec![1.0, 0.0, 1.0])
+        );
         let complex = array(&variables, "z");
-        assert_eq!((complex.shape, complex.re, complex.im), (vec![1, 2], vec![1.0, -3.0], Some(vec![2.0, 0.5])));
+        assert_eq!(
+            (complex.shape, complex.re, complex.im),
+            (vec![1, 2], vec![1.0, -3.0], Some(vec![2.0, 0.5]))
+        );
         assert_eq!(array(&variables, "none"), Array::matrix(0, 3, Vec::new()));
     }
 
@@ -494,14 +645,20 @@ mod mat73_tests {
         let expected = vec![0.0, 0.0, 1.5, 0.0, 0.0, 0.0, -2.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         assert_eq!(array(&variables, "S"), Array::matrix(3, 4, expected));
         let nothing = array(&variables, "S0");
-        assert_eq!((nothing.kind, nothing.shape, nothing.re), (ElementKind::Logical, vec![2, 2], vec![0.0; 4]));
+        assert_eq!(
+            (nothing.kind, nothing.shape, nothing.re),
+            (ElementKind::Logical, vec![2, 2], vec![0.0; 4])
+        );
     }
 
     #[test]
     fn texts_are_the_rows_of_characters() {
         let variables = read_file("nested.mat").unwrap();
         assert_eq!(value(&variables, "name"), texts(&[1, 1], &["theta_dot"]));
-        assert_eq!(value(&variables, "greek"), texts(&[1, 1], &["\u{3b8}\u{1d6fc}"]));
+        assert_eq!(
+            value(&variables, "greek"),
+            texts(&[1, 1], &["\u{3b8}\u{1d6fc}"])
+        );
         assert_eq!(value(&variables, "rows"), texts(&[2, 1], &["ab ", "cde"]));
         assert_eq!(value(&variables, "nothing"), texts(&[1, 1], &[""]));
     }
@@ -509,40 +666,97 @@ mod mat73_tests {
     #[test]
     fn structs_keep_the_order_of_their_fields() {
         let variables = read_file("nested.mat").unwrap();
-        let Value::Struct(system) = value(&variables, "sys") else { panic!("no struct") };
-        let names: Vec<_> = system.fields.iter().map(|(name, _)| name.as_str()).collect();
-        assert_eq!((system.shape.as_slice(), names), ([1, 1].as_slice(), vec!["B", "A", "name", "inner"]));
-        assert_eq!(system.field("A").unwrap(), [Value::Array(Array::matrix(2, 2, vec![1.0, 3.0, 2.0, 4.0]))]);
-        let Value::Struct(inner) = &system.field("inner").unwrap()[0] else { panic!("no struct") };
+        let Value::Struct(system) = value(&variables, "sys") else {
+            panic!("no struct")
+        };
+        let names: Vec<_> = system
+            .fields
+            .iter()
+            .map(|(name, _)| name.as_str())
+            .collect();
+        assert_eq!(
+            (system.shape.as_slice(), names),
+            ([1, 1].as_slice(), vec!["B", "A", "name", "inner"])
+        );
+        assert_eq!(
+            system.field("A").unwrap(),
+            [Value::Array(Array::matrix(2, 2, vec![1.0, 3.0, 2.0, 4.0]))]
+        );
+        let Value::Struct(inner) = &system.field("inner").unwrap()[0] else {
+            panic!("no struct")
+        };
         assert_eq!(inner.field("x").unwrap(), [number(7.0)]);
     }
 
     #[test]
     fn struct_arrays_and_cells_are_read_through_their_references() {
         let variables = read_file("nested.mat").unwrap();
-        let Value::Struct(models) = value(&variables, "models") else { panic!("no struct") };
+        let Value::Struct(models) = value(&variables, "models") else {
+            panic!("no struct")
+        };
         assert_eq!(models.shape, [1, 3]);
-        assert_eq!(models.field("gain").unwrap(), [number(0.0), number(1.0), number(2.0)]);
+        assert_eq!(
+            models.field("gain").unwrap(),
+            [number(0.0), number(1.0), number(2.0)]
+        );
         assert_eq!(models.field("name").unwrap()[2], texts(&[1, 1], &["w"]));
-        let deep = Value::Cell(CellArray { shape: vec![1, 1], values: vec![texts(&[1, 1], &["deep"])] });
-        let values = vec![number(0.0), number(1.0), number(2.0), number(3.0), number(4.0), deep];
-        assert_eq!(value(&variables, "C"), Value::Cell(CellArray { shape: vec![2, 3], values }));
-        assert_eq!(value(&variables, "C0"), Value::Cell(CellArray { shape: vec![0, 1], values: Vec::new() }));
-        assert!(matches!(value(&variables, "T0"), Value::Struct(records) if records.shape == [0, 0]));
-        assert!(matches!(value(&variables, "f"), Value::Opaque { class, .. } if class == "function_handle"));
+        let deep = Value::Cell(CellArray {
+            shape: vec![1, 1],
+            values: vec![texts(&[1, 1], &["deep"])],
+        });
+        let values = vec![
+            number(0.0),
+            number(1.0),
+            number(2.0),
+            number(3.0),
+            number(4.0),
+            deep,
+        ];
+        assert_eq!(
+            value(&variables, "C"),
+            Value::Cell(CellArray {
+                shape: vec![2, 3],
+                values
+            })
+        );
+        assert_eq!(
+            value(&variables, "C0"),
+            Value::Cell(CellArray {
+                shape: vec![0, 1],
+                values: Vec::new()
+            })
+        );
+        assert!(
+            matches!(value(&variables, "T0"), Value::Struct(records) if records.shape == [0, 0])
+        );
+        assert!(
+            matches!(value(&variables, "f"), Value::Opaque { class, .. } if class == "function_handle")
+        );
     }
 
     #[test]
     fn the_part_in_which_objects_lie_is_read_with_whole_numbers_to_the_last_digit() {
         let budget = ReadingBudget::new(1 << 24);
         let opened = open(&file("objects.mat"), &budget).unwrap();
-        let dataset = opened.root().group("#subsystem#").and_then(|group| group.dataset("MCOS")).unwrap();
+        let dataset = opened
+            .root()
+            .group("#subsystem#")
+            .and_then(|group| group.dataset("MCOS"))
+            .unwrap();
         let (cells, long_words) = values::wrapper(&dataset, &budget).unwrap();
         assert_eq!(cells.len(), 3);
         assert!(matches!(&cells[0], Value::Array(bytes) if bytes.re == [4.0, 0.0, 0.0, 0.0]));
         assert_eq!(long_words, [(2, vec![u64::MAX])]);
-        let variables = Reader { budget: &budget, objects: &Objects::References }.variables(&opened.root()).unwrap();
-        assert_eq!(array(&variables, "sys").re, [f64::from(0xdd00_0000_u32), 2.0, 1.0, 1.0, 1.0, 1.0]);
+        let variables = Reader {
+            budget: &budget,
+            objects: &Objects::References,
+        }
+        .variables(&opened.root())
+        .unwrap();
+        assert_eq!(
+            array(&variables, "sys").re,
+            [f64::from(0xdd00_0000_u32), 2.0, 1.0, 1.0, 1.0, 1.0]
+        );
         let opaque = value(&read_file("objects.mat").unwrap(), "sys");
         assert!(matches!(opaque, Value::Opaque { class, .. } if class == "ss"));
     }
@@ -550,31 +764,65 @@ mod mat73_tests {
     #[test]
     fn other_variables_are_read_where_the_objects_are_damaged() {
         // The directory of this file is cut off behind its version.
-        let read = (HDF5.read)(&file("objects.mat"), Path::new("objects.mat"), &ReadingBudget::new(1 << 24)).unwrap();
-        let Contents::Variables { variables, .. } = read else { panic!("variables") };
-        assert_eq!((variables.len(), value(&variables, "before")), (2, number(1.0)));
+        let read = (HDF5.read)(
+            &file("objects.mat"),
+            Path::new("objects.mat"),
+            &ReadingBudget::new(1 << 24),
+        )
+        .unwrap();
+        let Contents::Variables { variables, .. } = read else {
+            panic!("variables")
+        };
+        assert_eq!(
+            (variables.len(), value(&variables, "before")),
+            (2, number(1.0))
+        );
         let sys = value(&variables, "sys");
-        assert!(matches!(&sys, Value::Opaque { why, .. } if why.contains("cut off")), "{sys:?}");
+        assert!(
+            matches!(&sys, Value::Opaque { why, .. } if why.contains("cut off")),
+            "{sys:?}"
+        );
     }
 
     #[test]
     fn files_of_h5py_are_read() {
         for name in ["plain.h5", "plain_latest.h5"] {
             let variables = read_file(name).unwrap();
-            let whole = Array { kind: ElementKind::Integer, ..Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0]) };
+            let whole = Array {
+                kind: ElementKind::Integer,
+                ..Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0])
+            };
             assert_eq!(array(&variables, "big_endian"), whole);
-            assert_eq!(array(&variables, "half"), Array::matrix(1, 2, vec![0.5, 1.25]));
+            assert_eq!(
+                array(&variables, "half"),
+                Array::matrix(1, 2, vec![0.5, 1.25])
+            );
             assert_eq!(value(&variables, "scalar"), number(2.5));
             assert_eq!(
-                (array(&variables, "flags").kind, array(&variables, "flags").re),
+                (
+                    array(&variables, "flags").kind,
+                    array(&variables, "flags").re
+                ),
                 (ElementKind::Logical, vec![1.0, 0.0])
             );
             assert_eq!(array(&variables, "z").im, Some(vec![2.0, 0.5]));
-            assert_eq!(value(&variables, "text"), texts(&[1, 1], &["hover \u{3b8}"]));
-            assert_eq!(value(&variables, "names"), texts(&[1, 3], &["u", "theta", ""]));
+            assert_eq!(
+                value(&variables, "text"),
+                texts(&[1, 1], &["hover \u{3b8}"])
+            );
+            assert_eq!(
+                value(&variables, "names"),
+                texts(&[1, 3], &["u", "theta", ""])
+            );
             assert_eq!(value(&variables, "fixed"), texts(&[1, 2], &["u", "theta"]));
-            assert_eq!(array(&variables, "nothing"), Array::matrix(0, 0, Vec::new()));
-            assert_eq!(array(&variables, "no_rows"), Array::matrix(0, 3, Vec::new()));
+            assert_eq!(
+                array(&variables, "nothing"),
+                Array::matrix(0, 0, Vec::new())
+            );
+            assert_eq!(
+                array(&variables, "no_rows"),
+                Array::matrix(0, 3, Vec::new())
+            );
             assert_eq!(array(&variables, "summed").re[..2], [0.0, 3.0]);
             assert_eq!(array(&variables, "unwritten").re, [7.0; 4]);
             assert!(matches!(value(&variables, "ragged"), Value::Opaque { .. }));
@@ -585,11 +833,19 @@ mod mat73_tests {
     fn groups_and_records_are_structs() {
         for name in ["plain.h5", "plain_latest.h5"] {
             let variables = read_file(name).unwrap();
-            let Value::Struct(group) = value(&variables, "group") else { panic!("no struct") };
-            let Value::Struct(inner) = &group.field("inner").unwrap()[0] else { panic!("no struct") };
+            let Value::Struct(group) = value(&variables, "group") else {
+                panic!("no struct")
+            };
+            let Value::Struct(inner) = &group.field("inner").unwrap()[0] else {
+                panic!("no struct")
+            };
             assert_eq!(inner.field("x").unwrap(), [number(1.0)]);
-            assert!(matches!(value(&variables, "empty"), Value::Struct(records) if records.fields.is_empty()));
-            let Value::Struct(records) = value(&variables, "records") else { panic!("no struct") };
+            assert!(
+                matches!(value(&variables, "empty"), Value::Struct(records) if records.fields.is_empty())
+            );
+            let Value::Struct(records) = value(&variables, "records") else {
+                panic!("no struct")
+            };
             assert_eq!(records.field("gain").unwrap(), [number(1.5), number(-2.0)]);
             assert_eq!(records.field("name").unwrap()[1], texts(&[1, 1], &["phi"]));
         }
@@ -598,7 +854,9 @@ mod mat73_tests {
     #[test]
     fn other_variables_are_read_beside_one_of_a_newer_format() {
         let variables = read_file("hdf5_2.h5").unwrap();
-        assert!(matches!(value(&variables, "packed"), Value::Opaque { why, .. } if why.contains("HDF5 1.14")));
+        assert!(
+            matches!(value(&variables, "packed"), Value::Opaque { why, .. } if why.contains("HDF5 1.14"))
+        );
         assert_eq!(value(&variables, "x"), number(1.0));
     }
 
@@ -606,32 +864,52 @@ mod mat73_tests {
     fn links_to_elsewhere_are_passed_over_and_names_that_are_not_utf8_refused() {
         let variables = read_file("links.h5").unwrap();
         assert_eq!((variables.len(), value(&variables, "x")), (1, number(1.0)));
-        assert!(matches!(read_file("name.h5"), Err(VariableFault::Damaged { what, .. }) if what.contains("UTF-8")));
+        assert!(
+            matches!(read_file("name.h5"), Err(VariableFault::Damaged { what, .. }) if what.contains("UTF-8"))
+        );
     }
 
     #[test]
     fn values_that_contain_themselves_or_lie_too_deep_are_refused() {
         for name in ["circle.mat", "circle.h5", "deep.h5"] {
-            assert!(matches!(read_file(name), Err(VariableFault::TooDeep { .. })), "{name}");
+            assert!(
+                matches!(read_file(name), Err(VariableFault::TooDeep { .. })),
+                "{name}"
+            );
         }
     }
 
     #[test]
     fn what_would_take_too_much_memory_is_refused() {
         for name in ["laughs.mat", "huge.mat", "huge_sparse.mat"] {
-            assert!(matches!(read_file(name), Err(VariableFault::TooLarge { .. })), "{name}");
+            assert!(
+                matches!(read_file(name), Err(VariableFault::TooLarge { .. })),
+                "{name}"
+            );
         }
-        assert!(matches!(read_file("huge_empty.mat"), Err(VariableFault::Damaged { .. })));
+        assert!(matches!(
+            read_file("huge_empty.mat"),
+            Err(VariableFault::Damaged { .. })
+        ));
     }
 
     #[test]
     fn what_is_no_hdf5_is_named_and_what_is_cut_off_is_said_to_be() {
         let read = |bytes: &[u8]| read(bytes, &ReadingBudget::new(1 << 24));
         assert!(matches!(read(b""), Err(VariableFault::Format { .. })));
-        assert!(matches!(read(b"MATLAB 5.0 MAT-file"), Err(VariableFault::Format { .. })));
+        assert!(matches!(
+            read(b"MATLAB 5.0 MAT-file"),
+            Err(VariableFault::Format { .. })
+        ));
         for name in ["numbers.mat", "plain_latest.h5"] {
             let whole = file(name);
-            assert!(matches!(read(&whole[..whole.len() - 1]), Err(VariableFault::CutOff { .. })), "{name}");
+            assert!(
+                matches!(
+                    read(&whole[..whole.len() - 1]),
+                    Err(VariableFault::CutOff { .. })
+                ),
+                "{name}"
+            );
         }
     }
 
@@ -663,7 +941,10 @@ mod rationed_tests {
         for _ in 0..32 {
             source.read_at(0, &mut buffer).unwrap();
         }
-        assert!(matches!(source.read_at(0, &mut buffer), Err(FormatError::Source(_))));
+        assert!(matches!(
+            source.read_at(0, &mut buffer),
+            Err(FormatError::Source(_))
+        ));
     }
 
     #[test]

@@ -1,17 +1,29 @@
 //! Texts: MATLAB's characters, and strings of HDF5.
 
-use hdf5_pure::{CompoundMember, Dataset, Datatype, File, Object, StringPadding, VlenStringReadOptions};
+use hdf5_pure::{
+    CompoundMember, Dataset, Datatype, File, Object, StringPadding, VlenStringReadOptions,
+};
 
 use crate::formats::mat::{self, Subsystem};
 use crate::formats::mat73::dataset::{Elements, NumberType, Order};
 use crate::formats::mat73::{MatlabAttributes, Reader, damaged, fault};
 use crate::strides::{Entries, count};
-use crate::variables::{Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, VariableFault};
+use crate::variables::{
+    Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, VariableFault,
+};
 
 /// The texts in the rows of an array of characters' numbers (UTF-16).
-pub(super) fn rows(codes: &Array, path: &str, budget: &ReadingBudget<'_>) -> Result<TextArray, VariableFault> {
+pub(super) fn rows(
+    codes: &Array,
+    path: &str,
+    budget: &ReadingBudget<'_>,
+) -> Result<TextArray, VariableFault> {
     budget.take(codes.len() as u64, size_of::<u32>() as u64, path)?;
-    let units: Vec<u32> = codes.re.iter().map(|&code| u32::from(code as u16)).collect();
+    let units: Vec<u32> = codes
+        .re
+        .iter()
+        .map(|&code| u32::from(code as u16))
+        .collect();
     mat::rows(&units, &codes.shape, path, budget)
 }
 
@@ -20,7 +32,12 @@ pub(super) fn fixed(bytes: &[u8], padding: &StringPadding) -> String {
     let text = String::from_utf8_lossy(bytes);
     let end = text.find('\0').unwrap_or(text.len());
     let text = &text[..end];
-    if matches!(padding, StringPadding::SpacePad) { text.trim_end_matches(' ') } else { text }.to_owned()
+    if matches!(padding, StringPadding::SpacePad) {
+        text.trim_end_matches(' ')
+    } else {
+        text
+    }
+    .to_owned()
 }
 
 /// The strings of a dataset, if they are of one of HDF5's two kinds.
@@ -34,15 +51,26 @@ pub(super) fn strings(
     let texts = match &elements.datatype {
         Datatype::String { padding, size, .. } => {
             budget.take(elements.count() as u64, u64::from(*size), path)?;
-            elements.places().map(|place| fixed(elements.at(place), padding)).collect()
+            elements
+                .places()
+                .map(|place| fixed(elements.at(place), padding))
+                .collect()
         }
-        Datatype::VariableLength { is_string: true, .. } => {
+        Datatype::VariableLength {
+            is_string: true, ..
+        } => {
             let mut texts = variable(dataset, elements.count(), path, budget)?;
-            elements.places().filter_map(|place| texts.get_mut(place).map(std::mem::take)).collect()
+            elements
+                .places()
+                .filter_map(|place| texts.get_mut(place).map(std::mem::take))
+                .collect()
         }
         _ => return Ok(None),
     };
-    Ok(Some(TextArray { shape: elements.shape.clone(), texts }))
+    Ok(Some(TextArray {
+        shape: elements.shape.clone(),
+        texts,
+    }))
 }
 
 fn variable(
@@ -59,9 +87,15 @@ fn variable(
     let length = dataset.vlen_string_payload_size().map_err(failed)?;
     budget.take(length, 1, path)?;
     let most = usize::try_from(length).unwrap_or(usize::MAX);
-    let options = VlenStringReadOptions::new().with_max_elements(count).with_max_payload_bytes(most);
+    let options = VlenStringReadOptions::new()
+        .with_max_elements(count)
+        .with_max_payload_bytes(most);
     let texts = dataset.read_vlen_strings(options).map_err(failed)?;
-    if texts.len() == count { Ok(texts) } else { Err(damaged(path, "strings are missing")) }
+    if texts.len() == count {
+        Ok(texts)
+    } else {
+        Err(damaged(path, "strings are missing"))
+    }
 }
 
 // Arrays without elements, of which MATLAB stores the shape.
@@ -75,16 +109,31 @@ pub(super) fn empty(
 ) -> Result<Value, VariableFault> {
     let wrong = || damaged(path, "the shape of an array without elements is wrong");
     let sides = elements.words(path, budget)?.ok_or_else(wrong)?;
-    let shape: Vec<usize> =
-        sides.iter().map(|&side| usize::try_from(side).ok()).collect::<Option<_>>().ok_or_else(wrong)?;
+    let shape: Vec<usize> = sides
+        .iter()
+        .map(|&side| usize::try_from(side).ok())
+        .collect::<Option<_>>()
+        .ok_or_else(wrong)?;
     if shape.len() < 2 || count(&shape) != Some(0) {
         return Err(wrong());
     }
-    let numbers = |kind| Array { shape: shape.clone(), kind, re: Vec::new(), im: None };
+    let numbers = |kind| Array {
+        shape: shape.clone(),
+        kind,
+        re: Vec::new(),
+        im: None,
+    };
     Ok(match marks.class() {
-        "cell" => Value::Cell(CellArray { shape, values: Vec::new() }),
+        "cell" => Value::Cell(CellArray {
+            shape,
+            values: Vec::new(),
+        }),
         "struct" => {
-            let fields = marks.fields.iter().map(|name| (name.clone(), Vec::new())).collect();
+            let fields = marks
+                .fields
+                .iter()
+                .map(|name| (name.clone(), Vec::new()))
+                .collect();
             Value::Struct(StructArray { shape, fields })
         }
         "char" => Value::Text(rows(&numbers(ElementKind::Integer), path, budget)?),
@@ -106,15 +155,26 @@ pub(super) fn records(
     path: &str,
     budget: &ReadingBudget<'_>,
 ) -> Result<Option<StructArray>, VariableFault> {
-    let Datatype::Compound { members, .. } = &elements.datatype else { return Ok(None) };
+    let Datatype::Compound { members, .. } = &elements.datatype else {
+        return Ok(None);
+    };
     let mut fields = Vec::with_capacity(members.len());
     for member in members {
         // A value, its shape and its one number.
-        budget.take(elements.count() as u64, size_of::<Value>() as u64 + 24, path)?;
-        let values = elements.places().map(|place| value(member, elements.at(place), path, budget));
+        budget.take(
+            elements.count() as u64,
+            size_of::<Value>() as u64 + 24,
+            path,
+        )?;
+        let values = elements
+            .places()
+            .map(|place| value(member, elements.at(place), path, budget));
         fields.push((member.name.clone(), values.collect::<Result<_, _>>()?));
     }
-    Ok(Some(StructArray { shape: elements.shape.clone(), fields }))
+    Ok(Some(StructArray {
+        shape: elements.shape.clone(),
+        fields,
+    }))
 }
 
 fn value(
@@ -126,16 +186,30 @@ fn value(
     let offset = usize::try_from(member.byte_offset).unwrap_or(usize::MAX);
     let bytes = record.get(offset..).unwrap_or_default();
     if let Some(numbers) = NumberType::of(&member.datatype) {
-        let part = |offset: usize| vec![numbers.number.decode(bytes.get(offset..).unwrap_or_default())];
+        let part = |offset: usize| {
+            vec![
+                numbers
+                    .number
+                    .decode(bytes.get(offset..).unwrap_or_default()),
+            ]
+        };
         let (re, im) = (part(numbers.re), numbers.im.map(part));
-        return Ok(Value::Array(Array { shape: vec![1, 1], kind: numbers.number.kind(), re, im }));
+        return Ok(Value::Array(Array {
+            shape: vec![1, 1],
+            kind: numbers.number.kind(),
+            re,
+            im,
+        }));
     }
     if let Datatype::String { size, padding, .. } = &member.datatype {
         let bytes = &bytes[..bytes.len().min(*size as usize)];
         budget.take(bytes.len() as u64, 1, path)?;
         return Ok(Value::text(fixed(bytes, padding)));
     }
-    Ok(Value::opaque("a field of a record", "it is neither a number nor a text of fixed length"))
+    Ok(Value::opaque(
+        "a field of a record",
+        "it is neither a number nor a text of fixed length",
+    ))
 }
 
 // Matrices of which only the numbers other than zero are stored (`MATLAB_sparse`): by columns, compressed.
@@ -151,14 +225,24 @@ pub(super) fn sparse(
     let wrong = || damaged(path, "the sparse matrix contradicts itself");
     let member = |name: &str| {
         let found = members.iter().find(|(member, _)| member == name);
-        let Some((_, Object::Dataset(dataset))) = found else { return Ok(None) };
+        let Some((_, Object::Dataset(dataset))) = found else {
+            return Ok(None);
+        };
         Elements::read(dataset, Order::Columns, path, budget).map(Some)
     };
     let places = |name: &str| -> Result<Option<Vec<usize>>, VariableFault> {
-        let Some(elements) = member(name)? else { return Ok(None) };
+        let Some(elements) = member(name)? else {
+            return Ok(None);
+        };
         let words = elements.words(path, budget)?;
-        let words = words.ok_or_else(|| damaged(path, "the places of a sparse matrix are no whole numbers"))?;
-        Ok(Some(words.into_iter().map(|word| usize::try_from(word).unwrap_or(usize::MAX)).collect()))
+        let words = words
+            .ok_or_else(|| damaged(path, "the places of a sparse matrix are no whole numbers"))?;
+        Ok(Some(
+            words
+                .into_iter()
+                .map(|word| usize::try_from(word).unwrap_or(usize::MAX))
+                .collect(),
+        ))
     };
     let starts = places("jc")?.ok_or_else(wrong)?;
     let rows = places("ir")?.unwrap_or_default();
@@ -169,10 +253,18 @@ pub(super) fn sparse(
             .numbers(path, budget)?
             .ok_or_else(|| damaged(path, "the elements of a sparse matrix are no numbers"))?,
     };
-    let shape = [usize::try_from(height).map_err(|_| wrong())?, starts.len().checked_sub(1).ok_or_else(wrong)?];
-    let kind = if marks.class() == "logical" { ElementKind::Logical } else { data.kind };
+    let shape = [
+        usize::try_from(height).map_err(|_| wrong())?,
+        starts.len().checked_sub(1).ok_or_else(wrong)?,
+    ];
+    let kind = if marks.class() == "logical" {
+        ElementKind::Logical
+    } else {
+        data.kind
+    };
     budget.take(rows.len() as u64, 8, path)?;
-    let entries = Entries::of_columns(shape, kind, rows, &starts, (data.re, data.im)).ok_or_else(wrong)?;
+    let entries =
+        Entries::of_columns(shape, kind, rows, &starts, (data.re, data.im)).ok_or_else(wrong)?;
     entries.filled(path, budget, wrong)
 }
 
@@ -192,11 +284,18 @@ pub(super) enum Objects {
 impl Objects {
     /// Reads the part of the objects, where there is one.
     pub(super) fn read(file: &File, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
-        let Ok(dataset) = file.root().group("#subsystem#").and_then(|group| group.dataset("MCOS")) else {
-            return Ok(Self::Unread("the file has no part in which objects lie".to_owned()));
+        let Ok(dataset) = file
+            .root()
+            .group("#subsystem#")
+            .and_then(|group| group.dataset("MCOS"))
+        else {
+            return Ok(Self::Unread(
+                "the file has no part in which objects lie".to_owned(),
+            ));
         };
-        let subsystem = wrapper(&dataset, budget)
-            .and_then(|(cells, long_words)| Ok(Subsystem::new(cells, budget)?.with_long_words(long_words)));
+        let subsystem = wrapper(&dataset, budget).and_then(|(cells, long_words)| {
+            Ok(Subsystem::new(cells, budget)?.with_long_words(long_words))
+        });
         match subsystem {
             Ok(subsystem) => Ok(Self::Read(subsystem)),
             Err(fault) if fault.is_of_the_budget() => Err(fault),
@@ -218,7 +317,11 @@ impl Objects {
             Self::References => Ok(Value::Array(reference)),
             Self::Unread(why) => opaque(why),
             Self::Read(subsystem) => {
-                let word = |&number: &f64| (0.0..=f64::from(u32::MAX)).contains(&number).then_some(number as u32);
+                let word = |&number: &f64| {
+                    (0.0..=f64::from(u32::MAX))
+                        .contains(&number)
+                        .then_some(number as u32)
+                };
                 match reference.re.iter().map(word).collect::<Option<Vec<u32>>>() {
                     Some(words) => subsystem.object(&words, path, budget),
                     None => opaque("what refers to it is damaged"),
@@ -233,8 +336,14 @@ pub(super) type Wrapper = (Vec<Value>, Vec<(usize, Vec<u64>)>);
 
 /// The cells that hold the objects, the first of which are the bytes of their directory; and to the last digit those of whole numbers
 /// of 64 bits, each with the number of its cell, counted from 0.
-pub(super) fn wrapper(dataset: &Dataset, budget: &ReadingBudget<'_>) -> Result<Wrapper, VariableFault> {
-    let reader = Reader { budget, objects: &Objects::References };
+pub(super) fn wrapper(
+    dataset: &Dataset,
+    budget: &ReadingBudget<'_>,
+) -> Result<Wrapper, VariableFault> {
+    let reader = Reader {
+        budget,
+        objects: &Objects::References,
+    };
     let (mut cells, mut long_words) = (Vec::new(), Vec::new());
     for (index, object) in reader.referred(dataset, "")?.iter().enumerate() {
         if let Object::Dataset(dataset) = object

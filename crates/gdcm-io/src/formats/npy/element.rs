@@ -66,7 +66,12 @@ impl Element {
     }
 
     fn parse_code(code: &str) -> Result<Self, VariableFault> {
-        let unknown = || damaged(format!("\"{}\" is no type of elements", code.escape_default()));
+        let unknown = || {
+            damaged(format!(
+                "\"{}\" is no type of elements",
+                code.escape_default()
+            ))
+        };
         let (order, rest) = code.split_at_checked(1).ok_or_else(unknown)?;
         let big_endian = match order {
             "<" | "|" => false,
@@ -81,7 +86,13 @@ impl Element {
         let size: u32 = size.parse().map_err(|_| unknown())?;
         let size = size as usize;
         let number = |class, size| {
-            let refuse = || VariableFault::unsupported("", format!("numbers of type {code}"), "save it as float64");
+            let refuse = || {
+                VariableFault::unsupported(
+                    "",
+                    format!("numbers of type {code}"),
+                    "save it as float64",
+                )
+            };
             StoredNumber::new(class, size, big_endian).ok_or_else(refuse)
         };
         Ok(match class {
@@ -90,9 +101,15 @@ impl Element {
             "u" => Self::Number(number(NumberClass::Unsigned, size)?),
             "f" => Self::Number(number(NumberClass::Float, size)?),
             "c" => Self::Complex(number(NumberClass::Float, size / 2)?),
-            "U" => Self::Unicode { characters: size, big_endian },
+            "U" => Self::Unicode {
+                characters: size,
+                big_endian,
+            },
             "S" | "a" => Self::Bytes { count: size },
-            "V" => Self::Record { fields: Vec::new(), size },
+            "V" => Self::Record {
+                fields: Vec::new(),
+                size,
+            },
             _ => return Err(unknown()),
         })
     }
@@ -103,22 +120,33 @@ impl Element {
         for entry in list {
             let field = Field::parse(entry, offset)?;
             let count = count(&field.shape).ok_or_else(too_large)?;
-            let length = count.checked_mul(field.element.size()).ok_or_else(too_large)?;
+            let length = count
+                .checked_mul(field.element.size())
+                .ok_or_else(too_large)?;
             offset = offset.checked_add(length).ok_or_else(too_large)?;
             // Bytes that only fill up have no name.
             if !field.name.is_empty() {
                 fields.push(field);
             }
         }
-        Ok(Self::Record { fields, size: offset })
+        Ok(Self::Record {
+            fields,
+            size: offset,
+        })
     }
 }
 
 /// The classes that are refused, with the way out.
 fn unread(class: &str, code: &str) -> Option<VariableFault> {
     let (what, remedy) = match class {
-        "O" => ("an array of Python objects".to_owned(), "save plain arrays, one for each name"),
-        "M" | "m" => (format!("dates or times of type {code}"), "save them as float64, with the unit in the name"),
+        "O" => (
+            "an array of Python objects".to_owned(),
+            "save plain arrays, one for each name",
+        ),
+        "M" | "m" => (
+            format!("dates or times of type {code}"),
+            "save them as float64, with the unit in the name",
+        ),
         _ => return None,
     };
     Some(VariableFault::unsupported("", what, remedy))
@@ -127,8 +155,12 @@ fn unread(class: &str, code: &str) -> Option<VariableFault> {
 impl Field {
     fn parse(entry: &Json, offset: usize) -> Result<Self, VariableFault> {
         let wrong = || damaged("a field of the records has no name and type");
-        let Json::Array(parts) = entry else { return Err(wrong()) };
-        let [name, descr, shape @ ..] = parts.as_slice() else { return Err(wrong()) };
+        let Json::Array(parts) = entry else {
+            return Err(wrong());
+        };
+        let [name, descr, shape @ ..] = parts.as_slice() else {
+            return Err(wrong());
+        };
         let name = match name {
             Json::String(name) => name.clone(),
             // A field with a title: (title, name).
@@ -143,14 +175,24 @@ impl Field {
             [shape] => sides(shape).ok_or_else(wrong)?,
             _ => return Err(wrong()),
         };
-        Ok(Self { name, element: Element::parse(descr)?, shape, offset })
+        Ok(Self {
+            name,
+            element: Element::parse(descr)?,
+            shape,
+            offset,
+        })
     }
 }
 
 /// The lengths along each dimension.
 fn sides(shape: &Json) -> Option<Vec<usize>> {
-    let Json::Array(sides) = shape else { return None };
-    sides.iter().map(|side| usize::try_from(side.as_u64()?).ok()).collect()
+    let Json::Array(sides) = shape else {
+        return None;
+    };
+    sides
+        .iter()
+        .map(|side| usize::try_from(side.as_u64()?).ok())
+        .collect()
 }
 
 // What stands before the elements of an array.
@@ -171,7 +213,11 @@ pub(super) struct Header {
 
 impl Header {
     /// Reads the header; `name` is what errors call the array.
-    pub(super) fn parse(bytes: &[u8], name: &str, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
+    pub(super) fn parse(
+        bytes: &[u8],
+        name: &str,
+        budget: &ReadingBudget<'_>,
+    ) -> Result<Self, VariableFault> {
         let (text, length) = text(bytes, name)?;
         let damaged = |what: &str| VariableFault::damaged(name, what, 8);
         // As JSON, and as a tree of its values.
@@ -179,20 +225,35 @@ impl Header {
         let header = json_of(&text).map_err(damaged)?;
         let entries = header.as_object().filter(|entries| entries.len() == 3);
         let entry = |key: &str| entries.and_then(|entries| entries.get(key));
-        let (Some(descr), Some(order), Some(shape)) = (entry("descr"), entry("fortran_order"), entry("shape")) else {
-            return Err(damaged("the header has not the keys descr, fortran_order and shape"));
+        let (Some(descr), Some(order), Some(shape)) =
+            (entry("descr"), entry("fortran_order"), entry("shape"))
+        else {
+            return Err(damaged(
+                "the header has not the keys descr, fortran_order and shape",
+            ));
         };
-        let column_major = order.as_bool().ok_or_else(|| damaged("fortran_order is neither True nor False"))?;
-        let shape = sides(shape).ok_or_else(|| damaged("the shape is no tuple of whole numbers"))?;
+        let column_major = order
+            .as_bool()
+            .ok_or_else(|| damaged("fortran_order is neither True nor False"))?;
+        let shape =
+            sides(shape).ok_or_else(|| damaged("the shape is no tuple of whole numbers"))?;
         let element = Element::parse(descr).map_err(|fault| fault.of(|| name.to_owned()))?;
-        Ok(Self { element, column_major, shape, length })
+        Ok(Self {
+            element,
+            column_major,
+            shape,
+            length,
+        })
     }
 }
 
 /// The header's text, and where it ends.
 fn text(bytes: &[u8], name: &str) -> Result<(String, usize), VariableFault> {
     if !bytes.starts_with(MAGIC) {
-        return Err(VariableFault::other_bytes("an array of NumPy (.npy)", bytes));
+        return Err(VariableFault::other_bytes(
+            "an array of NumPy (.npy)",
+            bytes,
+        ));
     }
     let cut_off = || VariableFault::cut_off(name, bytes.len());
     let &version = bytes.get(6).ok_or_else(cut_off)?;
@@ -201,11 +262,18 @@ fn text(bytes: &[u8], name: &str) -> Result<(String, usize), VariableFault> {
         2 | 3 => 12,
         _ => {
             let what = format!("version {version} of the .npy format");
-            return Err(VariableFault::unsupported(name, what, "save it with numpy.save of a plain array"));
+            return Err(VariableFault::unsupported(
+                name,
+                what,
+                "save it with numpy.save of a plain array",
+            ));
         }
     };
     let digits = bytes.get(8..from).ok_or_else(cut_off)?;
-    let length = digits.iter().rev().fold(0, |length, &digit| length << 8 | usize::from(digit));
+    let length = digits
+        .iter()
+        .rev()
+        .fold(0, |length, &digit| length << 8 | usize::from(digit));
     let end = from.saturating_add(length);
     let text = bytes.get(from..end).ok_or_else(cut_off)?;
     // Versions 1 and 2 are in Latin-1, whose bytes are the first characters of Unicode; 3 is in UTF-8.
@@ -227,7 +295,9 @@ fn json_of(text: &str) -> Result<Json, &'static str> {
     while let Some(sign) = rest.chars().next() {
         let length = match sign {
             '\'' | '"' => {
-                let end = rest[1..].find(sign).ok_or("a text of the header does not end")?;
+                let end = rest[1..]
+                    .find(sign)
+                    .ok_or("a text of the header does not end")?;
                 // Escapes would stand only in names of fields that hold quotes, backslashes or control characters.
                 if rest[1..=end].contains('\\') {
                     return Err("the header holds an escape");
@@ -236,7 +306,9 @@ fn json_of(text: &str) -> Result<Json, &'static str> {
                 end + 2
             }
             'T' | 'F' | 't' | 'f' | 'n' => {
-                let end = rest.find(|sign: char| !sign.is_alphanumeric()).unwrap_or(rest.len());
+                let end = rest
+                    .find(|sign: char| !sign.is_alphanumeric())
+                    .unwrap_or(rest.len());
                 json.push_str(match &rest[..end] {
                     "True" => "true",
                     "False" => "false",
@@ -264,7 +336,8 @@ fn json_of(text: &str) -> Result<Json, &'static str> {
         };
         rest = &rest[length..];
     }
-    serde_json::from_str(&json).map_err(|_| "the header is no dictionary of texts, numbers and tuples")
+    serde_json::from_str(&json)
+        .map_err(|_| "the header is no dictionary of texts, numbers and tuples")
 }
 
 #[cfg(test)]
@@ -277,27 +350,54 @@ mod element_tests {
 
     #[test]
     fn sizes_are_those_of_numpy() {
-        for (descr, size) in
-            [("'|b1'", 1), ("'>i8'", 8), ("'<f2'", 2), ("'<c8'", 8), ("'<U3'", 12), ("'|S5'", 5), ("'|V7'", 7)]
-        {
+        for (descr, size) in [
+            ("'|b1'", 1),
+            ("'>i8'", 8),
+            ("'<f2'", 2),
+            ("'<c8'", 8),
+            ("'<U3'", 12),
+            ("'|S5'", 5),
+            ("'|V7'", 7),
+        ] {
             assert_eq!(parse(descr).unwrap().size(), size, "{descr}");
         }
-        assert_eq!(parse("[('a', '<f8', (2, 3)), ('', '|V4'), ('b', '|u1')]").unwrap().size(), 53);
+        assert_eq!(
+            parse("[('a', '<f8', (2, 3)), ('', '|V4'), ('b', '|u1')]")
+                .unwrap()
+                .size(),
+            53
+        );
     }
 
     #[test]
     fn objects_dates_and_long_floats_come_with_a_way_out() {
         for descr in ["'|O'", "'<M8[ns]'", "'<f16'", "'<c32'", "'<i3'"] {
-            assert!(matches!(parse(descr), Err(VariableFault::Unsupported { .. })), "{descr}");
+            assert!(
+                matches!(parse(descr), Err(VariableFault::Unsupported { .. })),
+                "{descr}"
+            );
         }
     }
 
     #[test]
     fn what_is_no_type_is_refused() {
-        for descr in
-            ["''", "'f8'", "'<'", "'<f'", "'<f-8'", "'<x8'", "'\u{e9}f8'", "'<\u{e9}8'", "3", "[('a',)]", "[3]"]
-        {
-            assert!(matches!(parse(descr), Err(VariableFault::Damaged { .. })), "{descr}");
+        for descr in [
+            "''",
+            "'f8'",
+            "'<'",
+            "'<f'",
+            "'<f-8'",
+            "'<x8'",
+            "'\u{e9}f8'",
+            "'<\u{e9}8'",
+            "3",
+            "[('a',)]",
+            "[3]",
+        ] {
+            assert!(
+                matches!(parse(descr), Err(VariableFault::Damaged { .. })),
+                "{descr}"
+            );
         }
         let huge = "[('a', '<f8', (9223372036854775807, 3))]";
         assert!(matches!(parse(huge), Err(VariableFault::Damaged { .. })));
@@ -314,7 +414,11 @@ mod header_tests {
 
     fn file(version: u8, text: &[u8]) -> Vec<u8> {
         let length = (text.len() as u32).to_le_bytes();
-        let length = if version == 1 { &length[..2] } else { &length[..] };
+        let length = if version == 1 {
+            &length[..2]
+        } else {
+            &length[..]
+        };
         [MAGIC.as_slice(), &[version, 0], length, text].concat()
     }
 
@@ -325,7 +429,10 @@ mod header_tests {
             let header = header_of(&file(version, text)).unwrap();
             assert_eq!((header.column_major, header.shape), (true, vec![2, 3]));
         }
-        assert!(matches!(header_of(&file(4, text)), Err(VariableFault::Unsupported { .. })));
+        assert!(matches!(
+            header_of(&file(4, text)),
+            Err(VariableFault::Unsupported { .. })
+        ));
     }
 
     #[test]
@@ -338,10 +445,22 @@ mod header_tests {
             "{'descr': '<f8', 'fortran_order': True, 'shape': 3}",
             "[]",
         ] {
-            assert!(matches!(header_of(&file(1, text.as_bytes())), Err(VariableFault::Damaged { .. })), "{text}");
+            assert!(
+                matches!(
+                    header_of(&file(1, text.as_bytes())),
+                    Err(VariableFault::Damaged { .. })
+                ),
+                "{text}"
+            );
         }
-        assert!(matches!(header_of(&file(3, &[0xff])), Err(VariableFault::Damaged { .. })));
-        assert!(matches!(header_of(b"PK"), Err(VariableFault::Format { .. })));
+        assert!(matches!(
+            header_of(&file(3, &[0xff])),
+            Err(VariableFault::Damaged { .. })
+        ));
+        assert!(matches!(
+            header_of(b"PK"),
+            Err(VariableFault::Format { .. })
+        ));
     }
 }
 
@@ -353,13 +472,29 @@ mod literal_tests {
 
     #[test]
     fn a_header_of_numpy_is_read() {
-        let read = json_of("{'descr': [('a', '<f8', (2,))], 'fortran_order': False, 'shape': (3, 4L), }   \n").unwrap();
-        assert_eq!(read, json!({"descr": [["a", "<f8", [2]]], "fortran_order": false, "shape": [3, 4]}));
+        let read = json_of(
+            "{'descr': [('a', '<f8', (2,))], 'fortran_order': False, 'shape': (3, 4L), }   \n",
+        )
+        .unwrap();
+        assert_eq!(
+            read,
+            json!({"descr": [["a", "<f8", [2]]], "fortran_order": false, "shape": [3, 4]})
+        );
     }
 
     #[test]
     fn whatever_else_python_knows_is_refused() {
-        for text in ["", "{", "{'a' 1}", "{1: 2}", "'a", "__import__('os')", "True1", "() ()", "'\\x00'"] {
+        for text in [
+            "",
+            "{",
+            "{'a' 1}",
+            "{1: 2}",
+            "'a",
+            "__import__('os')",
+            "True1",
+            "() ()",
+            "'\\x00'",
+        ] {
             assert!(json_of(text).is_err(), "{text}");
         }
         assert!(json_of(&"(".repeat(100_000)).is_err());

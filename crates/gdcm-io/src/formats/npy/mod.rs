@@ -17,7 +17,8 @@ use crate::formats::npy::element::{Element, Field, Header, MAGIC};
 use crate::formats::{Contents, Importer};
 use crate::strides::{Places, StoredNumber, count, matrix_shape};
 use crate::variables::{
-    Array, ElementKind, RECORD, ReadingBudget, StructArray, TextArray, Value, Variable, VariableFault,
+    Array, ElementKind, RECORD, ReadingBudget, StructArray, TextArray, Value, Variable,
+    VariableFault,
 };
 
 /// One array of NumPy.
@@ -26,7 +27,10 @@ pub(crate) const NPY: Importer = Importer {
     endings: &["npy"],
     recognises: |bytes, _| bytes.starts_with(MAGIC),
     read: |bytes, path, budget| {
-        let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or_default();
+        let name = path
+            .file_stem()
+            .and_then(|stem| stem.to_str())
+            .unwrap_or_default();
         Contents::row_major(read_npy(bytes, name, budget), path)
     },
 };
@@ -37,7 +41,11 @@ pub(crate) const NPY: Importer = Importer {
 ///
 /// A number alone becomes 1 x 1, an array of n elements the row 1 x n. Booleans, whole numbers, floats and complex numbers become an
 /// [`Array`], texts a [`TextArray`], records a [`StructArray`].
-pub fn read_npy(bytes: &[u8], name: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
+pub fn read_npy(
+    bytes: &[u8],
+    name: &str,
+    budget: &ReadingBudget<'_>,
+) -> Result<Vec<Variable>, VariableFault> {
     let header = Header::parse(bytes, name, budget)?;
     let length = count(&header.shape).and_then(|count| count.checked_mul(header.element.size()));
     let length = length.ok_or_else(|| too_many(name))?;
@@ -47,11 +55,22 @@ pub fn read_npy(bytes: &[u8], name: &str, budget: &ReadingBudget<'_>) -> Result<
     }
     if data.len() > length {
         let remedy = "save one array in each .npy file, several with numpy.savez";
-        return Err(VariableFault::unsupported(name, "something behind the array", remedy));
+        return Err(VariableFault::unsupported(
+            name,
+            "something behind the array",
+            remedy,
+        ));
     }
-    let stored =
-        StoredArray { element: &header.element, shape: &header.shape, column_major: header.column_major, data };
-    Ok(vec![Variable { name: name.to_owned(), value: stored.value(name, budget)? }])
+    let stored = StoredArray {
+        element: &header.element,
+        shape: &header.shape,
+        column_major: header.column_major,
+        data,
+    };
+    Ok(vec![Variable {
+        name: name.to_owned(),
+        value: stored.value(name, budget)?,
+    }])
 }
 
 fn too_many(name: &str) -> VariableFault {
@@ -73,38 +92,71 @@ impl StoredArray<'_> {
             Element::Number(number) => {
                 budget.take(elements, 8, name)?;
                 let re = self.numbers(*number, 0, name, budget)?;
-                Ok(Value::Array(Array { shape: matrix_shape(self.shape), kind: number.kind(), re, im: None }))
+                Ok(Value::Array(Array {
+                    shape: matrix_shape(self.shape),
+                    kind: number.kind(),
+                    re,
+                    im: None,
+                }))
             }
             Element::Complex(part) => {
                 budget.take(elements, 16, name)?;
                 let numbers = |offset| self.numbers(*part, offset, name, budget);
                 let (re, im) = (numbers(0)?, Some(numbers(part.size())?));
-                Ok(Value::Array(Array { shape: matrix_shape(self.shape), kind: ElementKind::Float, re, im }))
+                Ok(Value::Array(Array {
+                    shape: matrix_shape(self.shape),
+                    kind: ElementKind::Float,
+                    re,
+                    im,
+                }))
             }
             Element::Unicode { .. } | Element::Bytes { .. } => {
-                budget.take(elements, (size_of::<String>() + self.element.size()) as u64, name)?;
+                budget.take(
+                    elements,
+                    (size_of::<String>() + self.element.size()) as u64,
+                    name,
+                )?;
                 let text = |(at, place)| budget.go_on(at).map(|()| self.text(place));
-                let texts = self.places(name)?.enumerate().map(text).collect::<Result<_, _>>()?;
-                Ok(Value::Text(TextArray { shape: matrix_shape(self.shape), texts }))
+                let texts = self
+                    .places(name)?
+                    .enumerate()
+                    .map(text)
+                    .collect::<Result<_, _>>()?;
+                Ok(Value::Text(TextArray {
+                    shape: matrix_shape(self.shape),
+                    texts,
+                }))
             }
             Element::Record { fields, .. } => {
                 // Of records without fields, or of fields without elements, there may be any number in no bytes.
                 budget.take(elements, RECORD, name)?;
-                let fields = fields.iter().map(|field| self.field(field, name, budget)).collect::<Result<_, _>>()?;
-                Ok(Value::Struct(StructArray { shape: matrix_shape(self.shape), fields }))
+                let fields = fields
+                    .iter()
+                    .map(|field| self.field(field, name, budget))
+                    .collect::<Result<_, _>>()?;
+                Ok(Value::Struct(StructArray {
+                    shape: matrix_shape(self.shape),
+                    fields,
+                }))
             }
         }
     }
 
     fn places(&self, name: &str) -> Result<Places, VariableFault> {
-        let places = if self.column_major { Places::column_major(self.shape) } else { Places::row_major(self.shape) };
+        let places = if self.column_major {
+            Places::column_major(self.shape)
+        } else {
+            Places::row_major(self.shape)
+        };
         places.ok_or_else(|| too_many(name))
     }
 
     /// The bytes of one element.
     fn at(&self, place: usize) -> &[u8] {
         let size = self.element.size();
-        self.data.get(place * size..(place + 1) * size).unwrap_or_default()
+        self.data
+            .get(place * size..(place + 1) * size)
+            .unwrap_or_default()
     }
 
     fn numbers(
@@ -126,14 +178,19 @@ impl StoredArray<'_> {
         match self.element {
             Element::Unicode { big_endian, .. } => {
                 let character = |four: &[u8]| {
-                    let bits = four.iter().rev().fold(0, |bits, &byte| bits << 8 | u32::from(byte));
+                    let bits = four
+                        .iter()
+                        .rev()
+                        .fold(0, |bits, &byte| bits << 8 | u32::from(byte));
                     let bits = if *big_endian { bits.swap_bytes() } else { bits };
                     char::from_u32(bits).unwrap_or(char::REPLACEMENT_CHARACTER)
                 };
                 let text: String = bytes.chunks_exact(4).map(character).collect();
                 text.trim_end_matches('\0').to_owned()
             }
-            _ => String::from_utf8_lossy(bytes).trim_end_matches('\0').to_owned(),
+            _ => String::from_utf8_lossy(bytes)
+                .trim_end_matches('\0')
+                .to_owned(),
         }
     }
 
@@ -144,11 +201,20 @@ impl StoredArray<'_> {
         budget: &ReadingBudget<'_>,
     ) -> Result<(String, Vec<Value>), VariableFault> {
         let places = self.places(name)?;
-        budget.take(places.len() as u64, size_of::<Value>() as u64 + RECORD, name)?;
+        budget.take(
+            places.len() as u64,
+            size_of::<Value>() as u64 + RECORD,
+            name,
+        )?;
         let values = places.map(|place| {
             let record = self.at(place).get(field.offset..).unwrap_or_default();
-            StoredArray { element: &field.element, shape: &field.shape, column_major: false, data: record }
-                .value(name, budget)
+            StoredArray {
+                element: &field.element,
+                shape: &field.shape,
+                column_major: false,
+                data: record,
+            }
+            .value(name, budget)
         });
         Ok((field.name.clone(), values.collect::<Result<_, _>>()?))
     }
@@ -171,7 +237,9 @@ pub fn write_npz(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
     let mut names = HashSet::new();
     for variable in variables {
         if !names.insert(variable.name.as_str()) {
-            return Err(VariableFault::Duplicate { name: variable.name.clone() });
+            return Err(VariableFault::Duplicate {
+                name: variable.name.clone(),
+            });
         }
         let array = match &variable.value {
             Value::Array(array) => numbers(array),
@@ -181,7 +249,9 @@ pub fn write_npz(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
         entry(&mut archive, &variable.name, &array)
             .map_err(|_| refused(&variable.name, "a name this long".to_owned()))?;
     }
-    archive.finish().map_err(|_| refused("", "an archive this large".to_owned()))?;
+    archive
+        .finish()
+        .map_err(|_| refused("", "an archive this large".to_owned()))?;
     Ok(bytes)
 }
 
@@ -190,9 +260,16 @@ fn refused(name: &str, what: String) -> VariableFault {
     VariableFault::unsupported(name, format!("{what} cannot be written, so it"), remedy)
 }
 
-fn entry(archive: &mut ZipArchiveWriter<&mut Vec<u8>>, name: &str, array: &[u8]) -> Result<(), rawzip::Error> {
+fn entry(
+    archive: &mut ZipArchiveWriter<&mut Vec<u8>>,
+    name: &str,
+    array: &[u8],
+) -> Result<(), rawzip::Error> {
     let path = format!("{name}.npy");
-    let (mut entry, config) = archive.new_file(path.as_str()).compression_method(CompressionMethod::DEFLATE).start()?;
+    let (mut entry, config) = archive
+        .new_file(path.as_str())
+        .compression_method(CompressionMethod::DEFLATE)
+        .start()?;
     let mut packer = config.wrap(DeflateEncoder::new(&mut entry, Compression::default()));
     packer.write_all(array)?;
     let (encoder, descriptor) = packer.finish()?;
@@ -203,25 +280,61 @@ fn entry(archive: &mut ZipArchiveWriter<&mut Vec<u8>>, name: &str, array: &[u8])
 
 fn numbers(array: &Array) -> Vec<u8> {
     let whole = |value: &f64| value.fract() == 0.0 && value.abs() <= LARGEST_WHOLE;
-    let pairs =
-        |im: &Vec<f64>| array.re.iter().zip(im).flat_map(|(re, im)| [*re, *im]).flat_map(f64::to_le_bytes).collect();
+    let pairs = |im: &Vec<f64>| {
+        array
+            .re
+            .iter()
+            .zip(im)
+            .flat_map(|(re, im)| [*re, *im])
+            .flat_map(f64::to_le_bytes)
+            .collect()
+    };
     let (descr, data): (_, Vec<u8>) = match (&array.im, array.kind) {
         (Some(im), _) => ("<c16", pairs(im)),
-        (None, ElementKind::Logical) => ("|b1", array.re.iter().map(|&value| u8::from(value != 0.0)).collect()),
-        (None, ElementKind::Integer) if array.re.iter().all(whole) => {
-            ("<i8", array.re.iter().flat_map(|&value| (value as i64).to_le_bytes()).collect())
-        }
-        (None, _) => ("<f8", array.re.iter().flat_map(|value| value.to_le_bytes()).collect()),
+        (None, ElementKind::Logical) => (
+            "|b1",
+            array
+                .re
+                .iter()
+                .map(|&value| u8::from(value != 0.0))
+                .collect(),
+        ),
+        (None, ElementKind::Integer) if array.re.iter().all(whole) => (
+            "<i8",
+            array
+                .re
+                .iter()
+                .flat_map(|&value| (value as i64).to_le_bytes())
+                .collect(),
+        ),
+        (None, _) => (
+            "<f8",
+            array
+                .re
+                .iter()
+                .flat_map(|value| value.to_le_bytes())
+                .collect(),
+        ),
     };
     file(descr, &array.shape, &data)
 }
 
 fn characters(texts: &TextArray) -> Vec<u8> {
     // NumPy itself writes empty texts with room for one character.
-    let longest = texts.texts.iter().map(|text| text.chars().count()).max().unwrap_or(0).max(1);
+    let longest = texts
+        .texts
+        .iter()
+        .map(|text| text.chars().count())
+        .max()
+        .unwrap_or(0)
+        .max(1);
     let mut data = Vec::with_capacity(4 * longest * texts.texts.len());
     for text in &texts.texts {
-        let characters = text.chars().map(u32::from).chain(std::iter::repeat(0)).take(longest);
+        let characters = text
+            .chars()
+            .map(u32::from)
+            .chain(std::iter::repeat(0))
+            .take(longest);
         data.extend(characters.flat_map(u32::to_le_bytes));
     }
     file(&format!("<U{longest}"), &texts.shape, &data)
@@ -233,7 +346,14 @@ fn file(descr: &str, shape: &[usize], data: &[u8]) -> Vec<u8> {
     // Magic, version and length before the text, a line break behind it.
     let length = (10 + text.len() + 1).next_multiple_of(ALIGNMENT) - 10;
     let header = format!("{text:<width$}\n", width = length - 1);
-    [MAGIC.as_slice(), &[1, 0], &(length as u16).to_le_bytes(), header.as_bytes(), data].concat()
+    [
+        MAGIC.as_slice(),
+        &[1, 0],
+        &(length as u16).to_le_bytes(),
+        header.as_bytes(),
+        data,
+    ]
+    .concat()
 }
 
 #[cfg(test)]
@@ -244,7 +364,11 @@ mod archive_tests {
     use super::*;
 
     fn file(name: &str) -> Vec<u8> {
-        std::fs::read(format!("{}/../../tests/data/npy/{name}.npz", env!("CARGO_MANIFEST_DIR"))).unwrap()
+        std::fs::read(format!(
+            "{}/../../tests/data/npy/{name}.npz",
+            env!("CARGO_MANIFEST_DIR")
+        ))
+        .unwrap()
     }
 
     fn read(bytes: &[u8]) -> Result<Vec<Variable>, VariableFault> {
@@ -255,60 +379,107 @@ mod archive_tests {
     fn arrays_come_under_their_names_stored_or_packed() {
         for name in ["stored", "compressed"] {
             let variables = read(&file(name)).unwrap();
-            let names: Vec<_> = variables.iter().map(|variable| variable.name.as_str()).collect();
+            let names: Vec<_> = variables
+                .iter()
+                .map(|variable| variable.name.as_str())
+                .collect();
             assert_eq!(names, ["A", "b", "names"]);
-            assert_eq!(variables[0].value, Value::Array(Array::matrix(2, 2, vec![1.0, 3.0, 2.0, 4.0])));
+            assert_eq!(
+                variables[0].value,
+                Value::Array(Array::matrix(2, 2, vec![1.0, 3.0, 2.0, 4.0]))
+            );
         }
     }
 
     #[test]
     fn other_files_in_the_archive_are_named() {
         let budget = ReadingBudget::new(1 << 20);
-        let Contents::Archive { variables, files, .. } = read_archive(&file("with_text"), &budget).unwrap() else {
+        let Contents::Archive {
+            variables, files, ..
+        } = read_archive(&file("with_text"), &budget).unwrap()
+        else {
             panic!("an archive")
         };
-        assert_eq!((variables.len(), files.len(), files[0].0.as_str()), (1, 1, "readme.txt"));
+        assert_eq!(
+            (variables.len(), files.len(), files[0].0.as_str()),
+            (1, 1, "readme.txt")
+        );
     }
 
     #[test]
     fn a_name_that_stands_twice_is_refused() {
-        assert_eq!(read(&file("duplicate")), Err(VariableFault::Duplicate { name: "a".to_owned() }));
+        assert_eq!(
+            read(&file("duplicate")),
+            Err(VariableFault::Duplicate {
+                name: "a".to_owned()
+            })
+        );
     }
 
     #[test]
     fn an_archive_that_unpacks_to_more_than_is_allowed_is_refused_before_it_is_unpacked() {
         // 8 MB of zeros in 8 kB.
-        assert_eq!(read(&file("bomb")), Err(VariableFault::TooLarge { variable: "zeros".to_owned(), most_mib: 1 }));
+        assert_eq!(
+            read(&file("bomb")),
+            Err(VariableFault::TooLarge {
+                variable: "zeros".to_owned(),
+                most_mib: 1
+            })
+        );
     }
 
     #[test]
     fn encrypted_entries_and_other_methods_are_refused_plainly() {
         let flags = |bytes: &mut Vec<u8>, local: usize, central: usize, value: u8| {
-            let directory = bytes.windows(4).position(|four| four == b"PK\x01\x02").unwrap();
+            let directory = bytes
+                .windows(4)
+                .position(|four| four == b"PK\x01\x02")
+                .unwrap();
             bytes[local] = value;
             bytes[directory + central] = value;
         };
         let mut encrypted = file("stored");
         flags(&mut encrypted, 6, 8, 1);
-        assert!(read(&encrypted).unwrap_err().to_string().contains("an encrypted entry cannot be read"));
+        assert!(
+            read(&encrypted)
+                .unwrap_err()
+                .to_string()
+                .contains("an encrypted entry cannot be read")
+        );
         let mut other = file("stored");
         flags(&mut other, 8, 10, 12);
-        assert!(read(&other).unwrap_err().to_string().contains("an entry packed by method 12 cannot be read"));
+        assert!(
+            read(&other)
+                .unwrap_err()
+                .to_string()
+                .contains("an entry packed by method 12 cannot be read")
+        );
     }
 
     #[test]
     fn a_wrong_check_sum_is_damage() {
         let mut bytes = file("stored");
-        let place = bytes.windows(8).position(|eight| eight == 4f64.to_le_bytes()).unwrap();
+        let place = bytes
+            .windows(8)
+            .position(|eight| eight == 4f64.to_le_bytes())
+            .unwrap();
         bytes[place + 5] ^= 1;
-        assert!(matches!(read(&bytes), Err(VariableFault::Damaged { variable, .. }) if variable == "A"));
+        assert!(
+            matches!(read(&bytes), Err(VariableFault::Damaged { variable, .. }) if variable == "A")
+        );
     }
 
     #[test]
     fn what_is_no_archive_is_named() {
         assert!(matches!(read(b""), Err(VariableFault::Format { .. })));
-        assert!(matches!(read(b"\x93NUMPY"), Err(VariableFault::Format { .. })));
-        assert!(matches!(read(&file("stored")[..200]), Err(VariableFault::CutOff { .. })));
+        assert!(matches!(
+            read(b"\x93NUMPY"),
+            Err(VariableFault::Format { .. })
+        ));
+        assert!(matches!(
+            read(&file("stored")[..200]),
+            Err(VariableFault::CutOff { .. })
+        ));
     }
 
     #[test]
@@ -334,20 +505,37 @@ mod array_file_tests {
     use super::*;
 
     fn read(file: &str) -> Result<Value, VariableFault> {
-        let bytes = std::fs::read(format!("{}/../../tests/data/npy/{file}.npy", env!("CARGO_MANIFEST_DIR"))).unwrap();
-        read_npy(&bytes, "x", &ReadingBudget::new(1 << 20)).map(|mut variables| variables.remove(0).value)
+        let bytes = std::fs::read(format!(
+            "{}/../../tests/data/npy/{file}.npy",
+            env!("CARGO_MANIFEST_DIR")
+        ))
+        .unwrap();
+        read_npy(&bytes, "x", &ReadingBudget::new(1 << 20))
+            .map(|mut variables| variables.remove(0).value)
     }
 
     fn array(file: &str) -> Array {
-        let Value::Array(array) = read(file).unwrap() else { panic!("{file} is no array") };
+        let Value::Array(array) = read(file).unwrap() else {
+            panic!("{file} is no array")
+        };
         array
     }
 
     #[test]
     fn a_matrix_keeps_its_rows_and_columns() {
         // [[1, 2, 3], [4, 5, 6]], row by row and column by column, in all three versions of the header.
-        for file in ["matrix_c", "matrix_fortran", "matrix_big_endian", "matrix_version_2", "matrix_version_3"] {
-            assert_eq!(array(file), Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0]), "{file}");
+        for file in [
+            "matrix_c",
+            "matrix_fortran",
+            "matrix_big_endian",
+            "matrix_version_2",
+            "matrix_version_3",
+        ] {
+            assert_eq!(
+                array(file),
+                Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0]),
+                "{file}"
+            );
         }
     }
 
@@ -371,9 +559,16 @@ mod array_file_tests {
             assert_eq!(array(file).re, [-0.5, 1.25, f64::INFINITY], "{file}");
         }
         let truths = array("bool");
-        assert_eq!((truths.re.as_slice(), truths.kind), ([1.0, 0.0, 1.0].as_slice(), ElementKind::Logical));
+        assert_eq!(
+            (truths.re.as_slice(), truths.kind),
+            ([1.0, 0.0, 1.0].as_slice(), ElementKind::Logical)
+        );
         for file in ["c8", "c16"] {
-            assert_eq!((array(file).re, array(file).im), (vec![1.0, -3.0], Some(vec![2.0, 0.5])), "{file}");
+            assert_eq!(
+                (array(file).re, array(file).im),
+                (vec![1.0, -3.0], Some(vec![2.0, 0.5])),
+                "{file}"
+            );
         }
     }
 
@@ -389,23 +584,43 @@ mod array_file_tests {
     #[test]
     fn texts_come_without_the_zeros_behind_them() {
         let texts = |shape: &[usize], texts: &[&str]| {
-            Value::Text(TextArray { shape: shape.to_vec(), texts: texts.iter().map(|&text| text.to_owned()).collect() })
+            Value::Text(TextArray {
+                shape: shape.to_vec(),
+                texts: texts.iter().map(|&text| text.to_owned()).collect(),
+            })
         };
-        assert_eq!(read("unicode").unwrap(), texts(&[2, 2], &["u", "", "\u{3b8}_dot", "phi"]));
-        assert_eq!(read("unicode_big_endian").unwrap(), texts(&[1, 2], &["u", "\u{3b8}_dot"]));
+        assert_eq!(
+            read("unicode").unwrap(),
+            texts(&[2, 2], &["u", "", "\u{3b8}_dot", "phi"])
+        );
+        assert_eq!(
+            read("unicode_big_endian").unwrap(),
+            texts(&[1, 2], &["u", "\u{3b8}_dot"])
+        );
         assert_eq!(read("bytes").unwrap(), texts(&[1, 2], &["u", "theta"]));
     }
 
     #[test]
     fn records_become_structs() {
-        let Value::Struct(records) = read("records").unwrap() else { panic!("no struct") };
+        let Value::Struct(records) = read("records").unwrap() else {
+            panic!("no struct")
+        };
         assert_eq!(records.shape, [1, 2]);
-        assert_eq!(records.field("gain").unwrap()[1], Value::Array(Array::matrix(1, 1, vec![-2.0])));
-        let place = Array { kind: ElementKind::Integer, ..Array::matrix(1, 3, vec![1.0, 2.0, 3.0]) };
+        assert_eq!(
+            records.field("gain").unwrap()[1],
+            Value::Array(Array::matrix(1, 1, vec![-2.0]))
+        );
+        let place = Array {
+            kind: ElementKind::Integer,
+            ..Array::matrix(1, 3, vec![1.0, 2.0, 3.0])
+        };
         assert_eq!(records.field("place").unwrap()[0], Value::Array(place));
         assert_eq!(
             records.field("name").unwrap()[0],
-            Value::Text(TextArray { shape: vec![1, 1], texts: vec!["q".to_owned()] })
+            Value::Text(TextArray {
+                shape: vec![1, 1],
+                texts: vec!["q".to_owned()]
+            })
         );
     }
 
@@ -420,20 +635,42 @@ mod array_file_tests {
     fn what_does_not_fit_its_shape_is_refused() {
         let file = |shape: &str, data: &[u8]| {
             let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}}}");
-            let bytes =
-                [b"\x93NUMPY\x01\x00".as_slice(), &(text.len() as u16).to_le_bytes(), text.as_bytes(), data].concat();
+            let bytes = [
+                b"\x93NUMPY\x01\x00".as_slice(),
+                &(text.len() as u16).to_le_bytes(),
+                text.as_bytes(),
+                data,
+            ]
+            .concat();
             read_npy(&bytes, "x", &ReadingBudget::new(1 << 20)).unwrap_err()
         };
-        assert!(matches!(file("(2,)", &[0; 15]), VariableFault::CutOff { .. }));
-        assert!(matches!(file("(2,)", &[0; 17]), VariableFault::Unsupported { .. }));
-        assert!(matches!(file("(4294967296, 4294967296)", &[0; 16]), VariableFault::Damaged { .. }));
-        assert!(matches!(file("(1000000000,)", &[0; 16]), VariableFault::CutOff { .. }));
+        assert!(matches!(
+            file("(2,)", &[0; 15]),
+            VariableFault::CutOff { .. }
+        ));
+        assert!(matches!(
+            file("(2,)", &[0; 17]),
+            VariableFault::Unsupported { .. }
+        ));
+        assert!(matches!(
+            file("(4294967296, 4294967296)", &[0; 16]),
+            VariableFault::Damaged { .. }
+        ));
+        assert!(matches!(
+            file("(1000000000,)", &[0; 16]),
+            VariableFault::CutOff { .. }
+        ));
     }
 
     #[test]
     fn elements_of_no_bytes_do_not_take_more_memory_than_is_allowed() {
         let text = "{'descr': '<U0', 'fortran_order': False, 'shape': (1000000000000,)}";
-        let bytes = [b"\x93NUMPY\x01\x00".as_slice(), &(text.len() as u16).to_le_bytes(), text.as_bytes()].concat();
+        let bytes = [
+            b"\x93NUMPY\x01\x00".as_slice(),
+            &(text.len() as u16).to_le_bytes(),
+            text.as_bytes(),
+        ]
+        .concat();
         let fault = read_npy(&bytes, "x", &ReadingBudget::new(1 << 20)).unwrap_err();
         assert!(matches!(fault, VariableFault::TooLarge { .. }));
     }
@@ -455,20 +692,45 @@ mod archive_writer_tests {
     #[test]
     fn the_bytes_are_those_that_numpy_was_seen_to_load() {
         // tests/data/make_files.py loads this file with numpy.load and compares every element.
-        let complex = Array { im: Some(vec![0.5, -0.5]), ..Array::matrix(1, 2, vec![1.0, 2.0]) };
-        let whole = Array { kind: ElementKind::Integer, ..Array::matrix(1, 2, vec![-3.0, 4.0]) };
-        let truths = Array { kind: ElementKind::Logical, ..Array::matrix(2, 1, vec![1.0, 0.0]) };
-        let texts = TextArray { shape: vec![1, 2], texts: vec!["u".to_owned(), "\u{3b8}_dot".to_owned()] };
+        let complex = Array {
+            im: Some(vec![0.5, -0.5]),
+            ..Array::matrix(1, 2, vec![1.0, 2.0])
+        };
+        let whole = Array {
+            kind: ElementKind::Integer,
+            ..Array::matrix(1, 2, vec![-3.0, 4.0])
+        };
+        let truths = Array {
+            kind: ElementKind::Logical,
+            ..Array::matrix(2, 1, vec![1.0, 0.0])
+        };
+        let texts = TextArray {
+            shape: vec![1, 2],
+            texts: vec!["u".to_owned(), "\u{3b8}_dot".to_owned()],
+        };
         let variables = [
-            ("A", Value::Array(Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, f64::INFINITY]))),
+            (
+                "A",
+                Value::Array(Array::matrix(
+                    2,
+                    3,
+                    vec![1.0, 4.0, 2.0, 5.0, 3.0, f64::INFINITY],
+                )),
+            ),
             ("c", Value::Array(complex)),
             ("i", Value::Array(whole)),
             ("t", Value::Array(truths)),
             ("names", Value::Text(texts)),
         ];
-        let variables = variables.map(|(name, value)| Variable { name: name.to_owned(), value });
+        let variables = variables.map(|(name, value)| Variable {
+            name: name.to_owned(),
+            value,
+        });
         let written = write_npz(&variables).unwrap();
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/npy/written.npz");
+        let path = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../tests/data/npy/written.npz"
+        );
         if std::env::var_os("GDCM_WRITE_FILES").is_some() {
             std::fs::write(path, &written).unwrap();
         }
@@ -478,11 +740,27 @@ mod archive_writer_tests {
 
     #[test]
     fn other_values_and_names_that_stand_twice_are_refused() {
-        let cell = Value::Cell(CellArray { shape: vec![0, 0], values: Vec::new() });
-        let refused = write_npz(&[Variable { name: "c".to_owned(), value: cell }]);
-        assert!(matches!(refused, Err(VariableFault::Unsupported { variable, .. }) if variable == "c"));
-        let one = Variable { name: "a".to_owned(), value: Value::Array(Array::matrix(1, 1, vec![1.0])) };
-        assert_eq!(write_npz(&[one.clone(), one]), Err(VariableFault::Duplicate { name: "a".to_owned() }));
+        let cell = Value::Cell(CellArray {
+            shape: vec![0, 0],
+            values: Vec::new(),
+        });
+        let refused = write_npz(&[Variable {
+            name: "c".to_owned(),
+            value: cell,
+        }]);
+        assert!(
+            matches!(refused, Err(VariableFault::Unsupported { variable, .. }) if variable == "c")
+        );
+        let one = Variable {
+            name: "a".to_owned(),
+            value: Value::Array(Array::matrix(1, 1, vec![1.0])),
+        };
+        assert_eq!(
+            write_npz(&[one.clone(), one]),
+            Err(VariableFault::Duplicate {
+                name: "a".to_owned()
+            })
+        );
     }
 
     fn value() -> impl Strategy<Value = Value> {
@@ -495,7 +773,12 @@ mod archive_writer_tests {
                 if text {
                     return Value::Text(TextArray { shape, texts });
                 }
-                Value::Array(Array { shape, kind: ElementKind::Float, re, im: complex.then_some(im) })
+                Value::Array(Array {
+                    shape,
+                    kind: ElementKind::Float,
+                    re,
+                    im: complex.then_some(im),
+                })
             })
         })
     }

@@ -32,7 +32,12 @@ pub(crate) const OCTAVE_BINARY: Importer = Importer {
     recognises: |bytes, _| bytes.starts_with(MAGIC),
     read: |bytes, path, budget| {
         let big_endian = bytes.get(MAGIC.len()) == Some(&b'B');
-        let mut bytes = Bytes { bytes, at: HEADER, big_endian, budget };
+        let mut bytes = Bytes {
+            bytes,
+            at: HEADER,
+            big_endian,
+            budget,
+        };
         Contents::variables(variables(&mut bytes), path)
     },
 };
@@ -46,10 +51,16 @@ fn variables(bytes: &mut Bytes<'_>) -> Result<Vec<Variable>, VariableFault> {
             // It does not say how long it is: what stands behind it is not found.
             Err(VariableFault::Unsupported { what, remedy, .. }) => {
                 let why = format!("neither it nor what stands behind it can be read; {remedy}");
-                variables.push(Variable { name, value: Value::opaque(what, why) });
+                variables.push(Variable {
+                    name,
+                    value: Value::opaque(what, why),
+                });
                 break;
             }
-            value => variables.push(Variable { name, value: value? }),
+            value => variables.push(Variable {
+                name,
+                value: value?,
+            }),
         }
     }
     Ok(variables)
@@ -66,14 +77,21 @@ struct Bytes<'b> {
 impl<'b> Bytes<'b> {
     fn next(&mut self, count: usize, variable: &str) -> Result<&'b [u8], VariableFault> {
         let end = self.at.saturating_add(count);
-        let found = self.bytes.get(self.at..end).ok_or_else(|| VariableFault::cut_off(variable, self.bytes.len()))?;
+        let found = self
+            .bytes
+            .get(self.at..end)
+            .ok_or_else(|| VariableFault::cut_off(variable, self.bytes.len()))?;
         self.at = end;
         Ok(found)
     }
 
     fn int(&mut self, variable: &str) -> Result<i32, VariableFault> {
         let bytes = self.next(4, variable)?.try_into().unwrap_or_default();
-        Ok(if self.big_endian { i32::from_be_bytes(bytes) } else { i32::from_le_bytes(bytes) })
+        Ok(if self.big_endian {
+            i32::from_be_bytes(bytes)
+        } else {
+            i32::from_le_bytes(bytes)
+        })
     }
 
     fn length(&mut self, variable: &str) -> Result<usize, VariableFault> {
@@ -121,38 +139,66 @@ impl Parts for Bytes<'_> {
             Err(_) => {
                 let count = count.unsigned_abs() as usize;
                 self.budget.take(count as u64, 8, variable)?;
-                (0..count).map(|_| self.length(variable)).collect::<Result<_, _>>()?
+                (0..count)
+                    .map(|_| self.length(variable))
+                    .collect::<Result<_, _>>()?
             }
         };
         match shape.len() {
             0 | 1 => Err(self.wrong(variable, "an array has fewer than two dimensions")),
-            _ => Ok(Sides { shape, by_rows: false }),
+            _ => Ok(Sides {
+                shape,
+                by_rows: false,
+            }),
         }
     }
 
-    fn numbers(&mut self, element: Element, count: usize, variable: &str) -> Result<Vec<f64>, VariableFault> {
+    fn numbers(
+        &mut self,
+        element: Element,
+        count: usize,
+        variable: &str,
+    ) -> Result<Vec<f64>, VariableFault> {
         let stored = self.stored(element, variable)?;
-        let count = if element.complex { count.saturating_mul(2) } else { count };
+        let count = if element.complex {
+            count.saturating_mul(2)
+        } else {
+            count
+        };
         let bytes = self.next(count.saturating_mul(stored.size()), variable)?;
-        Ok(bytes.chunks(stored.size()).map(|number| stored.decode(number)).collect())
+        Ok(bytes
+            .chunks(stored.size())
+            .map(|number| stored.decode(number))
+            .collect())
     }
 
     fn sparse(&mut self, element: Element, variable: &str) -> Result<Entries, VariableFault> {
         let shape = self.sides(variable)?.shape;
         let count = self.length(variable)?;
-        let starts = (0..=shape[1]).map(|_| self.length(variable)).collect::<Result<Vec<_>, _>>()?;
-        let rows = (0..count).map(|_| self.length(variable)).collect::<Result<Vec<_>, _>>()?;
+        let starts = (0..=shape[1])
+            .map(|_| self.length(variable))
+            .collect::<Result<Vec<_>, _>>()?;
+        let rows = (0..count)
+            .map(|_| self.length(variable))
+            .collect::<Result<Vec<_>, _>>()?;
         let numbers = element.parts(self.numbers(element, count, variable)?);
         self.budget.take(count as u64, 8, variable)?;
-        let stored = Entries::of_columns([shape[0], shape[1]], element.kind(), rows, &starts, numbers);
+        let stored =
+            Entries::of_columns([shape[0], shape[1]], element.kind(), rows, &starts, numbers);
         stored.ok_or_else(|| self.wrong(variable, "the sparse matrix contradicts itself"))
     }
 
     fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault> {
         let shape = self.sides(variable)?.shape;
-        let &[height, columns] = shape.as_slice() else { return Err(texts_in_pages(variable)) };
+        let &[height, columns] = shape.as_slice() else {
+            return Err(texts_in_pages(variable));
+        };
         let letters = self.next(height.saturating_mul(columns), variable)?;
-        self.budget.take(if letters.is_empty() { 0 } else { height as u64 }, size_of::<String>() as u64, variable)?;
+        self.budget.take(
+            if letters.is_empty() { 0 } else { height as u64 },
+            size_of::<String>() as u64,
+            variable,
+        )?;
         Ok(rows(letters, height))
     }
 

@@ -11,7 +11,8 @@ mod text;
 
 use crate::strides::{Entries, NumberClass, Places, count};
 use crate::variables::{
-    Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value, VariableFault,
+    Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value,
+    VariableFault,
 };
 
 pub(crate) use binary::OCTAVE_BINARY;
@@ -30,7 +31,10 @@ struct Element {
 }
 
 impl Element {
-    const FLOAT: Self = Self { stored: None, complex: false };
+    const FLOAT: Self = Self {
+        stored: None,
+        complex: false,
+    };
 
     fn kind(self) -> ElementKind {
         match self.stored {
@@ -52,7 +56,12 @@ impl Element {
     /// An array of numbers in the order of this program.
     fn array(self, shape: Vec<usize>, numbers: Vec<f64>) -> Array {
         let (re, im) = self.parts(numbers);
-        Array { shape, kind: self.kind(), re, im }
+        Array {
+            shape,
+            kind: self.kind(),
+            re,
+            im,
+        }
     }
 }
 
@@ -101,8 +110,14 @@ impl Form {
                 "matrix" => form = form.or(Some(Self::Matrix)),
                 _ => {
                     let bits = word.trim_start_matches('u').strip_prefix("int")?;
-                    let size = ["8", "16", "32", "64"].iter().position(|known| *known == bits)?;
-                    let class = if word.starts_with('u') { NumberClass::Unsigned } else { NumberClass::Signed };
+                    let size = ["8", "16", "32", "64"]
+                        .iter()
+                        .position(|known| *known == bits)?;
+                    let class = if word.starts_with('u') {
+                        NumberClass::Unsigned
+                    } else {
+                        NumberClass::Signed
+                    };
                     element.stored = Some((class, 1 << size));
                 }
             }
@@ -129,7 +144,12 @@ trait Parts {
     fn member(&mut self, variable: &str) -> Result<(String, String), VariableFault>;
     fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
     /// So many numbers, or pairs of numbers of complex ones.
-    fn numbers(&mut self, element: Element, count: usize, variable: &str) -> Result<Vec<f64>, VariableFault>;
+    fn numbers(
+        &mut self,
+        element: Element,
+        count: usize,
+        variable: &str,
+    ) -> Result<Vec<f64>, VariableFault>;
     /// The numbers of a sparse matrix with their places.
     fn sparse(&mut self, element: Element, variable: &str) -> Result<Entries, VariableFault>;
     fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
@@ -141,25 +161,44 @@ trait Parts {
 }
 
 /// The value of a type.
-fn value(parts: &mut dyn Parts, kind: &str, variable: &str, depth: usize) -> Result<Value, VariableFault> {
+fn value(
+    parts: &mut dyn Parts,
+    kind: &str,
+    variable: &str,
+    depth: usize,
+) -> Result<Value, VariableFault> {
     if depth >= DEEPEST {
         return Err(VariableFault::too_deep(variable));
     }
-    parts.budget().take(1, size_of::<Value>() as u64, variable)?;
+    parts
+        .budget()
+        .take(1, size_of::<Value>() as u64, variable)?;
     let Some(form) = Form::of(kind.strip_prefix("global ").unwrap_or(kind)) else {
         let remedy = "save it without this variable, or with -v7";
-        return Err(VariableFault::unsupported(variable, format!("a {kind} of GNU Octave"), remedy));
+        return Err(VariableFault::unsupported(
+            variable,
+            format!("a {kind} of GNU Octave"),
+            remedy,
+        ));
     };
     Ok(match form {
-        Form::Scalar(element) => Value::Array(element.array(vec![1, 1], parts.numbers(element, 1, variable)?)),
+        Form::Scalar(element) => {
+            Value::Array(element.array(vec![1, 1], parts.numbers(element, 1, variable)?))
+        }
         Form::Matrix(element) => Value::Array(matrix(parts, element, variable)?),
         Form::Diagonal(element) => {
             let shape = parts.sides(variable)?.shape;
             let (rows, columns) = (shape[0], shape[1]);
             let (re, im) = element.parts(parts.numbers(element, rows.min(columns), variable)?);
             let places = || (0..rows.min(columns)).collect();
-            let stored =
-                Entries { shape: [rows, columns], kind: element.kind(), rows: places(), columns: places(), re, im };
+            let stored = Entries {
+                shape: [rows, columns],
+                kind: element.kind(),
+                rows: places(),
+                columns: places(),
+                re,
+                im,
+            };
             Value::Array(filled(parts, &stored, variable)?)
         }
         Form::Sparse(element) => {
@@ -186,14 +225,23 @@ fn value(parts: &mut dyn Parts, kind: &str, variable: &str, depth: usize) -> Res
         }
         Form::Class => {
             let class = parts.class(variable)?;
-            Value::Object(Object { class, records: records(parts, form, vec![1, 1], (variable, depth))? })
+            Value::Object(Object {
+                class,
+                records: records(parts, form, vec![1, 1], (variable, depth))?,
+            })
         }
     })
 }
 
 /// Number of elements, their memory taken.
-fn counted(parts: &dyn Parts, shape: &[usize], size: u64, variable: &str) -> Result<usize, VariableFault> {
-    let length = count(shape).ok_or_else(|| parts.wrong(variable, "there are more elements than can be counted"))?;
+fn counted(
+    parts: &dyn Parts,
+    shape: &[usize],
+    size: u64,
+    variable: &str,
+) -> Result<usize, VariableFault> {
+    let length = count(shape)
+        .ok_or_else(|| parts.wrong(variable, "there are more elements than can be counted"))?;
     parts.budget().take(length as u64, size, variable)?;
     Ok(length)
 }
@@ -204,13 +252,18 @@ fn matrix(parts: &mut dyn Parts, element: Element, variable: &str) -> Result<Arr
     let length = counted(parts, &shape, 16 * width as u64, variable)?;
     let mut numbers = parts.numbers(element, length, variable)?;
     if by_rows && let Some(places) = Places::row_major(&shape) {
-        numbers = places.flat_map(|place| &numbers[place * width..(place + 1) * width]).copied().collect();
+        numbers = places
+            .flat_map(|place| &numbers[place * width..(place + 1) * width])
+            .copied()
+            .collect();
     }
     Ok(element.array(shape, numbers))
 }
 
 fn filled(parts: &dyn Parts, stored: &Entries, variable: &str) -> Result<Array, VariableFault> {
-    stored.filled(variable, parts.budget(), || parts.wrong(variable, "a number lies outside the matrix"))
+    stored.filled(variable, parts.budget(), || {
+        parts.wrong(variable, "a number lies outside the matrix")
+    })
 }
 
 /// The texts in the rows of an array of bytes, which stand column by column.
@@ -218,9 +271,21 @@ fn rows(letters: &[u8], height: usize) -> TextArray {
     if letters.is_empty() {
         return TextArray::one("");
     }
-    let row = |row: usize| letters.iter().skip(row).step_by(height).copied().collect::<Vec<u8>>();
-    let texts = (0..height).map(|of| String::from_utf8_lossy(&row(of)).into_owned()).collect();
-    TextArray { shape: vec![height, 1], texts }
+    let row = |row: usize| {
+        letters
+            .iter()
+            .skip(row)
+            .step_by(height)
+            .copied()
+            .collect::<Vec<u8>>()
+    };
+    let texts = (0..height)
+        .map(|of| String::from_utf8_lossy(&row(of)).into_owned())
+        .collect();
+    TextArray {
+        shape: vec![height, 1],
+        texts,
+    }
 }
 
 /// Why an array of characters cannot be read.
@@ -238,12 +303,26 @@ fn range(parts: &mut dyn Parts, variable: &str) -> Result<Array, VariableFault> 
 }
 
 /// The row of numbers from a first one to a limit, by steps.
-fn steps([first, limit, step]: [f64; 3], variable: &str, budget: &ReadingBudget<'_>) -> Result<Array, VariableFault> {
+fn steps(
+    [first, limit, step]: [f64; 3],
+    variable: &str,
+    budget: &ReadingBudget<'_>,
+) -> Result<Array, VariableFault> {
     // As Octave counts: a limit that is missed by rounding alone is reached.
     let steps = ((limit - first) / step * (1.0 + f64::EPSILON)).floor();
-    let length = if steps >= 0.0 { (steps as usize).saturating_add(1) } else { 0 };
+    let length = if steps >= 0.0 {
+        (steps as usize).saturating_add(1)
+    } else {
+        0
+    };
     budget.take(length as u64, 8, variable)?;
-    Ok(Array::matrix(1, length, (0..length).map(|index| first + index as f64 * step).collect()))
+    Ok(Array::matrix(
+        1,
+        length,
+        (0..length)
+            .map(|index| first + index as f64 * step)
+            .collect(),
+    ))
 }
 
 /// Records of a struct or of an object, whose members are cells of one value for each.
@@ -263,7 +342,10 @@ fn records(
             (_, value) => vec![value],
         };
         if values.len() != count {
-            return Err(parts.wrong(&inner, "a field has not as many values as there are records"));
+            return Err(parts.wrong(
+                &inner,
+                "a field has not as many values as there are records",
+            ));
         }
         fields.push((name, values));
     }
@@ -278,12 +360,19 @@ mod tests {
     use crate::variables::{Array, ReadingBudget, Value, Variable};
 
     fn bytes(name: &str) -> Vec<u8> {
-        std::fs::read(format!("{}/../../tests/data/foreign/octave/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap()
+        std::fs::read(format!(
+            "{}/../../tests/data/foreign/octave/{name}",
+            env!("CARGO_MANIFEST_DIR")
+        ))
+        .unwrap()
     }
 
     fn variables(bytes: &[u8], name: &str) -> Result<Vec<Variable>, String> {
         let budget = ReadingBudget::new(1 << 24);
-        match import_bytes(bytes, Path::new(name), name, &budget).map_err(|error| error.to_string())?.contents {
+        match import_bytes(bytes, Path::new(name), name, &budget)
+            .map_err(|error| error.to_string())?
+            .contents
+        {
             Contents::Variables { variables, .. } => Ok(variables),
             _ => Err("no variables".to_owned()),
         }
@@ -297,14 +386,19 @@ mod tests {
             let variables = variables(&bytes(form), form).unwrap();
             let value = |name: &str| {
                 let found = variables.iter().find(|variable| variable.name == name);
-                found.unwrap_or_else(|| panic!("{form}: no {name}")).value.clone()
+                found
+                    .unwrap_or_else(|| panic!("{form}: no {name}"))
+                    .value
+                    .clone()
             };
             check(&value, form);
         }
     }
 
     fn array(value: Value) -> Array {
-        let Value::Array(array) = value else { panic!("{value:?} is no array") };
+        let Value::Array(array) = value else {
+            panic!("{value:?} is no array")
+        };
         array
     }
 
@@ -313,29 +407,61 @@ mod tests {
         each_form(|value, form| {
             let array = |name: &str| array(value(name));
             assert_eq!(array("x").re, [2.5], "{form}");
-            assert_eq!((array("z").re, array("z").im), (vec![1.0], Some(vec![2.0])), "{form}");
-            assert_eq!(array("M"), Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0]), "{form}");
+            assert_eq!(
+                (array("z").re, array("z").im),
+                (vec![1.0], Some(vec![2.0])),
+                "{form}"
+            );
+            assert_eq!(
+                array("M"),
+                Array::matrix(2, 3, vec![1.0, 4.0, 2.0, 5.0, 3.0, 6.0]),
+                "{form}"
+            );
             assert_eq!(
                 (array("Z").re, array("Z").im),
                 (vec![1.0, 5.0, 3.0, 0.0], Some(vec![2.0, 0.0, -4.0, 6.0])),
                 "{form}"
             );
             let cube = array("N3");
-            assert_eq!((cube.shape, cube.re[1], cube.re[6]), (vec![2, 3, 4], 2.0, 7.0), "{form}");
-            assert_eq!((array("e").shape, array("e2").shape), (vec![0, 0], vec![0, 3]), "{form}");
-            assert_eq!((array("b").re, array("bm").re, array("i8").re), (vec![1.0], vec![1.0, 0.0], vec![-3.0, 100.0]));
-            assert_eq!((array("u16").re, array("f").re, array("fs").re), (vec![7.0], vec![0.5, -0.25], vec![1.5]));
-            assert_eq!((array("r").re, array("r2").re), (vec![0.0, 0.5, 1.0, 1.5, 2.0], vec![5.0, 4.0, 3.0, 2.0, 1.0]));
+            assert_eq!(
+                (cube.shape, cube.re[1], cube.re[6]),
+                (vec![2, 3, 4], 2.0, 7.0),
+                "{form}"
+            );
+            assert_eq!(
+                (array("e").shape, array("e2").shape),
+                (vec![0, 0], vec![0, 3]),
+                "{form}"
+            );
+            assert_eq!(
+                (array("b").re, array("bm").re, array("i8").re),
+                (vec![1.0], vec![1.0, 0.0], vec![-3.0, 100.0])
+            );
+            assert_eq!(
+                (array("u16").re, array("f").re, array("fs").re),
+                (vec![7.0], vec![0.5, -0.25], vec![1.5])
+            );
+            assert_eq!(
+                (array("r").re, array("r2").re),
+                (vec![0.0, 0.5, 1.0, 1.5, 2.0], vec![5.0, 4.0, 3.0, 2.0, 1.0])
+            );
             let sparse = vec![0.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -2.0];
             assert_eq!(
                 (array("S").shape, array("S").re),
                 (vec![3, 4], [&[0.0; 3][..], &sparse[3..]].concat()),
                 "{form}"
             );
-            assert_eq!((array("col").shape, array("col").re), (vec![2, 1], vec![0.0, 5.0]), "{form}");
+            assert_eq!(
+                (array("col").shape, array("col").re),
+                (vec![2, 1], vec![0.0, 5.0]),
+                "{form}"
+            );
             let odd = array("nanm").re;
             assert!(
-                odd[0].is_nan() && odd[1] == f64::INFINITY && odd[2] == f64::NEG_INFINITY && odd[3].is_nan(),
+                odd[0].is_nan()
+                    && odd[1] == f64::INFINITY
+                    && odd[2] == f64::NEG_INFINITY
+                    && odd[3].is_nan(),
                 "{form}"
             );
         });
@@ -355,15 +481,36 @@ mod tests {
                 (vec!["it's".to_owned()], vec![String::new()]),
                 "{form}"
             );
-            let Value::Cell(cell) = value("c") else { panic!("{form}: no cell") };
-            assert_eq!((cell.shape, array(cell.values[1].clone()).re), (vec![2, 2], vec![3.0, 4.0]), "{form}");
+            let Value::Cell(cell) = value("c") else {
+                panic!("{form}: no cell")
+            };
+            assert_eq!(
+                (cell.shape, array(cell.values[1].clone()).re),
+                (vec![2, 2], vec![3.0, 4.0]),
+                "{form}"
+            );
             assert_eq!(texts(cell.values[2].clone()), ["two"], "{form}");
-            assert!(matches!(value("c0"), Value::Cell(cell) if cell.values.is_empty()), "{form}");
-            let Value::Struct(one) = value("st") else { panic!("{form}: no struct") };
+            assert!(
+                matches!(value("c0"), Value::Cell(cell) if cell.values.is_empty()),
+                "{form}"
+            );
+            let Value::Struct(one) = value("st") else {
+                panic!("{form}: no struct")
+            };
             assert_eq!(texts(one.field("b").unwrap()[0].clone()), ["x"], "{form}");
-            let Value::Struct(several) = value("sa") else { panic!("{form}: no structs") };
-            assert_eq!((several.shape.clone(), several.field("g").unwrap().len()), (vec![1, 3], 3), "{form}");
-            assert_eq!(texts(several.field("n").unwrap()[2].clone()), ["w"], "{form}");
+            let Value::Struct(several) = value("sa") else {
+                panic!("{form}: no structs")
+            };
+            assert_eq!(
+                (several.shape.clone(), several.field("g").unwrap().len()),
+                (vec![1, 3], 3),
+                "{form}"
+            );
+            assert_eq!(
+                texts(several.field("n").unwrap()[2].clone()),
+                ["w"],
+                "{form}"
+            );
             assert!(
                 matches!(value("t"), Value::Object(object) if object.class == "tf" && object.records.field("num").is_some())
             );
@@ -374,8 +521,18 @@ mod tests {
     fn a_diagonal_matrix_is_filled_up_and_what_is_not_read_is_named() {
         for form in ["kinds.txt", "kinds.bin"] {
             let variables = variables(&bytes(form), form).unwrap();
-            let value = |name: &str| variables.iter().find(|variable| variable.name == name).unwrap().value.clone();
-            assert_eq!(array(value("D2")), Array::matrix(2, 3, vec![2.0, 0.0, 0.0, 2.0, 0.0, 0.0]));
+            let value = |name: &str| {
+                variables
+                    .iter()
+                    .find(|variable| variable.name == name)
+                    .unwrap()
+                    .value
+                    .clone()
+            };
+            assert_eq!(
+                array(value("D2")),
+                Array::matrix(2, 3, vec![2.0, 0.0, 0.0, 2.0, 0.0, 0.0])
+            );
             let words = value("p").words();
             assert!(words.contains("permutation matrix"), "{words}");
         }
@@ -396,6 +553,9 @@ mod tests {
         assert!(error.contains("cut off"), "{error}");
         let text = "# name: A\n# type: matrix\n# rows: 1\n# columns: 2\n 1 x\n";
         let error = variables(text.as_bytes(), "a.txt").unwrap_err();
-        assert!(error.contains("variable A: line 5: expected a number"), "{error}");
+        assert!(
+            error.contains("variable A: line 5: expected a number"),
+            "{error}"
+        );
     }
 }

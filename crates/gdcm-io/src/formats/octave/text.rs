@@ -16,10 +16,19 @@ pub(crate) const OCTAVE_TEXT: Importer = Importer {
     endings: &["txt", "mat", "dat"],
     recognises: |bytes, _| {
         let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]);
-        let mut lines = head.lines().map(str::trim_end).skip_while(|line| !line.starts_with("# name: "));
-        let before = head.lines().take_while(|line| !line.starts_with("# name: "));
-        lines.nth(1).is_some_and(|line| line.starts_with("# type: "))
-            && before.into_iter().all(|line| line.is_empty() || line.starts_with('#'))
+        let mut lines = head
+            .lines()
+            .map(str::trim_end)
+            .skip_while(|line| !line.starts_with("# name: "));
+        let before = head
+            .lines()
+            .take_while(|line| !line.starts_with("# name: "));
+        lines
+            .nth(1)
+            .is_some_and(|line| line.starts_with("# type: "))
+            && before
+                .into_iter()
+                .all(|line| line.is_empty() || line.starts_with('#'))
     },
     read: |bytes, path, budget| {
         let wrong = |fault| FileError::variables(path, fault);
@@ -30,7 +39,11 @@ pub(crate) const OCTAVE_TEXT: Importer = Importer {
 
 /// The variables of a text.
 fn variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
-    let mut lines = Lines { text, at: 0, budget };
+    let mut lines = Lines {
+        text,
+        at: 0,
+        budget,
+    };
     let mut variables = Vec::new();
     while lines.find_name() {
         budget.take(1, size_of::<Variable>() as u64, "")?;
@@ -92,23 +105,32 @@ impl<'t> Lines<'t> {
                 Some(line) => break line,
             }
         };
-        let said = line.strip_prefix("# ").and_then(|line| line.strip_prefix(key)?.strip_prefix(':'));
-        said.map(str::trim).ok_or_else(|| self.wrong(variable, &format!("expected \"# {key}: …\"")))
+        let said = line
+            .strip_prefix("# ")
+            .and_then(|line| line.strip_prefix(key)?.strip_prefix(':'));
+        said.map(str::trim)
+            .ok_or_else(|| self.wrong(variable, &format!("expected \"# {key}: …\"")))
     }
 
     fn whole(&mut self, key: &str, variable: &str) -> Result<usize, VariableFault> {
         let said = self.key(key, variable)?;
-        said.parse().map_err(|_| self.wrong(variable, &format!("{key}: expected a whole number")))
+        said.parse()
+            .map_err(|_| self.wrong(variable, &format!("{key}: expected a whole number")))
     }
 
     fn has_key(&self, key: &str) -> bool {
-        self.rest().trim_start().strip_prefix("# ").is_some_and(|rest| rest.starts_with(key))
+        self.rest()
+            .trim_start()
+            .strip_prefix("# ")
+            .is_some_and(|rest| rest.starts_with(key))
     }
 
     /// The next word, on this line or a later one.
     fn word(&mut self, variable: &str) -> Result<&'t str, VariableFault> {
         let rest = self.rest();
-        let begin = rest.find(|letter: char| !letter.is_whitespace()).ok_or_else(|| self.cut_off(variable))?;
+        let begin = rest
+            .find(|letter: char| !letter.is_whitespace())
+            .ok_or_else(|| self.cut_off(variable))?;
         let rest = &rest[begin..];
         let length = rest.find(char::is_whitespace).unwrap_or(rest.len());
         self.at += begin + length;
@@ -117,14 +139,17 @@ impl<'t> Lines<'t> {
 
     fn index(&mut self, variable: &str) -> Result<usize, VariableFault> {
         let word = self.word(variable)?;
-        word.parse().map_err(|_| self.wrong(variable, "expected a whole number"))
+        word.parse()
+            .map_err(|_| self.wrong(variable, "expected a whole number"))
     }
 
     fn number(&self, word: &str, variable: &str) -> Result<f64, VariableFault> {
         match word {
             // What Octave calls "not available".
             "NA" => Ok(f64::NAN),
-            _ => word.parse().map_err(|_| self.wrong(variable, "expected a number")),
+            _ => word
+                .parse()
+                .map_err(|_| self.wrong(variable, "expected a number")),
         }
     }
 
@@ -145,19 +170,35 @@ impl Parts for Lines<'_> {
 
     fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault> {
         if self.has_key("rows") {
-            let shape = vec![self.whole("rows", variable)?, self.whole("columns", variable)?];
-            return Ok(Sides { shape, by_rows: true });
+            let shape = vec![
+                self.whole("rows", variable)?,
+                self.whole("columns", variable)?,
+            ];
+            return Ok(Sides {
+                shape,
+                by_rows: true,
+            });
         }
         let count = self.whole("ndims", variable)?;
         self.budget.take(count as u64, 8, variable)?;
-        let shape = (0..count).map(|_| self.index(variable)).collect::<Result<Vec<_>, _>>()?;
+        let shape = (0..count)
+            .map(|_| self.index(variable))
+            .collect::<Result<Vec<_>, _>>()?;
         match shape.len() {
             0 | 1 => Err(self.wrong(variable, "expected two dimensions or more")),
-            _ => Ok(Sides { shape, by_rows: false }),
+            _ => Ok(Sides {
+                shape,
+                by_rows: false,
+            }),
         }
     }
 
-    fn numbers(&mut self, element: Element, count: usize, variable: &str) -> Result<Vec<f64>, VariableFault> {
+    fn numbers(
+        &mut self,
+        element: Element,
+        count: usize,
+        variable: &str,
+    ) -> Result<Vec<f64>, VariableFault> {
         if self.has_key("base, limit") {
             self.line();
         }
@@ -165,8 +206,11 @@ impl Parts for Lines<'_> {
         for _ in 0..count {
             let word = self.word(variable)?;
             if element.complex {
-                let parts = word.strip_prefix('(').and_then(|word| word.strip_suffix(')')?.split_once(','));
-                let (re, im) = parts.ok_or_else(|| self.wrong(variable, "expected a complex number, (re,im)"))?;
+                let parts = word
+                    .strip_prefix('(')
+                    .and_then(|word| word.strip_suffix(')')?.split_once(','));
+                let (re, im) = parts
+                    .ok_or_else(|| self.wrong(variable, "expected a complex number, (re,im)"))?;
                 numbers.extend([self.number(re, variable)?, self.number(im, variable)?]);
             } else {
                 numbers.push(self.number(word, variable)?);
@@ -177,7 +221,10 @@ impl Parts for Lines<'_> {
 
     fn sparse(&mut self, element: Element, variable: &str) -> Result<Entries, VariableFault> {
         let count = self.whole("nnz", variable)?;
-        let shape = [self.whole("rows", variable)?, self.whole("columns", variable)?];
+        let shape = [
+            self.whole("rows", variable)?,
+            self.whole("columns", variable)?,
+        ];
         let (mut rows, mut columns, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
         for _ in 0..count {
             let (row, column) = (self.index(variable)?, self.index(variable)?);
@@ -192,7 +239,14 @@ impl Parts for Lines<'_> {
             numbers.extend(self.numbers(element, 1, variable)?);
         }
         let (re, im) = element.parts(numbers);
-        Ok(Entries { shape, kind: element.kind(), rows, columns, re, im })
+        Ok(Entries {
+            shape,
+            kind: element.kind(),
+            rows,
+            columns,
+            re,
+            im,
+        })
     }
 
     fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault> {
@@ -210,20 +264,27 @@ impl Parts for Lines<'_> {
         for _ in 0..count {
             let length = self.whole("length", variable)?;
             // Bytes, of which a text may hold ends of lines; a file in another encoding had others.
-            let bytes = self
-                .rest()
-                .get(..length)
-                .filter(|_| self.rest()[length..].starts_with(['\n', '\r']) || self.at + length == self.text.len());
+            let bytes = self.rest().get(..length).filter(|_| {
+                self.rest()[length..].starts_with(['\n', '\r'])
+                    || self.at + length == self.text.len()
+            });
             match bytes {
                 Some(text) => {
                     self.at += length;
                     self.line();
                     texts.push(text.to_owned());
                 }
-                None => texts.push(self.line().ok_or_else(|| self.cut_off(variable))?.to_owned()),
+                None => texts.push(
+                    self.line()
+                        .ok_or_else(|| self.cut_off(variable))?
+                        .to_owned(),
+                ),
             }
         }
-        Ok(TextArray { shape: vec![texts.len(), 1], texts })
+        Ok(TextArray {
+            shape: vec![texts.len(), 1],
+            texts,
+        })
     }
 
     fn members(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault> {

@@ -45,16 +45,69 @@ pub(super) struct ColumnMeaning {
 
 /// Words in the names of columns. A column is the first kind of which its name has a word: "phase error" is an error.
 const WORDS: [(Quantity, &[&str]); 7] = [
-    (Quantity::Error, &["error", "err", "std", "sd", "stdev", "stddev", "deviation", "sigma", "uncertainty", "eps"]),
+    (
+        Quantity::Error,
+        &[
+            "error",
+            "err",
+            "std",
+            "sd",
+            "stdev",
+            "stddev",
+            "deviation",
+            "sigma",
+            "uncertainty",
+            "eps",
+        ],
+    ),
     (
         Quantity::Coherence,
-        &["coherence", "coher", "coh", "gamma", "gamma2", "gam", "gam2", "gammasq", "γ", "γ²", "γ2", "cxy"],
+        &[
+            "coherence",
+            "coher",
+            "coh",
+            "gamma",
+            "gamma2",
+            "gam",
+            "gam2",
+            "gammasq",
+            "γ",
+            "γ²",
+            "γ2",
+            "cxy",
+        ],
     ),
-    (Quantity::Magnitude, &["magnitude", "mag", "amplitude", "ampl", "amp", "gain", "abs", "modulus"]),
-    (Quantity::Phase, &["phase", "phas", "phs", "pha", "ph", "angle", "arg"]),
+    (
+        Quantity::Magnitude,
+        &[
+            "magnitude",
+            "mag",
+            "amplitude",
+            "ampl",
+            "amp",
+            "gain",
+            "abs",
+            "modulus",
+        ],
+    ),
+    (
+        Quantity::Phase,
+        &["phase", "phas", "phs", "pha", "ph", "angle", "arg"],
+    ),
     (Quantity::Real, &["real", "re"]),
     (Quantity::Imaginary, &["imaginary", "imag", "img", "im"]),
-    (Quantity::Frequency, &["frequency", "frequencies", "freq", "frq", "omega", "om", "ω"]),
+    (
+        Quantity::Frequency,
+        &[
+            "frequency",
+            "frequencies",
+            "freq",
+            "frq",
+            "omega",
+            "om",
+            "ω",
+        ],
+    ),
 ];
 
 /// Units at the end of a name that has none in brackets.
@@ -92,7 +145,12 @@ impl ColumnMeaning {
         };
         if let Some((quantity, usual)) = sole {
             let reason = format!("its name is \"{name}\"");
-            return Self { quantity: Some(quantity), unit: unit.or(usual), label: ResponseLabel::default(), reason };
+            return Self {
+                quantity: Some(quantity),
+                unit: unit.or(usual),
+                label: ResponseLabel::default(),
+                reason,
+            };
         }
         Self::from_words(name, unit)
     }
@@ -101,16 +159,23 @@ impl ColumnMeaning {
         let words = words_of(name);
         for (quantity, known) in WORDS {
             let is = |word: &str| {
-                known.contains(&word) || known.contains(&word.trim_end_matches(|c: char| c.is_ascii_digit()))
+                known.contains(&word)
+                    || known.contains(&word.trim_end_matches(|c: char| c.is_ascii_digit()))
             };
             if let Some((_, word)) = words.iter().find(|(_, word)| is(&word.to_lowercase())) {
                 let reason = format!("its name says {}", word.to_lowercase());
                 let label = without(name, &words, known);
                 let unit = unit.or_else(|| usual_unit(quantity, word, &words));
-                return Self { quantity: Some(quantity), unit, label: ResponseLabel::of(&label), reason };
+                return Self {
+                    quantity: Some(quantity),
+                    unit,
+                    label: ResponseLabel::of(&label),
+                    reason,
+                };
             }
         }
-        let strokes = name.trim().len() > 2 && name.trim().starts_with('|') && name.trim().ends_with('|');
+        let strokes =
+            name.trim().len() > 2 && name.trim().starts_with('|') && name.trim().ends_with('|');
         let (quantity, reason) = match unit {
             Some(KnownUnit::Decibel) => (Some(Quantity::Magnitude), "its unit is dB"),
             Some(KnownUnit::Degree) => (Some(Quantity::Phase), "its unit is an angle"),
@@ -119,10 +184,17 @@ impl ColumnMeaning {
                 (Some(Quantity::Frequency), "its unit is rad/s")
             }
             _ if strokes => (Some(Quantity::Magnitude), "its name stands between strokes"),
-            _ if name.contains('∠') => (Some(Quantity::Phase), "its name has the sign of an angle"),
+            _ if name.contains('∠') => {
+                (Some(Quantity::Phase), "its name has the sign of an angle")
+            }
             _ => (None, ""),
         };
-        Self { quantity, unit, label: ResponseLabel::of(name), reason: reason.to_owned() }
+        Self {
+            quantity,
+            unit,
+            label: ResponseLabel::of(name),
+            reason: reason.to_owned(),
+        }
     }
 }
 
@@ -133,12 +205,20 @@ const ABSOLUTE: [&str; 6] = ["abs", "absolute", "lin", "linear", "ratio", "modul
 fn usual_unit(quantity: Quantity, word: &str, words: &[(usize, &str)]) -> Option<KnownUnit> {
     let word = word.to_lowercase();
     match quantity {
-        Quantity::Frequency if matches!(word.as_str(), "omega" | "om" | "ω") => Some(KnownUnit::RadianPerSecond),
-        Quantity::Magnitude if words.iter().any(|(_, word)| ABSOLUTE.contains(&word.to_lowercase().as_str())) => {
+        Quantity::Frequency if matches!(word.as_str(), "omega" | "om" | "ω") => {
+            Some(KnownUnit::RadianPerSecond)
+        }
+        Quantity::Magnitude
+            if words
+                .iter()
+                .any(|(_, word)| ABSOLUTE.contains(&word.to_lowercase().as_str())) =>
+        {
             Some(KnownUnit::Other)
         }
         // Programs name both γ and γ² gamma.
-        Quantity::Coherence if !matches!(word.as_str(), "gamma" | "gam" | "γ") => Some(KnownUnit::GammaSquared),
+        Quantity::Coherence if !matches!(word.as_str(), "gamma" | "gam" | "γ") => {
+            Some(KnownUnit::GammaSquared)
+        }
         _ => None,
     }
 }
@@ -169,16 +249,28 @@ fn known_unit(unit: &str) -> KnownUnit {
 fn unit_at_end(name: &str) -> (&str, Option<KnownUnit>) {
     let name = name.trim();
     for (ending, unit) in UNIT_ENDINGS {
-        let cut = name.len().checked_sub(ending.len()).filter(|&at| name.is_char_boundary(at));
-        let Some((front, end)) = cut.map(|at| name.split_at(at)) else { continue };
+        let cut = name
+            .len()
+            .checked_sub(ending.len())
+            .filter(|&at| name.is_char_boundary(at));
+        let Some((front, end)) = cut.map(|at| name.split_at(at)) else {
+            continue;
+        };
         if !end.eq_ignore_ascii_case(ending) {
             continue;
         }
         let between = front.is_empty() || front.ends_with(['_', ' ', '-', '.', '/', ',']);
         let word = front.to_lowercase();
-        let glued = WORDS.iter().any(|(_, known)| known.iter().any(|known| known.len() > 1 && word.ends_with(known)));
+        let glued = WORDS.iter().any(|(_, known)| {
+            known
+                .iter()
+                .any(|known| known.len() > 1 && word.ends_with(known))
+        });
         if between || glued {
-            return (front.trim_end_matches(['_', ' ', '-', '.', '/', ',']), Some(unit));
+            return (
+                front.trim_end_matches(['_', ' ', '-', '.', '/', ',']),
+                Some(unit),
+            );
         }
     }
     (name, None)
@@ -208,12 +300,14 @@ fn without(name: &str, words: &[(usize, &str)], known: &[&str]) -> String {
     let mut from = 0;
     for (start, word) in words {
         let stem = word.trim_end_matches(|c: char| c.is_ascii_digit());
-        let length =
-            match (known.contains(&word.to_lowercase().as_str()), known.contains(&stem.to_lowercase().as_str())) {
-                (true, _) => word.len(),
-                (_, true) => stem.len(),
-                _ => continue,
-            };
+        let length = match (
+            known.contains(&word.to_lowercase().as_str()),
+            known.contains(&stem.to_lowercase().as_str()),
+        ) {
+            (true, _) => word.len(),
+            (_, true) => stem.len(),
+            _ => continue,
+        };
         label.push_str(&name[from..*start]);
         from = start + length;
     }
@@ -231,7 +325,9 @@ pub(super) struct ResponseLabel {
 }
 
 /// Names of a response that say nothing of whose it is.
-const ANY_RESPONSE: [&str; 9] = ["h", "g", "frf", "tf", "fr", "resp", "response", "h(jw)", "g(jw)"];
+const ANY_RESPONSE: [&str; 9] = [
+    "h", "g", "frf", "tf", "fr", "resp", "response", "h(jw)", "g(jw)",
+];
 /// What stands between an input and the output that follows it.
 const FORWARD: [&str; 5] = ["->", "→", "=>", ">", " to "];
 /// What stands between an output and its input.
@@ -247,23 +343,41 @@ impl ResponseLabel {
         let part = |part: &str| Some(clean(part).to_owned()).filter(|part| !part.is_empty());
         for sign in BACKWARD {
             if let Some((output, input)) = text.split_once(sign) {
-                return Self { output: part(output), input: part(input) };
+                return Self {
+                    output: part(output),
+                    input: part(input),
+                };
             }
         }
         for sign in FORWARD {
             if let Some((input, output)) = text.split_once(sign) {
-                return Self { output: part(output), input: part(input) };
+                return Self {
+                    output: part(output),
+                    input: part(input),
+                };
             }
         }
         // Words that the field has names for: "q_delta_lon", "roll_rate".
         let known = ResponseName::find(text, KnownChannels::Field).unwrap_or_default();
         let is_whole = |name: &Option<String>| name.as_deref() == Some(text);
-        if known.output.is_some() && known.input.is_some() || is_whole(&known.output) || is_whole(&known.input) {
-            return Self { output: known.output, input: known.input };
+        if known.output.is_some() && known.input.is_some()
+            || is_whole(&known.output)
+            || is_whole(&known.input)
+        {
+            return Self {
+                output: known.output,
+                input: known.input,
+            };
         }
         match text.split_once('_') {
-            Some((output, input)) if !input.contains('_') => Self { output: part(output), input: part(input) },
-            _ => Self { output: part(text), input: None },
+            Some((output, input)) if !input.contains('_') => Self {
+                output: part(output),
+                input: part(input),
+            },
+            _ => Self {
+                output: part(text),
+                input: None,
+            },
         }
     }
 }
@@ -280,7 +394,12 @@ mod column_meaning_tests {
     fn of(name: &str, unit: &str) -> (Option<Quantity>, Option<KnownUnit>, String, String) {
         let meaning = ColumnMeaning::of(name, Some(unit).filter(|unit| !unit.is_empty()));
         let ResponseLabel { output, input } = meaning.label;
-        (meaning.quantity, meaning.unit, output.unwrap_or_default(), input.unwrap_or_default())
+        (
+            meaning.quantity,
+            meaning.unit,
+            output.unwrap_or_default(),
+            input.unwrap_or_default(),
+        )
     }
 
     fn is(
@@ -294,18 +413,38 @@ mod column_meaning_tests {
 
     #[test]
     fn frequencies_are_named_in_many_ways() {
-        let radians = is(Quantity::Frequency, Some(KnownUnit::RadianPerSecond), "", "");
-        for (name, unit) in
-            [("omega", ""), ("w", ""), ("Frequency", "rad/s"), ("w_rad_s", ""), ("freq rad/s", ""), ("ω", "")]
-        {
+        let radians = is(
+            Quantity::Frequency,
+            Some(KnownUnit::RadianPerSecond),
+            "",
+            "",
+        );
+        for (name, unit) in [
+            ("omega", ""),
+            ("w", ""),
+            ("Frequency", "rad/s"),
+            ("w_rad_s", ""),
+            ("freq rad/s", ""),
+            ("ω", ""),
+        ] {
             assert_eq!(of(name, unit), radians, "{name}");
         }
         let hertz = is(Quantity::Frequency, Some(KnownUnit::Hertz), "", "");
-        for (name, unit) in [("f_Hz", ""), ("freqHz", ""), ("Freq", "Hz"), ("f", "Hz"), ("f", "rev/s")] {
+        for (name, unit) in [
+            ("f_Hz", ""),
+            ("freqHz", ""),
+            ("Freq", "Hz"),
+            ("f", "Hz"),
+            ("f", "rev/s"),
+        ] {
             assert_eq!(of(name, unit), hertz, "{name}");
         }
         for name in ["f", "freq"] {
-            assert_eq!(of(name, ""), is(Quantity::Frequency, None, "", ""), "{name}");
+            assert_eq!(
+                of(name, ""),
+                is(Quantity::Frequency, None, "", ""),
+                "{name}"
+            );
         }
         let open = is(Quantity::Frequency, Some(KnownUnit::Rps), "", "");
         for (name, unit) in [("freq_rps", ""), ("omega", "rps"), ("f", "rps")] {
@@ -317,30 +456,76 @@ mod column_meaning_tests {
     #[test]
     fn the_response_is_read_from_what_is_left_of_the_name() {
         let decibel = Some(KnownUnit::Decibel);
-        assert_eq!(of("mag P/LAT", "dB"), is(Quantity::Magnitude, decibel, "P", "LAT"));
+        assert_eq!(
+            of("mag P/LAT", "dB"),
+            is(Quantity::Magnitude, decibel, "P", "LAT")
+        );
         assert_eq!(of("P_LAT_re", ""), is(Quantity::Real, None, "P", "LAT"));
         assert_eq!(of("re(LAT->P)", ""), is(Quantity::Real, None, "P", "LAT"));
-        assert_eq!(of("P/LAT_mag_dB", ""), is(Quantity::Magnitude, decibel, "P", "LAT"));
-        assert_eq!(of("P/LAT", "deg"), is(Quantity::Phase, Some(KnownUnit::Degree), "P", "LAT"));
-        assert_eq!(of("phasedeg", ""), is(Quantity::Phase, Some(KnownUnit::Degree), "", ""));
+        assert_eq!(
+            of("P/LAT_mag_dB", ""),
+            is(Quantity::Magnitude, decibel, "P", "LAT")
+        );
+        assert_eq!(
+            of("P/LAT", "deg"),
+            is(Quantity::Phase, Some(KnownUnit::Degree), "P", "LAT")
+        );
+        assert_eq!(
+            of("phasedeg", ""),
+            is(Quantity::Phase, Some(KnownUnit::Degree), "", "")
+        );
         assert_eq!(of("Im1", ""), is(Quantity::Imaginary, None, "1", ""));
         assert_eq!(of("|P/LAT|", ""), is(Quantity::Magnitude, None, "P", "LAT"));
-        assert_eq!(of("|H|", "dB"), is(Quantity::Magnitude, decibel, "", ""), "the file says whose it is");
-        assert_eq!(of("ph", "deg"), is(Quantity::Phase, Some(KnownUnit::Degree), "", ""));
+        assert_eq!(
+            of("|H|", "dB"),
+            is(Quantity::Magnitude, decibel, "", ""),
+            "the file says whose it is"
+        );
+        assert_eq!(
+            of("ph", "deg"),
+            is(Quantity::Phase, Some(KnownUnit::Degree), "", "")
+        );
         let squared = is(Quantity::Coherence, Some(KnownUnit::GammaSquared), "", "");
-        for (name, unit) in [("Gamma2", ""), ("COHER", ""), ("γ²", ""), ("coherence", ""), ("gamma", "gamma2")] {
+        for (name, unit) in [
+            ("Gamma2", ""),
+            ("COHER", ""),
+            ("γ²", ""),
+            ("coherence", ""),
+            ("gamma", "gamma2"),
+        ] {
             assert_eq!(of(name, unit), squared, "{name}");
         }
-        assert_eq!(of("gamma", ""), is(Quantity::Coherence, None, "", ""), "γ or γ²");
-        assert_eq!(of("gamma", "gamma"), is(Quantity::Coherence, Some(KnownUnit::Gamma), "", ""));
-        assert_eq!(of("gain Q/LON", ""), is(Quantity::Magnitude, None, "Q", "LON"), "dB or a ratio");
+        assert_eq!(
+            of("gamma", ""),
+            is(Quantity::Coherence, None, "", ""),
+            "γ or γ²"
+        );
+        assert_eq!(
+            of("gamma", "gamma"),
+            is(Quantity::Coherence, Some(KnownUnit::Gamma), "", "")
+        );
+        assert_eq!(
+            of("gain Q/LON", ""),
+            is(Quantity::Magnitude, None, "Q", "LON"),
+            "dB or a ratio"
+        );
         for name in ["mag_abs", "abs", "gain_abs", "|H| abs"] {
             assert_eq!(of(name, "").1, Some(KnownUnit::Other), "{name}");
         }
-        for (name, unit) in [("sd_mag_dB", KnownUnit::Decibel), ("sd_phase_deg", KnownUnit::Degree)] {
-            assert_eq!((of(name, "").0, of(name, "").1), (Some(Quantity::Error), Some(unit)), "{name}");
+        for (name, unit) in [
+            ("sd_mag_dB", KnownUnit::Decibel),
+            ("sd_phase_deg", KnownUnit::Degree),
+        ] {
+            assert_eq!(
+                (of(name, "").0, of(name, "").1),
+                (Some(Quantity::Error), Some(unit)),
+                "{name}"
+            );
         }
-        assert_eq!(of("phase error", "deg"), is(Quantity::Error, Some(KnownUnit::Degree), "phase", ""));
+        assert_eq!(
+            of("phase error", "deg"),
+            is(Quantity::Error, Some(KnownUnit::Degree), "phase", "")
+        );
     }
 
     #[test]
@@ -361,11 +546,22 @@ mod response_label_tests {
             (output.unwrap_or_default(), input.unwrap_or_default())
         };
         let expected = ("P".to_owned(), "LAT".to_owned());
-        for text in ["P/LAT", "(LAT->P)", "LAT → P", "LAT to P", "P <- LAT", "P due to LAT", "|P / LAT|"] {
+        for text in [
+            "P/LAT",
+            "(LAT->P)",
+            "LAT → P",
+            "LAT to P",
+            "P <- LAT",
+            "P due to LAT",
+            "|P / LAT|",
+        ] {
             assert_eq!(read(text), expected, "{text}");
         }
         assert_eq!(read("P_LAT"), expected);
-        assert_eq!(read("q_delta_lon"), ("q".to_owned(), "delta_lon".to_owned()));
+        assert_eq!(
+            read("q_delta_lon"),
+            ("q".to_owned(), "delta_lon".to_owned())
+        );
         assert_eq!(read("q per lon"), ("q".to_owned(), "lon".to_owned()));
         assert_eq!(read("roll_rate"), ("roll_rate".to_owned(), String::new()));
         assert_eq!(read("delta_lon"), (String::new(), "delta_lon".to_owned()));

@@ -38,7 +38,9 @@ impl TextTable {
     /// The headings of the columns, one for each: "omega \[rad/s\]"; empty where there is none.
     pub fn headings(&self) -> Vec<String> {
         let heading = |(column, unit): (usize, &Option<String>)| match unit {
-            Some(unit) => format!("{} [{unit}]", self.name(column).unwrap_or_default()).trim().to_owned(),
+            Some(unit) => format!("{} [{unit}]", self.name(column).unwrap_or_default())
+                .trim()
+                .to_owned(),
             None => self.name(column).unwrap_or_default().to_owned(),
         };
         self.units.iter().enumerate().map(heading).collect()
@@ -50,12 +52,20 @@ impl TextTable {
     /// There is another number of them than of columns.
     pub fn with_headings(mut self, headings: &[String]) -> Result<Self, VariableFault> {
         if headings.len() != self.columns.len() {
-            let found = format!("{} headings for {} columns", headings.len(), self.columns.len());
+            let found = format!(
+                "{} headings for {} columns",
+                headings.len(),
+                self.columns.len()
+            );
             return Err(VariableFault::format("one heading for each column", found));
         }
-        let (names, units) = headings.iter().map(|heading| name_and_unit(heading)).unzip();
+        let (names, units) = headings
+            .iter()
+            .map(|heading| name_and_unit(heading))
+            .unzip();
         (self.names, self.units) = (Some(names), units);
-        self.notes.push("the headings of the columns are those of the rules".to_owned());
+        self.notes
+            .push("the headings of the columns are those of the rules".to_owned());
         Ok(self)
     }
 }
@@ -96,7 +106,14 @@ impl<'m> Reading<'m> {
         // A column takes its header here, and its unit and name later.
         budget.take(layout.columns as u64, 128, "")?;
         let (columns, lines) = (vec![Vec::new(); layout.columns], Vec::new());
-        Ok(Self { layout, budget, columns, lines, skipped: Vec::new(), notes: Vec::new() })
+        Ok(Self {
+            layout,
+            budget,
+            columns,
+            lines,
+            skipped: Vec::new(),
+            notes: Vec::new(),
+        })
     }
 
     fn line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
@@ -128,7 +145,9 @@ impl<'m> Reading<'m> {
             // A count of rows, a date: one number is no row of a table.
             Some((1, _)) => {
                 let columns = self.layout.columns;
-                self.notes.push(format!("line {number} holds one number, the table {columns} columns: passed over"));
+                self.notes.push(format!(
+                    "line {number} holds one number, the table {columns} columns: passed over"
+                ));
                 self.skip(number, line)
             }
             Some(_) => self.row(number, line),
@@ -139,15 +158,28 @@ impl<'m> Reading<'m> {
     /// Programs that go on with a record write its headings again.
     fn repeats_heading(&self, line: &str) -> bool {
         let first_line = self.lines.first().copied().unwrap_or(0);
-        let mut above = self.skipped.iter().take(20).take_while(|(number, _)| *number < first_line);
+        let mut above = self
+            .skipped
+            .iter()
+            .take(20)
+            .take_while(|(number, _)| *number < first_line);
         above.any(|(_, heading)| heading.trim() == line.trim())
     }
 
     fn heading(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         let columns = self.layout.columns;
-        let cells: Vec<_> = self.layout.cells(line).take(columns + 2).map(|cell| cell.into_owned()).collect();
+        let cells: Vec<_> = self
+            .layout
+            .cells(line)
+            .take(columns + 2)
+            .map(|cell| cell.into_owned())
+            .collect();
         let fits = cells.len() == columns || cells.len() == columns + 1;
-        if fits && numbers_mostly(&cells, self.layout) { self.row(number, line) } else { self.skip(number, line) }
+        if fits && numbers_mostly(&cells, self.layout) {
+            self.row(number, line)
+        } else {
+            self.skip(number, line)
+        }
     }
 
     fn skip(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
@@ -157,7 +189,10 @@ impl<'m> Reading<'m> {
     }
 
     fn row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
-        if self.lines.is_empty() && self.layout.trailing && names_one_more(&self.skipped, self.layout) {
+        if self.lines.is_empty()
+            && self.layout.trailing
+            && names_one_more(&self.skipped, self.layout)
+        {
             self.layout.columns += 1;
             self.layout.trailing = false;
             self.columns.push(Vec::new());
@@ -170,7 +205,11 @@ impl<'m> Reading<'m> {
                 return Err(self.ragged(number, line));
             };
             let Some(value) = cell_number(&cell, self.layout.decimal_comma) else {
-                return Err(VariableFault::line("", number, self.no_number(index, &cell, line)));
+                return Err(VariableFault::line(
+                    "",
+                    number,
+                    self.no_number(index, &cell, line),
+                ));
             };
             ends_empty = cell.trim().is_empty();
             column.push(value);
@@ -188,29 +227,49 @@ impl<'m> Reading<'m> {
     }
 
     fn no_number(&self, index: usize, cell: &str, line: &str) -> String {
-        if self.layout.cells(line).take(20).all(|cell| cell_number(&cell, self.layout.decimal_comma).is_none()) {
+        if self
+            .layout
+            .cells(line)
+            .take(20)
+            .all(|cell| cell_number(&cell, self.layout.decimal_comma).is_none())
+        {
             let start = excerpt(line);
             return format!(
                 "words among the rows (\"{start}\"); put # before them, or split the file if others follow"
             );
         }
-        let mark =
-            if self.layout.decimal_comma && cell.contains('.') { " (the decimal mark is the comma)" } else { "" };
+        let mark = if self.layout.decimal_comma && cell.contains('.') {
+            " (the decimal mark is the comma)"
+        } else {
+            ""
+        };
         let (cell, place) = (excerpt(cell), index + 1);
-        format!("column {place} holds \"{cell}\", which is no number{mark}; correct it, or empty the cell")
+        format!(
+            "column {place} holds \"{cell}\", which is no number{mark}; correct it, or empty the cell"
+        )
     }
 
     fn ragged(&self, number: usize, line: &str) -> VariableFault {
         let expected = self.layout.columns;
-        let (found, ends_empty) =
-            self.layout.cells(line).fold((0, false), |(count, _), cell| (count + 1, cell.trim().is_empty()));
-        let found: usize = if self.layout.trailing && ends_empty { found - 1 } else { found };
+        let (found, ends_empty) = self
+            .layout
+            .cells(line)
+            .fold((0, false), |(count, _), cell| {
+                (count + 1, cell.trim().is_empty())
+            });
+        let found: usize = if self.layout.trailing && ends_empty {
+            found - 1
+        } else {
+            found
+        };
         let separator = self.layout.separator.words();
         let remedy = "complete the line, or split the file where the columns change";
         VariableFault::line(
             "",
             number,
-            format!("{found} columns, where the table has {expected} (between {separator}); {remedy}"),
+            format!(
+                "{found} columns, where the table has {expected} (between {separator}); {remedy}"
+            ),
         )
     }
 
@@ -218,20 +277,56 @@ impl<'m> Reading<'m> {
         let Some(&first_line) = self.lines.first() else {
             return Err(no_numbers(text));
         };
-        let above = self.skipped.iter().take_while(|(number, _)| *number < first_line).count();
-        let Heading { names, units, notes } = Heading::find(&self.skipped[..above], self.layout);
+        let above = self
+            .skipped
+            .iter()
+            .take_while(|(number, _)| *number < first_line)
+            .count();
+        let Heading {
+            names,
+            units,
+            notes,
+        } = Heading::find(&self.skipped[..above], self.layout);
         self.notes.extend(notes);
-        let Layout { separator, decimal_comma, columns, .. } = self.layout;
-        if separator == Separator::Comma && columns == 2 && !decimal_comma && names.is_none() && self.all_whole() {
+        let Layout {
+            separator,
+            decimal_comma,
+            columns,
+            ..
+        } = self.layout;
+        if separator == Separator::Comma
+            && columns == 2
+            && !decimal_comma
+            && names.is_none()
+            && self.all_whole()
+        {
             let note = "each line has one comma: read as two columns; numbers with a decimal comma look the same";
             self.notes.push(note.to_owned());
         }
-        let Self { columns, lines, skipped, notes, .. } = self;
-        Ok(TextTable { names, units, columns, lines, separator, decimal_comma, skipped, notes })
+        let Self {
+            columns,
+            lines,
+            skipped,
+            notes,
+            ..
+        } = self;
+        Ok(TextTable {
+            names,
+            units,
+            columns,
+            lines,
+            separator,
+            decimal_comma,
+            skipped,
+            notes,
+        })
     }
 
     fn all_whole(&self) -> bool {
-        self.columns.iter().flatten().all(|value| value.fract() == 0.0)
+        self.columns
+            .iter()
+            .flatten()
+            .all(|value| value.fract() == 0.0)
     }
 }
 
@@ -273,11 +368,23 @@ struct Tally {
 impl Layout {
     /// Finds the separator and the decimal mark with which most lines are lines of numbers of one width; the wider table where
     /// several do; nothing where no line is a line of numbers.
-    pub(super) fn recognise(text: &str, budget: &ReadingBudget) -> Result<Option<Self>, VariableFault> {
+    pub(super) fn recognise(
+        text: &str,
+        budget: &ReadingBudget,
+    ) -> Result<Option<Self>, VariableFault> {
         let mut tallies: Vec<Tally> = Vec::with_capacity(2 * Separator::ALL.len());
         for decimal_comma in [false, true] {
-            let layout = |separator| Layout { separator, decimal_comma, columns: 0, trailing: false };
-            let tally = |separator| Tally { layout: layout(separator), widths: BTreeMap::new(), lines: 0 };
+            let layout = |separator| Layout {
+                separator,
+                decimal_comma,
+                columns: 0,
+                trailing: false,
+            };
+            let tally = |separator| Tally {
+                layout: layout(separator),
+                widths: BTreeMap::new(),
+                lines: 0,
+            };
             tallies.extend(Separator::ALL.map(tally));
         }
         for (_, line) in lines(text) {
@@ -320,7 +427,11 @@ impl Layout {
     /// Whether a line of so many cells fits: one more, which is empty, stands behind a separator at the end. Where all lines end
     /// in a separator, the empty cell behind it is none.
     pub(super) fn fits(self, width: usize, ends_empty: bool) -> bool {
-        let expected = if self.trailing && ends_empty { self.columns + 1 } else { self.columns };
+        let expected = if self.trailing && ends_empty {
+            self.columns + 1
+        } else {
+            self.columns
+        };
         width == expected || (width == self.columns + 1 && ends_empty)
     }
 }
@@ -337,10 +448,20 @@ impl Tally {
 
     /// The most frequent width, the larger of two.
     fn layout(&self) -> Option<(usize, Layout)> {
-        let (&width, count) = self.widths.iter().max_by_key(|(width, count)| (count.lines, **width))?;
+        let (&width, count) = self
+            .widths
+            .iter()
+            .max_by_key(|(width, count)| (count.lines, **width))?;
         let trailing = count.ending_empty == count.lines && width > 1;
         let columns = if trailing { width - 1 } else { width };
-        Some((count.lines, Layout { columns, trailing, ..self.layout }))
+        Some((
+            count.lines,
+            Layout {
+                columns,
+                trailing,
+                ..self.layout
+            },
+        ))
     }
 }
 
@@ -353,7 +474,9 @@ pub(super) fn comment(line: &str) -> Option<&str> {
 
 /// Whether a line only draws a rule: "-----", "|---|---|", "=====".
 pub(super) fn is_rule(line: &str) -> bool {
-    line.trim().len() >= 3 && line.bytes().all(|byte| b"-=+|:_ \t".contains(&byte)) && !line.trim().contains("- -")
+    line.trim().len() >= 3
+        && line.bytes().all(|byte| b"-=+|:_ \t".contains(&byte))
+        && !line.trim().contains("- -")
 }
 
 /// A line without the comment behind its numbers; its mark stands between blanks, as "#N/A" and "50%" have such characters too.
@@ -362,7 +485,11 @@ fn without_comment(line: &str) -> &str {
         return line;
     }
     let marks = [" # ", " % ", " ! ", " // ", "\t# ", "\t% ", "\t! "];
-    marks.iter().filter_map(|mark| line.find(mark)).min().map_or(line, |end| &line[..end])
+    marks
+        .iter()
+        .filter_map(|mark| line.find(mark))
+        .min()
+        .map_or(line, |end| &line[..end])
 }
 
 #[cfg(test)]
@@ -376,7 +503,12 @@ mod columns_tests {
     }
 
     fn missing(table: &TextTable) -> usize {
-        table.columns.iter().flatten().filter(|value| value.is_nan()).count()
+        table
+            .columns
+            .iter()
+            .flatten()
+            .filter(|value| value.is_nan())
+            .count()
     }
 
     #[test]
@@ -387,15 +519,24 @@ mod columns_tests {
         assert_eq!(table.columns[..2], [vec![0.1, 0.2], vec![1.5, 1.0]]);
         assert_eq!(table.columns[2][0], -0.25);
         assert!(table.columns[2][1].is_nan());
-        assert_eq!((missing(&table), table.lines[0], table.decimal_comma), (1, 2, true));
+        assert_eq!(
+            (missing(&table), table.lines[0], table.decimal_comma),
+            (1, 2, true)
+        );
         assert_eq!(table.lines, [2, 3]);
     }
 
     #[test]
     fn strokes_align_columns_and_end_lines() {
-        let table = read("  _Vind,_kias |   ____Q,rad/s | \n   -10.42649 |       0.00079 | \n   1 | 2 | \n").unwrap();
+        let table = read(
+            "  _Vind,_kias |   ____Q,rad/s | \n   -10.42649 |       0.00079 | \n   1 | 2 | \n",
+        )
+        .unwrap();
         assert_eq!(table.names.as_deref().unwrap(), ["Vind", "Q"]);
-        assert_eq!(table.units, [Some("kias".to_owned()), Some("rad/s".to_owned())]);
+        assert_eq!(
+            table.units,
+            [Some("kias".to_owned()), Some("rad/s".to_owned())]
+        );
         assert_eq!(table.columns, [[-10.42649, 1.0], [0.00079, 2.0]]);
     }
 
@@ -417,14 +558,24 @@ mod columns_tests {
         let table = read(text).unwrap();
         assert_eq!(table.names.as_deref().unwrap(), ["w", "mag", "ph"]);
         assert_eq!(table.columns, [[1.0, 4.0], [2.0, 5.0], [3.0, 6.0]]);
-        assert_eq!(table.skipped.iter().map(|(line, _)| *line).collect::<Vec<_>>(), [1, 2, 3, 6, 8]);
+        assert_eq!(
+            table
+                .skipped
+                .iter()
+                .map(|(line, _)| *line)
+                .collect::<Vec<_>>(),
+            [1, 2, 3, 6, 8]
+        );
     }
 
     #[test]
     fn fortran_writes_a_count_and_exponents_with_d() {
         let table = read("2\n 1.0D+03 -2.0D-01\n 2.0D+03  ****\n").unwrap();
         assert_eq!(table.columns[0], [1000.0, 2000.0]);
-        assert_eq!(table.notes[0], "line 1 holds one number, the table 2 columns: passed over");
+        assert_eq!(
+            table.notes[0],
+            "line 1 holds one number, the table 2 columns: passed over"
+        );
         assert_eq!(missing(&table), 1);
     }
 
@@ -445,27 +596,51 @@ mod columns_tests {
             "line 2: column 1 holds \"1.5\", which is no number (the decimal mark is the comma); \
              correct it, or empty the cell"
         );
-        assert!(message("t;x;\n1;2;\n3;4;\n5;\n").starts_with("line 4: 1 columns, where the table has 2"));
+        assert!(
+            message("t;x;\n1;2;\n3;4;\n5;\n")
+                .starts_with("line 4: 1 columns, where the table has 2")
+        );
         assert_eq!(
             message("1,2\n3,4\nt,x\n"),
             "line 3: words among the rows (\"t,x\"); put # before them, or split the file if others follow"
         );
-        assert_eq!(message(" \n"), "expected a table of numbers in columns, found an empty file");
-        assert!(message("hello world").contains("no line that consists of numbers (it begins with \"hello world\")"));
+        assert_eq!(
+            message(" \n"),
+            "expected a table of numbers in columns, found an empty file"
+        );
+        assert!(
+            message("hello world")
+                .contains("no line that consists of numbers (it begins with \"hello world\")")
+        );
     }
 
     #[test]
     fn headings_in_the_middle_are_passed_over_with_a_note() {
         let table = read("t,x\n1,2\n3,4\nt,x\n1,5\n").unwrap();
         assert_eq!(table.columns, [[1.0, 3.0, 1.0], [2.0, 4.0, 5.0]]);
-        assert!(table.notes.iter().any(|note| note.starts_with("line 4 repeats a heading")));
+        assert!(
+            table
+                .notes
+                .iter()
+                .any(|note| note.starts_with("line 4 repeats a heading"))
+        );
         assert!(read("t,x\n1,2\nt,y\n").is_err());
     }
 
     #[test]
     fn a_slip_in_the_first_row_is_no_heading() {
-        assert!(read("w,m,p\n1,2,x\n4,5,6\n7,8,9").unwrap_err().to_string().starts_with("line 2: column 3"));
-        assert!(read("1,2\n4,5,6\n7,8,9").unwrap_err().to_string().starts_with("line 1: 2 columns"));
+        assert!(
+            read("w,m,p\n1,2,x\n4,5,6\n7,8,9")
+                .unwrap_err()
+                .to_string()
+                .starts_with("line 2: column 3")
+        );
+        assert!(
+            read("1,2\n4,5,6\n7,8,9")
+                .unwrap_err()
+                .to_string()
+                .starts_with("line 1: 2 columns")
+        );
     }
 
     #[test]
@@ -487,7 +662,10 @@ mod columns_tests {
     fn what_claims_too_much_is_refused_before_it_is_taken() {
         let wide = "1,".repeat(1_000_000);
         assert!(matches!(read(&wide), Err(VariableFault::TooLarge { .. })));
-        let stopped = read_table("1,2", &ReadingBudget::new(1 << 20).stopped_by(std::sync::Arc::new(true.into())));
+        let stopped = read_table(
+            "1,2",
+            &ReadingBudget::new(1 << 20).stopped_by(std::sync::Arc::new(true.into())),
+        );
         assert_eq!(stopped, Err(VariableFault::Stopped));
         assert!(matches!(read("1,2\0"), Err(VariableFault::Format { .. })));
     }
@@ -538,13 +716,19 @@ mod layout_tests {
 
     #[test]
     fn tabulators_that_only_align_are_blanks() {
-        assert_eq!(of("1\t\t2\n100\t2\n3\t\t4\n400\t5"), Some((Separator::Blanks, false, 2)));
+        assert_eq!(
+            of("1\t\t2\n100\t2\n3\t\t4\n400\t5"),
+            Some((Separator::Blanks, false, 2))
+        );
         assert_eq!(of("1\t\t2\n3\t\t4"), Some((Separator::Tab, false, 3)));
     }
 
     #[test]
     fn a_comment_behind_numbers_is_left_out() {
-        assert_eq!(of("1 2 # first\n3 4 ! second"), Some((Separator::Blanks, false, 2)));
+        assert_eq!(
+            of("1 2 # first\n3 4 ! second"),
+            Some((Separator::Blanks, false, 2))
+        );
         assert_eq!(without_comment("1 #N/A 50%"), "1 #N/A 50%");
     }
 

@@ -20,14 +20,29 @@ impl Heading {
     /// Finds names and units in the lines before the numbers: a line with as many cells as there are columns, rather one without
     /// a comment mark, the nearest first; a line of units may stand below it.
     pub(super) fn find(above: &[(usize, String)], layout: Layout) -> Self {
-        let candidates: Vec<_> = above.iter().rev().filter(|(_, line)| !is_rule(line)).take(100).collect();
-        let plain = candidates.iter().filter(|(_, line)| comment(line).is_none());
-        let marked = candidates.iter().filter(|(_, line)| comment(line).is_some());
+        let candidates: Vec<_> = above
+            .iter()
+            .rev()
+            .filter(|(_, line)| !is_rule(line))
+            .take(100)
+            .collect();
+        let plain = candidates
+            .iter()
+            .filter(|(_, line)| comment(line).is_none());
+        let marked = candidates
+            .iter()
+            .filter(|(_, line)| comment(line).is_some());
         let mut found: Vec<_> = plain
             .chain(marked)
-            .filter_map(|(number, line)| Some((*number, split(comment(line).unwrap_or(line), layout)?)))
+            .filter_map(|(number, line)| {
+                Some((*number, split(comment(line).unwrap_or(line), layout)?))
+            })
             .collect();
-        let mut heading = Heading { names: None, units: vec![None; layout.columns], notes: Vec::new() };
+        let mut heading = Heading {
+            names: None,
+            units: vec![None; layout.columns],
+            notes: Vec::new(),
+        };
         if found.len() >= 2 && only_units(&found[0].1) && found[0].0 > found[1].0 {
             let (number, units) = found.remove(0);
             heading.units = units.iter().map(|unit| unit_of(unit)).collect();
@@ -38,7 +53,9 @@ impl Heading {
         } else {
             let (number, cells) = found.remove(0);
             heading.take_names(&cells);
-            heading.notes.push(format!("line {number} gives the names of the columns"));
+            heading
+                .notes
+                .push(format!("line {number} gives the names of the columns"));
         }
         heading
     }
@@ -55,14 +72,19 @@ impl Heading {
 
     /// Says so where a line looks like names but has another number of them.
     fn note_misfit(&mut self, above: &[(usize, String)], layout: Layout) {
-        let Some((number, line)) = above.iter().rev().find(|(_, line)| comment(line).is_none() && !is_rule(line))
+        let Some((number, line)) = above
+            .iter()
+            .rev()
+            .find(|(_, line)| comment(line).is_none() && !is_rule(line))
         else {
             return;
         };
         let found = layout.separator.cells(line).count();
         if found > 1 {
             let columns = layout.columns;
-            let note = format!("line {number} has {found} words for {columns} columns: not taken as their names");
+            let note = format!(
+                "line {number} has {found} words for {columns} columns: not taken as their names"
+            );
             self.notes.push(note);
         }
     }
@@ -75,35 +97,63 @@ fn split(line: &str, layout: Layout) -> Option<Vec<String>> {
         if cells.len() == columns + 1 && cells.last().is_some_and(|cell| cell.trim().is_empty()) {
             cells.pop();
         }
-        let words = cells.iter().any(|cell| cell.chars().any(char::is_alphabetic));
+        let words = cells
+            .iter()
+            .any(|cell| cell.chars().any(char::is_alphabetic));
         (cells.len() == columns && words && !numbers_mostly(&cells, layout)).then_some(cells)
     };
     // One more than fits is enough to know that it does not fit.
     let by = |separator: Separator| -> Vec<String> {
-        separator.cells(line).take(columns + 2).map(|cell| cell.trim().to_owned()).collect()
+        separator
+            .cells(line)
+            .take(columns + 2)
+            .map(|cell| cell.trim().to_owned())
+            .collect()
     };
     if layout.separator != Separator::Blanks
         && let Some(cells) = fitting(by(layout.separator))
     {
         return Some(cells);
     }
-    let others = [Separator::Tab, Separator::Semicolon, Separator::Pipe, Separator::Comma].map(by);
-    let blanks = [by_wide_blanks(line, columns), with_brackets_joined(line, columns), by(Separator::Blanks)];
-    let ways: Vec<_> =
-        if columns == 1 { vec![vec![line.trim().to_owned()]] } else { [&others[..], &blanks[..]].concat() };
+    let others = [
+        Separator::Tab,
+        Separator::Semicolon,
+        Separator::Pipe,
+        Separator::Comma,
+    ]
+    .map(by);
+    let blanks = [
+        by_wide_blanks(line, columns),
+        with_brackets_joined(line, columns),
+        by(Separator::Blanks),
+    ];
+    let ways: Vec<_> = if columns == 1 {
+        vec![vec![line.trim().to_owned()]]
+    } else {
+        [&others[..], &blanks[..]].concat()
+    };
     ways.into_iter().find_map(fitting)
 }
 
 /// Whether a line is rather one of numbers with a slip in it.
 pub(super) fn numbers_mostly(cells: &[String], layout: Layout) -> bool {
-    let is_number = |cell: &&String| cell_number(cell, layout.decimal_comma).is_some_and(|number| !number.is_nan());
-    cells.first().is_some_and(|cell| is_number(&cell)) && 2 * cells.iter().filter(is_number).count() > cells.len()
+    let is_number = |cell: &&String| {
+        cell_number(cell, layout.decimal_comma).is_some_and(|number| !number.is_nan())
+    };
+    cells.first().is_some_and(|cell| is_number(&cell))
+        && 2 * cells.iter().filter(is_number).count() > cells.len()
 }
 
 /// Cells with at least two blanks between them, so that names can have single ones.
 fn by_wide_blanks(line: &str, columns: usize) -> Vec<String> {
-    let cells = line.trim().split("  ").filter(|cell| !cell.trim().is_empty());
-    cells.take(columns + 2).map(|cell| cell.trim().to_owned()).collect()
+    let cells = line
+        .trim()
+        .split("  ")
+        .filter(|cell| !cell.trim().is_empty());
+    cells
+        .take(columns + 2)
+        .map(|cell| cell.trim().to_owned())
+        .collect()
 }
 
 /// Cells with blanks between them; what stands in brackets belongs to the cell before.
@@ -121,7 +171,11 @@ fn with_brackets_joined(line: &str, columns: usize) -> Vec<String> {
             _ => cells.push(word.to_owned()),
         }
         let opened = |bracket| word.matches(bracket).count();
-        open = if open { opened([']', ')', '}']) == 0 } else { opened(['[', '(', '{']) > opened([']', ')', '}']) };
+        open = if open {
+            opened([']', ')', '}']) == 0
+        } else {
+            opened(['[', '(', '{']) > opened([']', ')', '}'])
+        };
     }
     cells
 }
@@ -129,14 +183,22 @@ fn with_brackets_joined(line: &str, columns: usize) -> Vec<String> {
 /// Whether a heading names one column more than `layout` has: the empty cells behind a last separator are then a column.
 pub(super) fn names_one_more(above: &[(usize, String)], layout: Layout) -> bool {
     above.iter().any(|(_, line)| {
-        let cells = layout.separator.cells(comment(line).unwrap_or(line)).take(layout.columns + 2);
-        let named = cells.filter(|cell| cell.chars().any(char::is_alphabetic)).count();
+        let cells = layout
+            .separator
+            .cells(comment(line).unwrap_or(line))
+            .take(layout.columns + 2);
+        let named = cells
+            .filter(|cell| cell.chars().any(char::is_alphabetic))
+            .count();
         named == layout.columns + 1
     })
 }
 
 fn unit_of(cell: &str) -> Option<String> {
-    let unit = cell.trim().trim_matches(['[', ']', '(', ')', '{', '}']).trim();
+    let unit = cell
+        .trim()
+        .trim_matches(['[', ']', '(', ')', '{', '}'])
+        .trim();
     (!unit.is_empty()).then(|| unit.to_owned())
 }
 
@@ -149,10 +211,11 @@ fn only_units(cells: &[String]) -> bool {
 
 /// Words that units are made of, in lower case.
 const WORDS: [&str; 68] = [
-    "rad", "radian", "radians", "mrad", "deg", "degree", "degrees", "°", "s", "sec", "secs", "second", "seconds", "ms",
-    "us", "µs", "min", "h", "hr", "hz", "khz", "cps", "rps", "rpm", "db", "m", "mm", "cm", "km", "ft", "in", "inch",
-    "inches", "nm", "kt", "kts", "knot", "knots", "kias", "ktas", "kcas", "keas", "ktgs", "mph", "fpm", "g", "n", "kn",
-    "lb", "lbf", "lbs", "slug", "kg", "pa", "hpa", "kpa", "psi", "bar", "v", "a", "w", "%", "pct", "percent", "ratio",
+    "rad", "radian", "radians", "mrad", "deg", "degree", "degrees", "°", "s", "sec", "secs",
+    "second", "seconds", "ms", "us", "µs", "min", "h", "hr", "hz", "khz", "cps", "rps", "rpm",
+    "db", "m", "mm", "cm", "km", "ft", "in", "inch", "inches", "nm", "kt", "kts", "knot", "knots",
+    "kias", "ktas", "kcas", "keas", "ktgs", "mph", "fpm", "g", "n", "kn", "lb", "lbf", "lbs",
+    "slug", "kg", "pa", "hpa", "kpa", "psi", "bar", "v", "a", "w", "%", "pct", "percent", "ratio",
     "norm", "abs", "unitless",
 ];
 
@@ -163,7 +226,10 @@ pub(super) fn is_unit(text: &str) -> bool {
         return true;
     }
     let mut words = 0;
-    for word in text.split(['/', '*', '^', '·', ' ', '.', '-', '(', ')', '²', '³']).filter(|word| !word.is_empty()) {
+    for word in text
+        .split(['/', '*', '^', '·', ' ', '.', '-', '(', ')', '²', '³'])
+        .filter(|word| !word.is_empty())
+    {
         if word.bytes().all(|byte| byte.is_ascii_digit()) {
             continue;
         }
@@ -181,17 +247,26 @@ pub(super) fn is_unit(text: &str) -> bool {
 /// "re(LAT->P)" names a response.
 pub(super) fn name_and_unit(heading: &str) -> (String, Option<String>) {
     let heading = heading.trim().trim_matches(['"', '\'']).trim();
-    let clean = |text: &str| text.trim_matches(|c: char| c.is_whitespace() || c == '_').to_owned();
+    let clean = |text: &str| {
+        text.trim_matches(|c: char| c.is_whitespace() || c == '_')
+            .to_owned()
+    };
     for (open, close, always) in [('[', ']', true), ('(', ')', false), ('{', '}', false)] {
-        let inner = heading.strip_suffix(close).and_then(|rest| rest.rsplit_once(open));
+        let inner = heading
+            .strip_suffix(close)
+            .and_then(|rest| rest.rsplit_once(open));
         // `xyz[0]` is an index.
-        let is_index = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()) && !text.is_empty();
+        let is_index =
+            |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()) && !text.is_empty();
         if let Some((name, unit)) = inner
             && ((always && !is_index(unit)) || is_unit(unit))
             // "az [+down]" says a sign.
             && direction_of(unit).is_none()
         {
-            return (clean(name), Some(unit.trim().to_owned()).filter(|unit| !unit.is_empty()));
+            return (
+                clean(name),
+                Some(unit.trim().to_owned()).filter(|unit| !unit.is_empty()),
+            );
         }
     }
     if let Some((name, unit)) = heading.rsplit_once(',')
@@ -207,18 +282,37 @@ mod heading_tests {
     use super::*;
 
     fn find(lines: &[&str], separator: Separator, columns: usize) -> Heading {
-        let above: Vec<_> = lines.iter().enumerate().map(|(index, line)| (index + 1, (*line).to_owned())).collect();
-        Heading::find(&above, Layout { separator, decimal_comma: false, columns, trailing: false })
+        let above: Vec<_> = lines
+            .iter()
+            .enumerate()
+            .map(|(index, line)| (index + 1, (*line).to_owned()))
+            .collect();
+        Heading::find(
+            &above,
+            Layout {
+                separator,
+                decimal_comma: false,
+                columns,
+                trailing: false,
+            },
+        )
     }
 
     fn units(heading: &Heading) -> Vec<&str> {
-        heading.units.iter().map(|unit| unit.as_deref().unwrap_or("")).collect()
+        heading
+            .units
+            .iter()
+            .map(|unit| unit.as_deref().unwrap_or(""))
+            .collect()
     }
 
     #[test]
     fn a_whole_number_in_brackets_is_an_index() {
         assert_eq!(name_and_unit("xyz[0]"), ("xyz[0]".to_owned(), None));
-        assert_eq!(name_and_unit("xyz [1/s]"), ("xyz".to_owned(), Some("1/s".to_owned())));
+        assert_eq!(
+            name_and_unit("xyz [1/s]"),
+            ("xyz".to_owned(), Some("1/s".to_owned()))
+        );
     }
 
     #[test]
@@ -245,7 +339,10 @@ mod heading_tests {
     fn a_title_is_no_heading_and_a_misfit_is_noted() {
         let heading = find(&["Flight 12", "a,b"], Separator::Comma, 3);
         assert_eq!(heading.names, None);
-        assert_eq!(heading.notes, ["line 2 has 2 words for 3 columns: not taken as their names"]);
+        assert_eq!(
+            heading.notes,
+            ["line 2 has 2 words for 3 columns: not taken as their names"]
+        );
     }
 
     #[test]
@@ -261,7 +358,16 @@ mod unit_word_tests {
 
     #[test]
     fn units_are_told_from_names() {
-        for unit in ["rad/s", "deg", "[1/s]".trim_matches(['[', ']']), "%", "°", "deg/s^2", "m/s²", "-"] {
+        for unit in [
+            "rad/s",
+            "deg",
+            "[1/s]".trim_matches(['[', ']']),
+            "%",
+            "°",
+            "deg/s^2",
+            "m/s²",
+            "-",
+        ] {
             assert!(is_unit(unit), "{unit}");
         }
         for name in ["LAT->P", "P/LAT", "omega", "", "12"] {
@@ -272,11 +378,23 @@ mod unit_word_tests {
     #[test]
     fn a_heading_is_cut_into_name_and_unit() {
         let cut = |heading| name_and_unit(heading);
-        assert_eq!(cut("omega [rad/s]"), ("omega".to_owned(), Some("rad/s".to_owned())));
-        assert_eq!(cut("\"P (deg/s)\""), ("P".to_owned(), Some("deg/s".to_owned())));
-        assert_eq!(cut("_Vind,_kias"), ("Vind".to_owned(), Some("kias".to_owned())));
+        assert_eq!(
+            cut("omega [rad/s]"),
+            ("omega".to_owned(), Some("rad/s".to_owned()))
+        );
+        assert_eq!(
+            cut("\"P (deg/s)\""),
+            ("P".to_owned(), Some("deg/s".to_owned()))
+        );
+        assert_eq!(
+            cut("_Vind,_kias"),
+            ("Vind".to_owned(), Some("kias".to_owned()))
+        );
         assert_eq!(cut("re(LAT->P)"), ("re(LAT->P)".to_owned(), None));
-        assert_eq!(cut("mag(P/LAT) [dB]"), ("mag(P/LAT)".to_owned(), Some("dB".to_owned())));
+        assert_eq!(
+            cut("mag(P/LAT) [dB]"),
+            ("mag(P/LAT)".to_owned(), Some("dB".to_owned()))
+        );
         assert_eq!(cut("az [+down]"), ("az [+down]".to_owned(), None));
         assert_eq!(cut("x []"), ("x".to_owned(), None));
     }

@@ -35,7 +35,10 @@ impl From<VariableFault> for ValueError {
 }
 
 pub(super) fn refused<T>(what: impl Into<String>, at: Position) -> Result<T, ValueError> {
-    Err(ValueError::NotUnderstood { what: what.into(), at })
+    Err(ValueError::NotUnderstood {
+        what: what.into(),
+        at,
+    })
 }
 
 /// A line and a column, both from 1.
@@ -57,7 +60,12 @@ pub(super) struct Scanner<'t> {
 impl<'t> Scanner<'t> {
     /// At the beginning of a text.
     pub(super) fn new(text: &'t str) -> Self {
-        Self { text, at: 0, line: 1, line_start: 0 }
+        Self {
+            text,
+            at: 0,
+            line: 1,
+            line_start: 0,
+        }
     }
 
     pub(super) fn rest(&self) -> &'t str {
@@ -83,12 +91,20 @@ impl<'t> Scanner<'t> {
         let before = &self.text[self.line_start..self.at];
         Position {
             line: self.line,
-            column: 1 + if before.len() > 2000 { before.len() } else { before.chars().count() },
+            column: 1 + if before.len() > 2000 {
+                before.len()
+            } else {
+                before.chars().count()
+            },
         }
     }
 
     pub(super) fn new_line(&mut self) {
-        self.at += if self.rest().starts_with("\r\n") { 2 } else { usize::from(!self.rest().is_empty()) };
+        self.at += if self.rest().starts_with("\r\n") {
+            2
+        } else {
+            usize::from(!self.rest().is_empty())
+        };
         self.line += 1;
         self.line_start = self.at;
     }
@@ -103,8 +119,12 @@ impl<'t> Scanner<'t> {
         while let Some(character) = self.peek() {
             match character {
                 '\n' | '\r' => break,
-                _ if character.is_whitespace() || character == '\u{feff}' => self.at += character.len_utf8(),
-                '%' | '#' if self.begins_line() && self.is_block_mark('{') => self.pass_block_comment()?,
+                _ if character.is_whitespace() || character == '\u{feff}' => {
+                    self.at += character.len_utf8()
+                }
+                '%' | '#' if self.begins_line() && self.is_block_mark('{') => {
+                    self.pass_block_comment()?
+                }
                 '%' | '#' => self.pass_line(),
                 '.' if self.rest().starts_with("...") => {
                     self.pass_line();
@@ -125,13 +145,15 @@ impl<'t> Scanner<'t> {
     /// Whether the rest of the line is a mark of comment and this bracket, which open or close a comment of several lines.
     fn is_block_mark(&self, bracket: char) -> bool {
         let line = self.rest_of_line().trim();
-        line.strip_prefix(['%', '#']).is_some_and(|rest| rest.strip_prefix(bracket) == Some(""))
+        line.strip_prefix(['%', '#'])
+            .is_some_and(|rest| rest.strip_prefix(bracket) == Some(""))
     }
 
     fn pass_block_comment(&mut self) -> Result<(), VariableFault> {
         let (line, mut depth) = (self.line, 0_usize);
         loop {
-            depth = depth + usize::from(self.is_block_mark('{')) - usize::from(self.is_block_mark('}'));
+            depth =
+                depth + usize::from(self.is_block_mark('{')) - usize::from(self.is_block_mark('}'));
             self.pass_line();
             if depth == 0 {
                 return Ok(());
@@ -180,8 +202,14 @@ impl<'t> Scanner<'t> {
         let mut text = String::new();
         loop {
             let rest = self.rest();
-            let Some(end) = rest.find([quote, '\n', '\r']).filter(|&end| rest[end..].starts_with(quote)) else {
-                return refused(format!("a text begins here and has no end; write {quote} behind it"), opening);
+            let Some(end) = rest
+                .find([quote, '\n', '\r'])
+                .filter(|&end| rest[end..].starts_with(quote))
+            else {
+                return refused(
+                    format!("a text begins here and has no end; write {quote} behind it"),
+                    opening,
+                );
             };
             budget.take(2 * end as u64 + 2, 1, "")?;
             text.push_str(&rest[..end]);
@@ -198,7 +226,12 @@ impl<'t> Scanner<'t> {
     pub(super) fn number(&mut self) -> Result<Option<(f64, bool)>, ValueError> {
         let (rest, place) = (self.rest(), self.position());
         let bytes = rest.as_bytes();
-        let digits = |from: usize| from + bytes[from..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+        let digits = |from: usize| {
+            from + bytes[from..]
+                .iter()
+                .take_while(|byte| byte.is_ascii_digit())
+                .count()
+        };
         let begins = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
         if !(begins(0) || (rest.starts_with('.') && begins(1))) {
             return Ok(None);
@@ -210,17 +243,23 @@ impl<'t> Scanner<'t> {
             end = digits(end + 1);
         }
         if bytes.get(end).is_some_and(|byte| b"eEdD".contains(byte)) {
-            let signed = end + 1 + usize::from(bytes.get(end + 1).is_some_and(|byte| b"+-".contains(byte)));
+            let signed =
+                end + 1 + usize::from(bytes.get(end + 1).is_some_and(|byte| b"+-".contains(byte)));
             end = if begins(signed) { digits(signed) } else { end };
         }
         let value = rest[..end].replace(['d', 'D'], "e").parse();
         let imaginary = matches!(bytes.get(end), Some(b'i' | b'j'));
         end += usize::from(imaginary);
-        let tail = rest[end..].find(|c: char| !is_of_word(c)).unwrap_or(rest.len() - end);
+        let tail = rest[end..]
+            .find(|c: char| !is_of_word(c))
+            .unwrap_or(rest.len() - end);
         self.at += end + tail;
         match value {
             Ok(value) if tail == 0 => Ok(Some((value, imaginary))),
-            _ => refused(format!("\"{}\" is no number", excerpt(&rest[..end + tail])), place),
+            _ => refused(
+                format!("\"{}\" is no number", excerpt(&rest[..end + tail])),
+                place,
+            ),
         }
     }
 
@@ -237,7 +276,11 @@ impl<'t> Scanner<'t> {
             match character {
                 '\n' | '\r' => {
                     // No round bracket reaches beyond its line.
-                    open.truncate(open.iter().rposition(|(bracket, _)| *bracket != '(').map_or(0, |last| last + 1));
+                    open.truncate(
+                        open.iter()
+                            .rposition(|(bracket, _)| *bracket != '(')
+                            .map_or(0, |last| last + 1),
+                    );
                     if open.is_empty() {
                         return Ok(());
                     }
@@ -258,8 +301,16 @@ impl<'t> Scanner<'t> {
                 }
                 '(' | '[' | '{' => open.push((character, self.position())),
                 ')' | ']' | '}' => {
-                    let opening = if character == ')' { '(' } else { char::from(character as u8 - 2) };
-                    open.truncate(open.iter().rposition(|(bracket, _)| *bracket == opening).unwrap_or(open.len()));
+                    let opening = if character == ')' {
+                        '('
+                    } else {
+                        char::from(character as u8 - 2)
+                    };
+                    open.truncate(
+                        open.iter()
+                            .rposition(|(bracket, _)| *bracket == opening)
+                            .unwrap_or(open.len()),
+                    );
                 }
                 _ => {}
             }
@@ -268,7 +319,8 @@ impl<'t> Scanner<'t> {
         match open.into_iter().rev().find(|(bracket, _)| *bracket != '(') {
             None => Ok(()),
             Some((bracket, Position { line, column })) => {
-                let what = format!("the bracket {bracket} in column {column} is never closed; close it");
+                let what =
+                    format!("the bracket {bracket} in column {column} is never closed; close it");
                 Err(VariableFault::line("", line, what))
             }
         }
@@ -277,7 +329,9 @@ impl<'t> Scanner<'t> {
     /// Whether what follows a name sets a part of it: "+= 1", "++", "(2,1) = 3".
     pub(super) fn changes_part(&self) -> bool {
         let line = self.rest_of_line();
-        let Some(sign) = line.chars().next() else { return false };
+        let Some(sign) = line.chars().next() else {
+            return false;
+        };
         if "+-*/^".contains(sign) {
             return line[1..].starts_with('=')
                 || line[1..]
@@ -294,7 +348,9 @@ impl<'t> Scanner<'t> {
             open = open + usize::from(character == sign) - usize::from(character == close);
             if open == 0 {
                 let behind = line[at + 1..].trim_start();
-                let behind = behind.trim_start_matches(|c: char| c == '.' || is_of_word(c)).trim_start();
+                let behind = behind
+                    .trim_start_matches(|c: char| c == '.' || is_of_word(c))
+                    .trim_start();
                 return behind.starts_with('=') && !behind.starts_with("==");
             }
         }

@@ -14,14 +14,28 @@ pub struct NamedMatrices {
 }
 
 /// Reads one matrix, a row on each line; a line of names above it is passed over.
-pub fn read_matrix(text: &str, name: &str, budget: &ReadingBudget) -> Result<Variable, VariableFault> {
+pub fn read_matrix(
+    text: &str,
+    name: &str,
+    budget: &ReadingBudget,
+) -> Result<Variable, VariableFault> {
     let table = read_table(text, budget)?;
-    if let Some((line, _)) = table.skipped.iter().find(|(_, line)| cell_number(line, table.decimal_comma).is_some()) {
-        let what = format!("one number, where other rows have {}; complete the row", table.columns.len());
+    if let Some((line, _)) = table
+        .skipped
+        .iter()
+        .find(|(_, line)| cell_number(line, table.decimal_comma).is_some())
+    {
+        let what = format!(
+            "one number, where other rows have {}; complete the row",
+            table.columns.len()
+        );
         return Err(VariableFault::line(name, *line, what));
     }
     let value = matrix(&[table], 1.0, budget, name)?;
-    Ok(Variable { name: name.to_owned(), value })
+    Ok(Variable {
+        name: name.to_owned(),
+        value,
+    })
 }
 
 /// Reads matrices under their names: "A =", "A:" or "A" on a line, its rows on those below.
@@ -30,7 +44,11 @@ pub fn read_matrix(text: &str, name: &str, budget: &ReadingBudget) -> Result<Var
 /// and names of rows and columns are passed over.
 pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices, VariableFault> {
     refuse_binary(text, "matrices under their names")?;
-    let mut reading = Reading { found: Vec::new(), notes: Vec::new(), budget };
+    let mut reading = Reading {
+        found: Vec::new(),
+        notes: Vec::new(),
+        budget,
+    };
     for (number, line) in lines(text) {
         budget.work(1, "")?;
         if !line.trim().is_empty() && comment(line).is_none() && !is_rule(line) {
@@ -66,10 +84,19 @@ struct Reading<'m> {
 
 impl Reading<'_> {
     fn line(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
-        let awaits_columns = self.found.last().is_some_and(|matrix| matrix.assigned && matrix.parts.is_empty());
+        let awaits_columns = self
+            .found
+            .last()
+            .is_some_and(|matrix| matrix.assigned && matrix.parts.is_empty());
         match name_line(line) {
-            Some(NameLine { assigned: false, .. }) if awaits_columns => return self.columns(number, line),
-            Some(NameLine { name, assigned, rest }) => return self.begin(number, name, assigned, rest),
+            Some(NameLine {
+                assigned: false, ..
+            }) if awaits_columns => return self.columns(number, line),
+            Some(NameLine {
+                name,
+                assigned,
+                rest,
+            }) => return self.begin(number, name, assigned, rest),
             None => {}
         }
         if is_columns_line(line) {
@@ -80,29 +107,57 @@ impl Reading<'_> {
             matrix.scale = scale;
             return Ok(());
         }
-        let numbers = line.split_whitespace().filter(|word| is_number_word(word)).count();
+        let numbers = line
+            .split_whitespace()
+            .filter(|word| is_number_word(word))
+            .count();
         let words = line.split_whitespace().count();
         let labelled = self.found.last().is_some_and(|matrix| matrix.labelled);
-        let cut = line.trim_start().split_once(char::is_whitespace).map(|(_, rest)| rest);
+        let cut = line
+            .trim_start()
+            .split_once(char::is_whitespace)
+            .map(|(_, rest)| rest);
         match cut {
             _ if row_of_numbers(line) => self.row(number, line),
             Some(rest) if labelled && row_of_numbers(rest) => self.row(number, rest),
             _ if numbers == 0 && awaits_columns | labelled => self.columns(number, line),
-            _ if 2 * numbers >= words => {
-                Err(VariableFault::line("", number, format!("\"{}\" is no row of numbers; correct it", excerpt(line))))
-            }
+            _ if 2 * numbers >= words => Err(VariableFault::line(
+                "",
+                number,
+                format!("\"{}\" is no row of numbers; correct it", excerpt(line)),
+            )),
             _ => {
-                self.notes.push(format!("line {number} (\"{}\") is passed over", excerpt(line)));
+                self.notes.push(format!(
+                    "line {number} (\"{}\") is passed over",
+                    excerpt(line)
+                ));
                 Ok(())
             }
         }
     }
 
-    fn begin(&mut self, number: usize, name: &str, assigned: bool, rest: &str) -> Result<(), VariableFault> {
+    fn begin(
+        &mut self,
+        number: usize,
+        name: &str,
+        assigned: bool,
+        rest: &str,
+    ) -> Result<(), VariableFault> {
         self.budget.take(256 + name.len() as u64, 1, name)?;
         let (name, parts) = (name.to_owned(), Vec::new());
-        self.found.push(Begun { name, line: number, assigned, scale: 1.0, labelled: false, parts });
-        if rest.is_empty() { Ok(()) } else { self.row(number, rest) }
+        self.found.push(Begun {
+            name,
+            line: number,
+            assigned,
+            scale: 1.0,
+            labelled: false,
+            parts,
+        });
+        if rest.is_empty() {
+            Ok(())
+        } else {
+            self.row(number, rest)
+        }
     }
 
     /// A line of names of columns: rows below it have names too.
@@ -110,14 +165,20 @@ impl Reading<'_> {
         if let Some(matrix) = self.found.last_mut() {
             matrix.labelled = true;
         }
-        self.notes.push(format!("line {number} (\"{}\") is taken as names of columns", excerpt(line)));
+        self.notes.push(format!(
+            "line {number} (\"{}\") is taken as names of columns",
+            excerpt(line)
+        ));
         self.part();
         Ok(())
     }
 
     fn part(&mut self) {
         if let Some(matrix) = self.found.last_mut()
-            && matrix.parts.last().is_none_or(|part| !part.numbers.is_empty())
+            && matrix
+                .parts
+                .last()
+                .is_none_or(|part| !part.numbers.is_empty())
         {
             matrix.parts.push(Part::default());
         }
@@ -125,10 +186,12 @@ impl Reading<'_> {
 
     fn row(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         let Some(matrix) = self.found.last_mut() else {
-            let what = "numbers without a name; write the name of the matrix on a line above them".to_owned();
+            let what = "numbers without a name; write the name of the matrix on a line above them"
+                .to_owned();
             return Err(VariableFault::line("", number, what));
         };
-        self.budget.take(2 * line.len() as u64 + 32, 1, &matrix.name)?;
+        self.budget
+            .take(2 * line.len() as u64 + 32, 1, &matrix.name)?;
         if matrix.parts.is_empty() {
             matrix.parts.push(Part::default());
         }
@@ -141,27 +204,48 @@ impl Reading<'_> {
     }
 
     fn finish(self) -> Result<NamedMatrices, VariableFault> {
-        let Self { found, mut notes, budget } = self;
+        let Self {
+            found,
+            mut notes,
+            budget,
+        } = self;
         let mut variables: Vec<Variable> = Vec::with_capacity(found.len());
         let mut names = std::collections::HashSet::with_capacity(found.len());
-        for Begun { name, line, scale, mut parts, .. } in found {
+        for Begun {
+            name,
+            line,
+            scale,
+            mut parts,
+            ..
+        } in found
+        {
             parts.retain(|part| !part.numbers.is_empty());
             if parts.is_empty() {
-                notes.push(format!("line {line} (\"{name}\") is passed over: no numbers follow"));
+                notes.push(format!(
+                    "line {line} (\"{name}\") is passed over: no numbers follow"
+                ));
                 continue;
             }
             if !names.insert(name.clone()) {
                 return Err(VariableFault::Duplicate { name });
             }
             if scale != 1.0 {
-                notes.push(format!("{name} is printed with the factor {scale:e}, and so with few digits"));
+                notes.push(format!(
+                    "{name} is printed with the factor {scale:e}, and so with few digits"
+                ));
             }
-            let tables = parts.iter().map(|part| table(part, &name, budget)).collect::<Result<Vec<_>, _>>()?;
+            let tables = parts
+                .iter()
+                .map(|part| table(part, &name, budget))
+                .collect::<Result<Vec<_>, _>>()?;
             let value = matrix(&tables, scale, budget, &name)?;
             variables.push(Variable { name, value });
         }
         if variables.is_empty() {
-            return Err(VariableFault::format("matrices under their names", "no name with numbers below it"));
+            return Err(VariableFault::format(
+                "matrices under their names",
+                "no name with numbers below it",
+            ));
         }
         Ok(NamedMatrices { variables, notes })
     }
@@ -174,21 +258,30 @@ fn is_number_word(word: &str) -> bool {
 
 /// Whether a line consists of numbers, whatever stands between them.
 fn row_of_numbers(line: &str) -> bool {
-    let mut words =
-        line.split(|c: char| c.is_whitespace() || c == ',' || c == ';' || c == '|').filter(|w| !w.is_empty());
+    let mut words = line
+        .split(|c: char| c.is_whitespace() || c == ',' || c == ';' || c == '|')
+        .filter(|w| !w.is_empty());
     words.clone().next().is_some() && words.all(is_number_word)
 }
 
 /// The rows of a part; faults name the line of the whole text.
 fn table(part: &Part, name: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
-    let place = |line: usize| part.numbers.get(line.saturating_sub(1)).copied().unwrap_or(line);
+    let place = |line: usize| {
+        part.numbers
+            .get(line.saturating_sub(1))
+            .copied()
+            .unwrap_or(line)
+    };
     let table = read_table(&part.text, budget).map_err(|fault| match fault {
         VariableFault::Line { line, what, .. } => VariableFault::line(name, place(line), what),
         other => other,
     })?;
     match table.skipped.first() {
         Some((line, text)) => {
-            let what = format!("\"{}\" is no row like the others; complete it", excerpt(text));
+            let what = format!(
+                "\"{}\" is no row like the others; complete it",
+                excerpt(text)
+            );
             Err(VariableFault::line(name, place(*line), what))
         }
         None => Ok(table),
@@ -196,16 +289,30 @@ fn table(part: &Part, name: &str, budget: &ReadingBudget) -> Result<TextTable, V
 }
 
 /// Tables side by side as one matrix.
-fn matrix(tables: &[TextTable], scale: f64, budget: &ReadingBudget, name: &str) -> Result<Value, VariableFault> {
+fn matrix(
+    tables: &[TextTable],
+    scale: f64,
+    budget: &ReadingBudget,
+    name: &str,
+) -> Result<Value, VariableFault> {
     let rows = tables.first().map_or(0, |table| table.lines.len());
     if let Some(other) = tables.iter().find(|table| table.lines.len() != rows) {
         let found = other.lines.len();
-        let what = format!("parts of this matrix have {rows} and {found} rows; print it in one part");
-        return Err(VariableFault::line(name, other.lines.first().copied().unwrap_or(1), what));
+        let what =
+            format!("parts of this matrix have {rows} and {found} rows; print it in one part");
+        return Err(VariableFault::line(
+            name,
+            other.lines.first().copied().unwrap_or(1),
+            what,
+        ));
     }
     let columns = tables.iter().map(|table| table.columns.len()).sum();
     budget.take((rows * columns) as u64, 8, name)?;
-    let values = tables.iter().flat_map(|table| table.columns.iter().flatten()).map(|value| scale * value).collect();
+    let values = tables
+        .iter()
+        .flat_map(|table| table.columns.iter().flatten())
+        .map(|value| scale * value)
+        .collect();
     Ok(Value::Array(Array::matrix(rows, columns, values)))
 }
 
@@ -225,39 +332,63 @@ pub(super) struct NameLine<'t> {
 /// Reads "A", "A =", "A:", "A (3x2)", "A = 5" and "A,,,".
 pub(super) fn name_line(line: &str) -> Option<NameLine<'_>> {
     let line = line.trim().trim_end_matches([',', ';', '\t', ' ']);
-    let end = line.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.')).unwrap_or(line.len());
+    let end = line
+        .find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'))
+        .unwrap_or(line.len());
     let (name, behind) = line.split_at(end);
     if is_number(name) || !name.starts_with(|c: char| c.is_alphabetic() || c == '_') {
         return None;
     }
     let behind = behind.trim_start();
     if let Some(rest) = behind.strip_prefix('=') {
-        return Some(NameLine { name, assigned: true, rest: without_size(rest.trim()) });
+        return Some(NameLine {
+            name,
+            assigned: true,
+            rest: without_size(rest.trim()),
+        });
     }
     let rest = without_size(behind.strip_prefix(':').unwrap_or(behind).trim());
-    rest.is_empty().then_some(NameLine { name, assigned: false, rest })
+    rest.is_empty().then_some(NameLine {
+        name,
+        assigned: false,
+        rest,
+    })
 }
 
 /// A text without a size in front of it: "(3x2)", "\[3 x 2\]", "3x2".
 fn without_size(text: &str) -> &str {
     let inner = text.trim_start_matches(['(', '[']);
     let (size, rest) = inner.split_at(inner.find([')', ']']).unwrap_or(inner.len()));
-    let Some((rows, columns)) = size.split_once(['x', '×']) else { return text };
-    let count = |word: &str| !word.trim().is_empty() && word.trim().bytes().all(|byte| byte.is_ascii_digit());
-    if count(rows) && count(columns) { rest.trim_start_matches([')', ']']).trim() } else { text }
+    let Some((rows, columns)) = size.split_once(['x', '×']) else {
+        return text;
+    };
+    let count = |word: &str| {
+        !word.trim().is_empty() && word.trim().bytes().all(|byte| byte.is_ascii_digit())
+    };
+    if count(rows) && count(columns) {
+        rest.trim_start_matches([')', ']']).trim()
+    } else {
+        text
+    }
 }
 
 /// The factor of a line such as "1.0e+03 *".
 pub(super) fn scale_line(line: &str) -> Option<f64> {
     let factor = line.trim().strip_suffix('*')?.trim();
-    factor.parse().ok().filter(|factor: &f64| factor.is_finite())
+    factor
+        .parse()
+        .ok()
+        .filter(|factor: &f64| factor.is_finite())
 }
 
 /// Whether a line says which columns follow: "Columns 1 through 6", "Column 7:".
 pub(super) fn is_columns_line(line: &str) -> bool {
     let mut words = line.trim().trim_end_matches(':').split_whitespace();
     matches!(words.next(), Some("Columns" | "Column"))
-        && words.all(|word| matches!(word, "through" | "and" | "to") || word.bytes().all(|byte| byte.is_ascii_digit()))
+        && words.all(|word| {
+            matches!(word, "through" | "and" | "to")
+                || word.bytes().all(|byte| byte.is_ascii_digit())
+        })
 }
 
 #[cfg(test)]
@@ -275,7 +406,12 @@ mod matrix_text_tests {
             Value::Array(array) => (variable.name, array),
             other => panic!("{}", other.words()),
         };
-        read(text).unwrap().variables.into_iter().map(array).collect()
+        read(text)
+            .unwrap()
+            .variables
+            .into_iter()
+            .map(array)
+            .collect()
     }
 
     #[test]
@@ -283,16 +419,31 @@ mod matrix_text_tests {
         let budget = ReadingBudget::new(1 << 20);
         let variable = read_matrix("x1,x2\n1,2\n3,4\n5,6", "A", &budget).unwrap();
         let expected = Array::matrix(3, 2, vec![1.0, 3.0, 5.0, 2.0, 4.0, 6.0]);
-        assert_eq!(variable, Variable { name: "A".to_owned(), value: Value::Array(expected) });
-        let ragged = read_matrix("1\n2 3\n4 5\n", "A", &budget).unwrap_err().to_string();
-        assert_eq!(ragged, "variable A: line 1: one number, where other rows have 2; complete the row");
+        assert_eq!(
+            variable,
+            Variable {
+                name: "A".to_owned(),
+                value: Value::Array(expected)
+            }
+        );
+        let ragged = read_matrix("1\n2 3\n4 5\n", "A", &budget)
+            .unwrap_err()
+            .to_string();
+        assert_eq!(
+            ragged,
+            "variable A: line 1: one number, where other rows have 2; complete the row"
+        );
     }
 
     #[test]
     fn matrices_stand_below_their_names() {
-        let found = arrays("# model\nA =\n\n  -1.0  2\n   0  1\n\nB:\n0\n1\nC (1x2)\n1;0,5\nx0 = 5\n");
+        let found =
+            arrays("# model\nA =\n\n  -1.0  2\n   0  1\n\nB:\n0\n1\nC (1x2)\n1;0,5\nx0 = 5\n");
         let matrix = |rows, columns, values: &[f64]| Array::matrix(rows, columns, values.to_vec());
-        assert_eq!(found[0], ("A".to_owned(), matrix(2, 2, &[-1.0, 0.0, 2.0, 1.0])));
+        assert_eq!(
+            found[0],
+            ("A".to_owned(), matrix(2, 2, &[-1.0, 0.0, 2.0, 1.0]))
+        );
         assert_eq!(found[1], ("B".to_owned(), matrix(2, 1, &[0.0, 1.0])));
         assert_eq!(found[2], ("C".to_owned(), matrix(1, 2, &[1.0, 0.5])));
         assert_eq!(found[3], ("x0".to_owned(), matrix(1, 1, &[5.0])));
@@ -302,7 +453,10 @@ mod matrix_text_tests {
     fn factors_and_parts_are_put_together() {
         let text = "A =\n\n   1.0e+03 *\n\n  Columns 1 through 2\n\n    0.001  2\n    0.003  4\n\n  Column 3\n\n    5\n    6\n";
         let found = arrays(text);
-        assert_eq!(found[0].1, Array::matrix(2, 3, vec![1.0, 3.0, 2000.0, 4000.0, 5000.0, 6000.0]));
+        assert_eq!(
+            found[0].1,
+            Array::matrix(2, 3, vec![1.0, 3.0, 2000.0, 4000.0, 5000.0, 6000.0])
+        );
     }
 
     #[test]
@@ -312,7 +466,10 @@ mod matrix_text_tests {
         let found = arrays(text);
         assert_eq!(found.len(), 2);
         assert_eq!(found[0].1, Array::matrix(2, 2, vec![-1.0, 0.0, 2.0, 1.0]));
-        assert_eq!(found[1], ("B".to_owned(), Array::matrix(2, 1, vec![0.0, 1.0])));
+        assert_eq!(
+            found[1],
+            ("B".to_owned(), Array::matrix(2, 1, vec![0.0, 1.0]))
+        );
     }
 
     #[test]
@@ -321,7 +478,10 @@ mod matrix_text_tests {
         assert!(message("1 2\n").starts_with("line 1: numbers without a name"));
         assert!(message("A =\n1 2\n\n3\n").starts_with("variable A: line 4: "));
         assert!(message("A =\n1 2\n3 x\n").starts_with("line 3: \"3 x\" is no row of numbers"));
-        assert_eq!(message("A\n1\nA\n2\n"), "the name \"A\" stands twice; rename one");
+        assert_eq!(
+            message("A\n1\nA\n2\n"),
+            "the name \"A\" stands twice; rename one"
+        );
         assert!(message("A =\n").contains("no name with numbers below it"));
     }
 
@@ -349,7 +509,15 @@ mod printed_line_tests {
 
     #[test]
     fn names_stand_alone_or_before_a_sign() {
-        let line = |text| name_line(text).map(|NameLine { name, assigned, rest }| (name, assigned, rest));
+        let line = |text| {
+            name_line(text).map(
+                |NameLine {
+                     name,
+                     assigned,
+                     rest,
+                 }| (name, assigned, rest),
+            )
+        };
         assert_eq!(line("A"), Some(("A", false, "")));
         assert_eq!(line("  A =  "), Some(("A", true, "")));
         assert_eq!(line("sys.A = 5"), Some(("sys.A", true, "5")));
@@ -366,7 +534,9 @@ mod printed_line_tests {
         assert_eq!(scale_line("   1.0e+03 *"), Some(1000.0));
         assert_eq!(scale_line("1 2"), None);
         assert!(
-            is_columns_line(" Columns 1 through 6") && is_columns_line("Column 7:") && !is_columns_line("Column a")
+            is_columns_line(" Columns 1 through 6")
+                && is_columns_line("Column 7:")
+                && !is_columns_line("Column a")
         );
     }
 }

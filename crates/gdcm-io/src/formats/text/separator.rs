@@ -22,8 +22,13 @@ pub enum Separator {
 
 impl Separator {
     /// All of them, the more telling first.
-    pub(super) const ALL: [Separator; 5] =
-        [Separator::Tab, Separator::Semicolon, Separator::Pipe, Separator::Comma, Separator::Blanks];
+    pub(super) const ALL: [Separator; 5] = [
+        Separator::Tab,
+        Separator::Semicolon,
+        Separator::Pipe,
+        Separator::Comma,
+        Separator::Blanks,
+    ];
 
     /// Its name in a message.
     pub fn words(self) -> &'static str {
@@ -43,7 +48,10 @@ impl Separator {
             Separator::Blanks => line.trim(),
             _ => line,
         };
-        Cells { rest: Some(line), separator: self }
+        Cells {
+            rest: Some(line),
+            separator: self,
+        }
     }
 
     /// The sign that is written between cells.
@@ -60,12 +68,25 @@ impl Separator {
     /// Cells as a line; one that holds the sign stands in quotes.
     pub(super) fn line(self, cells: impl Iterator<Item = String>) -> String {
         let sign = self.sign();
-        let cell = |cell: String| if cell.contains(sign) { format!("\"{cell}\"") } else { cell };
-        cells.map(cell).collect::<Vec<_>>().join(&String::from(sign))
+        let cell = |cell: String| {
+            if cell.contains(sign) {
+                format!("\"{cell}\"")
+            } else {
+                cell
+            }
+        };
+        cells
+            .map(cell)
+            .collect::<Vec<_>>()
+            .join(&String::from(sign))
     }
 
     fn is(self, character: char) -> bool {
-        if self == Separator::Blanks { character.is_whitespace() } else { character == self.sign() }
+        if self == Separator::Blanks {
+            character.is_whitespace()
+        } else {
+            character == self.sign()
+        }
     }
 }
 
@@ -93,7 +114,11 @@ impl<'t> Iterator for Cells<'t> {
         self.rest = end.and_then(|end| behind.get(end..)).map(after_first);
         // Where something follows the quotes, they are characters like others.
         let whole = &rest[..rest.len() - behind.len() + between.len()];
-        Some(if between.trim().is_empty() && !cell.is_empty() { cell } else { Cow::Borrowed(unquoted(whole)) })
+        Some(if between.trim().is_empty() && !cell.is_empty() {
+            cell
+        } else {
+            Cow::Borrowed(unquoted(whole))
+        })
     }
 }
 
@@ -116,7 +141,11 @@ fn quoted(text: &str) -> Option<(Cow<'_, str>, &str)> {
         let end = from + inner[from..].find('"')?;
         if !inner[end + 1..].starts_with('"') {
             let cell = &inner[..end];
-            let cell = if cell.contains('"') { Cow::Owned(cell.replace("\"\"", "\"")) } else { Cow::Borrowed(cell) };
+            let cell = if cell.contains('"') {
+                Cow::Owned(cell.replace("\"\"", "\""))
+            } else {
+                Cow::Borrowed(cell)
+            };
             return Some((cell, &inner[end + 1..]));
         }
         from = end + 2;
@@ -126,8 +155,22 @@ fn quoted(text: &str) -> Option<(Cow<'_, str>, &str)> {
 // One number of a table, in the ways programs write numbers.
 
 /// What programs write where there is no number.
-const MISSING: [&str; 14] =
-    ["nan", "-nan", "n/a", "#n/a", "na", "null", "none", "missing", "-", "--", "nan(ind)", "-nan(ind)", "?", "."];
+const MISSING: [&str; 14] = [
+    "nan",
+    "-nan",
+    "n/a",
+    "#n/a",
+    "na",
+    "null",
+    "none",
+    "missing",
+    "-",
+    "--",
+    "nan(ind)",
+    "-nan(ind)",
+    "?",
+    ".",
+];
 
 /// The number in a cell: NaN where it says that there is none, nothing where it says something else.
 ///
@@ -142,12 +185,18 @@ pub(super) fn cell_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     {
         return Some(number);
     }
-    if is_missing(cell) { Some(f64::NAN) } else { spelled_otherwise(cell, decimal_comma) }
+    if is_missing(cell) {
+        Some(f64::NAN)
+    } else {
+        spelled_otherwise(cell, decimal_comma)
+    }
 }
 
 /// Whether a cell is a number, or says that there is none, with either decimal mark.
 pub(super) fn is_number(cell: &str) -> bool {
-    [false, true].iter().any(|&decimal_comma| cell_number(cell, decimal_comma).is_some())
+    [false, true]
+        .iter()
+        .any(|&decimal_comma| cell_number(cell, decimal_comma).is_some())
 }
 
 fn is_missing(cell: &str) -> bool {
@@ -182,7 +231,9 @@ fn spelled_otherwise(cell: &str, decimal_comma: bool) -> Option<f64> {
         });
     }
     // Fortran leaves out the letter before an exponent of three digits: 1.0-103.
-    let sign = plain.rfind(['+', '-']).filter(|&at| at > 0 && plain.len() - at == 4 && !plain.contains(['e', 'E']));
+    let sign = plain
+        .rfind(['+', '-'])
+        .filter(|&at| at > 0 && plain.len() - at == 4 && !plain.contains(['e', 'E']));
     if let Some(at) = sign {
         plain.insert(at, 'e');
     }
@@ -205,12 +256,18 @@ pub(super) fn clock_s(text: &str) -> Option<f64> {
         return None;
     }
     let whole = |text: &str, most: u32| {
-        let is_digits = !text.is_empty() && text.len() <= 2 && text.bytes().all(|byte| byte.is_ascii_digit());
-        text.parse::<u32>().ok().filter(|value| is_digits && *value <= most).map(f64::from)
+        let is_digits =
+            !text.is_empty() && text.len() <= 2 && text.bytes().all(|byte| byte.is_ascii_digit());
+        text.parse::<u32>()
+            .ok()
+            .filter(|value| is_digits && *value <= most)
+            .map(f64::from)
     };
     let (hours, minutes) = (whole(hours, 24)?, whole(minutes, 59)?);
     let seconds = match seconds {
-        Some(text) if text.starts_with(|c: char| c.is_ascii_digit()) => text.replace(',', ".").parse::<f64>().ok()?,
+        Some(text) if text.starts_with(|c: char| c.is_ascii_digit()) => {
+            text.replace(',', ".").parse::<f64>().ok()?
+        }
         Some(_) => return None,
         None => 0.0,
     };
@@ -218,7 +275,9 @@ pub(super) fn clock_s(text: &str) -> Option<f64> {
         Some(date) => 86_400.0 * days(date)?,
         None => 0.0,
     };
-    (0.0..61.0).contains(&seconds).then_some(day_s + 3600.0 * hours + 60.0 * minutes + seconds)
+    (0.0..61.0)
+        .contains(&seconds)
+        .then_some(day_s + 3600.0 * hours + 60.0 * minutes + seconds)
 }
 
 /// Days from 1970-01-01 to a date written year first.
@@ -234,8 +293,8 @@ fn days(date: &str) -> Option<f64> {
 
 /// Characters of code page 1252 from 0x80 to 0x9f; the five that it leaves open stay control characters.
 const WINDOWS_1252: [char; 32] = [
-    '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}', '\u{90}', '‘', '’',
-    '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
+    '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}',
+    '\u{90}', '‘', '’', '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
 ];
 
 /// The characters of a text: UTF-8 with a byte order mark or without, UTF-16 with one, or Latin-1 as Windows has it where the bytes are
@@ -266,14 +325,20 @@ fn latin1(byte: u8) -> char {
     }
 }
 
-fn utf16(body: &[u8], word: fn([u8; 2]) -> u16, budget: &ReadingBudget) -> Result<String, VariableFault> {
+fn utf16(
+    body: &[u8],
+    word: fn([u8; 2]) -> u16,
+    budget: &ReadingBudget,
+) -> Result<String, VariableFault> {
     let (pairs, rest) = body.as_chunks::<2>();
     if !rest.is_empty() {
         return Err(VariableFault::cut_off("", body.len() + 2));
     }
     budget.take(pairs.len() as u64, 4, "")?;
     let decoded = char::decode_utf16(pairs.iter().map(|&pair| word(pair)));
-    Ok(decoded.map(|character| character.unwrap_or(char::REPLACEMENT_CHARACTER)).collect())
+    Ok(decoded
+        .map(|character| character.unwrap_or(char::REPLACEMENT_CHARACTER))
+        .collect())
 }
 
 // The lines of a text, whatever they end in.
@@ -286,7 +351,10 @@ pub(super) struct Lines<'t> {
 
 /// The lines of `text`.
 pub(super) fn lines(text: &str) -> Lines<'_> {
-    Lines { rest: Some(text.strip_prefix('\u{feff}').unwrap_or(text)), number: 0 }
+    Lines {
+        rest: Some(text.strip_prefix('\u{feff}').unwrap_or(text)),
+        number: 0,
+    }
 }
 
 impl<'t> Iterator for Lines<'t> {
@@ -307,18 +375,29 @@ impl<'t> Iterator for Lines<'t> {
 
 /// Refuses what is no text: no text of numbers holds a zero byte.
 pub(super) fn refuse_binary(text: &str, expected: &'static str) -> Result<(), VariableFault> {
-    text.find('\0').map_or(Ok(()), |at| Err(no_text(expected, at)))
+    text.find('\0')
+        .map_or(Ok(()), |at| Err(no_text(expected, at)))
 }
 
 fn no_text(expected: &'static str, at: usize) -> VariableFault {
-    VariableFault::format(expected, format!("a file that is no text (byte {at} of it is zero)"))
+    VariableFault::format(
+        expected,
+        format!("a file that is no text (byte {at} of it is zero)"),
+    )
 }
 
 /// The beginning of a text for a message: its first line, at most 40 characters, visible ones only.
 pub(super) fn excerpt(text: &str) -> String {
     // No more of a line is looked at than is shown: it may be as long as the text.
-    let mut line = text.trim_start().chars().take_while(|c| !matches!(c, '\n' | '\r'));
-    let shown: String = line.by_ref().take(40).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    let mut line = text
+        .trim_start()
+        .chars()
+        .take_while(|c| !matches!(c, '\n' | '\r'));
+    let shown: String = line
+        .by_ref()
+        .take(40)
+        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
+        .collect();
     let mut short = shown.trim_end().to_owned();
     if line.next().is_some() {
         short.push('…');
@@ -345,15 +424,28 @@ pub fn sections(text: &str) -> Vec<(usize, &str)> {
         has_rows = !is_heading;
     }
     let ends = starts.iter().skip(1).map(|(_, at)| *at).chain([text.len()]);
-    starts.iter().zip(ends).filter_map(|(&(line, start), end)| Some((line, text.get(start..end)?))).collect()
+    starts
+        .iter()
+        .zip(ends)
+        .filter_map(|(&(line, start), end)| Some((line, text.get(start..end)?)))
+        .collect()
 }
 
 /// Whether no cell of a line is a number, and one holds letters.
 fn is_heading(line: &str) -> bool {
     let strong = ['|', ';', '\t', ','];
     let is_strong = line.contains(strong);
-    let is_between = |c: char| if is_strong { strong.contains(&c) } else { c.is_whitespace() };
-    let mut cells = line.split(is_between).map(str::trim).filter(|cell| !cell.is_empty());
+    let is_between = |c: char| {
+        if is_strong {
+            strong.contains(&c)
+        } else {
+            c.is_whitespace()
+        }
+    };
+    let mut cells = line
+        .split(is_between)
+        .map(str::trim)
+        .filter(|cell| !cell.is_empty());
     let is_number = |cell: &str| cell_number(cell, false).is_some_and(|number| !number.is_nan());
     line.chars().any(char::is_alphabetic) && !cells.any(is_number)
 }
@@ -369,15 +461,24 @@ mod separator_tests {
     #[test]
     fn cells_are_cut_at_their_separator() {
         assert_eq!(cells(Separator::Comma, "1, 2,,"), ["1", " 2", "", ""]);
-        assert_eq!(cells(Separator::Blanks, "  1 \t 2\u{a0}3 "), ["1", "2", "3"]);
+        assert_eq!(
+            cells(Separator::Blanks, "  1 \t 2\u{a0}3 "),
+            ["1", "2", "3"]
+        );
         assert_eq!(cells(Separator::Pipe, " | 1 | 2 |"), [" 1 ", " 2 ", ""]);
         assert_eq!(cells(Separator::Tab, "1\t\t2"), ["1", "", "2"]);
     }
 
     #[test]
     fn quotes_keep_separators_together() {
-        assert_eq!(cells(Separator::Comma, r#""1,5", "a ""b""",c"#), ["1,5", "a \"b\"", "c"]);
-        assert_eq!(cells(Separator::Blanks, r#""omega [rad/s]" "" x"#), ["omega [rad/s]", "", "x"]);
+        assert_eq!(
+            cells(Separator::Comma, r#""1,5", "a ""b""",c"#),
+            ["1,5", "a \"b\"", "c"]
+        );
+        assert_eq!(
+            cells(Separator::Blanks, r#""omega [rad/s]" "" x"#),
+            ["omega [rad/s]", "", "x"]
+        );
     }
 
     #[test]
@@ -420,7 +521,9 @@ mod cell_number_tests {
 
     #[test]
     fn other_words_and_grouped_thousands_are_no_numbers() {
-        for text in ["a", "1 2", "1,5", "0x10", "1.2.3", "e", "d", "--1", "1e", "12:30"] {
+        for text in [
+            "a", "1 2", "1,5", "0x10", "1.2.3", "e", "d", "--1", "1e", "12:30",
+        ] {
             assert_eq!(cell_number(text, false), None, "{text}");
         }
         assert_eq!(cell_number("1.500", true), None);
@@ -454,7 +557,15 @@ mod clock_tests {
         // date -u -d "2026-03-01 12:30:01" +%s
         assert_eq!(clock_s("2026-03-01T12:30:01Z"), Some(1_772_368_201.0));
         assert_eq!(clock_s("2026/03/01 12:30:01"), Some(1_772_368_201.0));
-        for wrong in ["12", "12:61:00", "a:b:c", "1:2:3:4", "12:30:nan", "2026-13-01 12:00:00", ""] {
+        for wrong in [
+            "12",
+            "12:61:00",
+            "a:b:c",
+            "1:2:3:4",
+            "12:30:nan",
+            "2026-13-01 12:00:00",
+            "",
+        ] {
             assert_eq!(clock_s(wrong), None, "{wrong}");
         }
     }
@@ -473,9 +584,15 @@ mod encoding_tests {
         let expected = "δ [°]";
         assert_eq!(read("\u{feff}δ [°]".as_bytes()).unwrap(), expected);
         assert_eq!(read("δ [°]".as_bytes()).unwrap(), expected);
-        let little: Vec<u8> = "\u{feff}δ [°]".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let little: Vec<u8> = "\u{feff}δ [°]"
+            .encode_utf16()
+            .flat_map(u16::to_le_bytes)
+            .collect();
         assert_eq!(read(&little).unwrap(), expected);
-        let big: Vec<u8> = "\u{feff}δ [°]".encode_utf16().flat_map(u16::to_be_bytes).collect();
+        let big: Vec<u8> = "\u{feff}δ [°]"
+            .encode_utf16()
+            .flat_map(u16::to_be_bytes)
+            .collect();
         assert_eq!(read(&big).unwrap(), expected);
         assert_eq!(read(b"[\xb0] \x96").unwrap(), "[°] –");
     }
@@ -483,7 +600,10 @@ mod encoding_tests {
     #[test]
     fn what_is_no_text_is_refused() {
         assert!(matches!(read(b"a\0b"), Err(VariableFault::Format { .. })));
-        assert!(matches!(read(b"\xff\xfea"), Err(VariableFault::CutOff { .. })));
+        assert!(matches!(
+            read(b"\xff\xfea"),
+            Err(VariableFault::CutOff { .. })
+        ));
         let small = decode(b"abc", &ReadingBudget::new(8));
         assert!(matches!(small, Err(VariableFault::TooLarge { .. })));
     }
@@ -502,7 +622,10 @@ mod lines_tests {
     #[test]
     fn a_zero_byte_is_no_text() {
         let fault = refuse_binary("ab\0c", "a table").unwrap_err();
-        assert_eq!(fault.to_string(), "expected a table, found a file that is no text (byte 2 of it is zero)");
+        assert_eq!(
+            fault.to_string(),
+            "expected a table, found a file that is no text (byte 2 of it is zero)"
+        );
     }
 
     #[test]
@@ -520,8 +643,17 @@ mod sections_tests {
     fn a_text_is_cut_where_a_heading_stands_behind_rows() {
         let text = "\nt | P |\n1 | 2 |\n2 | nan |\n\nt | P | Q |\n\nt | P | Q |\n1 | 2 | 3 |\n";
         let found = sections(text);
-        assert_eq!(found, [(1, "\nt | P |\n1 | 2 |\n2 | nan |\n\n"), (6, "t | P | Q |\n\nt | P | Q |\n1 | 2 | 3 |\n")]);
-        assert_eq!(sections("# by hand\na b\n1 2\n# middle\n3 4"), [(1, "# by hand\na b\n1 2\n# middle\n3 4")]);
+        assert_eq!(
+            found,
+            [
+                (1, "\nt | P |\n1 | 2 |\n2 | nan |\n\n"),
+                (6, "t | P | Q |\n\nt | P | Q |\n1 | 2 | 3 |\n")
+            ]
+        );
+        assert_eq!(
+            sections("# by hand\na b\n1 2\n# middle\n3 4"),
+            [(1, "# by hand\na b\n1 2\n# middle\n3 4")]
+        );
         assert_eq!(sections(""), [(1, "")]);
     }
 }

@@ -32,14 +32,25 @@ enum Kind {
 
 /// Numbers the words of a text in columns, each as it first comes, and turns times of the clock into seconds; nothing where the text
 /// has no columns of words beside columns of numbers. Columns have to be told apart by more than blanks.
-pub fn numbered_words(text: &str, budget: &ReadingBudget) -> Result<Option<NumberedText>, VariableFault> {
-    let Some((separator, columns)) = columns(text) else { return Ok(None) };
-    let mut numbering = Numbering { columns, heading: None };
+pub fn numbered_words(
+    text: &str,
+    budget: &ReadingBudget,
+) -> Result<Option<NumberedText>, VariableFault> {
+    let Some((separator, columns)) = columns(text) else {
+        return Ok(None);
+    };
+    let mut numbering = Numbering {
+        columns,
+        heading: None,
+    };
     budget.take(text.len() as u64, 2, "")?;
     let mut numbered = String::with_capacity(text.len());
     for (_, line) in lines(text) {
         budget.work(1, "")?;
-        let cells: Vec<String> = separator.cells(line).map(|cell| cell.trim().to_owned()).collect();
+        let cells: Vec<String> = separator
+            .cells(line)
+            .map(|cell| cell.trim().to_owned())
+            .collect();
         if cells.len() == numbering.columns.len() && comment(line).is_none() {
             numbered.push_str(&numbering.line(cells, separator));
         } else {
@@ -47,7 +58,10 @@ pub fn numbered_words(text: &str, budget: &ReadingBudget) -> Result<Option<Numbe
         }
         numbered.push('\n');
     }
-    Ok(Some(NumberedText { text: numbered, notes: numbering.notes() }))
+    Ok(Some(NumberedText {
+        text: numbered,
+        notes: numbering.notes(),
+    }))
 }
 
 /// A column while it is numbered.
@@ -66,7 +80,10 @@ struct Numbering {
 impl Numbering {
     /// A row with numbers in place of words; the heading as it is.
     fn line(&mut self, cells: Vec<String>, separator: Separator) -> String {
-        let mut numbers = cells.iter().zip(&self.columns).filter(|(_, column)| column.kind == Kind::Numbers);
+        let mut numbers = cells
+            .iter()
+            .zip(&self.columns)
+            .filter(|(_, column)| column.kind == Kind::Numbers);
         let is_row = numbers.all(|(cell, _)| is_number(cell));
         if !is_row {
             self.heading.get_or_insert_with(|| cells.clone());
@@ -81,18 +98,36 @@ impl Numbering {
 
     fn notes(&self) -> Vec<String> {
         let name = |index: usize| {
-            let heading = self.heading.as_ref().and_then(|cells| cells.get(index)).filter(|name| !name.is_empty());
-            heading.map_or_else(|| format!("column {}", index + 1), |name| format!("column \"{name}\""))
+            let heading = self
+                .heading
+                .as_ref()
+                .and_then(|cells| cells.get(index))
+                .filter(|name| !name.is_empty());
+            heading.map_or_else(
+                || format!("column {}", index + 1),
+                |name| format!("column \"{name}\""),
+            )
         };
         let note = |(index, column): (usize, &Column)| match column.kind {
             Kind::Numbers => None,
-            Kind::Clock => Some(format!("{} has times of the clock: taken as seconds from the first", name(index))),
-            Kind::Words if column.words.len() > MOST_WORDS => Some(format!("{} has words: left out", name(index))),
+            Kind::Clock => Some(format!(
+                "{} has times of the clock: taken as seconds from the first",
+                name(index)
+            )),
+            Kind::Words if column.words.len() > MOST_WORDS => {
+                Some(format!("{} has words: left out", name(index)))
+            }
             Kind::Words => {
-                let mut words: Vec<(&usize, &String)> =
-                    column.words.iter().map(|(word, number)| (number, word)).collect();
+                let mut words: Vec<(&usize, &String)> = column
+                    .words
+                    .iter()
+                    .map(|(word, number)| (number, word))
+                    .collect();
                 words.sort_unstable();
-                let shown = words.iter().take(SHOWN).map(|(number, word)| format!("{number} is {word}"));
+                let shown = words
+                    .iter()
+                    .take(SHOWN)
+                    .map(|(number, word)| format!("{number} is {word}"));
                 let more = if words.len() > SHOWN { ", …" } else { "" };
                 Some(format!(
                     "{} has words, which are numbered: {}{more}",
@@ -117,7 +152,9 @@ impl Column {
     /// Seconds from the first time of the column; midnight adds a day.
     fn seconds(&mut self, cell: &str) -> String {
         const DAY_S: f64 = 86_400.0;
-        let Some(mut now) = clock_s(cell) else { return String::new() };
+        let Some(mut now) = clock_s(cell) else {
+            return String::new();
+        };
         let (first, last) = self.clock.unwrap_or((now, now));
         if now < DAY_S && now < last - DAY_S / 2.0 {
             now += DAY_S * ((last - now) / DAY_S).round();
@@ -137,20 +174,39 @@ fn columns(text: &str) -> Option<(Separator, Vec<Column>)> {
         .collect();
     let width = |separator: Separator| {
         let mut widths: BTreeMap<usize, usize> = BTreeMap::new();
-        sample.iter().for_each(|line| *widths.entry(separator.cells(line).count()).or_default() += 1);
-        let (width, count) = widths.into_iter().max_by_key(|(width, count)| (*count, *width))?;
+        sample
+            .iter()
+            .for_each(|line| *widths.entry(separator.cells(line).count()).or_default() += 1);
+        let (width, count) = widths
+            .into_iter()
+            .max_by_key(|(width, count)| (*count, *width))?;
         (width > 2 && 2 * count > sample.len()).then_some((count, width, separator))
     };
-    let separators = Separator::ALL.into_iter().filter(|separator| *separator != Separator::Blanks);
-    let (_, width, separator) = separators.filter_map(width).max_by_key(|(count, width, _)| (*count, *width))?;
+    let separators = Separator::ALL
+        .into_iter()
+        .filter(|separator| *separator != Separator::Blanks);
+    let (_, width, separator) = separators
+        .filter_map(width)
+        .max_by_key(|(count, width, _)| (*count, *width))?;
     let rows: Vec<Vec<String>> = sample
         .iter()
-        .map(|line| separator.cells(line).map(|cell| cell.trim().to_owned()).collect::<Vec<_>>())
+        .map(|line| {
+            separator
+                .cells(line)
+                .map(|cell| cell.trim().to_owned())
+                .collect::<Vec<_>>()
+        })
         .filter(|cells: &Vec<String>| cells.len() == width)
         .collect();
     let kind = |index: usize| {
-        let filled = || rows.iter().map(|row| row[index].as_str()).filter(|cell| !cell.is_empty());
-        let most = |is_it: &dyn Fn(&str) -> bool| 2 * filled().filter(|cell| is_it(cell)).count() > filled().count();
+        let filled = || {
+            rows.iter()
+                .map(|row| row[index].as_str())
+                .filter(|cell| !cell.is_empty())
+        };
+        let most = |is_it: &dyn Fn(&str) -> bool| {
+            2 * filled().filter(|cell| is_it(cell)).count() > filled().count()
+        };
         if filled().next().is_none() || most(&is_number) {
             Kind::Numbers
         } else if most(&|cell| clock_s(cell).is_some()) {
@@ -161,7 +217,11 @@ fn columns(text: &str) -> Option<(Separator, Vec<Column>)> {
     };
     let kinds: Vec<Kind> = (0..width).map(kind).collect();
     let numbers = kinds.iter().filter(|kind| **kind == Kind::Numbers).count();
-    let column = |kind: Kind| Column { kind, words: BTreeMap::new(), clock: None };
+    let column = |kind: Kind| Column {
+        kind,
+        words: BTreeMap::new(),
+        clock: None,
+    };
     (numbers >= 2 && numbers < width).then(|| (separator, kinds.into_iter().map(column).collect()))
 }
 
@@ -170,17 +230,26 @@ fn columns(text: &str) -> Option<(Separator, Vec<Column>)> {
 /// The text with two columns in place of each that holds complex numbers, their headings with "re" and "im" before them; nothing where
 /// there is none. Lines keep their numbers.
 pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String>, VariableFault> {
-    let Some((separator, is_complex)) = complex_columns(text) else { return Ok(None) };
+    let Some((separator, is_complex)) = complex_columns(text) else {
+        return Ok(None);
+    };
     budget.take(text.len() as u64, 3, "")?;
     let mut split = String::with_capacity(2 * text.len());
     for (_, line) in lines(text) {
         budget.work(1, "")?;
-        let cells: Vec<String> = separator.cells(comment(line).unwrap_or(line)).map(|cell| cell.into_owned()).collect();
+        let cells: Vec<String> = separator
+            .cells(comment(line).unwrap_or(line))
+            .map(|cell| cell.into_owned())
+            .collect();
         if cells.len() == is_complex.len() {
-            let parts = cells.iter().zip(&is_complex).flat_map(|(cell, is_complex)| match is_complex {
-                true => two_cells(cell, separator).to_vec(),
-                false => vec![cell.clone()],
-            });
+            let parts =
+                cells
+                    .iter()
+                    .zip(&is_complex)
+                    .flat_map(|(cell, is_complex)| match is_complex {
+                        true => two_cells(cell, separator).to_vec(),
+                        false => vec![cell.clone()],
+                    });
             split.push_str(&separator.line(parts));
         } else {
             split.push_str(line);
@@ -202,11 +271,17 @@ fn complex_columns(text: &str) -> Option<(Separator, Vec<bool>)> {
                 Some(_) => Some(true),
                 None => cell_number(cell, false).map(|_| false),
             };
-            let cells = separator.cells(line).map(|cell| parsed(&cell)).collect::<Option<Vec<bool>>>()?;
+            let cells = separator
+                .cells(line)
+                .map(|cell| parsed(&cell))
+                .collect::<Option<Vec<bool>>>()?;
             (cells.len() > 1 && cells.contains(&true)).then_some((separator, cells))
         })
     };
-    lines(text).filter(|(_, line)| comment(line).is_none()).take(SAMPLE).find_map(|(_, line)| of_line(line))
+    lines(text)
+        .filter(|(_, line)| comment(line).is_none())
+        .take(SAMPLE)
+        .find_map(|(_, line)| of_line(line))
 }
 
 /// Real and imaginary part of a number; two headings of one.
@@ -219,7 +294,11 @@ fn two_cells(cell: &str, separator: Separator) -> [String; 2] {
         Some(number) if number.is_nan() => [cell, cell].map(str::to_owned),
         Some(_) => [cell, "0"].map(str::to_owned),
         None => {
-            let joint = if separator == Separator::Blanks { "_" } else { " " };
+            let joint = if separator == Separator::Blanks {
+                "_"
+            } else {
+                " "
+            };
             ["re", "im"].map(|part| format!("{part}{joint}{cell}"))
         }
     }
@@ -227,9 +306,18 @@ fn two_cells(cell: &str, separator: Separator) -> [String; 2] {
 
 /// Real and imaginary part of "(1.5-2j)", "1.5 + 2i", "2e-3j", "(1+-2j)".
 fn parts(cell: &str) -> Option<[String; 2]> {
-    let cell: String = cell.chars().filter(|letter| !letter.is_whitespace()).collect();
-    let inner = cell.strip_prefix('(').and_then(|cell| cell.strip_suffix(')')).unwrap_or(&cell);
-    let inner = inner.strip_suffix(['i', 'j'])?.trim_end_matches('*').replace("+-", "-");
+    let cell: String = cell
+        .chars()
+        .filter(|letter| !letter.is_whitespace())
+        .collect();
+    let inner = cell
+        .strip_prefix('(')
+        .and_then(|cell| cell.strip_suffix(')'))
+        .unwrap_or(&cell);
+    let inner = inner
+        .strip_suffix(['i', 'j'])?
+        .trim_end_matches('*')
+        .replace("+-", "-");
     let is_sign = |(at, letter): &(usize, char)| {
         *at > 0 && matches!(letter, '+' | '-') && !inner[..*at].ends_with(['e', 'E', 'd', 'D'])
     };
@@ -238,7 +326,9 @@ fn parts(cell: &str) -> Option<[String; 2]> {
         None => ("0", inner.as_str()),
     };
     let im = im.trim_start_matches('+');
-    let is_number = |text: &str| !text.is_empty() && cell_number(text, false).is_some_and(|number| !number.is_nan());
+    let is_number = |text: &str| {
+        !text.is_empty() && cell_number(text, false).is_some_and(|number| !number.is_nan())
+    };
     (is_number(re) && is_number(im)).then(|| [re, im].map(str::to_owned))
 }
 
@@ -255,8 +345,14 @@ mod tests {
     fn words_become_numbers_in_the_order_in_which_they_come() {
         let text = "t,mode,P,Q\n0,SAS,1,2\n0.1,SAS,3,4\n0.2,\"ATT, on\",5,6\n0.3,SAS,7,8\n";
         let found = numbered(text).unwrap();
-        assert_eq!(found.text, "t,mode,P,Q\n0,1,1,2\n0.1,1,3,4\n0.2,2,5,6\n0.3,1,7,8\n\n");
-        assert_eq!(found.notes, ["column \"mode\" has words, which are numbered: 1 is SAS, 2 is ATT, on"]);
+        assert_eq!(
+            found.text,
+            "t,mode,P,Q\n0,1,1,2\n0.1,1,3,4\n0.2,2,5,6\n0.3,1,7,8\n\n"
+        );
+        assert_eq!(
+            found.notes,
+            ["column \"mode\" has words, which are numbered: 1 is SAS, 2 is ATT, on"]
+        );
         let table = read_table(&found.text, &ReadingBudget::new(1 << 20)).unwrap();
         assert_eq!(table.columns[1], [1.0, 1.0, 2.0, 1.0]);
     }
@@ -267,14 +363,23 @@ mod tests {
         let found = numbered(text).unwrap();
         let table = read_table(&found.text, &ReadingBudget::new(1 << 20)).unwrap();
         // Nanoseconds were written.
-        assert!(table.columns[0].iter().zip([0.0, 0.05, 0.1, 0.15]).all(|(a, b)| (a - b).abs() < 1e-9), "{table:?}");
+        assert!(
+            table.columns[0]
+                .iter()
+                .zip([0.0, 0.05, 0.1, 0.15])
+                .all(|(a, b)| (a - b).abs() < 1e-9),
+            "{table:?}"
+        );
         assert_eq!(table.columns[1], [1.5; 4]);
     }
 
     #[test]
     fn a_table_of_numbers_and_a_text_are_left_alone() {
         assert_eq!(numbered("t,P,Q\n0,1,2\n1,2,3\n"), None);
-        assert_eq!(numbered("Dear sir,\nthis is, as you say, a text,\nof words\n"), None);
+        assert_eq!(
+            numbered("Dear sir,\nthis is, as you say, a text,\nof words\n"),
+            None
+        );
         assert_eq!(numbered(""), None);
     }
 }
@@ -290,9 +395,15 @@ mod complex_tests {
     #[test]
     fn complex_numbers_of_python_and_matlab_become_two_columns() {
         let text = "omega,H\n1,(1.5-2j)\n2,3e-2+4e+1i\n3,-2j\n4,7\n";
-        assert_eq!(split(text).unwrap(), "omega,re H,im H\n1,1.5,-2\n2,3e-2,4e+1\n3,0,-2\n4,7,0\n");
+        assert_eq!(
+            split(text).unwrap(),
+            "omega,re H,im H\n1,1.5,-2\n2,3e-2,4e+1\n3,0,-2\n4,7,0\n"
+        );
         let blanks = "# w H\n 1.0e+00 (1.0e+00+-2.0e+00j)\n";
-        assert_eq!(split(blanks).unwrap(), "w re_H im_H\n1.0e+00 1.0e+00 -2.0e+00\n");
+        assert_eq!(
+            split(blanks).unwrap(),
+            "w re_H im_H\n1.0e+00 1.0e+00 -2.0e+00\n"
+        );
     }
 
     #[test]

@@ -15,10 +15,20 @@ fn models_that_are_not_there_are_left_out_and_the_others_keep_their_order() {
     let missing = ModelId::new(ids[0].condition, BundleKind::Physics, "no such model");
     let band = Band::new(0.5, 12.0).unwrap();
     let models = vec![ids[0].clone(), missing, ids[1].clone()];
-    let job = AcrossJob { dataset: dataset.into(), models, couplings: None, grid: (band, 5) };
+    let job = AcrossJob {
+        dataset: dataset.into(),
+        models,
+        couplings: None,
+        grid: (band, 5),
+    };
     let curves = job.run(&mut (), &Unobserved).unwrap();
     let found: Vec<&ModelId> = curves.responses.iter().map(|(id, _)| id).collect();
     assert_eq!(found, [&ids[0], &ids[1]]);
     let pair = job.dataset.measuring_pairs().marked().next().unwrap();
-    assert!(curves.responses.iter().all(|(_, response)| response.curve(pair).len() == 5));
+    assert!(
+        curves
+            .responses
+            .iter()
+            .all(|(_, response)| response.curve(pair).len() == 5)
+    );
 }

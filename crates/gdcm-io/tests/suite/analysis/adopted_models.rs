@@ -13,8 +13,14 @@ fn study() -> Study {
 /// The identified models of condition 1 under other names.
 fn others(study: &Study) -> Arc<AdoptedModels> {
     let models = study.dataset.conditions()[0].bundle(BundleKind::Identified);
-    let renamed = |model: &Model| Model { name: format!("{} again", model.name), ..model.clone() };
-    Arc::new(AdoptedModels { models: models.iter().map(renamed).collect(), records: Vec::new() })
+    let renamed = |model: &Model| Model {
+        name: format!("{} again", model.name),
+        ..model.clone()
+    };
+    Arc::new(AdoptedModels {
+        models: models.iter().map(renamed).collect(),
+        records: Vec::new(),
+    })
 }
 
 #[test]
@@ -22,15 +28,39 @@ fn models_are_taken_and_returned_and_decisions_about_absent_ones_go() {
     let mut study = study();
     let before = study.clone();
     let id = ConditionId(1);
-    let first = study.dataset.conditions()[0].bundle(BundleKind::Identified)[0].name.clone();
-    study.apply(&Edit::Pin(ModelId::new(id, BundleKind::Identified, &first))).unwrap();
-    study.apply(&Edit::KeepVariant { name: "pinned".into() }).unwrap();
+    let first = study.dataset.conditions()[0].bundle(BundleKind::Identified)[0]
+        .name
+        .clone();
+    study
+        .apply(&Edit::Pin(ModelId::new(id, BundleKind::Identified, &first)))
+        .unwrap();
+    study
+        .apply(&Edit::KeepVariant {
+            name: "pinned".into(),
+        })
+        .unwrap();
     let taken = others(&study);
-    study.apply(&Edit::TakeModels(vec![(id, Arc::clone(&taken))])).unwrap();
-    assert_eq!(study.dataset.condition(id).unwrap().bundle(BundleKind::Identified), taken.models);
-    assert_eq!(study.choice(id).identified.pinned, None, "the pinned model is gone");
+    study
+        .apply(&Edit::TakeModels(vec![(id, Arc::clone(&taken))]))
+        .unwrap();
+    assert_eq!(
+        study
+            .dataset
+            .condition(id)
+            .unwrap()
+            .bundle(BundleKind::Identified),
+        taken.models
+    );
+    assert_eq!(
+        study.choice(id).identified.pinned,
+        None,
+        "the pinned model is gone"
+    );
     assert_eq!(study.variants[0].choices[&id].identified.pinned, None);
-    assert!(Arc::ptr_eq(study.file_dataset(), &before.dataset), "the file's dataset is known still");
+    assert!(
+        Arc::ptr_eq(study.file_dataset(), &before.dataset),
+        "the file's dataset is known still"
+    );
     study.apply(&Edit::ReturnModels { condition: id }).unwrap();
     assert!(Arc::ptr_eq(&study.dataset, &before.dataset));
 }
@@ -39,13 +69,28 @@ fn models_are_taken_and_returned_and_decisions_about_absent_ones_go() {
 fn models_of_another_shape_are_refused_and_nothing_is_taken() {
     let mut study = study();
     let before = study.clone();
-    let nothing = Arc::new(AdoptedModels { models: Vec::new(), records: Vec::new() });
+    let nothing = Arc::new(AdoptedModels {
+        models: Vec::new(),
+        records: Vec::new(),
+    });
     let good = (ConditionId(1), others(&study));
-    let refusal = study.apply(&Edit::TakeModels(vec![good, (ConditionId(2), nothing)])).unwrap_err();
-    assert!(refusal.to_string().starts_with("condition 2: "), "{refusal}");
+    let refusal = study
+        .apply(&Edit::TakeModels(vec![good, (ConditionId(2), nothing)]))
+        .unwrap_err();
+    assert!(
+        refusal.to_string().starts_with("condition 2: "),
+        "{refusal}"
+    );
     assert_eq!(study, before);
-    let absent = study.apply(&Edit::TakeModels(vec![(ConditionId(99), others(&before))])).unwrap_err();
-    assert_eq!(absent, EditRefusal::NoCondition { condition: ConditionId(99) });
+    let absent = study
+        .apply(&Edit::TakeModels(vec![(ConditionId(99), others(&before))]))
+        .unwrap_err();
+    assert_eq!(
+        absent,
+        EditRefusal::NoCondition {
+            condition: ConditionId(99)
+        }
+    );
 }
 
 #[test]
@@ -54,8 +99,17 @@ fn a_saved_study_and_a_reloaded_dataset_keep_the_models_taken() {
     let loaded = embedded_example().unwrap();
     let mut study = Study::new(loaded.dataset.clone());
     let taken = others(&study);
-    study.apply(&Edit::TakeModels(vec![(ConditionId(1), Arc::clone(&taken))])).unwrap();
-    let pinned = ModelId::new(ConditionId(1), BundleKind::Identified, &taken.models[0].name);
+    study
+        .apply(&Edit::TakeModels(vec![(
+            ConditionId(1),
+            Arc::clone(&taken),
+        )]))
+        .unwrap();
+    let pinned = ModelId::new(
+        ConditionId(1),
+        BundleKind::Identified,
+        &taken.models[0].name,
+    );
     study.apply(&Edit::Pin(pinned)).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.gdcm-study.json");

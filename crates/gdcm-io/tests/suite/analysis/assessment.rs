@@ -2,7 +2,9 @@
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::{SCHEDULE_KINDS, ScheduleKind};
-use gdcm_study::study::{AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentJob, AssessmentTable, Job};
+use gdcm_study::study::{
+    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentJob, AssessmentTable, Job,
+};
 use std::sync::Arc;
 
 use super::*;
@@ -29,31 +31,65 @@ fn the_assessment_of_the_paper_is_that_of_the_analysis() {
         };
         assert_eq!((&assessed.changes, assessed.missing.len()), (changes, 0));
     }
-    let job = AssessmentJob { analysis: Arc::new(analysis.clone()).into(), choice: PAPER };
+    let job = AssessmentJob {
+        analysis: Arc::new(analysis.clone()).into(),
+        choice: PAPER,
+    };
     assert_eq!(*job.run(&mut (), &Unobserved).unwrap(), table);
 }
 
 #[test]
 fn each_conditions_own_optimum_of_the_representative_is_what_its_result_says() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
-    let own = AssessmentChoice { model: AssessedModel::Representative, correction: AssessedCorrection::Own, ..PAPER };
+    let own = AssessmentChoice {
+        model: AssessedModel::Representative,
+        correction: AssessedCorrection::Own,
+        ..PAPER
+    };
     let table = AssessmentTable::of(analysis, own);
-    assert_eq!((table.conditions.len(), table.left_out.len()), (11, 0), "a rejected nominal model is not asked for");
+    assert_eq!(
+        (table.conditions.len(), table.left_out.len()),
+        (11, 0),
+        "a rejected nominal model is not asked for"
+    );
     for assessed in &table.conditions {
         let result = analysis.condition(assessed.condition).unwrap();
         assert_eq!(assessed.changes, *result.cost);
-        assert_eq!(assessed.model, result.representative_name(BundleKind::Physics));
+        assert_eq!(
+            assessed.model,
+            result.representative_name(BundleKind::Physics)
+        );
     }
 }
 
 #[test]
 fn the_mean_weighs_single_frequencies_that_the_median_leaves_out() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
-    let mean = AssessmentTable::of(analysis, AssessmentChoice { average: CostAverage::Mean, ..PAPER });
-    let (condition, pair) = (ConditionId(1), analysis.study.dataset.find_pair("Q", "LON").unwrap());
+    let mean = AssessmentTable::of(
+        analysis,
+        AssessmentChoice {
+            average: CostAverage::Mean,
+            ..PAPER
+        },
+    );
+    let (condition, pair) = (
+        ConditionId(1),
+        analysis.study.dataset.find_pair("Q", "LON").unwrap(),
+    );
     let found = mean.change(condition, pair).unwrap().uncorrected;
-    let mismatch = analysis.condition(condition).unwrap().comparison.nominal.mismatch[pair].clone().unwrap();
-    let squares: f64 = mismatch.magnitude_db.iter().map(|error| error * error).sum();
+    let mismatch = analysis
+        .condition(condition)
+        .unwrap()
+        .comparison
+        .nominal
+        .mismatch[pair]
+        .clone()
+        .unwrap();
+    let squares: f64 = mismatch
+        .magnitude_db
+        .iter()
+        .map(|error| error * error)
+        .sum();
     // M4 written out; the same sum.
     assert!((found.magnitude - 20.0 * squares / mismatch.magnitude_db.len() as f64).abs() < 1e-9);
 }
@@ -64,32 +100,60 @@ fn a_sentence_sums_an_assessment_up() {
     let dataset = &analysis.study.dataset;
     let table = AssessmentTable::of(analysis, PAPER);
     let summary = table.summary(dataset.on_axis());
-    assert_eq!(summary.compared, 50, "five responses in each of ten conditions");
+    assert_eq!(
+        summary.compared, 50,
+        "five responses in each of ten conditions"
+    );
     let (condition, pair, change) = summary.worst.unwrap();
     assert_eq!(table.change(condition, pair).unwrap().total(), change);
     let changes = || {
-        table.conditions.iter().flat_map(|of| dataset.on_axis().marked().map(|pair| of.changes[pair].unwrap().total()))
+        table.conditions.iter().flat_map(|of| {
+            dataset
+                .on_axis()
+                .marked()
+                .map(|pair| of.changes[pair].unwrap().total())
+        })
     };
     assert!(changes().all(|other| other <= change));
-    assert_eq!(changes().filter(|change| *change < 0.0).count(), summary.better);
+    assert_eq!(
+        changes().filter(|change| *change < 0.0).count(),
+        summary.better
+    );
     let words = summary.words(dataset);
     assert!(
-        words.starts_with(&format!("better in {} of 50, worst {}", summary.better, dataset.pair_name(pair))),
+        words.starts_with(&format!(
+            "better in {} of 50, worst {}",
+            summary.better,
+            dataset.pair_name(pair)
+        )),
         "{words}"
     );
     let nothing = table.summary(&dataset.on_axis().map(|_, _| false));
-    assert_eq!((nothing.compared, nothing.words(dataset).as_str()), (0, "nothing to assess"));
+    assert_eq!(
+        (nothing.compared, nothing.words(dataset).as_str()),
+        (0, "nothing to assess")
+    );
 }
 
 #[test]
 fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
     let (evidence, scheduled) = (analysis.compare_forms().unwrap(), analysis.scheduled());
-    assert_eq!((scheduled.len(), evidence.airspeeds_kt.len(), evidence.kinds.len()), (11, 11, SCHEDULE_KINDS.len()));
+    assert_eq!(
+        (
+            scheduled.len(),
+            evidence.airspeeds_kt.len(),
+            evidence.kinds.len()
+        ),
+        (11, 11, SCHEDULE_KINDS.len())
+    );
     let schedule = analysis.schedule.as_ref().unwrap();
     let of_kind = evidence.of(schedule.settings.kind).unwrap();
     for (place, id) in scheduled.iter().enumerate() {
-        let (own, at) = (&analysis.condition(*id).unwrap().correction, schedule.at(evidence.airspeeds_kt[place]));
+        let (own, at) = (
+            &analysis.condition(*id).unwrap().correction,
+            schedule.at(evidence.airspeeds_kt[place]),
+        );
         for pair in analysis.study.dataset.on_axis().marked() {
             let residual = of_kind.pairs[pair].residuals[place].unwrap();
             let (own, scheduled) = (own.net_gain(pair), at.net_gain(pair));
@@ -97,10 +161,24 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
             assert!((residual.percent - 100.0 * (own / scheduled - 1.0)).abs() < 1e-11);
         }
     }
-    let on_axis = || analysis.study.dataset.on_axis().marked().collect::<Vec<_>>();
-    let errors = evidence.kinds.iter().map(|kind| kind.left_out_rms_ln(on_axis()).unwrap()).collect::<Vec<f64>>();
+    let on_axis = || {
+        analysis
+            .study
+            .dataset
+            .on_axis()
+            .marked()
+            .collect::<Vec<_>>()
+    };
+    let errors = evidence
+        .kinds
+        .iter()
+        .map(|kind| kind.left_out_rms_ln(on_axis()).unwrap())
+        .collect::<Vec<f64>>();
     // The example's deficits change by tens of percent over airspeed: a constant foresees them worst.
-    assert!(errors[1..].iter().all(|error| *error < errors[0]), "{errors:?}");
+    assert!(
+        errors[1..].iter().all(|error| *error < errors[0]),
+        "{errors:?}"
+    );
 }
 
 #[test]
@@ -119,25 +197,60 @@ fn delays_are_scheduled_within_the_bounds_of_their_conditions_where_that_is_aske
         let airspeed_kt = result.condition.flight_state().airspeed_kt;
         let at = schedule.at(airspeed_kt);
         // Of two conditions of one airspeed the mean.
-        let upper_s = schedule.delays.as_ref().unwrap().upper_s.at(&schedule.airspeeds, airspeed_kt);
+        let upper_s = schedule
+            .delays
+            .as_ref()
+            .unwrap()
+            .upper_s
+            .at(&schedule.airspeeds, airspeed_kt);
         let clusters = &schedule.airspeeds.clusters;
-        let is_alone = clusters.iter().any(|cluster| cluster.len() == 1 && on.scheduled()[cluster[0]] == id);
+        let is_alone = clusters
+            .iter()
+            .any(|cluster| cluster.len() == 1 && on.scheduled()[cluster[0]] == id);
         assert!(!is_alone || upper_s == result.delay_upper_s());
         for delay_s in at.input_delays_s.iter().chain(&at.output_delays_s) {
-            assert!((0.0..=upper_s).contains(delay_s), "{delay_s} in condition {id}");
+            assert!(
+                (0.0..=upper_s).contains(delay_s),
+                "{delay_s} in condition {id}"
+            );
             delayed += usize::from(*delay_s > 0.0);
         }
-        assert_eq!(off.schedule.as_ref().unwrap().at(60.0).output_delays_s, [0.0; 6]);
+        assert_eq!(
+            off.schedule.as_ref().unwrap().at(60.0).output_delays_s,
+            [0.0; 6]
+        );
     }
     assert!(delayed > 0);
-    assert_ne!(on.assessment, off.assessment, "the scheduled correction is assessed with its delays");
+    assert_ne!(
+        on.assessment, off.assessment,
+        "the scheduled correction is assessed with its delays"
+    );
     let all = on.conditions.keys().copied().collect();
-    let [written, without] = [&on, &off].map(|analysis| corrections(analysis, "", &all)["schedule"].clone());
-    assert_eq!(list(&written["delays_s"]["upper_s"]).len(), list(&written["table"]).len());
+    let [written, without] =
+        [&on, &off].map(|analysis| corrections(analysis, "", &all)["schedule"].clone());
+    assert_eq!(
+        list(&written["delays_s"]["upper_s"]).len(),
+        list(&written["table"]).len()
+    );
     for row in list(&written["table"]) {
         let at = schedule.at(number(&row["airspeed_kt"]));
-        let delays_s = |side: &str| row["delays_s"][side].as_object().unwrap().values().map(number).collect::<Vec<_>>();
-        assert_eq!((delays_s("inputs"), delays_s("outputs")), (at.input_delays_s, at.output_delays_s));
+        let delays_s = |side: &str| {
+            row["delays_s"][side]
+                .as_object()
+                .unwrap()
+                .values()
+                .map(number)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(
+            (delays_s("inputs"), delays_s("outputs")),
+            (at.input_delays_s, at.output_delays_s)
+        );
     }
-    assert!(without["delays_s"].is_null() && list(&without["table"]).iter().all(|row| row.get("delays_s").is_none()));
+    assert!(
+        without["delays_s"].is_null()
+            && list(&without["table"])
+                .iter()
+                .all(|row| row.get("delays_s").is_none())
+    );
 }

@@ -105,10 +105,22 @@ impl Population {
         let common = draws(self.responses, MODEL_ERROR * self.shared.sqrt(), state);
         let mut identified = Vec::new();
         for _ in 0..self.identified_models {
-            let own = draws(self.responses, MODEL_ERROR * (1.0 - self.shared).sqrt(), state);
-            identified.push((0..self.responses).map(|k| TRUTH + flown[k] + common[k] + own[k]).collect());
+            let own = draws(
+                self.responses,
+                MODEL_ERROR * (1.0 - self.shared).sqrt(),
+                state,
+            );
+            identified.push(
+                (0..self.responses)
+                    .map(|k| TRUTH + flown[k] + common[k] + own[k])
+                    .collect(),
+            );
         }
-        ConditionDraw { physics, identified, flown }
+        ConditionDraw {
+            physics,
+            identified,
+            flown,
+        }
     }
 
     /// Coverage over at least so many net gains, the same for the same seed.
@@ -118,7 +130,8 @@ impl Population {
         // A hundred conditions share their identification parts in each study.
         while coverage.net_gains < net_gains {
             let conditions = (net_gains / self.responses).min(100);
-            let draws: Vec<ConditionDraw> = (0..conditions).map(|_| self.draw(&mut state)).collect();
+            let draws: Vec<ConditionDraw> =
+                (0..conditions).map(|_| self.draw(&mut state)).collect();
             let mut study = study_of(&dataset(&draws, self.responses));
             set(&mut study, setting::POINTS.to(5));
             set(&mut study, setting::POOLING.to(self.prior_degrees));
@@ -135,7 +148,13 @@ fn draws(count: usize, deviation: f64, state: &mut u64) -> Vec<f64> {
 }
 
 fn diagonal(values: &[f64]) -> Vec<Vec<f64>> {
-    (0..values.len()).map(|row| (0..values.len()).map(|k| if k == row { values[row] } else { 0.0 }).collect()).collect()
+    (0..values.len())
+        .map(|row| {
+            (0..values.len())
+                .map(|k| if k == row { values[row] } else { 0.0 })
+                .collect()
+        })
+        .collect()
 }
 
 /// One first-order lag for each response, times the factor of its logarithm.
@@ -155,10 +174,16 @@ fn dataset(draws: &[ConditionDraw], responses: usize) -> Value {
             model["role"] = if number == 0 { "nominal" } else { "perturbed" }.into();
             physics.push(model);
         }
-        let identified: Vec<Value> =
-            draw.identified.iter().enumerate().map(|(number, row)| model(&format!("i{number}"), row)).collect();
-        conditions.push(json!({"id": place, "name": format!("draw {place}"), "airspeed_kt": 40 + 2 * place,
-            "physics_models": physics, "identified_models": identified}));
+        let identified: Vec<Value> = draw
+            .identified
+            .iter()
+            .enumerate()
+            .map(|(number, row)| model(&format!("i{number}"), row))
+            .collect();
+        conditions.push(
+            json!({"id": place, "name": format!("draw {place}"), "airspeed_kt": 40 + 2 * place,
+            "physics_models": physics, "identified_models": identified}),
+        );
     }
     let mut inputs = Vec::new();
     let mut outputs = Vec::new();
@@ -176,9 +201,15 @@ impl Coverage {
     fn count(&mut self, draws: &[ConditionDraw], analysis: &Analysis, found: &Uncertainty) {
         for (place, draw) in draws.iter().enumerate() {
             let id = ConditionId(place as i64);
-            let physics = analysis.condition(id).unwrap().representative(BundleKind::Physics).model;
+            let physics = analysis
+                .condition(id)
+                .unwrap()
+                .representative(BundleKind::Physics)
+                .model;
             for (response, flown) in draw.flown.iter().enumerate() {
-                let bar = found.bar(id, Scalar::NetGain(Pair::new(response, response))).unwrap();
+                let bar = found
+                    .bar(id, Scalar::NetGain(Pair::new(response, response)))
+                    .unwrap();
                 self.count_bar(bar, TRUTH + flown - draw.physics[physics][response]);
             }
         }
@@ -235,25 +266,54 @@ fn binomial_range(expected: f64) -> RangeInclusive<f64> {
 fn assert_coverage(population: Population, fraction: f64, width_ratio: f64) {
     let found = population.coverage(FEW, SEED);
     let range = binomial_range(fraction);
-    assert!(range.contains(&found.fraction()), "{} of {FEW}: not within {range:?}", found.covered);
+    assert!(
+        range.contains(&found.fraction()),
+        "{} of {FEW}: not within {range:?}",
+        found.covered
+    );
     // The rms of 800 errors has a relative standard deviation of 2.5 %; four of them.
-    assert!((found.width_ratio() / width_ratio - 1.0).abs() < 0.1, "{} instead of {width_ratio}", found.width_ratio());
+    assert!(
+        (found.width_ratio() / width_ratio - 1.0).abs() < 0.1,
+        "{} instead of {width_ratio}",
+        found.width_ratio()
+    );
 }
 
 #[test]
 fn bars_of_three_independent_models_are_wide() {
     assert_coverage(THREE_INDEPENDENT, 0.999, 2.89);
-    assert_coverage(Population { trim: 0.5, ..THREE_INDEPENDENT }, 0.994, 2.54);
+    assert_coverage(
+        Population {
+            trim: 0.5,
+            ..THREE_INDEPENDENT
+        },
+        0.994,
+        2.54,
+    );
 }
 
 #[test]
 fn bars_hold_their_level_where_models_share_half_of_their_error() {
-    assert_coverage(Population { shared: 0.5, ..THREE_INDEPENDENT }, 0.932, 1.84);
+    assert_coverage(
+        Population {
+            shared: 0.5,
+            ..THREE_INDEPENDENT
+        },
+        0.932,
+        1.84,
+    );
 }
 
 #[test]
 fn bars_hold_their_level_where_the_trim_makes_most_of_the_error() {
-    assert_coverage(Population { trim: 4.0, ..THREE_INDEPENDENT }, 0.902, 1.78);
+    assert_coverage(
+        Population {
+            trim: 4.0,
+            ..THREE_INDEPENDENT
+        },
+        0.902,
+        1.78,
+    );
 }
 
 fn shared_error_line(population: Population) -> String {
@@ -273,8 +333,17 @@ fn measured_lines() -> Vec<String> {
     let mut lines = Vec::new();
     for identified_models in [2, 3, 5, 10] {
         for responses in [1, 4] {
-            let found = Population { identified_models, responses, ..THREE_INDEPENDENT }.coverage(MANY, SEED);
-            let [error, spread, quantile] = [found.representative_error(), found.spread(), found.mean(found.quantiles)];
+            let found = Population {
+                identified_models,
+                responses,
+                ..THREE_INDEPENDENT
+            }
+            .coverage(MANY, SEED);
+            let [error, spread, quantile] = [
+                found.representative_error(),
+                found.spread(),
+                found.mean(found.quantiles),
+            ];
             let [width, covered] = [found.width_ratio(), 100.0 * found.fraction()];
             lines.push(format!(
                 "| {identified_models} | {responses} | {error:.2} | {spread:.2} | {quantile:.2} | {width:.2} | {covered:.1} % |"
@@ -282,21 +351,53 @@ fn measured_lines() -> Vec<String> {
         }
     }
     for shared in [0.0, 0.25, 0.5, 0.75] {
-        lines.push(shared_error_line(Population { shared, ..THREE_INDEPENDENT }));
+        lines.push(shared_error_line(Population {
+            shared,
+            ..THREE_INDEPENDENT
+        }));
     }
     for identified_models in [2, 5, 10] {
-        lines.push(shared_error_line(Population { identified_models, shared: 0.5, ..THREE_INDEPENDENT }));
+        lines.push(shared_error_line(Population {
+            identified_models,
+            shared: 0.5,
+            ..THREE_INDEPENDENT
+        }));
     }
     for prior_degrees in [0.0, 4.0, 100.0] {
-        let found = Population { prior_degrees, ..THREE_INDEPENDENT }.coverage(MANY, SEED);
-        let [quantile, width, covered] = [found.mean(found.quantiles), found.width_ratio(), 100.0 * found.fraction()];
-        lines.push(format!("| {prior_degrees} | {quantile:.2} | {width:.2} | {covered:.1} % |"));
+        let found = Population {
+            prior_degrees,
+            ..THREE_INDEPENDENT
+        }
+        .coverage(MANY, SEED);
+        let [quantile, width, covered] = [
+            found.mean(found.quantiles),
+            found.width_ratio(),
+            100.0 * found.fraction(),
+        ];
+        lines.push(format!(
+            "| {prior_degrees} | {quantile:.2} | {width:.2} | {covered:.1} % |"
+        ));
     }
     for trim in [0.5, 1.0, 1.5, 2.0, 4.0] {
-        let found = Population { trim, ..THREE_INDEPENDENT }.coverage(MANY, SEED);
-        let at_nominal = Population { trim, flown: FlownTrim::Nominal, ..THREE_INDEPENDENT }.coverage(MANY, SEED);
-        let [width, covered, nominal] = [found.width_ratio(), 100.0 * found.fraction(), 100.0 * at_nominal.fraction()];
-        lines.push(format!("| {trim:.1} | {width:.2} | {covered:.1} % | {nominal:.1} % |"));
+        let found = Population {
+            trim,
+            ..THREE_INDEPENDENT
+        }
+        .coverage(MANY, SEED);
+        let at_nominal = Population {
+            trim,
+            flown: FlownTrim::Nominal,
+            ..THREE_INDEPENDENT
+        }
+        .coverage(MANY, SEED);
+        let [width, covered, nominal] = [
+            found.width_ratio(),
+            100.0 * found.fraction(),
+            100.0 * at_nominal.fraction(),
+        ];
+        lines.push(format!(
+            "| {trim:.1} | {width:.2} | {covered:.1} % | {nominal:.1} % |"
+        ));
     }
     lines
 }
@@ -304,11 +405,18 @@ fn measured_lines() -> Vec<String> {
 #[test]
 #[ignore = "the tables of docs/uncertainty.md take a minute"]
 fn tables() {
-    let page = std::fs::read_to_string(crate::program_folder().join("docs/uncertainty.md")).unwrap();
+    let page =
+        std::fs::read_to_string(crate::program_folder().join("docs/uncertainty.md")).unwrap();
     let lines = measured_lines();
     for line in &lines {
         println!("{line}");
     }
-    let missing: Vec<&String> = lines.iter().filter(|line| !page.contains(line.as_str())).collect();
-    assert!(missing.is_empty(), "not in docs/uncertainty.md: {missing:#?}");
+    let missing: Vec<&String> = lines
+        .iter()
+        .filter(|line| !page.contains(line.as_str()))
+        .collect();
+    assert!(
+        missing.is_empty(),
+        "not in docs/uncertainty.md: {missing:#?}"
+    );
 }

@@ -4,7 +4,8 @@ use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::CostAverage;
 use gdcm_model::dataset::ModelId;
 use gdcm_study::study::{
-    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Derivation, ExplainTarget, derivation,
+    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, Derivation,
+    ExplainTarget, derivation,
 };
 
 use super::*;
@@ -22,7 +23,10 @@ fn pair() -> Pair {
 #[track_caller]
 fn told(asked: ExplainTarget) -> Derivation {
     let found = derivation(analysis(), &asked).unwrap_or_else(|| panic!("{asked:?}"));
-    assert!(!found.title.is_empty() && !found.equation.is_empty() && !found.rests_on.is_empty(), "{found:?}");
+    assert!(
+        !found.title.is_empty() && !found.equation.is_empty() && !found.rests_on.is_empty(),
+        "{found:?}"
+    );
     assert!(found.section.starts_with('M'), "{found:?}");
     found
 }
@@ -30,7 +34,11 @@ fn told(asked: ExplainTarget) -> Derivation {
 /// The last number of a step, units and words after it apart.
 fn last_number(step: &str) -> f64 {
     let text = step.rsplit(" = ").next().unwrap().replace('−', "-");
-    text.split_whitespace().next().unwrap().parse().unwrap_or_else(|_| panic!("{step}"))
+    text.split_whitespace()
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap_or_else(|_| panic!("{step}"))
 }
 
 /// Asserts that a figure is `value`, and that its last step ends in it, to five digits.
@@ -39,18 +47,34 @@ fn assert_told(asked: ExplainTarget, value: f64) -> Derivation {
     let found = told(asked);
     assert_eq!(found.value, value, "{found:?}");
     let last = last_number(found.with_numbers.last().unwrap());
-    assert!((last - value).abs() <= 5.1e-5 * value.abs(), "{last} of {value}: {found:?}");
+    assert!(
+        (last - value).abs() <= 5.1e-5 * value.abs(),
+        "{last} of {value}: {found:?}"
+    );
     found
 }
 
 #[test]
 fn g_and_d_are_told_with_their_models_and_medians() {
     let result = analysis().condition(CONDITION).unwrap();
-    let gain = assert_told(ExplainTarget::DeltaGain(CONDITION, pair()), result.comparison.delta.gain[pair()].unwrap());
-    assert!(gain.with_numbers[0].contains("the mean of the middle two of 200 values from"), "{gain:?}");
-    assert_eq!((gain.title.as_str(), gain.section), ("G of LON → Q, condition 3", "M6, eq. (5)"));
+    let gain = assert_told(
+        ExplainTarget::DeltaGain(CONDITION, pair()),
+        result.comparison.delta.gain[pair()].unwrap(),
+    );
+    assert!(
+        gain.with_numbers[0].contains("the mean of the middle two of 200 values from"),
+        "{gain:?}"
+    );
+    assert_eq!(
+        (gain.title.as_str(), gain.section),
+        ("G of LON → Q, condition 3", "M6, eq. (5)")
+    );
     let representative = result.representative_name(BundleKind::Physics);
-    assert!(gain.rests_on[0].contains(representative) && gain.rests_on[2].contains("from 0.5 to 12 rad/s"), "{gain:?}");
+    assert!(
+        gain.rests_on[0].contains(representative)
+            && gain.rests_on[2].contains("from 0.5 to 12 rad/s"),
+        "{gain:?}"
+    );
     let delay_ms = 1e3 * result.comparison.delta.delay_s[pair()].unwrap();
     assert_told(ExplainTarget::DeltaDelay(CONDITION, pair()), delay_ms);
 }
@@ -60,39 +84,90 @@ fn gains_delays_and_their_bounds_are_told() {
     let result = analysis().condition(CONDITION).unwrap();
     let net = result.correction.net_gain(pair());
     let found = assert_told(ExplainTarget::NetGain(CONDITION, pair()), net);
-    assert!(found.with_numbers[0].starts_with("k_Q k_LON = "), "{found:?}");
-    assert_eq!(told(ExplainTarget::NetDelay(CONDITION, pair())).value, 1e3 * result.correction.net_delay_s(pair()));
-    let channels = (0..4).map(Channel::Input).chain((0..6).map(Channel::Output));
-    let own = |inputs: &[f64], outputs: &[f64]| inputs.iter().chain(outputs).copied().collect::<Vec<f64>>();
+    assert!(
+        found.with_numbers[0].starts_with("k_Q k_LON = "),
+        "{found:?}"
+    );
+    assert_eq!(
+        told(ExplainTarget::NetDelay(CONDITION, pair())).value,
+        1e3 * result.correction.net_delay_s(pair())
+    );
+    let channels = (0..4)
+        .map(Channel::Input)
+        .chain((0..6).map(Channel::Output));
+    let own = |inputs: &[f64], outputs: &[f64]| {
+        inputs.iter().chain(outputs).copied().collect::<Vec<f64>>()
+    };
     let gains = own(&result.gains.inputs, &result.gains.outputs);
     let delays = own(&result.delays.inputs, &result.delays.outputs);
     for (channel, (gain, delay_s)) in channels.zip(gains.into_iter().zip(delays)) {
         let found = told(ExplainTarget::Gain(CONDITION, channel));
         assert_eq!(found.value, gain);
-        assert!(found.rests_on.iter().any(|words| words.starts_with("Proven")), "{found:?}");
-        assert_eq!(told(ExplainTarget::Delay(CONDITION, channel)).value, 1e3 * delay_s);
+        assert!(
+            found
+                .rests_on
+                .iter()
+                .any(|words| words.starts_with("Proven")),
+            "{found:?}"
+        );
+        assert_eq!(
+            told(ExplainTarget::Delay(CONDITION, channel)).value,
+            1e3 * delay_s
+        );
     }
-    assert_eq!(derivation(analysis(), &ExplainTarget::Gain(CONDITION, Channel::Input(4))), None);
-    let bounds = assert_told(ExplainTarget::GainBounds(CONDITION), result.gain_bounds().upper);
+    assert_eq!(
+        derivation(
+            analysis(),
+            &ExplainTarget::Gain(CONDITION, Channel::Input(4))
+        ),
+        None
+    );
+    let bounds = assert_told(
+        ExplainTarget::GainBounds(CONDITION),
+        result.gain_bounds().upper,
+    );
     let lower = last_number(&bounds.with_numbers[0]);
     assert!(
-        (lower - result.gain_bounds().lower).abs() < 1e-4 && bounds.with_numbers[0].contains("5 % quantile of 1000")
+        (lower - result.gain_bounds().lower).abs() < 1e-4
+            && bounds.with_numbers[0].contains("5 % quantile of 1000")
     );
-    assert_eq!(told(ExplainTarget::DelayBound(CONDITION)).value, 1e3 * result.delay_upper_s());
+    assert_eq!(
+        told(ExplainTarget::DelayBound(CONDITION)).value,
+        1e3 * result.delay_upper_s()
+    );
 }
 
 #[test]
 fn costs_and_their_changes_are_told() {
     let result = analysis().condition(CONDITION).unwrap();
     let cost = result.cost[pair()].unwrap();
-    let before = assert_told(ExplainTarget::CostBefore(CONDITION, pair()), cost.uncorrected.total());
-    assert_eq!(before.with_numbers.len(), 3, "magnitude, phase and their sum");
-    assert_told(ExplainTarget::CostAfter(CONDITION, pair()), cost.corrected.total());
+    let before = assert_told(
+        ExplainTarget::CostBefore(CONDITION, pair()),
+        cost.uncorrected.total(),
+    );
+    assert_eq!(
+        before.with_numbers.len(),
+        3,
+        "magnitude, phase and their sum"
+    );
+    assert_told(
+        ExplainTarget::CostAfter(CONDITION, pair()),
+        cost.corrected.total(),
+    );
     for correction in [AssessedCorrection::Scheduled, AssessedCorrection::Own] {
         for model in [AssessedModel::Nominal, AssessedModel::Representative] {
-            let choice = AssessmentChoice { model, correction, average: CostAverage::Mean };
-            let change = AssessmentTable::of(analysis(), choice).change(CONDITION, pair()).unwrap();
-            assert_eq!(told(ExplainTarget::CostChange(CONDITION, pair(), choice)).value, change.total());
+            let choice = AssessmentChoice {
+                model,
+                correction,
+                average: CostAverage::Mean,
+            };
+            let change = AssessmentTable::of(analysis(), choice)
+                .change(CONDITION, pair())
+                .unwrap();
+            assert_eq!(
+                told(ExplainTarget::CostChange(CONDITION, pair(), choice)).value,
+                change.total()
+            );
         }
     }
     let choice = AssessmentChoice {
@@ -101,7 +176,11 @@ fn costs_and_their_changes_are_told() {
         average: CostAverage::Mean,
     };
     let left_out = ExplainTarget::CostChange(ConditionId(10), pair(), choice);
-    assert_eq!(derivation(analysis(), &left_out), None, "the nominal model is rejected");
+    assert_eq!(
+        derivation(analysis(), &left_out),
+        None,
+        "the nominal model is rejected"
+    );
 }
 
 #[test]
@@ -110,14 +189,20 @@ fn scores_and_discontinuity_ratios_are_told() {
     let result = analysis().condition(id).unwrap();
     for model in result.condition.bundle(BundleKind::Physics) {
         let of = ModelId::new(id, BundleKind::Physics, &model.name);
-        assert_told(ExplainTarget::DiscontinuityRatio(of.clone()), result.discontinuity_ratio(&model.name).unwrap());
+        assert_told(
+            ExplainTarget::DiscontinuityRatio(of.clone()),
+            result.discontinuity_ratio(&model.name).unwrap(),
+        );
         match result.score(BundleKind::Physics, &model.name) {
             Some(score) => assert_told(ExplainTarget::Score(of), score),
             None => continue,
         };
     }
     let rejected = ModelId::new(id, BundleKind::Physics, "nominal");
-    assert_eq!(derivation(analysis(), &ExplainTarget::Score(rejected)), None);
+    assert_eq!(
+        derivation(analysis(), &ExplainTarget::Score(rejected)),
+        None
+    );
 }
 
 #[test]
@@ -128,7 +213,8 @@ fn the_distances_behind_a_discontinuity_ratio_are_explained_by_the_weights_told(
     for (place, model) in models.iter().enumerate() {
         let ratio = |other: usize| {
             let fitted = fit.fitted_distance(model.perturbation()?, models[other].perturbation()?);
-            (other != place && fitted > 0.0).then(|| result.figures.physics.between(place, other).unwrap() / fitted)
+            (other != place && fitted > 0.0)
+                .then(|| result.figures.physics.between(place, other).unwrap() / fitted)
         };
         let mut ratios: Vec<f64> = (0..models.len()).filter_map(ratio).collect();
         let median = gdcm_model::response::median(&mut ratios);
@@ -140,8 +226,14 @@ fn the_distances_behind_a_discontinuity_ratio_are_explained_by_the_weights_told(
 #[test]
 fn objectives_and_scheduled_gains_are_told() {
     let result = analysis().condition(CONDITION).unwrap();
-    assert_told(ExplainTarget::GainObjective(CONDITION), result.gains.objective);
-    assert_told(ExplainTarget::DelayObjective(CONDITION), 1e6 * result.delays.objective);
+    assert_told(
+        ExplainTarget::GainObjective(CONDITION),
+        result.gains.objective,
+    );
+    assert_told(
+        ExplainTarget::DelayObjective(CONDITION),
+        1e6 * result.delays.objective,
+    );
     let schedule = analysis().schedule.as_ref().unwrap();
     for airspeed_kt in [45.0, 77.5, 200.0] {
         let found = assert_told(
@@ -150,7 +242,22 @@ fn objectives_and_scheduled_gains_are_told() {
         );
         assert_eq!((found.with_numbers.len(), found.section), (3, "M11"));
     }
-    assert_eq!(derivation(analysis(), &ExplainTarget::ScheduledGain(Channel::Output(6), 60.0)), None);
-    assert_eq!(derivation(analysis(), &ExplainTarget::DeltaGain(CONDITION, Pair::new(6, 0))), None);
-    assert_eq!(derivation(analysis(), &ExplainTarget::GainBounds(ConditionId(99))), None);
+    assert_eq!(
+        derivation(
+            analysis(),
+            &ExplainTarget::ScheduledGain(Channel::Output(6), 60.0)
+        ),
+        None
+    );
+    assert_eq!(
+        derivation(
+            analysis(),
+            &ExplainTarget::DeltaGain(CONDITION, Pair::new(6, 0))
+        ),
+        None
+    );
+    assert_eq!(
+        derivation(analysis(), &ExplainTarget::GainBounds(ConditionId(99))),
+        None
+    );
 }

@@ -9,7 +9,8 @@ use gdcm_method::correction::Channel;
 use gdcm_method::schedule::{ScheduleCaution, ScheduleKind};
 use gdcm_model::dataset::{BundleKind, Dataset, ModelId};
 use gdcm_study::study::{
-    BundleModel, Caution, ConditionAnalysis, ConditionFailure, Execution, GainOutOfRange, Undefined, cautions_of_models,
+    BundleModel, Caution, ConditionAnalysis, ConditionFailure, Execution, GainOutOfRange,
+    Undefined, cautions_of_models,
 };
 use serde_json::json;
 
@@ -24,7 +25,12 @@ const SIX_BY_FOUR: &str = include_str!("../../../../../tests/data/edges/six-by-f
 const NEAR: &str = include_str!("../../../../../tests/data/edges/near-airspeeds.json");
 
 fn dataset(value: &Value) -> Arc<Dataset> {
-    load_dataset_bytes(value.to_string().as_bytes(), DatasetOrigin::File(PathBuf::from("edge.json"))).unwrap().dataset
+    load_dataset_bytes(
+        value.to_string().as_bytes(),
+        DatasetOrigin::File(PathBuf::from("edge.json")),
+    )
+    .unwrap()
+    .dataset
 }
 
 /// The analysis of the only condition of a file.
@@ -36,13 +42,19 @@ fn only(value: &Value, edits: &[Edit]) -> Analysis {
 
 fn words(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<String> {
     let name = |pair| analysis.study.dataset.pair_name(pair);
-    result.cautions.iter().map(|caution| caution.words(name)).collect()
+    result
+        .cautions
+        .iter()
+        .map(|caution| caution.words(name))
+        .collect()
 }
 
 /// The file with the measurement that ends at 11.9 rad/s at this place among the identified models; `None`: without it.
 fn with_short_measurement(place: Option<usize>) -> Value {
     let mut value = json(SHORT);
-    let models = value["conditions"][0]["identified_models"].as_array_mut().unwrap();
+    let models = value["conditions"][0]["identified_models"]
+        .as_array_mut()
+        .unwrap();
     let short = models.pop().unwrap();
     assert!(short["frequency_response"].is_object());
     if let Some(place) = place {
@@ -58,12 +70,21 @@ fn a_measurement_that_ends_just_short_of_the_band_changes_nothing_for_the_others
     for place in [0, 2, 4] {
         let analysis = only(&with_short_measurement(Some(place)), &[]);
         let found = analysis.condition(ONLY).unwrap();
-        assert_eq!(found.comparison.delta, expected.comparison.delta, "place {place}");
+        assert_eq!(
+            found.comparison.delta, expected.comparison.delta,
+            "place {place}"
+        );
         assert_eq!(found.correction, expected.correction);
         let kind = BundleKind::Identified;
-        assert_eq!(found.representative_name(kind), expected.representative_name(kind));
+        assert_eq!(
+            found.representative_name(kind),
+            expected.representative_name(kind)
+        );
         assert_eq!(found.score(kind, "i4"), None);
-        assert_eq!(found.comparison.identified.scores.iter().flatten().count(), 4);
+        assert_eq!(
+            found.comparison.identified.scores.iter().flatten().count(),
+            4
+        );
     }
 }
 
@@ -73,21 +94,45 @@ fn a_model_set_aside_is_named_with_what_it_lacks_and_its_pin_does_not_count() {
     let value = with_short_measurement(Some(4));
     let (free, pinned) = (only(&value, &[]), only(&value, &[Edit::Pin(short)]));
     let found = pinned.condition(ONLY).unwrap();
-    assert_eq!(found.comparison.delta, free.condition(ONLY).unwrap().comparison.delta);
+    assert_eq!(
+        found.comparison.delta,
+        free.condition(ONLY).unwrap().comparison.delta
+    );
     let caution = words(&pinned, found).concat();
-    for part in ["identified model \"i4\" is set aside", "I0 → O0, I1 → O1", "11.9", "not used as representative"] {
+    for part in [
+        "identified model \"i4\" is set aside",
+        "I0 → O0, I1 → O1",
+        "11.9",
+        "not used as representative",
+    ] {
         assert!(caution.contains(part), "expected \"{part}\" in: {caution}");
     }
-    let set_aside = |analysis| corrections(analysis, "", &BTreeSet::from([ONLY]))["conditions"][0]["set_aside"].clone();
-    assert_eq!(set_aside(&pinned), serde_json::json!([{"model": "i4", "why": caution}]));
-    assert_eq!(set_aside(&only(&with_short_measurement(None), &[])), serde_json::json!([]));
+    let set_aside = |analysis| {
+        corrections(analysis, "", &BTreeSet::from([ONLY]))["conditions"][0]["set_aside"].clone()
+    };
+    assert_eq!(
+        set_aside(&pinned),
+        serde_json::json!([{"model": "i4", "why": caution}])
+    );
+    assert_eq!(
+        set_aside(&only(&with_short_measurement(None), &[])),
+        serde_json::json!([])
+    );
 }
 
 #[test]
 fn a_bundle_of_which_only_models_set_aside_are_kept_has_no_result_and_says_so() {
     let reject = |name| Edit::Reject(ModelId::new(ONLY, BundleKind::Identified, name));
-    let analysis = only(&with_short_measurement(Some(4)), &["i0", "i1", "i2", "i3"].map(reject));
-    assert_eq!(analysis.conditions[&ONLY], Err(ConditionFailure::AllSetAside { bundle: BundleKind::Identified }));
+    let analysis = only(
+        &with_short_measurement(Some(4)),
+        &["i0", "i1", "i2", "i3"].map(reject),
+    );
+    assert_eq!(
+        analysis.conditions[&ONLY],
+        Err(ConditionFailure::AllSetAside {
+            bundle: BundleKind::Identified
+        })
+    );
 }
 
 #[test]
@@ -95,34 +140,69 @@ fn a_physics_model_without_a_measuring_response_is_set_aside_too() {
     let mut value = with_short_measurement(None);
     let model = &mut value["conditions"][0]["physics_models"][3];
     for key in ["C", "D"] {
-        model[key][0].as_array_mut().unwrap().iter_mut().for_each(|entry| *entry = json!(0.0));
+        model[key][0]
+            .as_array_mut()
+            .unwrap()
+            .iter_mut()
+            .for_each(|entry| *entry = json!(0.0));
     }
     let name = model["name"].as_str().unwrap().to_owned();
     let analysis = only(&value, &[]);
     let found = analysis.condition(ONLY).unwrap();
-    assert!(found.cautions.iter().any(|caution| caution.is_set_aside(BundleKind::Physics, &name)));
+    assert!(
+        found
+            .cautions
+            .iter()
+            .any(|caution| caution.is_set_aside(BundleKind::Physics, &name))
+    );
     let ratios = &found.figures.discontinuity.as_ref().unwrap().ratios;
     assert!(ratios[3].is_none() && ratios[0].is_some());
-    value["conditions"][0]["physics_models"].as_array_mut().unwrap().remove(3);
+    value["conditions"][0]["physics_models"]
+        .as_array_mut()
+        .unwrap()
+        .remove(3);
     let mut without = found.figures.discontinuity.as_ref().unwrap().ratios.clone();
     without.remove(3);
-    assert_eq!(only(&value, &[]).condition(ONLY).unwrap().figures.discontinuity.as_ref().unwrap().ratios, without);
+    assert_eq!(
+        only(&value, &[])
+            .condition(ONLY)
+            .unwrap()
+            .figures
+            .discontinuity
+            .as_ref()
+            .unwrap()
+            .ratios,
+        without
+    );
 }
 
 #[test]
 fn residues_of_differencing_count_as_zero_and_are_named() {
-    let zeros = only(&two_lags([[1.0, 0.0], [0.0, 1.0]], [[1.2, 0.0], [0.0, 0.9]]), &[]);
-    for (physics, identified) in
-        [([1e-17, 1e-9], [1e-3, 0.5]), ([0.1, 0.1], [1e-17, 3e-8]), ([1e-17, 1e-16], [0.0, 1e-13])]
-    {
-        let of = |diagonal: [f64; 2], [upper, lower]: [f64; 2]| [[diagonal[0], upper], [lower, diagonal[1]]];
+    let zeros = only(
+        &two_lags([[1.0, 0.0], [0.0, 1.0]], [[1.2, 0.0], [0.0, 0.9]]),
+        &[],
+    );
+    for (physics, identified) in [
+        ([1e-17, 1e-9], [1e-3, 0.5]),
+        ([0.1, 0.1], [1e-17, 3e-8]),
+        ([1e-17, 1e-16], [0.0, 1e-13]),
+    ] {
+        let of = |diagonal: [f64; 2], [upper, lower]: [f64; 2]| {
+            [[diagonal[0], upper], [lower, diagonal[1]]]
+        };
         let value = two_lags(of([1.0, 1.0], physics), of([1.2, 0.9], identified));
         let analysis = only(&value, &[]);
         let found = analysis.condition(ONLY).unwrap();
-        assert_eq!(found.comparison.delta, zeros.condition(ONLY).unwrap().comparison.delta);
+        assert_eq!(
+            found.comparison.delta,
+            zeros.condition(ONLY).unwrap().comparison.delta
+        );
         assert_eq!(found.correction, zeros.condition(ONLY).unwrap().correction);
         let named = words(&analysis, found).concat();
-        assert!(named.contains("I1 → O0, I0 → O1 are numerically nothing"), "{named}");
+        assert!(
+            named.contains("I1 → O0, I0 → O1 are numerically nothing"),
+            "{named}"
+        );
         let written = corrections(&analysis, "", &BTreeSet::from([ONLY]));
         assert_eq!(texts(&written["conditions"][0]["cautions"]).concat(), named);
     }
@@ -136,9 +216,16 @@ fn a_response_that_is_numerically_nothing_is_not_held_for_that_reason() {
     let found = analysis.condition(ONLY).unwrap();
     assert!(!found.held()[pair]);
     let why = Undefined::NumericallyNothing(BundleKind::Physics);
-    assert!(found.cautions.contains(&Caution::HeldButUndefined { pair, why }));
+    assert!(
+        found
+            .cautions
+            .contains(&Caution::HeldButUndefined { pair, why })
+    );
     assert_eq!(found.comparison.undefined[pair], Some(why));
-    assert_eq!(found.comparison.undefined[Pair::new(1, 0)], Some(Undefined::Zero(BundleKind::Physics)));
+    assert_eq!(
+        found.comparison.undefined[Pair::new(1, 0)],
+        Some(Undefined::Zero(BundleKind::Physics))
+    );
 }
 
 #[test]
@@ -148,11 +235,28 @@ fn an_unusual_gain_is_fitted_with_a_caution_that_ends_when_it_is_ignored() {
     let analysis = only(&value, &[]);
     let found = analysis.condition(ONLY).unwrap();
     assert!((found.comparison.delta.gain[pair].unwrap() - 20.0).abs() < 1e-9);
-    let offered: Vec<Pair> = found.cautions.iter().filter_map(Caution::offers_to_ignore).collect();
+    let offered: Vec<Pair> = found
+        .cautions
+        .iter()
+        .filter_map(Caution::offers_to_ignore)
+        .collect();
     assert_eq!(offered, [pair]);
-    assert!(words(&analysis, found).concat().contains("I1 → O0 has a G of 20.000, outside 0.1 to 10"));
+    assert!(
+        words(&analysis, found)
+            .concat()
+            .contains("I1 → O0 has a G of 20.000, outside 0.1 to 10")
+    );
     let ignored = only(&value, &[Edit::Fit(pair, false)]);
-    assert_eq!(ignored.condition(ONLY).unwrap().cautions.iter().filter_map(Caution::offers_to_ignore).count(), 0);
+    assert_eq!(
+        ignored
+            .condition(ONLY)
+            .unwrap()
+            .cautions
+            .iter()
+            .filter_map(Caution::offers_to_ignore)
+            .count(),
+        0
+    );
 }
 
 #[test]
@@ -161,75 +265,134 @@ fn a_ratio_that_the_objective_cannot_square_leaves_its_response_out_and_the_othe
     let analysis = only(&value, &[]);
     let found = analysis.condition(ONLY).unwrap();
     let gain = &found.comparison.delta.gain;
-    assert_eq!((gain[Pair::new(1, 1)], gain[Pair::new(0, 0)].is_some()), (None, true));
-    assert_eq!(found.comparison.undefined[Pair::new(1, 1)], Some(Undefined::NumericallyNothing(BundleKind::Physics)));
-    let alone = only(&two_lags([[1e-30, 0.0], [0.0, 1.0]], [[1e30, 0.0], [0.0, 0.9]]), &[]);
+    assert_eq!(
+        (gain[Pair::new(1, 1)], gain[Pair::new(0, 0)].is_some()),
+        (None, true)
+    );
+    assert_eq!(
+        found.comparison.undefined[Pair::new(1, 1)],
+        Some(Undefined::NumericallyNothing(BundleKind::Physics))
+    );
+    let alone = only(
+        &two_lags([[1e-30, 0.0], [0.0, 1.0]], [[1e30, 0.0], [0.0, 0.9]]),
+        &[],
+    );
     let found = &alone.condition(ONLY).unwrap().comparison;
-    assert_eq!(found.undefined[Pair::new(0, 0)], Some(Undefined::GainOutOfRange(60)));
+    assert_eq!(
+        found.undefined[Pair::new(0, 0)],
+        Some(Undefined::GainOutOfRange(60))
+    );
     assert!(found.delta.gain[Pair::new(1, 1)].is_some());
 }
 
 /// The cautions that `check` has of the only condition of a file.
 fn checked(value: &Value) -> Vec<Caution> {
-    let cautions = cautions_of_models(&Study::new(dataset(value)), &Execution::sequential()).unwrap();
+    let cautions =
+        cautions_of_models(&Study::new(dataset(value)), &Execution::sequential()).unwrap();
     cautions.into_iter().map(|(_, caution)| caution).collect()
 }
 
 #[test]
 fn a_gain_beyond_what_is_computed_with_is_called_that() {
-    for (power, physics, identified) in [(74, 1.0, 1e74), (-74, 1e74, 1.0), (74, 1e-74, 1.0), (-74, 1.0, 1e-74)] {
-        let value = two_lags([[physics, 0.0], [0.0, 1.0]], [[identified, 0.0], [0.0, 0.9]]);
+    for (power, physics, identified) in [
+        (74, 1.0, 1e74),
+        (-74, 1e74, 1.0),
+        (74, 1e-74, 1.0),
+        (-74, 1.0, 1e-74),
+    ] {
+        let value = two_lags(
+            [[physics, 0.0], [0.0, 1.0]],
+            [[identified, 0.0], [0.0, 0.9]],
+        );
         let pair = Pair::new(0, 0);
         let analysis = only(&value, &[]);
         let found = analysis.condition(ONLY).unwrap();
         let why = found.comparison.undefined[pair].unwrap();
-        assert_eq!((why, why.code()), (Undefined::GainOutOfRange(power), "gain-out-of-range"));
+        assert_eq!(
+            (why, why.code()),
+            (Undefined::GainOutOfRange(power), "gain-out-of-range")
+        );
         let expected = Caution::GainsOutOfRange {
             physics: "model".to_owned(),
             identified: "model".to_owned(),
-            responses: vec![GainOutOfRange { pair, power_of_ten: power }],
+            responses: vec![GainOutOfRange {
+                pair,
+                power_of_ten: power,
+            }],
         };
         assert!(found.cautions.contains(&expected), "{:?}", found.cautions);
         assert_eq!(checked(&value), [expected]);
-        assert!(words(&analysis, found).concat().contains(&format!("1e{power}")));
+        assert!(
+            words(&analysis, found)
+                .concat()
+                .contains(&format!("1e{power}"))
+        );
     }
     // Of an analysis that has nothing else, and of gains that can be computed with.
-    let alone = only(&two_lags([[1e74, 0.0], [0.0, 1e74]], [[1.0, 0.0], [0.0, 1.0]]), &[]);
+    let alone = only(
+        &two_lags([[1e74, 0.0], [0.0, 1e74]], [[1.0, 0.0], [0.0, 1.0]]),
+        &[],
+    );
     let failure = alone.conditions[&ONLY].as_ref().unwrap_err().to_string();
-    assert!(failure.contains("about 1e-74 in I0 → O0, 1e-74 in I1 → O1"), "{failure}");
-    assert!(checked(&two_lags([[1e-24, 0.0], [0.0, 1.0]], [[1e24, 0.0], [0.0, 0.9]])).is_empty());
+    assert!(
+        failure.contains("about 1e-74 in I0 → O0, 1e-74 in I1 → O1"),
+        "{failure}"
+    );
+    assert!(
+        checked(&two_lags(
+            [[1e-24, 0.0], [0.0, 1.0]],
+            [[1e24, 0.0], [0.0, 0.9]]
+        ))
+        .is_empty()
+    );
 }
 
 /// Two lags, identified as a response measured from 0.3 to 20 rad/s, of which the values of some responses are zero.
 fn with_zeros_measured(zeros: &[[usize; 2]], band: [f64; 2]) -> Value {
     let mut value = two_lags([[1.0, 0.1], [0.1, 1.0]], [[1.2, 0.1], [0.1, 0.9]]);
-    let omega: Vec<f64> = (0..50).map(|k| 0.3 * (20.0_f64 / 0.3).powf(f64::from(k) / 49.0)).collect();
+    let omega: Vec<f64> = (0..50)
+        .map(|k| 0.3 * (20.0_f64 / 0.3).powf(f64::from(k) / 49.0))
+        .collect();
     let part = |of: fn(f64, f64) -> f64| -> Value {
         let curve = |output: usize, input: usize| -> Vec<f64> {
             let is_zero = zeros.contains(&[output, input]);
             let lag = [1.0, 3.0][input];
-            omega.iter().map(|&omega| if is_zero { 0.0 } else { of(lag, omega) }).collect()
+            omega
+                .iter()
+                .map(|&omega| if is_zero { 0.0 } else { of(lag, omega) })
+                .collect()
         };
         json!([[curve(0, 0), curve(0, 1)], [curve(1, 0), curve(1, 1)]])
     };
     let re = part(|lag, omega| lag / (lag * lag + omega * omega));
     let im = part(|lag, omega| -omega / (lag * lag + omega * omega));
-    value["conditions"][0]["identified_models"][0] =
-        json!({"name": "measured", "frequency_response": {"omega_rad_s": omega, "re": re, "im": im}});
+    value["conditions"][0]["identified_models"][0] = json!({"name": "measured", "frequency_response": {"omega_rad_s": omega, "re": re, "im": im}});
     value["frequency_band"] = json!({"min": band[0], "max": band[1], "unit": "rad/s"});
     value
 }
 
 #[test]
 fn a_response_of_zeros_is_missing_and_the_measured_frequencies_are_not_blamed() {
-    let model = BundleModel { bundle: BundleKind::Identified, name: "measured".to_owned() };
+    let model = BundleModel {
+        bundle: BundleKind::Identified,
+        name: "measured".to_owned(),
+    };
     let responses = vec![Pair::new(0, 1), Pair::new(1, 1)];
     // Inside the measured frequencies, and beyond them.
-    for (band, not_finite) in [([0.5, 12.0], vec![]), ([0.5, 30.0], vec![Pair::new(0, 0), Pair::new(1, 0)])] {
+    for (band, not_finite) in [
+        ([0.5, 12.0], vec![]),
+        ([0.5, 30.0], vec![Pair::new(0, 0), Pair::new(1, 0)]),
+    ] {
         let value = with_zeros_measured(&[[0, 1], [1, 1]], band);
         let mut cautions = checked(&value);
-        let missing = Caution::MissingResponses { model: model.clone(), responses: responses.clone() };
-        assert_eq!((cautions.remove(0), missing.code()), (missing.clone(), "response-missing"));
+        let missing = Caution::MissingResponses {
+            model: model.clone(),
+            responses: responses.clone(),
+        };
+        assert_eq!(
+            (cautions.remove(0), missing.code()),
+            (missing.clone(), "response-missing")
+        );
         let beyond: Vec<Pair> = cautions
             .iter()
             .flat_map(|caution| match caution {
@@ -242,21 +405,42 @@ fn a_response_of_zeros_is_missing_and_the_measured_frequencies_are_not_blamed() 
     let value = with_zeros_measured(&[[0, 1], [1, 1]], [0.5, 12.0]);
     let analysis = only(&value, &[]);
     let found = analysis.condition(ONLY).unwrap();
-    assert_eq!(found.comparison.undefined[Pair::new(1, 1)], Some(Undefined::Zero(BundleKind::Identified)));
+    assert_eq!(
+        found.comparison.undefined[Pair::new(1, 1)],
+        Some(Undefined::Zero(BundleKind::Identified))
+    );
     assert!(found.comparison.delta.gain[Pair::new(0, 0)].is_some());
     let said = words(&analysis, found).concat();
-    assert!(said.contains("I1 → O0, I1 → O1") && !said.contains("rad/s only"), "{said}");
+    assert!(
+        said.contains("I1 → O0, I1 → O1") && !said.contains("rad/s only"),
+        "{said}"
+    );
 }
 
 #[test]
 fn a_model_set_aside_for_zeros_is_not_told_to_be_measured_too_short() {
     let mut value = with_zeros_measured(&[[1, 1]], [0.5, 12.0]);
-    let whole = with_zeros_measured(&[], [0.5, 12.0])["conditions"][0]["identified_models"][0].clone();
-    value["conditions"][0]["identified_models"].as_array_mut().unwrap().push(whole);
+    let whole =
+        with_zeros_measured(&[], [0.5, 12.0])["conditions"][0]["identified_models"][0].clone();
+    value["conditions"][0]["identified_models"]
+        .as_array_mut()
+        .unwrap()
+        .push(whole);
     value["conditions"][0]["identified_models"][1]["name"] = json!("whole");
-    let (model, lacks) =
-        (BundleModel { bundle: BundleKind::Identified, name: "measured".to_owned() }, vec![Pair::new(1, 1)]);
-    let expected = Caution::SetAside { model, zero: lacks.clone(), lacks, why: None, pinned: false };
+    let (model, lacks) = (
+        BundleModel {
+            bundle: BundleKind::Identified,
+            name: "measured".to_owned(),
+        },
+        vec![Pair::new(1, 1)],
+    );
+    let expected = Caution::SetAside {
+        model,
+        zero: lacks.clone(),
+        lacks,
+        why: None,
+        pinned: false,
+    };
     assert_eq!(checked(&value), [expected]);
 }
 
@@ -265,23 +449,52 @@ fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
     let analysis = only(&json(NEAR), &[]);
     let schedule = analysis.schedule.as_ref().unwrap();
     assert_eq!(schedule.airspeeds.clusters, [vec![0, 1], vec![2]]);
-    assert_eq!(schedule.cautions, [ScheduleCaution::DegreeLowered { asked: 2, clusters: 2 }]);
-    let gains =
-        |of: &gdcm_method::correction::ChannelCorrection| [of.input_gains.clone(), of.output_gains.clone()].concat();
-    let own = analysis.conditions.values().map(|result| gains(&result.as_ref().unwrap().correction));
+    assert_eq!(
+        schedule.cautions,
+        [ScheduleCaution::DegreeLowered {
+            asked: 2,
+            clusters: 2
+        }]
+    );
+    let gains = |of: &gdcm_method::correction::ChannelCorrection| {
+        [of.input_gains.clone(), of.output_gains.clone()].concat()
+    };
+    let own = analysis
+        .conditions
+        .values()
+        .map(|result| gains(&result.as_ref().unwrap().correction));
     let own: Vec<Vec<f64>> = own.collect();
     for step in 0..=60 {
-        for (channel, gain) in gains(&schedule.at(60.0 + f64::from(step))).into_iter().enumerate() {
+        for (channel, gain) in gains(&schedule.at(60.0 + f64::from(step)))
+            .into_iter()
+            .enumerate()
+        {
             let all = own.iter().map(|gains| gains[channel]);
-            let (least, most) = (all.clone().fold(f64::INFINITY, f64::min), all.fold(0.0, f64::max));
-            assert!((0.99 * least..=1.01 * most).contains(&gain), "channel {channel}: {gain}");
+            let (least, most) = (
+                all.clone().fold(f64::INFINITY, f64::min),
+                all.fold(0.0, f64::max),
+            );
+            assert!(
+                (0.99 * least..=1.01 * most).contains(&gain),
+                "channel {channel}: {gain}"
+            );
         }
     }
-    let written = &corrections(&analysis, "", &analysis.conditions.keys().copied().collect())["schedule"];
-    assert_eq!((&written["degree"], list(&written["table"]).len()), (&1.into(), 2));
+    let written = &corrections(
+        &analysis,
+        "",
+        &analysis.conditions.keys().copied().collect(),
+    )["schedule"];
+    assert_eq!(
+        (&written["degree"], list(&written["table"]).len()),
+        (&1.into(), 2)
+    );
     assert_eq!(written["airspeed_tolerance_kt"], 2.0);
     let cautions = texts(&written["cautions"]);
-    assert!(cautions[0].contains("degree 2 takes 3 distinct airspeeds, the conditions have 2"), "{cautions:?}");
+    assert!(
+        cautions[0].contains("degree 2 takes 3 distinct airspeeds, the conditions have 2"),
+        "{cautions:?}"
+    );
 }
 
 #[test]
@@ -291,9 +504,17 @@ fn a_schedule_that_overshoots_says_where_and_the_assessment_claims_nothing_betwe
     let schedule = analysis.schedule.as_ref().unwrap();
     assert!(schedule.interpolation_fails());
     let said = schedule.cautions[0].words(&["I0".into(), "I1".into()], &["O0".into(), "O1".into()]);
-    assert!(said.contains("between 60.0 and 120.0 kt the gain of"), "{said}");
+    assert!(
+        said.contains("between 60.0 and 120.0 kt the gain of"),
+        "{said}"
+    );
     let table = setting::SCHEDULE.to(ScheduleKind::Table);
-    assert!(!only(&json(NEAR), &[wild, table]).schedule.unwrap().interpolation_fails());
+    assert!(
+        !only(&json(NEAR), &[wild, table])
+            .schedule
+            .unwrap()
+            .interpolation_fails()
+    );
 }
 
 #[test]
@@ -303,7 +524,12 @@ fn a_pole_on_the_grid_is_named() {
     value["conditions"][0]["physics_models"][0]["A"] = json!([[0.0, 0.5], [-0.5, 0.0]]);
     let analysis = only(&value, &[]);
     let failure = analysis.conditions[&ONLY].as_ref().unwrap_err();
-    assert!(failure.to_string().contains("a pole lies on a frequency of the grid"), "{failure}");
+    assert!(
+        failure
+            .to_string()
+            .contains("a pole lies on a frequency of the grid"),
+        "{failure}"
+    );
 }
 
 #[test]

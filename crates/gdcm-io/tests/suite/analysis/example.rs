@@ -27,7 +27,10 @@ mod scale {
 #[track_caller]
 fn assert_close(what: &str, found: f64, reference: f64, scale: f64) {
     let allowed = 1e-6 * reference.abs().max(scale);
-    assert!((found - reference).abs() <= allowed, "{what}: found {found}, reference {reference}");
+    assert!(
+        (found - reference).abs() <= allowed,
+        "{what}: found {found}, reference {reference}"
+    );
 }
 
 #[track_caller]
@@ -35,7 +38,12 @@ fn assert_all_close(what: &str, found: &[f64], reference: &Value, scale: f64) {
     let reference = numbers(reference);
     assert_eq!(found.len(), reference.len(), "{what}");
     for (index, (found, reference)) in found.iter().zip(reference).enumerate() {
-        assert_close(&format!("{what}, entry {}", index + 1), *found, reference, scale);
+        assert_close(
+            &format!("{what}, entry {}", index + 1),
+            *found,
+            reference,
+            scale,
+        );
     }
 }
 
@@ -49,7 +57,12 @@ fn assert_table_close<T>(
 ) {
     for (pair, found) in found.iter() {
         let reference = number(&reference[pair.output][pair.input]);
-        assert_close(&format!("{what} of {pair:?}"), figure(found.as_ref().unwrap()), reference, scale);
+        assert_close(
+            &format!("{what} of {pair:?}"),
+            figure(found.as_ref().unwrap()),
+            reference,
+            scale,
+        );
     }
 }
 
@@ -57,19 +70,34 @@ fn assert_table_close<T>(
 fn each_condition(mut check: impl FnMut(&str, &ConditionAnalysis, &Value)) {
     let (analysis, reference) = (&*EXAMPLE_WITH_SUGGESTIONS_REJECTED, json(REFERENCE));
     let conditions = analysis.study.dataset.conditions();
-    assert_eq!((conditions.len(), list(&reference["conditions"]).len()), (11, 11));
+    assert_eq!(
+        (conditions.len(), list(&reference["conditions"]).len()),
+        (11, 11)
+    );
     for (condition, expected) in conditions.iter().zip(list(&reference["conditions"])) {
         let id = condition.id();
         assert_eq!(id.0, expected["id"].as_i64().unwrap());
-        check(&format!("condition {id}"), analysis.condition(id).unwrap(), expected);
+        check(
+            &format!("condition {id}"),
+            analysis.condition(id).unwrap(),
+            expected,
+        );
     }
 }
 
 #[test]
 fn representatives_and_suggestions_of_the_example_are_exactly_those_of_the_independent_analysis() {
     each_condition(|at, found, expected| {
-        assert_eq!(found.representative_name(BundleKind::Physics), expected["physics"], "{at}");
-        assert_eq!(found.representative_name(BundleKind::Identified), expected["identified"], "{at}");
+        assert_eq!(
+            found.representative_name(BundleKind::Physics),
+            expected["physics"],
+            "{at}"
+        );
+        assert_eq!(
+            found.representative_name(BundleKind::Identified),
+            expected["identified"],
+            "{at}"
+        );
         assert_eq!(found.suggested(), texts(&expected["outliers"]), "{at}");
     });
 }
@@ -78,11 +106,28 @@ fn representatives_and_suggestions_of_the_example_are_exactly_those_of_the_indep
 fn scores_and_discontinuity_ratios_of_the_example_agree() {
     each_condition(|at, found, expected| {
         // Rejected models have no score, here and there.
-        let scores: Vec<f64> = found.comparison.physics.scores.iter().copied().flatten().collect();
-        assert_all_close(&format!("{at}, scores"), &scores, &expected["scores"], scale::COST);
+        let scores: Vec<f64> = found
+            .comparison
+            .physics
+            .scores
+            .iter()
+            .copied()
+            .flatten()
+            .collect();
+        assert_all_close(
+            &format!("{at}, scores"),
+            &scores,
+            &expected["scores"],
+            scale::COST,
+        );
         let ratios = &found.figures.discontinuity.as_ref().unwrap().ratios;
         let ratios: Vec<f64> = ratios.iter().map(|ratio| ratio.unwrap()).collect();
-        assert_all_close(&format!("{at}, ratios"), &ratios, &expected["discontinuity"], scale::GAIN);
+        assert_all_close(
+            &format!("{at}, ratios"),
+            &ratios,
+            &expected["discontinuity"],
+            scale::GAIN,
+        );
     });
 }
 
@@ -90,13 +135,40 @@ fn scores_and_discontinuity_ratios_of_the_example_agree() {
 fn delta_gains_delta_delays_and_bounds_of_the_example_agree() {
     each_condition(|at, found, expected| {
         let delta = &found.comparison.delta;
-        assert_table_close(&format!("{at}, G"), &delta.gain, |gain| *gain, &expected["G"], scale::GAIN);
-        assert_table_close(&format!("{at}, D"), &delta.delay_s, |delay| *delay, &expected["D"], scale::DELAY_S);
+        assert_table_close(
+            &format!("{at}, G"),
+            &delta.gain,
+            |gain| *gain,
+            &expected["G"],
+            scale::GAIN,
+        );
+        assert_table_close(
+            &format!("{at}, D"),
+            &delta.delay_s,
+            |delay| *delay,
+            &expected["D"],
+            scale::DELAY_S,
+        );
         let (lower, upper) = (found.gain_bounds().lower, found.gain_bounds().upper);
-        assert_close(&format!("{at}, lower bound"), lower, number(&expected["lb"]), scale::GAIN);
-        assert_close(&format!("{at}, upper bound"), upper, number(&expected["ub"]), scale::GAIN);
+        assert_close(
+            &format!("{at}, lower bound"),
+            lower,
+            number(&expected["lb"]),
+            scale::GAIN,
+        );
+        assert_close(
+            &format!("{at}, upper bound"),
+            upper,
+            number(&expected["ub"]),
+            scale::GAIN,
+        );
         let (delay, expected) = (found.delay_upper_s(), number(&expected["tau_ub"]));
-        assert_close(&format!("{at}, delay bound"), delay, expected, scale::DELAY_S);
+        assert_close(
+            &format!("{at}, delay bound"),
+            delay,
+            expected,
+            scale::DELAY_S,
+        );
     });
 }
 
@@ -104,10 +176,29 @@ fn delta_gains_delta_delays_and_bounds_of_the_example_agree() {
 fn channel_gains_of_the_example_agree() {
     each_condition(|at, found, expected| {
         let (correction, gains) = (&found.correction, &found.gains);
-        assert_all_close(&format!("{at}, k_in"), &correction.input_gains, &expected["k_in"], scale::GAIN);
-        assert_all_close(&format!("{at}, k_out"), &correction.output_gains, &expected["k_out"], scale::GAIN);
-        assert_close(&format!("{at}, objective"), gains.objective, number(&expected["gain_objective"]), scale::GAIN);
-        assert_eq!(gains.matched, expected["gain_matched"].as_bool().unwrap(), "{at}");
+        assert_all_close(
+            &format!("{at}, k_in"),
+            &correction.input_gains,
+            &expected["k_in"],
+            scale::GAIN,
+        );
+        assert_all_close(
+            &format!("{at}, k_out"),
+            &correction.output_gains,
+            &expected["k_out"],
+            scale::GAIN,
+        );
+        assert_close(
+            &format!("{at}, objective"),
+            gains.objective,
+            number(&expected["gain_objective"]),
+            scale::GAIN,
+        );
+        assert_eq!(
+            gains.matched,
+            expected["gain_matched"].as_bool().unwrap(),
+            "{at}"
+        );
     });
 }
 
@@ -115,11 +206,30 @@ fn channel_gains_of_the_example_agree() {
 fn channel_delays_of_the_example_agree() {
     each_condition(|at, found, expected| {
         let (correction, delays) = (&found.correction, &found.delays);
-        assert_all_close(&format!("{at}, tau_in"), &correction.input_delays_s, &expected["tau_in"], scale::DELAY_S);
-        assert_all_close(&format!("{at}, tau_out"), &correction.output_delays_s, &expected["tau_out"], scale::DELAY_S);
+        assert_all_close(
+            &format!("{at}, tau_in"),
+            &correction.input_delays_s,
+            &expected["tau_in"],
+            scale::DELAY_S,
+        );
+        assert_all_close(
+            &format!("{at}, tau_out"),
+            &correction.output_delays_s,
+            &expected["tau_out"],
+            scale::DELAY_S,
+        );
         let objective = number(&expected["delay_objective"]);
-        assert_close(&format!("{at}, objective"), delays.objective, objective, scale::DELAY_OBJECTIVE);
-        assert_eq!(delays.matched, expected["delay_matched"].as_bool().unwrap(), "{at}");
+        assert_close(
+            &format!("{at}, objective"),
+            delays.objective,
+            objective,
+            scale::DELAY_OBJECTIVE,
+        );
+        assert_eq!(
+            delays.matched,
+            expected["delay_matched"].as_bool().unwrap(),
+            "{at}"
+        );
     });
 }
 
@@ -127,26 +237,75 @@ fn channel_delays_of_the_example_agree() {
 fn costs_of_the_example_agree_before_and_after_the_correction() {
     each_condition(|at, found, expected| {
         let ([magnitude, phase], cost) = ([&expected["J_mag"], &expected["J_phase"]], &*found.cost);
-        assert_table_close(at, cost, |cost| cost.uncorrected.magnitude, &magnitude[0], scale::COST);
-        assert_table_close(at, cost, |cost| cost.corrected.magnitude, &magnitude[1], scale::COST);
-        assert_table_close(at, cost, |cost| cost.uncorrected.phase, &phase[0], scale::COST);
-        assert_table_close(at, cost, |cost| cost.corrected.phase, &phase[1], scale::COST);
+        assert_table_close(
+            at,
+            cost,
+            |cost| cost.uncorrected.magnitude,
+            &magnitude[0],
+            scale::COST,
+        );
+        assert_table_close(
+            at,
+            cost,
+            |cost| cost.corrected.magnitude,
+            &magnitude[1],
+            scale::COST,
+        );
+        assert_table_close(
+            at,
+            cost,
+            |cost| cost.uncorrected.phase,
+            &phase[0],
+            scale::COST,
+        );
+        assert_table_close(
+            at,
+            cost,
+            |cost| cost.corrected.phase,
+            &phase[1],
+            scale::COST,
+        );
     });
 }
 
 #[test]
 fn the_schedule_of_the_example_agrees() {
     let expected = &json(REFERENCE)["schedule"];
-    let schedule = &corrections(&EXAMPLE_WITH_SUGGESTIONS_REJECTED, "", &BTreeSet::new())["schedule"];
-    assert_eq!((&schedule["degree"], &schedule["of"]), (&2.into(), &"ln k".into()));
-    let (mean, half_range) = (&expected["airspeed_mean_kt"], &expected["airspeed_half_range_kt"]);
-    assert_close("mean", number(&schedule["airspeed_mean_kt"]), number(mean), scale::AIRSPEED_KT);
-    assert_close("half range", number(&schedule["airspeed_half_range_kt"]), number(half_range), scale::AIRSPEED_KT);
-    for (found, expected) in [(&schedule["inputs"], &expected["in"]), (&schedule["outputs"], &expected["out"])] {
+    let schedule =
+        &corrections(&EXAMPLE_WITH_SUGGESTIONS_REJECTED, "", &BTreeSet::new())["schedule"];
+    assert_eq!(
+        (&schedule["degree"], &schedule["of"]),
+        (&2.into(), &"ln k".into())
+    );
+    let (mean, half_range) = (
+        &expected["airspeed_mean_kt"],
+        &expected["airspeed_half_range_kt"],
+    );
+    assert_close(
+        "mean",
+        number(&schedule["airspeed_mean_kt"]),
+        number(mean),
+        scale::AIRSPEED_KT,
+    );
+    assert_close(
+        "half range",
+        number(&schedule["airspeed_half_range_kt"]),
+        number(half_range),
+        scale::AIRSPEED_KT,
+    );
+    for (found, expected) in [
+        (&schedule["inputs"], &expected["in"]),
+        (&schedule["outputs"], &expected["out"]),
+    ] {
         let found = found.as_object().unwrap();
         assert_eq!(found.len(), list(expected).len());
         for ((name, coefficients), expected) in found.iter().zip(list(expected)) {
-            assert_all_close(&format!("schedule of {name}"), &numbers(coefficients), expected, scale::GAIN);
+            assert_all_close(
+                &format!("schedule of {name}"),
+                &numbers(coefficients),
+                expected,
+                scale::GAIN,
+            );
         }
     }
 }
@@ -166,17 +325,44 @@ fn the_assessment_of_the_example_agrees_and_leaves_condition_10_out() {
             continue;
         };
         let scheduled = schedule.at(condition.flight_state().airspeed_kt);
-        assert_all_close("scheduled k_in", &scheduled.input_gains, &expected["k_in"], scale::GAIN);
-        assert_all_close("scheduled k_out", &scheduled.output_gains, &expected["k_out"], scale::GAIN);
-        assert_table_close("dJ_mag", changes, |change| change.magnitude(), &expected["dJ_mag"], scale::COST);
-        assert_table_close("dJ_phase", changes, |change| change.phase(), &expected["dJ_phase"], scale::COST);
+        assert_all_close(
+            "scheduled k_in",
+            &scheduled.input_gains,
+            &expected["k_in"],
+            scale::GAIN,
+        );
+        assert_all_close(
+            "scheduled k_out",
+            &scheduled.output_gains,
+            &expected["k_out"],
+            scale::GAIN,
+        );
+        assert_table_close(
+            "dJ_mag",
+            changes,
+            |change| change.magnitude(),
+            &expected["dJ_mag"],
+            scale::COST,
+        );
+        assert_table_close(
+            "dJ_phase",
+            changes,
+            |change| change.phase(),
+            &expected["dJ_phase"],
+            scale::COST,
+        );
     }
     assert_eq!(left_out, [ConditionId(10)]);
 }
 
 /// The keys of an object, sorted.
 fn keys(value: &Value) -> Vec<&str> {
-    let mut keys: Vec<&str> = value.as_object().unwrap().keys().map(String::as_str).collect();
+    let mut keys: Vec<&str> = value
+        .as_object()
+        .unwrap()
+        .keys()
+        .map(String::as_str)
+        .collect();
     keys.sort_unstable();
     keys
 }
@@ -186,7 +372,14 @@ fn what_is_written_of_the_example_has_the_fields_that_it_always_had_and_the_tole
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
     let value = corrections(analysis, "", &analysis.conditions.keys().copied().collect());
     let mut settings = keys(&value["settings"]);
-    let later = ["agreement_db", "delay_from", "error_bars", "gain_from", "phase", "schedule_delays"];
+    let later = [
+        "agreement_db",
+        "delay_from",
+        "error_bars",
+        "gain_from",
+        "phase",
+        "schedule_delays",
+    ];
     settings.retain(|key| !later.contains(key));
     assert_eq!(
         settings,
@@ -235,7 +428,13 @@ fn what_is_written_of_the_example_has_the_fields_that_it_always_had_and_the_tole
         ],
         "without reasons there is no word of them"
     );
-    assert_eq!(keys(&value["schedule"]["table"][0]), ["airspeed_kt", "inputs", "outputs"]);
+    assert_eq!(
+        keys(&value["schedule"]["table"][0]),
+        ["airspeed_kt", "inputs", "outputs"]
+    );
     assert!(value["schedule"]["delays_s"].is_null());
-    assert_eq!(keys(&value["conditions"][0]["gain_solution"]["explanation"]), ["conflicts", "remedy", "sensitivities"]);
+    assert_eq!(
+        keys(&value["conditions"][0]["gain_solution"]["explanation"]),
+        ["conflicts", "remedy", "sensitivities"]
+    );
 }

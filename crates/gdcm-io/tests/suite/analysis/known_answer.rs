@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use gdcm_method::correction::GainBounds;
 use gdcm_model::dataset::{
-    Band, Channel, Condition, Dataset, DatasetHeader, FlightState, MeasuredResponse, Model, ModelId, Origin,
+    Band, Channel, Condition, Dataset, DatasetHeader, FlightState, MeasuredResponse, Model,
+    ModelId, Origin,
 };
 
 use super::responses::model_of;
@@ -25,14 +26,32 @@ fn dataset_of(file: &str, delay_s: f64) -> Dataset {
     let flight = response.curves().map(|pair, values| {
         let net_gain = gain(pair.output) * gain(outputs + pair.input);
         let lag = |omega: &f64| Complex::from_polar(net_gain, -omega * delay_s);
-        values.iter().zip(grid.omega()).map(|(value, omega)| value * lag(omega)).collect::<Vec<_>>()
+        values
+            .iter()
+            .zip(grid.omega())
+            .map(|(value, omega)| value * lag(omega))
+            .collect::<Vec<_>>()
     });
-    let part = |of: fn(&Complex<f64>) -> f64| flight.map(|_, values| values.iter().map(of).collect::<Vec<f64>>());
-    let measured =
-        MeasuredResponse::new(grid.omega().to_vec(), &part(|value| value.re), &part(|value| value.im), None).unwrap();
+    let part = |of: fn(&Complex<f64>) -> f64| {
+        flight.map(|_, values| values.iter().map(of).collect::<Vec<f64>>())
+    };
+    let measured = MeasuredResponse::new(
+        grid.omega().to_vec(),
+        &part(|value| value.re),
+        &part(|value| value.im),
+        None,
+    )
+    .unwrap();
     let model = |name: &str, origin, dynamics| Model::new(name, origin, dynamics);
     let physics = model("nominal", Origin::Nominal { perturbation: None }, dynamics);
-    let identified = model("flight", Origin::Identified { method: None, order: None }, Dynamics::Measured(measured));
+    let identified = model(
+        "flight",
+        Origin::Identified {
+            method: None,
+            order: None,
+        },
+        Dynamics::Measured(measured),
+    );
     let flight_state = FlightState {
         id: ConditionId(1),
         name: file.to_owned(),
@@ -42,7 +61,11 @@ fn dataset_of(file: &str, delay_s: f64) -> Dataset {
         weight: None,
         mass_kg: None,
     };
-    let channels = |letter: &str, count| (0..count).map(|index| Channel::new(format!("{letter}{index}"), "")).collect();
+    let channels = |letter: &str, count| {
+        (0..count)
+            .map(|index| Channel::new(format!("{letter}{index}"), ""))
+            .collect()
+    };
     let header = DatasetHeader {
         name: file.to_owned(),
         description: String::new(),
@@ -51,17 +74,31 @@ fn dataset_of(file: &str, delay_s: f64) -> Dataset {
         on_axis: PairTable::filled(outputs, inputs, false),
         band: Band::new(0.5, 12.0).unwrap(),
     };
-    Dataset::new(header, vec![Condition::new(flight_state, vec![physics], vec![identified]).unwrap()]).unwrap()
+    Dataset::new(
+        header,
+        vec![Condition::new(flight_state, vec![physics], vec![identified]).unwrap()],
+    )
+    .unwrap()
 }
 
 #[test]
 fn gains_and_delays_put_into_published_helicopters_are_found_again() {
-    let shapes = [("compleib_HE2_AH64_130kt.json", (2, 2)), ("yamaha_R50_hover_mettler.json", (13, 4))];
+    let shapes = [
+        ("compleib_HE2_AH64_130kt.json", (2, 2)),
+        ("yamaha_R50_hover_mettler.json", (13, 4)),
+    ];
     for (file, shape) in shapes {
         let dataset = dataset_of(file, 0.02);
-        assert_eq!((dataset.outputs().len(), dataset.inputs().len()), shape, "{file}");
+        assert_eq!(
+            (dataset.outputs().len(), dataset.inputs().len()),
+            shape,
+            "{file}"
+        );
         let mut study = Study::new(Arc::new(dataset));
-        let bounds = GainBounds { lower: 0.3, upper: 3.0 };
+        let bounds = GainBounds {
+            lower: 0.3,
+            upper: 3.0,
+        };
         for edit in [
             setting::GAIN_BOUNDS.to(Some(bounds)),
             setting::DELAY_UPPER.to(Some(0.1)),
@@ -73,14 +110,32 @@ fn gains_and_delays_put_into_published_helicopters_are_found_again() {
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let result = analysis.condition(ConditionId(1)).unwrap();
         let mut defined = 0;
-        for (pair, wanted) in result.comparison.delta.gain.iter().filter(|(_, wanted)| wanted.is_some()) {
+        for (pair, wanted) in result
+            .comparison
+            .delta
+            .gain
+            .iter()
+            .filter(|(_, wanted)| wanted.is_some())
+        {
             defined += 1;
             let known = gain(pair.output) * gain(shape.0 + pair.input);
             // Interpolated between 3000 measured frequencies: a few 1e-6 at lightly damped peaks, in the median far less.
-            assert!((wanted.unwrap() / known - 1.0).abs() < 1e-6, "{file} {pair:?}");
-            assert!((result.correction.net_gain(pair) / known - 1.0).abs() < 1e-6, "{file} {pair:?}");
-            assert!((result.correction.net_delay_s(pair) - 0.02).abs() < 1e-6, "{file} {pair:?}");
-            assert!(result.cost[pair].unwrap().corrected.total() < 1e-4, "{file} {pair:?}");
+            assert!(
+                (wanted.unwrap() / known - 1.0).abs() < 1e-6,
+                "{file} {pair:?}"
+            );
+            assert!(
+                (result.correction.net_gain(pair) / known - 1.0).abs() < 1e-6,
+                "{file} {pair:?}"
+            );
+            assert!(
+                (result.correction.net_delay_s(pair) - 0.02).abs() < 1e-6,
+                "{file} {pair:?}"
+            );
+            assert!(
+                result.cost[pair].unwrap().corrected.total() < 1e-4,
+                "{file} {pair:?}"
+            );
         }
         assert!(defined >= 4, "{file}: {defined} responses are defined");
     }
@@ -89,11 +144,19 @@ fn gains_and_delays_put_into_published_helicopters_are_found_again() {
 #[test]
 fn a_band_beyond_the_measured_frequencies_leaves_no_result_and_says_why() {
     let mut study = Study::new(Arc::new(dataset_of("compleib_HE2_AH64_130kt.json", 0.0)));
-    study.apply(&setting::BAND.to(Band::new(0.1, 12.0).unwrap())).unwrap();
+    study
+        .apply(&setting::BAND.to(Band::new(0.1, 12.0).unwrap()))
+        .unwrap();
     let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
-    let failure = analysis.conditions[&ConditionId(1)].as_ref().unwrap_err().to_string();
+    let failure = analysis.conditions[&ConditionId(1)]
+        .as_ref()
+        .unwrap_err()
+        .to_string();
     assert!(failure.contains("over the whole band"), "{failure}");
     assert!(analysis.schedule.is_err());
     let kept = ModelId::new(ConditionId(1), BundleKind::Identified, "flight");
-    assert!(study.apply(&Edit::Reject(kept)).is_err(), "the only model of a bundle stays");
+    assert!(
+        study.apply(&Edit::Reject(kept)).is_err(),
+        "the only model of a bundle stays"
+    );
 }

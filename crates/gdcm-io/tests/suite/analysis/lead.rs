@@ -6,12 +6,13 @@ use gdcm_method::correction::{Channel as CorrectedChannel, LeadDesign, LeadSetti
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{
-    Band, Channel, Condition, Dataset, DatasetHeader, FlightState, MeasuredResponse, Model, ModelId, Origin,
+    Band, Channel, Condition, Dataset, DatasetHeader, FlightState, MeasuredResponse, Model,
+    ModelId, Origin,
 };
 use gdcm_model::response::LeadOrder;
 use gdcm_study::study::{
-    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, DelayFrom, PhaseCorrection, lead_words,
-    remarks,
+    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, DelayFrom,
+    PhaseCorrection, lead_words, remarks,
 };
 
 use super::*;
@@ -19,11 +20,14 @@ use super::*;
 const REFERENCE: &str = include_str!("../../../../../tests/data/reference/lead.json");
 
 /// The example with leads, nothing rejected.
-static EXAMPLE_WITH_LEADS: LazyLock<Analysis> = LazyLock::new(|| analyze(&mut Engine::default(), &with_leads()));
+static EXAMPLE_WITH_LEADS: LazyLock<Analysis> =
+    LazyLock::new(|| analyze(&mut Engine::default(), &with_leads()));
 
 fn with_leads() -> Study {
     let mut study = study_of_example();
-    study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).unwrap();
+    study
+        .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+        .unwrap();
     study
 }
 
@@ -31,7 +35,10 @@ fn with_leads() -> Study {
 #[track_caller]
 fn assert_close(what: &str, found: f64, reference: f64, scale: f64) {
     let allowed = 1e-6 * reference.abs().max(scale);
-    assert!((found - reference).abs() <= allowed, "{what}: found {found}, reference {reference}");
+    assert!(
+        (found - reference).abs() <= allowed,
+        "{what}: found {found}, reference {reference}"
+    );
 }
 
 #[track_caller]
@@ -46,25 +53,69 @@ fn signed_delays_filters_and_gains_of_the_example_agree() {
     let reference = json(REFERENCE);
     for expected in list(&reference["example"]["conditions"]) {
         let id = ConditionId(expected["id"].as_i64().unwrap());
-        let (at, found) = (format!("condition {id}"), EXAMPLE_WITH_LEADS.condition(id).unwrap());
+        let (at, found) = (
+            format!("condition {id}"),
+            EXAMPLE_WITH_LEADS.condition(id).unwrap(),
+        );
         for (pair, delay_s) in found.comparison.delta.band_delay_s.iter() {
-            assert_close(&at, delay_s.unwrap(), number(&expected["D_s"][pair.output][pair.input]), 1e-3);
-            assert_close(&at, found.wanted_gain(pair).unwrap(), number(&expected["G"][pair.output][pair.input]), 1.0);
+            assert_close(
+                &at,
+                delay_s.unwrap(),
+                number(&expected["D_s"][pair.output][pair.input]),
+                1e-3,
+            );
+            assert_close(
+                &at,
+                found.wanted_gain(pair).unwrap(),
+                number(&expected["G"][pair.output][pair.input]),
+                1.0,
+            );
         }
-        assert_close(&at, found.delay_problem.bounds.lower, number(&expected["lower_s"]), 1e-3);
-        assert_close(&at, found.delay_upper_s(), number(&expected["upper_s"]), 1e-3);
-        assert_close(&at, found.delays.objective, number(&expected["objective"]), 1e-4);
-        assert_eq!(found.delays.matched, expected["matched"].as_bool().unwrap(), "{at}");
+        assert_close(
+            &at,
+            found.delay_problem.bounds.lower,
+            number(&expected["lower_s"]),
+            1e-3,
+        );
+        assert_close(
+            &at,
+            found.delay_upper_s(),
+            number(&expected["upper_s"]),
+            1e-3,
+        );
+        assert_close(
+            &at,
+            found.delays.objective,
+            number(&expected["objective"]),
+            1e-4,
+        );
+        assert_eq!(
+            found.delays.matched,
+            expected["matched"].as_bool().unwrap(),
+            "{at}"
+        );
         let leads = found.correction.leads.as_ref().unwrap();
         assert_all_close(&at, &leads.taus_s.outputs, &expected["tau_out_s"], 1e-3);
         assert_all_close(&at, &leads.taus_s.inputs, &expected["tau_in_s"], 1e-3);
-        let lead_s = leads.filters().map(|_, filter| filter.map_or(0.0, |filter| filter.lead_s()));
+        let lead_s = leads
+            .filters()
+            .map(|_, filter| filter.map_or(0.0, |filter| filter.lead_s()));
         assert_all_close(&at, &lead_s.inputs, &expected["lead_in_s"], 1e-3);
         assert_all_close(&at, &lead_s.outputs, &expected["lead_out_s"], 1e-3);
-        assert_all_close(&at, &[found.gain_bounds().lower, found.gain_bounds().upper], &expected["gain_bounds"], 1.0);
+        assert_all_close(
+            &at,
+            &[found.gain_bounds().lower, found.gain_bounds().upper],
+            &expected["gain_bounds"],
+            1.0,
+        );
         assert_all_close(&at, &found.correction.output_gains, &expected["k_out"], 1.0);
         assert_all_close(&at, &found.correction.input_gains, &expected["k_in"], 1.0);
-        assert_close(&at, found.gains.objective, number(&expected["gain_objective"]), 1.0);
+        assert_close(
+            &at,
+            found.gains.objective,
+            number(&expected["gain_objective"]),
+            1.0,
+        );
     }
 }
 
@@ -83,7 +134,8 @@ fn costs_of_the_example_with_leads_agree_for_each_condition_and_under_the_schedu
         let own = &EXAMPLE_WITH_LEADS.condition(id).unwrap().cost;
         for (pair, change) in own.iter() {
             let (at, change) = (format!("condition {id}, {pair:?}"), change.unwrap());
-            let of = |name: &str, stage: usize| number(&expected[name][stage][pair.output][pair.input]);
+            let of =
+                |name: &str, stage: usize| number(&expected[name][stage][pair.output][pair.input]);
             assert_close(&at, change.uncorrected.magnitude, of("J_mag", 0), 1.0);
             assert_close(&at, change.uncorrected.phase, of("J_phase", 0), 1.0);
             assert_close(&at, change.corrected.magnitude, of("J_mag", 1), 1.0);
@@ -98,17 +150,44 @@ fn costs_of_the_example_with_leads_agree_for_each_condition_and_under_the_schedu
 
 #[test]
 fn the_schedule_of_the_example_holds_the_mean_signed_delay_of_each_channel() {
-    let (reference, schedule) = (json(REFERENCE), EXAMPLE_WITH_LEADS.schedule.as_ref().unwrap());
+    let (reference, schedule) = (
+        json(REFERENCE),
+        EXAMPLE_WITH_LEADS.schedule.as_ref().unwrap(),
+    );
     let at = schedule.at(77.0);
     let leads = at.leads.as_ref().unwrap();
-    assert_all_close("inputs", &leads.taus_s.inputs, &reference["example"]["schedule"]["tau_in_s"], 1e-3);
-    assert_all_close("outputs", &leads.taus_s.outputs, &reference["example"]["schedule"]["tau_out_s"], 1e-3);
-    assert!(at.input_delays_s.iter().all(|delay_s| *delay_s == 0.0), "all inputs want lead");
+    assert_all_close(
+        "inputs",
+        &leads.taus_s.inputs,
+        &reference["example"]["schedule"]["tau_in_s"],
+        1e-3,
+    );
+    assert_all_close(
+        "outputs",
+        &leads.taus_s.outputs,
+        &reference["example"]["schedule"]["tau_out_s"],
+        1e-3,
+    );
+    assert!(
+        at.input_delays_s.iter().all(|delay_s| *delay_s == 0.0),
+        "all inputs want lead"
+    );
     // M15.6: NX wants 69 ms of delay in condition 4.
-    let hidden = |caution: &&ScheduleCaution| matches!(caution, ScheduleCaution::SignedDelayApart { .. });
+    let hidden =
+        |caution: &&ScheduleCaution| matches!(caution, ScheduleCaution::SignedDelayApart { .. });
     let (inputs, outputs) = schedule_names();
-    let hidden: Vec<String> = schedule.cautions.iter().filter(hidden).map(|of| of.words(&inputs, &outputs)).collect();
-    assert!(hidden.iter().any(|words| words.starts_with("NX: +69 ms in condition 4 against −1")), "{hidden:?}");
+    let hidden: Vec<String> = schedule
+        .cautions
+        .iter()
+        .filter(hidden)
+        .map(|of| of.words(&inputs, &outputs))
+        .collect();
+    assert!(
+        hidden
+            .iter()
+            .any(|words| words.starts_with("NX: +69 ms in condition 4 against −1")),
+        "{hidden:?}"
+    );
     let words = hidden.concat();
     assert!(words.contains("not schedulable over airspeed"), "{words}");
 }
@@ -121,33 +200,60 @@ fn schedule_names() -> (Vec<String>, Vec<String>) {
 fn gains_alone_are_those_of_delays_and_every_delay_is_none() {
     let (mut study, mut engine) = (study_of_example(), Engine::default());
     let delay = analyze(&mut engine, &study);
-    study.apply(&setting::PHASE.to(PhaseCorrection::None)).unwrap();
+    study
+        .apply(&setting::PHASE.to(PhaseCorrection::None))
+        .unwrap();
     let none = analyze(&mut engine, &study);
-    study.apply(&setting::PHASE.to(PhaseCorrection::Lead)).unwrap();
+    study
+        .apply(&setting::PHASE.to(PhaseCorrection::Lead))
+        .unwrap();
     analyze(&mut engine, &study);
-    study.apply(&setting::PHASE.to(PhaseCorrection::Delay)).unwrap();
+    study
+        .apply(&setting::PHASE.to(PhaseCorrection::Delay))
+        .unwrap();
     let again = analyze(&mut engine, &study);
     for (id, found) in &delay.conditions {
         let found = found.as_ref().unwrap();
-        assert_eq!(found.correction, again.condition(*id).unwrap().correction, "to the last digit");
-        assert_eq!(found.cost, again.condition(*id).unwrap().cost, "to the last digit");
+        assert_eq!(
+            found.correction,
+            again.condition(*id).unwrap().correction,
+            "to the last digit"
+        );
+        assert_eq!(
+            found.cost,
+            again.condition(*id).unwrap().cost,
+            "to the last digit"
+        );
         let none = &none.condition(*id).unwrap().correction;
         assert_eq!(
             (&none.input_gains, &none.output_gains),
-            (&found.correction.input_gains, &found.correction.output_gains)
+            (
+                &found.correction.input_gains,
+                &found.correction.output_gains
+            )
         );
-        assert!(none.input_delays_s.iter().chain(&none.output_delays_s).all(|delay_s| *delay_s == 0.0));
+        assert!(
+            none.input_delays_s
+                .iter()
+                .chain(&none.output_delays_s)
+                .all(|delay_s| *delay_s == 0.0)
+        );
     }
 }
 
 #[test]
 fn delays_of_the_band_are_fitted_to_the_line_through_the_phase() {
     let mut study = study_of_example();
-    study.apply(&setting::DELAY_FROM.to(DelayFrom::Band)).unwrap();
+    study
+        .apply(&setting::DELAY_FROM.to(DelayFrom::Band))
+        .unwrap();
     let analysis = analyze(&mut Engine::default(), &study);
     for (id, found) in &analysis.conditions {
         let found = found.as_ref().unwrap();
-        assert_eq!(found.delay_problem.delta, found.comparison.delta.band_delay_s, "condition {id}");
+        assert_eq!(
+            found.delay_problem.delta, found.comparison.delta.band_delay_s,
+            "condition {id}"
+        );
         assert!(found.correction.leads.is_none());
     }
 }
@@ -156,23 +262,39 @@ fn delays_of_the_band_are_fitted_to_the_line_through_the_phase() {
 fn what_leads_do_and_cost_is_told_and_what_to_check_first() {
     let result = EXAMPLE_WITH_LEADS.condition(ConditionId(1)).unwrap();
     let study = &EXAMPLE_WITH_LEADS.study;
-    let said: Vec<String> = remarks(study, result, None).into_iter().map(|remark| remark.text).collect();
-    let first = said.iter().find(|text| text.contains("check first the time alignment of the records")).unwrap();
-    assert!(first.starts_with("All held responses want about"), "{first}");
-    assert!(said.contains(&"All 5 held responses get the delay or lead that they want.".to_owned()), "{said:?}");
+    let said: Vec<String> = remarks(study, result, None)
+        .into_iter()
+        .map(|remark| remark.text)
+        .collect();
+    let first = said
+        .iter()
+        .find(|text| text.contains("check first the time alignment of the records"))
+        .unwrap();
+    assert!(
+        first.starts_with("All held responses want about"),
+        "{first}"
+    );
+    assert!(
+        said.contains(&"All 5 held responses get the delay or lead that they want.".to_owned()),
+        "{said:?}"
+    );
     let words = lead_words(study, result, None);
     // From the reference: P from LAT wants 65.4 ms, 24.1 on P, 41.2 on LAT.
     assert!(
-        words.iter().any(|of| of.starts_with("P from LAT wants 65 ms of lead over the band: 24 on P, 41 on LAT; +")),
+        words.iter().any(|of| of
+            .starts_with("P from LAT wants 65 ms of lead over the band: 24 on P, 41 on LAT; +")),
         "{words:?}"
     );
     assert!(
-        words
-            .iter()
-            .any(|of| of.starts_with("LAT: as if a servo of 18 rad/s were replaced by one of 36 rad/s; +11.6 dB")),
+        words.iter().any(|of| of.starts_with(
+            "LAT: as if a servo of 18 rad/s were replaced by one of 36 rad/s; +11.6 dB"
+        )),
         "{words:?}"
     );
-    assert_eq!(words.last().unwrap(), "The leads add 20 states. Do not use the corrected model above 12 rad/s.");
+    assert_eq!(
+        words.last().unwrap(),
+        "The leads add 20 states. Do not use the corrected model above 12 rad/s."
+    );
 }
 
 #[test]
@@ -183,22 +305,42 @@ fn where_all_held_responses_want_lead_the_result_offers_it_with_what_it_buys() {
     let offer = result.offer.unwrap();
     let held = || result.held().marked();
     let mean = |found: &gdcm_study::study::ConditionAnalysis| {
-        held().map(|pair| found.cost[pair].unwrap().corrected.total()).sum::<f64>() / held().count() as f64
+        held()
+            .map(|pair| found.cost[pair].unwrap().corrected.total())
+            .sum::<f64>()
+            / held().count() as f64
     };
     assert!((offer.without - mean(result)).abs() < 1e-9, "J as it is");
     let taken = mean(EXAMPLE_WITH_LEADS.condition(ConditionId(1)).unwrap());
     // The gains change a little once leads are taken.
-    assert!((offer.with - taken).abs() < 0.1 * offer.without, "{offer:?}, {taken}");
-    let offered = remarks(&study, result, None).into_iter().find(|remark| remark.phase.is_some()).unwrap();
+    assert!(
+        (offer.with - taken).abs() < 0.1 * offer.without,
+        "{offer:?}, {taken}"
+    );
+    let offered = remarks(&study, result, None)
+        .into_iter()
+        .find(|remark| remark.phase.is_some())
+        .unwrap();
     assert_eq!(offered.phase, Some(PhaseCorrection::Lead));
-    assert!(EXAMPLE_WITH_LEADS.condition(ConditionId(1)).unwrap().offer.is_none(), "taken already");
+    assert!(
+        EXAMPLE_WITH_LEADS
+            .condition(ConditionId(1))
+            .unwrap()
+            .offer
+            .is_none(),
+        "taken already"
+    );
 }
 
 /// The reference's plant, `H_oi = g (s + q) / (s^2 + p s + p^2)`, and as flight the same with known gains and signed delays.
 fn known(entry: &Value, plant: &Value) -> Dataset {
     let number_at = |name: &str, pair: Pair| number(&plant[name][pair.output][pair.input]);
     let pairs: Vec<Pair> = PairTable::filled(3, 2, ()).pairs().collect();
-    let (mut a, mut b, mut c) = (DMatrix::zeros(12, 12), DMatrix::zeros(12, 2), DMatrix::zeros(3, 12));
+    let (mut a, mut b, mut c) = (
+        DMatrix::zeros(12, 12),
+        DMatrix::zeros(12, 2),
+        DMatrix::zeros(3, 12),
+    );
     for (place, &pair) in pairs.iter().enumerate() {
         let [g, p, q] = ["g", "p", "q"].map(|name| number_at(name, pair));
         let at = 2 * place;
@@ -210,20 +352,47 @@ fn known(entry: &Value, plant: &Value) -> Dataset {
     let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 200);
     let design = LeadDesign::new(lead_settings(entry), grid.omega().into());
     let channel = |side: &str, at: usize, omega: f64| {
-        let (k, tau_s) = (numbers(&entry[format!("k_{side}")])[at], numbers(&entry[format!("tau_{side}_s")])[at]);
-        let factor = design.filter(tau_s).map_or(Complex::from_polar(1.0, -omega * tau_s), |filter| filter.at(omega));
+        let (k, tau_s) = (
+            numbers(&entry[format!("k_{side}")])[at],
+            numbers(&entry[format!("tau_{side}_s")])[at],
+        );
+        let factor = design
+            .filter(tau_s)
+            .map_or(Complex::from_polar(1.0, -omega * tau_s), |filter| {
+                filter.at(omega)
+            });
         factor * k
     };
-    let flight = FrequencyResponse::of(&dynamics, &grid).curves().map(|pair, values| {
-        let factor = |omega: f64| channel("out", pair.output, omega) * channel("in", pair.input, omega);
-        values.iter().zip(grid.omega()).map(|(value, &omega)| value * factor(omega)).collect::<Vec<_>>()
-    });
-    let part = |of: fn(&Complex<f64>) -> f64| flight.map(|_, values| values.iter().map(of).collect::<Vec<f64>>());
-    let measured =
-        MeasuredResponse::new(grid.omega().to_vec(), &part(|value| value.re), &part(|value| value.im), None).unwrap();
+    let flight = FrequencyResponse::of(&dynamics, &grid)
+        .curves()
+        .map(|pair, values| {
+            let factor =
+                |omega: f64| channel("out", pair.output, omega) * channel("in", pair.input, omega);
+            values
+                .iter()
+                .zip(grid.omega())
+                .map(|(value, &omega)| value * factor(omega))
+                .collect::<Vec<_>>()
+        });
+    let part = |of: fn(&Complex<f64>) -> f64| {
+        flight.map(|_, values| values.iter().map(of).collect::<Vec<f64>>())
+    };
+    let measured = MeasuredResponse::new(
+        grid.omega().to_vec(),
+        &part(|value| value.re),
+        &part(|value| value.im),
+        None,
+    )
+    .unwrap();
     let physics = Model::new("nominal", Origin::Nominal { perturbation: None }, dynamics);
-    let identified =
-        Model::new("flight", Origin::Identified { method: None, order: None }, Dynamics::Measured(measured));
+    let identified = Model::new(
+        "flight",
+        Origin::Identified {
+            method: None,
+            order: None,
+        },
+        Dynamics::Measured(measured),
+    );
     let flight_state = FlightState {
         id: ConditionId(1),
         name: "known".to_owned(),
@@ -234,21 +403,39 @@ fn known(entry: &Value, plant: &Value) -> Dataset {
         mass_kg: None,
     };
     let on: Vec<Vec<f64>> = list(&entry["on"]).iter().map(numbers).collect();
-    let channels = |letter: &str, count| (0..count).map(|index| Channel::new(format!("{letter}{index}"), "")).collect();
+    let channels = |letter: &str, count| {
+        (0..count)
+            .map(|index| Channel::new(format!("{letter}{index}"), ""))
+            .collect()
+    };
     let header = DatasetHeader {
         name: "known".to_owned(),
         description: String::new(),
         inputs: channels("u", 2),
         outputs: channels("y", 3),
-        on_axis: PairTable::from_fn(3, 2, |pair| on.contains(&vec![pair.output as f64, pair.input as f64])),
+        on_axis: PairTable::from_fn(3, 2, |pair| {
+            on.contains(&vec![pair.output as f64, pair.input as f64])
+        }),
         band: Band::new(0.5, 12.0).unwrap(),
     };
-    Dataset::new(header, vec![Condition::new(flight_state, vec![physics], vec![identified]).unwrap()]).unwrap()
+    Dataset::new(
+        header,
+        vec![Condition::new(flight_state, vec![physics], vec![identified]).unwrap()],
+    )
+    .unwrap()
 }
 
 fn lead_settings(entry: &Value) -> LeadSettings {
-    let order = if entry["order"] == 1 { LeadOrder::First } else { LeadOrder::Second };
-    LeadSettings { order, pole: number(&entry["pole"]), ..LeadSettings::default() }
+    let order = if entry["order"] == 1 {
+        LeadOrder::First
+    } else {
+        LeadOrder::Second
+    };
+    LeadSettings {
+        order,
+        pole: number(&entry["pole"]),
+        ..LeadSettings::default()
+    }
 }
 
 #[test]
@@ -273,20 +460,39 @@ fn known_signed_delays_and_gains_are_found_again() {
         let taus = |side: &str| numbers(&entry[format!("tau_{side}_s")]);
         for (pair, wanted_s) in result.comparison.delta.band_delay_s.iter() {
             let sum_s = taus("out")[pair.output] + taus("in")[pair.input];
-            assert!((wanted_s.unwrap() - sum_s).abs() < 1e-6, "{name}: D of {pair:?}");
+            assert!(
+                (wanted_s.unwrap() - sum_s).abs() < 1e-6,
+                "{name}: D of {pair:?}"
+            );
             let found_s = result.correction.net_delay_s(pair);
-            assert!((found_s - sum_s).abs() < 1e-6, "{name}: {pair:?} {found_s} {sum_s}");
+            assert!(
+                (found_s - sum_s).abs() < 1e-6,
+                "{name}: {pair:?} {found_s} {sum_s}"
+            );
         }
         // One constant may move from all outputs to all inputs: the sum of squares decides.
         let constant_s = leads.taus_s.inputs[0] - taus("in")[0];
         for (at, tau_s) in taus("out").iter().enumerate() {
-            assert!((leads.taus_s.outputs[at] + constant_s - tau_s).abs() < 1e-6, "{name}");
+            assert!(
+                (leads.taus_s.outputs[at] + constant_s - tau_s).abs() < 1e-6,
+                "{name}"
+            );
         }
-        for (at, gain) in list(&entry["on"]).iter().map(numbers).zip(numbers(&entry["net_gain_on"])) {
+        for (at, gain) in list(&entry["on"])
+            .iter()
+            .map(numbers)
+            .zip(numbers(&entry["net_gain_on"]))
+        {
             let pair = Pair::new(at[0] as usize, at[1] as usize);
-            assert!((result.correction.net_gain(pair) / gain - 1.0).abs() < 1e-3, "{name}: {pair:?}");
+            assert!(
+                (result.correction.net_gain(pair) / gain - 1.0).abs() < 1e-3,
+                "{name}: {pair:?}"
+            );
         }
-        assert_eq!(leads.filters()[CorrectedChannel::Input(0)].is_some(), leads.taus_s.inputs[0] < 0.0);
+        assert_eq!(
+            leads.filters()[CorrectedChannel::Input(0)].is_some(),
+            leads.taus_s.inputs[0] < 0.0
+        );
     }
 }
 
@@ -299,7 +505,8 @@ fn what_a_response_wants_has_the_bar_of_whole_analyses_with_each_model_pinned() 
     let (study, result) = (&analysis.study, analysis.condition(id).unwrap());
     let words = lead_words(study, result, Some(&sure));
     let with_bar = |of: &String| {
-        of.starts_with("P from LAT wants 65 ± ") && of.contains(" ms of lead over the band: 24 on P, 41 on LAT")
+        of.starts_with("P from LAT wants 65 ± ")
+            && of.contains(" ms of lead over the band: 24 on P, 41 on LAT")
     };
     assert!(words.iter().any(with_bar), "{words:?}");
     // One physics model in place of the representative: tau of a channel is that of the whole analysis with it pinned.
@@ -319,20 +526,44 @@ fn what_a_response_wants_has_the_bar_of_whole_analyses_with_each_model_pinned() 
     let mut engine = Engine::default();
     let mut tau_s = |study: &Study| {
         let analysis = analyze(&mut engine, study);
-        analysis.condition(id).unwrap().correction.leads.as_ref().unwrap().taus_s[channel]
+        analysis
+            .condition(id)
+            .unwrap()
+            .correction
+            .leads
+            .as_ref()
+            .unwrap()
+            .taus_s[channel]
     };
     let own_s = tau_s(&alone);
     let squares = others.iter().map(|name| {
         let mut pinned = alone.clone();
         let identified = result.representative_name(BundleKind::Identified);
-        pinned.apply(&Edit::Pin(ModelId::new(id, BundleKind::Physics, *name))).unwrap();
-        pinned.apply(&Edit::Pin(ModelId::new(id, BundleKind::Identified, identified))).unwrap();
+        pinned
+            .apply(&Edit::Pin(ModelId::new(id, BundleKind::Physics, *name)))
+            .unwrap();
+        pinned
+            .apply(&Edit::Pin(ModelId::new(
+                id,
+                BundleKind::Identified,
+                identified,
+            )))
+            .unwrap();
         (tau_s(&pinned) - own_s).powi(2)
     });
     let variance = squares.sum::<f64>() / others.len() as f64;
-    let bar = sure.conditions[&id].bars[Scalar::ChannelDelay(channel)].as_ref().unwrap();
+    let bar = sure.conditions[&id].bars[Scalar::ChannelDelay(channel)]
+        .as_ref()
+        .unwrap();
     let trim = bar.trim.as_ref().unwrap().variance;
-    assert!(bar.value < 0.0 && (bar.value - own_s).abs() < 1e-12, "a lead: {}", bar.value);
+    assert!(
+        bar.value < 0.0 && (bar.value - own_s).abs() < 1e-12,
+        "a lead: {}",
+        bar.value
+    );
     // The same analyses: what differs is the rounding of the convex program.
-    assert!((trim - variance).abs() <= 1e-6 * variance, "{trim} {variance}");
+    assert!(
+        (trim - variance).abs() <= 1e-6 * variance,
+        "{trim} {variance}"
+    );
 }

@@ -15,13 +15,23 @@ fn set(study: &mut Study, edit: Edit) {
 }
 
 /// `|H|` of every kept model of a bundle at each frequency.
-fn magnitudes(dataset: &Dataset, kind: BundleKind, grid: &FrequencyGrid, rejected: &BTreeSet<&str>) -> Vec<Magnitudes> {
+fn magnitudes(
+    dataset: &Dataset,
+    kind: BundleKind,
+    grid: &FrequencyGrid,
+    rejected: &BTreeSet<&str>,
+) -> Vec<Magnitudes> {
     let models = dataset.condition(CONDITION).unwrap().bundle(kind).iter();
     let kept = models.filter(|model| !rejected.contains(model.name.as_str()));
     let of_model = |dynamics| {
         FrequencyResponse::of(dynamics, grid)
             .curves()
-            .map(|_, curve| curve.iter().map(|value: &Complex<f64>| value.re.hypot(value.im)).collect())
+            .map(|_, curve| {
+                curve
+                    .iter()
+                    .map(|value: &Complex<f64>| value.re.hypot(value.im))
+                    .collect()
+            })
     };
     kept.map(|model| of_model(&model.dynamics)).collect()
 }
@@ -38,30 +48,59 @@ fn plain_median(mut values: Vec<f64>) -> f64 {
 fn g_from_the_mean_is_the_mean_of_ln_g_of_every_pair_of_kept_models() {
     let mut study = study_of_example();
     let rejected: BTreeSet<&str> = BTreeSet::from(["nominal", "ROLL+5deg"]);
-    let models = rejected.iter().map(|name| ModelId::new(CONDITION, BundleKind::Physics, *name)).collect();
+    let models = rejected
+        .iter()
+        .map(|name| ModelId::new(CONDITION, BundleKind::Physics, *name))
+        .collect();
     study.apply(&Edit::RejectEach(models)).unwrap();
     let of_representatives = analyze(&mut Engine::default(), &study);
     set(&mut study, setting::GAIN_SOURCE.to(GainSource::MeanOfPairs));
     let analysis = analyze(&mut Engine::default(), &study);
     let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
-    assert!(study.settings.points.is_multiple_of(2), "as the plain median takes them");
-    let [physics, identified] = BundleKind::BOTH.map(|kind| magnitudes(&study.dataset, kind, &grid, &rejected));
+    assert!(
+        study.settings.points.is_multiple_of(2),
+        "as the plain median takes them"
+    );
+    let [physics, identified] =
+        BundleKind::BOTH.map(|kind| magnitudes(&study.dataset, kind, &grid, &rejected));
     let found = &analysis.condition(CONDITION).unwrap().comparison.delta.gain;
     let mut moved = 0.0_f64;
     for pair in found.pairs() {
         let Some(gain) = found[pair] else { continue };
         let ln_gain = |simulated: &Magnitudes, flight: &Magnitudes| {
-            plain_median(flight[pair].iter().zip(&simulated[pair]).map(|(flight, of)| flight / of).collect()).ln()
+            plain_median(
+                flight[pair]
+                    .iter()
+                    .zip(&simulated[pair])
+                    .map(|(flight, of)| flight / of)
+                    .collect(),
+            )
+            .ln()
         };
-        let all: Vec<f64> =
-            physics.iter().flat_map(|of| identified.iter().map(move |flight| ln_gain(of, flight))).collect();
+        let all: Vec<f64> = physics
+            .iter()
+            .flat_map(|of| identified.iter().map(move |flight| ln_gain(of, flight)))
+            .collect();
         let mean = (all.iter().sum::<f64>() / all.len() as f64).exp();
         // The program's ratios have been through decibels and back: some roundings each.
-        assert!((gain / mean - 1.0).abs() < 1e-12, "{}: {gain} {mean}", study.dataset.pair_name(pair));
-        let representatives = of_representatives.condition(CONDITION).unwrap().comparison.delta.gain[pair].unwrap();
+        assert!(
+            (gain / mean - 1.0).abs() < 1e-12,
+            "{}: {gain} {mean}",
+            study.dataset.pair_name(pair)
+        );
+        let representatives = of_representatives
+            .condition(CONDITION)
+            .unwrap()
+            .comparison
+            .delta
+            .gain[pair]
+            .unwrap();
         moved = moved.max((gain / representatives - 1.0).abs());
     }
-    assert!(moved > 0.005, "it is another figure than that of the representatives: {moved}");
+    assert!(
+        moved > 0.005,
+        "it is another figure than that of the representatives: {moved}"
+    );
 }
 
 #[test]
@@ -73,10 +112,23 @@ fn with_leads_g_from_the_mean_changes_nothing_and_the_settings_say_so() {
     set(&mut study, setting::GAIN_SOURCE.to(GainSource::MeanOfPairs));
     let of_mean = analyze(&mut Engine::default(), &study);
     for (id, result) in &of_mean.conditions {
-        let (with, without) = (result.as_ref().unwrap(), of_representatives.condition(*id).unwrap());
+        let (with, without) = (
+            result.as_ref().unwrap(),
+            of_representatives.condition(*id).unwrap(),
+        );
         assert_eq!(with.correction, without.correction, "condition {id}");
     }
-    assert!(study.settings.gain_source_words().contains("without effect"), "{}", study.settings.gain_source_words());
+    assert!(
+        study
+            .settings
+            .gain_source_words()
+            .contains("without effect"),
+        "{}",
+        study.settings.gain_source_words()
+    );
     set(&mut study, setting::PHASE.to(PhaseCorrection::Delay));
-    assert_eq!(study.settings.gain_source_words(), "the mean over all kept pairs");
+    assert_eq!(
+        study.settings.gain_source_words(),
+        "the mean over all kept pairs"
+    );
 }

@@ -47,7 +47,10 @@ fn list(value: &Value) -> &[Value] {
 }
 
 fn texts(value: &Value) -> Vec<&str> {
-    list(value).iter().map(|text| text.as_str().unwrap()).collect()
+    list(value)
+        .iter()
+        .map(|text| text.as_str().unwrap())
+        .collect()
 }
 
 fn analyze(engine: &mut Engine, study: &Study) -> Analysis {
@@ -65,7 +68,9 @@ static EXAMPLE_WITH_SUGGESTIONS_REJECTED: LazyLock<Analysis> = LazyLock::new(|| 
     let first = analyze(&mut engine, &study);
     for (&condition, result) in &first.conditions {
         let models = result.as_ref().unwrap().suggested();
-        study.apply(&Edit::reject_physics(condition, &models)).unwrap();
+        study
+            .apply(&Edit::reject_physics(condition, &models))
+            .unwrap();
     }
     analyze(&mut engine, &study)
 });

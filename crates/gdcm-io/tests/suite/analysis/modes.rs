@@ -28,8 +28,17 @@ fn value_at(model: &StateSpace, pair: Pair, s: Complex<f64>) -> Complex<f64> {
     let resolvent = DMatrix::from_fn(n, n, |row, column| {
         (if row == column { s } else { Complex::from(0.0) }) - model.a()[(row, column)]
     });
-    let states = resolvent.lu().solve(&model.b().column(pair.input).map(Complex::from)).unwrap();
-    let through: Complex<f64> = model.c().row(pair.output).iter().zip(states.iter()).map(|(c, x)| x * *c).sum();
+    let states = resolvent
+        .lu()
+        .solve(&model.b().column(pair.input).map(Complex::from))
+        .unwrap();
+    let through: Complex<f64> = model
+        .c()
+        .row(pair.output)
+        .iter()
+        .zip(states.iter())
+        .map(|(c, x)| x * *c)
+        .sum();
     through + model.d()[(pair.output, pair.input)]
 }
 
@@ -37,13 +46,21 @@ fn value_at(model: &StateSpace, pair: Pair, s: Complex<f64>) -> Complex<f64> {
 fn the_poles_of_published_models_have_the_sums_of_powers_of_their_matrices() {
     for file in MODELS {
         let model = state_space(file);
-        let poles: Vec<Complex<f64>> = modes(&model).unwrap().iter().map(|mode| mode.pole).collect();
+        let poles: Vec<Complex<f64>> = modes(&model)
+            .unwrap()
+            .iter()
+            .map(|mode| mode.pole)
+            .collect();
         assert_eq!(poles.len(), model.order());
         let (mut power, mut size) = (model.a().clone(), model.a().norm());
         for exponent in 1..=4 {
             let sum: Complex<f64> = poles.iter().map(|pole| pole.powi(exponent)).sum();
             // Similar matrices have equal traces; rounding is that of the entries of the power.
-            assert!((sum - power.trace()).norm() <= 1e-12 * size, "{file}, power {exponent}: {sum} {}", power.trace());
+            assert!(
+                (sum - power.trace()).norm() <= 1e-12 * size,
+                "{file}, power {exponent}: {sum} {}",
+                power.trace()
+            );
             (power, size) = (&power * model.a(), size * model.a().norm());
         }
     }
@@ -57,7 +74,11 @@ fn the_four_poles_of_a_near_defective_chain_are_near_their_place_and_without_par
         assert!((mode.pole + 0.001).norm() < 0.01, "{}", mode.pole);
         assert!(mode.participation.is_err(), "{mode:?}");
     }
-    assert!((found[4].pole + 0.001).norm() > 0.03, "the fifth is of the stable block: {}", found[4].pole);
+    assert!(
+        (found[4].pole + 0.001).norm() > 0.03,
+        "the fifth is of the stable block: {}",
+        found[4].pole
+    );
 }
 
 #[test]
@@ -65,16 +86,27 @@ fn the_responses_of_published_models_are_zero_at_their_zeros() {
     let mut checked = 0;
     for file in MODELS {
         let model = state_space(file);
-        let omega: Vec<f64> = (0..60).map(|k| 10.0_f64.powf(-2.0 + 0.07 * f64::from(k))).collect();
+        let omega: Vec<f64> = (0..60)
+            .map(|k| 10.0_f64.powf(-2.0 + 0.07 * f64::from(k)))
+            .collect();
         let response = evaluate(&model, &omega);
         for pair in response.curves().pairs() {
-            let Ok(zeros) = transmission_zeros(&model, pair) else { continue };
+            let Ok(zeros) = transmission_zeros(&model, pair) else {
+                continue;
+            };
             assert!(zeros.finite.len() + zeros.infinite <= model.order());
-            let peak = response.curve(pair).iter().map(|value| value.norm()).fold(0.0, f64::max);
+            let peak = response
+                .curve(pair)
+                .iter()
+                .map(|value| value.norm())
+                .fold(0.0, f64::max);
             for zero in &zeros.finite {
                 let value = value_at(&model, pair, *zero).norm();
                 // Zeros within 1e-4 of a pole are rounded the more, the nearer they are.
-                assert!(value < 1e-6 * peak, "{file} {pair:?} {zero}: {value:e} of {peak:e}");
+                assert!(
+                    value < 1e-6 * peak,
+                    "{file} {pair:?} {zero}: {value:e} of {peak:e}"
+                );
                 checked += 1;
             }
         }
@@ -84,7 +116,9 @@ fn the_responses_of_published_models_are_zero_at_their_zeros() {
 
 #[test]
 fn the_envelopes_are_those_of_independent_code() {
-    let golden = json(include_str!("../../../../../tests/data/reference/muad-golden.json"));
+    let golden = json(include_str!(
+        "../../../../../tests/data/reference/muad-golden.json"
+    ));
     let rows = list(&golden["rows"]);
     assert_eq!(rows.len(), 14);
     for row in rows {
@@ -93,28 +127,51 @@ fn the_envelopes_are_those_of_independent_code() {
         let found = [muad.magnitude_db, muad.phase_deg].concat();
         let expected = ["gain_lo_dB", "gain_up_dB", "phase_lo_deg", "phase_up_deg"].map(of);
         // The same formula in another order of rounding.
-        assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-11), "{muad:?}");
+        assert!(
+            found
+                .iter()
+                .zip(expected)
+                .all(|(found, expected)| (found - expected).abs() < 1e-11),
+            "{muad:?}"
+        );
     }
 }
 
 /// The models of a condition of the example at which some mode jumps, by name.
 fn jumping(id: i64) -> Vec<String> {
     let dataset = &crate::REFERENCE_DATASET.dataset;
-    let modes = ConditionModes::of(dataset.condition(ConditionId(id)).unwrap(), &Unobserved).unwrap();
+    let modes =
+        ConditionModes::of(dataset.condition(ConditionId(id)).unwrap(), &Unobserved).unwrap();
     let names = modes.condition.bundle(BundleKind::Physics);
-    let suggested = EXAMPLE_WITH_SUGGESTIONS_REJECTED.condition(ConditionId(id)).unwrap().suggested();
-    let reference = (0..names.len()).find(|&model| !suggested.contains(&names[model].name)).unwrap();
+    let suggested = EXAMPLE_WITH_SUGGESTIONS_REJECTED
+        .condition(ConditionId(id))
+        .unwrap()
+        .suggested();
+    let reference = (0..names.len())
+        .find(|&model| !suggested.contains(&names[model].name))
+        .unwrap();
     let tracks = modes.tracks(BundleKind::Physics, reference);
-    assert!(tracks.iter().all(|track| track.modes.iter().all(Option::is_some)), "all models have 39 states");
+    assert!(
+        tracks
+            .iter()
+            .all(|track| track.modes.iter().all(Option::is_some)),
+        "all models have 39 states"
+    );
     let mut models: Vec<usize> = tracks.into_iter().flat_map(|track| track.jumps).collect();
     models.sort_unstable();
     models.dedup();
-    models.into_iter().map(|model| names[model].name.clone()).collect()
+    models
+        .into_iter()
+        .map(|model| names[model].name.clone())
+        .collect()
 }
 
 #[test]
 fn the_modes_jump_where_the_physics_model_has_a_step_near_the_trim() {
-    let suggested = EXAMPLE_WITH_SUGGESTIONS_REJECTED.condition(ConditionId(10)).unwrap().suggested();
+    let suggested = EXAMPLE_WITH_SUGGESTIONS_REJECTED
+        .condition(ConditionId(10))
+        .unwrap()
+        .suggested();
     assert_eq!((suggested.len(), jumping(10)), (3, suggested));
     assert_eq!([jumping(1), jumping(3)], [[""; 0]; 2], "smooth bundles");
 }
@@ -124,7 +181,11 @@ fn states_take_part_in_the_modes_by_their_names() {
     let condition = crate::REFERENCE_DATASET.dataset.conditions()[0].clone();
     let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
     assert_eq!(
-        (nominal.states.len(), nominal.state_name(4).as_str(), nominal.state_name(39).as_str()),
+        (
+            nominal.states.len(),
+            nominal.state_name(4).as_str(),
+            nominal.state_name(39).as_str()
+        ),
         (39, "q", "state 40")
     );
     let modes = ConditionModes::of(&condition, &Unobserved).unwrap();
@@ -135,8 +196,9 @@ fn states_take_part_in_the_modes_by_their_names() {
             Ok(shares) => shares,
             // Sensors of the same make have equal poles.
             Err(_) => {
-                let near =
-                    of_nominal.iter().filter(|other| (other.pole - mode.pole).norm() < 1e-3 * mode.frequency_rad_s);
+                let near = of_nominal
+                    .iter()
+                    .filter(|other| (other.pole - mode.pole).norm() < 1e-3 * mode.frequency_rad_s);
                 assert!(near.count() > 1, "{}", mode.pole);
                 continue;
             }
@@ -145,9 +207,16 @@ fn states_take_part_in_the_modes_by_their_names() {
         if mode.frequency_rad_s < 5.0 {
             slow += 1;
             // Nothing acts back upon actuators, and sensors act upon nothing.
-            for (state, share) in shares.iter().map(|&(state, share)| (nominal.state_name(state), share)) {
+            for (state, share) in shares
+                .iter()
+                .map(|&(state, share)| (nominal.state_name(state), share))
+            {
                 let is_beside = state.starts_with("act_") || state.starts_with("sens_");
-                assert!(!is_beside || share < 1e-6, "{state} {share} in {}", mode.pole);
+                assert!(
+                    !is_beside || share < 1e-6,
+                    "{state} {share} in {}",
+                    mode.pole
+                );
             }
         }
     }
@@ -157,15 +226,28 @@ fn states_take_part_in_the_modes_by_their_names() {
 #[test]
 fn the_zeros_of_a_response_are_had_of_every_model_of_a_condition() {
     let condition = crate::REFERENCE_DATASET.dataset.conditions()[0].clone();
-    let pair = crate::REFERENCE_DATASET.dataset.find_pair("Q", "LON").unwrap();
+    let pair = crate::REFERENCE_DATASET
+        .dataset
+        .find_pair("Q", "LON")
+        .unwrap();
     for kind in BundleKind::BOTH {
         for model in condition.bundle(kind) {
-            let Dynamics::StateSpace(space) = &model.dynamics else { continue };
+            let Dynamics::StateSpace(space) = &model.dynamics else {
+                continue;
+            };
             let zeros = finite_zeros(&model.dynamics, pair);
             assert!(!zeros.is_empty(), "{}", model.name);
             for zero in &zeros {
-                let beside = value_at(space, pair, zero + Complex::new(0.01 * (1.0 + zero.norm()), 0.0));
-                assert!(value_at(space, pair, *zero).norm() < 1e-3 * beside.norm(), "{} {zero}", model.name);
+                let beside = value_at(
+                    space,
+                    pair,
+                    zero + Complex::new(0.01 * (1.0 + zero.norm()), 0.0),
+                );
+                assert!(
+                    value_at(space, pair, *zero).norm() < 1e-3 * beside.norm(),
+                    "{} {zero}",
+                    model.name
+                );
             }
         }
     }

@@ -5,24 +5,32 @@ use gdcm_study::study::{Remark, RemarkKind, remarks};
 use super::*;
 
 fn said(analysis: &Analysis, condition: i64) -> Vec<Remark> {
-    remarks(&analysis.study, analysis.condition(ConditionId(condition)).unwrap(), analysis.schedule.as_ref().ok())
+    remarks(
+        &analysis.study,
+        analysis.condition(ConditionId(condition)).unwrap(),
+        analysis.schedule.as_ref().ok(),
+    )
 }
 
 #[test]
 fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
     let (mut study, mut engine) = (study_of_example(), Engine::default());
     study.apply(&setting::POINTS.to(40)).unwrap();
-    let held =
-        [("NY", "LAT"), ("P", "PED"), ("R", "LAT")].map(|(output, input)| study.dataset.find_pair(output, input));
+    let held = [("NY", "LAT"), ("P", "PED"), ("R", "LAT")]
+        .map(|(output, input)| study.dataset.find_pair(output, input));
     for pair in study.dataset.on_axis().pairs() {
-        study.apply(&Edit::Hold(pair, held.contains(&Some(pair)))).unwrap();
+        study
+            .apply(&Edit::Hold(pair, held.contains(&Some(pair))))
+            .unwrap();
     }
     let analysis = &analyze(&mut engine, &study);
     let mut worse = 0;
     for condition in analysis.study.dataset.conditions() {
         let result = analysis.condition(condition.id()).unwrap();
         let said = said(analysis, condition.id().0);
-        let remark = said.iter().find(|remark| remark.text.starts_with("Held, yet farther from flight"));
+        let remark = said
+            .iter()
+            .find(|remark| remark.text.starts_with("Held, yet farther from flight"));
         for pair in result.held().marked() {
             let cost = result.cost[pair].unwrap();
             let name = format!("{} (J ", analysis.study.dataset.pair_name(pair));
@@ -39,10 +47,18 @@ fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
 fn a_condition_that_is_left_out_of_the_schedule_says_so() {
     let (mut study, mut engine) = (study_of_example(), Engine::default());
     study.apply(&setting::POINTS.to(40)).unwrap();
-    study.apply(&Edit::SetScheduled { condition: ConditionId(3), scheduled: false }).unwrap();
+    study
+        .apply(&Edit::SetScheduled {
+            condition: ConditionId(3),
+            scheduled: false,
+        })
+        .unwrap();
     let analysis = analyze(&mut engine, &study);
-    let says =
-        |condition| said(&analysis, condition).iter().any(|remark| remark.text.contains("left out of the schedule"));
+    let says = |condition| {
+        said(&analysis, condition)
+            .iter()
+            .any(|remark| remark.text.contains("left out of the schedule"))
+    };
     assert!(says(3) && !says(4));
 }
 
@@ -56,15 +72,45 @@ fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
         study.apply(&Edit::Hold(pair, true)).unwrap();
     }
     let strict = analyze(&mut engine, &study);
-    let loops = strict.condition(ConditionId(1)).unwrap().gains.conflicts.clone();
-    assert!(!loops.is_empty(), "four ratios of the example agree by chance only");
-    assert!(said(&strict, 1).iter().any(|remark| remark.kind == RemarkKind::Trouble));
-    assert!(study.apply(&setting::AGREEMENT.to(3.1)).unwrap_err().to_string().contains("loop tolerance"));
+    let loops = strict
+        .condition(ConditionId(1))
+        .unwrap()
+        .gains
+        .conflicts
+        .clone();
+    assert!(
+        !loops.is_empty(),
+        "four ratios of the example agree by chance only"
+    );
+    assert!(
+        said(&strict, 1)
+            .iter()
+            .any(|remark| remark.kind == RemarkKind::Trouble)
+    );
+    assert!(
+        study
+            .apply(&setting::AGREEMENT.to(3.1))
+            .unwrap_err()
+            .to_string()
+            .contains("loop tolerance")
+    );
     study.apply(&setting::AGREEMENT.to(3.0)).unwrap();
     let lenient = analyze(&mut engine, &study);
     let result = lenient.condition(ConditionId(1)).unwrap();
-    assert!(result.gains.matched && !result.gains.agreeing.is_empty(), "{:?}", result.gains.conflicts);
+    assert!(
+        result.gains.matched && !result.gains.agreeing.is_empty(),
+        "{:?}",
+        result.gains.conflicts
+    );
     let said = said(&lenient, 1);
-    assert!(said[0].text.contains("held gains are matched within 3 dB"), "{}", said[0].text);
-    assert!(said.iter().any(|remark| remark.kind == RemarkKind::Good && remark.text.contains("count as agreeing")));
+    assert!(
+        said[0].text.contains("held gains are matched within 3 dB"),
+        "{}",
+        said[0].text
+    );
+    assert!(
+        said.iter()
+            .any(|remark| remark.kind == RemarkKind::Good
+                && remark.text.contains("count as agreeing"))
+    );
 }

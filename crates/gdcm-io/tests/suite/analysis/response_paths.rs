@@ -21,12 +21,18 @@ fn response(model: &StateSpace, grid: &FrequencyGrid) -> Values {
 
 /// Entries from a sine: without pattern, and the same everywhere.
 fn matrix(rows: usize, columns: usize, seed: f64) -> DMatrix<f64> {
-    DMatrix::from_fn(rows, columns, |row, column| (seed + 7.3 * row as f64 + 2.9 * (column * column) as f64).sin())
+    DMatrix::from_fn(rows, columns, |row, column| {
+        (seed + 7.3 * row as f64 + 2.9 * (column * column) as f64).sin()
+    })
 }
 
 fn model(order: usize, outputs: usize, inputs: usize) -> StateSpace {
     let a = matrix(order, order, 0.3) - DMatrix::identity(order, order) * 2.0;
-    let (b, c, d) = (matrix(order, inputs, 1.1), matrix(outputs, order, 2.3), matrix(outputs, inputs, 3.7));
+    let (b, c, d) = (
+        matrix(order, inputs, 1.1),
+        matrix(outputs, order, 2.3),
+        matrix(outputs, inputs, 3.7),
+    );
     StateSpace::new(a, b, c, d).unwrap()
 }
 
@@ -85,14 +91,22 @@ impl Golden {
             DMatrix::from_fn(rows, columns, |row, column| complex(&value[row][column]))
         };
         let values = list(&case["H_re_im"]).iter().map(matrix).collect();
-        Self { omega: numbers(&case["omega_rad_s"]), values }
+        Self {
+            omega: numbers(&case["omega_rad_s"]),
+            values,
+        }
     }
 
     /// The largest error at the first `count` of the frequencies, repeated as often as need be, relative to the largest
     /// value.
     fn error(&self, arch: Arch, model: &StateSpace, count: usize) -> f64 {
         let omega: Vec<f64> = self.omega.iter().copied().cycle().take(count).collect();
-        let largest = self.values.iter().flatten().map(|value| value.norm()).fold(0.0, f64::max);
+        let largest = self
+            .values
+            .iter()
+            .flatten()
+            .map(|value| value.norm())
+            .fold(0.0, f64::max);
         let mut worst = 0.0_f64;
         for (pair, found) in evaluate_on(arch, model, &omega).curves().iter() {
             assert_eq!(found.len(), count);
@@ -122,11 +136,17 @@ fn every_instruction_set_agrees_with_50_digit_arithmetic_at_every_remainder_leng
                 // The limit of the specification. A fourfold pole at -0.001 rad/s magnifies rounding of the system
                 // matrix some 1e7 times: the near-defective model comes near the limit; the others have errors about
                 // 1e-13.
-                assert!(error <= 1e-9, "{name}, {count} frequencies, {arch:?}: {error:.1e}");
+                assert!(
+                    error <= 1e-9,
+                    "{name}, {count} frequencies, {arch:?}: {error:.1e}"
+                );
             }
         }
     }
-    assert_eq!(models, 8, "those of the literature, the near-defective one, three of the example");
+    assert_eq!(
+        models, 8,
+        "those of the literature, the near-defective one, three of the example"
+    );
 }
 
 #[test]
@@ -134,9 +154,13 @@ fn every_shape_agrees_with_dense_lu() {
     for order in [1, 2, 3, 4, 12, 30, 60] {
         for (outputs, inputs) in [(1, 1), (6, 4), (4, 6), (2, 5), (9, 7)] {
             // Far below the poles, among them, and far above.
-            let difference = difference_from_dense(&model(order, outputs, inputs), &grid(1e-2, 1e3, 43));
+            let difference =
+                difference_from_dense(&model(order, outputs, inputs), &grid(1e-2, 1e3, 43));
             // Rounding of at most 3e-11 (`n tau` times 1e-16); poles nearby amplify it.
-            assert!(difference < 1e-10, "{order} states, {outputs} x {inputs}: {difference:.1e}");
+            assert!(
+                difference < 1e-10,
+                "{order} states, {outputs} x {inputs}: {difference:.1e}"
+            );
         }
     }
 }
@@ -208,12 +232,19 @@ fn every_number_of_frequencies_agrees_with_dense_lu() {
 fn the_rest_of_the_grid_changes_a_value_by_rounding_only() {
     let (model, whole) = (model(21, 6, 4), grid(0.01, 1000.0, 53));
     let values = response(&model, &whole);
-    let largest = values.iter().flat_map(|(_, values)| values).map(|value| value.norm()).fold(0.0, f64::max);
+    let largest = values
+        .iter()
+        .flat_map(|(_, values)| values)
+        .map(|value| value.norm())
+        .fold(0.0, f64::max);
     for (k, omega) in whole.omega().iter().enumerate() {
         for (pair, alone) in response(&model, &grid(*omega, 2.0 * omega, 2)).iter() {
             let difference = (alone[0] - values[pair][k]).norm() / largest;
             // Frequencies of a group choose their pivots together; the bound of either choice is 3e-11.
-            assert!(difference < 6e-11, "{omega} rad/s, {pair:?}: {difference:.1e}");
+            assert!(
+                difference < 6e-11,
+                "{omega} rad/s, {pair:?}: {difference:.1e}"
+            );
         }
     }
 }
@@ -223,7 +254,9 @@ fn runs_and_threads_give_the_same_bits() {
     let (model, grid) = (model(30, 6, 4), grid(0.1, 100.0, 101));
     let expected = response(&model, &grid);
     std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..4).map(|_| scope.spawn(|| response(&model, &grid))).collect();
+        let threads: Vec<_> = (0..4)
+            .map(|_| scope.spawn(|| response(&model, &grid)))
+            .collect();
         for thread in threads {
             assert_eq!(thread.join().unwrap(), expected);
         }
@@ -233,9 +266,18 @@ fn runs_and_threads_give_the_same_bits() {
 #[test]
 fn a_static_gain_has_the_same_value_at_every_frequency() {
     let d = matrix(2, 3, 0.0);
-    let gain = StateSpace::new(DMatrix::zeros(0, 0), DMatrix::zeros(0, 3), DMatrix::zeros(2, 0), d.clone()).unwrap();
+    let gain = StateSpace::new(
+        DMatrix::zeros(0, 0),
+        DMatrix::zeros(0, 3),
+        DMatrix::zeros(2, 0),
+        d.clone(),
+    )
+    .unwrap();
     for (pair, values) in response(&gain, &grid(0.1, 10.0, 9)).iter() {
-        assert_eq!(values, &vec![Complex::new(d[(pair.output, pair.input)], 0.0); 9]);
+        assert_eq!(
+            values,
+            &vec![Complex::new(d[(pair.output, pair.input)], 0.0); 9]
+        );
     }
 }
 

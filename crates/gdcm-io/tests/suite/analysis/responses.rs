@@ -2,7 +2,8 @@
 
 use super::*;
 
-pub const GOLDEN: &str = include_str!("../../../../../tests/data/reference/frequency-response-golden.json");
+pub const GOLDEN: &str =
+    include_str!("../../../../../tests/data/reference/frequency-response-golden.json");
 
 fn matrix(value: &Value) -> DMatrix<f64> {
     let rows: Vec<Vec<f64>> = list(value).iter().map(numbers).collect();
@@ -13,18 +14,28 @@ fn matrix(value: &Value) -> DMatrix<f64> {
 pub fn model_of(file: &str) -> Dynamics {
     let value = json(match file {
         "compleib_HE2_AH64_130kt.json" => {
-            include_str!("../../../../../tests/data/reference/published-models/compleib_HE2_AH64_130kt.json")
+            include_str!(
+                "../../../../../tests/data/reference/published-models/compleib_HE2_AH64_130kt.json"
+            )
         }
         "compleib_HE3_Bell205_6out.json" => {
-            include_str!("../../../../../tests/data/reference/published-models/compleib_HE3_Bell205_6out.json")
+            include_str!(
+                "../../../../../tests/data/reference/published-models/compleib_HE3_Bell205_6out.json"
+            )
         }
         "westland_lynx_hover_6out.json" => {
-            include_str!("../../../../../tests/data/reference/published-models/westland_lynx_hover_6out.json")
+            include_str!(
+                "../../../../../tests/data/reference/published-models/westland_lynx_hover_6out.json"
+            )
         }
         "yamaha_R50_hover_mettler.json" => {
-            include_str!("../../../../../tests/data/reference/published-models/yamaha_R50_hover_mettler.json")
+            include_str!(
+                "../../../../../tests/data/reference/published-models/yamaha_R50_hover_mettler.json"
+            )
         }
-        "../near-defective-model.json" => include_str!("../../../../../tests/data/reference/near-defective-model.json"),
+        "../near-defective-model.json" => {
+            include_str!("../../../../../tests/data/reference/near-defective-model.json")
+        }
         _ => panic!("no model {file}"),
     });
     let [a, b, c, d] = ["A", "B", "C", "D"].map(|key| matrix(&value[key]));
@@ -43,8 +54,18 @@ pub fn dynamics_of(case: &Value) -> Dynamics {
         kind => panic!("no bundle {kind}"),
     };
     let dataset = crate::REFERENCE_DATASET.dataset.clone();
-    let condition = dataset.conditions().iter().find(|condition| condition.id() == ConditionId(id)).unwrap();
-    condition.bundle(bundle).iter().find(|model| model.name == name).unwrap().dynamics.clone()
+    let condition = dataset
+        .conditions()
+        .iter()
+        .find(|condition| condition.id() == ConditionId(id))
+        .unwrap();
+    condition
+        .bundle(bundle)
+        .iter()
+        .find(|model| model.name == name)
+        .unwrap()
+        .dynamics
+        .clone()
 }
 
 /// The response at any frequencies: a grid has both ends of a band, so each one is the lower end of a band of its own.
@@ -61,9 +82,15 @@ fn responses_agree_with_50_digit_arithmetic_to_a_billionth_of_the_largest() {
     for case in list(&golden["cases"]) {
         let dynamics = dynamics_of(case);
         let (mut largest, mut error) = (0.0_f64, 0.0_f64);
-        for (omega, expected) in numbers(&case["omega_rad_s"]).into_iter().zip(list(&case["H_re_im"])) {
+        for (omega, expected) in numbers(&case["omega_rad_s"])
+            .into_iter()
+            .zip(list(&case["H_re_im"]))
+        {
             let response = response_at(&dynamics, omega);
-            assert_eq!((response.outputs(), response.inputs()), (list(expected).len(), list(&expected[0]).len()));
+            assert_eq!(
+                (response.outputs(), response.inputs()),
+                (list(expected).len(), list(&expected[0]).len())
+            );
             for (Pair { output, input }, found) in response.iter() {
                 let value = numbers(&expected[output][input]);
                 let value = Complex::new(value[0], value[1]);
@@ -71,6 +98,11 @@ fn responses_agree_with_50_digit_arithmetic_to_a_billionth_of_the_largest() {
                 error = error.max((found - value).norm());
             }
         }
-        assert!(largest > 0.0 && error <= 1e-9 * largest, "{}: {:.1e}", case["model"], error / largest);
+        assert!(
+            largest > 0.0 && error <= 1e-9 * largest,
+            "{}: {:.1e}",
+            case["model"],
+            error / largest
+        );
     }
 }

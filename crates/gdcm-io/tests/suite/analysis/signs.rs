@@ -18,12 +18,22 @@ fn changed(bundle: BundleKind, change: impl Fn(&Model) -> Model) -> Study {
     let conditions = before.conditions().iter().map(|condition| {
         let models = |kind| -> Vec<Model> {
             let models = condition.bundle(kind).iter();
-            models.map(|model| if kind == bundle { change(model) } else { model.clone() }).collect()
+            models
+                .map(|model| {
+                    if kind == bundle {
+                        change(model)
+                    } else {
+                        model.clone()
+                    }
+                })
+                .collect()
         };
         let (physics, identified) = (models(BundleKind::Physics), models(BundleKind::Identified));
         Condition::new(condition.flight_state().clone(), physics, identified).unwrap()
     });
-    Study::new(Arc::new(Dataset::new(before.header(), conditions.collect()).unwrap()))
+    Study::new(Arc::new(
+        Dataset::new(before.header(), conditions.collect()).unwrap(),
+    ))
 }
 
 /// The example with a channel of the models of one bundle scaled: an output's rows of C and D, an input's columns of B and D.
@@ -42,7 +52,10 @@ fn scaled(bundle: BundleKind, channel: Channel, factor: f64) -> Study {
             }
         }
         let dynamics = Dynamics::StateSpace(StateSpace::new(old.a().clone(), b, c, d).unwrap());
-        Model { dynamics, ..model.clone() }
+        Model {
+            dynamics,
+            ..model.clone()
+        }
     })
 }
 
@@ -60,17 +73,38 @@ fn results(analysis: &Analysis) -> Value {
 fn an_output_of_the_other_sign_is_found_and_turned_to_the_last_digit() {
     let (mut study, mut engine) = (scaled(BundleKind::Identified, NZ, -1.0), Engine::default());
     let flipped = analyze(&mut engine, &study);
-    let [doubt] = flipped.doubts.as_slice() else { panic!("one doubt: {:?}", flipped.doubts) };
-    assert_eq!((doubt.convention, doubt.channel, doubt.turns()), (Convention::Sign, NZ, Some(NZ)));
-    assert!(doubt.all_responses && doubt.conditions.len() >= 10, "{doubt:?}");
+    let [doubt] = flipped.doubts.as_slice() else {
+        panic!("one doubt: {:?}", flipped.doubts)
+    };
+    assert_eq!(
+        (doubt.convention, doubt.channel, doubt.turns()),
+        (Convention::Sign, NZ, Some(NZ))
+    );
+    assert!(
+        doubt.all_responses && doubt.conditions.len() >= 10,
+        "{doubt:?}"
+    );
     let words = doubt.words(&study.dataset);
-    assert!(words.starts_with("COL → NZ differs by half a turn"), "{words}");
-    assert!(words.ends_with("NZ of the identified models has the other sign. Turn it?"), "{words}");
+    assert!(
+        words.starts_with("COL → NZ differs by half a turn"),
+        "{words}"
+    );
+    assert!(
+        words.ends_with("NZ of the identified models has the other sign. Turn it?"),
+        "{words}"
+    );
     // Before any delay, zero or mode is blamed.
     let said = remarks(&study, flipped.condition(ConditionId(1)).unwrap(), None);
-    assert_eq!((said[0].text.as_str(), said[0].turn), (words.as_str(), Some((NZ, Some(SignRole::Identified)))));
+    assert_eq!(
+        (said[0].text.as_str(), said[0].turn),
+        (words.as_str(), Some((NZ, Some(SignRole::Identified))))
+    );
     let execution = Execution::sequential();
-    assert_eq!(doubts_of_models(&study, &execution).unwrap()[0].channel, NZ, "known before anything is analysed");
+    assert_eq!(
+        doubts_of_models(&study, &execution).unwrap()[0].channel,
+        NZ,
+        "known before anything is analysed"
+    );
 
     let before = study.clone();
     turn(&mut study, NZ, Some(SignRole::Identified));
@@ -79,11 +113,23 @@ fn an_output_of_the_other_sign_is_found_and_turned_to_the_last_digit() {
     let example = analyze(&mut Engine::default(), &study_of_example());
     assert_eq!(results(&turned), results(&example));
     let said = remarks(&study, turned.condition(ConditionId(1)).unwrap(), None);
-    assert!(said[0].text.starts_with("NZ of the identified models is turned") && said[0].turn == Some((NZ, None)));
+    assert!(
+        said[0]
+            .text
+            .starts_with("NZ of the identified models is turned")
+            && said[0].turn == Some((NZ, None))
+    );
 
     turn(&mut study, NZ, None);
     assert_eq!((&study, &study.dataset), (&before, &before.dataset));
-    assert!(study.apply(&Edit::SetSign { channel: Channel::Output(6), of: None }).is_err());
+    assert!(
+        study
+            .apply(&Edit::SetSign {
+                channel: Channel::Output(6),
+                of: None
+            })
+            .is_err()
+    );
 }
 
 #[test]
@@ -95,10 +141,16 @@ fn the_example_gives_rise_to_no_doubt() {
 fn an_input_of_the_other_sign_is_the_input_and_the_physics_can_be_turned_in_its_place() {
     let (mut study, mut engine) = (scaled(BundleKind::Physics, COL, -1.0), Engine::default());
     study.apply(&setting::POINTS.to(40)).unwrap();
-    let found: Vec<Channel> = analyze(&mut engine, &study).doubts.iter().map(|doubt| doubt.channel).collect();
+    let found: Vec<Channel> = analyze(&mut engine, &study)
+        .doubts
+        .iter()
+        .map(|doubt| doubt.channel)
+        .collect();
     assert_eq!(found, [COL]);
     turn(&mut study, COL, Some(SignRole::All));
-    let [doubt] = &analyze(&mut engine, &study).doubts[..] else { panic!("all turned is nothing turned") };
+    let [doubt] = &analyze(&mut engine, &study).doubts[..] else {
+        panic!("all turned is nothing turned")
+    };
     assert_eq!(doubt.channel, COL);
     turn(&mut study, COL, Some(SignRole::Physics));
     assert_eq!(analyze(&mut engine, &study).doubts, []);
@@ -111,13 +163,19 @@ fn a_unit_that_one_side_has_otherwise_is_named_with_its_factor() {
         (NZ, 0.1, "1/9.81: g and m/s²"),
         (NZ, 1.0 / 32.174, "1/32.2: g and ft/s²"),
         (NZ, 1e-3, "1/1000: a unit and its thousandth"),
-        (Channel::Output(0), 180.0 / std::f64::consts::PI, "57.3: radians and degrees"),
+        (
+            Channel::Output(0),
+            180.0 / std::f64::consts::PI,
+            "57.3: radians and degrees",
+        ),
         (COL, 100.0, "100: a fraction and percent"),
     ] {
         let mut study = scaled(BundleKind::Identified, channel, factor);
         study.apply(&setting::POINTS.to(40)).unwrap();
         let doubts = analyze(&mut Engine::default(), &study).doubts;
-        let [doubt] = &doubts[..] else { panic!("{factor}: {doubts:?}") };
+        let [doubt] = &doubts[..] else {
+            panic!("{factor}: {doubts:?}")
+        };
         let words = doubt.words(&study.dataset);
         assert!(doubt.channel == channel && words.contains(units), "{words}");
         assert_eq!(doubt.turns(), None, "no sign");
@@ -130,16 +188,25 @@ fn measured_responses_are_turned_with_their_coherence() {
     let study = changed(BundleKind::Identified, |model| {
         let response = FrequencyResponse::of(&model.dynamics, &grid);
         let part = |of: fn(&Complex<f64>) -> f64| {
-            PairTable::from_fn(6, 4, |pair| response.curve(pair).iter().map(of).collect::<Vec<f64>>())
+            PairTable::from_fn(6, 4, |pair| {
+                response.curve(pair).iter().map(of).collect::<Vec<f64>>()
+            })
         };
         let coherence = PairTable::filled(6, 4, vec![0.9; grid.len()]);
         let (re, im) = (part(|value| value.re), part(|value| value.im));
-        let measured = MeasuredResponse::new(grid.omega().to_vec(), &re, &im, Some(coherence)).unwrap();
-        Model { dynamics: Dynamics::Measured(measured), ..model.clone() }
+        let measured =
+            MeasuredResponse::new(grid.omega().to_vec(), &re, &im, Some(coherence)).unwrap();
+        Model {
+            dynamics: Dynamics::Measured(measured),
+            ..model.clone()
+        }
     });
     let mut turned = study.clone();
     turn(&mut turned, NZ, Some(SignRole::Identified));
-    let response = |study: &Study| match &study.dataset.conditions()[0].bundle(BundleKind::Identified)[0].dynamics {
+    let response = |study: &Study| match &study.dataset.conditions()[0]
+        .bundle(BundleKind::Identified)[0]
+        .dynamics
+    {
         Dynamics::Measured(response) => response.clone(),
         Dynamics::StateSpace(_) => panic!("it is measured"),
     };
@@ -147,10 +214,19 @@ fn measured_responses_are_turned_with_their_coherence() {
     assert_eq!(plain.coherence(), opposite.coherence());
     for (pair, values) in plain.values().iter() {
         let sign = if pair.output == 5 { -1.0 } else { 1.0 };
-        assert!(values.iter().zip(&opposite.values()[pair]).all(|(plain, turned)| sign * plain == *turned), "{pair:?}");
+        assert!(
+            values
+                .iter()
+                .zip(&opposite.values()[pair])
+                .all(|(plain, turned)| sign * plain == *turned),
+            "{pair:?}"
+        );
     }
     let doubts = analyze(&mut Engine::default(), &turned).doubts;
-    assert_eq!(doubts.iter().map(|doubt| doubt.channel).collect::<Vec<_>>(), [NZ]);
+    assert_eq!(
+        doubts.iter().map(|doubt| doubt.channel).collect::<Vec<_>>(),
+        [NZ]
+    );
 }
 
 #[test]
@@ -164,5 +240,8 @@ fn signs_go_with_the_decisions_by_the_names_of_channels() {
     let mut unknown = decisions;
     unknown.signs[0].channel = "AZ".to_owned();
     let (_, not_applied) = unknown.applied_to(study_of_example().dataset);
-    assert_eq!(not_applied[0].to_string(), "a decision no longer applies: turn AZ: the dataset has no such channel");
+    assert_eq!(
+        not_applied[0].to_string(),
+        "a decision no longer applies: turn AZ: the dataset has no such channel"
+    );
 }

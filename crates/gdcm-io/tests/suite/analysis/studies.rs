@@ -6,7 +6,8 @@ use super::*;
 use crate::EveryCore;
 use gdcm_model::dataset::{Condition, Dataset, Model, ModelId};
 use gdcm_study::study::{
-    Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure, KnownModels, Progress, WantedFirst,
+    Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure, KnownModels, Progress,
+    WantedFirst,
 };
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -22,12 +23,22 @@ fn short_study() -> Study {
 fn held_responses_have_their_delta_gain_as_net_gain_in_every_condition() {
     let analysis = analyze(&mut Engine::default(), &short_study());
     let mut held = 0;
-    for result in analysis.conditions.values().map(|result| result.as_ref().unwrap()) {
+    for result in analysis
+        .conditions
+        .values()
+        .map(|result| result.as_ref().unwrap())
+    {
         assert!(result.gains.matched);
         for pair in result.held().marked() {
-            let (net, wanted) = (result.correction.net_gain(pair), result.comparison.delta.gain[pair].unwrap());
+            let (net, wanted) = (
+                result.correction.net_gain(pair),
+                result.comparison.delta.gain[pair].unwrap(),
+            );
             // Matched means within 1e-8 of the logarithm.
-            assert!((net / wanted - 1.0).abs() < 1e-8, "{pair:?}: {net} for {wanted}");
+            assert!(
+                (net / wanted - 1.0).abs() < 1e-8,
+                "{pair:?}: {net} for {wanted}"
+            );
             held += 1;
         }
     }
@@ -38,13 +49,19 @@ fn held_responses_have_their_delta_gain_as_net_gain_in_every_condition() {
 fn an_engine_that_has_seen_other_settings_gives_the_same_result_as_a_new_one() {
     let (mut study, mut used) = (short_study(), Engine::default());
     analyze(&mut used, &study);
-    for edit in
-        [setting::ALPHA_GAIN.to(0.01), setting::POINTS.to(25), setting::QUANTILE.to(0.1), setting::ALPHA_GAIN.to(0.5)]
-    {
+    for edit in [
+        setting::ALPHA_GAIN.to(0.01),
+        setting::POINTS.to(25),
+        setting::QUANTILE.to(0.1),
+        setting::ALPHA_GAIN.to(0.5),
+    ] {
         study.apply(&edit).unwrap();
         analyze(&mut used, &study);
     }
-    assert_eq!(analyze(&mut used, &study), analyze(&mut Engine::default(), &study));
+    assert_eq!(
+        analyze(&mut used, &study),
+        analyze(&mut Engine::default(), &study)
+    );
 }
 
 #[test]
@@ -55,11 +72,17 @@ fn holding_another_response_changes_neither_representatives_nor_bounds() {
     study.apply(&Edit::Hold(pair, true)).unwrap();
     let after = analyze(&mut engine, &study);
     let first = ConditionId(1);
-    assert_ne!(before.condition(first).unwrap().correction, after.condition(first).unwrap().correction);
+    assert_ne!(
+        before.condition(first).unwrap().correction,
+        after.condition(first).unwrap().correction
+    );
     for &id in before.conditions.keys() {
         let (before, after) = (before.condition(id).unwrap(), after.condition(id).unwrap());
         assert_eq!(before.comparison, after.comparison);
-        assert_eq!((before.gain_bounds(), before.delay_upper_s()), (after.gain_bounds(), after.delay_upper_s()));
+        assert_eq!(
+            (before.gain_bounds(), before.delay_upper_s()),
+            (after.gain_bounds(), after.delay_upper_s())
+        );
     }
 }
 
@@ -67,7 +90,12 @@ fn holding_another_response_changes_neither_representatives_nor_bounds() {
 fn a_condition_left_out_of_the_schedule_is_not_counted_in_it_but_is_still_assessed() {
     let (mut study, mut engine) = (short_study(), Engine::default());
     for condition in [ConditionId(1), ConditionId(2)] {
-        study.apply(&Edit::SetScheduled { condition, scheduled: false }).unwrap();
+        study
+            .apply(&Edit::SetScheduled {
+                condition,
+                scheduled: false,
+            })
+            .unwrap();
     }
     let analysis = analyze(&mut engine, &study);
     let schedule = analysis.schedule.as_ref().unwrap();
@@ -79,7 +107,12 @@ fn a_condition_left_out_of_the_schedule_is_not_counted_in_it_but_is_still_assess
 fn every_condition_out_of_the_schedule_leaves_corrections_without_one() {
     let (mut study, mut engine) = (short_study(), Engine::default());
     for condition in (1..=11).map(ConditionId) {
-        study.apply(&Edit::SetScheduled { condition, scheduled: false }).unwrap();
+        study
+            .apply(&Edit::SetScheduled {
+                condition,
+                scheduled: false,
+            })
+            .unwrap();
     }
     let analysis = analyze(&mut engine, &study);
     let written = corrections(&analysis, "", &BTreeSet::from([ConditionId(1)]));
@@ -93,10 +126,24 @@ fn every_condition_out_of_the_schedule_leaves_corrections_without_one() {
 #[test]
 fn corrections_of_chosen_conditions_hold_those_and_the_schedule_of_all() {
     let analysis = analyze(&mut Engine::default(), &short_study());
-    let written = corrections(&analysis, "hash", &BTreeSet::from([10, 3, 400].map(ConditionId)));
-    let ids: Vec<f64> = list(&written["conditions"]).iter().map(|condition| number(&condition["id"])).collect();
-    assert_eq!(ids, [3.0, 10.0], "in the order of the dataset, and an id that is not there passed over");
-    assert_eq!(written["schedule"]["airspeed_range_kt"], serde_json::json!([45.0, 140.0]));
+    let written = corrections(
+        &analysis,
+        "hash",
+        &BTreeSet::from([10, 3, 400].map(ConditionId)),
+    );
+    let ids: Vec<f64> = list(&written["conditions"])
+        .iter()
+        .map(|condition| number(&condition["id"]))
+        .collect();
+    assert_eq!(
+        ids,
+        [3.0, 10.0],
+        "in the order of the dataset, and an id that is not there passed over"
+    );
+    assert_eq!(
+        written["schedule"]["airspeed_range_kt"],
+        serde_json::json!([45.0, 140.0])
+    );
 }
 
 /// Keeps the first result, and ends the analysis after so many steps.
@@ -109,7 +156,12 @@ struct Onlooker {
 
 impl Onlooker {
     fn new(first: ConditionId, steps: usize) -> Self {
-        Self { first, steps, seen: Mutex::default(), heard: AtomicUsize::new(0) }
+        Self {
+            first,
+            steps,
+            seen: Mutex::default(),
+            heard: AtomicUsize::new(0),
+        }
     }
 }
 
@@ -131,7 +183,14 @@ impl Onlooker {
             assert!(self.heard.load(Ordering::Relaxed) <= 100);
             self.seen.lock().unwrap().push(result.clone());
         };
-        engine.analyze_first(study, Some(WantedFirst { condition: self.first, tell: &tell }), self)
+        engine.analyze_first(
+            study,
+            Some(WantedFirst {
+                condition: self.first,
+                tell: &tell,
+            }),
+            self,
+        )
     }
 }
 
@@ -140,29 +199,50 @@ fn results_have_the_same_bits_whatever_the_number_of_threads() {
     let study = short_study();
     let alone = analyze(&mut Engine::default(), &study);
     for threads in [1, 2, 3, 7] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let together = pool.install(|| analyze(&mut Engine::with_executor(Box::new(EveryCore)), &study));
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        let together =
+            pool.install(|| analyze(&mut Engine::with_executor(Box::new(EveryCore)), &study));
         // Debug prints the shortest text that reads back as the same bits, and tells -0 from 0.
-        assert!(format!("{together:?}") == format!("{alone:?}"), "{threads} threads");
+        assert!(
+            format!("{together:?}") == format!("{alone:?}"),
+            "{threads} threads"
+        );
     }
 }
 
 #[test]
 fn the_condition_wanted_first_is_told_first_and_as_the_whole_analysis_has_it() {
     let (study, onlooker) = (short_study(), Onlooker::new(ConditionId(10), usize::MAX));
-    let analysis = onlooker.analyze(&mut Engine::with_executor(Box::new(EveryCore)), &study).unwrap();
-    assert_eq!(onlooker.seen.into_inner().unwrap(), [analysis.conditions[&ConditionId(10)].clone()]);
+    let analysis = onlooker
+        .analyze(&mut Engine::with_executor(Box::new(EveryCore)), &study)
+        .unwrap();
+    assert_eq!(
+        onlooker.seen.into_inner().unwrap(),
+        [analysis.conditions[&ConditionId(10)].clone()]
+    );
     let alone = analyze(&mut Engine::default(), &study);
-    assert_eq!(analysis.conditions, alone.conditions, "the order of work is not the order of results");
+    assert_eq!(
+        analysis.conditions, alone.conditions,
+        "the order of work is not the order of results"
+    );
 }
 
 #[test]
 fn an_analysis_that_is_stopped_halfway_goes_on_from_there_with_the_same_result() {
     let (study, mut engine) = (short_study(), Engine::default());
     for steps in [1, 100, 400] {
-        assert_eq!(Onlooker::new(ConditionId(1), steps).analyze(&mut engine, &study), Err(Cancelled));
+        assert_eq!(
+            Onlooker::new(ConditionId(1), steps).analyze(&mut engine, &study),
+            Err(Cancelled)
+        );
     }
-    assert_eq!(analyze(&mut engine, &study), analyze(&mut Engine::default(), &study));
+    assert_eq!(
+        analyze(&mut engine, &study),
+        analyze(&mut Engine::default(), &study)
+    );
 }
 
 /// The example with its conditions, and their models, in reverse order.
@@ -182,18 +262,28 @@ fn the_order_of_conditions_and_models_touches_no_decision_and_no_result() {
     for edit in [
         Edit::Reject(tenth(BundleKind::Physics, "nominal")),
         Edit::Pin(tenth(BundleKind::Physics, "V+5kt")),
-        Edit::SetScheduled { condition: ConditionId(2), scheduled: false },
+        Edit::SetScheduled {
+            condition: ConditionId(2),
+            scheduled: false,
+        },
     ] {
         study.apply(&edit).unwrap();
     }
     let (carried, differences) = study.reconciled(Arc::new(reversed(&study.dataset)));
     assert_eq!(differences, []);
-    assert_eq!((&carried.choices, &carried.settings), (&study.choices, &study.settings));
+    assert_eq!(
+        (&carried.choices, &carried.settings),
+        (&study.choices, &study.settings)
+    );
     let (before, after) = (analyze(&mut engine, &study), analyze(&mut engine, &carried));
     for (id, result) in &before.conditions {
         let (before, after) = (result.as_ref().unwrap(), after.condition(*id).unwrap());
         for kind in BundleKind::BOTH {
-            assert_eq!(before.representative_name(kind), after.representative_name(kind), "condition {id}");
+            assert_eq!(
+                before.representative_name(kind),
+                after.representative_name(kind),
+                "condition {id}"
+            );
         }
         assert_eq!(before.correction, after.correction, "condition {id}");
     }
@@ -204,17 +294,27 @@ fn engines_that_share_models_hold_one_response_of_each() {
     let (study, known) = (short_study(), KnownModels::default());
     let curves = |mut engine: Engine| {
         let grid = (study.settings.band, 50);
-        let curves = engine.curves(&study.dataset, ConditionId(3), grid, &Unobserved).unwrap().unwrap();
+        let curves = engine
+            .curves(&study.dataset, ConditionId(3), grid, &Unobserved)
+            .unwrap()
+            .unwrap();
         (engine, curves)
     };
     let (first, before) = curves(Engine::default().sharing(&known));
     let (second, after) = curves(Engine::default().sharing(&known));
     let (_, apart) = curves(Engine::default());
     let is_one = |a: &ConditionCurves, b: &ConditionCurves| {
-        a.physics.iter().chain(&a.identified).zip(b.physics.iter().chain(&b.identified)).all(|(a, b)| Arc::ptr_eq(a, b))
+        a.physics
+            .iter()
+            .chain(&a.identified)
+            .zip(b.physics.iter().chain(&b.identified))
+            .all(|(a, b)| Arc::ptr_eq(a, b))
     };
     assert!(is_one(&before, &after) && !is_one(&before, &apart));
-    assert_eq!((&before.physics, &before.identified), (&apart.physics, &apart.identified));
+    assert_eq!(
+        (&before.physics, &before.identified),
+        (&apart.physics, &apart.identified)
+    );
     drop((first, second));
     let (_, anew) = curves(Engine::default().sharing(&known));
     assert!(!is_one(&before, &anew), "what no engine holds is not kept");
@@ -224,7 +324,12 @@ fn engines_that_share_models_hold_one_response_of_each() {
 fn of_a_dataset_with_one_other_model_one_response_is_computed() {
     let (study, mut engine) = (short_study(), Engine::default());
     let (band, id) = (study.settings.band, ConditionId(3));
-    let mut curves = |study: &Study| engine.curves(&study.dataset, id, (band, 50), &Unobserved).unwrap().unwrap();
+    let mut curves = |study: &Study| {
+        engine
+            .curves(&study.dataset, id, (band, 50), &Unobserved)
+            .unwrap()
+            .unwrap()
+    };
     let before = curves(&study);
     let conditions = study.dataset.conditions().iter().map(|condition| {
         let bundle = |kind| condition.bundle(kind).to_vec();
@@ -232,17 +337,41 @@ fn of_a_dataset_with_one_other_model_one_response_is_computed() {
         if condition.id() == id
             && let Dynamics::StateSpace(model) = &physics[4].dynamics
         {
-            let (a, b, c, d) = (model.a().clone(), 1.5 * model.b(), model.c().clone(), model.d().clone());
+            let (a, b, c, d) = (
+                model.a().clone(),
+                1.5 * model.b(),
+                model.c().clone(),
+                model.d().clone(),
+            );
             physics[4].dynamics = Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap());
         }
-        Condition::new(condition.flight_state().clone(), physics, bundle(BundleKind::Identified)).unwrap()
+        Condition::new(
+            condition.flight_state().clone(),
+            physics,
+            bundle(BundleKind::Identified),
+        )
+        .unwrap()
     });
     let replaced = Dataset::new(study.dataset.header(), conditions.collect()).unwrap();
     let (carried, differences) = study.reconciled(Arc::new(replaced));
     assert_eq!(differences.len(), 1);
     let after = curves(&carried);
-    let kept: Vec<bool> = before.physics.iter().zip(&after.physics).map(|(a, b)| Arc::ptr_eq(a, b)).collect();
+    let kept: Vec<bool> = before
+        .physics
+        .iter()
+        .zip(&after.physics)
+        .map(|(a, b)| Arc::ptr_eq(a, b))
+        .collect();
     let expected: Vec<bool> = (0..kept.len()).map(|index| index != 4).collect();
-    assert_eq!(kept, expected, "every response but that of the model replaced is the one computed before");
-    assert!(before.identified.iter().zip(&after.identified).all(|(a, b)| Arc::ptr_eq(a, b)));
+    assert_eq!(
+        kept, expected,
+        "every response but that of the model replaced is the one computed before"
+    );
+    assert!(
+        before
+            .identified
+            .iter()
+            .zip(&after.identified)
+            .all(|(a, b)| Arc::ptr_eq(a, b))
+    );
 }

@@ -20,16 +20,30 @@ fn dataset(keys: &Value, more: &[Value]) -> Arc<Dataset> {
     let mut file = json(SMALL);
     let mut flight = file["conditions"][0]["physics_models"][0].clone();
     let model = flight.as_object_mut().unwrap();
-    ["role", "perturbation"].iter().for_each(|key| drop(model.remove(*key)));
+    ["role", "perturbation"]
+        .iter()
+        .for_each(|key| drop(model.remove(*key)));
     model.extend(keys.as_object().unwrap().clone());
     model.insert("name".to_owned(), json!("flight"));
-    file["conditions"][0]["identified_models"] = json!([[flight.clone()].as_slice(), more].concat());
-    load_dataset_bytes(file.to_string().as_bytes(), DatasetOrigin::File(PathBuf::from("small.json"))).unwrap().dataset
+    file["conditions"][0]["identified_models"] =
+        json!([[flight.clone()].as_slice(), more].concat());
+    load_dataset_bytes(
+        file.to_string().as_bytes(),
+        DatasetOrigin::File(PathBuf::from("small.json")),
+    )
+    .unwrap()
+    .dataset
 }
 
 fn analysis_of(dataset: &Arc<Dataset>) -> Analysis {
     let mut study = Study::new(Arc::clone(dataset));
-    study.apply(&Edit::Pin(gdcm_model::dataset::ModelId::new(FIRST, BundleKind::Physics, "nominal"))).unwrap();
+    study
+        .apply(&Edit::Pin(gdcm_model::dataset::ModelId::new(
+            FIRST,
+            BundleKind::Physics,
+            "nominal",
+        )))
+        .unwrap();
     analyze(&mut Engine::default(), &study)
 }
 
@@ -39,14 +53,20 @@ fn first(analysis: &Analysis) -> &ConditionAnalysis {
 
 #[test]
 fn delays_of_the_channels_are_the_delta_delays() {
-    let dataset = dataset(&json!({"input_delays_s": [0.03, 0.0], "output_delays_s": [0.01, 0.02]}), &[]);
+    let dataset = dataset(
+        &json!({"input_delays_s": [0.03, 0.0], "output_delays_s": [0.01, 0.02]}),
+        &[],
+    );
     let analysis = analysis_of(&dataset);
     let delta = &first(&analysis).comparison.delta;
     for (pair, gain) in delta.gain.iter().filter(|(_, gain)| gain.is_some()) {
         let expected = [0.03, 0.0][pair.input] + [0.01, 0.02][pair.output];
         // A phase of a few rad, unwrapped and divided by at least 0.5 rad/s.
         assert!((gain.unwrap() - 1.0).abs() < 1e-12, "{pair:?}");
-        assert!((delta.delay_s[pair].unwrap() - expected).abs() < 1e-12, "{pair:?}");
+        assert!(
+            (delta.delay_s[pair].unwrap() - expected).abs() < 1e-12,
+            "{pair:?}"
+        );
     }
 }
 
@@ -60,36 +80,70 @@ fn a_model_sampled_too_slowly_for_the_band_is_set_aside_and_the_reason_said() {
     let result = first(&analysis);
     assert_eq!(result.representative_name(BundleKind::Identified), "flight");
     let name = |pair| dataset.pair_name(pair);
-    let said: Vec<String> = result.cautions.iter().map(|caution| caution.words(name)).collect();
+    let said: Vec<String> = result
+        .cautions
+        .iter()
+        .map(|caution| caution.words(name))
+        .collect();
     let words = "it is of discrete time, T = 0.5 s, and has no response from π/T = 6.2832 rad/s on";
-    assert!(said.iter().any(|said| said.contains("\"slow\" is set aside") && said.contains(words)), "{said:?}");
+    assert!(
+        said.iter()
+            .any(|said| said.contains("\"slow\" is set aside") && said.contains(words)),
+        "{said:?}"
+    );
     let study = Study::new(Arc::clone(&dataset));
     let execution = Execution::new(&Sequential, &Unobserved, 0);
     let cautions = cautions_of_models(&study, &execution).unwrap();
-    assert!(cautions.iter().any(|(id, caution)| *id == FIRST && caution.words(name).contains(words)));
+    assert!(
+        cautions
+            .iter()
+            .any(|(id, caution)| *id == FIRST && caution.words(name).contains(words))
+    );
 }
 
 #[test]
 fn two_models_that_differ_only_in_their_timing_are_two_models() {
-    let models = [json!({}), json!({"sample_time_s": 0.01}), json!({"output_delays_s": [0.0, 0.01]})];
+    let models = [
+        json!({}),
+        json!({"sample_time_s": 0.01}),
+        json!({"output_delays_s": [0.0, 0.01]}),
+    ];
     let fingerprint = |keys: &Value| {
         let dataset = dataset(keys, &[]);
-        dataset.condition(FIRST).unwrap().bundle(BundleKind::Identified)[0].fingerprint()
+        dataset
+            .condition(FIRST)
+            .unwrap()
+            .bundle(BundleKind::Identified)[0]
+            .fingerprint()
     };
     let [plain, sampled, delayed] = models.each_ref().map(fingerprint);
     assert!(plain != sampled && plain != delayed && sampled != delayed);
-    assert_eq!(plain, fingerprint(&json!({"input_delays_s": [0.0, 0.0]})), "no delay at all");
+    assert_eq!(
+        plain,
+        fingerprint(&json!({"input_delays_s": [0.0, 0.0]})),
+        "no delay at all"
+    );
 }
 
 #[test]
 fn a_discrete_model_has_the_response_of_its_definition() {
     let keys = json!({"sample_time_s": 0.1, "input_delays_s": [0.05, 0.0]});
     let dataset = dataset(&keys, &[]);
-    let dynamics = &dataset.condition(FIRST).unwrap().bundle(BundleKind::Identified)[0].dynamics;
-    let Dynamics::StateSpace(model) = dynamics else { panic!("it has matrices") };
+    let dynamics = &dataset
+        .condition(FIRST)
+        .unwrap()
+        .bundle(BundleKind::Identified)[0]
+        .dynamics;
+    let Dynamics::StateSpace(model) = dynamics else {
+        panic!("it has matrices")
+    };
     assert_eq!(
         model.timing(),
-        &Timing { sample_time_s: Some(0.1), input_delays_s: Some(vec![0.05, 0.0]), output_delays_s: None }
+        &Timing {
+            sample_time_s: Some(0.1),
+            input_delays_s: Some(vec![0.05, 0.0]),
+            output_delays_s: None
+        }
     );
     let grid = FrequencyGrid::logarithmic(dataset.band(), 30);
     let response = FrequencyResponse::of(dynamics, &grid);
@@ -103,7 +157,10 @@ fn a_discrete_model_has_the_response_of_its_definition() {
         for pair in response.curves().pairs() {
             let delay = Complex::from_polar(1.0, -omega * [0.05, 0.0][pair.input]);
             let expected = expected[(pair.output, pair.input)] * delay;
-            assert!((response.curve(pair)[k] - expected).norm() <= 1e-12 * expected.norm(), "{pair:?} {omega}");
+            assert!(
+                (response.curve(pair)[k] - expected).norm() <= 1e-12 * expected.norm(),
+                "{pair:?} {omega}"
+            );
         }
     }
 }

@@ -7,12 +7,13 @@ use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::{ScheduleKind, SecondVariable};
 use gdcm_method::uncertainty::{
-    Bar, Design, Difference, IdentificationSource, Scalar, ScheduleBand, SecondVariableDesign, VarianceComponent,
-    VarianceDecomposition, holm,
+    Bar, Design, Difference, IdentificationSource, Scalar, ScheduleBand, SecondVariableDesign,
+    VarianceComponent, VarianceDecomposition, holm,
 };
 use gdcm_model::dataset::{Dataset, ModelId};
 use gdcm_study::study::{
-    AirspeedDifference, Cancelled, ExplainTarget, PairScatter, PhaseCorrection, Progress, Uncertainty, derivation,
+    AirspeedDifference, Cancelled, ExplainTarget, PairScatter, PhaseCorrection, Progress,
+    Uncertainty, derivation,
 };
 
 use super::*;
@@ -32,12 +33,19 @@ fn case(name: &str) -> Value {
 #[track_caller]
 fn assert_near(what: &str, found: f64, reference: &Value, tolerance: f64) {
     let reference = number(reference);
-    assert!((found - reference).abs() <= tolerance, "{what}: found {found}, reference {reference}");
+    assert!(
+        (found - reference).abs() <= tolerance,
+        "{what}: found {found}, reference {reference}"
+    );
 }
 
 pub(super) fn study_of(dataset: &Value) -> Study {
     let text = serde_json::to_vec(dataset).unwrap();
-    Study::new(load_dataset_bytes(&text, DatasetOrigin::EmbeddedExample).unwrap().dataset)
+    Study::new(
+        load_dataset_bytes(&text, DatasetOrigin::EmbeddedExample)
+            .unwrap()
+            .dataset,
+    )
 }
 
 pub(super) fn set(study: &mut Study, edit: Edit) {
@@ -56,8 +64,18 @@ pub(super) fn uncertainty_of(study: &Study) -> (Analysis, Uncertainty) {
 fn assert_bar(what: &str, bar: &Bar, reference: &Value, tolerance: f64) {
     let root = |part: Option<VarianceComponent>| part.map_or(0.0, |part| part.variance.sqrt());
     assert_near(&format!("{what}: q"), bar.value, &reference["q"], tolerance);
-    assert_near(&format!("{what}: trim"), root(bar.trim), &reference["u_phys"], tolerance);
-    assert_near(&format!("{what}: identification"), root(bar.identification), &reference["u_id"], tolerance);
+    assert_near(
+        &format!("{what}: trim"),
+        root(bar.trim),
+        &reference["u_phys"],
+        tolerance,
+    );
+    assert_near(
+        &format!("{what}: identification"),
+        root(bar.identification),
+        &reference["u_id"],
+        tolerance,
+    );
     assert_near(
         &format!("{what}: half-width"),
         bar.half_width(0.9).unwrap_or(0.0),
@@ -65,7 +83,11 @@ fn assert_bar(what: &str, bar: &Bar, reference: &Value, tolerance: f64) {
         tolerance,
     );
     if let Some(degrees) = reference["df_id"].as_f64() {
-        assert_eq!(bar.identification.unwrap().degrees_of_freedom, degrees, "{what}");
+        assert_eq!(
+            bar.identification.unwrap().degrees_of_freedom,
+            degrees,
+            "{what}"
+        );
     }
     match reference["nu"].as_f64() {
         // A hundredth of a degree moves the quantile by less than the tolerance.
@@ -92,22 +114,50 @@ fn assert_split(what: &str, split: &VarianceDecomposition, reference: &Value, to
         ("identification", split.identification.sqrt()),
         ("rest", split.unexplained().sqrt()),
     ];
-    figures
-        .into_iter()
-        .for_each(|(name, found)| assert_near(&format!("{what} {name}"), found, &reference[name], tolerance));
+    figures.into_iter().for_each(|(name, found)| {
+        assert_near(
+            &format!("{what} {name}"),
+            found,
+            &reference[name],
+            tolerance,
+        )
+    });
     let relative = |name: &str, found: f64| {
         let expected = number(&reference[name]);
         // Ratios of small figures: a part in a thousand of what the solver leaves open.
-        assert!((found / expected - 1.0).abs() < 1e-3, "{what} {name}: found {found}, reference {expected}");
+        assert!(
+            (found / expected - 1.0).abs() < 1e-3,
+            "{what} {name}: found {found}, reference {expected}"
+        );
     };
     relative("ratio", split.ratio().unwrap());
     relative("df_bundles", split.degrees_of_freedom.unwrap());
     assert_near(what, split.p().unwrap(), &reference["p"], 100.0 * tolerance);
-    for (found, expected) in split.unexplained_interval(0.9).unwrap().iter().zip(list(&reference["rest_interval"])) {
-        assert_near(&format!("{what} interval"), *found, expected, 20.0 * tolerance);
+    for (found, expected) in split
+        .unexplained_interval(0.9)
+        .unwrap()
+        .iter()
+        .zip(list(&reference["rest_interval"]))
+    {
+        assert_near(
+            &format!("{what} interval"),
+            *found,
+            expected,
+            20.0 * tolerance,
+        );
     }
-    for (found, expected) in split.shares().unwrap().iter().zip(list(&reference["shares"])) {
-        assert_near(&format!("{what} shares"), *found, expected, 100.0 * tolerance);
+    for (found, expected) in split
+        .shares()
+        .unwrap()
+        .iter()
+        .zip(list(&reference["shares"]))
+    {
+        assert_near(
+            &format!("{what} shares"),
+            *found,
+            expected,
+            100.0 * tolerance,
+        );
     }
 }
 
@@ -116,11 +166,31 @@ fn assert_difference(found: &AirspeedDifference, reference: &Value, tolerance: f
     let what = format!("difference of {:?} {:?}", found.pair, found.conditions);
     let ids: Vec<f64> = found.conditions.iter().map(|id| id.0 as f64).collect();
     assert_eq!(ids, numbers(&reference["conditions"]), "{what}");
-    assert_near(&what, found.difference.delta, &reference["delta"], tolerance);
-    assert_near(&what, found.difference.deviation, &reference["u"], tolerance);
+    assert_near(
+        &what,
+        found.difference.delta,
+        &reference["delta"],
+        tolerance,
+    );
+    assert_near(
+        &what,
+        found.difference.deviation,
+        &reference["u"],
+        tolerance,
+    );
     // The probabilities are steep in the ratio.
-    assert_near(&what, found.difference.ratio().unwrap(), &reference["ratio"], 500.0 * tolerance);
-    assert_near(&what, found.p_holm.unwrap(), &reference["p_holm"], 1000.0 * tolerance);
+    assert_near(
+        &what,
+        found.difference.ratio().unwrap(),
+        &reference["ratio"],
+        500.0 * tolerance,
+    );
+    assert_near(
+        &what,
+        found.p_holm.unwrap(),
+        &reference["p_holm"],
+        1000.0 * tolerance,
+    );
 }
 
 /// Everything that the reference says of the pairs of a case.
@@ -128,31 +198,93 @@ fn assert_pairs(analysis: &Analysis, found: &Uncertainty, reference: &Value, tol
     let study = &analysis.study;
     for reference in list(reference) {
         let pair = find_pair(study, &reference["pair"]);
-        let differences: Vec<_> = found.differences.iter().filter(|of| of.pair == pair).collect();
+        let differences: Vec<_> = found
+            .differences
+            .iter()
+            .filter(|of| of.pair == pair)
+            .collect();
         assert_eq!(differences.len(), list(&reference["differences"]).len());
         for (difference, reference) in differences.iter().zip(list(&reference["differences"])) {
             assert_difference(difference, reference, tolerance);
         }
-        let PairScatter { same_airspeed, about_schedule, .. } =
-            found.scatter.iter().find(|of| of.pair == pair).unwrap();
-        assert_split("at equal airspeed", same_airspeed.as_ref().unwrap(), &reference["same_airspeed"], tolerance);
-        assert_split("about the schedule", about_schedule.as_ref().unwrap(), &reference["about_schedule"], tolerance);
-        let (schedule, bands) = (analysis.schedule.as_ref().unwrap(), found.bands.as_ref().unwrap());
-        for (place, airspeed_kt) in numbers(&reference["schedule"]["airspeed_kt"]).into_iter().enumerate() {
-            let widths = bands.at(schedule, Scalar::NetGain(pair), airspeed_kt).unwrap();
+        let PairScatter {
+            same_airspeed,
+            about_schedule,
+            ..
+        } = found.scatter.iter().find(|of| of.pair == pair).unwrap();
+        assert_split(
+            "at equal airspeed",
+            same_airspeed.as_ref().unwrap(),
+            &reference["same_airspeed"],
+            tolerance,
+        );
+        assert_split(
+            "about the schedule",
+            about_schedule.as_ref().unwrap(),
+            &reference["about_schedule"],
+            tolerance,
+        );
+        let (schedule, bands) = (
+            analysis.schedule.as_ref().unwrap(),
+            found.bands.as_ref().unwrap(),
+        );
+        for (place, airspeed_kt) in numbers(&reference["schedule"]["airspeed_kt"])
+            .into_iter()
+            .enumerate()
+        {
+            let widths = bands
+                .at(schedule, Scalar::NetGain(pair), airspeed_kt)
+                .unwrap();
             let fit = schedule.at(airspeed_kt).net_gain(pair).ln();
             assert_near("fit", fit, &reference["schedule"]["fit"][place], tolerance);
-            assert_near("confidence", widths.confidence, &reference["schedule"]["confidence"][place], 10.0 * tolerance);
-            assert_near("scatter", widths.scatter, &reference["schedule"]["scatter"][place], 10.0 * tolerance);
+            assert_near(
+                "confidence",
+                widths.confidence,
+                &reference["schedule"]["confidence"][place],
+                10.0 * tolerance,
+            );
+            assert_near(
+                "scatter",
+                widths.scatter,
+                &reference["schedule"]["scatter"][place],
+                10.0 * tolerance,
+            );
         }
-        for (variable, name) in [(SecondVariable::Altitude, "altitude"), (SecondVariable::Mass, "weight")] {
-            let test = found.second_variables.iter().find(|of| of.pair == pair && of.variable == variable).unwrap();
+        for (variable, name) in [
+            (SecondVariable::Altitude, "altitude"),
+            (SecondVariable::Mass, "weight"),
+        ] {
+            let test = found
+                .second_variables
+                .iter()
+                .find(|of| of.pair == pair && of.variable == variable)
+                .unwrap();
             let (effect, reference) = (test.effect.unwrap(), &reference[name]);
             assert_near(name, effect.effect, &reference["effect"], 10.0 * tolerance);
-            assert_near(name, effect.visible, &reference["visible"], 10.0 * tolerance);
-            assert_near(name, effect.left_out_without.unwrap(), &reference["loco_without"], 10.0 * tolerance);
-            assert_near(name, effect.left_out_with.unwrap(), &reference["loco_with"], 10.0 * tolerance);
-            assert_near(name, test.p_holm.unwrap(), &reference["p_holm"], 1000.0 * tolerance);
+            assert_near(
+                name,
+                effect.visible,
+                &reference["visible"],
+                10.0 * tolerance,
+            );
+            assert_near(
+                name,
+                effect.left_out_without.unwrap(),
+                &reference["loco_without"],
+                10.0 * tolerance,
+            );
+            assert_near(
+                name,
+                effect.left_out_with.unwrap(),
+                &reference["loco_with"],
+                10.0 * tolerance,
+            );
+            assert_near(
+                name,
+                test.p_holm.unwrap(),
+                &reference["p_holm"],
+                1000.0 * tolerance,
+            );
             assert_eq!(test.needed, reference["needed"].as_bool().unwrap());
         }
     }
@@ -180,22 +312,35 @@ fn bundles_of_known_spread_have_the_bars_of_the_reference() {
     for (name, scalar) in lists {
         for reference in list(&case[name]) {
             let id = ConditionId(number(&reference["condition"]) as i64);
-            assert_bar(&format!("{name} of {id}"), found.bar(id, scalar).unwrap(), reference, TOLERANCE);
+            assert_bar(
+                &format!("{name} of {id}"),
+                found.bar(id, scalar).unwrap(),
+                reference,
+                TOLERANCE,
+            );
         }
     }
     assert_pairs(&analysis, &found, &case["pairs"], TOLERANCE);
-    let output = found.bar(ConditionId(1), Scalar::ChannelGain(Channel::Output(0))).unwrap();
+    let output = found
+        .bar(ConditionId(1), Scalar::ChannelGain(Channel::Output(0)))
+        .unwrap();
     assert_eq!(output.remarks(), ["the bundle has no spread"]);
 }
 
 #[test]
 fn what_coherence_tells_takes_the_place_of_a_smaller_spread() {
     let case = case("B_delay_and_coherence");
-    let variants =
-        [("averages_4", 4.0, None), ("averages_4_window_20s", 4.0, Some(20.0)), ("averages_1000", 1000.0, None)];
+    let variants = [
+        ("averages_4", 4.0, None),
+        ("averages_4_window_20s", 4.0, Some(20.0)),
+        ("averages_1000", 1000.0, None),
+    ];
     for (name, averages, window_s) in variants {
         let mut dataset = case["dataset"].clone();
-        for model in dataset["conditions"][0]["identified_models"].as_array_mut().unwrap() {
+        for model in dataset["conditions"][0]["identified_models"]
+            .as_array_mut()
+            .unwrap()
+        {
             model["frequency_response"]["averages"] = averages.into();
             if let Some(window_s) = window_s {
                 model["frequency_response"]["window_s"] = f64::into(window_s);
@@ -205,11 +350,28 @@ fn what_coherence_tells_takes_the_place_of_a_smaller_spread() {
         set(&mut study, setting::POINTS.to(40));
         let (_, found) = uncertainty_of(&study);
         let bar = |scalar| *found.bar(ConditionId(1), scalar).unwrap();
-        let (gain, delay) = (bar(Scalar::Gain(Pair::new(0, 0))), bar(Scalar::Delay(Pair::new(0, 0))));
-        assert_bar(&format!("{name}: ln G"), &gain, &case["result"][name]["lnG"], TOLERANCE);
-        assert_bar(&format!("{name}: D"), &delay, &case["result"][name]["D"], TOLERANCE);
+        let (gain, delay) = (
+            bar(Scalar::Gain(Pair::new(0, 0))),
+            bar(Scalar::Delay(Pair::new(0, 0))),
+        );
+        assert_bar(
+            &format!("{name}: ln G"),
+            &gain,
+            &case["result"][name]["lnG"],
+            TOLERANCE,
+        );
+        assert_bar(
+            &format!("{name}: D"),
+            &delay,
+            &case["result"][name]["D"],
+            TOLERANCE,
+        );
         let by_coherence = averages < 10.0;
-        assert_eq!(gain.source == IdentificationSource::Coherence, by_coherence, "{name}");
+        assert_eq!(
+            gain.source == IdentificationSource::Coherence,
+            by_coherence,
+            "{name}"
+        );
     }
 }
 
@@ -224,11 +386,15 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
     };
     let rows: Vec<Vec<f64>> = airspeeds.iter().map(|&airspeed| row(airspeed)).collect();
     let design = Design::new(&rows).unwrap();
-    let by_airspeed = Design::new(&gdcm_method::schedule::airspeed_indicators(airspeeds, 1.0)).unwrap();
+    let by_airspeed =
+        Design::new(&gdcm_method::schedule::airspeed_indicators(airspeeds, 1.0)).unwrap();
     for table in list(&case["tables"]) {
         let figures = numbers(&table["y"]);
         let of = |name: &str, place: usize, degrees| {
-            Some(VarianceComponent { variance: number(&case[name][place]).powi(2), degrees_of_freedom: degrees })
+            Some(VarianceComponent {
+                variance: number(&case[name][place]).powi(2),
+                degrees_of_freedom: degrees,
+            })
         };
         let bar = |place: usize| Bar {
             value: figures[place],
@@ -241,15 +407,25 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
         let bars: Vec<Bar> = (0..figures.len()).map(bar).collect();
         let references = list(&table["differences"]);
         let differences = references.iter().map(|reference| {
-            let places: Vec<usize> = numbers(&reference["conditions"]).iter().map(|id| *id as usize - 1).collect();
+            let places: Vec<usize> = numbers(&reference["conditions"])
+                .iter()
+                .map(|id| *id as usize - 1)
+                .collect();
             Difference::of(&bars[places[0]], &bars[places[1]])
         });
-        let probabilities: Vec<f64> = differences.map(|difference| difference.p().unwrap()).collect();
+        let probabilities: Vec<f64> = differences
+            .map(|difference| difference.p().unwrap())
+            .collect();
         for (found, reference) in holm(&probabilities).iter().zip(references) {
             assert_near("Holm", *found, &reference["p_holm"], TOLERANCE);
         }
         let about_schedule = VarianceDecomposition::of(&design, &bars).unwrap();
-        assert_split("about the schedule", &about_schedule, &table["about_schedule"], TOLERANCE);
+        assert_split(
+            "about the schedule",
+            &about_schedule,
+            &table["about_schedule"],
+            TOLERANCE,
+        );
         assert_split(
             "at equal airspeed",
             &VarianceDecomposition::of(&by_airspeed, &bars).unwrap(),
@@ -257,56 +433,103 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
             TOLERANCE,
         );
         let band = ScheduleBand::of(&Arc::new(design.clone()), &about_schedule, 0.9);
-        for (place, airspeed) in numbers(&table["bands"]["airspeed_kt"]).into_iter().enumerate() {
+        for (place, airspeed) in numbers(&table["bands"]["airspeed_kt"])
+            .into_iter()
+            .enumerate()
+        {
             assert_near(
                 "confidence",
                 band.at(&row(airspeed)).confidence,
                 &table["bands"]["confidence"][place],
                 TOLERANCE,
             );
-            assert_near("scatter", band.at(&row(airspeed)).scatter, &table["bands"]["scatter"][place], TOLERANCE);
+            assert_near(
+                "scatter",
+                band.at(&row(airspeed)).scatter,
+                &table["bands"]["scatter"][place],
+                TOLERANCE,
+            );
         }
-        for (found, reference) in design.left_out_errors(&figures).iter().zip(list(&table["loco_errors"])) {
+        for (found, reference) in design
+            .left_out_errors(&figures)
+            .iter()
+            .zip(list(&table["loco_errors"]))
+        {
             assert_near("left out", found.unwrap(), reference, TOLERANCE);
         }
         for (name, values) in [("altitude", "altitude_ft"), ("weight", "mass_kg")] {
-            let effect = SecondVariableDesign::of(&rows, &numbers(&case[values])).unwrap().effect(&figures, 0.9);
+            let effect = SecondVariableDesign::of(&rows, &numbers(&case[values]))
+                .unwrap()
+                .effect(&figures, 0.9);
             assert_near(name, effect.effect, &table[name]["effect"], TOLERANCE);
             assert_near(name, effect.visible, &table[name]["half"], TOLERANCE);
             assert_near(name, effect.p, &table[name]["p"], TOLERANCE);
-            assert_near(name, effect.left_out_with.unwrap(), &table[name]["loco_with"], TOLERANCE);
+            assert_near(
+                name,
+                effect.left_out_with.unwrap(),
+                &table[name]["loco_with"],
+                TOLERANCE,
+            );
         }
     }
 }
 
 #[test]
 fn the_example_has_the_bars_of_the_reference() {
-    let (case, analysis) = (case("F_example_dataset"), &*EXAMPLE_WITH_SUGGESTIONS_REJECTED);
-    let found = Engine::default().uncertainty(analysis, &Unobserved).unwrap();
+    let (case, analysis) = (
+        case("F_example_dataset"),
+        &*EXAMPLE_WITH_SUGGESTIONS_REJECTED,
+    );
+    let found = Engine::default()
+        .uncertainty(analysis, &Unobserved)
+        .unwrap();
     let id_of = |reference: &Value| ConditionId(number(&reference["condition"]) as i64);
-    for (name, of, tolerance) in
-        [("net_gain_bars", Scalar::NetGain as fn(Pair) -> Scalar, OF_SOLVER), ("delay_bars", Scalar::Delay, TOLERANCE)]
-    {
+    for (name, of, tolerance) in [
+        (
+            "net_gain_bars",
+            Scalar::NetGain as fn(Pair) -> Scalar,
+            OF_SOLVER,
+        ),
+        ("delay_bars", Scalar::Delay, TOLERANCE),
+    ] {
         for pair in list(&case[name]) {
             let scalar = of(find_pair(&analysis.study, &pair["pair"]));
             for reference in list(&pair["bars"]) {
                 let bar = found.bar(id_of(reference), scalar).unwrap();
-                assert_bar(&format!("{scalar:?} of {}", id_of(reference)), bar, reference, tolerance);
+                assert_bar(
+                    &format!("{scalar:?} of {}", id_of(reference)),
+                    bar,
+                    reference,
+                    tolerance,
+                );
             }
         }
     }
     let channels = &case["channel_bars_condition_6"];
-    for (name, of) in [("k_in", Channel::Input as fn(usize) -> Channel), ("k_out", Channel::Output)] {
+    for (name, of) in [
+        ("k_in", Channel::Input as fn(usize) -> Channel),
+        ("k_out", Channel::Output),
+    ] {
         for (index, reference) in list(&channels[name]).iter().enumerate() {
-            let bar = found.bar(ConditionId(6), Scalar::ChannelGain(of(index))).unwrap();
+            let bar = found
+                .bar(ConditionId(6), Scalar::ChannelGain(of(index)))
+                .unwrap();
             assert_bar(&format!("{name} {index}"), bar, reference, OF_SOLVER);
         }
     }
-    let measuring: Vec<Pair> = list(&case["pairs"]).iter().map(|of| find_pair(&analysis.study, &of["pair"])).collect();
+    let measuring: Vec<Pair> = list(&case["pairs"])
+        .iter()
+        .map(|of| find_pair(&analysis.study, &of["pair"]))
+        .collect();
     for reference in list(&case["left_in_band"]) {
         let left = &found.conditions[&id_of(reference)].left_in_band;
         for (pair, reference) in measuring.iter().zip(list(&reference["on_axis"])) {
-            assert_near("left over in the band", left[*pair].unwrap(), reference, TOLERANCE);
+            assert_near(
+                "left over in the band",
+                left[*pair].unwrap(),
+                reference,
+                TOLERANCE,
+            );
         }
     }
     assert_pairs(analysis, &found, &case["pairs"], OF_SOLVER);
@@ -315,7 +538,10 @@ fn the_example_has_the_bars_of_the_reference() {
 /// Bars of every figure of every condition, by condition and in the order of the figures.
 fn all_bars(found: &Uncertainty) -> Vec<(ConditionId, Scalar, Option<Bar>)> {
     let of_condition = |(id, of): (&ConditionId, &gdcm_study::study::ConditionUncertainty)| {
-        of.bars.iter().map(|(scalar, bar)| (*id, scalar, *bar)).collect::<Vec<_>>()
+        of.bars
+            .iter()
+            .map(|(scalar, bar)| (*id, scalar, *bar))
+            .collect::<Vec<_>>()
     };
     found.conditions.iter().flat_map(of_condition).collect()
 }
@@ -334,7 +560,8 @@ fn the_order_of_models_and_conditions_does_not_matter() {
     let (_, found) = uncertainty_of(&study_of(&case["dataset"]));
     let (_, other) = uncertainty_of(&study_of(&turned));
     for ((id, scalar, bar), (_, _, other)) in all_bars(&found).into_iter().zip(all_bars(&other)) {
-        let [bar, other] = [bar, other].map(|bar| bar.map_or(0.0, |bar| bar.half_width(0.9).unwrap_or(0.0)));
+        let [bar, other] =
+            [bar, other].map(|bar| bar.map_or(0.0, |bar| bar.half_width(0.9).unwrap_or(0.0)));
         // Sums in another order, and the solver's own rounding.
         assert!((bar - other).abs() < 1e-8, "{id} {scalar:?}: {bar} {other}");
     }
@@ -349,16 +576,33 @@ fn one_model_left_says_what_is_not_included() {
             .iter()
             .map(|model| model.name.clone())
             .collect();
-        let models = models.iter().map(|name| ModelId::new(condition, bundle, name)).collect();
+        let models = models
+            .iter()
+            .map(|name| ModelId::new(condition, bundle, name))
+            .collect();
         study.apply(&Edit::RejectEach(models)).unwrap();
     }
     let (_, found) = uncertainty_of(&study);
-    let bar = |id| *found.bar(ConditionId(id), Scalar::NetGain(Pair::new(0, 0))).unwrap();
-    assert_eq!((bar(1).trim, bar(1).remarks()), (None, vec!["trim not included"]));
-    assert!(bar(1).half_width(0.9).unwrap() > 0.0, "the identification is left");
+    let bar = |id| {
+        *found
+            .bar(ConditionId(id), Scalar::NetGain(Pair::new(0, 0)))
+            .unwrap()
+    };
+    assert_eq!(
+        (bar(1).trim, bar(1).remarks()),
+        (None, vec!["trim not included"])
+    );
+    assert!(
+        bar(1).half_width(0.9).unwrap() > 0.0,
+        "the identification is left"
+    );
     let borrowed = bar(2).identification.unwrap();
     // Two of the first condition, none of the third, which has one model, and one of the fourth.
-    assert_eq!((borrowed.degrees_of_freedom, bar(2).remarks().len()), (3.0, 0), "borrowed from the other conditions");
+    assert_eq!(
+        (borrowed.degrees_of_freedom, bar(2).remarks().len()),
+        (3.0, 0),
+        "borrowed from the other conditions"
+    );
 }
 
 #[test]
@@ -366,11 +610,19 @@ fn without_a_second_identified_model_anywhere_the_bar_is_of_the_trim_only() {
     let (_, case) = study_of_known_spread();
     let mut dataset = case["dataset"].clone();
     for condition in dataset["conditions"].as_array_mut().unwrap() {
-        condition["identified_models"].as_array_mut().unwrap().truncate(1);
+        condition["identified_models"]
+            .as_array_mut()
+            .unwrap()
+            .truncate(1);
     }
     let (_, found) = uncertainty_of(&study_of(&dataset));
-    let bar = found.bar(ConditionId(1), Scalar::Gain(Pair::new(0, 0))).unwrap();
-    assert_eq!((bar.identification, bar.remarks()), (None, vec!["identification not included"]));
+    let bar = found
+        .bar(ConditionId(1), Scalar::Gain(Pair::new(0, 0)))
+        .unwrap();
+    assert_eq!(
+        (bar.identification, bar.remarks()),
+        (None, vec!["identification not included"])
+    );
     assert_eq!(bar.degrees_of_freedom(), Some(4.0));
 }
 
@@ -391,13 +643,19 @@ fn a_model_that_stands_twice_does_not_narrow_a_bar() {
     }
     let mut doubled = study_of(&dataset);
     for study in [&mut study, &mut doubled] {
-        for (bundle, name) in [(BundleKind::Physics, "nominal"), (BundleKind::Identified, "i0")] {
-            study.apply(&Edit::Pin(ModelId::new(ConditionId(1), bundle, name))).unwrap();
+        for (bundle, name) in [
+            (BundleKind::Physics, "nominal"),
+            (BundleKind::Identified, "i0"),
+        ] {
+            study
+                .apply(&Edit::Pin(ModelId::new(ConditionId(1), bundle, name)))
+                .unwrap();
         }
     }
     let (found, other) = (uncertainty_of(&study).1, uncertainty_of(&doubled).1);
     for ((id, scalar, bar), (_, _, other)) in all_bars(&found).into_iter().zip(all_bars(&other)) {
-        let [bar, other] = [bar, other].map(|bar| bar.and_then(|bar| bar.half_width(0.9)).unwrap_or(0.0));
+        let [bar, other] =
+            [bar, other].map(|bar| bar.and_then(|bar| bar.half_width(0.9)).unwrap_or(0.0));
         // The solver's own rounding.
         assert!(other >= bar - 1e-8, "{id} {scalar:?}: {bar} {other}");
     }
@@ -426,14 +684,21 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
     let conditions: Vec<Value> = (0..DRAWS)
         .map(|draw| {
             let mut physics = vec![model("nominal".to_owned(), 0.0)];
-            physics.extend((0..8).map(|place| model(format!("p{place}"), trim * normal(&mut state))));
+            physics
+                .extend((0..8).map(|place| model(format!("p{place}"), trim * normal(&mut state))));
             for (place, model) in physics.iter_mut().enumerate() {
                 model["role"] = if place == 0 { "nominal" } else { "perturbed" }.into();
             }
             // The flight is at a trim that nobody knows: as far from the nominal one as the bundle says.
             let flown = TRUTH + trim * normal(&mut state);
-            let identified: Vec<Value> =
-                (0..3).map(|place| model(format!("i{place}"), flown + identification * normal(&mut state))).collect();
+            let identified: Vec<Value> = (0..3)
+                .map(|place| {
+                    model(
+                        format!("i{place}"),
+                        flown + identification * normal(&mut state),
+                    )
+                })
+                .collect();
             serde_json::json!({"id": draw, "name": format!("draw {draw}"), "airspeed_kt": 40 + draw,
                 "physics_models": physics, "identified_models": identified})
         })
@@ -445,7 +710,10 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
     set(&mut study, setting::POINTS.to(5));
     let (_, found) = uncertainty_of(&study);
     let covers = |of: &gdcm_study::study::ConditionUncertainty| {
-        let [low, high] = of.bars[Scalar::NetGain(Pair::new(0, 0))].unwrap().interval(0.9).unwrap();
+        let [low, high] = of.bars[Scalar::NetGain(Pair::new(0, 0))]
+            .unwrap()
+            .interval(0.9)
+            .unwrap();
         low <= TRUTH && TRUTH <= high
     };
     let covered = found.conditions.values().filter(|of| covers(of)).count() as f64 / DRAWS as f64;
@@ -457,12 +725,14 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
 fn dataset_with_band(sd_db: f64) -> Value {
     let (_, case) = study_of_known_spread();
     let mut dataset = case["dataset"].clone();
-    dataset["conditions"][0]["identified_models"].as_array_mut().unwrap().truncate(1);
+    dataset["conditions"][0]["identified_models"]
+        .as_array_mut()
+        .unwrap()
+        .truncate(1);
     let model = &mut dataset["conditions"][0]["identified_models"][0];
     let (outputs, inputs) = (list(&model["D"]).len(), list(&model["D"][0]).len());
     let table = |deviation: f64| vec![vec![vec![deviation; 2]; inputs]; outputs];
-    model["bands"] =
-        serde_json::json!({"omega_rad_s": [1.0, 5.0], "sd_db": table(sd_db), "sd_deg": table(6.0 * sd_db)});
+    model["bands"] = serde_json::json!({"omega_rad_s": [1.0, 5.0], "sd_db": table(sd_db), "sd_deg": table(6.0 * sd_db)});
     dataset
 }
 
@@ -471,8 +741,13 @@ fn the_bars_of_a_dataset_with_other_bands_are_made_anew() {
     let mut engine = Engine::default();
     let study = |sd_db: f64| {
         let mut study = study_of(&dataset_with_band(sd_db));
-        for (bundle, name) in [(BundleKind::Physics, "nominal"), (BundleKind::Identified, "i0")] {
-            study.apply(&Edit::Pin(ModelId::new(ConditionId(1), bundle, name))).unwrap();
+        for (bundle, name) in [
+            (BundleKind::Physics, "nominal"),
+            (BundleKind::Identified, "i0"),
+        ] {
+            study
+                .apply(&Edit::Pin(ModelId::new(ConditionId(1), bundle, name)))
+                .unwrap();
         }
         study
     };
@@ -481,12 +756,26 @@ fn the_bars_of_a_dataset_with_other_bands_are_made_anew() {
         engine.uncertainty(&analysis, &Unobserved).unwrap()
     };
     let scalar = Scalar::Gain(Pair::new(0, 0));
-    let half = |of: &Uncertainty| of.bar(ConditionId(1), scalar).unwrap().inner_half_width(0.9).unwrap();
+    let half = |of: &Uncertainty| {
+        of.bar(ConditionId(1), scalar)
+            .unwrap()
+            .inner_half_width(0.9)
+            .unwrap()
+    };
     let (wide, narrow) = (study(3.0), study(1.5));
     let (of_wide, of_narrow) = (bars(&wide), bars(&narrow));
-    assert_eq!(of_narrow, uncertainty_of(&narrow).1, "as of an engine that knows no other");
+    assert_eq!(
+        of_narrow,
+        uncertainty_of(&narrow).1,
+        "as of an engine that knows no other"
+    );
     // The band's deviations are taken as known: half of them is half the bar.
-    assert!((half(&of_wide) / half(&of_narrow) - 2.0).abs() < 1e-9, "{} {}", half(&of_wide), half(&of_narrow));
+    assert!(
+        (half(&of_wide) / half(&of_narrow) - 2.0).abs() < 1e-9,
+        "{} {}",
+        half(&of_wide),
+        half(&of_narrow)
+    );
     assert_eq!(of_wide, bars(&wide), "and back again");
 }
 
@@ -499,31 +788,55 @@ fn a_bar_that_rests_on_the_spread_alone_says_so_beside_a_model_that_tells_its_er
     analysis.uncertainty = Some(Arc::new(uncertainty));
     let says_so = |asked: ExplainTarget| {
         let found = derivation(&analysis, &asked).unwrap();
-        found.rests_on.iter().any(|line| line.contains("the spread of the models alone"))
+        found
+            .rests_on
+            .iter()
+            .any(|line| line.contains("the spread of the models alone"))
     };
     let told = ConditionId(1);
-    assert!(!says_so(ExplainTarget::DeltaGain(told, free)) && !says_so(ExplainTarget::NetGain(told, held)));
+    assert!(
+        !says_so(ExplainTarget::DeltaGain(told, free))
+            && !says_so(ExplainTarget::NetGain(told, held))
+    );
     assert!(says_so(ExplainTarget::NetGain(told, free)));
     assert!(says_so(ExplainTarget::Gain(told, Channel::Input(0))));
     let untold = ConditionId(2);
-    assert!(!says_so(ExplainTarget::NetGain(untold, free)), "no model of that condition tells its error");
+    assert!(
+        !says_so(ExplainTarget::NetGain(untold, free)),
+        "no model of that condition tells its error"
+    );
 }
 
 #[test]
 fn under_leads_every_bar_stands_beside_the_value_that_it_is_of() {
     let example = &crate::REFERENCE_DATASET.dataset;
-    let first_two = example.conditions()[..2].iter().map(|condition| condition.as_ref().clone()).collect();
+    let first_two = example.conditions()[..2]
+        .iter()
+        .map(|condition| condition.as_ref().clone())
+        .collect();
     let mut study = Study::new(Arc::new(Dataset::new(example.header(), first_two).unwrap()));
     set(&mut study, setting::PHASE.to(PhaseCorrection::Lead));
     let (mut analysis, uncertainty) = uncertainty_of(&study);
     analysis.uncertainty = Some(Arc::new(uncertainty));
-    let written = corrections(&analysis, "", &analysis.conditions.keys().copied().collect());
+    let written = corrections(
+        &analysis,
+        "",
+        &analysis.conditions.keys().copied().collect(),
+    );
     for condition in list(&written["conditions"]) {
         for key in ["D_s", "D_band_s"] {
-            let entries = |table: &Value| -> Vec<Value> { list(table).iter().flat_map(list).cloned().collect() };
-            for (value, bar) in entries(&condition[key]).iter().zip(entries(&condition["bars"][key])) {
+            let entries = |table: &Value| -> Vec<Value> {
+                list(table).iter().flat_map(list).cloned().collect()
+            };
+            for (value, bar) in entries(&condition[key])
+                .iter()
+                .zip(entries(&condition["bars"][key]))
+            {
                 let middle = 0.5 * numbers(&bar["interval"]).iter().sum::<f64>();
-                assert!((middle - number(value)).abs() < 1e-12, "{key}: a bar about {middle} beside {value}");
+                assert!(
+                    (middle - number(value)).abs() < 1e-12,
+                    "{key}: a bar about {middle} beside {value}"
+                );
             }
         }
     }
@@ -534,10 +847,17 @@ fn a_model_with_another_band_is_another_model() {
     let [wide, narrow, again] = [3.0, 1.5, 3.0].map(|sd_db| study_of(&dataset_with_band(sd_db)));
     let changed = |dataset: &Study| {
         let (_, differences) = wide.reconciled(Arc::clone(&dataset.dataset));
-        differences.iter().map(ToString::to_string).collect::<Vec<_>>()
+        differences
+            .iter()
+            .map(ToString::to_string)
+            .collect::<Vec<_>>()
     };
     assert_eq!(changed(&again), Vec::<String>::new());
-    assert!(changed(&narrow).iter().any(|words| words.contains("i0") && words.ends_with("has changed")));
+    assert!(
+        changed(&narrow)
+            .iter()
+            .any(|words| words.contains("i0") && words.ends_with("has changed"))
+    );
 }
 
 /// Stops when so many steps are told, and keeps what it hears.
@@ -565,12 +885,22 @@ fn swaps_are_counted_one_by_one_and_stop_between_two_of_them() {
     let mut engine = Engine::default();
     let analysis = analyze(&mut engine, &study);
     // The responses of all 242 models are there: the steps from 242 on are swaps.
-    let progress = StopsAt { steps: 100, ..StopsAt::default() };
-    assert_eq!(engine.uncertainty(&analysis, &progress).err(), Some(Cancelled));
+    let progress = StopsAt {
+        steps: 100,
+        ..StopsAt::default()
+    };
+    assert_eq!(
+        engine.uncertainty(&analysis, &progress).err(),
+        Some(Cancelled)
+    );
     let (told, total) = (progress.told.into_inner(), progress.total.into_inner());
     assert_eq!(total, 2 * 242);
     // Steps are told by hundredths of the whole; 22 responses of a condition come at once.
     assert!((100..=100 + 22 + 5).contains(&told), "{told}");
     let whole = engine.uncertainty(&analysis, &Unobserved).unwrap();
-    assert_eq!(whole, uncertainty_of(&study).1, "what was stopped is taken up again");
+    assert_eq!(
+        whole,
+        uncertainty_of(&study).1,
+        "what was stopped is taken up again"
+    );
 }

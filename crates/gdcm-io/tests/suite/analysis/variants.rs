@@ -2,7 +2,9 @@
 
 use gdcm_model::dataset::Dataset;
 use gdcm_model::dataset::ModelId;
-use gdcm_study::study::{Difference, History, Job, LONGEST_REASON, VariantJob, decision_differences};
+use gdcm_study::study::{
+    Difference, History, Job, LONGEST_REASON, VariantJob, decision_differences,
+};
 use std::sync::Arc;
 
 use super::*;
@@ -16,14 +18,25 @@ fn apply(study: &mut Study, edits: &[Edit]) {
 }
 
 fn keep(name: &str) -> Edit {
-    Edit::KeepVariant { name: name.to_owned() }
+    Edit::KeepVariant {
+        name: name.to_owned(),
+    }
 }
 
 /// The example without its last condition, as if the file had been changed.
 fn shorter_example() -> Arc<Dataset> {
     let dataset = &crate::REFERENCE_DATASET.dataset;
-    let conditions = dataset.conditions().iter().filter(|condition| condition.id() != ConditionId(10));
-    Arc::new(Dataset::new(dataset.header(), conditions.map(|condition| (**condition).clone()).collect()).unwrap())
+    let conditions = dataset
+        .conditions()
+        .iter()
+        .filter(|condition| condition.id() != ConditionId(10));
+    Arc::new(
+        Dataset::new(
+            dataset.header(),
+            conditions.map(|condition| (**condition).clone()).collect(),
+        )
+        .unwrap(),
+    )
 }
 
 #[test]
@@ -31,15 +44,55 @@ fn a_rejection_carries_its_reason_and_a_restored_model_has_none() {
     let mut study = study_of_example();
     let model = nominal_of_10();
     let reason = |text: &str| Edit::SetReason(model.clone(), text.to_owned());
-    assert!(study.apply(&reason("why")).unwrap_err().to_string().contains("is not rejected"));
-    apply(&mut study, &[Edit::RejectBecause { model: model.clone(), reason: " step at 62 kt ".to_owned() }]);
-    assert_eq!((study.is_rejected(&model), study.reason(&model)), (true, Some("step at 62 kt")));
-    assert!(study.apply(&reason(&"x".repeat(LONGEST_REASON + 1))).unwrap_err().to_string().contains("at most 1000"));
-    apply(&mut study, &[reason("inflow"), Edit::Restore(model.clone())]);
-    assert_eq!((study.is_rejected(&model), study.reason(&model)), (false, None));
-    apply(&mut study, &[Edit::Reject(model.clone()), reason("a"), Edit::RestoreAll { condition: ConditionId(10) }]);
+    assert!(
+        study
+            .apply(&reason("why"))
+            .unwrap_err()
+            .to_string()
+            .contains("is not rejected")
+    );
+    apply(
+        &mut study,
+        &[Edit::RejectBecause {
+            model: model.clone(),
+            reason: " step at 62 kt ".to_owned(),
+        }],
+    );
+    assert_eq!(
+        (study.is_rejected(&model), study.reason(&model)),
+        (true, Some("step at 62 kt"))
+    );
+    assert!(
+        study
+            .apply(&reason(&"x".repeat(LONGEST_REASON + 1)))
+            .unwrap_err()
+            .to_string()
+            .contains("at most 1000")
+    );
+    apply(
+        &mut study,
+        &[reason("inflow"), Edit::Restore(model.clone())],
+    );
+    assert_eq!(
+        (study.is_rejected(&model), study.reason(&model)),
+        (false, None)
+    );
+    apply(
+        &mut study,
+        &[
+            Edit::Reject(model.clone()),
+            reason("a"),
+            Edit::RestoreAll {
+                condition: ConditionId(10),
+            },
+        ],
+    );
     apply(&mut study, &[Edit::Reject(model.clone())]);
-    assert_eq!(study.reason(&model), None, "the old reason went with the old rejection");
+    assert_eq!(
+        study.reason(&model),
+        None,
+        "the old reason went with the old rejection"
+    );
     apply(&mut study, &[reason("a"), reason("")]);
     assert_eq!(study.reason(&model), None);
 }
@@ -48,13 +101,19 @@ fn a_rejection_carries_its_reason_and_a_restored_model_has_none() {
 fn a_refused_rejection_leaves_no_reason_and_undo_takes_both_back() {
     let mut study = study_of_example();
     let mut history: History = History::default();
-    let edit = Edit::RejectBecause { model: nominal_of_10(), reason: "step".to_owned() };
+    let edit = Edit::RejectBecause {
+        model: nominal_of_10(),
+        reason: "step".to_owned(),
+    };
     let before = study.clone();
     apply(&mut study, std::slice::from_ref(&edit));
     history.record(before.clone(), &edit);
     assert_eq!(history.undo(&study, |()| ()), Some(before.clone()));
     assert_eq!(history.redo(&before, |()| ()), Some(study.clone()));
-    let other = Edit::RejectBecause { model: nominal_of_10(), reason: "x".repeat(LONGEST_REASON + 1) };
+    let other = Edit::RejectBecause {
+        model: nominal_of_10(),
+        reason: "x".repeat(LONGEST_REASON + 1),
+    };
     let mut fresh = study_of_example();
     assert!(fresh.apply(&other).is_err());
     assert_eq!(fresh, study_of_example());
@@ -63,28 +122,61 @@ fn a_refused_rejection_leaves_no_reason_and_undo_takes_both_back() {
 #[test]
 fn words_change_no_result_and_stand_in_the_results_beside_the_rejected() {
     let (mut study, mut engine) = (study_of_example(), Engine::default());
-    apply(&mut study, &[setting::POINTS.to(40), Edit::Reject(nominal_of_10())]);
+    apply(
+        &mut study,
+        &[setting::POINTS.to(40), Edit::Reject(nominal_of_10())],
+    );
     let without = analyze(&mut engine, &study);
-    apply(&mut study, &[Edit::SetReason(nominal_of_10(), "step".to_owned()), keep("a")]);
+    apply(
+        &mut study,
+        &[
+            Edit::SetReason(nominal_of_10(), "step".to_owned()),
+            keep("a"),
+        ],
+    );
     let with = analyze(&mut engine, &study);
-    let (a, b) = (without.condition(ConditionId(10)).unwrap(), with.condition(ConditionId(10)).unwrap());
-    assert!(Arc::ptr_eq(&a.comparison, &b.comparison), "nothing is computed anew");
+    let (a, b) = (
+        without.condition(ConditionId(10)).unwrap(),
+        with.condition(ConditionId(10)).unwrap(),
+    );
+    assert!(
+        Arc::ptr_eq(&a.comparison, &b.comparison),
+        "nothing is computed anew"
+    );
     let folder = tempfile::tempdir().unwrap();
     let outputs = gdcm_io::OutputSet::new(gdcm_io::Existing::Replace, Vec::new());
     let all = with.conditions.keys().copied().collect();
     gdcm_io::write_results(&with, "", &all, folder.path(), outputs).unwrap();
     let written = json(&std::fs::read_to_string(folder.path().join("corrections.json")).unwrap());
-    let condition = list(&written["conditions"]).iter().find(|condition| condition["id"] == 10).unwrap();
+    let condition = list(&written["conditions"])
+        .iter()
+        .find(|condition| condition["id"] == 10)
+        .unwrap();
     assert_eq!(condition["rejected"], serde_json::json!(["nominal"]));
-    assert_eq!(condition["reasons"], serde_json::json!([{"bundle": "physics", "model": "nominal", "why": "step"}]));
+    assert_eq!(
+        condition["reasons"],
+        serde_json::json!([{"bundle": "physics", "model": "nominal", "why": "step"}])
+    );
 }
 
 #[test]
 fn a_variant_brings_back_the_decisions_that_were_kept_and_stays() {
     let mut study = study_of_example();
-    apply(&mut study, &[setting::ALPHA_GAIN.to(0.1), keep(" soft "), setting::ALPHA_GAIN.to(9.0)]);
+    apply(
+        &mut study,
+        &[
+            setting::ALPHA_GAIN.to(0.1),
+            keep(" soft "),
+            setting::ALPHA_GAIN.to(9.0),
+        ],
+    );
     let before = study.clone();
-    apply(&mut study, &[Edit::TakeVariant { name: "soft".to_owned() }]);
+    apply(
+        &mut study,
+        &[Edit::TakeVariant {
+            name: "soft".to_owned(),
+        }],
+    );
     assert_eq!((study.settings.alpha_gain, study.variants.len()), (0.1, 1));
     assert_eq!(before.of_variant("soft").unwrap().settings, study.settings);
     assert_ne!(before, study);
@@ -98,29 +190,81 @@ fn the_name_of_a_variant_is_given_once_and_can_be_changed_and_removed() {
     assert!(refused(&mut study, keep("a")).contains("\"a\" already"));
     assert!(refused(&mut study, keep("  ")).contains("needs a name"));
     assert!(refused(&mut study, keep(&"x".repeat(61))).contains("at most 60"));
-    let rename = |from: &str, to: &str| Edit::RenameVariant { from: from.to_owned(), to: to.to_owned() };
+    let rename = |from: &str, to: &str| Edit::RenameVariant {
+        from: from.to_owned(),
+        to: to.to_owned(),
+    };
     assert!(refused(&mut study, rename("a", "b")).contains("\"b\" already"));
-    apply(&mut study, &[rename("a", "a "), rename("a", "c"), Edit::RemoveVariant { name: "b".to_owned() }]);
-    assert_eq!(study.variants.iter().map(|variant| variant.name.as_str()).collect::<Vec<_>>(), ["c"]);
-    assert!(refused(&mut study, Edit::TakeVariant { name: "b".to_owned() }).contains("no variant \"b\""));
+    apply(
+        &mut study,
+        &[
+            rename("a", "a "),
+            rename("a", "c"),
+            Edit::RemoveVariant {
+                name: "b".to_owned(),
+            },
+        ],
+    );
+    assert_eq!(
+        study
+            .variants
+            .iter()
+            .map(|variant| variant.name.as_str())
+            .collect::<Vec<_>>(),
+        ["c"]
+    );
+    assert!(
+        refused(
+            &mut study,
+            Edit::TakeVariant {
+                name: "b".to_owned()
+            }
+        )
+        .contains("no variant \"b\"")
+    );
 }
 
 #[test]
 fn a_variant_is_analysed_like_a_study_with_its_decisions() {
     let mut study = study_of_example();
-    apply(&mut study, &[setting::POINTS.to(40), setting::ALPHA_GAIN.to(0.01), keep("soft")]);
-    apply(&mut study, &[setting::ALPHA_GAIN.to(1.0), Edit::Reject(nominal_of_10())]);
-    let job = VariantJob { study: study.of_variant("soft").unwrap() };
+    apply(
+        &mut study,
+        &[
+            setting::POINTS.to(40),
+            setting::ALPHA_GAIN.to(0.01),
+            keep("soft"),
+        ],
+    );
+    apply(
+        &mut study,
+        &[setting::ALPHA_GAIN.to(1.0), Edit::Reject(nominal_of_10())],
+    );
+    let job = VariantJob {
+        study: study.of_variant("soft").unwrap(),
+    };
     let mut tools = Engine::default();
     analyze(&mut tools, &study);
     let found = job.run(&mut tools, &Unobserved).unwrap();
-    assert_eq!(*found, analyze(&mut Engine::default(), &study.of_variant("soft").unwrap()));
+    assert_eq!(
+        *found,
+        analyze(&mut Engine::default(), &study.of_variant("soft").unwrap())
+    );
     let mut reworded = study.of_variant("soft").unwrap();
-    assert_eq!(job, VariantJob { study: reworded.clone() });
+    assert_eq!(
+        job,
+        VariantJob {
+            study: reworded.clone()
+        }
+    );
     apply(&mut reworded, &[Edit::Reject(nominal_of_10())]);
-    let rejected = VariantJob { study: reworded.clone() };
+    let rejected = VariantJob {
+        study: reworded.clone(),
+    };
     assert_ne!(job, rejected);
-    apply(&mut reworded, &[Edit::SetReason(nominal_of_10(), "step".to_owned())]);
+    apply(
+        &mut reworded,
+        &[Edit::SetReason(nominal_of_10(), "step".to_owned())],
+    );
     assert_eq!(rejected, VariantJob { study: reworded });
 }
 
@@ -130,11 +274,26 @@ fn what_differs_between_decisions_is_told_in_plain_words() {
     let mut after = before.clone();
     assert_eq!(decision_differences(&before, &after), []);
     let pair = before.dataset.find_pair("Q", "LON").unwrap();
-    let reject = Edit::RejectBecause { model: nominal_of_10(), reason: "step".to_owned() };
-    apply(&mut after, &[setting::ALPHA_GAIN.to(0.1), Edit::Hold(pair, false), reject]);
-    let left_out = Edit::SetScheduled { condition: ConditionId(3), scheduled: false };
-    apply(&mut after, &[left_out, keep("kept"), setting::DELAY_UPPER.to(Some(0.02))]);
-    let words: Vec<String> = decision_differences(&before, &after).iter().map(ToString::to_string).collect();
+    let reject = Edit::RejectBecause {
+        model: nominal_of_10(),
+        reason: "step".to_owned(),
+    };
+    apply(
+        &mut after,
+        &[setting::ALPHA_GAIN.to(0.1), Edit::Hold(pair, false), reject],
+    );
+    let left_out = Edit::SetScheduled {
+        condition: ConditionId(3),
+        scheduled: false,
+    };
+    apply(
+        &mut after,
+        &[left_out, keep("kept"), setting::DELAY_UPPER.to(Some(0.02))],
+    );
+    let words: Vec<String> = decision_differences(&before, &after)
+        .iter()
+        .map(ToString::to_string)
+        .collect();
     assert_eq!(
         words,
         [
@@ -151,19 +310,34 @@ fn what_differs_between_decisions_is_told_in_plain_words() {
 fn reasons_and_variants_are_reconciled_to_a_changed_dataset() {
     let mut study = study_of_example();
     let other = ModelId::new(ConditionId(3), BundleKind::Physics, "nominal");
-    let because = |model: &ModelId| Edit::RejectBecause { model: model.clone(), reason: "step".to_owned() };
-    apply(&mut study, &[because(&other), because(&nominal_of_10()), keep("strict"), Edit::Restore(nominal_of_10())]);
+    let because = |model: &ModelId| Edit::RejectBecause {
+        model: model.clone(),
+        reason: "step".to_owned(),
+    };
+    apply(
+        &mut study,
+        &[
+            because(&other),
+            because(&nominal_of_10()),
+            keep("strict"),
+            Edit::Restore(nominal_of_10()),
+        ],
+    );
     let (carried, differences) = study.reconciled(shorter_example());
     assert_eq!(carried.reason(&other), Some("step"));
     let variant = carried.of_variant("strict").unwrap();
-    assert_eq!((variant.reason(&other), variant.choices.len()), (Some("step"), 10));
+    assert_eq!(
+        (variant.reason(&other), variant.choices.len()),
+        (Some("step"), 10)
+    );
     let lost: Vec<String> = differences
         .iter()
         .filter(|difference| matches!(difference, Difference::NotApplied { .. }))
         .map(ToString::to_string)
         .collect();
     assert!(
-        lost.iter().any(|words| words.contains("reject nominal (condition 10), of variant \"strict\"")),
+        lost.iter()
+            .any(|words| words.contains("reject nominal (condition 10), of variant \"strict\"")),
         "{lost:?}"
     );
 }

@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use gdcm_io::{DatasetOrigin, FileError, LARGEST_TEXT, embedded_example, load_any, load_dataset, load_dataset_bytes};
+use gdcm_io::{
+    DatasetOrigin, FileError, LARGEST_TEXT, embedded_example, load_any, load_dataset,
+    load_dataset_bytes,
+};
 use serde_json::{Value, json};
 
 mod properties;
@@ -29,8 +32,13 @@ fn load(bytes: &[u8]) -> Result<gdcm_io::LoadedDataset, FileError> {
 
 /// The message that refuses these bytes; asserts that it is one line, and names the file.
 fn refusal(bytes: &[u8]) -> String {
-    let message = load(bytes).expect_err("the file is wrong and has to be refused").to_string();
-    assert!(message.starts_with("test.json: ") && !message.contains('\n'), "{message}");
+    let message = load(bytes)
+        .expect_err("the file is wrong and has to be refused")
+        .to_string();
+    assert!(
+        message.starts_with("test.json: ") && !message.contains('\n'),
+        "{message}"
+    );
     message
 }
 
@@ -61,7 +69,14 @@ fn gzip(bytes: &[u8]) -> Vec<u8> {
 fn the_small_dataset_is_read_as_it_is_written() {
     let loaded = load(SMALL.as_bytes()).unwrap();
     let dataset = &loaded.dataset;
-    assert_eq!((dataset.inputs().len(), dataset.outputs().len(), dataset.conditions().len()), (2, 2, 2));
+    assert_eq!(
+        (
+            dataset.inputs().len(),
+            dataset.outputs().len(),
+            dataset.conditions().len()
+        ),
+        (2, 2, 2)
+    );
     let orders: Vec<Option<usize>> = dataset
         .conditions()
         .iter()
@@ -74,7 +89,11 @@ fn the_small_dataset_is_read_as_it_is_written() {
     else {
         panic!("matrices are given")
     };
-    assert_eq!((model.a()[(0, 1)], model.a()[(1, 0)]), (1.0, -2.0), "A[row][column]");
+    assert_eq!(
+        (model.a()[(0, 1)], model.a()[(1, 0)]),
+        (1.0, -2.0),
+        "A[row][column]"
+    );
     assert_eq!(loaded.cautions, Vec::<String>::new());
 }
 
@@ -95,9 +114,12 @@ fn timing_valid_bands_and_how_a_response_was_estimated_are_known_and_kept() {
     let path = directory.path().join("again.json");
     gdcm_io::save_dataset(&loaded.dataset, &path).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
-    for written in
-        ["\"sample_time_s\":0.01", "\"output_delays_s\":[0.0,0.02]", "\"averages\":12.0", "\"window_s\":20.0"]
-    {
+    for written in [
+        "\"sample_time_s\":0.01",
+        "\"output_delays_s\":[0.0,0.02]",
+        "\"averages\":12.0",
+        "\"window_s\":20.0",
+    ] {
         assert!(text.contains(written), "{written}");
     }
     assert_eq!(load_dataset(&path).unwrap().dataset, loaded.dataset);
@@ -108,13 +130,19 @@ fn a_packed_file_is_known_by_its_bytes_and_not_by_its_name() {
     let plain = load(SMALL.as_bytes()).unwrap();
     let packed = load(&gzip(SMALL.as_bytes())).unwrap();
     assert_eq!(plain.dataset, packed.dataset);
-    assert_ne!(plain.sha256, packed.sha256, "the hash is that of the bytes as stored");
+    assert_ne!(
+        plain.sha256, packed.sha256,
+        "the hash is that of the bytes as stored"
+    );
 }
 
 #[test]
 fn the_embedded_example_has_eleven_conditions_and_no_cautions() {
     let example = embedded_example().unwrap();
-    assert_eq!((example.dataset.conditions().len(), example.cautions.len()), (11, 0));
+    assert_eq!(
+        (example.dataset.conditions().len(), example.cautions.len()),
+        (11, 0)
+    );
     assert_eq!(example.origin, DatasetOrigin::EmbeddedExample);
 }
 
@@ -135,7 +163,10 @@ fn a_model_of_order_zero_may_leave_its_rows_out() {
 fn keys_that_are_not_known_are_named_with_their_places_once() {
     let bytes = small(|file| {
         file["author"] = json!("someone");
-        for model in file["conditions"][0]["physics_models"].as_array_mut().unwrap() {
+        for model in file["conditions"][0]["physics_models"]
+            .as_array_mut()
+            .unwrap()
+        {
             model["wind"] = json!({"deep": [1, 2]});
         }
     });
@@ -170,18 +201,34 @@ fn a_file_full_of_keys_that_are_not_known_tells_the_first_of_them_and_counts_the
         }
     });
     let cautions = load(&bytes).unwrap().cautions;
-    assert_eq!((cautions.len(), cautions[50].as_str()), (51, "950 other keys are not known and not used"));
+    assert_eq!(
+        (cautions.len(), cautions[50].as_str()),
+        (51, "950 other keys are not known and not used")
+    );
 }
 
 #[test]
 fn names_of_states_are_kept_where_there_is_one_for_each() {
     let names = |loaded: &gdcm_io::LoadedDataset, model: usize| {
-        loaded.dataset.conditions()[0].bundle(gdcm_model::dataset::BundleKind::Physics)[model].states.to_vec()
+        loaded.dataset.conditions()[0].bundle(gdcm_model::dataset::BundleKind::Physics)[model]
+            .states
+            .to_vec()
     };
     let loaded = load(&small(|_| {})).unwrap();
-    assert_eq!((names(&loaded, 0), loaded.cautions.len()), (vec!["w".to_owned(), "q".to_owned()], 0));
-    let wrong = load(&small(|value| value["conditions"][0]["physics_models"][1]["states"] = json!(["w"]))).unwrap();
+    assert_eq!(
+        (names(&loaded, 0), loaded.cautions.len()),
+        (vec!["w".to_owned(), "q".to_owned()], 0)
+    );
+    let wrong = load(&small(|value| {
+        value["conditions"][0]["physics_models"][1]["states"] = json!(["w"])
+    }))
+    .unwrap();
     assert_eq!((names(&wrong, 0).len(), names(&wrong, 1).len()), (2, 0));
-    let [caution] = wrong.cautions.as_slice() else { panic!("{:?}", wrong.cautions) };
-    assert!(caution.contains("1 names for 2 states: they are left out"), "{caution}");
+    let [caution] = wrong.cautions.as_slice() else {
+        panic!("{:?}", wrong.cautions)
+    };
+    assert!(
+        caution.contains("1 names for 2 states: they are left out"),
+        "{caution}"
+    );
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use gdcm_io::{load_dataset, save_dataset};
 use gdcm_model::dataset::{
-    Band, Channel, Condition, Dataset, DatasetHeader, Dynamics, Estimate, FlightState, MeasuredResponse, Model, Origin,
-    Pair, PairTable, StateSpace, Timing,
+    Band, Channel, Condition, Dataset, DatasetHeader, Dynamics, Estimate, FlightState,
+    MeasuredResponse, Model, Origin, Pair, PairTable, StateSpace, Timing,
 };
 use nalgebra::DMatrix;
 use proptest::prelude::*;
@@ -19,7 +19,10 @@ fn read(bytes: &[u8]) -> bool {
         Ok(_) => true,
         Err(error) => {
             let message = error.to_string();
-            assert!(message.starts_with("test.json: ") && message.lines().count() == 1, "{message}");
+            assert!(
+                message.starts_with("test.json: ") && message.lines().count() == 1,
+                "{message}"
+            );
             false
         }
     }
@@ -34,8 +37,12 @@ fn replace_nth(value: &mut Value, nth: usize, replacement: &Value) -> usize {
         }
         *left = left.and_then(|left| left.checked_sub(1));
         match value {
-            Value::Array(entries) => entries.iter_mut().for_each(|entry| visit(entry, left, seen, replacement)),
-            Value::Object(entries) => entries.values_mut().for_each(|entry| visit(entry, left, seen, replacement)),
+            Value::Array(entries) => entries
+                .iter_mut()
+                .for_each(|entry| visit(entry, left, seen, replacement)),
+            Value::Object(entries) => entries
+                .values_mut()
+                .for_each(|entry| visit(entry, left, seen, replacement)),
             _ => {}
         }
     }
@@ -76,16 +83,27 @@ fn matrix(rows: usize, columns: usize) -> impl Strategy<Value = DMatrix<f64>> {
 
 fn state_space(p: usize, m: usize) -> impl Strategy<Value = Dynamics> {
     (0_usize..4).prop_flat_map(move |n| {
-        (matrix(n, n), matrix(n, m), matrix(p, n), matrix(p, m), timing(p, m)).prop_map(|(a, b, c, d, timing)| {
-            Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap().timed(timing).unwrap())
-        })
+        (
+            matrix(n, n),
+            matrix(n, m),
+            matrix(p, n),
+            matrix(p, m),
+            timing(p, m),
+        )
+            .prop_map(|(a, b, c, d, timing)| {
+                Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap().timed(timing).unwrap())
+            })
     })
 }
 
 fn timing(p: usize, m: usize) -> impl Strategy<Value = Timing> {
     let delays = |count| prop::option::of(prop::collection::vec(0.0..=60.0_f64, count));
     (prop::option::of(1e-9..1e9_f64), delays(m), delays(p)).prop_map(
-        |(sample_time_s, input_delays_s, output_delays_s)| Timing { sample_time_s, input_delays_s, output_delays_s },
+        |(sample_time_s, input_delays_s, output_delays_s)| Timing {
+            sample_time_s,
+            input_delays_s,
+            output_delays_s,
+        },
     )
 }
 
@@ -93,69 +111,122 @@ fn measured(p: usize, m: usize) -> impl Strategy<Value = Dynamics> {
     let values = move || prop::collection::vec(numbers(), 3 * p * m);
     let coherence = prop::option::of(prop::collection::vec(0.0..=1.0_f64, 3 * p * m));
     let band = prop::option::of((0.0..5.0_f64, 5.0..1e3_f64));
-    (values(), values(), coherence, band, prop::option::of(1e-6..=1e6_f64)).prop_map(
-        move |(re, im, coherence, band, window_s)| {
+    (
+        values(),
+        values(),
+        coherence,
+        band,
+        prop::option::of(1e-6..=1e6_f64),
+    )
+        .prop_map(move |(re, im, coherence, band, window_s)| {
             let table = |values: &[f64]| {
-                PairTable::from_fn(p, m, |Pair { output, input }| values[3 * (output * m + input)..][..3].to_vec())
+                PairTable::from_fn(p, m, |Pair { output, input }| {
+                    values[3 * (output * m + input)..][..3].to_vec()
+                })
             };
             let coherence = coherence.as_deref().map(table);
-            let response = MeasuredResponse::new(vec![0.1, 1.0, 1e300], &table(&re), &table(&im), coherence).unwrap();
-            let response = response.with_estimate(Estimate { averages: window_s, window_s }).unwrap();
+            let response =
+                MeasuredResponse::new(vec![0.1, 1.0, 1e300], &table(&re), &table(&im), coherence)
+                    .unwrap();
+            let response = response
+                .with_estimate(Estimate {
+                    averages: window_s,
+                    window_s,
+                })
+                .unwrap();
             Dynamics::Measured(match band {
-                Some((low, high)) => response.with_valid_bands(PairTable::filled(p, m, [low, high])).unwrap(),
+                Some((low, high)) => response
+                    .with_valid_bands(PairTable::filled(p, m, [low, high]))
+                    .unwrap(),
                 None => response,
             })
-        },
-    )
+        })
 }
 
 fn condition(id: i64, p: usize, m: usize) -> impl Strategy<Value = Condition> {
-    let perturbation = prop::option::of(prop::collection::btree_map("[a-z\"\\\\\u{e9}]{1,4}", numbers(), 0..3));
+    let perturbation = prop::option::of(prop::collection::btree_map(
+        "[a-z\"\\\\\u{e9}]{1,4}",
+        numbers(),
+        0..3,
+    ));
     let identified = prop_oneof![state_space(p, m).boxed(), measured(p, m).boxed()];
-    let figures = (0.0..1e3_f64, prop::option::of(numbers()), prop::option::of("[ -~]{0,5}"));
+    let figures = (
+        0.0..1e3_f64,
+        prop::option::of(numbers()),
+        prop::option::of("[ -~]{0,5}"),
+    );
     let identity = (prop::option::of("[a-z]{1,3}"), prop::option::of(0_usize..9));
-    (state_space(p, m), state_space(p, m), identified, perturbation, figures, identity).prop_map(
-        move |(nominal, perturbed, identified, perturbation, (airspeed_kt, altitude_ft, altitude), (method, order))| {
-            let flight_state = FlightState {
-                id: gdcm_model::dataset::ConditionId(id),
-                name: format!("condition \"{id}\"\n"),
-                airspeed_kt,
-                altitude,
-                altitude_ft,
-                weight: None,
-                mass_kg: Some(6600.0),
-            };
-            let still: Option<BTreeMap<String, f64>> = None;
-            let model = |name: &str, origin, dynamics| Model::new(name, origin, dynamics);
-            let physics = vec![
-                model("a", Origin::Perturbed { perturbation }, perturbed),
-                model("b", Origin::Nominal { perturbation: still }, nominal),
-            ];
-            let identified = vec![model("a", Origin::Identified { method, order }, identified)];
-            Condition::new(flight_state, physics, identified).unwrap()
-        },
+    (
+        state_space(p, m),
+        state_space(p, m),
+        identified,
+        perturbation,
+        figures,
+        identity,
     )
+        .prop_map(
+            move |(
+                nominal,
+                perturbed,
+                identified,
+                perturbation,
+                (airspeed_kt, altitude_ft, altitude),
+                (method, order),
+            )| {
+                let flight_state = FlightState {
+                    id: gdcm_model::dataset::ConditionId(id),
+                    name: format!("condition \"{id}\"\n"),
+                    airspeed_kt,
+                    altitude,
+                    altitude_ft,
+                    weight: None,
+                    mass_kg: Some(6600.0),
+                };
+                let still: Option<BTreeMap<String, f64>> = None;
+                let model = |name: &str, origin, dynamics| Model::new(name, origin, dynamics);
+                let physics = vec![
+                    model("a", Origin::Perturbed { perturbation }, perturbed),
+                    model(
+                        "b",
+                        Origin::Nominal {
+                            perturbation: still,
+                        },
+                        nominal,
+                    ),
+                ];
+                let identified = vec![model("a", Origin::Identified { method, order }, identified)];
+                Condition::new(flight_state, physics, identified).unwrap()
+            },
+        )
 }
 
 fn datasets() -> impl Strategy<Value = Dataset> {
     (1_usize..4, 1_usize..4).prop_flat_map(|(p, m)| {
         let on_axis = prop::collection::vec(any::<bool>(), p * m);
-        (condition(i64::MIN, p, m), condition(3, p, m), on_axis, "[ -~]{0,8}").prop_map(
-            move |(first, second, on_axis, text)| {
+        (
+            condition(i64::MIN, p, m),
+            condition(3, p, m),
+            on_axis,
+            "[ -~]{0,8}",
+        )
+            .prop_map(move |(first, second, on_axis, text)| {
                 let channels = |letter: char, count: usize| {
-                    (0..count).map(|index| Channel::new(format!("{letter}{index}"), "m/s²")).collect()
+                    (0..count)
+                        .map(|index| Channel::new(format!("{letter}{index}"), "m/s²"))
+                        .collect()
                 };
                 let header = DatasetHeader {
                     name: text.clone(),
                     description: text,
                     inputs: channels('u', m),
                     outputs: channels('y', p),
-                    on_axis: PairTable::from_fn(p, m, |Pair { output, input }| on_axis[output * m + input]),
+                    on_axis: PairTable::from_fn(p, m, |Pair { output, input }| {
+                        on_axis[output * m + input]
+                    }),
                     band: Band::new(1e-3, 1e3).unwrap(),
                 };
                 Dataset::new(header, vec![first, second]).unwrap()
-            },
-        )
+            })
     })
 }
 

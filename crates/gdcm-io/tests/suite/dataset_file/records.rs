@@ -1,7 +1,9 @@
 //! Flight records of conditions, and the bands of models that were identified from them.
 
 use gdcm_io::save_dataset;
-use gdcm_model::dataset::{BundleKind, ConditionRecord, ModelDraft, Origin, Pair, RecordKind, Timing};
+use gdcm_model::dataset::{
+    BundleKind, ConditionRecord, ModelDraft, Origin, Pair, RecordKind, Timing,
+};
 use nalgebra::DMatrix;
 
 use super::*;
@@ -16,7 +18,12 @@ fn records() -> Value {
 }
 
 fn bands() -> Value {
-    let table = |value: f64| json!([[[value, 0.5, 1.0], [0.0, 0.0, 0.0]], [[1.0, 2.0, 3.0], [0.1, 0.2, 0.3]]]);
+    let table = |value: f64| {
+        json!([
+            [[value, 0.5, 1.0], [0.0, 0.0, 0.0]],
+            [[1.0, 2.0, 3.0], [0.1, 0.2, 0.3]]
+        ])
+    };
     json!({"omega_rad_s": [0.5, 1.0, 12.0], "sd_db": table(0.25), "sd_deg": table(1.5)})
 }
 
@@ -40,12 +47,29 @@ fn records_and_bands_are_read_and_come_back_as_they_were() {
     let loaded = load(&small(with_all)).unwrap();
     assert_eq!(loaded.cautions, Vec::<String>::new());
     let condition = &loaded.dataset.conditions()[0];
-    let kinds: Vec<RecordKind> = condition.records().iter().map(|record| record.kind).collect();
-    assert_eq!(kinds, [RecordKind::Sweep, RecordKind::ThreeTwoOneOne, RecordKind::Other]);
+    let kinds: Vec<RecordKind> = condition
+        .records()
+        .iter()
+        .map(|record| record.kind)
+        .collect();
+    assert_eq!(
+        kinds,
+        [
+            RecordKind::Sweep,
+            RecordKind::ThreeTwoOneOne,
+            RecordKind::Other
+        ]
+    );
     let steps = &condition.records()[1];
-    assert_eq!((steps.held_out, steps.used, steps.sample_time_s), (true, false, Some(0.02)));
+    assert_eq!(
+        (steps.held_out, steps.used, steps.sample_time_s),
+        (true, false, Some(0.02))
+    );
     assert_eq!(steps.used_s, [[0.0, 30.5], [31.0, 60.0]]);
-    assert!(condition.records()[2].used, "unless the file says otherwise");
+    assert!(
+        condition.records()[2].used,
+        "unless the file says otherwise"
+    );
     let model = &condition.bundle(BundleKind::Identified)[0];
     let bands = model.bands.as_ref().unwrap();
     assert_eq!(bands.sd_db()[Pair::new(1, 0)], [1.0, 2.0, 3.0]);
@@ -63,7 +87,10 @@ fn a_dataset_without_records_is_written_without_a_word_of_them() {
     for key in ["\"records\"", "\"bands\"", "\"sd_db\""] {
         assert!(!text.contains(key), "{key}");
     }
-    assert_eq!(text, saved(&small(|file| file["conditions"][0]["records"] = json!([]))));
+    assert_eq!(
+        text,
+        saved(&small(|file| file["conditions"][0]["records"] = json!([])))
+    );
 }
 
 #[test]
@@ -80,19 +107,32 @@ fn records_that_cannot_be_are_named_with_their_place() {
     let place = "condition 7 (number 1 in the file)";
     refused(
         |of| of[0]["kind"] = json!("doublet"),
-        &[place, "records, entry 1, kind: expected one of", "\"multisine\""],
+        &[
+            place,
+            "records, entry 1, kind: expected one of",
+            "\"multisine\"",
+        ],
     );
-    refused(|of| of[1]["name"] = json!("LON 1"), &[place, "the name \"LON 1\" stands twice (records 1 and 2)"]);
+    refused(
+        |of| of[1]["name"] = json!("LON 1"),
+        &[place, "the name \"LON 1\" stands twice (records 1 and 2)"],
+    );
     refused(
         |of| of[1]["sample_time_s"] = json!(0),
         &["record \"steps\" (number 2), sample_time_s: expected a positive"],
     );
-    refused(|of| of[1]["used_s"][1][1] = json!(30.0), &["used_s: expected a finite last time, not before the first"]);
+    refused(
+        |of| of[1]["used_s"][1][1] = json!(30.0),
+        &["used_s: expected a finite last time, not before the first"],
+    );
     refused(
         |of| drop(of[2].as_object_mut().unwrap().remove("file")),
         &["records, entry 3: the key \"file\" is missing"],
     );
-    refused(|of| of[0]["held_out"] = json!("no"), &["records, entry 1, held_out"]);
+    refused(
+        |of| of[0]["held_out"] = json!("no"),
+        &["records, entry 1, held_out"],
+    );
 }
 
 #[test]
@@ -109,11 +149,23 @@ fn bands_that_cannot_be_are_named_with_their_place() {
     let place = "identified model \"sweeps\" (number 1), bands";
     refused(
         |of| of["sd_db"][1][0][2] = json!(-1.0),
-        &[place, "sd_db, output 2, input 1, entry 3: expected a number not below"],
+        &[
+            place,
+            "sd_db, output 2, input 1, entry 3: expected a number not below",
+        ],
     );
-    refused(|of| of["omega_rad_s"][2] = json!(1.0), &[place, "frequency 3: expected finite, positive and rising"]);
-    refused(|of| of["sd_deg"] = json!([[[1.0, 2.0, 3.0]]]), &["bands, sd_deg: expected 2 x 2 x 3", "found 1 x 1 x 3"]);
-    refused(|of| of["sd_deg"][0][1] = json!("x"), &["sd_deg, output 1, input 2: expected a list of numbers"]);
+    refused(
+        |of| of["omega_rad_s"][2] = json!(1.0),
+        &[place, "frequency 3: expected finite, positive and rising"],
+    );
+    refused(
+        |of| of["sd_deg"] = json!([[[1.0, 2.0, 3.0]]]),
+        &["bands, sd_deg: expected 2 x 2 x 3", "found 1 x 1 x 3"],
+    );
+    refused(
+        |of| of["sd_deg"][0][1] = json!("x"),
+        &["sd_deg, output 1, input 2: expected a list of numbers"],
+    );
     assert_text_refused(
         "\"name\": \"sweeps\",",
         "\"name\": \"sweeps\", \"bands\": {\"omega_rad_s\": [1, 1e999], \"sd_db\": [], \"sd_deg\": []},",
@@ -126,11 +178,20 @@ fn identified_models_take_the_place_of_the_bundle_and_records_of_those_of_their_
     let dataset = load(&small(with_all)).unwrap().dataset;
     let condition = &dataset.conditions()[0];
     let before = condition.bundle(BundleKind::Identified).len();
-    let scalar = |rows: usize, columns: usize, value: f64| Some(DMatrix::from_element(rows, columns, value));
+    let scalar =
+        |rows: usize, columns: usize, value: f64| Some(DMatrix::from_element(rows, columns, value));
     let draft = |name: &str, inputs: usize| ModelDraft {
         name: name.to_owned(),
-        origin: Origin::Identified { method: None, order: None },
-        matrices: [scalar(1, 1, -1.0), scalar(1, inputs, 1.0), scalar(2, 1, 1.0), scalar(2, inputs, 0.0)],
+        origin: Origin::Identified {
+            method: None,
+            order: None,
+        },
+        matrices: [
+            scalar(1, 1, -1.0),
+            scalar(1, inputs, 1.0),
+            scalar(2, 1, 1.0),
+            scalar(2, inputs, 0.0),
+        ],
         timing: Timing::default(),
         response: None,
         source: None,
@@ -138,15 +199,46 @@ fn identified_models_take_the_place_of_the_bundle_and_records_of_those_of_their_
         bands: None,
     };
     let model = |name: &str| dataset.identified_model(draft(name, 2)).unwrap().0;
-    let records = vec![ConditionRecord::new("LON 1", "elsewhere.csv"), ConditionRecord::new("LON 2", "lon_2.csv")];
-    let filled = condition.with_identified(vec![model("sweeps"), model("new")], records).unwrap();
-    let names: Vec<&str> = filled.bundle(BundleKind::Identified).iter().map(|model| model.name.as_str()).collect();
-    assert_eq!(names, ["sweeps", "new"], "in place of the {before} that were there");
-    assert_eq!(filled.bundle(BundleKind::Identified)[0].order(), Some(1), "the new one");
-    let files: Vec<&str> = filled.records().iter().map(|record| record.file.as_str()).collect();
-    assert_eq!(files, ["elsewhere.csv", "records/all.mat", "rest.csv", "lon_2.csv"]);
+    let records = vec![
+        ConditionRecord::new("LON 1", "elsewhere.csv"),
+        ConditionRecord::new("LON 2", "lon_2.csv"),
+    ];
+    let filled = condition
+        .with_identified(vec![model("sweeps"), model("new")], records)
+        .unwrap();
+    let names: Vec<&str> = filled
+        .bundle(BundleKind::Identified)
+        .iter()
+        .map(|model| model.name.as_str())
+        .collect();
+    assert_eq!(
+        names,
+        ["sweeps", "new"],
+        "in place of the {before} that were there"
+    );
+    assert_eq!(
+        filled.bundle(BundleKind::Identified)[0].order(),
+        Some(1),
+        "the new one"
+    );
+    let files: Vec<&str> = filled
+        .records()
+        .iter()
+        .map(|record| record.file.as_str())
+        .collect();
+    assert_eq!(
+        files,
+        ["elsewhere.csv", "records/all.mat", "rest.csv", "lon_2.csv"]
+    );
     let changed = dataset.with_condition(filled.clone()).unwrap();
-    assert_eq!((changed.conditions()[0].as_ref(), &changed.conditions()[1]), (&filled, &dataset.conditions()[1]));
-    let words = dataset.identified_model(draft("narrow", 1)).unwrap_err().fault.to_string();
+    assert_eq!(
+        (changed.conditions()[0].as_ref(), &changed.conditions()[1]),
+        (&filled, &dataset.conditions()[1])
+    );
+    let words = dataset
+        .identified_model(draft("narrow", 1))
+        .unwrap_err()
+        .fault
+        .to_string();
     assert_eq!(words, "expected 2 x 2 (outputs x inputs), found 2 x 1");
 }

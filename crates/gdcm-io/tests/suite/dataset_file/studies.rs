@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use gdcm_io::{
-    FileError, LoadedDataset, Opened, embedded_example, load_any, load_dataset, open_study, open_study_of, save_study,
+    FileError, LoadedDataset, Opened, embedded_example, load_any, load_dataset, open_study,
+    open_study_of, save_study,
 };
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::DelayScheduling;
@@ -66,9 +67,16 @@ fn decided(study: &mut Study, edits: &[Edit]) {
 fn value_of(setting: &Setting, [first, second]: [f64; 2]) -> Value {
     let within = |[least, most]: [f64; 2], at: f64| least + at * (most - least);
     match setting.kind {
-        Kind::Optional { .. } | Kind::Range { nothing: Some(_), .. } if second > 0.7 => Value::Nothing,
-        Kind::Number { range, whole: true, .. } => Value::Number(within(range, first).round()),
-        Kind::Number { range, .. } | Kind::Optional { range, .. } => Value::Number(within(range, first)),
+        Kind::Optional { .. }
+        | Kind::Range {
+            nothing: Some(_), ..
+        } if second > 0.7 => Value::Nothing,
+        Kind::Number {
+            range, whole: true, ..
+        } => Value::Number(within(range, first).round()),
+        Kind::Number { range, .. } | Kind::Optional { range, .. } => {
+            Value::Number(within(range, first))
+        }
         Kind::Range { range, .. } => {
             let lower = within(range, 0.9 * first);
             Value::Range([lower, within([lower, range[1]], 0.1 + 0.9 * second)])
@@ -83,7 +91,10 @@ fn edits() -> impl Strategy<Value = Vec<Edit>> {
     let edit = prop_oneof![
         (pair(), any::<bool>()).prop_map(|(pair, on)| Edit::Hold(pair, on)),
         (pair(), any::<bool>()).prop_map(|(pair, on)| Edit::Fit(pair, on)),
-        (prop::sample::select(SETTINGS.to_vec()), [0.0..1.0_f64, 0.0..1.0_f64])
+        (
+            prop::sample::select(SETTINGS.to_vec()),
+            [0.0..1.0_f64, 0.0..1.0_f64]
+        )
             .prop_map(|(setting, at)| setting.to(value_of(setting, at))),
     ];
     prop::collection::vec(edit, 0..30)
@@ -95,7 +106,9 @@ fn every_setting_is_a_key_of_the_file() {
     let loaded = desk.loaded();
     let mut study = Study::new(loaded.dataset.clone());
     for setting in SETTINGS {
-        study.apply(&setting.to(value_of(setting, [0.6, 0.6]))).unwrap();
+        study
+            .apply(&setting.to(value_of(setting, [0.6, 0.6])))
+            .unwrap();
     }
     save_study(&study, &loaded, &desk.study()).unwrap();
     let text: Json = serde_json::from_slice(&fs::read(desk.study()).unwrap()).unwrap();
@@ -109,20 +122,36 @@ fn every_setting_is_a_key_of_the_file() {
 fn delay_scheduling(change: impl FnOnce(&mut Json)) -> DelayScheduling {
     let desk = Desk::new();
     desk.saved(change);
-    open_study(&desk.study()).unwrap().study.settings.schedule_delays
+    open_study(&desk.study())
+        .unwrap()
+        .study
+        .settings
+        .schedule_delays
 }
 
 #[test]
 fn flags_of_older_studies_say_whether_delays_are_scheduled() {
     let older = |flag: bool| {
         delay_scheduling(|file| {
-            file["settings"].as_object_mut().unwrap().remove("schedule_delays");
+            file["settings"]
+                .as_object_mut()
+                .unwrap()
+                .remove("schedule_delays");
             file["settings"]["schedule"]["delays"] = json!(flag);
         })
     };
-    assert_eq!([older(true), older(false)], [DelayScheduling::Always, DelayScheduling::Never]);
+    assert_eq!(
+        [older(true), older(false)],
+        [DelayScheduling::Always, DelayScheduling::Never]
+    );
     let said = |value: Json| delay_scheduling(|file| file["settings"]["schedule_delays"] = value);
-    let values = [json!("automatic"), json!("always"), json!("never"), json!(true), json!(false)];
+    let values = [
+        json!("automatic"),
+        json!("always"),
+        json!("never"),
+        json!(true),
+        json!(false),
+    ];
     assert_eq!(
         values.map(said),
         [
@@ -133,8 +162,12 @@ fn flags_of_older_studies_say_whether_delays_are_scheduled() {
             DelayScheduling::Never
         ]
     );
-    let refusal = Desk::new().refusal(|file| file["settings"]["schedule_delays"] = json!("sometimes"));
-    assert!(refusal.contains("\"automatic\"") && refusal.contains("sometimes"), "{refusal}");
+    let refusal =
+        Desk::new().refusal(|file| file["settings"]["schedule_delays"] = json!("sometimes"));
+    assert!(
+        refusal.contains("\"automatic\"") && refusal.contains("sometimes"),
+        "{refusal}"
+    );
 }
 
 #[test]
@@ -148,7 +181,13 @@ fn older_programs_find_a_flag_where_they_look_for_it() {
         save_study(&study, &loaded, &desk.study()).unwrap();
         let text: Json = serde_json::from_slice(&fs::read(desk.study()).unwrap()).unwrap();
         let settings = &text["settings"];
-        assert_eq!((&settings["schedule_delays"], &settings["schedule"]["delays"]), (&json!(scheduling), &json!(flag)));
+        assert_eq!(
+            (
+                &settings["schedule_delays"],
+                &settings["schedule"]["delays"]
+            ),
+            (&json!(scheduling), &json!(flag))
+        );
     }
 }
 
@@ -186,15 +225,27 @@ proptest! {
 fn a_study_of_an_older_program_has_neither_reasons_nor_variants_nor_a_tolerance_nor_coherence() {
     let desk = Desk::new();
     desk.saved(|text| {
-        assert!(text.get("variants").is_none() && text["conditions"][0]["physics"].get("reasons").is_none());
+        assert!(
+            text.get("variants").is_none()
+                && text["conditions"][0]["physics"].get("reasons").is_none()
+        );
         let settings = text["settings"].as_object_mut().unwrap();
-        ["agreement_db", "coherence_threshold"].iter().for_each(|key| drop(settings.remove(*key).unwrap()));
+        ["agreement_db", "coherence_threshold"]
+            .iter()
+            .for_each(|key| drop(settings.remove(*key).unwrap()));
     });
     let opened = open_study(&desk.study()).unwrap();
     let mut expected = Study::new(opened.loaded.dataset.clone());
-    assert_eq!(expected.settings.coherence_threshold, Some(0.6), "one response is measured with coherence");
+    assert_eq!(
+        expected.settings.coherence_threshold,
+        Some(0.6),
+        "one response is measured with coherence"
+    );
     decided(&mut expected, &[setting::COHERENCE.to(None::<f64>)]);
-    assert_eq!(opened.study, expected, "an older program took no notice of coherence");
+    assert_eq!(
+        opened.study, expected,
+        "an older program took no notice of coherence"
+    );
     assert_eq!(opened.study.settings.agreement_db, 0.05);
 }
 
@@ -203,10 +254,14 @@ fn a_wrong_variant_is_refused_with_its_name() {
     let desk = Desk::new();
     let message = desk.refusal(|text| {
         let (settings, conditions) = (text["settings"].clone(), text["conditions"].clone());
-        text["variants"] = json!([{"name": "soft", "settings": settings, "conditions": conditions}]);
+        text["variants"] =
+            json!([{"name": "soft", "settings": settings, "conditions": conditions}]);
         text["variants"][0]["settings"]["alpha_gain"] = json!(-1);
     });
-    assert!(message.contains("variant \"soft\", settings, alpha_gain") && message.contains("found -1"), "{message}");
+    assert!(
+        message.contains("variant \"soft\", settings, alpha_gain") && message.contains("found -1"),
+        "{message}"
+    );
 }
 
 #[test]
@@ -230,8 +285,13 @@ fn a_study_of_the_embedded_example_has_no_path() {
     decided(&mut study, &[setting::ALPHA_GAIN.to(0.1 + 0.2)]);
     save_study(&study, &loaded, &path).unwrap();
     let text: Json = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
-    assert_eq!((&text["dataset"]["path"], &text["dataset"]["name"]), (&Json::Null, &json!("embedded example")));
-    let Opened::Study(opened) = load_any(&path, &Default::default()).unwrap() else { panic!("a study was saved") };
+    assert_eq!(
+        (&text["dataset"]["path"], &text["dataset"]["name"]),
+        (&Json::Null, &json!("embedded example"))
+    );
+    let Opened::Study(opened) = load_any(&path, &Default::default()).unwrap() else {
+        panic!("a study was saved")
+    };
     assert_eq!(opened.study, study);
 }
 
@@ -241,16 +301,25 @@ fn a_study_whose_dataset_is_gone_says_which() {
     desk.saved(|_| {});
     fs::remove_file(desk.dataset()).unwrap();
     let message = open_study(&desk.study()).unwrap_err().to_string();
-    assert!(message.contains("a.gdcm-study.json: the study's dataset cannot be opened: "), "{message}");
     assert!(
-        message.contains("small.json: there is no such file") && message.contains("with --dataset and its path"),
+        message.contains("a.gdcm-study.json: the study's dataset cannot be opened: "),
+        "{message}"
+    );
+    assert!(
+        message.contains("small.json: there is no such file")
+            && message.contains("with --dataset and its path"),
         "{message}"
     );
 }
 
 /// What opening the study says is different, a line each.
 fn differences(desk: &Desk) -> Vec<String> {
-    open_study(&desk.study()).unwrap().differences.iter().map(ToString::to_string).collect()
+    open_study(&desk.study())
+        .unwrap()
+        .differences
+        .iter()
+        .map(ToString::to_string)
+        .collect()
 }
 
 #[test]
@@ -284,11 +353,17 @@ fn a_study_whose_dataset_has_changed_opens_and_lists_what_is_different() {
         "condition 7, physics model \"V+6kt\" was added",
         "a decision no longer applies: reject V+5kt (condition 7): condition 7 has no physics model \"V+5kt\"",
     ] {
-        assert!(found.iter().any(|line| line.contains(words)), "expected \"{words}\" in {found:?}");
+        assert!(
+            found.iter().any(|line| line.contains(words)),
+            "expected \"{words}\" in {found:?}"
+        );
     }
     assert_eq!(found.len(), 5, "{found:?}");
     let opened = open_study(&desk.study()).unwrap().study;
-    assert_eq!(opened.settings.alpha_gain, 0.5, "what still applies is kept");
+    assert_eq!(
+        opened.settings.alpha_gain, 0.5,
+        "what still applies is kept"
+    );
     let pinned = &opened.choice(ConditionId(7)).identified.pinned;
     assert_eq!(pinned.as_deref(), Some("measured"));
 }
@@ -298,7 +373,11 @@ fn a_dataset_written_in_another_way_is_not_different() {
     let desk = Desk::new();
     desk.saved(|_| {});
     let value: Json = serde_json::from_str(SMALL).unwrap();
-    fs::write(desk.dataset(), serde_json::to_string_pretty(&value).unwrap()).unwrap();
+    fs::write(
+        desk.dataset(),
+        serde_json::to_string_pretty(&value).unwrap(),
+    )
+    .unwrap();
     assert_eq!(differences(&desk), [""; 0]);
 }
 
@@ -309,7 +388,10 @@ fn a_study_that_does_not_say_what_its_dataset_held_says_that_it_has_changed() {
     assert_eq!(differences(&desk), [""; 0], "the same file");
     fs::write(desk.dataset(), SMALL.replace("6600", "6601")).unwrap();
     let found = differences(&desk);
-    assert!(found.len() == 1 && found[0].contains(&desk.loaded().sha256), "{found:?}");
+    assert!(
+        found.len() == 1 && found[0].contains(&desk.loaded().sha256),
+        "{found:?}"
+    );
 }
 
 #[test]
@@ -318,8 +400,16 @@ fn a_dataset_that_has_moved_is_found_beside_the_study_or_where_it_is_said_to_be(
     desk.saved(|_| {});
     let elsewhere = desk.directory.path().join("elsewhere.json");
     fs::rename(desk.dataset(), &elsewhere).unwrap();
-    assert!(matches!(open_study(&desk.study()), Err(FileError::StudyDataset { .. })));
-    assert_eq!(open_study_of(&desk.study(), &elsewhere, &Default::default()).unwrap().differences, []);
+    assert!(matches!(
+        open_study(&desk.study()),
+        Err(FileError::StudyDataset { .. })
+    ));
+    assert_eq!(
+        open_study_of(&desk.study(), &elsewhere, &Default::default())
+            .unwrap()
+            .differences,
+        []
+    );
     fs::rename(&elsewhere, desk.study().with_file_name("small.json")).unwrap();
     assert_eq!(open_study(&desk.study()).unwrap().differences, []);
 }
@@ -329,23 +419,38 @@ fn a_study_that_holds_what_cannot_be_decided_is_refused_with_the_place() {
     let desk = Desk::new();
     type Change = fn(&mut Json);
     let cases: [(Change, &str); 8] = [
-        (|file| file["version"] = json!(9), "expected version 1 of gdcm-study, found 9"),
+        (
+            |file| file["version"] = json!(9),
+            "expected version 1 of gdcm-study, found 9",
+        ),
         (
             |file| file["settings"]["alpha_gain"] = json!(-1),
             "settings, alpha_gain: α of the gains: expected a number from 0",
         ),
-        (|file| file["settings"]["points"] = json!(1), "settings, points"),
+        (
+            |file| file["settings"]["points"] = json!(1),
+            "settings, points",
+        ),
         (
             |file| file["settings"]["band_rad_s"] = json!([2, 1]),
             "settings, band_rad_s: the frequency band must be 0.0001 <= min < max",
         ),
-        (|file| file["settings"]["gain_bounds"] = json!([2, 1]), "settings, gain_bounds: gain bounds"),
+        (
+            |file| file["settings"]["gain_bounds"] = json!([2, 1]),
+            "settings, gain_bounds: gain bounds",
+        ),
         (
             |file| file["settings"]["schedule"]["degree"] = json!(4),
             "settings, schedule: degree: expected a whole number from 0 to 3",
         ),
-        (|file| file["settings"]["cost_average"] = json!("mode"), "settings, cost_average"),
-        (|file| file["conditions"][1]["id"] = json!(7), "condition 7 (number 2 in the file): condition 7 stands twice"),
+        (
+            |file| file["settings"]["cost_average"] = json!("mode"),
+            "settings, cost_average",
+        ),
+        (
+            |file| file["conditions"][1]["id"] = json!(7),
+            "condition 7 (number 2 in the file): condition 7 stands twice",
+        ),
     ];
     for (change, words) in cases {
         let message = desk.refusal(change);
@@ -365,7 +470,10 @@ fn a_study_beside_its_dataset_names_it_plainly() {
     save_study(&Study::new(loaded.dataset.clone()), &loaded, &beside).unwrap();
     let text: Json = serde_json::from_slice(&fs::read(&beside).unwrap()).unwrap();
     assert_eq!(text["dataset"]["path"], json!("small.json"));
-    assert!(matches!(load_any(Path::new(&beside), &Default::default()).unwrap(), Opened::Study(_)));
+    assert!(matches!(
+        load_any(Path::new(&beside), &Default::default()).unwrap(),
+        Opened::Study(_)
+    ));
 }
 
 #[test]
@@ -378,12 +486,27 @@ fn a_model_keeps_the_file_it_was_made_from_through_saving_and_into_the_correctio
     let path = directory.path().join("again.json");
     gdcm_io::save_dataset(&loaded.dataset, &path).unwrap();
     let again: Json = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
-    assert_eq!(again["conditions"][0]["physics_models"][1]["source"], source);
-    assert_eq!(again["conditions"][0]["physics_models"][0].get("source"), None);
+    assert_eq!(
+        again["conditions"][0]["physics_models"][1]["source"],
+        source
+    );
+    assert_eq!(
+        again["conditions"][0]["physics_models"][0].get("source"),
+        None
+    );
     let study = Study::new(load_dataset(&path).unwrap().dataset);
-    let analysis = gdcm_study::study::Engine::default().analyze(&study, &gdcm_study::study::Unobserved).unwrap();
-    let written = gdcm_io::corrections(&analysis, "", &analysis.conditions.keys().copied().collect());
+    let analysis = gdcm_study::study::Engine::default()
+        .analyze(&study, &gdcm_study::study::Unobserved)
+        .unwrap();
+    let written = gdcm_io::corrections(
+        &analysis,
+        "",
+        &analysis.conditions.keys().copied().collect(),
+    );
     let sources = written["conditions"][0]["sources"].as_array().unwrap();
-    assert_eq!((&sources[0]["bundle"], &sources[0]["file"]), (&"physics".into(), &"models/roll+5.mat".into()));
+    assert_eq!(
+        (&sources[0]["bundle"], &sources[0]["file"]),
+        (&"physics".into(), &"models/roll+5.mat".into())
+    );
     assert_eq!(sources.len(), 1);
 }

@@ -6,12 +6,12 @@ use gdcm_io::write_as;
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_plot::figure::{
-    Axis, Bars, Color, ColumnWidth, ConditionSource, Curve, Dash, Figure, FigureFormat, FigureKind, FigureRequest, Hue,
-    Panel, Plot, Range, Stroke, all_channels,
+    Axis, Bars, Color, ColumnWidth, ConditionSource, Curve, Dash, Figure, FigureFormat, FigureKind,
+    FigureRequest, Hue, Panel, Plot, Range, Stroke, all_channels,
 };
 use gdcm_study::study::{
-    Analysis, CURVE_POINTS, ConditionCurves, CouplingCorrection, CouplingsAssessment, Edit, Engine, KnownPoles,
-    Requirements, Study, Unobserved, curves_band,
+    Analysis, CURVE_POINTS, ConditionCurves, CouplingCorrection, CouplingsAssessment, Edit, Engine,
+    KnownPoles, Requirements, Study, Unobserved, curves_band,
 };
 
 mod leads;
@@ -28,18 +28,38 @@ struct Example {
 }
 
 static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
-    let (mut study, mut engine) = (Study::new(crate::EXAMPLE.dataset.clone()), Engine::default());
+    let (mut study, mut engine) = (
+        Study::new(crate::EXAMPLE.dataset.clone()),
+        Engine::default(),
+    );
     let first = engine.analyze(&study, &Unobserved).unwrap();
     let models = first.condition(CONDITION).unwrap().suggested();
-    study.apply(&Edit::reject_physics(CONDITION, &models)).unwrap();
+    study
+        .apply(&Edit::reject_physics(CONDITION, &models))
+        .unwrap();
     let mut analysis = engine.analyze(&study, &Unobserved).unwrap();
-    analysis.uncertainty = Some(Arc::new(engine.uncertainty(&analysis, &Unobserved).unwrap()));
+    analysis.uncertainty = Some(Arc::new(
+        engine.uncertainty(&analysis, &Unobserved).unwrap(),
+    ));
     let grid = (curves_band(&study.settings), CURVE_POINTS);
-    let curves = engine.curves(&study.dataset, CONDITION, grid, &Unobserved).unwrap().unwrap();
-    let requirements = Arc::new(engine.requirements(&analysis, &KnownPoles::default(), &Unobserved).unwrap());
-    let couplings = engine.assess_couplings(&study, CouplingCorrection::MixingAndFeedback, &Unobserved);
+    let curves = engine
+        .curves(&study.dataset, CONDITION, grid, &Unobserved)
+        .unwrap()
+        .unwrap();
+    let requirements = Arc::new(
+        engine
+            .requirements(&analysis, &KnownPoles::default(), &Unobserved)
+            .unwrap(),
+    );
+    let couplings =
+        engine.assess_couplings(&study, CouplingCorrection::MixingAndFeedback, &Unobserved);
     let couplings = couplings.unwrap().unwrap().unwrap();
-    Example { analysis, curves, requirements, couplings }
+    Example {
+        analysis,
+        curves,
+        requirements,
+        couplings,
+    }
 });
 
 const CONDITION: ConditionId = ConditionId(10);
@@ -56,11 +76,20 @@ impl Example {
     }
 
     fn pair(&self, output: &str, input: &str) -> Pair {
-        self.analysis.study.dataset.find_pair(output, input).unwrap()
+        self.analysis
+            .study
+            .dataset
+            .find_pair(output, input)
+            .unwrap()
     }
 
     fn on_axis(&self) -> Vec<Pair> {
-        self.analysis.study.dataset.measuring_pairs().marked().collect()
+        self.analysis
+            .study
+            .dataset
+            .measuring_pairs()
+            .marked()
+            .collect()
     }
 
     fn channels(&self) -> Vec<Channel> {
@@ -68,19 +97,36 @@ impl Example {
     }
 
     fn figure(&self, kind: FigureKind, pairs: Vec<Pair>) -> Figure {
-        let (requirements, couplings) = (Some(Arc::clone(&self.requirements)), Some(Arc::clone(&self.couplings)));
-        self.request(&FigureRequest { requirements, couplings, ..FigureRequest::new(kind, pairs, self.channels()) })
+        let (requirements, couplings) = (
+            Some(Arc::clone(&self.requirements)),
+            Some(Arc::clone(&self.couplings)),
+        );
+        self.request(&FigureRequest {
+            requirements,
+            couplings,
+            ..FigureRequest::new(kind, pairs, self.channels())
+        })
     }
 
     fn request(&self, request: &FigureRequest) -> Figure {
-        request.figure(Some(&self.analysis), Some(&self.source())).unwrap()
+        request
+            .figure(Some(&self.analysis), Some(&self.source()))
+            .unwrap()
     }
 }
 
 /// One curve of two points, across the whole of a frame whose ends are known.
 fn diagonal() -> Figure {
-    let curve =
-        Curve::new("rising", Stroke { color: RED, width_pt: 3.0, dash: Dash::Solid }, [1.0, 100.0], [-5.0, 5.0]);
+    let curve = Curve::new(
+        "rising",
+        Stroke {
+            color: RED,
+            width_pt: 3.0,
+            dash: Dash::Solid,
+        },
+        [1.0, 100.0],
+        [-5.0, 5.0],
+    );
     let x = Axis::logarithmic("Frequency [rad/s]").showing(Some(Range::new(1.0, 100.0)));
     let y = Axis::linear("Magnitude [dB]").showing(Some(Range::new(-5.0, 5.0)));
     Figure::new("A line & <its> frame → Δφ")

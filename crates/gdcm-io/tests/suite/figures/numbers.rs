@@ -34,8 +34,16 @@ fn net_gains_are_those_of_the_analysis() {
     assert_eq!(quantities, ["Airspeed [kt]", "Net gain [-]"]);
     let mut compared = 0;
     // Other labels are those of brackets.
-    for (row, id) in rows.iter().filter_map(|row| Some((row, ConditionId(row.label.parse().ok()?)))) {
-        let expected = example.analysis.condition(id).unwrap().correction.net_gain(pair);
+    for (row, id) in rows
+        .iter()
+        .filter_map(|row| Some((row, ConditionId(row.label.parse().ok()?))))
+    {
+        let expected = example
+            .analysis
+            .condition(id)
+            .unwrap()
+            .correction
+            .net_gain(pair);
         assert_eq!(row.y, Some(expected));
         compared += 1;
     }
@@ -52,7 +60,11 @@ fn changes_of_cost_are_those_of_the_analysis() {
     let example = &*EXAMPLE;
     let pair = example.pair("R", "PED");
     let rows = csv_rows(&example.figure(FigureKind::Assessment, vec![pair]));
-    assert_eq!(rows.len(), 3 * 10, "three parts of every condition but the one left out");
+    assert_eq!(
+        rows.len(),
+        3 * 10,
+        "three parts of every condition but the one left out"
+    );
     for row in &rows {
         assert_eq!(row.x_quantity, "Condition");
         let Ok(changes) = &example.analysis.assessment[&ConditionId(row.x.parse().unwrap())] else {
@@ -74,20 +86,35 @@ fn responses_are_those_of_the_models() {
     let example = &*EXAMPLE;
     let pair = example.pair("Q", "LON");
     let tables = example.figure(FigureKind::Bode, vec![pair]).tables();
-    assert_eq!((tables[0].title.as_str(), tables[1].title.as_str()), ("Magnitude [dB]", "Phase [deg]"));
+    assert_eq!(
+        (tables[0].title.as_str(), tables[1].title.as_str()),
+        ("Magnitude [dB]", "Phase [deg]")
+    );
     let models = &example.curves.condition.bundle(BundleKind::Physics);
     for (index, model) in models.iter().enumerate() {
         let heading = format!("{} [dB]", model.name);
-        let column = tables[0].columns.iter().position(|column| *column == heading).unwrap();
+        let column = tables[0]
+            .columns
+            .iter()
+            .position(|column| *column == heading)
+            .unwrap();
         let response = example.curves.physics[index].curve(pair);
         for (row, value) in tables[0].rows.iter().zip(response) {
-            assert_eq!(row[column].parse::<f64>().unwrap(), 20.0 * value.norm().log10());
+            assert_eq!(
+                row[column].parse::<f64>().unwrap(),
+                20.0 * value.norm().log10()
+            );
         }
     }
     // Every model of both bundles, corrected and scheduled, beside the frequency.
     let both = models.len() + example.curves.identified.len();
     assert_eq!(tables[0].columns.len(), 1 + both + 2);
-    assert!(tables[0].columns.iter().any(|column| column.ends_with(&format!("{} [dB]", Role::Corrected.name()))));
+    assert!(
+        tables[0]
+            .columns
+            .iter()
+            .any(|column| column.ends_with(&format!("{} [dB]", Role::Corrected.name())))
+    );
 }
 
 #[test]
@@ -95,10 +122,14 @@ fn several_panels_are_one_table_with_their_names_in_each_row() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Assessment, example.on_axis());
     let rows = csv_rows(&figure);
-    let panels: std::collections::BTreeSet<&str> = rows.iter().map(|row| row.panel.as_str()).collect();
+    let panels: std::collections::BTreeSet<&str> =
+        rows.iter().map(|row| row.panel.as_str()).collect();
     assert_eq!((rows.len(), panels.len()), (5 * 3 * 10, 5), "{panels:?}");
     assert!(panels.contains("LAT → P, ΔJ [-]"), "{panels:?}");
-    assert!(rows.iter().all(|row| row.figure == figure.title && row.y_quantity == "ΔJ [-]"));
+    assert!(
+        rows.iter()
+            .all(|row| row.figure == figure.title && row.y_quantity == "ΔJ [-]")
+    );
     // For people the panels stand in tables of their own.
     assert_eq!(figure.tables().len(), 5);
 }

@@ -13,13 +13,19 @@ fn number(node: Node<'_, '_>, name: &str) -> f64 {
 
 /// Left, top, width and height of the only frame.
 fn frame(document: &Document<'_>) -> [f64; 4] {
-    let clip = document.descendants().find(|node| node.has_tag_name("clipPath")).unwrap();
+    let clip = document
+        .descendants()
+        .find(|node| node.has_tag_name("clipPath"))
+        .unwrap();
     ["x", "y", "width", "height"].map(|name| number(clip.first_element_child().unwrap(), name))
 }
 
 fn points(path: &str) -> Vec<[f64; 2]> {
-    let numbers: Vec<f64> =
-        path.split(['M', 'L', 'Z', ' ']).filter(|word| !word.is_empty()).map(|word| word.parse().unwrap()).collect();
+    let numbers: Vec<f64> = path
+        .split(['M', 'L', 'Z', ' '])
+        .filter(|word| !word.is_empty())
+        .map(|word| word.parse().unwrap())
+        .collect();
     numbers.chunks(2).map(|pair| [pair[0], pair[1]]).collect()
 }
 
@@ -28,12 +34,18 @@ fn a_curve_of_an_svg_leads_from_corner_to_corner() {
     let text = svg(&diagonal());
     let document = Document::parse(&text).unwrap();
     let [left, top, width, height] = frame(&document);
-    let curve = document.descendants().find(|node| node.attribute("stroke") == Some("#c62f2f")).unwrap();
+    let curve = document
+        .descendants()
+        .find(|node| node.attribute("stroke") == Some("#c62f2f"))
+        .unwrap();
     let ends = points(curve.attribute("d").unwrap());
     assert_eq!(ends.len(), 2);
     // Written to a hundredth of a point.
     for (at, expected) in ends.iter().zip([[left, top + height], [left + width, top]]) {
-        assert!((at[0] - expected[0]).abs() < 0.011 && (at[1] - expected[1]).abs() < 0.011, "{at:?} {expected:?}");
+        assert!(
+            (at[0] - expected[0]).abs() < 0.011 && (at[1] - expected[1]).abs() < 0.011,
+            "{at:?} {expected:?}"
+        );
     }
 }
 
@@ -43,17 +55,34 @@ fn an_svg_is_as_wide_as_the_column_and_its_words_are_words() {
         let text = String::from_utf8(bytes(&diagonal(), width, FigureFormat::Svg)).unwrap();
         let document = Document::parse(&text).unwrap();
         let root = document.root_element();
-        assert_eq!(root.attribute("width"), Some(format!("{}mm", width.mm()).as_str()));
-        let words: Vec<&str> =
-            document.descendants().filter(|node| node.has_tag_name("text")).filter_map(|n| n.text()).collect();
-        for expected in
-            ["A line & <its> frame → Δφ", "LON → Q", "Frequency [rad/s]", "Magnitude [dB]", "rising", "10", "−4"]
-        {
+        assert_eq!(
+            root.attribute("width"),
+            Some(format!("{}mm", width.mm()).as_str())
+        );
+        let words: Vec<&str> = document
+            .descendants()
+            .filter(|node| node.has_tag_name("text"))
+            .filter_map(|n| n.text())
+            .collect();
+        for expected in [
+            "A line & <its> frame → Δφ",
+            "LON → Q",
+            "Frequency [rad/s]",
+            "Magnitude [dB]",
+            "rising",
+            "10",
+            "−4",
+        ] {
             assert!(words.contains(&expected), "{expected} in {words:?}");
         }
-        let sizes =
-            document.descendants().filter_map(|node| node.attribute("font-size")).map(|size| size.parse::<f64>());
-        assert!(sizes.map(Result::unwrap).all(|size| size >= 7.0), "journals take no smaller letters");
+        let sizes = document
+            .descendants()
+            .filter_map(|node| node.attribute("font-size"))
+            .map(|size| size.parse::<f64>());
+        assert!(
+            sizes.map(Result::unwrap).all(|size| size >= 7.0),
+            "journals take no smaller letters"
+        );
     }
 }
 
@@ -72,7 +101,10 @@ fn nothing_of_an_svg_lies_outside_the_paper() {
                 let length = gdcm_plot::figure::width(&text.words) * text.size_pt;
                 let from = text.at[0] - text.anchor.before() * length;
                 let is_within = from >= -0.5 && from + length <= drawing.size[0] + 0.5;
-                assert!(is_within && (0.0..=drawing.size[1]).contains(&text.at[1]), "{kind:?} {width:?} {text:?}");
+                assert!(
+                    is_within && (0.0..=drawing.size[1]).contains(&text.at[1]),
+                    "{kind:?} {width:?} {text:?}"
+                );
             }
         }
     }
@@ -86,23 +118,44 @@ fn decoded(bytes: &[u8]) -> (usize, usize, Vec<[u8; 3]>) {
     assert_eq!((dots.xppu, dots.yppu), (11811, 11811));
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();
-    (info.width as usize, info.height as usize, pixels.chunks(3).map(|rgb| [rgb[0], rgb[1], rgb[2]]).collect())
+    (
+        info.width as usize,
+        info.height as usize,
+        pixels
+            .chunks(3)
+            .map(|rgb| [rgb[0], rgb[1], rgb[2]])
+            .collect(),
+    )
 }
 
 #[test]
 fn a_png_has_300_dots_to_the_inch_and_the_curve_in_its_colour_where_it_runs() {
-    let (width, height, colors) = decoded(&bytes(&diagonal(), ColumnWidth::Single, FigureFormat::Png));
-    let text = String::from_utf8(bytes(&diagonal(), ColumnWidth::Single, FigureFormat::Svg)).unwrap();
+    let (width, height, colors) =
+        decoded(&bytes(&diagonal(), ColumnWidth::Single, FigureFormat::Png));
+    let text =
+        String::from_utf8(bytes(&diagonal(), ColumnWidth::Single, FigureFormat::Svg)).unwrap();
     let document = Document::parse(&text).unwrap();
     assert_eq!(width, (84.0_f64 / 25.4 * 300.0).ceil() as usize);
-    let view: Vec<f64> =
-        document.root_element().attribute("viewBox").unwrap().split(' ').map(|word| word.parse().unwrap()).collect();
+    let view: Vec<f64> = document
+        .root_element()
+        .attribute("viewBox")
+        .unwrap()
+        .split(' ')
+        .map(|word| word.parse().unwrap())
+        .collect();
     assert!((height as f64 - view[3] * 300.0 / 72.0).abs() < 1.1);
     let [left, top, frame_width, frame_height] = frame(&document);
-    let at = |x: f64, y: f64| colors[(y * 300.0 / 72.0) as usize * width + (x * 300.0 / 72.0) as usize];
+    let at =
+        |x: f64, y: f64| colors[(y * 300.0 / 72.0) as usize * width + (x * 300.0 / 72.0) as usize];
     // A tenth of the way along, the middle of a line of 3 pt; away from it, the ground.
-    assert_eq!(at(left + 0.1 * frame_width, top + 0.9 * frame_height), [0xc6, 0x2f, 0x2f]);
-    assert_eq!(at(left + 0.13 * frame_width, top + 0.33 * frame_height), [255, 255, 255]);
+    assert_eq!(
+        at(left + 0.1 * frame_width, top + 0.9 * frame_height),
+        [0xc6, 0x2f, 0x2f]
+    );
+    assert_eq!(
+        at(left + 0.13 * frame_width, top + 0.33 * frame_height),
+        [255, 255, 255]
+    );
     assert_eq!(colors[0], [255, 255, 255]);
     // The words have been drawn: something dark stands in the title's line.
     let title = &colors[..width * (top * 300.0 / 72.0) as usize];
@@ -112,13 +165,18 @@ fn a_png_has_300_dots_to_the_inch_and_the_curve_in_its_colour_where_it_runs() {
 /// The unpacked streams of a PDF.
 fn streams(pdf: &[u8]) -> Vec<Vec<u8>> {
     let find = |from: usize, word: &[u8]| {
-        pdf[from..].windows(word.len()).position(|window| window == word).map(|at| from + at)
+        pdf[from..]
+            .windows(word.len())
+            .position(|window| window == word)
+            .map(|at| from + at)
     };
     let (mut streams, mut from) = (Vec::new(), 0);
     while let Some(start) = find(from, b"stream\n") {
         let end = find(start, b"endstream").unwrap();
         let mut unpacked = Vec::new();
-        ZlibDecoder::new(&pdf[start + 7..end]).read_to_end(&mut unpacked).unwrap();
+        ZlibDecoder::new(&pdf[start + 7..end])
+            .read_to_end(&mut unpacked)
+            .unwrap();
         streams.push(unpacked);
         from = end + 9;
     }
@@ -131,21 +189,39 @@ fn a_pdf_holds_its_letters_and_the_characters_that_they_stand_for() {
     assert!(pdf.starts_with(b"%PDF-1."));
     assert!(pdf.ends_with(b"%%EOF"));
     let text = String::from_utf8_lossy(&pdf).into_owned();
-    for word in
-        ["/MediaBox [0 0 238.11", "/Subtype /CIDFontType2", "/FontFile2", "/ToUnicode", "GDCMFG+Ubuntu", "GDCMFG+Hack"]
-    {
+    for word in [
+        "/MediaBox [0 0 238.11",
+        "/Subtype /CIDFontType2",
+        "/FontFile2",
+        "/ToUnicode",
+        "GDCMFG+Ubuntu",
+        "GDCMFG+Hack",
+    ] {
         assert!(text.contains(word), "{word}");
     }
     for word in ["/CreationDate", "/ModDate", "/ID"] {
-        assert!(!text.contains(word), "{word} would differ from one file to the next");
+        assert!(
+            !text.contains(word),
+            "{word} would differ from one file to the next"
+        );
     }
     let streams = streams(&pdf);
     let content = String::from_utf8_lossy(&streams[0]).into_owned();
-    assert!(content.contains("BT") && content.contains(" Tf") && content.contains(" Tj"), "text is drawn as text");
-    let maps: Vec<String> = streams.iter().map(|stream| String::from_utf8_lossy(stream).into_owned()).collect();
+    assert!(
+        content.contains("BT") && content.contains(" Tf") && content.contains(" Tj"),
+        "text is drawn as text"
+    );
+    let maps: Vec<String> = streams
+        .iter()
+        .map(|stream| String::from_utf8_lossy(stream).into_owned())
+        .collect();
     for character in ['Δ', 'φ', '→', 'L', '−'] {
         let code = format!("<{:04X}>", u32::from(character));
-        assert!(maps.iter().any(|map| map.contains("begincmap") && map.contains(&code)), "{character} can be found");
+        assert!(
+            maps.iter()
+                .any(|map| map.contains("begincmap") && map.contains(&code)),
+            "{character} can be found"
+        );
     }
 }
 
@@ -153,7 +229,11 @@ fn a_pdf_holds_its_letters_and_the_characters_that_they_stand_for() {
 fn the_same_figure_makes_the_same_bytes() {
     for format in FigureFormat::ALL {
         let once = bytes(&diagonal(), ColumnWidth::Double, format);
-        assert_eq!(once, bytes(&diagonal(), ColumnWidth::Double, format), "{format:?}");
+        assert_eq!(
+            once,
+            bytes(&diagonal(), ColumnWidth::Double, format),
+            "{format:?}"
+        );
         assert!(!once.is_empty());
     }
 }
@@ -163,6 +243,9 @@ fn a_name_with_signs_that_xml_has_no_place_for_is_still_xml() {
     let figure = Figure::new("a\u{1}b\u{fffe}c\"<&>").plot(diagonal().plots.remove(0));
     let text = svg(&figure);
     let document = Document::parse(&text).unwrap();
-    let title = document.descendants().find(|node| node.has_tag_name("title")).unwrap();
+    let title = document
+        .descendants()
+        .find(|node| node.has_tag_name("title"))
+        .unwrap();
     assert_eq!(title.text(), Some("a\\u{1}bc\"<&>"));
 }

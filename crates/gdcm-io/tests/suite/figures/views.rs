@@ -8,7 +8,11 @@ use gdcm_plot::figure::{Across, Area, BodeOptions, FrequencyUnit, Mark, Measure,
 use super::*;
 
 fn legend(figure: &Figure) -> Vec<String> {
-    figure.legend().into_iter().map(|entry| entry.text).collect()
+    figure
+        .legend()
+        .into_iter()
+        .map(|entry| entry.text)
+        .collect()
 }
 
 #[test]
@@ -31,11 +35,19 @@ fn the_legend_of_a_bode_figure_names_the_roles_that_are_present() {
     assert_eq!(legend(&figure), expected);
     let hidden = BTreeSet::from([Role::Perturbed, Role::Rejected]);
     let request = FigureRequest {
-        bode: BodeOptions { hidden, ..BodeOptions::default() },
+        bode: BodeOptions {
+            hidden,
+            ..BodeOptions::default()
+        },
         ..FigureRequest::new(FigureKind::Bode, vec![pair], Vec::new())
     };
     let without = legend(&example.request(&request));
-    assert!(!without.iter().any(|text| text == "perturbed" || text == "rejected"), "{without:?}");
+    assert!(
+        !without
+            .iter()
+            .any(|text| text == "perturbed" || text == "rejected"),
+        "{without:?}"
+    );
     assert_eq!(without.len(), expected.len() - 2);
 }
 
@@ -43,11 +55,21 @@ fn the_legend_of_a_bode_figure_names_the_roles_that_are_present() {
 fn a_figure_says_dataset_condition_and_what_was_rejected_and_no_date() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Bode, vec![example.pair("Q", "LON")]);
-    assert!(figure.title.starts_with("LON → Q · Condition 10: 60 kt"), "{}", figure.title);
-    for words in
-        [example.analysis.study.dataset.name(), "0.5 to 12 rad/s, 200 frequencies", "Rejected: nominal, ROLL+5deg"]
-    {
-        assert!(figure.caption.contains(words), "{words} in: {}", figure.caption);
+    assert!(
+        figure.title.starts_with("LON → Q · Condition 10: 60 kt"),
+        "{}",
+        figure.title
+    );
+    for words in [
+        example.analysis.study.dataset.name(),
+        "0.5 to 12 rad/s, 200 frequencies",
+        "Rejected: nominal, ROLL+5deg",
+    ] {
+        assert!(
+            figure.caption.contains(words),
+            "{words} in: {}",
+            figure.caption
+        );
     }
 }
 
@@ -64,13 +86,19 @@ fn on_axis_responses_stand_side_by_side_with_a_magnitude_above_a_phase() {
 fn frequencies_in_hertz_are_those_of_the_curves_over_two_pi() {
     let example = &*EXAMPLE;
     let request = FigureRequest {
-        bode: BodeOptions { unit: FrequencyUnit::Hertz, ..BodeOptions::default() },
+        bode: BodeOptions {
+            unit: FrequencyUnit::Hertz,
+            ..BodeOptions::default()
+        },
         ..FigureRequest::new(FigureKind::Bode, vec![example.pair("Q", "LON")], Vec::new())
     };
     let table = example.request(&request).tables().remove(0);
     assert_eq!(table.columns[0], "Frequency [Hz]");
     let first: f64 = table.rows[0][0].parse().unwrap();
-    assert_eq!(first, example.curves.grid.omega()[0] / std::f64::consts::TAU);
+    assert_eq!(
+        first,
+        example.curves.grid.omega()[0] / std::f64::consts::TAU
+    );
 }
 
 #[test]
@@ -108,7 +136,10 @@ fn channels_stand_over_conditions_in_file_order_with_their_bounds() {
     assert_eq!(figure.plots.len(), 10);
     let names = figure.plots[0].panels[0].x.names.as_ref().unwrap();
     assert_eq!(names[9], (9.0, "10".to_owned()));
-    assert!(legend(&figure).contains(&"bounds".to_owned()) && !legend(&figure).contains(&"schedule".to_owned()));
+    assert!(
+        legend(&figure).contains(&"bounds".to_owned())
+            && !legend(&figure).contains(&"schedule".to_owned())
+    );
     assert_eq!(figure.plots[0].panels[0].y.label, "Delay [ms]");
 }
 
@@ -116,25 +147,52 @@ fn channels_stand_over_conditions_in_file_order_with_their_bounds() {
 fn an_assessment_names_what_is_left_out_and_why() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Assessment, example.on_axis());
-    assert!(figure.caption.contains("Condition 10 is left out: the nominal model is rejected"), "{}", figure.caption);
-    let notes = figure.plots[0].panels[0].marks.iter().filter(|mark| matches!(mark, Mark::Note(_)));
+    assert!(
+        figure
+            .caption
+            .contains("Condition 10 is left out: the nominal model is rejected"),
+        "{}",
+        figure.caption
+    );
+    let notes = figure.plots[0].panels[0]
+        .marks
+        .iter()
+        .filter(|mark| matches!(mark, Mark::Note(_)));
     assert_eq!(notes.count(), 1);
     assert_eq!(legend(&figure), ["ΔJ", "ΔJ magnitude", "ΔJ phase"]);
 }
 
 #[test]
-fn the_error_of_the_reference_is_nothing_and_a_correction_moves_the_median_of_a_held_response_to_zero() {
+fn the_error_of_the_reference_is_nothing_and_a_correction_moves_the_median_of_a_held_response_to_zero()
+ {
     let example = &*EXAMPLE;
     let pair = example.pair("Q", "LON");
-    let table = example.figure(FigureKind::Error, vec![pair]).tables().remove(0);
+    let table = example
+        .figure(FigureKind::Error, vec![pair])
+        .tables()
+        .remove(0);
     let column = |name: &str| -> Vec<f64> {
-        let at = table.columns.iter().position(|column| column.starts_with(name)).unwrap();
-        table.rows.iter().map(|row| row[at].parse().unwrap()).collect()
+        let at = table
+            .columns
+            .iter()
+            .position(|column| column.starts_with(name))
+            .unwrap();
+        table
+            .rows
+            .iter()
+            .map(|row| row[at].parse().unwrap())
+            .collect()
     };
     let source = example.source();
-    let reference = source.analysis.unwrap().representative_name(gdcm_model::dataset::BundleKind::Identified);
+    let reference = source
+        .analysis
+        .unwrap()
+        .representative_name(gdcm_model::dataset::BundleKind::Identified);
     assert!(column(reference).iter().all(|error| *error == 0.0));
-    let physics = source.analysis.unwrap().representative_name(gdcm_model::dataset::BundleKind::Physics);
+    let physics = source
+        .analysis
+        .unwrap()
+        .representative_name(gdcm_model::dataset::BundleKind::Physics);
     let mut errors = column(&format!("{physics}, corrected"));
     // The curves have their own frequencies: a fifth as far apart as those that the median was taken of, and as many at the ends.
     assert!(gdcm_model::response::median(&mut errors).abs() < 0.02);
@@ -145,21 +203,51 @@ fn evidence_stacks_the_shares_of_each_split_and_shows_the_rest_with_its_interval
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Evidence, example.on_axis());
     let uncertainty = example.analysis.uncertainty.as_ref().unwrap();
-    assert_eq!((figure.plots.len(), figure.plots[1].title.as_str()), (5, "LON → Q"));
-    assert!(figure.caption.starts_with(&uncertainty.differences_in_words()), "{}", figure.caption);
-    let names = ["trim", "identification", "unexplained", "unexplained, interval of 90 %", "scatter"];
+    assert_eq!(
+        (figure.plots.len(), figure.plots[1].title.as_str()),
+        (5, "LON → Q")
+    );
+    assert!(
+        figure
+            .caption
+            .starts_with(&uncertainty.differences_in_words()),
+        "{}",
+        figure.caption
+    );
+    let names = [
+        "trim",
+        "identification",
+        "unexplained",
+        "unexplained, interval of 90 %",
+        "scatter",
+    ];
     assert_eq!(legend(&figure)[..5], names);
     for (plot, scatter) in figure.plots.iter().zip(&uncertainty.scatter) {
         let bars: Vec<&Bars> = plot.panels[0]
             .marks
             .iter()
-            .filter_map(|mark| if let Mark::Bars(bars) = mark { Some(bars) } else { None })
+            .filter_map(|mark| {
+                if let Mark::Bars(bars) = mark {
+                    Some(bars)
+                } else {
+                    None
+                }
+            })
             .collect();
-        for (place, split) in [&scatter.same_airspeed, &scatter.about_schedule].into_iter().enumerate() {
-            let shares = split.as_ref().and_then(VarianceDecomposition::shares).unwrap();
+        for (place, split) in [&scatter.same_airspeed, &scatter.about_schedule]
+            .into_iter()
+            .enumerate()
+        {
+            let shares = split
+                .as_ref()
+                .and_then(VarianceDecomposition::shares)
+                .unwrap();
             let mut foot = 0.0;
             for (bars, share) in bars.iter().zip(shares) {
-                assert_eq!((bars.feet[place], bars.bars[place]), (foot, [place as f64, 100.0 * share]));
+                assert_eq!(
+                    (bars.feet[place], bars.bars[place]),
+                    (foot, [place as f64, 100.0 * share])
+                );
                 foot += 100.0 * share;
             }
             // Sums of three quotients by the same number.
@@ -172,22 +260,44 @@ fn evidence_stacks_the_shares_of_each_split_and_shows_the_rest_with_its_interval
 fn the_numbers_of_evidence_name_what_the_scatter_is_about() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::Evidence, example.on_axis());
-    let split = example.analysis.uncertainty.as_ref().unwrap().scatter[0].about_schedule.unwrap();
+    let split = example.analysis.uncertainty.as_ref().unwrap().scatter[0]
+        .about_schedule
+        .unwrap();
     let [_, high] = split.unexplained_interval(0.9).unwrap();
     let rows = figure.tables().swap_remove(1).rows;
-    let row = |series: &str| rows.iter().find(|row| row[0] == series && row[2] == "schedule").unwrap();
-    assert_eq!(row("scatter")[3], format!("{:?}", 100.0 * split.scatter.sqrt()));
-    assert_eq!(row("unexplained, interval of 90 %, upper")[3], format!("{:?}", 100.0 * high));
+    let row = |series: &str| {
+        rows.iter()
+            .find(|row| row[0] == series && row[2] == "schedule")
+            .unwrap()
+    };
+    assert_eq!(
+        row("scatter")[3],
+        format!("{:?}", 100.0 * split.scatter.sqrt())
+    );
+    assert_eq!(
+        row("unexplained, interval of 90 %, upper")[3],
+        format!("{:?}", 100.0 * high)
+    );
 }
 
 #[test]
 fn without_error_bars_there_is_no_evidence() {
     let example = &*EXAMPLE;
     let request = FigureRequest::new(FigureKind::Evidence, example.on_axis(), Vec::new());
-    let bare = Analysis { uncertainty: None, ..example.analysis.clone() };
+    let bare = Analysis {
+        uncertainty: None,
+        ..example.analysis.clone()
+    };
     assert_eq!(request.figure(Some(&bare), None), None);
-    let off_axis = FigureRequest { pairs: vec![example.pair("P", "LON")], ..request };
-    assert_eq!(off_axis.figure(Some(&example.analysis), None), None, "an off-axis response has no split");
+    let off_axis = FigureRequest {
+        pairs: vec![example.pair("P", "LON")],
+        ..request
+    };
+    assert_eq!(
+        off_axis.figure(Some(&example.analysis), None),
+        None,
+        "an off-axis response has no split"
+    );
 }
 
 /// Where the numbers of dots and the factors of brackets stand on paper.
@@ -197,11 +307,19 @@ fn labels_on_paper(figure: &Figure, width: ColumnWidth) -> Vec<(String, Area)> {
             let length = gdcm_plot::figure::width(&text.words) * text.size_pt;
             // Figures have no descenders.
             let height = 0.74 * text.size_pt;
-            Some((text.words.clone(), Area::new(text.at[0], text.at[1] - height, length, height)))
+            Some((
+                text.words.clone(),
+                Area::new(text.at[0], text.at[1] - height, length, height),
+            ))
         }
         _ => None,
     };
-    figure.drawing(width).shapes.iter().filter_map(label).collect()
+    figure
+        .drawing(width)
+        .shapes
+        .iter()
+        .filter_map(label)
+        .collect()
 }
 
 #[test]
@@ -209,15 +327,34 @@ fn numbers_and_factors_of_net_gains_do_not_cover_one_another_on_paper() {
     let example = &*EXAMPLE;
     let figure = example.figure(FigureKind::NetGain, example.on_axis());
     let uncertainty = example.analysis.uncertainty.as_ref().unwrap();
-    let greatest = example.on_axis().into_iter().flat_map(|pair| uncertainty.greatest_differences(pair));
-    let factors = greatest.filter(|of| of.is_significant(uncertainty.level)).count();
+    let greatest = example
+        .on_axis()
+        .into_iter()
+        .flat_map(|pair| uncertainty.greatest_differences(pair));
+    let factors = greatest
+        .filter(|of| of.is_significant(uncertainty.level))
+        .count();
     for width in ColumnWidth::BOTH {
         let labels = labels_on_paper(&figure, width);
-        assert_eq!(labels.iter().filter(|(words, _)| words.ends_with('×')).count(), factors, "{width:?}");
-        assert_eq!(labels.len(), 5 * 11 + factors, "every condition of every response has its number: {width:?}");
+        assert_eq!(
+            labels
+                .iter()
+                .filter(|(words, _)| words.ends_with('×'))
+                .count(),
+            factors,
+            "{width:?}"
+        );
+        assert_eq!(
+            labels.len(),
+            5 * 11 + factors,
+            "every condition of every response has its number: {width:?}"
+        );
         for (index, (words, area)) in labels.iter().enumerate() {
             for (other, beside) in &labels[..index] {
-                assert!(area.overlap(beside) < 0.05 * area.size(), "{width:?}: {words} at {area:?} and {other}");
+                assert!(
+                    area.overlap(beside) < 0.05 * area.size(),
+                    "{width:?}: {words} at {area:?} and {other}"
+                );
             }
         }
     }
@@ -228,29 +365,62 @@ fn net_gains_on_paper_have_their_bars_and_brackets() {
     let example = &*EXAMPLE;
     let pair = example.pair("NZ", "COL");
     let figure = example.figure(FigureKind::NetGain, vec![pair]);
-    let [beyond, within] = ["significant difference, × expected", "difference, not significant"];
+    let [beyond, within] = [
+        "significant difference, × expected",
+        "difference, not significant",
+    ];
     let names = ["bar of 90 %", "identification in it", beyond, within];
-    assert!(names.iter().all(|name| legend(&figure).iter().any(|text| text == name)), "{:?}", legend(&figure));
+    assert!(
+        names
+            .iter()
+            .all(|name| legend(&figure).iter().any(|text| text == name)),
+        "{:?}",
+        legend(&figure)
+    );
     let uncertainty = example.analysis.uncertainty.as_ref().unwrap();
-    let [low, _] = uncertainty.bar(CONDITION, Scalar::NetGain(pair)).unwrap().interval(0.9).unwrap();
+    let [low, _] = uncertainty
+        .bar(CONDITION, Scalar::NetGain(pair))
+        .unwrap()
+        .interval(0.9)
+        .unwrap();
     let rows = figure.tables().remove(0).rows;
-    let lower: Vec<&String> = rows.iter().filter(|row| row[0] == "bar of 90 %, lower").map(|row| &row[3]).collect();
-    assert!(lower.len() == 11 && lower.contains(&&format!("{:?}", low.exp())), "{low} in {lower:?}");
+    let lower: Vec<&String> = rows
+        .iter()
+        .filter(|row| row[0] == "bar of 90 %, lower")
+        .map(|row| &row[3])
+        .collect();
+    assert!(
+        lower.len() == 11 && lower.contains(&&format!("{:?}", low.exp())),
+        "{low} in {lower:?}"
+    );
     let bracket: Vec<&Vec<String>> = rows.iter().filter(|row| row[0] == beyond).collect();
-    assert!(bracket.len() >= 2 && bracket.iter().all(|row| row[1].ends_with('×')), "{bracket:?}");
+    assert!(
+        bracket.len() >= 2 && bracket.iter().all(|row| row[1].ends_with('×')),
+        "{bracket:?}"
+    );
 }
 
 #[test]
 fn the_quantiles_of_an_error_are_those_of_the_representative_even_where_its_curve_is_hidden() {
     let example = &*EXAMPLE;
     let quantiles = |hidden: &[Role]| {
-        let bode = BodeOptions { hidden: hidden.iter().copied().collect(), ..BodeOptions::default() };
+        let bode = BodeOptions {
+            hidden: hidden.iter().copied().collect(),
+            ..BodeOptions::default()
+        };
         let pairs = vec![example.pair("Q", "LON")];
-        let figure = example.request(&FigureRequest { bode, ..FigureRequest::new(FigureKind::Error, pairs, vec![]) });
+        let figure = example.request(&FigureRequest {
+            bode,
+            ..FigureRequest::new(FigureKind::Error, pairs, vec![])
+        });
         let table = figure.tables().remove(0);
-        let columns: Vec<usize> =
-            (0..table.columns.len()).filter(|at| table.columns[*at].contains("quantile")).collect();
-        columns.iter().map(|at| table.rows[0][*at].clone()).collect::<Vec<String>>()
+        let columns: Vec<usize> = (0..table.columns.len())
+            .filter(|at| table.columns[*at].contains("quantile"))
+            .collect();
+        columns
+            .iter()
+            .map(|at| table.rows[0][*at].clone())
+            .collect::<Vec<String>>()
     };
     let shown = quantiles(&[]);
     assert_eq!(shown.len(), 2);

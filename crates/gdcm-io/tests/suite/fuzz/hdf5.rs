@@ -28,7 +28,10 @@ fn name(dice: &mut Dice, at: usize) -> String {
     match dice.below(6) {
         0 => format!("v{at}"),
         1 => ["#refs#", "#subsystem#", "MCOS", "ir", "jc", "data"][dice.below(6)].to_owned(),
-        _ => Some(*dice.of_list(&NAMES)).filter(|name| !name.is_empty()).unwrap_or("e").to_owned(),
+        _ => Some(*dice.of_list(&NAMES))
+            .filter(|name| !name.is_empty())
+            .unwrap_or("e")
+            .to_owned(),
     }
 }
 
@@ -51,12 +54,35 @@ fn fill(dice: &mut Dice, group: &mut GroupBuilder, deeper: usize) {
 fn attributes(dice: &mut Dice) -> Vec<(&'static str, AttrValue)> {
     let mut found = Vec::new();
     if dice.once_in(2) {
-        let numbers = ["double", "char", "cell", "struct", "logical", "single", "uint64", "canonical empty"];
-        let class = if dice.once_in(4) { *dice.of_list(&CLASSES) } else { *dice.of_list(&numbers) };
+        let numbers = [
+            "double",
+            "char",
+            "cell",
+            "struct",
+            "logical",
+            "single",
+            "uint64",
+            "canonical empty",
+        ];
+        let class = if dice.once_in(4) {
+            *dice.of_list(&CLASSES)
+        } else {
+            *dice.of_list(&numbers)
+        };
         found.push(("MATLAB_class", AttrValue::AsciiString(class.into())));
     }
-    let number = |dice: &mut Dice| if dice.once_in(8) { dice.next() } else { dice.below(5) as u64 };
-    for (name, often) in [("MATLAB_empty", 8), ("MATLAB_sparse", 8), ("MATLAB_object_decode", 6)] {
+    let number = |dice: &mut Dice| {
+        if dice.once_in(8) {
+            dice.next()
+        } else {
+            dice.below(5) as u64
+        }
+    };
+    for (name, often) in [
+        ("MATLAB_empty", 8),
+        ("MATLAB_sparse", 8),
+        ("MATLAB_object_decode", 6),
+    ] {
         if dice.once_in(often) {
             found.push((name, AttrValue::U64(number(dice))));
         }
@@ -70,16 +96,31 @@ fn dataset(dice: &mut Dice, dataset: &mut DatasetBuilder) {
     let numbers: Vec<f64> = (0..count).map(|_| dice.number()).collect();
     let numbers_of = |bound: f64| numbers.iter().map(move |number| number.rem_euclid(bound));
     let _ = match dice.below(8) {
-        0 => dataset.with_u8_data(&numbers_of(256.0).map(|number| number as u8).collect::<Vec<_>>()),
-        1 => dataset.with_u16_data(&numbers_of(65_536.0).map(|number| number as u16).collect::<Vec<_>>()),
+        0 => dataset.with_u8_data(
+            &numbers_of(256.0)
+                .map(|number| number as u8)
+                .collect::<Vec<_>>(),
+        ),
+        1 => dataset.with_u16_data(
+            &numbers_of(65_536.0)
+                .map(|number| number as u16)
+                .collect::<Vec<_>>(),
+        ),
         2 => dataset.with_u32_data(&[0xdd00_0000, 2, 1, 1, 1, 1]),
-        3 => dataset.with_u64_data(&numbers.iter().map(|&number| number as u64).collect::<Vec<_>>()),
+        3 => dataset.with_u64_data(
+            &numbers
+                .iter()
+                .map(|&number| number as u64)
+                .collect::<Vec<_>>(),
+        ),
         4 => {
             let texts: Vec<&str> = (0..count).map(|_| *dice.of_list(&NAMES)).collect();
             dataset.with_vlen_strings(&texts)
         }
         5 => {
-            let paths: Vec<&str> = (0..count).map(|_| *dice.of_list(&["x", "A", "v0", "#refs#", "Data_/A"])).collect();
+            let paths: Vec<&str> = (0..count)
+                .map(|_| *dice.of_list(&["x", "A", "v0", "#refs#", "Data_/A"]))
+                .collect();
             dataset.with_path_references(&paths)
         }
         _ => dataset.with_f64_data(&numbers),

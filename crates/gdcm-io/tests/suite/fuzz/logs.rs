@@ -14,7 +14,9 @@ pub(super) fn file(dice: &mut Dice) -> NamedBytes {
 }
 
 fn junk(dice: &mut Dice, most: usize) -> Vec<u8> {
-    (0..dice.below(most)).map(|_| dice.below(256) as u8).collect()
+    (0..dice.below(most))
+        .map(|_| dice.below(256) as u8)
+        .collect()
 }
 
 fn message(kind: u8, content: &[u8]) -> Vec<u8> {
@@ -41,23 +43,63 @@ fn ulog(dice: &mut Dice) -> Vec<u8> {
         let mut flags = vec![0; 16];
         flags[8] = dice.once_in(2).into();
         (0..3).for_each(|_| {
-            flags.extend(u64::from(if dice.once_in(2) { 0 } else { dice.below(2000) as u32 }).to_le_bytes())
+            flags.extend(
+                u64::from(if dice.once_in(2) {
+                    0
+                } else {
+                    dice.below(2000) as u32
+                })
+                .to_le_bytes(),
+            )
         });
         bytes.extend(message(b'B', &flags));
     }
-    for name in ["inner", "outer", "vehicle_angular_velocity", "vehicle_status"] {
-        let mut layout = format!("{name}:{}", if dice.once_in(8) { "" } else { "uint64_t timestamp;" });
+    for name in [
+        "inner",
+        "outer",
+        "vehicle_angular_velocity",
+        "vehicle_status",
+    ] {
+        let mut layout = format!(
+            "{name}:{}",
+            if dice.once_in(8) {
+                ""
+            } else {
+                "uint64_t timestamp;"
+            }
+        );
         (0..dice.below(5)).for_each(|at| layout += &format!("{} f{at};", dice.of_list(&TYPES)));
-        layout += if name == "vehicle_status" { "uint8_t arming_state;uint8_t nav_state;" } else { "float[3] xyz;" };
+        layout += if name == "vehicle_status" {
+            "uint8_t arming_state;uint8_t nav_state;"
+        } else {
+            "float[3] xyz;"
+        };
         bytes.extend(message(b'F', layout.as_bytes()));
     }
     for number in 0..dice.below(5) as u8 {
-        let name = *dice.of_list(&["outer", "vehicle_angular_velocity", "vehicle_status", "none"]);
-        bytes.extend(message(b'A', &[&[dice.below(3) as u8, number, 0][..], name.as_bytes()].concat()));
+        let name = *dice.of_list(&[
+            "outer",
+            "vehicle_angular_velocity",
+            "vehicle_status",
+            "none",
+        ]);
+        bytes.extend(message(
+            b'A',
+            &[&[dice.below(3) as u8, number, 0][..], name.as_bytes()].concat(),
+        ));
     }
     for at in 0..dice.below(200) as u64 {
-        let stamp = if dice.once_in(30) { u64::from(*dice.of_list(&HARD)) } else { 4000 * at };
-        let data = [&[dice.below(5) as u8, 0][..], &stamp.to_le_bytes(), &junk(dice, 60)].concat();
+        let stamp = if dice.once_in(30) {
+            u64::from(*dice.of_list(&HARD))
+        } else {
+            4000 * at
+        };
+        let data = [
+            &[dice.below(5) as u8, 0][..],
+            &stamp.to_le_bytes(),
+            &junk(dice, 60),
+        ]
+        .concat();
         bytes.extend(message(*dice.of_list(b"DDDDDDDOLIP"), &data));
     }
     bytes
@@ -70,12 +112,32 @@ fn dataflash(dice: &mut Dice) -> Vec<u8> {
         let padded = |text: &str, length: usize| {
             [text.as_bytes(), &vec![0; length - text.len().min(length)]].concat()[..length].to_vec()
         };
-        [vec![0xa3, 0x95, 128, kind, length], padded(name, 4), padded(letters, 16), padded(names, 64)].concat()
+        [
+            vec![0xa3, 0x95, 128, kind, length],
+            padded(name, 4),
+            padded(letters, 16),
+            padded(names, 64),
+        ]
+        .concat()
     };
-    bytes.extend(format(128, 89, "FMT", "BBnNZ", "Type,Length,Name,Format,Columns"));
-    bytes.extend(format(130, 44, "FMTU", "QBNN", "TimeUS,FmtType,UnitIds,MultIds"));
+    bytes.extend(format(
+        128,
+        89,
+        "FMT",
+        "BBnNZ",
+        "Type,Length,Name,Format,Columns",
+    ));
+    bytes.extend(format(
+        130,
+        44,
+        "FMTU",
+        "QBNN",
+        "TimeUS,FmtType,UnitIds,MultIds",
+    ));
     for kind in 140..140 + dice.below(5) as u8 {
-        let letters: String = (0..1 + dice.below(6)).map(|_| char::from(*dice.of_list(LETTERS))).collect();
+        let letters: String = (0..1 + dice.below(6))
+            .map(|_| char::from(*dice.of_list(LETTERS)))
+            .collect();
         let name = *dice.of_list(&["RATE", "IMU", "MODE", "ARM", "SIDD", "UNIT", "MULT", "FMTU"]);
         let names = *dice.of_list(&[
             "TimeUS,I,GyrX",
@@ -85,15 +147,30 @@ fn dataflash(dice: &mut Dice) -> Vec<u8> {
             "TimeUS,Id,Mult",
             "A,B",
         ]);
-        bytes.extend(format(kind, dice.below(256) as u8, name, &format!("Q{letters}"), names));
-        let units =
-            [&[0xa3, 0x95, 130][..], &[0; 8], &[kind], b"s#kE-\0\0\0\0\0\0\0\0\0\0\0F-CB0\0\0\0\0\0\0\0\0\0\0\0"]
-                .concat();
+        bytes.extend(format(
+            kind,
+            dice.below(256) as u8,
+            name,
+            &format!("Q{letters}"),
+            names,
+        ));
+        let units = [
+            &[0xa3, 0x95, 130][..],
+            &[0; 8],
+            &[kind],
+            b"s#kE-\0\0\0\0\0\0\0\0\0\0\0F-CB0\0\0\0\0\0\0\0\0\0\0\0",
+        ]
+        .concat();
         bytes.extend(units);
     }
     for at in 0..dice.below(200) as u64 {
         bytes.extend(
-            [&[0xa3, 0x95, 138 + dice.below(8) as u8][..], &(2500 * at).to_le_bytes(), &junk(dice, 40)].concat(),
+            [
+                &[0xa3, 0x95, 138 + dice.below(8) as u8][..],
+                &(2500 * at).to_le_bytes(),
+                &junk(dice, 40),
+            ]
+            .concat(),
         );
     }
     bytes
@@ -101,11 +178,23 @@ fn dataflash(dice: &mut Dice) -> Vec<u8> {
 
 fn dataflash_text(dice: &mut Dice) -> Vec<u8> {
     let mut text = "FMT, 128, 89, FMT, BBnNZ, Type,Length,Name,Format,Columns\n".to_owned();
-    text += &format!("FMT, 140, 19, RATE, {}, TimeUS,R,ROut\n", dice.of_list(&["Qff", "Q", "QffZ", "??"]));
-    text += &format!("FMTU, 0, {}, s#k, F--\nUNIT, 0, {}, deg/s\n", dice.number(), dice.number());
+    text += &format!(
+        "FMT, 140, 19, RATE, {}, TimeUS,R,ROut\n",
+        dice.of_list(&["Qff", "Q", "QffZ", "??"])
+    );
+    text += &format!(
+        "FMTU, 0, {}, s#k, F--\nUNIT, 0, {}, deg/s\n",
+        dice.number(),
+        dice.number()
+    );
     for at in 0..dice.below(200) {
-        text +=
-            &format!("{}, {}, {}, {}\n", dice.of_list(&["RATE", "MODE", ""]), 2500 * at, dice.number(), dice.number());
+        text += &format!(
+            "{}, {}, {}, {}\n",
+            dice.of_list(&["RATE", "MODE", ""]),
+            2500 * at,
+            dice.number(),
+            dice.number()
+        );
     }
     text.into_bytes()
 }
@@ -115,13 +204,22 @@ fn blackbox(dice: &mut Dice) -> Vec<u8> {
     for _ in 0..1 + dice.below(3) {
         bytes.extend(b"H Product:Blackbox flight data recorder\nH Data version:2\n");
         let fields = 1 + dice.below(12);
-        let names: Vec<String> =
-            (0..fields).map(|at| ["time", "axisP[0]", "gyroADC[0]", "motor[0]", "x"][at.min(4)].to_owned()).collect();
-        bytes.extend(format!("H Field I name:{}\nH Field S name:flags\n", names.join(",")).into_bytes());
+        let names: Vec<String> = (0..fields)
+            .map(|at| ["time", "axisP[0]", "gyroADC[0]", "motor[0]", "x"][at.min(4)].to_owned())
+            .collect();
+        bytes.extend(
+            format!("H Field I name:{}\nH Field S name:flags\n", names.join(",")).into_bytes(),
+        );
         for (kind, count) in [("I", fields), ("P", fields), ("S", 1)] {
             for what in ["signed", "predictor", "encoding"] {
-                let known: &[u8] = if what == "encoding" { &[0, 1, 3, 6, 7, 8, 9] } else { &[0, 1, 2, 3, 5, 8, 11] };
-                let numbers: Vec<String> = (0..count).map(|_| dice.of_list(known).to_string()).collect();
+                let known: &[u8] = if what == "encoding" {
+                    &[0, 1, 3, 6, 7, 8, 9]
+                } else {
+                    &[0, 1, 2, 3, 5, 8, 11]
+                };
+                let numbers: Vec<String> = (0..count)
+                    .map(|_| dice.of_list(known).to_string())
+                    .collect();
                 bytes.extend(format!("H Field {kind} {what}:{}\n", numbers.join(",")).into_bytes());
             }
         }

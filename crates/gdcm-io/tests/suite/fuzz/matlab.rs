@@ -6,16 +6,29 @@ use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
 use super::matlab_files::{
-    Directory, chars, column, doubles, element, file_with_objects, matrix, opaque, record, reference, words_of,
+    Directory, chars, column, doubles, element, file_with_objects, matrix, opaque, record,
+    reference, words_of,
 };
 use super::{CLASSES, Dice, HARD, NAMES, NamedBytes};
 
 /// A file of a few variables of any kind.
 pub(super) fn file(dice: &mut Dice) -> NamedBytes {
     let variables = (0..1 + dice.below(4)).flat_map(|at| {
-        let name = if dice.once_in(4) { format!("v{at}") } else { (*dice.of_list(&NAMES)).to_owned() };
-        let variable = if dice.once_in(3) { model(dice, &name) } else { value(dice, &name, 4) };
-        if dice.once_in(4) { packed(&variable) } else { variable }
+        let name = if dice.once_in(4) {
+            format!("v{at}")
+        } else {
+            (*dice.of_list(&NAMES)).to_owned()
+        };
+        let variable = if dice.once_in(3) {
+            model(dice, &name)
+        } else {
+            value(dice, &name, 4)
+        };
+        if dice.once_in(4) {
+            packed(&variable)
+        } else {
+            variable
+        }
     });
     let variables: Vec<u8> = variables.collect();
     ("f.mat".to_owned(), file_with_objects(&variables, None))
@@ -24,26 +37,56 @@ pub(super) fn file(dice: &mut Dice) -> NamedBytes {
 /// A file of objects, with the part in which they lie.
 pub(super) fn file_of_objects(dice: &mut Dice) -> NamedBytes {
     let names: Vec<&str> = (0..4 + dice.below(8))
-        .map(|at| if at % 2 == 0 { *dice.of_list(&CLASSES) } else { *dice.of_list(&NAMES) })
+        .map(|at| {
+            if at % 2 == 0 {
+                *dice.of_list(&CLASSES)
+            } else {
+                *dice.of_list(&NAMES)
+            }
+        })
         .collect();
     // Numbers that lead somewhere, and now and then too far.
     let within = |dice: &mut Dice, count: usize| match dice.below(40) {
         0 => *dice.of_list(&HARD),
         _ => dice.below(count + 1) as u32,
     };
-    let (classes, lists, objects, values) =
-        (1 + dice.below(4), 1 + dice.below(4), 1 + dice.below(5), 1 + dice.below(6));
+    let (classes, lists, objects, values) = (
+        1 + dice.below(4),
+        1 + dice.below(4),
+        1 + dice.below(5),
+        1 + dice.below(6),
+    );
     let list = |dice: &mut Dice| -> Vec<[u32; 3]> {
         let properties = 0..dice.below(6);
-        properties.map(|_| [within(dice, names.len()), dice.below(3) as u32, within(dice, values)]).collect()
+        properties
+            .map(|_| {
+                [
+                    within(dice, names.len()),
+                    dice.below(3) as u32,
+                    within(dice, values),
+                ]
+            })
+            .collect()
     };
-    let classes: Vec<[u32; 2]> = (0..classes).map(|_| [0, within(dice, names.len())]).collect();
+    let classes: Vec<[u32; 2]> = (0..classes)
+        .map(|_| [0, within(dice, names.len())])
+        .collect();
     let made: Vec<Vec<[u32; 3]>> = (0..dice.below(3)).map(|_| list(dice)).collect();
     let plain: Vec<Vec<[u32; 3]>> = (0..lists).map(|_| list(dice)).collect();
     let entries: Vec<[u32; 3]> = (0..objects)
-        .map(|_| [within(dice, classes.len()), if dice.once_in(4) { 1 } else { 0 }, within(dice, lists)])
+        .map(|_| {
+            [
+                within(dice, classes.len()),
+                if dice.once_in(4) { 1 } else { 0 },
+                within(dice, lists),
+            ]
+        })
         .collect();
-    let version = if dice.once_in(10) { dice.below(7) as u32 } else { 2 + dice.below(3) as u32 };
+    let version = if dice.once_in(10) {
+        dice.below(7) as u32
+    } else {
+        2 + dice.below(3) as u32
+    };
     let directory = Directory {
         version,
         names: &names,
@@ -71,22 +114,40 @@ pub(super) fn file_of_objects(dice: &mut Dice) -> NamedBytes {
     cells.push(column(&defaults));
     let variables = (0..1 + dice.below(3)).flat_map(|at| {
         let class = *dice.of_list(&CLASSES);
-        opaque(&format!("o{at}"), class, if dice.once_in(10) { value(dice, "", 2) } else { refer(dice) })
+        opaque(
+            &format!("o{at}"),
+            class,
+            if dice.once_in(10) {
+                value(dice, "", 2)
+            } else {
+                refer(dice)
+            },
+        )
     });
     let variables: Vec<u8> = variables.collect();
-    ("o.mat".to_owned(), file_with_objects(&variables, Some(&cells)))
+    (
+        "o.mat".to_owned(),
+        file_with_objects(&variables, Some(&cells)),
+    )
 }
 
 fn packed(variable: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
     encoder.write_all(variable).unwrap();
     let data = encoder.finish().unwrap();
-    [&15_u32.to_le_bytes()[..], &(data.len() as u32).to_le_bytes(), &data].concat()
+    [
+        &15_u32.to_le_bytes()[..],
+        &(data.len() as u32).to_le_bytes(),
+        &data,
+    ]
+    .concat()
 }
 
 /// Most are what their elements need; some are hard.
 fn shape(dice: &mut Dice) -> (Vec<i32>, usize) {
-    let sides: Vec<usize> = (0..2 + usize::from(dice.once_in(5))).map(|_| dice.below(4)).collect();
+    let sides: Vec<usize> = (0..2 + usize::from(dice.once_in(5)))
+        .map(|_| dice.below(4))
+        .collect();
     let count = sides.iter().product();
     let mut shape: Vec<i32> = sides.iter().map(|&side| side as i32).collect();
     if dice.once_in(30) {
@@ -98,7 +159,12 @@ fn shape(dice: &mut Dice) -> (Vec<i32>, usize) {
 
 fn numbers(dice: &mut Dice, count: usize) -> Vec<u8> {
     let values: Vec<f64> = (0..count).map(|_| dice.number()).collect();
-    let each = |bytes: fn(f64) -> Vec<u8>| values.iter().flat_map(|&value| bytes(value)).collect::<Vec<u8>>();
+    let each = |bytes: fn(f64) -> Vec<u8>| {
+        values
+            .iter()
+            .flat_map(|&value| bytes(value))
+            .collect::<Vec<u8>>()
+    };
     match dice.below(8) {
         0 => element(1, &each(|value| vec![value as i8 as u8])),
         1 => element(2, &each(|value| vec![value as u8])),
@@ -118,42 +184,75 @@ fn value(dice: &mut Dice, name: &str, deeper: usize) -> Vec<u8> {
         1 => {
             // Columns of a sparse matrix, with its numbers.
             let places = |dice: &mut Dice, count: usize, bound: usize| {
-                let data: Vec<u8> = (0..count).flat_map(|_| (dice.below(bound) as i32).to_le_bytes()).collect();
+                let data: Vec<u8> = (0..count)
+                    .flat_map(|_| (dice.below(bound) as i32).to_le_bytes())
+                    .collect();
                 element(5, &data)
             };
             let (stored, width) = (dice.below(5), sides[1].clamp(0, 8) as usize);
-            let starts: Vec<u8> =
-                (0..=width).flat_map(|at| ((stored * at / width.max(1)) as i32).to_le_bytes()).collect();
+            let starts: Vec<u8> = (0..=width)
+                .flat_map(|at| ((stored * at / width.max(1)) as i32).to_le_bytes())
+                .collect();
             let rows = places(dice, stored, 4);
-            matrix(5, &sides[..2], name, &[rows, element(5, &starts), numbers(dice, stored)])
+            matrix(
+                5,
+                &sides[..2],
+                name,
+                &[rows, element(5, &starts), numbers(dice, stored)],
+            )
         }
         2..=4 => {
             let class = 6 + dice.below(10) as u32;
             let complex = dice.once_in(4);
-            let parts = (0..1 + usize::from(complex)).map(|_| numbers(dice, count)).collect::<Vec<_>>();
-            matrix(class | if complex { 0x0800 } else { 0 }, &sides, name, &parts)
+            let parts = (0..1 + usize::from(complex))
+                .map(|_| numbers(dice, count))
+                .collect::<Vec<_>>();
+            matrix(
+                class | if complex { 0x0800 } else { 0 },
+                &sides,
+                name,
+                &parts,
+            )
         }
         5 => {
             let values: Vec<Vec<u8>> = (0..count).map(|_| value(dice, "", deeper - 1)).collect();
             matrix(1, &sides, name, &values)
         }
         6 => {
-            let fields: Vec<(&str, Vec<u8>)> =
-                (0..dice.below(4)).map(|_| (*dice.of_list(&NAMES), value(dice, "", deeper - 1))).collect();
+            let fields: Vec<(&str, Vec<u8>)> = (0..dice.below(4))
+                .map(|_| (*dice.of_list(&NAMES), value(dice, "", deeper - 1)))
+                .collect();
             record(name, &fields)
         }
         7 => {
             // Records in an array, of any number of fields.
             let width = dice.below(3);
-            let names: Vec<u8> = (0..width).flat_map(|at| [b'a' + at as u8, 0, 0, 0]).collect();
-            let values: Vec<Vec<u8>> = (0..count * width).map(|_| value(dice, "", deeper - 1)).collect();
+            let names: Vec<u8> = (0..width)
+                .flat_map(|at| [b'a' + at as u8, 0, 0, 0])
+                .collect();
+            let values: Vec<Vec<u8>> = (0..count * width)
+                .map(|_| value(dice, "", deeper - 1))
+                .collect();
             let head = [element(5, &4_i32.to_le_bytes()), element(1, &names)].concat();
             let is_object = dice.once_in(3);
-            let class = if is_object { vec![element(1, dice.of_list(&CLASSES).as_bytes())] } else { Vec::new() };
-            matrix(if is_object { 3 } else { 2 }, &sides, name, &[class, vec![head], values].concat())
+            let class = if is_object {
+                vec![element(1, dice.of_list(&CLASSES).as_bytes())]
+            } else {
+                Vec::new()
+            };
+            matrix(
+                if is_object { 3 } else { 2 },
+                &sides,
+                name,
+                &[class, vec![head], values].concat(),
+            )
         }
         8 => matrix(16, &[1, 1], name, &[value(dice, "", 0)]),
-        _ => opaque(name, dice.of_list::<&str>(&CLASSES), words_of(&[0xdd00_0000, 2, 1, 1, 1, 1])),
+        _ => opaque(
+            name,
+            dice.of_list::<&str>(&CLASSES),
+            words_of(&[0xdd00_0000, 2, 1, 1, 1, 1]),
+        ),
     }
 }
 
@@ -170,7 +269,10 @@ fn model(dice: &mut Dice, name: &str) -> Vec<u8> {
     let mut fields = if dice.once_in(3) {
         let count = 2 + dice.below(4);
         let frequencies: Vec<f64> = (0..count).map(|at| at as f64 + 0.5).collect();
-        let parts = [numbers(dice, outputs * inputs * count), numbers(dice, outputs * inputs * count)];
+        let parts = [
+            numbers(dice, outputs * inputs * count),
+            numbers(dice, outputs * inputs * count),
+        ];
         let shape = [outputs as i32, inputs as i32, count as i32];
         vec![
             ("ResponseData", matrix(6 | 0x0800, &shape, "", &parts)),

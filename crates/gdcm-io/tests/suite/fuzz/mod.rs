@@ -27,8 +27,9 @@ use std::time::{Duration, Instant};
 
 use gdcm_io::variables::ReadingBudget;
 use gdcm_io::{
-    DatasetOrigin, Existing, OutputSet, add_rules, add_tolerances, load_dataset, load_dataset_bytes, load_rules,
-    load_tolerances, lost_studies, models_of_bytes, open_study_of, read_levels, records_of_bytes, save_study,
+    DatasetOrigin, Existing, OutputSet, add_rules, add_tolerances, load_dataset,
+    load_dataset_bytes, load_rules, load_tolerances, lost_studies, models_of_bytes, open_study_of,
+    read_levels, records_of_bytes, save_study,
 };
 use gdcm_method::correction::Channel;
 use gdcm_method::requirements::ToleranceTable;
@@ -50,10 +51,31 @@ const LONGEST: Duration = Duration::from_secs(60);
 const MOST_FAILURES: usize = 20;
 
 /// Numbers that are hard on readers of sizes.
-const HARD: [u32; 8] = [0, 1, 0x7fff_ffff, 0x8000_0000, 0xffff_ffff, 0xffff_fff8, 0x0010_0000, 0xdd00_0000];
+const HARD: [u32; 8] = [
+    0,
+    1,
+    0x7fff_ffff,
+    0x8000_0000,
+    0xffff_ffff,
+    0xffff_fff8,
+    0x0010_0000,
+    0xdd00_0000,
+];
 /// Numbers that are hard on mathematics.
-const EXTREME: [f64; 12] =
-    [0.0, -0.0, 1.0, -1.0, 1e-3, 5e-324, 1e200, -1e308, f64::MAX, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+const EXTREME: [f64; 12] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    1e-3,
+    5e-324,
+    1e200,
+    -1e308,
+    f64::MAX,
+    f64::NAN,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+];
 
 /// A generator of random numbers that is the same on every machine (SplitMix64, Steele et al. 2014).
 #[derive(Clone)]
@@ -62,7 +84,10 @@ struct Dice(u64);
 impl Dice {
     /// That of one execution.
     fn of(seed: u64, execution: u64) -> Self {
-        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ execution.wrapping_mul(0xd6e8_feb8_6659_fd93))
+        Self(
+            seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+                ^ execution.wrapping_mul(0xd6e8_feb8_6659_fd93),
+        )
     }
 
     fn next(&mut self) -> u64 {
@@ -205,7 +230,12 @@ static CORPUS: LazyLock<Vec<NamedBytes>> = LazyLock::new(|| {
         .iter()
         .flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap())
         .map(|entry| entry.unwrap().path())
-        .filter(|path| path.is_file() && path.metadata().is_ok_and(|metadata| metadata.len() < 200_000))
+        .filter(|path| {
+            path.is_file()
+                && path
+                    .metadata()
+                    .is_ok_and(|metadata| metadata.len() < 200_000)
+        })
         .collect();
     paths.sort();
     let files = paths.iter().map(|path| {
@@ -223,19 +253,43 @@ fn small_dataset() -> PathBuf {
 /// A study with a representative, a sign and a variant, rules that say something of a model, a table of tolerances, and levels.
 fn own_files() -> [NamedBytes; 4] {
     let folder = tempfile::tempdir().unwrap();
-    let [study_path, rules_path, tolerances_path] = [STUDY, RULES, TOLERANCES].map(|name| folder.path().join(name));
+    let [study_path, rules_path, tolerances_path] =
+        [STUDY, RULES, TOLERANCES].map(|name| folder.path().join(name));
     let loaded = load_dataset(&small_dataset()).unwrap();
     let mut study = Study::new(Arc::clone(&loaded.dataset));
     let condition = study.dataset.conditions()[0].id();
-    let model = study.dataset.conditions()[0].bundle(BundleKind::Physics).iter().next().unwrap().name.clone();
-    let sign = Edit::SetSign { channel: Channel::Output(0), of: Some(SignRole::Identified) };
+    let model = study.dataset.conditions()[0]
+        .bundle(BundleKind::Physics)
+        .iter()
+        .next()
+        .unwrap()
+        .name
+        .clone();
+    let sign = Edit::SetSign {
+        channel: Channel::Output(0),
+        of: Some(SignRole::Identified),
+    };
     let pin = Edit::Pin(ModelId::new(condition, BundleKind::Physics, model));
-    for edit in [pin, sign, Edit::KeepVariant { name: "other".to_owned() }] {
+    for edit in [
+        pin,
+        sign,
+        Edit::KeepVariant {
+            name: "other".to_owned(),
+        },
+    ] {
         study.apply(&edit).unwrap();
     }
     save_study(&study, &loaded, &study_path).unwrap();
-    let row = RowRule { condition: Some(3), signs: Some([("NZ".to_owned(), -1.0)].into()), ..RowRule::default() };
-    let rules = Rules { name: "rules".to_owned(), rows: [("a/b.mat".to_owned(), row)].into(), ..Rules::default() };
+    let row = RowRule {
+        condition: Some(3),
+        signs: Some([("NZ".to_owned(), -1.0)].into()),
+        ..RowRule::default()
+    };
+    let rules = Rules {
+        name: "rules".to_owned(),
+        rows: [("a/b.mat".to_owned(), row)].into(),
+        ..Rules::default()
+    };
     let mut outputs = OutputSet::new(Existing::Keep, Vec::new());
     add_rules(&rules, &rules_path, &mut outputs).unwrap();
     add_tolerances(&ToleranceTable::default(), &tolerances_path, &mut outputs).unwrap();
@@ -257,7 +311,8 @@ fn opened(name: &str, bytes: &[u8]) -> Result<bool, String> {
     std::fs::write(&path, bytes).map_err(|error| error.to_string())?;
     let error = match name {
         STUDY => {
-            std::fs::write(folder.path().join("small.lock"), "").map_err(|error| error.to_string())?;
+            std::fs::write(folder.path().join("small.lock"), "")
+                .map_err(|error| error.to_string())?;
             lost_studies(folder.path());
             open_study_of(&path, &small_dataset(), &Default::default()).err()
         }
@@ -265,9 +320,16 @@ fn opened(name: &str, bytes: &[u8]) -> Result<bool, String> {
         LEVELS => read_levels(&path).err(),
         _ => load_rules(&path).err(),
     };
-    let words = error.map(|error| error.to_string().replace(&folder.path().display().to_string(), ""));
+    let words = error.map(|error| {
+        error
+            .to_string()
+            .replace(&folder.path().display().to_string(), "")
+    });
     let read = words.is_none();
-    check_said(name, words.map(|words| words.trim_start_matches('/').to_owned()))?;
+    check_said(
+        name,
+        words.map(|words| words.trim_start_matches('/').to_owned()),
+    )?;
     Ok(read)
 }
 
@@ -317,8 +379,16 @@ fn file_of(dice: &mut Dice) -> NamedBytes {
         texts::numpy_or_archive,
     ];
     let of_corpus = dice.once_in(3);
-    let (name, mut bytes) = if of_corpus { dice.of_list(&CORPUS).clone() } else { (*dice.of_list(&grammars))(dice) };
-    let damages = if of_corpus { 1 + dice.below(4) } else { dice.below(3) };
+    let (name, mut bytes) = if of_corpus {
+        dice.of_list(&CORPUS).clone()
+    } else {
+        (*dice.of_list(&grammars))(dice)
+    };
+    let damages = if of_corpus {
+        1 + dice.below(4)
+    } else {
+        dice.below(3)
+    };
     (0..damages).for_each(|_| damage(&mut bytes, dice));
     (name, bytes)
 }
@@ -363,22 +433,40 @@ fn check_words(name: &str, error: Option<gdcm_io::FileError>) -> Result<(), Stri
 
 fn check_said(name: &str, words: Option<String>) -> Result<(), String> {
     let Some(words) = words else { return Ok(()) };
-    if !words.starts_with(name) || words.len() > 4000 || words.contains(|letter: char| letter.is_control()) {
+    if !words.starts_with(name)
+        || words.len() > 4000
+        || words.contains(|letter: char| letter.is_control())
+    {
         return Err(format!("an error that cannot be shown: {words:?}"));
     }
     Ok(())
 }
 
 fn check_finite(model: &FoundModel) -> Result<(), String> {
-    let matrices = model.draft.matrices.iter().flatten().flat_map(|matrix| matrix.iter());
-    let response = model
+    let matrices = model
         .draft
-        .response
+        .matrices
         .iter()
-        .flat_map(|response| response.omega.iter().chain(&response.re.values).chain(&response.im.values));
+        .flatten()
+        .flat_map(|matrix| matrix.iter());
+    let response = model.draft.response.iter().flat_map(|response| {
+        response
+            .omega
+            .iter()
+            .chain(&response.re.values)
+            .chain(&response.im.values)
+    });
     let timing = model.draft.timing.sample_time_s.iter();
-    let wrong = matrices.chain(response).chain(timing).find(|value| !value.is_finite());
-    wrong.map_or(Ok(()), |value| Err(format!("the model {} has the number {value}", model.draft.name)))
+    let wrong = matrices
+        .chain(response)
+        .chain(timing)
+        .find(|value| !value.is_finite());
+    wrong.map_or(Ok(()), |value| {
+        Err(format!(
+            "the model {} has the number {value}",
+            model.draft.name
+        ))
+    })
 }
 
 /// Tries one file; why it failed.
@@ -388,15 +476,24 @@ fn tried((name, bytes): &NamedBytes, tally: &Tally) -> Result<(), String> {
     let memory = allocation_counter::measure(|| {
         outcome = catch_unwind(AssertUnwindSafe(|| read(name, bytes)));
     });
-    let (time, limit) = (begun.elapsed(), 2 * MOST_MEMORY + BESIDE + 4 * bytes.len() as u64);
-    tally.slowest_ms.fetch_max(time.as_millis() as u64, Ordering::Relaxed);
+    let (time, limit) = (
+        begun.elapsed(),
+        2 * MOST_MEMORY + BESIDE + 4 * bytes.len() as u64,
+    );
+    tally
+        .slowest_ms
+        .fetch_max(time.as_millis() as u64, Ordering::Relaxed);
     tally.largest.fetch_max(memory.bytes_max, Ordering::Relaxed);
     let found = outcome.map_err(|_| "it panicked".to_owned())??;
     tally.read.fetch_add(u64::from(found), Ordering::Relaxed);
     if memory.bytes_max > limit {
         return Err(format!("it took {} bytes of memory", memory.bytes_max));
     }
-    if time > LONGEST { Err(format!("it took {time:?}")) } else { Ok(()) }
+    if time > LONGEST {
+        Err(format!("it took {time:?}"))
+    } else {
+        Ok(())
+    }
 }
 
 /// Tries as many files, or for so long, on all cores.
@@ -408,15 +505,17 @@ fn run(seed: u64, executions: u64, until: Option<Instant>) {
             scope.spawn(|_| {
                 loop {
                     let execution = next.fetch_add(1, Ordering::Relaxed);
-                    let is_over = until.is_some_and(|until| Instant::now() >= until) || execution >= executions;
+                    let is_over = until.is_some_and(|until| Instant::now() >= until)
+                        || execution >= executions;
                     if is_over || tally.failures.lock().unwrap().len() >= MOST_FAILURES {
                         return;
                     }
                     let file = file_of(&mut Dice::of(seed, execution));
                     if let Err(why) = tried(&file, &tally) {
-                        let path = std::env::temp_dir().join(format!("gdcm-fuzz-{seed}-{execution}-{}", file.0));
-                        let kept =
-                            std::fs::write(&path, &file.1).map_or(String::new(), |()| path.display().to_string());
+                        let path = std::env::temp_dir()
+                            .join(format!("gdcm-fuzz-{seed}-{execution}-{}", file.0));
+                        let kept = std::fs::write(&path, &file.1)
+                            .map_or(String::new(), |()| path.display().to_string());
                         let words = format!("execution {execution} of seed {seed}: {why} ({kept})");
                         println!("{words}");
                         tally.failures.lock().unwrap().push(words);
@@ -445,14 +544,26 @@ fn every_reader_ends_with_an_answer_in_time_within_its_budget() {
 #[test]
 #[ignore = "as long as the environment says: GDCM_FUZZ_EXECUTIONS or GDCM_FUZZ_SECONDS, GDCM_FUZZ_SEED, GDCM_FUZZ_FILE"]
 fn long() {
-    let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    let number = |name: &str| {
+        std::env::var(name)
+            .ok()
+            .and_then(|text| text.parse::<u64>().ok())
+    };
     if let Some(path) = std::env::var_os("GDCM_FUZZ_FILE") {
-        let name = Path::new(&path).file_name().unwrap().to_string_lossy().into_owned();
+        let name = Path::new(&path)
+            .file_name()
+            .unwrap()
+            .to_string_lossy()
+            .into_owned();
         let outcome = tried(&(name, std::fs::read(&path).unwrap()), &Tally::default());
         return assert_eq!(outcome, Ok(()));
     }
     let seconds = number("GDCM_FUZZ_SECONDS");
-    let executions = number("GDCM_FUZZ_EXECUTIONS").unwrap_or(if seconds.is_some() { u64::MAX } else { 100_000 });
+    let executions = number("GDCM_FUZZ_EXECUTIONS").unwrap_or(if seconds.is_some() {
+        u64::MAX
+    } else {
+        100_000
+    });
     let until = seconds.map(|seconds| Instant::now() + Duration::from_secs(seconds));
     run(number("GDCM_FUZZ_SEED").unwrap_or(1), executions, until);
 }

@@ -38,25 +38,43 @@ fn text_value(dice: &mut Dice, text: &mut String, deeper: usize) {
     *text += &format!("# name: {}\n# type: {kind}\n", dice.of_list(&NAMES));
     let complex = kind.starts_with("complex");
     let number = |dice: &mut Dice| {
-        if complex { format!(" ({},{})", dice.number(), dice.number()) } else { format!(" {}", dice.number()) }
+        if complex {
+            format!(" ({},{})", dice.number(), dice.number())
+        } else {
+            format!(" {}", dice.number())
+        }
     };
     match kind {
         "cell" | "scalar struct" | "object" if deeper > 0 => {
             match kind {
                 "cell" => *text += &format!("# rows: {rows}\n# columns: {columns}\n"),
-                "object" => *text += &format!("# classname: {}\n# length: {rows}\n", dice.of_list(&CLASSES)),
+                "object" => {
+                    *text += &format!(
+                        "# classname: {}\n# length: {rows}\n",
+                        dice.of_list(&CLASSES)
+                    )
+                }
                 _ => *text += &format!("# ndims: 2\n 1 1\n# length: {rows}\n"),
             }
             (0..dice.below(4)).for_each(|_| text_value(dice, text, deeper - 1));
         }
         "string" => *text += &format!("# elements: {rows}\n# length: {columns}\nhover\n"),
         "sparse matrix" => {
-            *text += &format!("# nnz: {}\n# rows: {rows}\n# columns: {columns}\n", dice.side());
-            (0..dice.below(6)).for_each(|_| *text += &format!("{} {}{}\n", dice.side(), dice.side(), dice.number()));
+            *text += &format!(
+                "# nnz: {}\n# rows: {rows}\n# columns: {columns}\n",
+                dice.side()
+            );
+            (0..dice.below(6)).for_each(|_| {
+                *text += &format!("{} {}{}\n", dice.side(), dice.side(), dice.number())
+            });
         }
         "scalar" | "complex scalar" | "uint64 scalar" => *text += &format!("{}\n", number(dice)),
         _ if dice.once_in(5) => {
-            *text += &format!("# ndims: {}\n {rows} {columns} {}\n", dice.side(), dice.side());
+            *text += &format!(
+                "# ndims: {}\n {rows} {columns} {}\n",
+                dice.side(),
+                dice.side()
+            );
             (0..dice.below(30)).for_each(|_| *text += &format!("{}\n", number(dice)));
         }
         _ => {

@@ -14,9 +14,16 @@ pub(super) fn json(dice: &mut Dice) -> NamedBytes {
     let value = tree(dice, 5);
     let mut text = value.to_string();
     if dice.once_in(40) {
-        text = format!("[{}]", vec![text.as_str(); 1 + 100_000 / text.len().max(1)].join(","));
+        text = format!(
+            "[{}]",
+            vec![text.as_str(); 1 + 100_000 / text.len().max(1)].join(",")
+        );
     }
-    if dice.once_in(5) { ("f.json.gz".to_owned(), gzip(text.as_bytes())) } else { ("f.json".to_owned(), text.into()) }
+    if dice.once_in(5) {
+        ("f.json.gz".to_owned(), gzip(text.as_bytes()))
+    } else {
+        ("f.json".to_owned(), text.into())
+    }
 }
 
 fn tree(dice: &mut Dice, deeper: usize) -> Value {
@@ -30,10 +37,13 @@ fn tree(dice: &mut Dice, deeper: usize) -> Value {
         6 => {
             // A rectangle of numbers.
             let width = dice.below(4);
-            (0..count).map(|_| (0..width).map(|_| json!(dice.number())).collect::<Value>()).collect()
+            (0..count)
+                .map(|_| (0..width).map(|_| json!(dice.number())).collect::<Value>())
+                .collect()
         }
         _ => {
-            let members = (0..count).map(|_| ((*dice.of_list(&NAMES)).to_owned(), tree(dice, deeper - 1)));
+            let members =
+                (0..count).map(|_| ((*dice.of_list(&NAMES)).to_owned(), tree(dice, deeper - 1)));
             Value::Object(members.collect())
         }
     }
@@ -47,9 +57,14 @@ fn gzip(text: &[u8]) -> Vec<u8> {
 
 /// A dataset of this program of which some values are others.
 pub(super) fn program_json(dice: &mut Dice) -> NamedBytes {
-    let files: Vec<&NamedBytes> = CORPUS.iter().filter(|(name, _)| name.ends_with(".json")).collect();
+    let files: Vec<&NamedBytes> = CORPUS
+        .iter()
+        .filter(|(name, _)| name.ends_with(".json"))
+        .collect();
     let (name, bytes) = *dice.of_list(&files);
-    let Ok(mut value) = serde_json::from_slice::<Value>(bytes) else { return (name.clone(), bytes.clone()) };
+    let Ok(mut value) = serde_json::from_slice::<Value>(bytes) else {
+        return (name.clone(), bytes.clone());
+    };
     for _ in 0..1 + dice.below(3) {
         change(&mut value, dice);
     }
@@ -69,11 +84,18 @@ fn change(value: &mut Value, dice: &mut Dice) {
             }
         }
         Value::Object(members) if !stay && !members.is_empty() => {
-            let name = members.keys().nth(dice.below(members.len())).cloned().unwrap_or_default();
+            let name = members
+                .keys()
+                .nth(dice.below(members.len()))
+                .cloned()
+                .unwrap_or_default();
             match dice.below(16) {
                 0 => drop(members.remove(&name)),
                 1 => drop(members.insert((*dice.of_list(&NAMES)).to_owned(), tree(dice, 1))),
-                _ => members.get_mut(&name).into_iter().for_each(|value| change(value, dice)),
+                _ => members
+                    .get_mut(&name)
+                    .into_iter()
+                    .for_each(|value| change(value, dice)),
             }
         }
         Value::Number(_) if !dice.once_in(8) => *value = json!(dice.number()),
@@ -110,21 +132,39 @@ pub(super) fn table(dice: &mut Dice) -> NamedBytes {
     let width = 1 + dice.below(5);
     let mut lines = Vec::new();
     if dice.once_in(4) {
-        lines.push(["# comment", "% x", "sep=;", "A =", "\u{feff}", "units"][dice.below(6)].to_owned());
+        lines.push(
+            ["# comment", "% x", "sep=;", "A =", "\u{feff}", "units"][dice.below(6)].to_owned(),
+        );
     }
     if !dice.once_in(4) {
-        lines.push((0..width).map(|_| *dice.of_list(&headings)).collect::<Vec<_>>().join(separator));
+        lines.push(
+            (0..width)
+                .map(|_| *dice.of_list(&headings))
+                .collect::<Vec<_>>()
+                .join(separator),
+        );
     }
     let number = |dice: &mut Dice, row: usize| match dice.below(40) {
-        0 => ["NaN", "inf", "-", "", "1e999", "1,5", "0x10", "1.0D+00", "12:30:01", "on", "1+2i", "\"1\""]
-            [dice.below(12)]
+        0 => [
+            "NaN", "inf", "-", "", "1e999", "1,5", "0x10", "1.0D+00", "12:30:01", "on", "1+2i",
+            "\"1\"",
+        ][dice.below(12)]
         .to_owned(),
         1 => dice.number().to_string(),
         _ => format!("{}", row as f64 * 0.25 + dice.below(100) as f64 / 100.0),
     };
     for row in 0..dice.below(40) {
-        let width = if dice.once_in(60) { dice.below(9) } else { width };
-        lines.push((0..width).map(|_| number(dice, row)).collect::<Vec<_>>().join(separator));
+        let width = if dice.once_in(60) {
+            dice.below(9)
+        } else {
+            width
+        };
+        lines.push(
+            (0..width)
+                .map(|_| number(dice, row))
+                .collect::<Vec<_>>()
+                .join(separator),
+        );
     }
     let mut text = lines.join(*dice.of_list(&["\n", "\n", "\r\n", "\r"]));
     if dice.once_in(60) {
@@ -133,7 +173,10 @@ pub(super) fn table(dice: &mut Dice) -> NamedBytes {
     let name = ["f.csv", "f.txt", "A.csv", "f_P_LAT.txt", "f.dat"][dice.below(5)];
     if dice.once_in(15) {
         let units = text.encode_utf16().flat_map(u16::to_le_bytes);
-        return (name.to_owned(), [0xff, 0xfe].into_iter().chain(units).collect());
+        return (
+            name.to_owned(),
+            [0xff, 0xfe].into_iter().chain(units).collect(),
+        );
     }
     (name.to_owned(), text.into_bytes())
 }
@@ -152,7 +195,10 @@ pub(super) fn literals(dice: &mut Dice) -> NamedBytes {
             _ => format!("{name} = {value};\n"),
         };
     }
-    (if dice.once_in(3) { "f.py" } else { "f.m" }.to_owned(), text.into_bytes())
+    (
+        if dice.once_in(3) { "f.py" } else { "f.m" }.to_owned(),
+        text.into_bytes(),
+    )
 }
 
 fn literal(dice: &mut Dice, deeper: usize) -> String {
@@ -160,22 +206,53 @@ fn literal(dice: &mut Dice, deeper: usize) -> String {
     match dice.below(if deeper == 0 { 3 } else { 10 }) {
         0 | 1 => dice.number().to_string(),
         2 => format!("'{}'", dice.of_list(&NAMES)),
-        3 => format!("{}({}, {})", dice.of_list(&["zeros", "ones", "eye", "repmat"]), dice.side(), dice.side()),
+        3 => format!(
+            "{}({}, {})",
+            dice.of_list(&["zeros", "ones", "eye", "repmat"]),
+            dice.side(),
+            dice.side()
+        ),
         4 => format!("{}:{}:{}", dice.number(), dice.number(), dice.number()),
-        5 => format!("{{{}}}", (0..count).map(|_| literal(dice, deeper - 1)).collect::<Vec<_>>().join(", ")),
-        6 => format!("struct('{}', {})", dice.of_list(&NAMES), literal(dice, deeper - 1)),
-        7 => format!("-{}*{}'", literal(dice, deeper - 1), literal(dice, deeper - 1)),
+        5 => format!(
+            "{{{}}}",
+            (0..count)
+                .map(|_| literal(dice, deeper - 1))
+                .collect::<Vec<_>>()
+                .join(", ")
+        ),
+        6 => format!(
+            "struct('{}', {})",
+            dice.of_list(&NAMES),
+            literal(dice, deeper - 1)
+        ),
+        7 => format!(
+            "-{}*{}'",
+            literal(dice, deeper - 1),
+            literal(dice, deeper - 1)
+        ),
         _ => {
             let width = 1 + dice.below(3);
-            let row = |dice: &mut Dice| (0..width).map(|_| literal(dice, 0)).collect::<Vec<_>>().join(" ");
-            format!("[{}]", (0..count).map(|_| row(dice)).collect::<Vec<_>>().join("; "))
+            let row = |dice: &mut Dice| {
+                (0..width)
+                    .map(|_| literal(dice, 0))
+                    .collect::<Vec<_>>()
+                    .join(" ")
+            };
+            format!(
+                "[{}]",
+                (0..count).map(|_| row(dice)).collect::<Vec<_>>().join("; ")
+            )
         }
     }
 }
 
 /// An array of NumPy with a header of any kind, alone or among other files in an archive.
 pub(super) fn numpy_or_archive(dice: &mut Dice) -> NamedBytes {
-    if dice.once_in(3) { ("f.zip".to_owned(), archive(dice)) } else { ("f.npy".to_owned(), array(dice)) }
+    if dice.once_in(3) {
+        ("f.zip".to_owned(), archive(dice))
+    } else {
+        ("f.npy".to_owned(), array(dice))
+    }
 }
 
 fn array(dice: &mut Dice) -> Vec<u8> {
@@ -184,9 +261,22 @@ fn array(dice: &mut Dice) -> Vec<u8> {
     let shape: String = sides.iter().map(|side| format!("{side}, ")).collect();
     let order = if dice.once_in(2) { "True" } else { "False" };
     let header = format!("{{'descr': {kind}, 'fortran_order': {order}, 'shape': ({shape}), }}\n");
-    let length = sides.iter().try_fold(size, |product, &side| product.checked_mul(side)).unwrap_or(0).min(1 << 16);
-    let data: Vec<u8> = (0..length.div_ceil(8)).flat_map(|_| dice.number().to_le_bytes()).take(length).collect();
-    [b"\x93NUMPY\x01\x00", &(header.len() as u16).to_le_bytes()[..], header.as_bytes(), &data].concat()
+    let length = sides
+        .iter()
+        .try_fold(size, |product, &side| product.checked_mul(side))
+        .unwrap_or(0)
+        .min(1 << 16);
+    let data: Vec<u8> = (0..length.div_ceil(8))
+        .flat_map(|_| dice.number().to_le_bytes())
+        .take(length)
+        .collect();
+    [
+        b"\x93NUMPY\x01\x00",
+        &(header.len() as u16).to_le_bytes()[..],
+        header.as_bytes(),
+        &data,
+    ]
+    .concat()
 }
 
 /// The type of an element, and its size.
@@ -231,11 +321,22 @@ fn archive(dice: &mut Dice) -> Vec<u8> {
         let packed = encoder.finish().unwrap();
         let mut sum = flate2::Crc::new();
         sum.update(&contents);
-        let sizes = [sum.sum(), packed.len() as u32, contents.len() as u32].map(u32::to_le_bytes).concat();
+        let sizes = [sum.sum(), packed.len() as u32, contents.len() as u32]
+            .map(u32::to_le_bytes)
+            .concat();
         let offset = bytes.len() as u32;
-        for time in 0..if dice.once_in(6) { 1 + dice.below(60) } else { 1 } {
+        for time in 0..if dice.once_in(6) {
+            1 + dice.below(60)
+        } else {
+            1
+        } {
             let name = format!("{at}-{time}-{name}");
-            let head = [&[20, 0, 0, 0, 8, 0, 0, 0, 0, 0][..], &sizes, &[name.len() as u8, 0, 0, 0]].concat();
+            let head = [
+                &[20, 0, 0, 0, 8, 0, 0, 0, 0, 0][..],
+                &sizes,
+                &[name.len() as u8, 0, 0, 0],
+            ]
+            .concat();
             if time == 0 {
                 bytes.extend([b"PK\x03\x04", head.as_slice(), name.as_bytes(), &packed].concat());
             }
@@ -244,8 +345,18 @@ fn archive(dice: &mut Dice) -> Vec<u8> {
             entries += 1;
         }
     }
-    let sizes = [directory.len() as u32, bytes.len() as u32].map(u32::to_le_bytes).concat();
+    let sizes = [directory.len() as u32, bytes.len() as u32]
+        .map(u32::to_le_bytes)
+        .concat();
     let count = entries.to_le_bytes();
-    let end = [b"PK\x05\x06".as_slice(), &[0; 4], &count, &count, &sizes, &[0; 2]].concat();
+    let end = [
+        b"PK\x05\x06".as_slice(),
+        &[0; 4],
+        &count,
+        &count,
+        &sizes,
+        &[0; 2],
+    ]
+    .concat();
     [bytes, directory, end].concat()
 }

@@ -3,7 +3,9 @@
 use gdcm_model::dataset::{Model, Pair, StateSpace};
 use gdcm_model::executor::{Executor, Sequential, Task};
 use gdcm_model::response::evaluate;
-use gdcm_sysid::identification::{ResponseEstimate, Scales, Segment, Spectrum, local_polynomial, log_spaced, spectra};
+use gdcm_sysid::identification::{
+    ResponseEstimate, Scales, Segment, Spectrum, local_polynomial, log_spaced, spectra,
+};
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
 use std::sync::Mutex;
@@ -30,18 +32,30 @@ impl Executor for Threads {
 
 /// The known answers.
 pub fn known() -> Value {
-    serde_json::from_str(include_str!("../../../../../tests/data/identification-known-answers.json"))
-        .expect("the known answers are JSON")
+    serde_json::from_str(include_str!(
+        "../../../../../tests/data/identification-known-answers.json"
+    ))
+    .expect("the known answers are JSON")
 }
 
 /// A list of numbers; null is not a number.
 pub fn list(value: &Value) -> Vec<f64> {
-    value.as_array().expect("a list").iter().map(|x| x.as_f64().unwrap_or(f64::NAN)).collect()
+    value
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|x| x.as_f64().unwrap_or(f64::NAN))
+        .collect()
 }
 
 /// A list of rows of numbers.
 pub fn matrix(value: &Value) -> DMatrix<f64> {
-    let rows: Vec<Vec<f64>> = value.as_array().expect("a list of rows").iter().map(list).collect();
+    let rows: Vec<Vec<f64>> = value
+        .as_array()
+        .expect("a list of rows")
+        .iter()
+        .map(list)
+        .collect();
     DMatrix::from_fn(rows.len(), rows[0].len(), |i, j| rows[i][j])
 }
 
@@ -60,26 +74,37 @@ pub fn noisy(known: &Value, count: usize) -> Vec<Segment> {
         inputs: matrix(&value["u"]),
         outputs: matrix(&value["y"]),
     };
-    records.iter().take(count).enumerate().map(segment).collect()
+    records
+        .iter()
+        .take(count)
+        .enumerate()
+        .map(segment)
+        .collect()
 }
 
 /// The spectra of the case `noisy` in scaled units, to 1.3 whi.
 pub fn noisy_spectra() -> Vec<Spectrum> {
     let segments = noisy(&known(), 4);
     let scales = Scales::of(&segments).expect("its channels move");
-    let scaled: Vec<_> = segments.iter().map(|segment| scales.scaled(segment)).collect();
+    let scaled: Vec<_> = segments
+        .iter()
+        .map(|segment| scales.scaled(segment))
+        .collect();
     spectra(&scaled, 1.3 * 4.0 / 3.0 * 6.0, &Sequential)
 }
 
 /// The measured response of the case `noisy`, in scaled units.
 pub fn noisy_measured() -> ResponseEstimate {
-    local_polynomial(&noisy_spectra(), &log_spaced(0.3, 8.0, 40), &Sequential).expect("its records are long enough")
+    local_polynomial(&noisy_spectra(), &log_spaced(0.3, 8.0, 40), &Sequential)
+        .expect("its records are long enough")
 }
 
 /// The response of a model at a frequency \[rad/s\].
 pub fn response(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
     let response = evaluate(model, &[omega]);
-    DMatrix::from_fn(model.outputs(), model.inputs(), |output, input| response.curve(Pair::new(output, input))[0])
+    DMatrix::from_fn(model.outputs(), model.inputs(), |output, input| {
+        response.curve(Pair::new(output, input))[0]
+    })
 }
 
 /// The matrices of a model.
@@ -91,7 +116,13 @@ pub fn space(model: &Model) -> &StateSpace {
 pub fn slow_system() -> StateSpace {
     let known = known();
     let [a, b, c, d] = ["A", "B", "C", "D"].map(|key| matrix(&known["drop_fast"][key]));
-    StateSpace::new(a.view((0, 0), (4, 4)).into(), b.rows(0, 4).into(), c.columns(0, 4).into(), d).expect("it is whole")
+    StateSpace::new(
+        a.view((0, 0), (4, 4)).into(),
+        b.rows(0, 4).into(),
+        c.columns(0, 4).into(),
+        d,
+    )
+    .expect("it is whole")
 }
 
 /// Numbers between -1 and 1 that look random, the same ones for the same seed.

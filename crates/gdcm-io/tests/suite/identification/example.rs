@@ -16,25 +16,42 @@ use crate::EXAMPLE;
 
 static RECORDS: LazyLock<Vec<RecordTable>> = LazyLock::new(|| {
     let archive = crate::records_archive();
-    records_of_bytes(&archive, "example-records.zip", &ReadingBudget::new(1 << 30))
-        .expect("the archive is whole")
-        .tables
+    records_of_bytes(
+        &archive,
+        "example-records.zip",
+        &ReadingBudget::new(1 << 30),
+    )
+    .expect("the archive is whole")
+    .tables
 });
 
 /// What the records of a condition give, held out what its name says.
 fn identified(id: ConditionId) -> Identification {
     let dataset = &EXAMPLE.dataset;
     let channels = RecordChannels::of_dataset(dataset).of_named_records();
-    let is_of_condition =
-        |record: &LaidOutRecord| record.guess.condition_of(dataset) == Some(id) && record.problems.is_empty();
-    let laid_out = |table: &RecordTable| LaidOutRecord::proposed(table.clone(), &channels, &TimeWish::default()).0;
-    let records: Vec<LaidOutRecord> = RECORDS.iter().map(laid_out).filter(is_of_condition).collect();
+    let is_of_condition = |record: &LaidOutRecord| {
+        record.guess.condition_of(dataset) == Some(id) && record.problems.is_empty()
+    };
+    let laid_out = |table: &RecordTable| {
+        LaidOutRecord::proposed(table.clone(), &channels, &TimeWish::default()).0
+    };
+    let records: Vec<LaidOutRecord> = RECORDS
+        .iter()
+        .map(laid_out)
+        .filter(is_of_condition)
+        .collect();
     let (inputs, outputs) = dataset.names_of_channels();
     let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));
     let band = dataset.band();
-    let request = IdentificationRequest::of(records.iter(), preparation, [band.min(), band.max()]).unwrap();
-    assert_eq!((request.records.len(), request.options.held_out.len()), (9, 1));
-    request.identify(&Sequential, &Unobserved).expect("the example's flights are good")
+    let request =
+        IdentificationRequest::of(records.iter(), preparation, [band.min(), band.max()]).unwrap();
+    assert_eq!(
+        (request.records.len(), request.options.held_out.len()),
+        (9, 1)
+    );
+    request
+        .identify(&Sequential, &Unobserved)
+        .expect("the example's flights are good")
 }
 
 fn borrowed(names: &[String]) -> Vec<&str> {
@@ -46,14 +63,25 @@ fn borrowed(names: &[String]) -> Vec<&str> {
 fn deviation(found: &Model, recommended: &Model) -> f64 {
     let bands = recommended.bands.as_ref().expect("it has bands");
     let band = EXAMPLE.dataset.band();
-    let inside = bands.omega().iter().enumerate().filter(|(_, omega)| (band.min()..=band.max()).contains(*omega));
+    let inside = bands
+        .omega()
+        .iter()
+        .enumerate()
+        .filter(|(_, omega)| (band.min()..=band.max()).contains(*omega));
     let (mut sum, mut count) = (0.0, 0.0);
     for (at, omega) in inside {
-        let (found, known) = (response(space(found), *omega), response(space(recommended), *omega));
+        let (found, known) = (
+            response(space(found), *omega),
+            response(space(recommended), *omega),
+        );
         for (Pair { output, input }, sd_db) in bands.sd_db().iter() {
             let ratio = (found[(output, input)] / known[(output, input)]).ln();
-            let (db, degrees) = (20.0 * std::f64::consts::LOG10_E * ratio.re, ratio.im.to_degrees());
-            sum += (db / sd_db[at]).powi(2) + (degrees / bands.sd_deg()[Pair { output, input }][at]).powi(2);
+            let (db, degrees) = (
+                20.0 * std::f64::consts::LOG10_E * ratio.re,
+                ratio.im.to_degrees(),
+            );
+            sum += (db / sd_db[at]).powi(2)
+                + (degrees / bands.sd_deg()[Pair { output, input }][at]).powi(2);
             count += 2.0;
         }
     }
@@ -63,9 +91,15 @@ fn deviation(found: &Model, recommended: &Model) -> f64 {
 fn assert_models_come_again(id: i64) {
     let id = ConditionId(id);
     let found = identified(id);
-    let held_out = found.held_out_cost.expect("the validation record is held out");
+    let held_out = found
+        .held_out_cost
+        .expect("the validation record is held out");
     // The sharp test of a model (M14, section 4).
-    assert!(held_out <= 1.15 * found.cost, "held out {held_out}, fitted {}", found.cost);
+    assert!(
+        held_out <= 1.15 * found.cost,
+        "held out {held_out}, fitted {}",
+        found.cost
+    );
     let condition = EXAMPLE.dataset.condition(id).expect("the example has it");
     let bundle = condition.bundle(BundleKind::Identified);
     // Where two orders are as good as one another, the rounding of another processor's instructions may choose the other one. The
@@ -76,13 +110,35 @@ fn assert_models_come_again(id: i64) {
     let is_same = found.refined.name == recommended.name;
     let limit = std::f64::consts::FRAC_1_SQRT_2;
     let deviation = deviation(&found.refined, recommended);
-    assert!(deviation <= limit, "{} of {}: {deviation} standard deviations", found.refined.name, recommended.name);
-    let unrefined =
-        bundle.iter().find(|model| model.name.starts_with("CT-PBSID, order ")).expect("CT-PBSID without refinement");
-    assert!(!is_same || unrefined.name == found.unrefined.name, "{} of {}", found.unrefined.name, unrefined.name);
+    assert!(
+        deviation <= limit,
+        "{} of {}: {deviation} standard deviations",
+        found.refined.name,
+        recommended.name
+    );
+    let unrefined = bundle
+        .iter()
+        .find(|model| model.name.starts_with("CT-PBSID, order "))
+        .expect("CT-PBSID without refinement");
+    assert!(
+        !is_same || unrefined.name == found.unrefined.name,
+        "{} of {}",
+        found.unrefined.name,
+        unrefined.name
+    );
     let records = condition.records();
-    assert_eq!((records.len(), records.iter().filter(|record| record.held_out).count()), (9, 1));
-    assert!(records.iter().all(|record| record.file == "example-records.zip" && record.used_s.len() == 1));
+    assert_eq!(
+        (
+            records.len(),
+            records.iter().filter(|record| record.held_out).count()
+        ),
+        (9, 1)
+    );
+    assert!(
+        records
+            .iter()
+            .all(|record| record.file == "example-records.zip" && record.used_s.len() == 1)
+    );
 }
 
 /// A test for each condition, so that they run beside one another.

@@ -15,8 +15,18 @@ const BAND: [f64; 2] = [0.6, 6.0];
 fn measured(change: impl Fn(&mut FlightRecord)) -> ResponseEstimate {
     let mut records = Flight::of(stable_aircraft(), Gusts::light()).records(31, 4);
     records.iter_mut().for_each(change);
-    let prepared = prepare(&records, &Preparation::of(&["LON", "LAT"], &["P", "Q"]), &Sequential).unwrap();
-    local_polynomial(&spectra(&prepared.segments, 10.4, &Sequential), &log_spaced(0.3, 8.0, 40), &Sequential).unwrap()
+    let prepared = prepare(
+        &records,
+        &Preparation::of(&["LON", "LAT"], &["P", "Q"]),
+        &Sequential,
+    )
+    .unwrap();
+    local_polynomial(
+        &spectra(&prepared.segments, 10.4, &Sequential),
+        &log_spaced(0.3, 8.0, 40),
+        &Sequential,
+    )
+    .unwrap()
 }
 
 /// Three samples of 40 ms later.
@@ -34,11 +44,13 @@ fn found(measured: &ResponseEstimate) -> Option<(ChannelSide, usize, f64)> {
 fn a_channel_that_is_late_in_every_record_is_told_against_the_physics_model() {
     assert_eq!(found(&measured(|_| ())), None, "nothing is late");
     for index in 0..2 {
-        let (role, of, delay_s) = found(&measured(|record| late(record.outputs.column_mut(index)))).unwrap();
+        let (role, of, delay_s) =
+            found(&measured(|record| late(record.outputs.column_mut(index)))).unwrap();
         assert_eq!((role, of), (ChannelSide::Output, index));
         // The method's bias over its windows, and gusts, are some milliseconds.
         assert!((delay_s - 0.12).abs() < 0.01, "{delay_s}");
-        let (role, of, delay_s) = found(&measured(|record| late(record.inputs.column_mut(index)))).unwrap();
+        let (role, of, delay_s) =
+            found(&measured(|record| late(record.inputs.column_mut(index)))).unwrap();
         assert_eq!((role, of), (ChannelSide::Input, index));
         assert!((delay_s - 0.12).abs() < 0.01, "{delay_s}");
     }
@@ -61,17 +73,32 @@ fn a_physics_model_that_is_wrong_otherwise_is_no_delay() {
     let mut turned = of.c().clone();
     // The sign of an output.
     turned.row_mut(1).neg_mut();
-    assert_eq!(ChannelTimeSkew::of(&clean, BAND, &with(of.a().clone(), turned)), None);
-    assert_eq!(ChannelTimeSkew::of(&clean, BAND, &with(of.a() * 1.6, of.c().clone())), None);
+    assert_eq!(
+        ChannelTimeSkew::of(&clean, BAND, &with(of.a().clone(), turned)),
+        None
+    );
+    assert_eq!(
+        ChannelTimeSkew::of(&clean, BAND, &with(of.a() * 1.6, of.c().clone())),
+        None
+    );
 }
 
 #[test]
 fn words_say_what_is_seen_and_what_else_it_may_be() {
-    let late = ChannelTimeSkew { role: ChannelSide::Output, index: 1, delay_s: -0.0401 };
+    let late = ChannelTimeSkew {
+        role: ChannelSide::Output,
+        index: 1,
+        delay_s: -0.0401,
+    };
     let words = late.words("Q", "nominal");
     assert!(
-        words.starts_with("Q seems to be logged 40 ms early in all records: against the physics model \"nominal\""),
+        words.starts_with(
+            "Q seems to be logged 40 ms early in all records: against the physics model \"nominal\""
+        ),
         "{words}"
     );
-    assert!(words.contains("Leave it where the sensor or servo is as slow as that"), "{words}");
+    assert!(
+        words.contains("Leave it where the sensor or servo is as slow as that"),
+        "{words}"
+    );
 }

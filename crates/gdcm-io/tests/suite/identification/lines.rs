@@ -1,6 +1,8 @@
 //! Scales, low-pass, lines and the measured response.
 
-use super::common::{Threads, complex, known, list, matrix, noise, noisy, noisy_spectra, response, slow_system};
+use super::common::{
+    Threads, complex, known, list, matrix, noise, noisy, noisy_spectra, response, slow_system,
+};
 use crate::made_up::tries;
 use gdcm_model::dataset::{ChannelSide, StateSpace};
 use gdcm_model::executor::Sequential;
@@ -13,8 +15,11 @@ fn scales_are_those_of_the_known_answer() {
     let known = known();
     let scales = Scales::of(&noisy(&known, 4)).unwrap();
     let expected = &known["noisy"]["scales"];
-    for (scale, expected) in
-        scales.inputs.iter().chain(&scales.outputs).zip(list(&expected["u"]).iter().chain(&list(&expected["y"])))
+    for (scale, expected) in scales
+        .inputs
+        .iter()
+        .chain(&scales.outputs)
+        .zip(list(&expected["u"]).iter().chain(&list(&expected["y"])))
     {
         assert!((scale - expected).abs() < 1e-9, "{scale} {expected}");
     }
@@ -25,7 +30,11 @@ fn the_low_pass_gives_the_known_answer() {
     let known = known();
     let case = &known["lowpass"];
     let filter = LowPass::new(case["wc"].as_f64().unwrap(), case["dt"].as_f64().unwrap()).unwrap();
-    for (filtered, expected) in filter.filter(&list(&case["x"])).iter().zip(list(&case["expected"])) {
+    for (filtered, expected) in filter
+        .filter(&list(&case["x"]))
+        .iter()
+        .zip(list(&case["expected"]))
+    {
         assert!((filtered - expected).abs() < 1e-12, "{filtered} {expected}");
     }
 }
@@ -51,7 +60,8 @@ fn the_measured_response_is_that_of_the_known_answer() {
     let measured = local_polynomial(&noisy_spectra(), &list(&case["w"]), &Sequential).unwrap();
     let coherence = matrix(&case["coherence"]);
     for (k, point) in measured.points.iter().enumerate() {
-        let response = matrix(&case["G_scaled"]["re"][k]).zip_map(&matrix(&case["G_scaled"]["im"][k]), Complex::new);
+        let response = matrix(&case["G_scaled"]["re"][k])
+            .zip_map(&matrix(&case["G_scaled"]["im"][k]), Complex::new);
         assert!((&point.response - &response).camax() < 1e-6 * response.camax());
         let noise = matrix(&case["Cv"][k]);
         assert!((&point.noise - &noise).amax() < 1e-6 * noise.amax());
@@ -69,13 +79,22 @@ fn exact(records: usize, samples: usize) -> (StateSpace, Vec<Segment>) {
         let mut inputs = DMatrix::zeros(samples, 2);
         for (i, mut column) in inputs.column_iter_mut().enumerate() {
             let mut value = 0.0;
-            for (x, step) in column.iter_mut().zip(noise((17 * record + i) as u64, samples)) {
+            for (x, step) in column
+                .iter_mut()
+                .zip(noise((17 * record + i) as u64, samples))
+            {
                 value = 0.9 * value + step;
                 *x = value;
             }
         }
         let outputs = held.simulate(&DVector::from_element(4, record as f64 - 1.5), &inputs);
-        Segment { record, start_s: 0.0, sample_time_s: 0.04, inputs, outputs }
+        Segment {
+            record,
+            start_s: 0.0,
+            sample_time_s: 0.04,
+            inputs,
+            outputs,
+        }
     };
     (model, (0..records).map(segment).collect())
 }
@@ -83,14 +102,27 @@ fn exact(records: usize, samples: usize) -> (StateSpace, Vec<Segment>) {
 #[test]
 fn the_response_of_an_exact_record_is_that_of_the_system() {
     let (model, segments) = exact(4, 1500);
-    let measured =
-        local_polynomial(&spectra(&segments, 10.4, &Sequential), &log_spaced(0.5, 8.0, 12), &Sequential).unwrap();
+    let measured = local_polynomial(
+        &spectra(&segments, 10.4, &Sequential),
+        &log_spaced(0.5, 8.0, 12),
+        &Sequential,
+    )
+    .unwrap();
     for point in &measured.points {
         let error = (&point.response - response(&model, point.omega)).camax();
         // The polynomial of second degree over a window of +-0.45 rad/s beside modes of damping 0.4 rad/s and more.
-        assert!(error < 0.05 * point.response.camax(), "{} {error}", point.omega);
+        assert!(
+            error < 0.05 * point.response.camax(),
+            "{} {error}",
+            point.omega
+        );
         // What the polynomial cannot follow counts as noise.
-        assert!(point.coherence.iter().all(|c| *c > 0.99), "{} {}", point.omega, point.coherence);
+        assert!(
+            point.coherence.iter().all(|c| *c > 0.99),
+            "{} {}",
+            point.omega,
+            point.coherence
+        );
     }
 }
 
@@ -98,7 +130,9 @@ fn the_response_of_an_exact_record_is_that_of_the_system() {
 fn the_variance_of_the_response_is_the_spread_of_many_trials() {
     let (model, segments) = exact(2, 1000);
     let omegas = [3.0];
-    let truth = local_polynomial(&spectra(&segments, 10.4, &Sequential), &omegas, &Sequential).unwrap().points[0]
+    let truth = local_polynomial(&spectra(&segments, 10.4, &Sequential), &omegas, &Sequential)
+        .unwrap()
+        .points[0]
         .response
         .clone();
     let (trials, mut predicted, mut spread) = (200, DMatrix::zeros(2, 2), DMatrix::zeros(2, 2));
@@ -106,16 +140,25 @@ fn the_variance_of_the_response_is_the_spread_of_many_trials() {
         let mut noisy = segments.clone();
         for (k, segment) in noisy.iter_mut().enumerate() {
             let seed = 1000 + (10 * trial + k) as u64;
-            segment.outputs.iter_mut().zip(noise(seed, 2000)).for_each(|(y, v)| *y += 10.0 * v);
+            segment
+                .outputs
+                .iter_mut()
+                .zip(noise(seed, 2000))
+                .for_each(|(y, v)| *y += 10.0 * v);
         }
-        let point = &local_polynomial(&spectra(&noisy, 10.4, &Sequential), &omegas, &Sequential).unwrap().points[0];
+        let point = &local_polynomial(&spectra(&noisy, 10.4, &Sequential), &omegas, &Sequential)
+            .unwrap()
+            .points[0];
         predicted += &point.variance / trials as f64;
         spread += (&point.response - &truth).map(|e| e.norm_sqr() / trials as f64);
     }
     assert_eq!(model.order(), 4);
     for (predicted, spread) in predicted.iter().zip(spread.iter()) {
         // Noise far above what the polynomial cannot follow. A variance from 200 trials of two parts is known to 1 / sqrt 200 = 7 %; three times that.
-        assert!((predicted / spread - 1.0).abs() < 0.21, "{predicted} {spread}");
+        assert!(
+            (predicted / spread - 1.0).abs() < 0.21,
+            "{predicted} {spread}"
+        );
     }
 }
 
@@ -130,31 +173,48 @@ fn the_noise_covariance_is_that_of_the_noise_put_in() {
             segment.outputs[(n, 1)] += 10.0 * noise[n] + 5.0 * noise[2000 + n];
         }
     }
-    let measured =
-        local_polynomial(&spectra(&segments, 10.4, &Sequential), &log_spaced(0.5, 8.0, 40), &Sequential).unwrap();
+    let measured = local_polynomial(
+        &spectra(&segments, 10.4, &Sequential),
+        &log_spaced(0.5, 8.0, 40),
+        &Sequential,
+    )
+    .unwrap();
     let covariance = NoiseCovariance::of(&measured).unwrap();
     // White noise of variance 100/3 has lines of power 100 dt / 3.
     let line = 4.0 / 3.0;
     let expected = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 1.25]) * line;
-    let mean =
-        (0..40).fold(DMatrix::zeros(2, 2), |sum, k| sum + covariance.at(0.5 * 16.0_f64.powf(k as f64 / 39.0)) / 40.0);
+    let mean = (0..40).fold(DMatrix::zeros(2, 2), |sum, k| {
+        sum + covariance.at(0.5 * 16.0_f64.powf(k as f64 / 39.0)) / 40.0
+    });
     assert!((&mean - &expected).amax() < 0.1 * expected.amax(), "{mean}");
     let weight = covariance.weight(2.0).unwrap();
     // W Cv W^T = 2 I: real and imaginary part of a whitened line have variance one each.
-    assert!((&weight * covariance.at(2.0) * weight.transpose() - DMatrix::identity(2, 2) * 2.0).amax() < 1e-9);
+    assert!(
+        (&weight * covariance.at(2.0) * weight.transpose() - DMatrix::identity(2, 2) * 2.0).amax()
+            < 1e-9
+    );
     assert_eq!(weight[(0, 1)], 0.0);
 }
 
 #[test]
 fn the_covariance_is_smoothed_over_neighbours_and_straight_in_log_frequency_between() {
-    let mut measured = local_polynomial(&noisy_spectra(), &log_spaced(0.5, 8.0, 9), &Sequential).unwrap();
+    let mut measured =
+        local_polynomial(&noisy_spectra(), &log_spaced(0.5, 8.0, 9), &Sequential).unwrap();
     for (k, point) in measured.points.iter_mut().enumerate() {
         point.noise = DMatrix::identity(2, 2) * if k == 4 { 9.0 } else { 0.0 };
         point.power.fill(0.0);
     }
     let covariance = NoiseCovariance::of(&measured).unwrap();
     // Weights 1, 2, 3, 2, 1 over their sum 9, and a ten-thousandth added.
-    for (k, expected) in [(1, 0.0), (2, 1.0), (3, 2.0), (4, 3.0), (5, 2.0), (6, 1.0), (7, 0.0)] {
+    for (k, expected) in [
+        (1, 0.0),
+        (2, 1.0),
+        (3, 2.0),
+        (4, 3.0),
+        (5, 2.0),
+        (6, 1.0),
+        (7, 0.0),
+    ] {
         let at = covariance.at(measured.points[k].omega * (1.0 + 1e-15));
         assert!((at[(0, 0)] - 1.0001 * expected).abs() < 1e-9, "{k}");
     }
@@ -175,35 +235,60 @@ fn exact_and_dependent_outputs_still_have_a_weight() {
             sum,
         ]);
     }
-    let measured =
-        local_polynomial(&spectra(&segments, 10.4, &Sequential), &log_spaced(0.5, 8.0, 40), &Sequential).unwrap();
+    let measured = local_polynomial(
+        &spectra(&segments, 10.4, &Sequential),
+        &log_spaced(0.5, 8.0, 40),
+        &Sequential,
+    )
+    .unwrap();
     let covariance = NoiseCovariance::of(&measured).unwrap();
-    assert!([0.5, 1.0, 3.3, 8.0].iter().all(|&w| covariance.weight(w).is_some()));
+    assert!(
+        [0.5, 1.0, 3.3, 8.0]
+            .iter()
+            .all(|&w| covariance.weight(w).is_some())
+    );
 }
 
 #[test]
 fn an_input_that_copies_another_is_not_identified() {
     let (_, mut segments) = exact(4, 1500);
     assert_eq!(
-        local_polynomial(&spectra(&segments, 10.4, &Sequential), &log_spaced(0.5, 8.0, 12), &Sequential)
-            .unwrap()
-            .excitation()
-            .not_identified()
-            .count(),
+        local_polynomial(
+            &spectra(&segments, 10.4, &Sequential),
+            &log_spaced(0.5, 8.0, 12),
+            &Sequential
+        )
+        .unwrap()
+        .excitation()
+        .not_identified()
+        .count(),
         0
     );
     for (k, segment) in segments.iter_mut().enumerate() {
         let copy = segment.inputs.column(0) * 2.0;
         segment.inputs.column_mut(1).copy_from(&copy);
         let noise = noise(k as u64, 3000);
-        segment.outputs.iter_mut().zip(noise).for_each(|(y, v)| *y += 0.05 * v);
+        segment
+            .outputs
+            .iter_mut()
+            .zip(noise)
+            .for_each(|(y, v)| *y += 0.05 * v);
     }
-    let measured =
-        local_polynomial(&spectra(&segments, 10.4, &Sequential), &log_spaced(0.5, 8.0, 12), &Sequential).unwrap();
+    let measured = local_polynomial(
+        &spectra(&segments, 10.4, &Sequential),
+        &log_spaced(0.5, 8.0, 12),
+        &Sequential,
+    )
+    .unwrap();
     let excitation = measured.excitation();
     assert!(excitation.moved_together());
     assert_eq!(excitation.not_identified().collect::<Vec<_>>(), [0, 1]);
-    assert!(measured.points.iter().all(|point| point.response.iter().all(|g| g.is_finite())));
+    assert!(
+        measured
+            .points
+            .iter()
+            .all(|point| point.response.iter().all(|g| g.is_finite()))
+    );
 }
 
 #[test]
@@ -216,23 +301,48 @@ fn an_input_without_effect_is_not_identified() {
             segment.inputs.column(1).into_owned(),
             blind,
         ]);
-        segment.outputs.iter_mut().zip(noise(k as u64, 3000)).for_each(|(y, v)| *y += 0.05 * v);
+        segment
+            .outputs
+            .iter_mut()
+            .zip(noise(k as u64, 3000))
+            .for_each(|(y, v)| *y += 0.05 * v);
     }
-    let measured =
-        local_polynomial(&spectra(&segments, 10.4, &Sequential), &log_spaced(0.5, 8.0, 40), &Sequential).unwrap();
-    assert_eq!(measured.excitation().not_identified().collect::<Vec<_>>(), [2]);
+    let measured = local_polynomial(
+        &spectra(&segments, 10.4, &Sequential),
+        &log_spaced(0.5, 8.0, 40),
+        &Sequential,
+    )
+    .unwrap();
+    assert_eq!(
+        measured.excitation().not_identified().collect::<Vec<_>>(),
+        [2]
+    );
 }
 
 #[test]
 fn vibration_lowers_the_cut_off_and_is_named() {
     let (_, mut segments) = exact(2, 1500);
-    assert_eq!(CutOff::choose(&segments, 8.0, &Sequential), CutOff { omega: 40.0, vibrating: vec![] });
+    assert_eq!(
+        CutOff::choose(&segments, 8.0, &Sequential),
+        CutOff {
+            omega: 40.0,
+            vibrating: vec![]
+        }
+    );
     let vibration = segments[0].outputs.column(1).amax();
     for segment in &mut segments {
-        (0..1500).for_each(|n| segment.outputs[(n, 1)] += vibration * (50.0 * 0.04 * n as f64).sin());
+        (0..1500)
+            .for_each(|n| segment.outputs[(n, 1)] += vibration * (50.0 * 0.04 * n as f64).sin());
     }
     let cut_off = CutOff::choose(&segments, 8.0, &Sequential);
-    assert_eq!((cut_off.omega, cut_off.vibrating.len(), cut_off.vibrating[0].0), (16.0, 1, 1));
+    assert_eq!(
+        (
+            cut_off.omega,
+            cut_off.vibrating.len(),
+            cut_off.vibrating[0].0
+        ),
+        (16.0, 1, 1)
+    );
     let filtered = cut_off.apply(&segments, &Sequential);
     let share = CutOff::choose(&filtered, 8.0, &Sequential).vibrating;
     assert_eq!(share, []);
@@ -245,13 +355,24 @@ fn the_low_pass_passes_straight_lines_and_is_none_near_half_the_sampling_frequen
     for (filtered, line) in filter.filter(&line).iter().zip(&line) {
         assert!((filtered - line).abs() < 1e-12);
     }
-    for (omega, dt) in [(130.0, 0.02), (f64::NAN, 0.02), (-1.0, 0.02), (1e-12, 1e-12), (f64::INFINITY, 1.0), (0.0, 0.0)]
-    {
+    for (omega, dt) in [
+        (130.0, 0.02),
+        (f64::NAN, 0.02),
+        (-1.0, 0.02),
+        (1e-12, 1e-12),
+        (f64::INFINITY, 1.0),
+        (0.0, 0.0),
+    ] {
         assert_eq!(LowPass::new(omega, dt), None);
     }
     for length in 0..4 {
         // Shorter than its reach of 63 samples, the signal is reflected again and again.
-        assert!(filter.filter(&vec![2.5; length]).iter().all(|x| (x - 2.5).abs() < 1e-12));
+        assert!(
+            filter
+                .filter(&vec![2.5; length])
+                .iter()
+                .all(|x| (x - 2.5).abs() < 1e-12)
+        );
     }
 }
 
@@ -261,11 +382,27 @@ fn a_short_record_has_a_response_and_one_of_a_few_lines_says_so() {
     // 10 s: 16 lines to 10.4 rad/s, all of which a polynomial of the first degree takes.
     let all = spectra(&segments, 10.4, &Sequential);
     let point = &local_polynomial(&all, &[0.3], &Sequential).unwrap().points[0];
-    assert!(point.half_width > 7.0 && point.freedom > 0, "{} {}", point.half_width, point.freedom);
+    assert!(
+        point.half_width > 7.0 && point.freedom > 0,
+        "{} {}",
+        point.half_width,
+        point.freedom
+    );
     let few: Vec<Spectrum> = all.iter().map(|lines| lines.between(0.0, 6.0)).collect();
     let refused = local_polynomial(&few, &[0.3], &Sequential).unwrap_err();
-    assert_eq!(refused, LocalPolynomialError::TooFewLines { lines: 9, needed: 12 });
-    assert!(refused.to_string().contains("9 spectral lines in the band where 12 are needed"), "{refused}");
+    assert_eq!(
+        refused,
+        LocalPolynomialError::TooFewLines {
+            lines: 9,
+            needed: 12
+        }
+    );
+    assert!(
+        refused
+            .to_string()
+            .contains("9 spectral lines in the band where 12 are needed"),
+        "{refused}"
+    );
 }
 
 #[test]
@@ -281,41 +418,70 @@ fn records_cut_into_pieces_of_twenty_seconds_still_have_a_response() {
             })
         })
         .collect();
-    let measured =
-        local_polynomial(&spectra(&cut, 10.4, &Sequential), &log_spaced(0.25, 8.0, 40), &Sequential).unwrap();
+    let measured = local_polynomial(
+        &spectra(&cut, 10.4, &Sequential),
+        &log_spaced(0.25, 8.0, 40),
+        &Sequential,
+    )
+    .unwrap();
     let point = measured.points.last().unwrap();
     assert!((&point.response - response(&model, 8.0)).camax() < 0.05 * point.response.camax());
 }
 
 #[test]
 fn hostile_lines_are_refused() {
-    assert_eq!(local_polynomial(&[], &[1.0], &Sequential), Err(LocalPolynomialError::Nothing));
+    assert_eq!(
+        local_polynomial(&[], &[1.0], &Sequential),
+        Err(LocalPolynomialError::Nothing)
+    );
     let good = noisy_spectra();
-    assert_eq!(local_polynomial(&good, &[], &Sequential), Err(LocalPolynomialError::Nothing));
+    assert_eq!(
+        local_polynomial(&good, &[], &Sequential),
+        Err(LocalPolynomialError::Nothing)
+    );
     for omega in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
-        assert_eq!(local_polynomial(&good, &[omega], &Sequential), Err(LocalPolynomialError::NotFinite));
+        assert_eq!(
+            local_polynomial(&good, &[omega], &Sequential),
+            Err(LocalPolynomialError::NotFinite)
+        );
     }
     // A window that lies beside its centre is no reason to refuse.
     let far = local_polynomial(&good, &[1e9], &Sequential).unwrap();
-    assert!(far.points[0].response.iter().all(|value| value.re.is_finite() && value.im.is_finite()));
+    assert!(
+        far.points[0]
+            .response
+            .iter()
+            .all(|value| value.re.is_finite() && value.im.is_finite())
+    );
     for value in [f64::NAN, f64::INFINITY, 1e200] {
         let mut bad = good.clone();
         bad[1].outputs[(0, 3)].im = value;
-        assert_eq!(local_polynomial(&bad, &[1.0], &Sequential), Err(LocalPolynomialError::NotFinite));
+        assert_eq!(
+            local_polynomial(&bad, &[1.0], &Sequential),
+            Err(LocalPolynomialError::NotFinite)
+        );
     }
     let mut bad = good.clone();
     bad[2].inputs = DMatrix::zeros(3, bad[2].omega.len());
-    assert_eq!(local_polynomial(&bad, &[1.0], &Sequential), Err(LocalPolynomialError::ChannelsDiffer(2)));
+    assert_eq!(
+        local_polynomial(&bad, &[1.0], &Sequential),
+        Err(LocalPolynomialError::ChannelsDiffer(2))
+    );
     let silent: Vec<Spectrum> = good
         .iter()
-        .map(|s| Spectrum { inputs: s.inputs.scale(0.0), outputs: s.outputs.scale(0.0), ..s.clone() })
+        .map(|s| Spectrum {
+            inputs: s.inputs.scale(0.0),
+            outputs: s.outputs.scale(0.0),
+            ..s.clone()
+        })
         .collect();
     let measured = local_polynomial(&silent, &[1.0, 3.0], &Sequential).unwrap();
     assert!(
         measured
             .points
             .iter()
-            .all(|p| p.response.iter().all(|g| g.is_finite()) && p.variance.iter().all(|v| v.is_finite()))
+            .all(|p| p.response.iter().all(|g| g.is_finite())
+                && p.variance.iter().all(|v| v.is_finite()))
     );
 }
 
@@ -329,21 +495,50 @@ fn hostile_pieces_have_no_scales_and_no_lines() {
         outputs: DMatrix::from_fn(rows, 1, |n, _| n as f64),
     };
     assert_eq!(Scales::of(&[]), Err(ScalingError::NoSegments));
-    assert_eq!(Scales::of(&[segment(9, 0.1)]), Err(ScalingError::Constant { role: ChannelSide::Input, index: 0 }));
-    assert_eq!(Scales::of(&[segment(9, f64::NAN)]), Err(ScalingError::NotFinite(0)));
-    assert_eq!(Scales::of(&[segment(0, 0.0)]), Err(ScalingError::Constant { role: ChannelSide::Input, index: 0 }));
+    assert_eq!(
+        Scales::of(&[segment(9, 0.1)]),
+        Err(ScalingError::Constant {
+            role: ChannelSide::Input,
+            index: 0
+        })
+    );
+    assert_eq!(
+        Scales::of(&[segment(9, f64::NAN)]),
+        Err(ScalingError::NotFinite(0))
+    );
+    assert_eq!(
+        Scales::of(&[segment(0, 0.0)]),
+        Err(ScalingError::Constant {
+            role: ChannelSide::Input,
+            index: 0
+        })
+    );
     for rows in 0..3 {
-        assert_eq!(spectra(&[segment(rows, 1.0)], 1e9, &Sequential)[0].omega.len(), 0);
+        assert_eq!(
+            spectra(&[segment(rows, 1.0)], 1e9, &Sequential)[0]
+                .omega
+                .len(),
+            0
+        );
     }
-    let other = Segment { outputs: DMatrix::zeros(9, 2), ..segment(9, 1.0) };
-    assert_eq!(Scales::of(&[segment(9, 1.0), other]), Err(ScalingError::ChannelsDiffer(1)));
+    let other = Segment {
+        outputs: DMatrix::zeros(9, 2),
+        ..segment(9, 1.0)
+    };
+    assert_eq!(
+        Scales::of(&[segment(9, 1.0), other]),
+        Err(ScalingError::ChannelsDiffer(1))
+    );
 }
 
 #[test]
 fn results_are_the_same_to_the_last_bit_for_any_number_of_threads() {
     let segments = noisy(&known(), 4);
     let scales = Scales::of(&segments).unwrap();
-    let scaled: Vec<_> = segments.iter().map(|segment| scales.scaled(segment)).collect();
+    let scaled: Vec<_> = segments
+        .iter()
+        .map(|segment| scales.scaled(segment))
+        .collect();
     let on = |threads: usize| {
         let executor = Threads(threads);
         let lines = spectra(&scaled, 10.4, &executor);

@@ -37,7 +37,10 @@ fn prepared(record: &FlightRecord, settings: &Preparation) -> Prepared {
 }
 
 fn words(cautions: &[RecordCaution]) -> String {
-    cautions.iter().map(|caution| caution.to_string() + "\n").collect()
+    cautions
+        .iter()
+        .map(|caution| caution.to_string() + "\n")
+        .collect()
 }
 
 #[test]
@@ -61,19 +64,39 @@ fn the_known_record_becomes_the_known_pieces() {
     assert_eq!(prepared.segments.len(), expected.len());
     for (segment, expected) in prepared.segments.iter().zip(expected) {
         assert!((segment.sample_time_s - expected["dt"].as_f64().unwrap()).abs() < 1e-9);
-        assert_eq!(segment.inputs.nrows() as u64, expected["samples"].as_u64().unwrap());
+        assert_eq!(
+            segment.inputs.nrows() as u64,
+            expected["samples"].as_u64().unwrap()
+        );
         assert!((segment.inputs[0] - expected["first_u"].as_f64().unwrap()).abs() < 1e-9);
         assert!((&segment.outputs - matrix(&expected["y"])).amax() < 1e-9);
     }
-    let gaps: Vec<String> = prepared.records[0].gaps.iter().map(ToString::to_string).collect();
-    assert_eq!(gaps, ["2.45 to 2.60 s: y1 missing, bridged", "7.45 to 9.50 s: rows missing, left out"]);
+    let gaps: Vec<String> = prepared.records[0]
+        .gaps
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    assert_eq!(
+        gaps,
+        [
+            "2.45 to 2.60 s: y1 missing, bridged",
+            "7.45 to 9.50 s: rows missing, left out"
+        ]
+    );
 }
 
 #[test]
 fn a_record_without_gaps_stays_as_it_is() {
     let record = wandering(1000);
     let prepared = prepared(&record, &settings());
-    assert_eq!((prepared.segments.len(), prepared.cautions.len(), prepared.records[0].gaps.len()), (1, 0, 0));
+    assert_eq!(
+        (
+            prepared.segments.len(),
+            prepared.cautions.len(),
+            prepared.records[0].gaps.len()
+        ),
+        (1, 0, 0)
+    );
     // Stamps of 0.02 n and a grid of n 0.02 differ by rounding, so values are interpolated by as much.
     assert!((&prepared.segments[0].inputs - &record.inputs).amax() < 1e-9);
     assert!((&prepared.segments[0].outputs - &record.outputs).amax() < 1e-9);
@@ -93,11 +116,16 @@ fn three_missing_samples_are_bridged_by_a_straight_line_and_four_split_the_recor
     record.outputs[(703, 1)] = f64::NAN;
     let split = prepared(&record, &settings());
     assert_eq!(split.segments.len(), 2);
-    assert_eq!(split.records[0].gaps[0].to_string(), "13.98 to 14.08 s: Q missing, left out");
+    assert_eq!(
+        split.records[0].gaps[0].to_string(),
+        "13.98 to 14.08 s: Q missing, left out"
+    );
     assert!((split.segments[1].start_s - 14.08).abs() < 0.021);
     assert!(
         (split.segments[1].outputs.row(10)
-            - record.outputs.row((split.segments[1].start_s / 0.02).round() as usize + 10))
+            - record
+                .outputs
+                .row((split.segments[1].start_s / 0.02).round() as usize + 10))
         .amax()
             < 1e-9
     );
@@ -109,8 +137,18 @@ fn missing_stamps_and_missing_rows_are_gaps_with_their_own_words() {
     (600..650).for_each(|n| record.time_s[n] = f64::NAN);
     (1200..2000).for_each(|n| record.time_s[n] += 4.0);
     let prepared = prepared(&record, &settings());
-    let gaps: Vec<String> = prepared.records[0].gaps.iter().map(ToString::to_string).collect();
-    assert_eq!(gaps, ["11.98 to 13.00 s: time stamps missing, left out", "23.98 to 28.00 s: rows missing, left out"]);
+    let gaps: Vec<String> = prepared.records[0]
+        .gaps
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    assert_eq!(
+        gaps,
+        [
+            "11.98 to 13.00 s: time stamps missing, left out",
+            "23.98 to 28.00 s: rows missing, left out"
+        ]
+    );
     assert_eq!(prepared.segments.len(), 3);
 }
 
@@ -121,8 +159,15 @@ fn short_pieces_are_dropped_with_a_caution_and_a_place() {
     (1101..1110).for_each(|n| record.inputs[(n, 0)] = f64::NAN);
     let prepared = prepared(&record, &settings());
     assert_eq!(prepared.segments.len(), 1);
-    assert!(words(&prepared.cautions).contains("sweep: 7.8 s from 22.2"), "{}", words(&prepared.cautions));
-    assert!(matches!(prepared.records[0].gaps.last().unwrap().cause, Cause::SegmentTooShort(_)));
+    assert!(
+        words(&prepared.cautions).contains("sweep: 7.8 s from 22.2"),
+        "{}",
+        words(&prepared.cautions)
+    );
+    assert!(matches!(
+        prepared.records[0].gaps.last().unwrap().cause,
+        Cause::SegmentTooShort(_)
+    ));
 }
 
 #[test]
@@ -132,8 +177,17 @@ fn an_output_that_stands_still_while_the_others_move_is_a_gap() {
     (801..900).for_each(|n| record.outputs[(n, 0)] = value);
     let cut = prepared(&record, &settings());
     assert_eq!(cut.segments.len(), 2);
-    assert_eq!(cut.records[0].gaps[0].to_string(), "16.00 to 18.00 s: P frozen, left out");
-    let kept = prepared(&record, &Preparation { keep_frozen: true, ..settings() });
+    assert_eq!(
+        cut.records[0].gaps[0].to_string(),
+        "16.00 to 18.00 s: P frozen, left out"
+    );
+    let kept = prepared(
+        &record,
+        &Preparation {
+            keep_frozen: true,
+            ..settings()
+        },
+    );
     assert_eq!(kept.segments.len(), 1);
 }
 
@@ -142,7 +196,11 @@ fn a_held_input_and_a_coarse_output_are_not_frozen() {
     let mut record = wandering(3000);
     (0..2000).for_each(|n| record.inputs[(n, 1)] = 50.0);
     // A resolution of 3 in a signal of about 7 repeats values for a second and more.
-    record.outputs.column_mut(1).iter_mut().for_each(|y| *y = (*y / 3.0).round() * 3.0);
+    record
+        .outputs
+        .column_mut(1)
+        .iter_mut()
+        .for_each(|y| *y = (*y / 3.0).round() * 3.0);
     let prepared = prepared(&record, &settings());
     assert_eq!(prepared.segments.len(), 1, "{:?}", prepared.records);
 }
@@ -166,7 +224,11 @@ fn channels_with_the_same_gap_are_named_together() {
     }
     let prepared = prepared(&record, &settings());
     assert_eq!(prepared.records[0].gaps.len(), 1);
-    assert!(prepared.records[0].gaps[0].to_string().contains("LON, P and Q missing"));
+    assert!(
+        prepared.records[0].gaps[0]
+            .to_string()
+            .contains("LON, P and Q missing")
+    );
 }
 
 #[test]
@@ -174,17 +236,29 @@ fn delays_and_holds_shift_a_channel_the_right_way() {
     // Every channel is a ramp of 1 per second, so that a channel's value less the time is its shift.
     let time_s: Vec<f64> = (0..1000).map(|n| 0.02 * n as f64).collect();
     let ramp = DMatrix::from_fn(1000, 2, |n, _| 0.02 * n as f64);
-    let record = FlightRecord { name: "ramp".into(), time_s, inputs: ramp.clone(), outputs: ramp };
+    let record = FlightRecord {
+        name: "ramp".into(),
+        time_s,
+        inputs: ramp.clone(),
+        outputs: ramp,
+    };
     let mut settings = settings();
     settings.outputs[0].delay_s = 0.05;
     settings.inputs[0].hold = Hold::Command { hold_s: 0.1 };
     settings.outputs[1].hold = Hold::SlowSensor { hold_s: 0.2 };
     let segment = prepared(&record, &settings).segments.remove(0);
     let time_s = segment.start_s + 0.02 * 100.0;
-    let shifts =
-        [segment.inputs[(100, 0)], segment.inputs[(100, 1)], segment.outputs[(100, 0)], segment.outputs[(100, 1)]];
+    let shifts = [
+        segment.inputs[(100, 0)],
+        segment.inputs[(100, 1)],
+        segment.outputs[(100, 0)],
+        segment.outputs[(100, 1)],
+    ];
     for (value, shift) in shifts.iter().zip([-0.05, 0.0, 0.05, 0.1]) {
-        assert!((value - time_s - shift).abs() < 1e-9, "{value} {time_s} {shift}");
+        assert!(
+            (value - time_s - shift).abs() < 1e-9,
+            "{value} {time_s} {shift}"
+        );
     }
 }
 
@@ -202,7 +276,10 @@ fn fresh_samples_of_a_slow_sensor_are_joined_by_straight_lines() {
     assert_eq!(prepared.segments.len(), 1);
     for n in 0..990 {
         // Straight lines over 0.1 s of a sine of 0.3 rad/s are off by (0.03)^2 / 8, about 1e-4.
-        assert!((prepared.segments[0].outputs[(n, 0)] - (0.3 * 0.02 * n as f64).sin()).abs() < 1.2e-4, "{n}");
+        assert!(
+            (prepared.segments[0].outputs[(n, 0)] - (0.3 * 0.02 * n as f64).sin()).abs() < 1.2e-4,
+            "{n}"
+        );
     }
 }
 
@@ -213,8 +290,16 @@ fn stairs_in_an_input_raise_a_caution_with_three_choices() {
     record.inputs.column_mut(0).copy_from_slice(&stair);
     let mut settings = settings();
     let text = words(&prepared(&record, &settings).cautions);
-    assert!(text.contains("LON: 80 % of consecutive samples are equal, it changes every 100 ms"), "{text}");
-    for choice in ["50 ms later", "fresh samples", "50 ms earlier", "nothing done"] {
+    assert!(
+        text.contains("LON: 80 % of consecutive samples are equal, it changes every 100 ms"),
+        "{text}"
+    );
+    for choice in [
+        "50 ms later",
+        "fresh samples",
+        "50 ms earlier",
+        "nothing done",
+    ] {
         assert!(text.contains(choice), "{choice}: {text}");
     }
     settings.inputs[0].hold = Hold::Acts;
@@ -232,17 +317,28 @@ fn an_input_at_rest_between_its_sweeps_is_no_stair() {
 fn uneven_stamps_are_refused_unless_resampling_is_allowed() {
     let mut record = wandering(1000);
     let jitter = noise(5, 1000);
-    record.time_s.iter_mut().zip(&jitter).for_each(|(t, x)| *t += 0.008 * x);
+    record
+        .time_s
+        .iter_mut()
+        .zip(&jitter)
+        .for_each(|(t, x)| *t += 0.008 * x);
     (0..1000).for_each(|n| record.outputs[(n, 0)] = record.time_s[n].sin());
     let refused = prepare(std::slice::from_ref(&record), &settings(), &Sequential).unwrap_err();
     assert!(matches!(refused, PreparationError::UnevenSampling { percent, .. } if percent > 20.0));
-    let allowed = Preparation { resample: true, ..settings() };
+    let allowed = Preparation {
+        resample: true,
+        ..settings()
+    };
     let prepared = prepared(&record, &allowed);
     assert!(words(&prepared.cautions).contains("interpolated to even steps"));
     let segment = &prepared.segments[0];
     for n in 0..segment.outputs.nrows() {
         // Straight lines over at most 0.036 s of a sine of 1 rad/s: 0.036^2 / 8 = 1.6e-4.
-        assert!((segment.outputs[(n, 0)] - (segment.start_s + n as f64 * segment.sample_time_s).sin()).abs() < 1.7e-4);
+        assert!(
+            (segment.outputs[(n, 0)] - (segment.start_s + n as f64 * segment.sample_time_s).sin())
+                .abs()
+                < 1.7e-4
+        );
     }
 }
 
@@ -257,8 +353,13 @@ fn one_late_stamp_is_no_jitter() {
 fn time_that_does_not_go_on_is_refused_with_its_row() {
     let mut record = wandering(1000);
     record.time_s[617] = record.time_s[616];
-    let text = prepare(std::slice::from_ref(&record), &settings(), &Sequential).unwrap_err().to_string();
-    assert!(text.contains("time goes from 12.32 s to 12.32 s in row 618"), "{text}");
+    let text = prepare(std::slice::from_ref(&record), &settings(), &Sequential)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        text.contains("time goes from 12.32 s to 12.32 s in row 618"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -266,7 +367,9 @@ fn channels_that_do_not_move_are_named() {
     let mut record = wandering(1000);
     record.inputs.column_mut(1).fill(50.0);
     record.outputs.column_mut(0).fill(0.1);
-    let text = prepare(&[record], &settings(), &Sequential).unwrap_err().to_string();
+    let text = prepare(&[record], &settings(), &Sequential)
+        .unwrap_err()
+        .to_string();
     assert_eq!(text, "PED and P never moved in any record: leave them out");
 }
 
@@ -274,23 +377,36 @@ fn channels_that_do_not_move_are_named() {
 fn copies_twins_and_wrong_units_raise_cautions() {
     let mut record = wandering(1000);
     let stick = record.inputs.column(0).into_owned();
-    record.outputs.column_mut(0).copy_from(&(&stick * -2.0).add_scalar(5.0));
+    record
+        .outputs
+        .column_mut(0)
+        .copy_from(&(&stick * -2.0).add_scalar(5.0));
     let pedal = record.inputs.column(1) * 0.05 + &stick;
     record.inputs.column_mut(1).copy_from(&pedal);
     record.outputs[(500, 1)] = 400.0;
     let mut settings = settings();
     settings.outputs[1].limit = Some(300.0);
     let text = words(&prepared(&record, &settings).cautions);
-    assert!(text.contains("Q reaches 400.000, beyond 300: check its unit"), "{text}");
+    assert!(
+        text.contains("Q reaches 400.000, beyond 300: check its unit"),
+        "{text}"
+    );
     assert!(text.contains("LON and PED always moved together"), "{text}");
-    assert!(text.contains("P is a copy of the input LON: leave it out"), "{text}");
+    assert!(
+        text.contains("P is a copy of the input LON: leave it out"),
+        "{text}"
+    );
 }
 
 #[test]
 fn records_that_are_too_short_say_how_short() {
-    let text = prepare(&[wandering(300)], &settings(), &Sequential).unwrap_err().to_string();
+    let text = prepare(&[wandering(300)], &settings(), &Sequential)
+        .unwrap_err()
+        .to_string();
     assert!(
-        text.starts_with("nothing is left: the longest piece without a gap lasts 6.0 s, and 10.0 s are the least"),
+        text.starts_with(
+            "nothing is left: the longest piece without a gap lasts 6.0 s, and 10.0 s are the least"
+        ),
         "{text}"
     );
 }
@@ -311,9 +427,16 @@ fn an_unused_record_does_not_spoil_the_others() {
 fn hostile_records_are_refused_or_cut_and_never_panic() {
     let good = wandering(1000);
     let of = |record: FlightRecord| prepare(&[record], &settings(), &Sequential);
-    assert_eq!(prepare(&[], &settings(), &Sequential), Err(PreparationError::NoRecords));
+    assert_eq!(
+        prepare(&[], &settings(), &Sequential),
+        Err(PreparationError::NoRecords)
+    );
     assert!(matches!(
-        prepare(std::slice::from_ref(&good), &Preparation::of(&[], &["P"]), &Sequential),
+        prepare(
+            std::slice::from_ref(&good),
+            &Preparation::of(&[], &["P"]),
+            &Sequential
+        ),
         Err(PreparationError::NoChannels(_))
     ));
     let part = |rows: usize| FlightRecord {
@@ -323,17 +446,48 @@ fn hostile_records_are_refused_or_cut_and_never_panic() {
         ..good.clone()
     };
     for rows in 0..3 {
-        assert!(matches!(of(part(rows)), Err(PreparationError::NothingLeft { .. })), "{rows}");
+        assert!(
+            matches!(of(part(rows)), Err(PreparationError::NothingLeft { .. })),
+            "{rows}"
+        );
     }
-    let other = FlightRecord { inputs: DMatrix::zeros(1000, 3), ..good.clone() };
-    assert!(matches!(of(other), Err(PreparationError::ChannelsDiffer { found: 3, named: 2, .. })));
-    let other = FlightRecord { time_s: vec![0.0; 7], ..good.clone() };
-    assert!(matches!(of(other), Err(PreparationError::LengthsDiffer { stamps: 7, .. })));
+    let other = FlightRecord {
+        inputs: DMatrix::zeros(1000, 3),
+        ..good.clone()
+    };
+    assert!(matches!(
+        of(other),
+        Err(PreparationError::ChannelsDiffer {
+            found: 3,
+            named: 2,
+            ..
+        })
+    ));
+    let other = FlightRecord {
+        time_s: vec![0.0; 7],
+        ..good.clone()
+    };
+    assert!(matches!(
+        of(other),
+        Err(PreparationError::LengthsDiffer { stamps: 7, .. })
+    ));
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let other = FlightRecord { time_s: vec![value; 1000], ..good.clone() };
-        assert!(matches!(of(other), Err(PreparationError::NothingLeft { .. })));
-        let other = FlightRecord { outputs: DMatrix::from_element(1000, 2, value), ..good.clone() };
-        assert!(matches!(of(other), Err(PreparationError::NothingLeft { .. })));
+        let other = FlightRecord {
+            time_s: vec![value; 1000],
+            ..good.clone()
+        };
+        assert!(matches!(
+            of(other),
+            Err(PreparationError::NothingLeft { .. })
+        ));
+        let other = FlightRecord {
+            outputs: DMatrix::from_element(1000, 2, value),
+            ..good.clone()
+        };
+        assert!(matches!(
+            of(other),
+            Err(PreparationError::NothingLeft { .. })
+        ));
     }
     // Stamps of absurd size: the grid is laid only where there are samples.
     let mut far = good.clone();
@@ -349,19 +503,30 @@ fn hostile_records_are_refused_or_cut_and_never_panic() {
             prepare(std::slice::from_ref(&good), &shifted, &Sequential),
             Err(PreparationError::Shift { .. })
         ));
-        let least = Preparation { least_segment_s: -seconds, ..settings() };
+        let least = Preparation {
+            least_segment_s: -seconds,
+            ..settings()
+        };
         assert!(matches!(
             prepare(std::slice::from_ref(&good), &least, &Sequential),
             Err(PreparationError::LeastSegment(_))
         ));
     }
-    let bridge = Preparation { longest_bridge: usize::MAX, ..settings() };
-    assert!(matches!(prepare(std::slice::from_ref(&good), &bridge, &Sequential), Err(PreparationError::Bridge(_))));
+    let bridge = Preparation {
+        longest_bridge: usize::MAX,
+        ..settings()
+    };
+    assert!(matches!(
+        prepare(std::slice::from_ref(&good), &bridge, &Sequential),
+        Err(PreparationError::Bridge(_))
+    ));
     let mut huge = good;
     huge.outputs[(3, 0)] = 1e300;
     assert!(
-        prepare(&[huge], &settings(), &Sequential)
-            .is_ok_and(|prepared| prepared.segments.iter().all(|p| p.outputs.iter().all(|y| y.is_finite())))
+        prepare(&[huge], &settings(), &Sequential).is_ok_and(|prepared| prepared
+            .segments
+            .iter()
+            .all(|p| p.outputs.iter().all(|y| y.is_finite())))
     );
 }
 

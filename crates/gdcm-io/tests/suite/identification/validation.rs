@@ -31,7 +31,13 @@ fn record(model: &StateSpace, initial: &[f64], samples: usize, dt: f64) -> Segme
     inputs.add_scalar_mut(40.0);
     outputs.column_mut(0).add_scalar_mut(3.0);
     outputs.column_mut(1).add_scalar_mut(-0.7);
-    Segment { record: 3, start_s: 5.0, sample_time_s: dt, inputs, outputs }
+    Segment {
+        record: 3,
+        start_s: 5.0,
+        sample_time_s: dt,
+        inputs,
+        outputs,
+    }
 }
 
 #[test]
@@ -40,7 +46,10 @@ fn a_ramp_and_a_step_are_answered_as_in_the_textbook() {
     let [a, b, c, d] = [-2.0, 3.0, 1.0, 0.0].map(|entry| DMatrix::from_element(1, 1, entry));
     let model = StateSpace::new(a, b, c, d).unwrap();
     let held = FirstOrderHold::of(&model, 0.5).unwrap();
-    let ramp = held.simulate(&DVector::zeros(1), &DMatrix::from_fn(20, 1, |n, _| 0.5 * n as f64));
+    let ramp = held.simulate(
+        &DVector::zeros(1),
+        &DMatrix::from_fn(20, 1, |n, _| 0.5 * n as f64),
+    );
     let step = held.simulate(&DVector::zeros(1), &DMatrix::from_element(20, 1, 1.0));
     for n in 0..20 {
         let t = 0.5 * n as f64;
@@ -54,7 +63,13 @@ fn a_ramp_and_a_step_are_answered_as_in_the_textbook() {
 fn the_exact_model_fits_a_record_whole_from_any_state_and_trim() {
     let model = slow_system();
     let segment = record(&model, &[1.0, -2.0, 0.5, 3.0], 1234, 0.04);
-    let validation = validate(&model, &[segment], &ValidationSettings::unfiltered(), &Sequential).unwrap();
+    let validation = validate(
+        &model,
+        &[segment],
+        &ValidationSettings::unfiltered(),
+        &Sequential,
+    )
+    .unwrap();
     for (fit, theil) in validation.fit_percent.iter().zip(&validation.theil) {
         // Rounding of a least-squares problem with columns of condition about 1e3.
         assert!(fit.unwrap() > 100.0 - 1e-7 && theil.unwrap() < 1e-9);
@@ -65,14 +80,26 @@ fn the_exact_model_fits_a_record_whole_from_any_state_and_trim() {
 fn windows_follow_each_other_and_leave_no_sample_out() {
     let model = slow_system();
     let segment = record(&model, &[0.0; 4], 1234, 0.04);
-    let validation =
-        validate(&model, std::slice::from_ref(&segment), &ValidationSettings::unfiltered(), &Sequential).unwrap();
-    assert_eq!(validation.windows.len(), 5, "49.36 s take five windows of at most 10 s");
+    let validation = validate(
+        &model,
+        std::slice::from_ref(&segment),
+        &ValidationSettings::unfiltered(),
+        &Sequential,
+    )
+    .unwrap();
+    assert_eq!(
+        validation.windows.len(),
+        5,
+        "49.36 s take five windows of at most 10 s"
+    );
     let mut next = 5.0;
     let mut rows = 0;
     for window in &validation.windows {
         assert!((window.start_s - next).abs() < 1e-9 && window.record == 3);
-        assert_eq!(window.measured, segment.outputs.rows(rows, window.measured.nrows()));
+        assert_eq!(
+            window.measured,
+            segment.outputs.rows(rows, window.measured.nrows())
+        );
         next += 0.04 * window.measured.nrows() as f64;
         rows += window.measured.nrows();
     }
@@ -83,9 +110,24 @@ fn windows_follow_each_other_and_leave_no_sample_out() {
 fn an_unstable_model_has_windows_of_three_time_constants() {
     let model = unstable(0.5);
     let segment = record(&model, &[1e-6, 0.0], 600, 0.05);
-    let validation = validate(&model, &[segment], &ValidationSettings::unfiltered(), &Sequential).unwrap();
-    assert_eq!(validation.windows.len(), 5, "30 s in windows of 3 / 0.5 = 6 s");
-    assert!(validation.fit_percent.iter().all(|fit| fit.unwrap() > 99.999));
+    let validation = validate(
+        &model,
+        &[segment],
+        &ValidationSettings::unfiltered(),
+        &Sequential,
+    )
+    .unwrap();
+    assert_eq!(
+        validation.windows.len(),
+        5,
+        "30 s in windows of 3 / 0.5 = 6 s"
+    );
+    assert!(
+        validation
+            .fit_percent
+            .iter()
+            .all(|fit| fit.unwrap() > 99.999)
+    );
 }
 
 #[test]
@@ -93,8 +135,16 @@ fn a_model_that_diverges_within_a_few_samples_is_refused_in_words() {
     let model = unstable(40.0);
     let mut segment = record(&unstable(-1.0), &[0.0, 0.0], 600, 0.05);
     segment.outputs.column_mut(0).add_scalar_mut(1.0);
-    let refused = validate(&model, &[segment], &ValidationSettings::unfiltered(), &Sequential).unwrap_err();
-    assert!(matches!(refused, ValidationError::TooShort(window_s) if (window_s - 0.075).abs() < 1e-12));
+    let refused = validate(
+        &model,
+        &[segment],
+        &ValidationSettings::unfiltered(),
+        &Sequential,
+    )
+    .unwrap_err();
+    assert!(
+        matches!(refused, ValidationError::TooShort(window_s) if (window_s - 0.075).abs() < 1e-12)
+    );
     assert!(refused.to_string().contains("too short to compare in time"));
 }
 
@@ -103,13 +153,26 @@ fn noise_lowers_the_fit_by_its_share() {
     let model = slow_system();
     let mut segment = record(&model, &[0.0; 4], 2500, 0.04);
     let clean = segment.outputs.clone();
-    let std = (0..2).map(|o| clean.column(o).variance().sqrt()).collect::<Vec<_>>();
+    let std = (0..2)
+        .map(|o| clean.column(o).variance().sqrt())
+        .collect::<Vec<_>>();
     for (o, std) in std.iter().enumerate() {
         // Uniform noise of +-1 has a standard deviation of 1 / sqrt 3; here a tenth of the output's.
         let noise = noise(99 + o as u64, 2500);
-        segment.outputs.column_mut(o).iter_mut().zip(noise).for_each(|(y, v)| *y += 0.1 * std * 3.0_f64.sqrt() * v);
+        segment
+            .outputs
+            .column_mut(o)
+            .iter_mut()
+            .zip(noise)
+            .for_each(|(y, v)| *y += 0.1 * std * 3.0_f64.sqrt() * v);
     }
-    let validation = validate(&model, &[segment], &ValidationSettings::unfiltered(), &Sequential).unwrap();
+    let validation = validate(
+        &model,
+        &[segment],
+        &ValidationSettings::unfiltered(),
+        &Sequential,
+    )
+    .unwrap();
     for (fit, theil) in validation.fit_percent.iter().zip(&validation.theil) {
         // 90 % less what the state and offset of each of ten windows take of the noise; Theil is half of the error's share.
         assert!((fit.unwrap() - 90.0).abs() < 0.6, "{fit:?}");
@@ -124,24 +187,47 @@ fn vibration_above_the_low_pass_does_not_count() {
     for n in 0..2500 {
         segment.outputs[(n, 0)] += 5.0 * (100.0 * 0.02 * n as f64).sin();
     }
-    let raw = validate(&model, std::slice::from_ref(&segment), &ValidationSettings::unfiltered(), &Sequential).unwrap();
-    let filtered = validate(&model, &[segment], &ValidationSettings::filtered(8.0), &Sequential).unwrap();
+    let raw = validate(
+        &model,
+        std::slice::from_ref(&segment),
+        &ValidationSettings::unfiltered(),
+        &Sequential,
+    )
+    .unwrap();
+    let filtered = validate(
+        &model,
+        &[segment],
+        &ValidationSettings::filtered(8.0),
+        &Sequential,
+    )
+    .unwrap();
     assert!(raw.fit_percent[0].unwrap() < 50.0);
     // The ends of the record, reflected in the middle of a vibration, keep a little of it.
-    assert!(filtered.fit_percent[0].unwrap() > 95.0, "{:?}", filtered.fit_percent);
+    assert!(
+        filtered.fit_percent[0].unwrap() > 95.0,
+        "{:?}",
+        filtered.fit_percent
+    );
 }
 
 #[test]
 fn the_system_that_made_the_known_record_fits_it_about_as_well_as_the_identified_model() {
     let known = known();
     let held_out = noisy(&known, 5).split_off(4);
-    let validation = validate(&slow_system(), &held_out, &ValidationSettings::filtered(8.0), &Sequential).unwrap();
+    let validation = validate(
+        &slow_system(),
+        &held_out,
+        &ValidationSettings::filtered(8.0),
+        &Sequential,
+    )
+    .unwrap();
     let expected = &known["noisy"]["expected"];
     for o in 0..2 {
         // The reference's figures are of an identified model, this is the system behind the record but for the hold of its
         // inputs: 3 % between them is what the noise of one record does.
         assert!(
-            (validation.fit_percent[o].unwrap() - list(&expected["held_out_fit_percent"])[o]).abs() < 3.0,
+            (validation.fit_percent[o].unwrap() - list(&expected["held_out_fit_percent"])[o]).abs()
+                < 3.0,
             "{:?} {:?}",
             validation.fit_percent,
             validation.theil
@@ -154,7 +240,13 @@ fn the_system_that_made_the_known_record_fits_it_about_as_well_as_the_identified
 fn an_output_that_does_not_move_has_no_fit() {
     let mut segment = record(&slow_system(), &[0.0; 4], 600, 0.04);
     segment.outputs.column_mut(1).fill(2.0);
-    let validation = validate(&slow_system(), &[segment], &ValidationSettings::unfiltered(), &Sequential).unwrap();
+    let validation = validate(
+        &slow_system(),
+        &[segment],
+        &ValidationSettings::unfiltered(),
+        &Sequential,
+    )
+    .unwrap();
     assert_eq!(validation.fit_percent[1], None);
     assert!(validation.fit_percent[0].is_some());
 }
@@ -164,36 +256,77 @@ fn hostile_models_and_records_are_refused() {
     let good = slow_system();
     let segment = record(&good, &[0.0; 4], 600, 0.04);
     let settings = ValidationSettings::unfiltered();
-    let of = |model: &StateSpace| validate(model, std::slice::from_ref(&segment), &settings, &Sequential).map(|_| ());
-    assert_eq!(validate(&good, &[], &settings, &Sequential), Err(ValidationError::NoSegments));
-    let no_window = ValidationSettings { longest_window_s: f64::NAN, low_pass: None };
+    let of = |model: &StateSpace| {
+        validate(
+            model,
+            std::slice::from_ref(&segment),
+            &settings,
+            &Sequential,
+        )
+        .map(|_| ())
+    };
     assert_eq!(
-        validate(&good, std::slice::from_ref(&segment), &no_window, &Sequential),
+        validate(&good, &[], &settings, &Sequential),
+        Err(ValidationError::NoSegments)
+    );
+    let no_window = ValidationSettings {
+        longest_window_s: f64::NAN,
+        low_pass: None,
+    };
+    assert_eq!(
+        validate(
+            &good,
+            std::slice::from_ref(&segment),
+            &no_window,
+            &Sequential
+        ),
         Err(ValidationError::NoWindow)
     );
 
     let with = |a: DMatrix<f64>, inputs: usize| {
         let b = good.b().columns(0, inputs).into_owned();
-        StateSpace::new(a, b, good.c().clone(), good.d().columns(0, inputs).into_owned()).unwrap()
+        StateSpace::new(
+            a,
+            b,
+            good.c().clone(),
+            good.d().columns(0, inputs).into_owned(),
+        )
+        .unwrap()
     };
     for value in [1e300, -1e300] {
         let mut a = good.a().clone();
         (a[(1, 2)], a[(2, 1)]) = (value, -value);
         assert!(of(&with(a, 2)).is_err(), "{value}");
     }
-    assert_eq!(of(&with(good.a().clone(), 1)), Err(ValidationError::ChannelsDiffer(3)));
+    assert_eq!(
+        of(&with(good.a().clone(), 1)),
+        Err(ValidationError::ChannelsDiffer(3))
+    );
 
     let mut broken = segment.clone();
     broken.outputs[(30, 0)] = f64::NAN;
-    assert_eq!(validate(&good, &[broken], &settings, &Sequential), Err(ValidationError::NotFinite));
+    assert_eq!(
+        validate(&good, &[broken], &settings, &Sequential),
+        Err(ValidationError::NotFinite)
+    );
     let short = Segment {
         inputs: segment.inputs.rows(0, 3).into(),
         outputs: segment.outputs.rows(0, 3).into(),
         ..segment.clone()
     };
-    assert!(matches!(validate(&good, &[short], &settings, &Sequential), Err(ValidationError::TooShort(_))));
-    let empty = Segment { inputs: DMatrix::zeros(0, 2), outputs: DMatrix::zeros(0, 2), ..segment };
-    assert!(matches!(validate(&good, &[empty], &settings, &Sequential), Err(ValidationError::TooShort(_))));
+    assert!(matches!(
+        validate(&good, &[short], &settings, &Sequential),
+        Err(ValidationError::TooShort(_))
+    ));
+    let empty = Segment {
+        inputs: DMatrix::zeros(0, 2),
+        outputs: DMatrix::zeros(0, 2),
+        ..segment
+    };
+    assert!(matches!(
+        validate(&good, &[empty], &settings, &Sequential),
+        Err(ValidationError::TooShort(_))
+    ));
 }
 
 proptest! {

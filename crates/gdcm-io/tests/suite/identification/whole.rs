@@ -6,8 +6,8 @@ use gdcm_model::dataset::{ChannelSide, ModelBands, Pair, StateSpace};
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 use gdcm_sysid::identification::{
-    ContradictingRecord, FlightRecord, Identification, IdentificationCaution, IdentificationError, Options,
-    Preparation, RecordFault, identify,
+    ContradictingRecord, FlightRecord, Identification, IdentificationCaution, IdentificationError,
+    Options, Preparation, RecordFault, identify,
 };
 use nalgebra::{Complex, DMatrix, dmatrix};
 use rayon::prelude::*;
@@ -19,62 +19,134 @@ fn known_records(known: &Value) -> Vec<FlightRecord> {
     let record = |known: &Value| {
         let (inputs, outputs) = (matrix(&known["u"]), matrix(&known["y"]));
         let dt = known["dt"].as_f64().unwrap();
-        let time_s = (0..inputs.nrows()).map(|sample| sample as f64 * dt).collect();
-        FlightRecord { name: known["name"].as_str().unwrap().to_owned(), time_s, inputs, outputs }
+        let time_s = (0..inputs.nrows())
+            .map(|sample| sample as f64 * dt)
+            .collect();
+        FlightRecord {
+            name: known["name"].as_str().unwrap().to_owned(),
+            time_s,
+            inputs,
+            outputs,
+        }
     };
-    known["records"].as_array().unwrap().iter().map(record).collect()
+    known["records"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(record)
+        .collect()
 }
 
 fn known_options(known: &Value) -> Options {
     let band = list(&known["band"]);
-    let whole = |name: &str| list(&known[name]).into_iter().map(|value| value as usize).collect();
+    let whole = |name: &str| {
+        list(&known[name])
+            .into_iter()
+            .map(|value| value as usize)
+            .collect()
+    };
     Options {
         held_out: vec![4],
         orders: Some(whole("orders")),
-        poles: list(&known["poles_a"]).into_iter().map(|pole| pole / band[1]).collect(),
+        poles: list(&known["poles_a"])
+            .into_iter()
+            .map(|pole| pole / band[1])
+            .collect(),
         pasts: Some(whole("pasts")),
-        ..Options::new([band[0], band[1]], Preparation::of(&["U1", "U2"], &["Y1", "Y2"]))
+        ..Options::new(
+            [band[0], band[1]],
+            Preparation::of(&["U1", "U2"], &["Y1", "Y2"]),
+        )
     }
 }
 
 #[test]
 fn a_noisy_closed_loop_gives_what_independent_code_gives() {
     let known = &known()["noisy"];
-    let found = identify(&known_records(known), &known_options(known), &Sequential, &Unobserved).unwrap();
+    let found = identify(
+        &known_records(known),
+        &known_options(known),
+        &Sequential,
+        &Unobserved,
+    )
+    .unwrap();
     let expected = &known["expected"];
     // Independent numpy code; the tolerances stand in its file.
-    assert_eq!(space(&found.refined).order() as f64, expected["order"].as_f64().unwrap());
-    let known_orders = found.criteria.iter().filter(|(order, _)| expected["bic"][order.to_string()].is_number());
+    assert_eq!(
+        space(&found.refined).order() as f64,
+        expected["order"].as_f64().unwrap()
+    );
+    let known_orders = found
+        .criteria
+        .iter()
+        .filter(|(order, _)| expected["bic"][order.to_string()].is_number());
     assert!(known_orders.clone().count() >= 3, "{:?}", found.criteria);
     for (order, value) in known_orders {
         let expected = expected["bic"][order.to_string()].as_f64().unwrap();
         // The first line of a record does not count any more (M14.12), which those figures still have.
-        assert!((value / expected - 1.0).abs() < 0.03, "BIC of order {order}: {value}, not {expected}");
+        assert!(
+            (value / expected - 1.0).abs() < 0.03,
+            "BIC of order {order}: {value}, not {expected}"
+        );
     }
     // Per degree of freedom that 20 parameters leave of those of 4 records of 48 lines of 2 outputs (M14.13).
-    let spare = found.record_fits.iter().filter(|fit| !fit.held_out).map(|fit| fit.freedom).sum::<usize>() as f64;
+    let spare = found
+        .record_fits
+        .iter()
+        .filter(|fit| !fit.held_out)
+        .map(|fit| fit.freedom)
+        .sum::<usize>() as f64;
     let chi = expected["chi"].as_f64().unwrap() * spare / (spare - 20.0);
-    assert!((found.cost / chi - 1.0).abs() < 0.02, "J/dof {} {chi}", found.cost);
+    assert!(
+        (found.cost / chi - 1.0).abs() < 0.02,
+        "J/dof {} {chi}",
+        found.cost
+    );
     let omegas = list(&expected["w"]);
     let part = |name: &str, part: &str| -> Vec<DMatrix<f64>> {
-        expected[name][part].as_array().unwrap().iter().map(matrix).collect()
+        expected[name][part]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(matrix)
+            .collect()
     };
     for (k, &omega) in omegas.iter().enumerate() {
         let model = response(space(&found.refined), omega);
         let of = |name: &str| part(name, "re")[k].zip_map(&part(name, "im")[k], Complex::new);
         let (same, truth) = (of("H"), of("H_true_with_hold"));
         for at in 0..model.len() {
-            assert!((model[at] - same[at]).norm() < 0.02 * same[at].norm(), "{omega} rad/s, {at}");
+            assert!(
+                (model[at] - same[at]).norm() < 0.02 * same[at].norm(),
+                "{omega} rad/s, {at}"
+            );
             let error = (model[at] / truth[at]).ln();
-            assert!(8.686 * error.re.abs() < 3.06 && error.im.abs().to_degrees() < 17.2, "{omega} rad/s, {at}");
+            assert!(
+                8.686 * error.re.abs() < 3.06 && error.im.abs().to_degrees() < 17.2,
+                "{omega} rad/s, {at}"
+            );
         }
     }
     let validation = found.validation.unwrap();
-    for (found, expected) in validation.fit_percent.iter().zip(list(&expected["held_out_fit_percent"])) {
-        assert!((found.unwrap() - expected).abs() < 1.5, "fit {found:?}, not {expected}");
+    for (found, expected) in validation
+        .fit_percent
+        .iter()
+        .zip(list(&expected["held_out_fit_percent"]))
+    {
+        assert!(
+            (found.unwrap() - expected).abs() < 1.5,
+            "fit {found:?}, not {expected}"
+        );
     }
-    for (found, expected) in validation.theil.iter().zip(list(&expected["held_out_theil"])) {
-        assert!((found.unwrap() - expected).abs() < 0.02, "Theil {found:?}, not {expected}");
+    for (found, expected) in validation
+        .theil
+        .iter()
+        .zip(list(&expected["held_out_theil"]))
+    {
+        assert!(
+            (found.unwrap() - expected).abs() < 0.02,
+            "Theil {found:?}, not {expected}"
+        );
     }
 }
 
@@ -86,12 +158,19 @@ pub fn quick(channels: (usize, usize)) -> Options {
         orders: Some(vec![4, 6, 8]),
         poles: vec![0.54],
         pasts: Some(vec![6]),
-        ..Options::new([0.6, 6.0], Preparation::of(&INPUTS[..channels.0], &OUTPUTS[..channels.1]))
+        ..Options::new(
+            [0.6, 6.0],
+            Preparation::of(&INPUTS[..channels.0], &OUTPUTS[..channels.1]),
+        )
     }
 }
 
 fn bands(found: &Identification) -> &ModelBands {
-    found.refined.bands.as_ref().expect("the recommended model has bands")
+    found
+        .refined
+        .bands
+        .as_ref()
+        .expect("the recommended model has bands")
 }
 
 fn omegas(found: &Identification) -> &[f64] {
@@ -108,7 +187,10 @@ fn sd_deg(found: &Identification, k: usize, (output, input): (usize, usize)) -> 
 }
 
 fn responses(found: &Identification) -> Vec<DMatrix<Complex<f64>>> {
-    omegas(found).iter().map(|&omega| response(space(&found.refined), omega)).collect()
+    omegas(found)
+        .iter()
+        .map(|&omega| response(space(&found.refined), omega))
+        .collect()
 }
 
 /// Greatest relative difference of the responses of two identifications.
@@ -128,8 +210,17 @@ fn difference(one: &Identification, other: impl Fn(usize, usize, usize) -> Compl
 #[test]
 fn exact_records_give_the_exact_model() {
     let aircraft = stable_aircraft();
-    let flight = Flight { sample_time_s: 0.02, ..Flight::of(aircraft.clone(), Gusts::default()) };
-    let found = identify(&flight.records(1, 3), &quick((2, 2)), &Sequential, &Unobserved).unwrap();
+    let flight = Flight {
+        sample_time_s: 0.02,
+        ..Flight::of(aircraft.clone(), Gusts::default())
+    };
+    let found = identify(
+        &flight.records(1, 3),
+        &quick((2, 2)),
+        &Sequential,
+        &Unobserved,
+    )
+    .unwrap();
     let mut worst = 0.0_f64;
     for (omega, own) in omegas(&found).iter().zip(responses(&found)) {
         let truth = response(&aircraft, *omega);
@@ -193,14 +284,22 @@ fn trims_change_nothing_and_drifts_next_to_nothing() {
     for (k, (trimmed, own)) in all.iter().zip(responses(&found)).enumerate() {
         for (at, (trimmed, own)) in trimmed.iter().zip(own.iter()).enumerate() {
             let error_db = 8.686 * (trimmed / own).ln().re.abs();
-            assert!(error_db < 0.1 * sd_db(&found, k, (at % 2, at / 2)) + 0.001, "{k} {at}: {error_db} dB");
+            assert!(
+                error_db < 0.1 * sd_db(&found, k, (at % 2, at / 2)) + 0.001,
+                "{k} {at}: {error_db} dB"
+            );
         }
     }
 
     let mut other = records;
     for record in &mut other {
         let drift: Vec<f64> = record.time_s.iter().map(|time| 0.01 * time).collect();
-        record.outputs.column_mut(1).iter_mut().zip(drift).for_each(|(sample, drift)| *sample += drift);
+        record
+            .outputs
+            .column_mut(1)
+            .iter_mut()
+            .zip(drift)
+            .for_each(|(sample, drift)| *sample += drift);
     }
     let drifting = identify(&other, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
     let all = responses(&drifting);
@@ -208,7 +307,10 @@ fn trims_change_nothing_and_drifts_next_to_nothing() {
         for (at, (drifting, straight)) in drifting.iter().zip(straight.iter()).enumerate() {
             let error = (drifting / straight).ln();
             // A drift is in the cost exactly, but the measured noise sees its 1/omega as a parabola: half a deviation.
-            assert!(8.686 * error.re.abs() < 0.5 * sd_db(&found, k, (at % 2, at / 2)) + 0.01, "{k} {at}");
+            assert!(
+                8.686 * error.re.abs() < 0.5 * sd_db(&found, k, (at % 2, at / 2)) + 0.01,
+                "{k} {at}"
+            );
         }
     }
 }
@@ -222,12 +324,26 @@ fn an_unstable_aircraft_flown_in_closed_loop_comes_back_unstable() {
         DMatrix::zeros(2, 2),
     )
     .unwrap();
-    let flight = Flight { feedback: dmatrix![0.0, 2.0; 0.0, -3.0], ..Flight::of(aircraft, Gusts::light()) };
-    let options = Options { orders: Some(vec![2, 3, 4, 5]), ..quick((2, 2)) };
+    let flight = Flight {
+        feedback: dmatrix![0.0, 2.0; 0.0, -3.0],
+        ..Flight::of(aircraft, Gusts::light())
+    };
+    let options = Options {
+        orders: Some(vec![2, 3, 4, 5]),
+        ..quick((2, 2))
+    };
     let found = identify(&flight.records(5, 4), &options, &Sequential, &Unobserved).unwrap();
-    let unstable: Vec<_> = found.poles.iter().filter(|pole| pole.pole.re > 0.0 && pole.determined).collect();
+    let unstable: Vec<_> = found
+        .poles
+        .iter()
+        .filter(|pole| pole.pole.re > 0.0 && pole.determined)
+        .collect();
     assert_eq!(unstable.len(), 1, "{:?}", found.poles);
-    assert!((unstable[0].pole.re - 0.9).abs() < 3.0 * unstable[0].sd_re.max(0.02), "{:?}", unstable[0]);
+    assert!(
+        (unstable[0].pole.re - 0.9).abs() < 3.0 * unstable[0].sd_re.max(0.02),
+        "{:?}",
+        unstable[0]
+    );
 }
 
 #[test]
@@ -236,9 +352,21 @@ fn bands_hold_what_they_say() {
     // are the whole truth: bands of nominally 95 % hold that without it, and more, nearly all, with it.
     let factor = std::f64::consts::SQRT_2;
     let aircraft = stable_aircraft();
-    let flight = Flight::of(aircraft.clone(), Gusts { states: 0.03, sensors: 0.05 });
+    let flight = Flight::of(
+        aircraft.clone(),
+        Gusts {
+            states: 0.03,
+            sensors: 0.05,
+        },
+    );
     let run = |seed: u64| {
-        let found = identify(&flight.records(100 + seed, 3), &quick((2, 2)), &Sequential, &Unobserved).unwrap();
+        let found = identify(
+            &flight.records(100 + seed, 3),
+            &quick((2, 2)),
+            &Sequential,
+            &Unobserved,
+        )
+        .unwrap();
         let mut ratios = Vec::new();
         for (k, own) in responses(&found).iter().enumerate() {
             let truth = response(&aircraft, omegas(&found)[k]);
@@ -251,9 +379,15 @@ fn bands_hold_what_they_say() {
         ratios
     };
     let ratios: Vec<f64> = (0..40).into_par_iter().flat_map(run).collect();
-    let share = |width: f64| ratios.iter().filter(|ratio| **ratio < width).count() as f64 / ratios.len() as f64;
+    let share = |width: f64| {
+        ratios.iter().filter(|ratio| **ratio < width).count() as f64 / ratios.len() as f64
+    };
     // 40 flights of a few independent errors each leave the share uncertain by about 1 %.
-    assert!((0.90..=0.999).contains(&share(1.96 / factor)), "{}", share(1.96 / factor));
+    assert!(
+        (0.90..=0.999).contains(&share(1.96 / factor)),
+        "{}",
+        share(1.96 / factor)
+    );
     // What is offered has the factor, and errs on the safe side (docs/identification.md says so).
     assert!((0.98..=1.0).contains(&share(1.96)), "{}", share(1.96));
 }
@@ -282,7 +416,14 @@ fn a_late_channel_of_one_record_is_named_with_its_delay() {
         _ => None,
     });
     let named = named.unwrap_or_else(|| panic!("{:?}", found.cautions));
-    let [ContradictingRecord { record: 2, name, fault: Some(RecordFault::Late(signal, delay_s)) }] = &named[..] else {
+    let [
+        ContradictingRecord {
+            record: 2,
+            name,
+            fault: Some(RecordFault::Late(signal, delay_s)),
+        },
+    ] = &named[..]
+    else {
         panic!("{named:?}")
     };
     assert_eq!(name, "flight 3");
@@ -295,7 +436,11 @@ fn a_late_channel_of_one_record_is_named_with_its_delay() {
 fn clean_records_raise_no_caution() {
     // 60 s are five periods of the lower end of the band.
     let found = identify(
-        &Flight { length_s: 60.0, ..Flight::of(stable_aircraft(), Gusts::light()) }.records(7, 5),
+        &Flight {
+            length_s: 60.0,
+            ..Flight::of(stable_aircraft(), Gusts::light())
+        }
+        .records(7, 5),
         &quick((2, 2)),
         &Sequential,
         &Unobserved,
@@ -309,12 +454,22 @@ fn clean_records_raise_no_caution() {
 fn the_bundle_has_its_neighbours_and_a_model_without_each_record() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(8, 3);
     let found = identify(&records, &quick((2, 2)), &Sequential, &Unobserved).unwrap();
-    let names: Vec<_> = found.bundle.iter().map(|model| model.name.as_str()).collect();
+    let names: Vec<_> = found
+        .bundle
+        .iter()
+        .map(|model| model.name.as_str())
+        .collect();
     for record in &records {
-        assert!(names.iter().any(|name| name.ends_with(&record.name)), "{names:?}");
+        assert!(
+            names.iter().any(|name| name.ends_with(&record.name)),
+            "{names:?}"
+        );
     }
     assert!(found.refined.name.starts_with("CT-PBSID, refined, order "));
-    assert_eq!(space(&found.unrefined).order(), space(&found.refined).order());
+    assert_eq!(
+        space(&found.unrefined).order(),
+        space(&found.refined).order()
+    );
 }
 
 /// Hears everything, and stops after a number of steps.
@@ -326,13 +481,19 @@ struct Listener {
 
 impl Listener {
     fn new(stop_after: usize) -> Self {
-        Self { heard: Mutex::new(Vec::new()), models: AtomicUsize::new(0), stop_after }
+        Self {
+            heard: Mutex::new(Vec::new()),
+            models: AtomicUsize::new(0),
+            stop_after,
+        }
     }
 }
 
 impl Progress for Listener {
     fn cancelled(&self) -> bool {
-        self.heard.lock().is_ok_and(|heard| heard.len() >= self.stop_after)
+        self.heard
+            .lock()
+            .is_ok_and(|heard| heard.len() >= self.stop_after)
     }
 
     fn advanced(&self, done: usize, total: usize) {
@@ -355,11 +516,22 @@ impl Progress for Listener {
 #[test]
 fn progress_goes_forward_to_its_end_and_shows_a_first_model() {
     let listener = Listener::new(usize::MAX);
-    identify(&Flight::of(stable_aircraft(), Gusts::light()).records(9, 3), &quick((2, 2)), &Sequential, &listener)
-        .unwrap();
+    identify(
+        &Flight::of(stable_aircraft(), Gusts::light()).records(9, 3),
+        &quick((2, 2)),
+        &Sequential,
+        &listener,
+    )
+    .unwrap();
     let heard = listener.heard.into_inner().unwrap();
-    assert!(heard.windows(2).all(|pair| pair[0].0 <= pair[1].0), "{heard:?}");
-    assert!(heard.iter().any(|(_, what)| what == "pole 1 of 1, past 6"), "{heard:?}");
+    assert!(
+        heard.windows(2).all(|pair| pair[0].0 <= pair[1].0),
+        "{heard:?}"
+    );
+    assert!(
+        heard.iter().any(|(_, what)| what == "pole 1 of 1, past 6"),
+        "{heard:?}"
+    );
     assert_eq!(heard.last().unwrap().0, 1000);
     assert_eq!(listener.models.into_inner(), 1);
 }
@@ -385,10 +557,27 @@ fn ends_in_words(records: &[FlightRecord], options: &Options) -> String {
     match identify(records, options, &Sequential, &Unobserved) {
         Ok(found) => {
             // Models and bands that are not finite cannot be made.
-            let models = found.bundle.iter().chain([&found.refined, &found.unrefined]);
-            assert!(models.into_iter().all(|model| model.state_space().is_some()) && found.refined.bands.is_some());
-            assert!(found.poles.iter().all(|pole| pole.sd_re.is_finite() && pole.sd_im.is_finite()));
-            found.cautions.iter().map(|caution| format!("{caution}\n")).collect()
+            let models = found
+                .bundle
+                .iter()
+                .chain([&found.refined, &found.unrefined]);
+            assert!(
+                models
+                    .into_iter()
+                    .all(|model| model.state_space().is_some())
+                    && found.refined.bands.is_some()
+            );
+            assert!(
+                found
+                    .poles
+                    .iter()
+                    .all(|pole| pole.sd_re.is_finite() && pole.sd_im.is_finite())
+            );
+            found
+                .cautions
+                .iter()
+                .map(|caution| format!("{caution}\n"))
+                .collect()
         }
         Err(error) => error.to_string(),
     }
@@ -426,39 +615,90 @@ fn channels_that_say_nothing_are_named() {
 
 #[test]
 fn records_that_are_too_short_or_too_slow_are_refused_in_words() {
-    let short = Flight { length_s: 8.0, ..Flight::of(stable_aircraft(), Gusts::light()) };
+    let short = Flight {
+        length_s: 8.0,
+        ..Flight::of(stable_aircraft(), Gusts::light())
+    };
     assert!(ends_in_words(&short.records(11, 2), &quick((2, 2))).contains("10.0 s are the least"));
     for length_s in [11.0, 13.0, 17.0, 22.0] {
-        let short = Flight { length_s, ..Flight::of(stable_aircraft(), Gusts::light()) };
+        let short = Flight {
+            length_s,
+            ..Flight::of(stable_aircraft(), Gusts::light())
+        };
         for count in 1..=2 {
             ends_in_words(&short.records(12, count), &quick((2, 2)));
-            let many = Options { orders: Some((1..=40).collect()), ..quick((2, 2)) };
+            let many = Options {
+                orders: Some((1..=40).collect()),
+                ..quick((2, 2))
+            };
             ends_in_words(&short.records(12, count), &many);
         }
     }
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(13, 2);
-    let fast = Options { band: [0.6, 80.0], ..quick((2, 2)) };
+    let fast = Options {
+        band: [0.6, 80.0],
+        ..quick((2, 2))
+    };
     assert!(ends_in_words(&records, &fast).contains("log faster"));
 }
 
 #[test]
 fn impossible_settings_are_refused_in_words() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(13, 2);
-    let refused = |options: Options| identify(&records, &options, &Sequential, &Unobserved).unwrap_err();
-    for band in [[0.0, 6.0], [6.0, 0.6], [f64::NAN, 6.0], [0.6, f64::INFINITY]] {
-        assert!(matches!(refused(Options { band, ..quick((2, 2)) }), IdentificationError::Band { .. }));
+    let refused =
+        |options: Options| identify(&records, &options, &Sequential, &Unobserved).unwrap_err();
+    for band in [
+        [0.0, 6.0],
+        [6.0, 0.6],
+        [f64::NAN, 6.0],
+        [0.6, f64::INFINITY],
+    ] {
+        assert!(matches!(
+            refused(Options {
+                band,
+                ..quick((2, 2))
+            }),
+            IdentificationError::Band { .. }
+        ));
     }
     for options in [
-        Options { orders: Some(vec![]), ..quick((2, 2)) },
-        Options { orders: Some(vec![0]), ..quick((2, 2)) },
-        Options { pasts: Some(vec![1000]), ..quick((2, 2)) },
-        Options { poles: vec![f64::NAN], ..quick((2, 2)) },
+        Options {
+            orders: Some(vec![]),
+            ..quick((2, 2))
+        },
+        Options {
+            orders: Some(vec![0]),
+            ..quick((2, 2))
+        },
+        Options {
+            pasts: Some(vec![1000]),
+            ..quick((2, 2))
+        },
+        Options {
+            poles: vec![f64::NAN],
+            ..quick((2, 2))
+        },
     ] {
         assert_eq!(refused(options), IdentificationError::Settings);
     }
-    assert_eq!(refused(Options { held_out: vec![0, 1], ..quick((2, 2)) }), IdentificationError::NothingToFit);
-    let missing = refused(Options { held_out: vec![5], ..quick((2, 2)) });
-    assert_eq!(missing, IdentificationError::HeldOutMissing { record: 5, records: 2 });
+    assert_eq!(
+        refused(Options {
+            held_out: vec![0, 1],
+            ..quick((2, 2))
+        }),
+        IdentificationError::NothingToFit
+    );
+    let missing = refused(Options {
+        held_out: vec![5],
+        ..quick((2, 2))
+    });
+    assert_eq!(
+        missing,
+        IdentificationError::HeldOutMissing {
+            record: 5,
+            records: 2
+        }
+    );
 }
 
 #[test]
@@ -466,7 +706,9 @@ fn absurd_but_valid_samples_end_in_words() {
     let records = Flight::of(stable_aircraft(), Gusts::light()).records(14, 3);
     for size in [1e-300, 1e-150, 1e150, 1e300] {
         let mut large = records.clone();
-        large.iter_mut().for_each(|record| record.outputs.column_mut(0).scale_mut(size));
+        large
+            .iter_mut()
+            .for_each(|record| record.outputs.column_mut(0).scale_mut(size));
         ends_in_words(&large, &quick((2, 2)));
     }
     let mut spike = records;

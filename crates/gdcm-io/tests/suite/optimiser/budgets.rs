@@ -4,10 +4,12 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use gdcm_method::correction::{Bounds, Limit, Outcome, Problem, ProblemError, ProofBudget, solve, toggles};
+use gdcm_method::correction::{
+    Bounds, Limit, Outcome, Problem, ProblemError, ProofBudget, solve, toggles,
+};
 use gdcm_model::dataset::{
-    Band, Channel, Condition, ConditionId, Dataset, DatasetHeader, Dynamics, FlightState, Model, Origin, Pair,
-    PairTable, StateSpace,
+    Band, Channel, Condition, ConditionId, Dataset, DatasetHeader, Dynamics, FlightState, Model,
+    Origin, Pair, PairTable, StateSpace,
 };
 use gdcm_study::study::{Cancelled, Engine, Progress, Study};
 use nalgebra::DMatrix;
@@ -22,41 +24,95 @@ fn noise(output: usize, input: usize, seed: usize) -> f64 {
 
 /// Twelve outputs by eight inputs of which nothing is held.
 fn twelve_by_eight(seed: usize) -> Problem {
-    let delta = PairTable::from_fn(12, 8, |pair| Some((0.7 * noise(pair.output, pair.input, seed)).exp()));
-    Problem::gains(delta, PairTable::filled(12, 8, false), Bounds { lower: 0.3, upper: 3.0 })
+    let delta = PairTable::from_fn(12, 8, |pair| {
+        Some((0.7 * noise(pair.output, pair.input, seed)).exp())
+    });
+    Problem::gains(
+        delta,
+        PairTable::filled(12, 8, false),
+        Bounds {
+            lower: 0.3,
+            upper: 3.0,
+        },
+    )
 }
 
 fn hard() -> Problem {
-    gain_instances().into_iter().find(|instance| instance.id == 271).unwrap().problem
+    gain_instances()
+        .into_iter()
+        .find(|instance| instance.id == 271)
+        .unwrap()
+        .problem
 }
 
 #[test]
 fn a_budget_of_work_too_small_for_the_proof_is_admitted() {
     let least = solved(&hard()).objective;
-    let solution = solved_within(&hard(), ProofBudget { work: 4_000, ..ProofBudget::default() });
-    let Outcome::NotProven { gap, limit } = solution.proof.outcome else { panic!("{:?}", solution.proof) };
-    assert!(gap > 1e-9 && gap < 1.0 && limit == Limit::Work, "{:?}", solution.proof.outcome);
+    let solution = solved_within(
+        &hard(),
+        ProofBudget {
+            work: 4_000,
+            ..ProofBudget::default()
+        },
+    );
+    let Outcome::NotProven { gap, limit } = solution.proof.outcome else {
+        panic!("{:?}", solution.proof)
+    };
+    assert!(
+        gap > 1e-9 && gap < 1.0 && limit == Limit::Work,
+        "{:?}",
+        solution.proof.outcome
+    );
     assert!(solution.proof.nodes > 0 && !solution.proof.all_minima);
     assert!(solution.proof.lower_bound <= least);
     let words = solution.proof.outcome.words();
     let percent = 100.0 * gap;
-    let told = format!("gains that are up to {percent:.2} % better may exist; the search ended at its budget of work.");
+    let told = format!(
+        "gains that are up to {percent:.2} % better may exist; the search ended at its budget of work."
+    );
     assert_eq!(words, format!("Not proven: {told}"));
 }
 
 #[test]
 fn a_budget_of_memory_too_small_for_the_proof_is_admitted() {
     // 21 scales: 3.9 kB a node.
-    let solution = solved_within(&twelve_by_eight(0), ProofBudget { bytes: 50_000, ..ProofBudget::default() });
-    let Outcome::NotProven { gap, limit } = solution.proof.outcome else { panic!("{:?}", solution.proof) };
-    assert!(gap > 1e-9 && gap < 1.0 && limit == Limit::Memory, "{:?}", solution.proof.outcome);
+    let solution = solved_within(
+        &twelve_by_eight(0),
+        ProofBudget {
+            bytes: 50_000,
+            ..ProofBudget::default()
+        },
+    );
+    let Outcome::NotProven { gap, limit } = solution.proof.outcome else {
+        panic!("{:?}", solution.proof)
+    };
+    assert!(
+        gap > 1e-9 && gap < 1.0 && limit == Limit::Memory,
+        "{:?}",
+        solution.proof.outcome
+    );
     assert!(solution.proof.lower_bound > 0.0);
-    assert!(solution.proof.outcome.words().ends_with("the search ended at its budget of memory."));
+    assert!(
+        solution
+            .proof
+            .outcome
+            .words()
+            .ends_with("the search ended at its budget of memory.")
+    );
 }
 
 #[test]
 fn a_greater_budget_never_gives_a_lower_bound_that_is_worse() {
-    let bound = |work: u64| solved_within(&twelve_by_eight(1), ProofBudget { work, ..ProofBudget::default() }).proof;
+    let bound = |work: u64| {
+        solved_within(
+            &twelve_by_eight(1),
+            ProofBudget {
+                work,
+                ..ProofBudget::default()
+            },
+        )
+        .proof
+    };
     let bounds = [0, 100_000, 400_000, 1_600_000].map(|work| bound(work).lower_bound);
     assert!(bounds.is_sorted() && bounds[0] < bounds[3], "{bounds:?}");
 }
@@ -68,9 +124,22 @@ fn the_search_asks_whether_to_stop_at_every_half_millisecond_of_work() {
         asked.set(asked.get() + 1);
         false
     };
-    let budget = ProofBudget { work: 2_000_000, ..ProofBudget::default() };
+    let budget = ProofBudget {
+        work: 2_000_000,
+        ..ProofBudget::default()
+    };
     let solution = solve(&twelve_by_eight(1), budget, &count).unwrap();
-    assert!(matches!(solution.proof.outcome, Outcome::NotProven { limit: Limit::Work, .. }), "{:?}", solution.proof);
+    assert!(
+        matches!(
+            solution.proof.outcome,
+            Outcome::NotProven {
+                limit: Limit::Work,
+                ..
+            }
+        ),
+        "{:?}",
+        solution.proof
+    );
     // 20 000 units, or one line search more where that is in one piece.
     assert!(asked.get() >= 2_000_000 / 25_000, "{}", asked.get());
 }
@@ -80,8 +149,15 @@ fn a_search_that_is_stopped_has_no_answer() {
     for questions in [0, 1, 10] {
         let asked = Cell::new(0);
         let stop = || asked.replace(asked.get() + 1) >= questions;
-        assert_eq!(solve(&twelve_by_eight(1), ProofBudget::default(), &stop), Err(ProblemError::Stopped));
-        assert!(asked.get() <= questions + 2, "{} questions after the first yes", asked.get() - questions);
+        assert_eq!(
+            solve(&twelve_by_eight(1), ProofBudget::default(), &stop),
+            Err(ProblemError::Stopped)
+        );
+        assert!(
+            asked.get() <= questions + 2,
+            "{} questions after the first yes",
+            asked.get() - questions
+        );
     }
 }
 
@@ -98,9 +174,19 @@ fn toggles_that_are_stopped_within_a_proof_keep_what_is_there() {
 /// Conditions of a static gain with twelve outputs and eight inputs, each with another as flight.
 fn static_gains(conditions: usize) -> Dataset {
     let model = |name: &str, origin, seed: usize| {
-        let gain = DMatrix::from_fn(12, 8, |output, input| (0.7 * noise(output, input, seed)).exp());
-        let (a, b, c) = (DMatrix::zeros(0, 0), DMatrix::zeros(0, 8), DMatrix::zeros(12, 0));
-        Model::new(name, origin, Dynamics::StateSpace(StateSpace::new(a, b, c, gain).unwrap()))
+        let gain = DMatrix::from_fn(12, 8, |output, input| {
+            (0.7 * noise(output, input, seed)).exp()
+        });
+        let (a, b, c) = (
+            DMatrix::zeros(0, 0),
+            DMatrix::zeros(0, 8),
+            DMatrix::zeros(12, 0),
+        );
+        Model::new(
+            name,
+            origin,
+            Dynamics::StateSpace(StateSpace::new(a, b, c, gain).unwrap()),
+        )
     };
     let condition = |index: usize| {
         let flight_state = FlightState {
@@ -113,10 +199,21 @@ fn static_gains(conditions: usize) -> Dataset {
             mass_kg: None,
         };
         let physics = model("nominal", Origin::Nominal { perturbation: None }, 2 * index);
-        let flight = model("flight", Origin::Identified { method: None, order: None }, 2 * index + 1);
+        let flight = model(
+            "flight",
+            Origin::Identified {
+                method: None,
+                order: None,
+            },
+            2 * index + 1,
+        );
         Condition::new(flight_state, vec![physics], vec![flight]).unwrap()
     };
-    let channels = |letter: &str, count| (0..count).map(|index| Channel::new(format!("{letter}{index}"), "")).collect();
+    let channels = |letter: &str, count| {
+        (0..count)
+            .map(|index| Channel::new(format!("{letter}{index}"), ""))
+            .collect()
+    };
     let header = DatasetHeader {
         name: "static gains".to_owned(),
         description: String::new(),
@@ -145,9 +242,15 @@ impl Progress for Impatient {
 #[test]
 fn an_analysis_is_stopped_in_the_middle_of_a_proof() {
     let study = Study::new(Arc::new(static_gains(20)));
-    assert_eq!(study.settings.constrained.marked().collect::<Vec<Pair>>(), []);
+    assert_eq!(
+        study.settings.constrained.marked().collect::<Vec<Pair>>(),
+        []
+    );
     // Each condition asks a few times besides its proof, so that the question falls into the first proofs.
-    let watch = Impatient { patience: 120, asked: AtomicUsize::new(0) };
+    let watch = Impatient {
+        patience: 120,
+        asked: AtomicUsize::new(0),
+    };
     assert_eq!(Engine::default().analyze(&study, &watch), Err(Cancelled));
     // The work in hand and the conditions that have not begun ask once more each.
     assert!(watch.asked.into_inner() <= 120 + 30);

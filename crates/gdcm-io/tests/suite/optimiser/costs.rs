@@ -1,7 +1,8 @@
 //! Sensitivities and toggles against solving the changed problem.
 
 use gdcm_method::correction::{
-    ActiveConstraint, Bounds, Channel, Problem, ProofBudget, Quantity, Sensitivity, sensitivities, toggles,
+    ActiveConstraint, Bounds, Channel, Problem, ProofBudget, Quantity, Sensitivity, sensitivities,
+    toggles,
 };
 
 use super::instances::{delay_instances, gain_instances};
@@ -17,7 +18,10 @@ fn gain_objective(problem: &Problem) -> f64 {
 #[test]
 fn gain_sensitivities_are_slopes_of_the_least_objective() {
     let factor = 10f64.powf(STEP_DB / 20.0);
-    for instance in gain_instances().iter().filter(|instance| instance.kind == "base") {
+    for instance in gain_instances()
+        .iter()
+        .filter(|instance| instance.kind == "base")
+    {
         let problem = &instance.problem;
         let solution = solved(problem);
         for sensitivity in sensitivities(problem, &solution) {
@@ -37,7 +41,10 @@ fn gain_sensitivities_are_slopes_of_the_least_objective() {
             let several_on_bound = sensitivities(problem, &solution)
                 .iter()
                 .filter(|other| {
-                    matches!(other.restraint, ActiveConstraint::LowerBound(_) | ActiveConstraint::UpperBound(_))
+                    matches!(
+                        other.restraint,
+                        ActiveConstraint::LowerBound(_) | ActiveConstraint::UpperBound(_)
+                    )
                 })
                 .count()
                 > 1;
@@ -73,8 +80,10 @@ fn delay_sensitivities_are_slopes_of_the_least_objective() {
                 changed.delta[pair] = changed.delta[pair].map(|delay| delay + step_s);
                 solved(&changed).objective
             };
-            let (up, down) =
-                ((with(step_s) - with(0.0)) / (1e3 * step_s), (with(0.0) - with(-step_s)) / (1e3 * step_s));
+            let (up, down) = (
+                (with(step_s) - with(0.0)) / (1e3 * step_s),
+                (with(0.0) - with(-step_s)) / (1e3 * step_s),
+            );
             // Where a bound begins to act the slope differs to both sides; the multiplier is one of them or between.
             let (low, high) = (up.min(down), up.max(down));
             // A microsecond's second order, against objectives of a hundredth of a square second.
@@ -92,15 +101,24 @@ fn sensitivities_are_put_into_words() {
     let instance = &gain_instances()[0];
     let solution = solved(&instance.problem);
     let names = |list: &[&str]| list.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
-    let (inputs, outputs) = (names(&["LON", "LAT", "PED", "COL"]), names(&["P", "Q", "R", "NX", "NY", "NZ"]));
+    let (inputs, outputs) = (
+        names(&["LON", "LAT", "PED", "COL"]),
+        names(&["P", "Q", "R", "NX", "NY", "NZ"]),
+    );
     let all = sensitivities(&instance.problem, &solution);
     // The five entries of Table 2; the wide bounds of this instance do not act.
     assert_eq!(all.len(), 5);
     for sensitivity in all {
         let words = sensitivity.words(&inputs, &outputs);
-        let change = if sensitivity.per_unit > 0.0 { "lowering" } else { "raising" };
+        let change = if sensitivity.per_unit > 0.0 {
+            "lowering"
+        } else {
+            "raising"
+        };
         assert!(
-            words.contains(&format!("is held: {change} its gain by 1 dB would lower the objective by about")),
+            words.contains(&format!(
+                "is held: {change} its gain by 1 dB would lower the objective by about"
+            )),
             "{words}"
         );
     }
@@ -111,13 +129,27 @@ fn no_restraint_is_said_to_cost_more_than_the_whole_objective() {
     let words = |share_per_unit: f64| {
         let restraint = ActiveConstraint::LowerBound(Channel::Input(0));
         let per_unit = 1e-6 * share_per_unit;
-        let sensitivity = Sensitivity { quantity: Quantity::Delay, restraint, per_unit, share_per_unit };
-        (sensitivity.step(), sensitivity.words(&["LON".to_owned()], &[]))
+        let sensitivity = Sensitivity {
+            quantity: Quantity::Delay,
+            restraint,
+            per_unit,
+            share_per_unit,
+        };
+        (
+            sensitivity.step(),
+            sensitivity.words(&["LON".to_owned()], &[]),
+        )
     };
     let (step, of_much) = words(1.2156);
     assert_eq!(step, 0.1);
-    assert_eq!(of_much, "τ_LON is 0: 0.1 ms of lead would lower the objective by about 12.16 %.");
-    assert_eq!(words(0.3).1, "τ_LON is 0: 1 ms of lead would lower the objective by about 30.00 %.");
+    assert_eq!(
+        of_much,
+        "τ_LON is 0: 0.1 ms of lead would lower the objective by about 12.16 %."
+    );
+    assert_eq!(
+        words(0.3).1,
+        "τ_LON is 0: 1 ms of lead would lower the objective by about 30.00 %."
+    );
     let (least, of_all) = words(1e12);
     assert_eq!(least, 1e-6);
     assert!(of_all.ends_with("by about 100.00 %."), "{of_all}");
@@ -127,7 +159,13 @@ fn no_restraint_is_said_to_cost_more_than_the_whole_objective() {
 fn the_table_of_toggles_holds_what_solving_each_toggle_gives() {
     let instance = &gain_instances()[0];
     let solution = solved(&instance.problem);
-    let toggles = toggles(&instance.problem, &solution, ProofBudget::default(), &|| false).unwrap();
+    let toggles = toggles(
+        &instance.problem,
+        &solution,
+        ProofBudget::default(),
+        &|| false,
+    )
+    .unwrap();
     assert_eq!(toggles.len(), 24);
     for toggle in toggles {
         let mut changed = instance.problem.clone();
@@ -145,13 +183,27 @@ fn the_table_of_toggles_holds_what_solving_each_toggle_gives() {
 fn the_table_of_delay_toggles_holds_what_solving_each_toggle_gives() {
     let instance = &delay_instances()[0];
     let solution = solved(&instance.problem);
-    let toggles = toggles(&instance.problem, &solution, ProofBudget::default(), &|| false).unwrap();
+    let toggles = toggles(
+        &instance.problem,
+        &solution,
+        ProofBudget::default(),
+        &|| false,
+    )
+    .unwrap();
     assert_eq!(toggles.len(), 24);
     for toggle in toggles {
         let mut constrained = instance.problem.constrained.clone();
         constrained[toggle.pair] = !constrained[toggle.pair];
-        let changed = Problem { constrained, ..instance.problem.clone() };
-        assert_eq!(toggle.after, solved(&changed).objective, "{:?}", toggle.pair);
+        let changed = Problem {
+            constrained,
+            ..instance.problem.clone()
+        };
+        assert_eq!(
+            toggle.after,
+            solved(&changed).objective,
+            "{:?}",
+            toggle.pair
+        );
     }
 }
 
@@ -159,20 +211,31 @@ fn the_table_of_delay_toggles_holds_what_solving_each_toggle_gives() {
 fn toggles_stop_when_told_to() {
     let gains = &gain_instances()[0].problem;
     let solution = solved(gains);
-    assert_eq!(toggles(gains, &solution, ProofBudget::default(), &|| true).unwrap(), []);
+    assert_eq!(
+        toggles(gains, &solution, ProofBudget::default(), &|| true).unwrap(),
+        []
+    );
     let delays = &delay_instances()[0].problem;
     let solution = solved(delays);
-    assert_eq!(toggles(delays, &solution, ProofBudget::default(), &|| true).unwrap(), []);
+    assert_eq!(
+        toggles(delays, &solution, ProofBudget::default(), &|| true).unwrap(),
+        []
+    );
 }
 
 #[test]
 fn a_bound_that_acts_has_a_multiplier_of_the_right_sign() {
     let mut problem = gain_instances()[0].problem.clone();
-    problem.bounds = Bounds { lower: 0.8, upper: 1.3 };
+    problem.bounds = Bounds {
+        lower: 0.8,
+        upper: 1.3,
+    };
     let solution = solved(&problem);
     let restraints = sensitivities(&problem, &solution);
-    let bounds: Vec<_> =
-        restraints.iter().filter(|found| !matches!(found.restraint, ActiveConstraint::Held(_))).collect();
+    let bounds: Vec<_> = restraints
+        .iter()
+        .filter(|found| !matches!(found.restraint, ActiveConstraint::Held(_)))
+        .collect();
     assert!(!bounds.is_empty());
     for bound in bounds {
         match bound.restraint {

@@ -1,7 +1,9 @@
 //! Every explanation is put to the test: what it says would help helps, and less does not.
 
 use crate::made_up::tries;
-use gdcm_method::correction::{Bounds, Channel, Conflict, ConflictKind, GainObjective, Problem, ProofBudget, Quantity};
+use gdcm_method::correction::{
+    Bounds, Channel, Conflict, ConflictKind, GainObjective, Problem, ProofBudget, Quantity,
+};
 use gdcm_model::dataset::{Pair, PairTable};
 use proptest::prelude::*;
 
@@ -10,7 +12,11 @@ use super::random::{Pattern, delay_problems, gain_problems};
 use super::{solved, solved_within};
 
 /// Reachability needs no proof.
-const BUDGET: ProofBudget = ProofBudget { work: 0, listing: 0, bytes: 0 };
+const BUDGET: ProofBudget = ProofBudget {
+    work: 0,
+    listing: 0,
+    bytes: 0,
+};
 
 const INPUTS: [&str; 4] = ["LON", "LAT", "PED", "COL"];
 const OUTPUTS: [&str; 6] = ["P", "Q", "R", "NX", "NY", "NZ"];
@@ -20,15 +26,24 @@ fn names(list: &[&str]) -> Vec<String> {
 }
 
 fn holding(problem: &Problem, entries: &[Pair]) -> Problem {
-    Problem { constrained: problem.constrained.map(|pair, _| entries.contains(&pair)), ..problem.clone() }
+    Problem {
+        constrained: problem.constrained.map(|pair, _| entries.contains(&pair)),
+        ..problem.clone()
+    }
 }
 
 fn without(problem: &Problem, freed: Pair) -> Problem {
-    Problem { constrained: problem.constrained.map(|pair, held| *held && pair != freed), ..problem.clone() }
+    Problem {
+        constrained: problem.constrained.map(|pair, held| *held && pair != freed),
+        ..problem.clone()
+    }
 }
 
 fn bounded(problem: &Problem, lower: f64, upper: f64) -> Problem {
-    Problem { bounds: Bounds { lower, upper }, ..problem.clone() }
+    Problem {
+        bounds: Bounds { lower, upper },
+        ..problem.clone()
+    }
 }
 
 fn is_matched(problem: &Problem) -> bool {
@@ -46,11 +61,22 @@ fn table_two(changes: &[(usize, usize, f64)], bounds: Bounds) -> Problem {
 
 #[test]
 fn a_product_above_the_bounds_is_explained() {
-    let problem = table_two(&[(0, 1, 2.5)], Bounds { lower: 0.7, upper: 1.4 });
+    let problem = table_two(
+        &[(0, 1, 2.5)],
+        Bounds {
+            lower: 0.7,
+            upper: 1.4,
+        },
+    );
     let solution = solved_within(&problem, BUDGET);
-    let [conflict] = solution.conflicts.as_slice() else { panic!("{:?}", solution.conflicts) };
+    let [conflict] = solution.conflicts.as_slice() else {
+        panic!("{:?}", solution.conflicts)
+    };
     // 1.58^2 = 2.496 is not enough, 1.59^2 = 2.528 is.
-    assert!(matches!(conflict.kind, ConflictKind::AboveUpper { upper, .. } if upper == 1.59), "{conflict:?}");
+    assert!(
+        matches!(conflict.kind, ConflictKind::AboveUpper { upper, .. } if upper == 1.59),
+        "{conflict:?}"
+    );
     assert_eq!(
         conflict.words(&names(&INPUTS), &names(&OUTPUTS)),
         "LAT → P cannot be held: with gains <= 1.400 the product k_LAT k_P is at most 1.960, not 2.500; set the upper bound to 1.59 \
@@ -65,9 +91,22 @@ fn a_product_above_the_bounds_is_explained() {
 
 #[test]
 fn a_product_below_the_bounds_is_explained() {
-    let problem = table_two(&[(5, 3, 0.3)], Bounds { lower: 0.7, upper: 1.4 });
+    let problem = table_two(
+        &[(5, 3, 0.3)],
+        Bounds {
+            lower: 0.7,
+            upper: 1.4,
+        },
+    );
     let solution = solved_within(&problem, BUDGET);
-    let [Conflict { kind: ConflictKind::BelowLower { lower, channels, .. }, .. }] = solution.conflicts.as_slice()
+    let [
+        Conflict {
+            kind: ConflictKind::BelowLower {
+                lower, channels, ..
+            },
+            ..
+        },
+    ] = solution.conflicts.as_slice()
     else {
         panic!("{:?}", solution.conflicts)
     };
@@ -80,16 +119,28 @@ fn a_product_below_the_bounds_is_explained() {
 
 #[test]
 fn two_entries_that_share_an_input_are_explained_by_their_ratio() {
-    let problem = table_two(&[(2, 2, 0.6), (4, 2, 1.5)], Bounds { lower: 0.7, upper: 1.4 });
+    let problem = table_two(
+        &[(2, 2, 0.6), (4, 2, 1.5)],
+        Bounds {
+            lower: 0.7,
+            upper: 1.4,
+        },
+    );
     let solution = solved_within(&problem, BUDGET);
-    let [conflict] = solution.conflicts.as_slice() else { panic!("{:?}", solution.conflicts) };
+    let [conflict] = solution.conflicts.as_slice() else {
+        panic!("{:?}", solution.conflicts)
+    };
     assert_eq!(
         conflict.words(&names(&INPUTS), &names(&OUTPUTS)),
         "PED → R and PED → NY cannot both be held: with k_NY <= 1.400 and k_R >= 0.700 their ratio is at most 2.000, not 2.500; \
          set the upper bound to 1.75, or the lower bound to 0.56, or release one of them."
     );
-    assert!(is_matched(&bounded(&problem, 0.7, 1.75)) && !is_matched(&bounded(&problem, 0.7, 1.74)));
-    assert!(is_matched(&bounded(&problem, 0.56, 1.4)) && !is_matched(&bounded(&problem, 0.561, 1.4)));
+    assert!(
+        is_matched(&bounded(&problem, 0.7, 1.75)) && !is_matched(&bounded(&problem, 0.7, 1.74))
+    );
+    assert!(
+        is_matched(&bounded(&problem, 0.56, 1.4)) && !is_matched(&bounded(&problem, 0.561, 1.4))
+    );
     for &pair in &conflict.entries {
         assert!(is_matched(&without(&problem, pair)), "{pair:?}");
     }
@@ -98,24 +149,48 @@ fn two_entries_that_share_an_input_are_explained_by_their_ratio() {
 
 #[test]
 fn a_cycle_of_constraints_is_explained() {
-    for instance in gain_instances().iter().filter(|instance| instance.kind == "cycle_inconsistent") {
+    for instance in gain_instances()
+        .iter()
+        .filter(|instance| instance.kind == "cycle_inconsistent")
+    {
         let solution = solved_within(&instance.problem, BUDGET);
-        let [Conflict { entries, kind: ConflictKind::Loop { mismatch: mismatch_db }, .. }] =
-            solution.conflicts.as_slice()
+        let [
+            Conflict {
+                entries,
+                kind:
+                    ConflictKind::Loop {
+                        mismatch: mismatch_db,
+                    },
+                ..
+            },
+        ] = solution.conflicts.as_slice()
         else {
             panic!("{}: {:?}", instance.id, solution.conflicts)
         };
         // The least squares spread the mismatch evenly over the four entries.
         let mismatch = 4.0 * instance.residual * 20.0 / std::f64::consts::LN_10;
-        assert!((mismatch_db.abs() - mismatch).abs() <= 1e-6, "{}: {mismatch_db}", instance.id);
+        assert!(
+            (mismatch_db.abs() - mismatch).abs() <= 1e-6,
+            "{}: {mismatch_db}",
+            instance.id
+        );
         assert_eq!(entries.len(), 4);
-        assert!(!is_matched(&bounded(&instance.problem, 1e-3, 1e3)), "{}: no bound helps", instance.id);
+        assert!(
+            !is_matched(&bounded(&instance.problem, 1e-3, 1e3)),
+            "{}: no bound helps",
+            instance.id
+        );
         for &pair in entries {
-            assert!(is_matched(&without(&instance.problem, pair)), "{}: {pair:?}", instance.id);
+            assert!(
+                is_matched(&without(&instance.problem, pair)),
+                "{}: {pair:?}",
+                instance.id
+            );
         }
         let words = solution.conflicts[0].words(&names(&INPUTS), &names(&OUTPUTS));
         assert!(
-            words.contains("form a loop: their ratios disagree by") && words.ends_with("release one of them."),
+            words.contains("form a loop: their ratios disagree by")
+                && words.ends_with("release one of them."),
             "{words}"
         );
     }
@@ -124,30 +199,59 @@ fn a_cycle_of_constraints_is_explained() {
 /// Six by four gains of 1, of which four round a loop are held that disagree by `mismatch_db`.
 fn near_loop(mismatch_db: f64, agreement: f64) -> Problem {
     let loop_of = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair::new(output, input));
-    let problem = table_two(&[(0, 0, 10_f64.powf(mismatch_db / 20.0))], Bounds { lower: 0.5, upper: 2.0 });
-    Problem { agreement, ..holding(&problem, &loop_of) }
+    let problem = table_two(
+        &[(0, 0, 10_f64.powf(mismatch_db / 20.0))],
+        Bounds {
+            lower: 0.5,
+            upper: 2.0,
+        },
+    );
+    Problem {
+        agreement,
+        ..holding(&problem, &loop_of)
+    }
 }
 
 #[test]
 fn a_loop_that_disagrees_by_less_than_the_tolerance_counts_as_agreeing_and_is_said_to() {
     let (inputs, outputs) = (names(&INPUTS), names(&OUTPUTS));
     let agreeing = solved_within(&near_loop(0.04, 0.05), BUDGET);
-    assert!(agreeing.matched && agreeing.unmatched.is_empty() && agreeing.conflicts.is_empty(), "{agreeing:?}");
+    assert!(
+        agreeing.matched && agreeing.unmatched.is_empty() && agreeing.conflicts.is_empty(),
+        "{agreeing:?}"
+    );
     assert_eq!(agreeing.remedy, None);
-    let [agreement] = agreeing.agreeing.as_slice() else { panic!("{:?}", agreeing.agreeing) };
+    let [agreement] = agreeing.agreeing.as_slice() else {
+        panic!("{:?}", agreeing.agreeing)
+    };
     let words = agreement.agreement_words(&inputs, &outputs);
-    assert!(words.contains("form a loop: their ratios agree to 0.040 dB"), "{words}");
+    assert!(
+        words.contains("form a loop: their ratios agree to 0.040 dB"),
+        "{words}"
+    );
     // The least squares spread the mismatch evenly over the four entries.
-    for (pair, target) in agreeing.targets.iter().filter_map(|(pair, target)| Some((pair, (*target)?))) {
-        let (net, wanted) =
-            (agreeing.outputs[pair.output] * agreeing.inputs[pair.input], near_loop(0.04, 0.05).delta[pair]);
+    for (pair, target) in agreeing
+        .targets
+        .iter()
+        .filter_map(|(pair, target)| Some((pair, (*target)?)))
+    {
+        let (net, wanted) = (
+            agreeing.outputs[pair.output] * agreeing.inputs[pair.input],
+            near_loop(0.04, 0.05).delta[pair],
+        );
         assert!((net / target).ln().abs() < 1e-8);
-        assert!((20.0 * (target / wanted.unwrap()).log10()).abs() < 0.0101, "{pair:?}");
+        assert!(
+            (20.0 * (target / wanted.unwrap()).log10()).abs() < 0.0101,
+            "{pair:?}"
+        );
     }
     let disagreeing = solved_within(&near_loop(0.06, 0.05), BUDGET);
     assert!(!disagreeing.matched && disagreeing.agreeing.is_empty());
     let words = disagreeing.conflicts[0].words(&inputs, &outputs);
-    assert!(words.contains("form a loop: their ratios disagree by 0.060 dB"), "{words}");
+    assert!(
+        words.contains("form a loop: their ratios disagree by 0.060 dB"),
+        "{words}"
+    );
 }
 
 #[test]
@@ -158,11 +262,22 @@ fn what_disagrees_by_little_is_told_to_the_digits_that_show_it() {
     assert!(words.contains("disagree by 0.0020 dB"), "{words}");
     for miss in &solution.unmatched {
         let words = miss.words(12.0, &inputs, &outputs);
-        let figures: Vec<&str> =
-            words.split(' ').filter(|word| word.starts_with("1.0") || word.starts_with("0.9")).collect();
-        assert!(figures.len() == 2 && figures[0] != figures[1] && !words.contains("0.0 dB"), "{words}");
+        let figures: Vec<&str> = words
+            .split(' ')
+            .filter(|word| word.starts_with("1.0") || word.starts_with("0.9"))
+            .collect();
+        assert!(
+            figures.len() == 2 && figures[0] != figures[1] && !words.contains("0.0 dB"),
+            "{words}"
+        );
     }
-    let problem = table_two(&[(0, 1, 1.960_1)], Bounds { lower: 0.7, upper: 1.4 });
+    let problem = table_two(
+        &[(0, 1, 1.960_1)],
+        Bounds {
+            lower: 0.7,
+            upper: 1.4,
+        },
+    );
     let words = solved_within(&problem, BUDGET).conflicts[0].words(&inputs, &outputs);
     assert!(words.contains("is at most 1.9600, not 1.9601;"), "{words}");
 }
@@ -174,7 +289,11 @@ fn what_a_near_loop_needs_does_not_hide_what_a_real_conflict_needs() {
     problem.constrained[other] = true;
     problem.delta[other] = Some(4.5);
     let solution = solved_within(&problem, BUDGET);
-    assert_eq!((solution.unmatched.len(), solution.agreeing.len()), (1, 1), "{solution:?}");
+    assert_eq!(
+        (solution.unmatched.len(), solution.agreeing.len()),
+        (1, 1),
+        "{solution:?}"
+    );
     let remedy = solution.remedy.unwrap();
     assert_eq!(remedy.free, [other]);
     assert!(is_matched(&without(&problem, other)));
@@ -183,12 +302,25 @@ fn what_a_near_loop_needs_does_not_hide_what_a_real_conflict_needs() {
 
 #[test]
 fn unreachable_reference_instances_are_explained_as_they_were_made() {
-    for instance in gain_instances().iter().filter(|instance| instance.kind == "infeasible") {
+    for instance in gain_instances()
+        .iter()
+        .filter(|instance| instance.kind == "infeasible")
+    {
         let solution = solved_within(&instance.problem, BUDGET);
-        assert_eq!(solution.conflicts.len(), 1, "{}: {:?}", instance.id, solution.conflicts);
+        assert_eq!(
+            solution.conflicts.len(),
+            1,
+            "{}: {:?}",
+            instance.id,
+            solution.conflicts
+        );
         let remedy = solution.remedy.unwrap();
         for pair in &remedy.free {
-            assert!(is_matched(&without(&instance.problem, *pair)), "{}: {pair:?}", instance.id);
+            assert!(
+                is_matched(&without(&instance.problem, *pair)),
+                "{}: {pair:?}",
+                instance.id
+            );
         }
         assert!(!remedy.free.is_empty(), "{}", instance.id);
     }
@@ -196,7 +328,13 @@ fn unreachable_reference_instances_are_explained_as_they_were_made() {
 
 #[test]
 fn an_answer_is_put_into_words_from_its_proof_to_its_remedies() {
-    let problem = table_two(&[(2, 2, 0.6), (4, 2, 1.5)], Bounds { lower: 0.7, upper: 1.4 });
+    let problem = table_two(
+        &[(2, 2, 0.6), (4, 2, 1.5)],
+        Bounds {
+            lower: 0.7,
+            upper: 1.4,
+        },
+    );
     let solution = solved(&problem);
     let (inputs, outputs) = (names(&INPUTS), names(&OUTPUTS));
     assert_eq!(
@@ -204,7 +342,11 @@ fn an_answer_is_put_into_words_from_its_proof_to_its_remedies() {
         "Proven: no gains within the bounds that hold the held responses are better."
     );
     // The ratio of 2.5 is cut to 2 by the factor 1.25, half of it (0.97 dB) to each side.
-    let misses: Vec<String> = solution.unmatched.iter().map(|miss| miss.words(12.0, &inputs, &outputs)).collect();
+    let misses: Vec<String> = solution
+        .unmatched
+        .iter()
+        .map(|miss| miss.words(12.0, &inputs, &outputs))
+        .collect();
     assert_eq!(
         misses,
         [
@@ -224,9 +366,13 @@ fn a_delay_that_would_have_to_be_negative_is_explained_as_lead() {
     delta_s[Pair::new(0, 1)] = Some(-0.034);
     let problem = Problem::delays(delta_s, on_axis(), 0.1);
     let solution = solved(&problem);
-    let [miss] = solution.unmatched.as_slice() else { panic!("{:?}", solution.unmatched) };
+    let [miss] = solution.unmatched.as_slice() else {
+        panic!("{:?}", solution.unmatched)
+    };
     assert_eq!(miss.target, 0.0);
-    assert!(matches!(miss.why.kind, ConflictKind::BelowLower { asked, .. } if (asked + 0.034).abs() <= 1e-15));
+    assert!(
+        matches!(miss.why.kind, ConflictKind::BelowLower { asked, .. } if (asked + 0.034).abs() <= 1e-15)
+    );
     // 0.034 s at 12 rad/s: 0.408 rad.
     assert!((miss.phase_left_deg(12.0) - 0.408_f64.to_degrees()).abs() <= 1e-12);
     assert_eq!(
@@ -242,10 +388,18 @@ fn a_lead_that_rounding_makes_is_none() {
     delta_s[Pair::new(0, 1)] = Some(-2.6e-17);
     delta_s[Pair::new(1, 0)] = Some(1.3e-17);
     let solution = solved(&Problem::delays(delta_s.clone(), on_axis(), 0.1));
-    assert!(solution.matched && solution.unmatched.is_empty() && solution.conflicts.is_empty(), "{solution:?}");
+    assert!(
+        solution.matched && solution.unmatched.is_empty() && solution.conflicts.is_empty(),
+        "{solution:?}"
+    );
     // A microsecond is one.
     delta_s[Pair::new(0, 1)] = Some(-1e-6);
-    assert_eq!(solved(&Problem::delays(delta_s, on_axis(), 0.1)).unmatched.len(), 1);
+    assert_eq!(
+        solved(&Problem::delays(delta_s, on_axis(), 0.1))
+            .unmatched
+            .len(),
+        1
+    );
 }
 
 #[test]
@@ -255,7 +409,13 @@ fn delays_that_differ_by_more_than_the_bound_are_explained() {
     delta_s[Pair::new(4, 2)] = Some(0.0618);
     let problem = Problem::delays(delta_s, on_axis(), 0.05);
     let solution = solved(&problem);
-    let [Conflict { kind: ConflictKind::TooFarApart { upper, .. }, .. }] = solution.conflicts.as_slice() else {
+    let [
+        Conflict {
+            kind: ConflictKind::TooFarApart { upper, .. },
+            ..
+        },
+    ] = solution.conflicts.as_slice()
+    else {
         panic!("{:?}", solution.conflicts)
     };
     assert_eq!(*upper, 0.0608);
@@ -265,10 +425,17 @@ fn delays_that_differ_by_more_than_the_bound_are_explained() {
 
 #[test]
 fn unreachable_reference_delays_are_all_explained() {
-    for instance in delay_instances().iter().filter(|instance| !instance.matched) {
+    for instance in delay_instances()
+        .iter()
+        .filter(|instance| !instance.matched)
+    {
         let solution = solved(&instance.problem);
         for miss in &solution.unmatched {
-            assert!(miss.why.kind != ConflictKind::Unclear, "{}: {miss:?}", instance.id);
+            assert!(
+                miss.why.kind != ConflictKind::Unclear,
+                "{}: {miss:?}",
+                instance.id
+            );
         }
         assert!(!solution.unmatched.is_empty());
     }

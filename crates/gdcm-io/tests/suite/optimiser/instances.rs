@@ -20,28 +20,52 @@ pub struct GainInstance {
 }
 
 pub fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().into_iter().flatten().filter_map(Value::as_f64).collect()
+    value
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_f64)
+        .collect()
 }
 
 /// The table of the numbers of `rows`.
 pub fn table<T>(rows: &Value, entry: impl Fn(f64) -> T) -> PairTable<T> {
     let rows: Vec<Vec<f64>> = rows.as_array().into_iter().flatten().map(numbers).collect();
-    PairTable::from_fn(rows.len(), rows[0].len(), |pair: Pair| entry(rows[pair.output][pair.input]))
+    PairTable::from_fn(rows.len(), rows[0].len(), |pair: Pair| {
+        entry(rows[pair.output][pair.input])
+    })
 }
 
 pub fn gain_instances() -> Vec<GainInstance> {
-    let file: Value =
-        serde_json::from_str(include_str!("../../../../../tests/data/reference/gain-instances.json")).unwrap();
-    file["instances"].as_array().unwrap().iter().map(gain_instance).collect()
+    let file: Value = serde_json::from_str(include_str!(
+        "../../../../../tests/data/reference/gain-instances.json"
+    ))
+    .unwrap();
+    file["instances"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(gain_instance)
+        .collect()
 }
 
 fn gain_instance(instance: &Value) -> GainInstance {
     let matched = instance["two_stage"].is_null();
-    let answer = if matched { instance } else { &instance["two_stage"] };
-    let bounds = Bounds { lower: instance["lb"].as_f64().unwrap(), upper: instance["ub"].as_f64().unwrap() };
+    let answer = if matched {
+        instance
+    } else {
+        &instance["two_stage"]
+    };
+    let bounds = Bounds {
+        lower: instance["lb"].as_f64().unwrap(),
+        upper: instance["ub"].as_f64().unwrap(),
+    };
     let constrained = table(&instance["on_axis"], |mark| mark != 0.0);
     let alpha = instance["alpha"].as_f64().unwrap();
-    let problem = Problem { alpha, ..Problem::gains(table(&instance["G"], Some), constrained, bounds) };
+    let problem = Problem {
+        alpha,
+        ..Problem::gains(table(&instance["G"], Some), constrained, bounds)
+    };
     GainInstance {
         id: instance["id"].as_u64().unwrap(),
         kind: instance["kind"].as_str().unwrap().to_owned(),
@@ -74,14 +98,28 @@ pub fn on_axis() -> PairTable<bool> {
 }
 
 pub fn delay_instances() -> Vec<DelayInstance> {
-    let file: Value =
-        serde_json::from_str(include_str!("../../../../../tests/data/reference/delay-instances.json")).unwrap();
-    file["instances"].as_array().unwrap().iter().map(delay_instance).collect()
+    let file: Value = serde_json::from_str(include_str!(
+        "../../../../../tests/data/reference/delay-instances.json"
+    ))
+    .unwrap();
+    file["instances"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(delay_instance)
+        .collect()
 }
 
 fn delay_instance(instance: &Value) -> DelayInstance {
-    let problem = Problem::delays(table(&instance["D"], Some), on_axis(), instance["ub"].as_f64().unwrap());
-    let problem = Problem { alpha: instance["alpha"].as_f64().unwrap(), ..problem };
+    let problem = Problem::delays(
+        table(&instance["D"], Some),
+        on_axis(),
+        instance["ub"].as_f64().unwrap(),
+    );
+    let problem = Problem {
+        alpha: instance["alpha"].as_f64().unwrap(),
+        ..problem
+    };
     DelayInstance {
         id: instance["id"].as_u64().unwrap(),
         problem,
@@ -102,14 +140,24 @@ pub struct ExampleCondition {
 }
 
 pub fn example_conditions() -> Vec<ExampleCondition> {
-    let file: Value =
-        serde_json::from_str(include_str!("../../../../../tests/data/reference/example-analysis.json")).unwrap();
-    file["conditions"].as_array().unwrap().iter().map(example_condition).collect()
+    let file: Value = serde_json::from_str(include_str!(
+        "../../../../../tests/data/reference/example-analysis.json"
+    ))
+    .unwrap();
+    file["conditions"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(example_condition)
+        .collect()
 }
 
 fn example_condition(condition: &Value) -> ExampleCondition {
     let number = |name: &str| condition[name].as_f64().unwrap();
-    let bounds = Bounds { lower: number("lb"), upper: number("ub") };
+    let bounds = Bounds {
+        lower: number("lb"),
+        upper: number("ub"),
+    };
     ExampleCondition {
         id: condition["id"].as_u64().unwrap(),
         gains: Problem::gains(table(&condition["G"], Some), on_axis(), bounds),

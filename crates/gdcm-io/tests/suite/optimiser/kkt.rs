@@ -22,9 +22,10 @@ pub fn gain_residual(problem: &Problem, solution: &Solution) -> f64 {
     let mut add = |channels: &[usize], delta: f64, gain: f64, weight: f64| {
         let decibel = 2.0 * weight * (20.0 / std::f64::consts::LN_10).powi(2);
         let (slope, size) = match problem.quantity {
-            Quantity::Gain(GainObjective::Ratio) => {
-                (2.0 * weight * gain * (gain - delta), 2.0 * weight * gain * (gain + delta))
-            }
+            Quantity::Gain(GainObjective::Ratio) => (
+                2.0 * weight * gain * (gain - delta),
+                2.0 * weight * gain * (gain + delta),
+            ),
             _ => (decibel * (gain / delta).ln(), decibel),
         };
         for &channel in channels {
@@ -42,9 +43,25 @@ pub fn gain_residual(problem: &Problem, solution: &Solution) -> f64 {
         add(&[inputs + output], 1.0, *gain, problem.alpha);
     }
     let ends = (problem.bounds.lower, problem.bounds.upper);
-    let on = |gain: &f64| (*gain <= ends.0 * (1.0 + 1e-12), *gain >= ends.1 * (1.0 - 1e-12));
-    let bounds = solution.inputs.iter().chain(&solution.outputs).map(on).collect();
-    residual(&Point { inputs, gradient, bounds, held: problem.constrained.marked().collect(), sizes })
+    let on = |gain: &f64| {
+        (
+            *gain <= ends.0 * (1.0 + 1e-12),
+            *gain >= ends.1 * (1.0 - 1e-12),
+        )
+    };
+    let bounds = solution
+        .inputs
+        .iter()
+        .chain(&solution.outputs)
+        .map(on)
+        .collect();
+    residual(&Point {
+        inputs,
+        gradient,
+        bounds,
+        held: problem.constrained.marked().collect(),
+        sizes,
+    })
 }
 
 /// Residual of the delays, relative to the size of the terms of each channel.
@@ -67,8 +84,19 @@ pub fn delay_residual(problem: &Problem, solution: &Solution) -> f64 {
         sizes[inputs + output] += 0.2 * problem.alpha;
     }
     let on = |delay: &f64| (*delay == 0.0, *delay == problem.bounds.upper);
-    let bounds = solution.inputs.iter().chain(&solution.outputs).map(on).collect();
-    residual(&Point { inputs, gradient, bounds, held: problem.constrained.marked().collect(), sizes })
+    let bounds = solution
+        .inputs
+        .iter()
+        .chain(&solution.outputs)
+        .map(on)
+        .collect();
+    residual(&Point {
+        inputs,
+        gradient,
+        bounds,
+        held: problem.constrained.marked().collect(),
+        sizes,
+    })
 }
 
 /// The steepest descent that is left, piece by piece: held entries tie the channels of a piece together, so that it can only move
@@ -78,7 +106,10 @@ fn residual(point: &Point) -> f64 {
     let mut piece: Vec<usize> = (0..channels).collect();
     for pair in &point.held {
         let (kept, merged) = (piece[pair.input], piece[point.inputs + pair.output]);
-        piece.iter_mut().filter(|piece| **piece == merged).for_each(|piece| *piece = kept);
+        piece
+            .iter_mut()
+            .filter(|piece| **piece == merged)
+            .for_each(|piece| *piece = kept);
     }
     let mut worst = 0.0_f64;
     for name in 0..channels {
@@ -87,7 +118,11 @@ fn residual(point: &Point) -> f64 {
         for channel in members {
             let (at_lower, at_upper) = point.bounds[channel];
             let is_input = channel < point.inputs;
-            slope += if is_input { point.gradient[channel] } else { -point.gradient[channel] };
+            slope += if is_input {
+                point.gradient[channel]
+            } else {
+                -point.gradient[channel]
+            };
             size += point.sizes[channel];
             may_rise &= !(if is_input { at_upper } else { at_lower });
             may_fall &= !(if is_input { at_lower } else { at_upper });

@@ -9,10 +9,17 @@ use gdcm_model::dataset::{Pair, PairTable};
 use super::kkt::gain_residual;
 use super::solved_within;
 
-const BOUNDS: Bounds = Bounds { lower: 0.2, upper: 5.0 };
+const BOUNDS: Bounds = Bounds {
+    lower: 0.2,
+    upper: 5.0,
+};
 
 /// A hundredth of the program's.
-const BUDGET: ProofBudget = ProofBudget { work: 500_000, listing: 10_000, bytes: 8_000_000 };
+const BUDGET: ProofBudget = ProofBudget {
+    work: 500_000,
+    listing: 10_000,
+    bytes: 8_000_000,
+};
 
 /// Gains of all channels between 0.7 and 1.4, each another.
 fn gain(channel: usize) -> f64 {
@@ -29,16 +36,23 @@ fn delta_gains() -> PairTable<Option<f64>> {
 
 /// A path of held entries through all channels: the longest way that a restraint can act.
 fn path() -> PairTable<bool> {
-    PairTable::from_fn(MOST_CHANNELS, MOST_CHANNELS, |pair| pair.output == pair.input || pair.output == pair.input + 1)
+    PairTable::from_fn(MOST_CHANNELS, MOST_CHANNELS, |pair| {
+        pair.output == pair.input || pair.output == pair.input + 1
+    })
 }
 
 #[test]
 fn consistent_products_are_all_held() {
-    let delta = delta_gains().map(|Pair { output, input }, _| Some(gain(output) * gain(MOST_CHANNELS + input)));
+    let delta = delta_gains()
+        .map(|Pair { output, input }, _| Some(gain(output) * gain(MOST_CHANNELS + input)));
     let held = PairTable::filled(MOST_CHANNELS, MOST_CHANNELS, true);
     let solution = solved_within(&Problem::gains(delta, held, BOUNDS), BUDGET);
     assert!(solution.matched);
-    assert!(matches!(solution.proof.outcome, Outcome::Proven { .. }), "one unknown: {:?}", solution.proof);
+    assert!(
+        matches!(solution.proof.outcome, Outcome::Proven { .. }),
+        "one unknown: {:?}",
+        solution.proof
+    );
     for (pair, target) in solution.targets.iter() {
         let product = solution.inputs[pair.input] * solution.outputs[pair.output];
         // The logarithms are held to 1e-9 (M8).
@@ -51,8 +65,13 @@ fn one_loop_among_all_channels_is_found() {
     let mut held = path();
     held[Pair::new(0, MOST_CHANNELS - 1)] = true;
     let solution = solved_within(&Problem::gains(delta_gains(), held, BOUNDS), BUDGET);
-    let [conflict] = solution.conflicts.as_slice() else { panic!("{:?}", solution.conflicts) };
-    assert!(matches!(conflict.kind, ConflictKind::Loop { .. }), "{conflict:?}");
+    let [conflict] = solution.conflicts.as_slice() else {
+        panic!("{:?}", solution.conflicts)
+    };
+    assert!(
+        matches!(conflict.kind, ConflictKind::Loop { .. }),
+        "{conflict:?}"
+    );
     assert_eq!(conflict.entries.len(), 2 * MOST_CHANNELS);
 }
 
@@ -71,10 +90,12 @@ fn what_is_held_along_a_path_balances_every_slope() {
                 balance[pair.input] += slope;
                 balance[MOST_CHANNELS + pair.output] += slope;
             }
-            ActiveConstraint::LowerBound(channel) | ActiveConstraint::UpperBound(channel) => match channel {
-                Channel::Input(input) => balance[input] += slope,
-                Channel::Output(output) => balance[MOST_CHANNELS + output] += slope,
-            },
+            ActiveConstraint::LowerBound(channel) | ActiveConstraint::UpperBound(channel) => {
+                match channel {
+                    Channel::Input(input) => balance[input] += slope,
+                    Channel::Output(output) => balance[MOST_CHANNELS + output] += slope,
+                }
+            }
         }
     }
     for (pair, delta) in problem.delta.iter() {
@@ -92,7 +113,11 @@ fn what_is_held_along_a_path_balances_every_slope() {
 
 #[test]
 fn a_proof_of_what_is_free_ends_within_its_budget() {
-    let problem = Problem::gains(delta_gains(), PairTable::filled(MOST_CHANNELS, MOST_CHANNELS, false), BOUNDS);
+    let problem = Problem::gains(
+        delta_gains(),
+        PairTable::filled(MOST_CHANNELS, MOST_CHANNELS, false),
+        BOUNDS,
+    );
     let solution = solved_within(&problem, BUDGET);
     assert!(solution.proof.lower_bound <= solution.objective);
     assert!(gain_residual(&problem, &solution) <= 1e-9);

@@ -1,6 +1,8 @@
 //! Local minima, limits and budgets.
 
-use gdcm_method::correction::{Bounds, GainObjective, Outcome, Problem, ProblemError, ProofBudget, Quantity, solve};
+use gdcm_method::correction::{
+    Bounds, GainObjective, Outcome, Problem, ProblemError, ProofBudget, Quantity, solve,
+};
 use gdcm_model::dataset::{Pair, PairTable};
 
 use super::instances::{delay_instances, example_conditions, gain_instances};
@@ -17,7 +19,14 @@ fn two_minima() -> Problem {
     ];
     let delta = PairTable::from_fn(4, 2, |pair| Some(gains[2 * pair.output + pair.input]));
     let constrained = PairTable::from_fn(4, 2, |pair| pair.output == pair.input);
-    let mut problem = Problem::gains(delta, constrained, Bounds { lower: 0.1, upper: 10.0 });
+    let mut problem = Problem::gains(
+        delta,
+        constrained,
+        Bounds {
+            lower: 0.1,
+            upper: 10.0,
+        },
+    );
     problem.alpha = 0.0;
     problem
 }
@@ -28,9 +37,21 @@ fn every_condition_of_the_example_is_solved_and_proven() {
         let gains = solved(&condition.gains);
         let delays = solved(&condition.delays);
         // The reference is printed to double precision and certified to 1e-8.
-        assert!((gains.objective / condition.gain_objective - 1.0).abs() <= 1e-8, "{}", condition.id);
-        assert!(matches!(gains.proof.outcome, Outcome::Proven { .. }), "{}", condition.id);
-        assert!((delays.objective / condition.delay_objective - 1.0).abs() <= 1e-8, "{}", condition.id);
+        assert!(
+            (gains.objective / condition.gain_objective - 1.0).abs() <= 1e-8,
+            "{}",
+            condition.id
+        );
+        assert!(
+            matches!(gains.proof.outcome, Outcome::Proven { .. }),
+            "{}",
+            condition.id
+        );
+        assert!(
+            (delays.objective / condition.delay_objective - 1.0).abs() <= 1e-8,
+            "{}",
+            condition.id
+        );
     }
 }
 
@@ -38,18 +59,35 @@ fn every_condition_of_the_example_is_solved_and_proven() {
 fn two_local_minima_within_a_percent_are_both_kept() {
     let problem = two_minima();
     let solution = solved(&problem);
-    let objectives: Vec<f64> = solution.proof.local_minima.iter().map(|minimum| minimum.objective).collect();
+    let objectives: Vec<f64> = solution
+        .proof
+        .local_minima
+        .iter()
+        .map(|minimum| minimum.objective)
+        .collect();
     assert!(solution.proof.all_minima);
     assert_eq!(objectives.len(), 2, "{objectives:?}");
     assert_eq!(objectives[0], solution.objective);
-    assert!(objectives[0] < objectives[1] && objectives[1] <= 1.01 * objectives[0], "{objectives:?}");
+    assert!(
+        objectives[0] < objectives[1] && objectives[1] <= 1.01 * objectives[0],
+        "{objectives:?}"
+    );
     // Walking from one to the other leads over higher ground: two minima, not one found twice.
     let along = |share: f64| {
         let mix = |a: &[f64], b: &[f64]| -> Vec<f64> {
-            a.iter().zip(b).map(|(a, b)| (a.ln() * (1.0 - share) + b.ln() * share).exp()).collect()
+            a.iter()
+                .zip(b)
+                .map(|(a, b)| (a.ln() * (1.0 - share) + b.ln() * share).exp())
+                .collect()
         };
-        let [first, second] = [&solution.proof.local_minima[0], &solution.proof.local_minima[1]];
-        problem.objective_at(&mix(&first.inputs, &second.inputs), &mix(&first.outputs, &second.outputs))
+        let [first, second] = [
+            &solution.proof.local_minima[0],
+            &solution.proof.local_minima[1],
+        ];
+        problem.objective_at(
+            &mix(&first.inputs, &second.inputs),
+            &mix(&first.outputs, &second.outputs),
+        )
     };
     assert!((1..20).any(|step| along(f64::from(step) / 20.0) > objectives[1]));
 }
@@ -70,32 +108,66 @@ fn a_sampled_grid_finds_nothing_below_the_better_of_two_minima() {
             let (g, k) = ([delta(output, 0), delta(output, 1)], [first, second]);
             ((g[0] * k[0] + g[1] * k[1]) / (k[0] * k[0] + k[1] * k[1])).clamp(0.1, 10.0)
         };
-        let objective = problem.objective_at(&[first, second], &[held[0], held[1], free(2), free(3)]);
-        assert!(objective >= solution.proof.lower_bound, "{first} {second}: {objective}");
+        let objective =
+            problem.objective_at(&[first, second], &[held[0], held[1], free(2), free(3)]);
+        assert!(
+            objective >= solution.proof.lower_bound,
+            "{first} {second}: {objective}"
+        );
     }
 }
 
 #[test]
 fn alpha_zero_is_the_limit_of_small_alphas() {
-    for instance in gain_instances().iter().filter(|instance| instance.problem.alpha == 0.0) {
+    for instance in gain_instances()
+        .iter()
+        .filter(|instance| instance.problem.alpha == 0.0)
+    {
         let limit = solved(&instance.problem);
-        let small = Problem { alpha: 1e-6, ..instance.problem.clone() };
+        let small = Problem {
+            alpha: 1e-6,
+            ..instance.problem.clone()
+        };
         let small = solved(&small);
-        for (limit, small) in limit.inputs.iter().chain(&limit.outputs).zip(small.inputs.iter().chain(&small.outputs)) {
+        for (limit, small) in limit
+            .inputs
+            .iter()
+            .chain(&limit.outputs)
+            .zip(small.inputs.iter().chain(&small.outputs))
+        {
             // The gains depend on alpha to first order.
-            assert!((limit / small - 1.0).abs() <= 1e-4, "{}: {limit} {small}", instance.id);
+            assert!(
+                (limit / small - 1.0).abs() <= 1e-4,
+                "{}: {limit} {small}",
+                instance.id
+            );
         }
     }
 }
 
 #[test]
 fn alpha_zero_is_the_limit_of_small_alphas_for_delays() {
-    for instance in delay_instances().iter().filter(|instance| instance.problem.alpha == 0.0) {
+    for instance in delay_instances()
+        .iter()
+        .filter(|instance| instance.problem.alpha == 0.0)
+    {
         let limit = solved(&instance.problem);
-        let small = solved(&Problem { alpha: 1e-6, ..instance.problem.clone() });
-        for (limit, small) in limit.inputs.iter().chain(&limit.outputs).zip(small.inputs.iter().chain(&small.outputs)) {
+        let small = solved(&Problem {
+            alpha: 1e-6,
+            ..instance.problem.clone()
+        });
+        for (limit, small) in limit
+            .inputs
+            .iter()
+            .chain(&limit.outputs)
+            .zip(small.inputs.iter().chain(&small.outputs))
+        {
             // The delays, of a tenth of a second, depend on alpha to first order.
-            assert!((limit - small).abs() <= 1e-6, "{}: {limit} {small}", instance.id);
+            assert!(
+                (limit - small).abs() <= 1e-6,
+                "{}: {limit} {small}",
+                instance.id
+            );
         }
     }
 }
@@ -106,24 +178,43 @@ fn a_large_alpha_leaves_the_output_gains_at_one() {
     problem.constrained = PairTable::filled(6, 4, false);
     problem.alpha = 1e6;
     let solution = solved(&problem);
-    assert!(matches!(solution.proof.outcome, Outcome::Proven { .. }), "{:?}", solution.proof.outcome);
+    assert!(
+        matches!(solution.proof.outcome, Outcome::Proven { .. }),
+        "{:?}",
+        solution.proof.outcome
+    );
     // The fit pulls with a force of order 1 against 1e6.
-    assert!(solution.outputs.iter().all(|gain| (gain - 1.0).abs() <= 1e-5), "{:?}", solution.outputs);
+    assert!(
+        solution
+            .outputs
+            .iter()
+            .all(|gain| (gain - 1.0).abs() <= 1e-5),
+        "{:?}",
+        solution.outputs
+    );
 }
 
 #[test]
 fn channels_without_any_fitted_entry_keep_a_gain_of_one_and_no_delay() {
     let mut gains = gain_instances()[0].problem.clone();
     gains.constrained = PairTable::filled(6, 4, false);
-    gains.fitted = gains.fitted.map(|pair, _| pair.input != 2 && pair.output != 3);
+    gains.fitted = gains
+        .fitted
+        .map(|pair, _| pair.input != 2 && pair.output != 3);
     for alpha in [0.0, 1.0] {
         gains.alpha = alpha;
         let solution = solved(&gains);
-        assert_eq!((solution.inputs[2], solution.outputs[3]), (1.0, 1.0), "alpha {alpha}");
+        assert_eq!(
+            (solution.inputs[2], solution.outputs[3]),
+            (1.0, 1.0),
+            "alpha {alpha}"
+        );
     }
     let mut delays = delay_instances()[0].problem.clone();
     delays.constrained = PairTable::filled(6, 4, false);
-    delays.fitted = delays.fitted.map(|pair, _| pair.input != 2 && pair.output != 3);
+    delays.fitted = delays
+        .fitted
+        .map(|pair, _| pair.input != 2 && pair.output != 3);
     let solution = solved(&delays);
     assert_eq!((solution.inputs[2], solution.outputs[3]), (0.0, 0.0));
 }
@@ -131,16 +222,28 @@ fn channels_without_any_fitted_entry_keep_a_gain_of_one_and_no_delay() {
 #[test]
 fn equal_bounds_leave_one_answer() {
     let mut problem = gain_instances()[0].problem.clone();
-    problem.bounds = Bounds { lower: 1.1, upper: 1.1 };
+    problem.bounds = Bounds {
+        lower: 1.1,
+        upper: 1.1,
+    };
     let solution = solved(&problem);
-    assert!(solution.inputs.iter().chain(&solution.outputs).all(|gain| *gain == 1.1));
+    assert!(
+        solution
+            .inputs
+            .iter()
+            .chain(&solution.outputs)
+            .all(|gain| *gain == 1.1)
+    );
     assert!(matches!(solution.proof.outcome, Outcome::Proven { .. }));
 }
 
 #[test]
 fn the_decibel_objective_is_proven_at_once_and_says_so() {
     for instance in gain_instances() {
-        let problem = Problem { quantity: Quantity::Gain(GainObjective::Decibel), ..instance.problem };
+        let problem = Problem {
+            quantity: Quantity::Gain(GainObjective::Decibel),
+            ..instance.problem
+        };
         let solution = solved(&problem);
         assert_eq!(solution.quantity, Quantity::Gain(GainObjective::Decibel));
         // Convex: one node.
@@ -156,15 +259,24 @@ fn the_decibel_objective_is_proven_at_once_and_says_so() {
 
 #[test]
 fn an_error_of_3_db_counts_alike_up_and_down_in_decibels() {
-    let bounds = Bounds { lower: 1.0, upper: 1.0 };
+    let bounds = Bounds {
+        lower: 1.0,
+        upper: 1.0,
+    };
     let objective = |gain: f64| {
-        let mut problem = Problem::gains(PairTable::filled(1, 1, Some(gain)), PairTable::filled(1, 1, false), bounds);
+        let mut problem = Problem::gains(
+            PairTable::filled(1, 1, Some(gain)),
+            PairTable::filled(1, 1, false),
+            bounds,
+        );
         problem.quantity = Quantity::Gain(GainObjective::Decibel);
         solved(&problem).objective
     };
     let factor = 10f64.powf(3.0 / 20.0);
     // 3 dB squared; a few roundings of the logarithms.
-    assert!((objective(factor) - 9.0).abs() <= 1e-13 && (objective(1.0 / factor) - 9.0).abs() <= 1e-13);
+    assert!(
+        (objective(factor) - 9.0).abs() <= 1e-13 && (objective(1.0 / factor) - 9.0).abs() <= 1e-13
+    );
 }
 
 #[test]
@@ -173,7 +285,11 @@ fn one_absurd_off_axis_gain_neither_breaks_the_answer_nor_the_proof() {
     problem.delta[Pair::new(3, 0)] = Some(1e14);
     let solution = solved(&problem);
     assert!(solution.objective.is_finite());
-    assert!(matches!(solution.proof.outcome, Outcome::Proven { .. }), "{:?}", solution.proof.outcome);
+    assert!(
+        matches!(solution.proof.outcome, Outcome::Proven { .. }),
+        "{:?}",
+        solution.proof.outcome
+    );
     // The output of the absurd gain goes to its bound.
     assert_eq!(solution.outputs[3], problem.bounds.upper);
 }
@@ -181,51 +297,141 @@ fn one_absurd_off_axis_gain_neither_breaks_the_answer_nor_the_proof() {
 #[test]
 fn problems_that_are_not_well_posed_are_refused_with_the_reason() {
     let good = gain_instances()[0].problem.clone();
-    let refused = |problem: &Problem| solve(problem, ProofBudget::default(), &|| false).unwrap_err();
+    let refused =
+        |problem: &Problem| solve(problem, ProofBudget::default(), &|| false).unwrap_err();
     let pair = Pair::new(2, 2);
     let mut bad = good.clone();
     bad.delta[pair] = None;
-    assert_eq!(refused(&bad), ProblemError::ConstrainedUndefined { quantity: good.quantity, pair });
+    assert_eq!(
+        refused(&bad),
+        ProblemError::ConstrainedUndefined {
+            quantity: good.quantity,
+            pair
+        }
+    );
     assert_eq!(
         refused(&bad).to_string(),
         "the response of output 3 to input 3 has no delta gain, so its gain cannot be held"
     );
     bad.delta[pair] = Some(-1.0);
     assert_eq!(refused(&bad), ProblemError::Gain { pair, gain: -1.0 });
-    let bad = Problem { bounds: Bounds { lower: 2.0, upper: 1.0 }, ..good.clone() };
+    let bad = Problem {
+        bounds: Bounds {
+            lower: 2.0,
+            upper: 1.0,
+        },
+        ..good.clone()
+    };
     assert_eq!(
         refused(&bad),
-        ProblemError::Bounds { quantity: good.quantity, bounds: Bounds { lower: 2.0, upper: 1.0 } }
+        ProblemError::Bounds {
+            quantity: good.quantity,
+            bounds: Bounds {
+                lower: 2.0,
+                upper: 1.0
+            }
+        }
     );
-    let bad = Problem { bounds: Bounds { lower: 0.0, upper: 1.0 }, ..good.clone() };
+    let bad = Problem {
+        bounds: Bounds {
+            lower: 0.0,
+            upper: 1.0,
+        },
+        ..good.clone()
+    };
     assert_eq!(
         refused(&bad),
-        ProblemError::Bounds { quantity: good.quantity, bounds: Bounds { lower: 0.0, upper: 1.0 } }
+        ProblemError::Bounds {
+            quantity: good.quantity,
+            bounds: Bounds {
+                lower: 0.0,
+                upper: 1.0
+            }
+        }
     );
-    let bad = Problem { alpha: -1.0, ..good.clone() };
+    let bad = Problem {
+        alpha: -1.0,
+        ..good.clone()
+    };
     assert_eq!(refused(&bad), ProblemError::Alpha { alpha: -1.0 });
-    let bad = Problem { alpha: f64::NAN, ..good.clone() };
+    let bad = Problem {
+        alpha: f64::NAN,
+        ..good.clone()
+    };
     assert!(matches!(refused(&bad), ProblemError::Alpha { .. }));
-    let bad = Problem { fitted: PairTable::filled(4, 6, true), ..good };
-    assert!(matches!(refused(&bad), ProblemError::Shape { table: "fitted", found: (4, 6), .. }));
+    let bad = Problem {
+        fitted: PairTable::filled(4, 6, true),
+        ..good
+    };
+    assert!(matches!(
+        refused(&bad),
+        ProblemError::Shape {
+            table: "fitted",
+            found: (4, 6),
+            ..
+        }
+    ));
 }
 
 #[test]
 fn delay_problems_that_are_not_well_posed_are_refused_with_the_reason() {
     let good = delay_instances()[0].problem.clone();
-    let refused = |problem: &Problem| solve(problem, ProofBudget::default(), &|| false).unwrap_err();
+    let refused =
+        |problem: &Problem| solve(problem, ProofBudget::default(), &|| false).unwrap_err();
     let pair = Pair::new(2, 2);
     let mut bad = good.clone();
     bad.delta[pair] = None;
-    assert_eq!(refused(&bad), ProblemError::ConstrainedUndefined { quantity: good.quantity, pair });
+    assert_eq!(
+        refused(&bad),
+        ProblemError::ConstrainedUndefined {
+            quantity: good.quantity,
+            pair
+        }
+    );
     bad.delta[pair] = Some(f64::INFINITY);
-    assert_eq!(refused(&bad), ProblemError::Delay { pair, delay_s: f64::INFINITY });
-    let bounds = Bounds { lower: 0.0, upper: -0.1 };
-    let error = refused(&Problem { bounds, ..good.clone() });
-    assert_eq!(error, ProblemError::Bounds { quantity: Quantity::Delay, bounds: Bounds { lower: 0.0, upper: -0.1 } });
-    assert_eq!(refused(&Problem { alpha: -1.0, ..good.clone() }), ProblemError::Alpha { alpha: -1.0 });
-    let bad = Problem { constrained: PairTable::filled(1, 1, false), ..good };
-    assert!(matches!(refused(&bad), ProblemError::Shape { table: "constrained", .. }));
+    assert_eq!(
+        refused(&bad),
+        ProblemError::Delay {
+            pair,
+            delay_s: f64::INFINITY
+        }
+    );
+    let bounds = Bounds {
+        lower: 0.0,
+        upper: -0.1,
+    };
+    let error = refused(&Problem {
+        bounds,
+        ..good.clone()
+    });
+    assert_eq!(
+        error,
+        ProblemError::Bounds {
+            quantity: Quantity::Delay,
+            bounds: Bounds {
+                lower: 0.0,
+                upper: -0.1
+            }
+        }
+    );
+    assert_eq!(
+        refused(&Problem {
+            alpha: -1.0,
+            ..good.clone()
+        }),
+        ProblemError::Alpha { alpha: -1.0 }
+    );
+    let bad = Problem {
+        constrained: PairTable::filled(1, 1, false),
+        ..good
+    };
+    assert!(matches!(
+        refused(&bad),
+        ProblemError::Shape {
+            table: "constrained",
+            ..
+        }
+    ));
 }
 
 #[test]
@@ -234,14 +440,24 @@ fn delays_scale_with_the_unit_of_time() {
         let seconds = solved(&instance.problem);
         let factor = 1e-6;
         let micro = Problem {
-            delta: instance.problem.delta.map(|_, delay| delay.map(|delay| delay * factor)),
-            bounds: Bounds { lower: 0.0, upper: instance.problem.bounds.upper * factor },
+            delta: instance
+                .problem
+                .delta
+                .map(|_, delay| delay.map(|delay| delay * factor)),
+            bounds: Bounds {
+                lower: 0.0,
+                upper: instance.problem.bounds.upper * factor,
+            },
             ..instance.problem.clone()
         };
         let micro = solved(&micro);
         for (long, short) in seconds.outputs.iter().zip(&micro.outputs) {
             // A few roundings of a tenth of a second, times what a flat minimum magnifies.
-            assert!((long * factor - short).abs() <= 1e-12 * factor, "{}: {long} {short}", instance.id);
+            assert!(
+                (long * factor - short).abs() <= 1e-12 * factor,
+                "{}: {long} {short}",
+                instance.id
+            );
         }
     }
 }

@@ -1,7 +1,9 @@
 //! What must hold of every answer.
 
 use crate::made_up::tries;
-use gdcm_method::correction::{Bounds, GainObjective, Limit, Outcome, Problem, ProofBudget, Quantity, Solution};
+use gdcm_method::correction::{
+    Bounds, GainObjective, Limit, Outcome, Problem, ProofBudget, Quantity, Solution,
+};
 use gdcm_model::dataset::{Pair, PairTable};
 use proptest::prelude::*;
 
@@ -10,17 +12,33 @@ use super::random::{Pattern, delay_problems, gain_problems};
 use super::{solved, solved_within};
 
 /// Bounds the time of one case; what is not proven by then must say so.
-const BUDGET: ProofBudget = ProofBudget { work: 2_000_000, listing: 50_000, bytes: 8_000_000 };
+const BUDGET: ProofBudget = ProofBudget {
+    work: 2_000_000,
+    listing: 50_000,
+    bytes: 8_000_000,
+};
 
 fn held_and_inside(problem: &Problem, solution: &Solution) -> Result<(), TestCaseError> {
     for pair in problem.constrained.marked() {
         let product = solution.inputs[pair.input] * solution.outputs[pair.output];
         let target = solution.targets[pair].unwrap();
         // The logarithms are held to 1e-9 (M8).
-        prop_assert!((product / target - 1.0).abs() <= 1e-9, "{:?}: {} is not {}", pair, product, target);
+        prop_assert!(
+            (product / target - 1.0).abs() <= 1e-9,
+            "{:?}: {} is not {}",
+            pair,
+            product,
+            target
+        );
     }
     let inside = problem.bounds.lower..=problem.bounds.upper;
-    prop_assert!(solution.inputs.iter().chain(&solution.outputs).all(|gain| inside.contains(gain)));
+    prop_assert!(
+        solution
+            .inputs
+            .iter()
+            .chain(&solution.outputs)
+            .all(|gain| inside.contains(gain))
+    );
     Ok(())
 }
 
@@ -179,7 +197,9 @@ fn shuffled(count: usize, seed: u64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..count).collect();
     let mut state = seed;
     for last in (1..count).rev() {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
         order.swap(last, (state >> 33) as usize % (last + 1));
     }
     order
@@ -189,13 +209,20 @@ fn shuffled(count: usize, seed: u64) -> Vec<usize> {
 fn an_exact_product_of_gains_is_found_with_an_objective_of_zero() {
     let (inputs, outputs) = ([0.9, 1.2, 1.1], [1.05, 0.8, 1.3, 1.0]);
     let delta = PairTable::from_fn(4, 3, |pair| Some(inputs[pair.input] * outputs[pair.output]));
-    let bounds = Bounds { lower: 0.5, upper: 2.0 };
+    let bounds = Bounds {
+        lower: 0.5,
+        upper: 2.0,
+    };
     let mut problem = Problem::gains(delta, PairTable::filled(4, 3, false), bounds);
     problem.alpha = 0.0;
     let solution = solved(&problem);
     // Twelve squares of a few roundings each.
     assert!(solution.objective <= 1e-28, "{}", solution.objective);
-    assert!(matches!(solution.proof.outcome, Outcome::Proven { .. }), "{:?}", solution.proof.outcome);
+    assert!(
+        matches!(solution.proof.outcome, Outcome::Proven { .. }),
+        "{:?}",
+        solution.proof.outcome
+    );
 }
 
 #[test]
@@ -207,10 +234,17 @@ fn a_strong_regularisation_that_meets_its_bound_is_proven() {
         delta: PairTable::from_fn(3, 1, |pair| gains[pair.output]),
         constrained: PairTable::filled(3, 1, false),
         fitted: PairTable::from_fn(3, 1, |pair| pair.output != 1),
-        bounds: Bounds { lower: 0.2, upper: 1.0 },
+        bounds: Bounds {
+            lower: 0.2,
+            upper: 1.0,
+        },
         alpha: 1e6,
         agreement: 0.0,
     };
     let solution = solved(&problem);
-    assert!(matches!(solution.proof.outcome, Outcome::Proven { gap } if gap <= 1e-9), "{:?}", solution.proof.outcome);
+    assert!(
+        matches!(solution.proof.outcome, Outcome::Proven { gap } if gap <= 1e-9),
+        "{:?}",
+        solution.proof.outcome
+    );
 }

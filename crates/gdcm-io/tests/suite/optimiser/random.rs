@@ -21,13 +21,16 @@ fn entries<T: std::fmt::Debug>(
 }
 
 fn fill<T: Clone>((outputs, inputs): (usize, usize), values: &[T]) -> PairTable<T> {
-    PairTable::from_fn(outputs, inputs, |pair: Pair| values[pair.output * inputs + pair.input].clone())
+    PairTable::from_fn(outputs, inputs, |pair: Pair| {
+        values[pair.output * inputs + pair.input].clone()
+    })
 }
 
 /// Marks at most one entry of each output.
 fn one_each(shape: (usize, usize), marks: &[bool]) -> PairTable<bool> {
     let all = fill(shape, marks);
-    let first = |pair: Pair| all[pair] && (0..pair.input).all(|input| !all[Pair::new(pair.output, input)]);
+    let first =
+        |pair: Pair| all[pair] && (0..pair.input).all(|input| !all[Pair::new(pair.output, input)]);
     PairTable::from_fn(shape.0, shape.1, first)
 }
 
@@ -40,7 +43,14 @@ fn objectives() -> impl Strategy<Value = GainObjective> {
 }
 
 pub fn alphas() -> impl Strategy<Value = f64> {
-    prop_oneof![Just(0.0), Just(1e-6), Just(0.1), Just(1.0), Just(10.0), Just(1e6)]
+    prop_oneof![
+        Just(0.0),
+        Just(1e-6),
+        Just(0.1),
+        Just(1.0),
+        Just(10.0),
+        Just(1e6)
+    ]
 }
 
 /// The delta, held and fitted entries of a problem of up to `most` outputs and inputs.
@@ -66,22 +76,55 @@ fn tables(
 }
 
 /// Gain problems of up to `most` outputs and inputs; delta gains within `spread` (natural logarithm) of 1.
-pub fn gain_problems(most: (usize, usize), spread: f64, pattern: Pattern) -> impl Strategy<Value = Problem> {
-    let deltas = (-spread..spread).prop_map(f64::exp as fn(f64) -> f64).boxed();
+pub fn gain_problems(
+    most: (usize, usize),
+    spread: f64,
+    pattern: Pattern,
+) -> impl Strategy<Value = Problem> {
+    let deltas = (-spread..spread)
+        .prop_map(f64::exp as fn(f64) -> f64)
+        .boxed();
     let bounds = (0.2..1.0_f64, 1.0..5.0_f64, prop::bool::weighted(0.05));
-    (tables(most, pattern, deltas), bounds, alphas(), objectives()).prop_map(
-        |((delta, constrained, fitted), (lower, upper, fixed), alpha, objective)| {
-            let bounds = Bounds { lower, upper: if fixed { lower } else { upper } };
-            Problem { quantity: Quantity::Gain(objective), delta, constrained, fitted, bounds, alpha, agreement: 0.0 }
-        },
+    (
+        tables(most, pattern, deltas),
+        bounds,
+        alphas(),
+        objectives(),
     )
+        .prop_map(
+            |((delta, constrained, fitted), (lower, upper, fixed), alpha, objective)| {
+                let bounds = Bounds {
+                    lower,
+                    upper: if fixed { lower } else { upper },
+                };
+                Problem {
+                    quantity: Quantity::Gain(objective),
+                    delta,
+                    constrained,
+                    fitted,
+                    bounds,
+                    alpha,
+                    agreement: 0.0,
+                }
+            },
+        )
 }
 
 /// Delay problems of up to `most` outputs and inputs; delta delays of up to a tenth of a second either way.
 pub fn delay_problems(most: (usize, usize), pattern: Pattern) -> impl Strategy<Value = Problem> {
     let upper = prop_oneof![1 => Just(0.0), 9 => 0.0..0.2_f64];
-    (tables(most, pattern, -0.1..0.1_f64), upper, alphas()).prop_map(|((delta, constrained, fitted), upper, alpha)| {
-        let bounds = Bounds { lower: 0.0, upper };
-        Problem { quantity: Quantity::Delay, delta, constrained, fitted, bounds, alpha, agreement: 0.0 }
-    })
+    (tables(most, pattern, -0.1..0.1_f64), upper, alphas()).prop_map(
+        |((delta, constrained, fitted), upper, alpha)| {
+            let bounds = Bounds { lower: 0.0, upper };
+            Problem {
+                quantity: Quantity::Delay,
+                delta,
+                constrained,
+                fitted,
+                bounds,
+                alpha,
+                agreement: 0.0,
+            }
+        },
+    )
 }

@@ -26,10 +26,18 @@ fn held_sums_are_held_and_delays_stay_inside_their_bounds() {
         for pair in instance.problem.constrained.marked() {
             let sum = solution.inputs[pair.input] + solution.outputs[pair.output];
             // A few roundings of delays of a tenth of a second.
-            assert!((sum - solution.targets[pair].unwrap()).abs() <= 1e-15, "{}: {pair:?}", instance.id);
+            assert!(
+                (sum - solution.targets[pair].unwrap()).abs() <= 1e-15,
+                "{}: {pair:?}",
+                instance.id
+            );
         }
         for delay in solution.inputs.iter().chain(&solution.outputs) {
-            assert!((0.0..=instance.problem.bounds.upper).contains(delay), "{}: {delay}", instance.id);
+            assert!(
+                (0.0..=instance.problem.bounds.upper).contains(delay),
+                "{}: {delay}",
+                instance.id
+            );
         }
     }
 }
@@ -42,7 +50,8 @@ fn delays_on_a_bound_are_exactly_on_it() {
             // A nanosecond: anything this near to a bound is meant to be on it.
             assert!(*delay == 0.0 || *delay > 1e-9, "{}: {delay:e}", instance.id);
             assert!(
-                *delay == instance.problem.bounds.upper || instance.problem.bounds.upper - delay > 1e-9,
+                *delay == instance.problem.bounds.upper
+                    || instance.problem.bounds.upper - delay > 1e-9,
                 "{}: {delay:e}",
                 instance.id
             );
@@ -58,7 +67,11 @@ fn sums_equal_the_reference() {
             let sum = solution.inputs[pair.input] + solution.outputs[pair.output];
             let reference = instance.inputs[pair.input] + instance.outputs[pair.output];
             // An objective known to 1e-8 fixes its minimum to about the root of that, of delays of a tenth of a second.
-            assert!((sum - reference).abs() <= 2e-5, "{}: {pair:?} {sum} {reference}", instance.id);
+            assert!(
+                (sum - reference).abs() <= 2e-5,
+                "{}: {pair:?} {sum} {reference}",
+                instance.id
+            );
         }
     }
 }

@@ -38,7 +38,11 @@ fn held_entries_are_held_and_gains_stay_inside_their_bounds() {
         for pair in instance.problem.constrained.marked() {
             let product = solution.inputs[pair.input] * solution.outputs[pair.output];
             let target = solution.targets[pair].unwrap();
-            assert!((product / target - 1.0).abs() <= 1e-9, "{}: {pair:?} {product} is not {target}", instance.id);
+            assert!(
+                (product / target - 1.0).abs() <= 1e-9,
+                "{}: {pair:?} {product} is not {target}",
+                instance.id
+            );
         }
         for gain in solution.inputs.iter().chain(&solution.outputs) {
             assert!(
@@ -55,9 +59,18 @@ fn entries_out_of_reach_are_missed_as_little_as_possible() {
     for instance in gain_instances() {
         let solution = solved(&instance.problem);
         assert_eq!(solution.matched, instance.matched, "{}", instance.id);
-        let most = solution.unmatched.iter().map(|miss| (miss.target / miss.delta).ln().abs()).fold(0.0, f64::max);
+        let most = solution
+            .unmatched
+            .iter()
+            .map(|miss| (miss.target / miss.delta).ln().abs())
+            .fold(0.0, f64::max);
         // The reference's stage 1 stops at about 1e-9.
-        assert!((most - instance.residual).abs() <= 1e-7, "{}: {most} is not {}", instance.id, instance.residual);
+        assert!(
+            (most - instance.residual).abs() <= 1e-7,
+            "{}: {most} is not {}",
+            instance.id,
+            instance.residual
+        );
     }
 }
 
@@ -70,10 +83,18 @@ fn products_equal_the_reference_where_the_minimum_is_unique() {
             let product = solution.inputs[input] * solution.outputs[output];
             let reference = instance.inputs[input] * instance.outputs[output];
             // An objective known to 1e-8 fixes its minimum to about the root, 1e-4.
-            assert!((product / reference - 1.0).abs() <= 2e-4, "{}: {pair:?} {product} {reference}", instance.id);
+            assert!(
+                (product / reference - 1.0).abs() <= 2e-4,
+                "{}: {pair:?} {product} {reference}",
+                instance.id
+            );
             if !instance.loose && instance.matched && instance.problem.alpha > 0.0 {
                 let (gain, reference) = (solution.outputs[output], instance.outputs[output]);
-                assert!((gain / reference - 1.0).abs() <= 2e-4, "{}: k_o {gain} {reference}", instance.id);
+                assert!(
+                    (gain / reference - 1.0).abs() <= 2e-4,
+                    "{}: k_o {gain} {reference}",
+                    instance.id
+                );
             }
         }
     }

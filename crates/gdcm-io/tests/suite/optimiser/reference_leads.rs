@@ -1,6 +1,8 @@
 //! The minima of the program of signed delays (M15.4), and the filters of the negative ones (M15.3).
 
-use gdcm_method::correction::{Bounds, LeadDesign, LeadSettings, Outcome, Problem, ProofBudget, kkt_residual, solve};
+use gdcm_method::correction::{
+    Bounds, LeadDesign, LeadSettings, Outcome, Problem, ProofBudget, kkt_residual, solve,
+};
 use gdcm_model::dataset::{Band, Pair, PairTable};
 use gdcm_model::response::{FrequencyGrid, LeadOrder};
 use proptest::prelude::*;
@@ -17,11 +19,17 @@ fn assert_seconds(what: &str, found: f64, reference: f64) {
 
 #[track_caller]
 fn assert_within(what: &str, found: f64, reference: f64, least_s: f64) {
-    assert!((found - reference).abs() <= (1e-6 * reference.abs()).max(least_s), "{what}: {found} is not {reference}");
+    assert!(
+        (found - reference).abs() <= (1e-6 * reference.abs()).max(least_s),
+        "{what}: {found} is not {reference}"
+    );
 }
 
 fn reference() -> Value {
-    serde_json::from_str(include_str!("../../../../../tests/data/reference/lead.json")).unwrap()
+    serde_json::from_str(include_str!(
+        "../../../../../tests/data/reference/lead.json"
+    ))
+    .unwrap()
 }
 
 fn list<'a>(reference: &'a Value, name: &str) -> &'a [Value] {
@@ -34,8 +42,19 @@ fn number(value: &Value) -> f64 {
 
 fn design(entry: &Value) -> LeadDesign {
     let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 200);
-    let order = if entry["order"] == 1 { LeadOrder::First } else { LeadOrder::Second };
-    LeadDesign::new(LeadSettings { order, pole: number(&entry["pole"]), limit: 10.0 }, grid.omega().into())
+    let order = if entry["order"] == 1 {
+        LeadOrder::First
+    } else {
+        LeadOrder::Second
+    };
+    LeadDesign::new(
+        LeadSettings {
+            order,
+            pole: number(&entry["pole"]),
+            limit: 10.0,
+        },
+        grid.omega().into(),
+    )
 }
 
 fn program(entry: &Value) -> Problem {
@@ -43,9 +62,16 @@ fn program(entry: &Value) -> Problem {
     let on: Vec<Vec<f64>> = list(entry, "on").iter().map(numbers).collect();
     let held = |pair: Pair| on.contains(&vec![pair.output as f64, pair.input as f64]);
     let constrained = PairTable::from_fn(delta.outputs(), delta.inputs(), held);
-    let bounds = Bounds { lower: number(&entry["lower_s"]), upper: number(&entry["upper_s"]) };
+    let bounds = Bounds {
+        lower: number(&entry["lower_s"]),
+        upper: number(&entry["upper_s"]),
+    };
     let fitted = table(&entry["weight"], |weight| weight != 0.0);
-    Problem { alpha: number(&entry["alpha"]), fitted, ..Problem::signed_delays(delta, constrained, bounds) }
+    Problem {
+        alpha: number(&entry["alpha"]),
+        fitted,
+        ..Problem::signed_delays(delta, constrained, bounds)
+    }
 }
 
 #[test]
@@ -57,17 +83,30 @@ fn filters_have_the_reference_response_band_delay_and_gain_at_infinity() {
         for (at, omega) in omega.iter().enumerate() {
             let value = filter.at(*omega);
             // The reference is written to twelve digits.
-            assert!((value.re - re[at]).abs() + (value.im - im[at]).abs() < 1e-10 * value.norm(), "{entry}");
+            assert!(
+                (value.re - re[at]).abs() + (value.im - im[at]).abs() < 1e-10 * value.norm(),
+                "{entry}"
+            );
         }
-        assert_seconds("band delay", design.band_delay_s(lead_s), number(&entry["band_delay_s"]));
-        assert!((filter.gain_at_infinity() / number(&entry["gain_at_infinity"]) - 1.0).abs() < 1e-10);
+        assert_seconds(
+            "band delay",
+            design.band_delay_s(lead_s),
+            number(&entry["band_delay_s"]),
+        );
+        assert!(
+            (filter.gain_at_infinity() / number(&entry["gain_at_infinity"]) - 1.0).abs() < 1e-10
+        );
     }
 }
 
 #[test]
 fn a_signed_delay_has_the_reference_lead_time() {
     for entry in list(&reference(), "lead_time") {
-        assert_seconds("lead time", design(entry).lead_s(number(&entry["tau_s"])), number(&entry["lead_s"]));
+        assert_seconds(
+            "lead time",
+            design(entry).lead_s(number(&entry["tau_s"])),
+            number(&entry["lead_s"]),
+        );
     }
 }
 
@@ -84,13 +123,35 @@ fn a_servo_that_lags_wants_one_filter_that_takes_its_place() {
 fn every_program_of_signed_delays_has_the_reference_answer() {
     for entry in list(&reference(), "programs") {
         let (name, solution) = (entry["name"].as_str().unwrap(), solved(&program(entry)));
-        assert_eq!(solution.matched, entry["matched"].as_bool().unwrap(), "{name}");
-        assert!(matches!(solution.proof.outcome, Outcome::Proven { .. }), "{name}");
-        assert!((solution.objective / number(&entry["objective"]) - 1.0).abs() < 1e-6, "{name}");
-        for (found, reference) in [(&solution.inputs, &entry["tau_in_s"]), (&solution.outputs, &entry["tau_out_s"])] {
+        assert_eq!(
+            solution.matched,
+            entry["matched"].as_bool().unwrap(),
+            "{name}"
+        );
+        assert!(
+            matches!(solution.proof.outcome, Outcome::Proven { .. }),
+            "{name}"
+        );
+        assert!(
+            (solution.objective / number(&entry["objective"]) - 1.0).abs() < 1e-6,
+            "{name}"
+        );
+        for (found, reference) in [
+            (&solution.inputs, &entry["tau_in_s"]),
+            (&solution.outputs, &entry["tau_out_s"]),
+        ] {
             for (found, reference) in found.iter().zip(numbers(reference)) {
                 // The reference's limit of alpha is a small alpha, with the rounding that this brings.
-                assert_within(name, *found, reference, if number(&entry["alpha"]) == 0.0 { 5e-9 } else { 1e-9 });
+                assert_within(
+                    name,
+                    *found,
+                    reference,
+                    if number(&entry["alpha"]) == 0.0 {
+                        5e-9
+                    } else {
+                        1e-9
+                    },
+                );
             }
         }
     }
@@ -102,38 +163,77 @@ fn the_residual_of_karush_kuhn_and_tucker_proves_each_optimum() {
         let problem = program(entry);
         let mut solution = solved(&problem);
         // Roundings of slopes that are sums of thirty delays of a tenth of a second.
-        assert!(kkt_residual(&problem, &solution) < 1e-14, "{}", entry["name"]);
+        assert!(
+            kkt_residual(&problem, &solution) < 1e-14,
+            "{}",
+            entry["name"]
+        );
         solution.inputs.iter_mut().for_each(|tau| *tau += 1e-3);
         solution.outputs.iter_mut().for_each(|tau| *tau -= 1e-3);
-        assert!(problem.alpha == 0.0 || kkt_residual(&problem, &solution) > 1e-3, "moved away from the optimum");
+        assert!(
+            problem.alpha == 0.0 || kkt_residual(&problem, &solution) > 1e-3,
+            "moved away from the optimum"
+        );
     }
 }
 
 #[test]
 fn a_bound_on_the_gain_of_the_filters_is_met_and_explained() {
-    let entry = list(&reference(), "programs").iter().find(|entry| entry["name"] == "one pair beyond reach").cloned();
+    let entry = list(&reference(), "programs")
+        .iter()
+        .find(|entry| entry["name"] == "one pair beyond reach")
+        .cloned();
     let problem = program(&entry.unwrap());
     let solution = solved(&problem);
-    let least = solution.inputs.iter().chain(&solution.outputs).copied().fold(f64::INFINITY, f64::min);
+    let least = solution
+        .inputs
+        .iter()
+        .chain(&solution.outputs)
+        .copied()
+        .fold(f64::INFINITY, f64::min);
     assert_eq!(least, problem.bounds.lower);
-    let names = |letter: &str, count: usize| (0..count).map(|at| format!("{letter}{at}")).collect::<Vec<_>>();
+    let names = |letter: &str, count: usize| {
+        (0..count)
+            .map(|at| format!("{letter}{at}"))
+            .collect::<Vec<_>>()
+    };
     let (inputs, outputs) = (names("u", 4), names("y", 6));
-    let told = solution.unmatched[0].words(12.0, &inputs, &outputs) + &solution.conflicts[0].words(&inputs, &outputs);
-    for part in ["of lead it wants", "R_max lets", "191.2 ms of lead together", "a larger R_max or a smaller n"] {
+    let told = solution.unmatched[0].words(12.0, &inputs, &outputs)
+        + &solution.conflicts[0].words(&inputs, &outputs);
+    for part in [
+        "of lead it wants",
+        "R_max lets",
+        "191.2 ms of lead together",
+        "a larger R_max or a smaller n",
+    ] {
         assert!(told.contains(part), "{told}");
     }
     let upper = solution.remedy.unwrap();
-    assert!(upper.lower.unwrap() < problem.bounds.lower, "a lower bound further down would do");
+    assert!(
+        upper.lower.unwrap() < problem.bounds.lower,
+        "a lower bound further down would do"
+    );
 }
 
 fn signed_delays() -> impl Strategy<Value = (Problem, Vec<usize>, Vec<usize>)> {
-    let table = (prop::collection::vec(-0.15_f64..0.1, 12), prop::collection::vec(any::<bool>(), 12), 0.0_f64..0.05);
-    let orders =
-        (Just((0..4).collect::<Vec<usize>>()).prop_shuffle(), Just((0..3).collect::<Vec<usize>>()).prop_shuffle());
+    let table = (
+        prop::collection::vec(-0.15_f64..0.1, 12),
+        prop::collection::vec(any::<bool>(), 12),
+        0.0_f64..0.05,
+    );
+    let orders = (
+        Just((0..4).collect::<Vec<usize>>()).prop_shuffle(),
+        Just((0..3).collect::<Vec<usize>>()).prop_shuffle(),
+    );
     (table, orders).prop_map(|((delta, held, upper), (outputs, inputs))| {
         let at = |pair: Pair| pair.output * 3 + pair.input;
-        let held = PairTable::from_fn(4, 3, |pair| held[at(pair)] && (pair.output + pair.input) % 3 == 0);
-        let bounds = Bounds { lower: -0.0956, upper };
+        let held = PairTable::from_fn(4, 3, |pair| {
+            held[at(pair)] && (pair.output + pair.input) % 3 == 0
+        });
+        let bounds = Bounds {
+            lower: -0.0956,
+            upper,
+        };
         let delta = PairTable::from_fn(4, 3, |pair| Some(delta[at(pair)]));
         (Problem::signed_delays(delta, held, bounds), outputs, inputs)
     })

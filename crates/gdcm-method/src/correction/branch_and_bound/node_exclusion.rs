@@ -23,10 +23,19 @@ impl<'a> NodeExclusion<'a> {
         for piece in &floating {
             for &scale in piece {
                 base[scale] = piece[0];
-                stops[scale] = piece.iter().copied().filter(|&other| other != scale).collect();
+                stops[scale] = piece
+                    .iter()
+                    .copied()
+                    .filter(|&other| other != scale)
+                    .collect();
             }
         }
-        Self { objective, base, stops, floating }
+        Self {
+            objective,
+            base,
+            stops,
+            floating,
+        }
     }
 
     /// Work of one test: the range of every slope, or the Hessian and its Cholesky factorisation.
@@ -40,8 +49,9 @@ impl<'a> NodeExclusion<'a> {
     pub(super) fn has_no_minimum(&self, region: &DifferenceBounds) -> bool {
         let slopes = self.slope_ranges(region);
         let can_move = |scale: &usize| self.objective.lower[*scale] < self.objective.upper[*scale];
-        let unstopped =
-            |scale: usize| sign(&slopes[scale]) != 0 && !self.is_stopped(region, scale, sign(&slopes[scale]));
+        let unstopped = |scale: usize| {
+            sign(&slopes[scale]) != 0 && !self.is_stopped(region, scale, sign(&slopes[scale]))
+        };
         (0..self.objective.ground()).filter(can_move).any(unstopped)
     }
 
@@ -62,8 +72,13 @@ impl<'a> NodeExclusion<'a> {
 
     fn is_stopped(&self, region: &DifferenceBounds, scale: usize, sign: i8) -> bool {
         self.stops[scale].iter().any(|&other| {
-            let (from, to) = if sign > 0 { (scale, other) } else { (other, scale) };
-            region.range(from, to).1 >= self.objective.upper[to] - self.objective.lower[from] - 1e-12
+            let (from, to) = if sign > 0 {
+                (scale, other)
+            } else {
+                (other, scale)
+            };
+            region.range(from, to).1
+                >= self.objective.upper[to] - self.objective.lower[from] - 1e-12
         })
     }
 
@@ -95,7 +110,9 @@ impl<'a> NodeExclusion<'a> {
             let u = minimum[term.to] - minimum[term.from];
             (u - 2.0 * WITHIN, u + 2.0 * WITHIN)
         });
-        let push: Vec<f64> = (0..minimum.len()).map(|scale| self.push(minimum, at, scale)).collect();
+        let push: Vec<f64> = (0..minimum.len())
+            .map(|scale| self.push(minimum, at, scale))
+            .collect();
         let anchors = self.anchors(at, &push)?;
         let (lower, upper) = (&self.objective.lower, &self.objective.upper);
         let free: Vec<usize> = (0..self.objective.ground())
@@ -117,7 +134,11 @@ impl<'a> NodeExclusion<'a> {
         } else {
             minimum[scale] >= self.objective.upper[scale]
         };
-        if stopped { (slope.abs() - at.gradient_error[scale]).max(0.0) } else { 0.0 }
+        if stopped {
+            (slope.abs() - at.gradient_error[scale]).max(0.0)
+        } else {
+            0.0
+        }
     }
 
     /// The scale against which each floating piece is measured: one that cannot move or, where bounds push, the one pushed
@@ -125,14 +146,20 @@ impl<'a> NodeExclusion<'a> {
     fn anchors(&self, at: &Expansion, push: &[f64]) -> Option<Vec<usize>> {
         let mut anchors = Vec::new();
         for piece in &self.floating {
-            let is_fixed = |scale: &usize| self.objective.lower[*scale] >= self.objective.upper[*scale];
+            let is_fixed =
+                |scale: &usize| self.objective.lower[*scale] >= self.objective.upper[*scale];
             if let Some(fixed) = piece.iter().copied().find(is_fixed) {
                 anchors.push(fixed);
                 continue;
             }
-            let hardest = piece.iter().copied().max_by(|a, b| push[*a].total_cmp(&push[*b]))?;
+            let hardest = piece
+                .iter()
+                .copied()
+                .max_by(|a, b| push[*a].total_cmp(&push[*b]))?;
             let loose = piece.iter().filter(|&&scale| push[scale] == 0.0);
-            let lean: f64 = loose.map(|&scale| at.gradient[scale].abs() + at.gradient_error[scale]).sum();
+            let lean: f64 = loose
+                .map(|&scale| at.gradient[scale].abs() + at.gradient_error[scale])
+                .sum();
             if push[hardest] > 0.0 && push[hardest] < lean {
                 return None;
             }

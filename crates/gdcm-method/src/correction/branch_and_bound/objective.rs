@@ -35,7 +35,10 @@ impl Expansion {
     pub(crate) fn add(&mut self, term: &Term, slope: Rounded, curvature: f64) {
         let (scales, from, to) = (self.gradient.len(), term.from, term.to);
         for (scale, slope) in [(to, slope), (from, -slope)] {
-            let mut sum = Rounded { value: self.gradient[scale], error: self.gradient_error[scale] };
+            let mut sum = Rounded {
+                value: self.gradient[scale],
+                error: self.gradient_error[scale],
+            };
             sum.add(slope);
             (self.gradient[scale], self.gradient_error[scale]) = (sum.value, sum.error);
         }
@@ -92,12 +95,21 @@ impl Objective {
 
     /// The point of the box nearest to 0.
     pub(crate) fn nearest_to_zero(&self) -> Vec<f64> {
-        self.lower.iter().zip(&self.upper).map(|(low, high)| 0.0_f64.clamp(*low, *high)).collect()
+        self.lower
+            .iter()
+            .zip(&self.upper)
+            .map(|(low, high)| 0.0_f64.clamp(*low, *high))
+            .collect()
     }
 
     /// Value at `scales`.
     pub(crate) fn value(&self, scales: &[f64]) -> f64 {
-        let at = |term: &Term| term.function.at(scales[term.to] - scales[term.from]).value.value;
+        let at = |term: &Term| {
+            term.function
+                .at(scales[term.to] - scales[term.from])
+                .value
+                .value
+        };
         self.constant.value + self.terms.iter().map(at).sum::<f64>()
     }
 
@@ -105,17 +117,29 @@ impl Objective {
     pub(crate) fn floating_pieces(&self) -> Vec<Vec<usize>> {
         let ties = self.terms.iter().map(|term| (term.from, term.to));
         let pieces = pieces(self.scales(), ties).into_iter();
-        pieces.filter(|piece| !piece.contains(&self.ground())).collect()
+        pieces
+            .filter(|piece| !piece.contains(&self.ground()))
+            .collect()
     }
 
     /// The limit `alpha -> 0+`: moves each floating piece of `scales` by one common amount, as far as the box allows.
     ///
     /// `shift(piece)` is the amount that the piece would take without the box. The fit does not depend on it, so the departure of
     /// the outputs' gains or delays decides (M8, M9).
-    pub(crate) fn shift_floating_pieces(&self, scales: &mut [f64], mut shift: impl FnMut(&[usize], &[f64]) -> f64) {
+    pub(crate) fn shift_floating_pieces(
+        &self,
+        scales: &mut [f64],
+        mut shift: impl FnMut(&[usize], &[f64]) -> f64,
+    ) {
         for piece in self.floating_pieces() {
-            let least = piece.iter().map(|&scale| self.lower[scale] - scales[scale]).fold(f64::NEG_INFINITY, f64::max);
-            let most = piece.iter().map(|&scale| self.upper[scale] - scales[scale]).fold(f64::INFINITY, f64::min);
+            let least = piece
+                .iter()
+                .map(|&scale| self.lower[scale] - scales[scale])
+                .fold(f64::NEG_INFINITY, f64::max);
+            let most = piece
+                .iter()
+                .map(|&scale| self.upper[scale] - scales[scale])
+                .fold(f64::INFINITY, f64::min);
             let shift = shift(&piece, scales).min(most).max(least);
             for &scale in &piece {
                 scales[scale] = (scales[scale] + shift).clamp(self.lower[scale], self.upper[scale]);
@@ -129,10 +153,20 @@ pub(crate) fn pieces(count: usize, ties: impl Iterator<Item = (usize, usize)>) -
     let mut piece_of: Vec<usize> = (0..count).collect();
     for (one, other) in ties {
         let (kept, merged) = (piece_of[one], piece_of[other]);
-        piece_of.iter_mut().filter(|piece| **piece == merged).for_each(|piece| *piece = kept);
+        piece_of
+            .iter_mut()
+            .filter(|piece| **piece == merged)
+            .for_each(|piece| *piece = kept);
     }
-    let members = |piece: usize| (0..count).filter(|&node| piece_of[node] == piece).collect::<Vec<_>>();
-    (0..count).map(members).filter(|piece| !piece.is_empty()).collect()
+    let members = |piece: usize| {
+        (0..count)
+            .filter(|&node| piece_of[node] == piece)
+            .collect::<Vec<_>>()
+    };
+    (0..count)
+        .map(members)
+        .filter(|piece| !piece.is_empty())
+        .collect()
 }
 
 impl Differentiable for Objective {
@@ -141,7 +175,15 @@ impl Differentiable for Objective {
         for term in &self.terms {
             let at = term.function.at(scales[term.to] - scales[term.from]);
             into.value.add(at.value);
-            into.add(term, at.slope, if curvature == Curvature::Magnitude { at.curvature.abs() } else { at.curvature });
+            into.add(
+                term,
+                at.slope,
+                if curvature == Curvature::Magnitude {
+                    at.curvature.abs()
+                } else {
+                    at.curvature
+                },
+            );
         }
     }
 
@@ -195,10 +237,13 @@ impl<'a> Newton<'a> {
                 self.model.low[scale] = lower[scale] - scales[scale];
                 self.model.high[scale] = upper[scale] - scales[scale];
             }
-            let Some((decrease, true_curvature)) = self.minimise_model(function, scales) else { return };
+            let Some((decrease, true_curvature)) = self.minimise_model(function, scales) else {
+                return;
+            };
             // Where Newton's method is this near, three steps end at the rounding of the slopes, also across the end of an
             // envelope.
-            near += usize::from(true_curvature && decrease <= 1e-13 * self.reached.value.value.abs());
+            near +=
+                usize::from(true_curvature && decrease <= 1e-13 * self.reached.value.value.abs());
             if !self.search_line(function, (lower, upper), scales, decrease) || near == 3 {
                 return;
             }
@@ -207,7 +252,11 @@ impl<'a> Newton<'a> {
 
     /// The decrease of the model's step: with the true curvature (`true`) where that is positive definite, else with its
     /// magnitude.
-    fn minimise_model(&mut self, function: &impl Differentiable, scales: &[f64]) -> Option<(f64, bool)> {
+    fn minimise_model(
+        &mut self,
+        function: &impl Differentiable,
+        scales: &[f64],
+    ) -> Option<(f64, bool)> {
         if let Some(decrease) = self.model.minimise(&self.reached, self.effort) {
             return Some((decrease, true));
         }
@@ -224,7 +273,11 @@ impl<'a> Newton<'a> {
         scales: &mut [f64],
         decrease: f64,
     ) -> bool {
-        let longest = self.model.step.iter().fold(0.0_f64, |most, step| most.max(step.abs()));
+        let longest = self
+            .model
+            .step
+            .iter()
+            .fold(0.0_f64, |most, step| most.max(step.abs()));
         if longest == 0.0 {
             return false;
         }
@@ -304,10 +357,14 @@ impl QuadraticModel {
         self.step.fill(0.0);
         self.slope.copy_from_slice(gradient);
         for (scale, &slope) in gradient.iter().enumerate() {
-            let stopped = (self.low[scale] >= 0.0 && slope >= 0.0) || (self.high[scale] <= 0.0 && slope <= 0.0);
+            let stopped = (self.low[scale] >= 0.0 && slope >= 0.0)
+                || (self.high[scale] <= 0.0 && slope <= 0.0);
             self.is_free[scale] = self.low[scale] < self.high[scale] && !stopped;
         }
-        let ridge = 1e-12 * (0..self.scales).map(|scale| hessian[scale * self.scales + scale]).fold(0.0, f64::max);
+        let ridge = 1e-12
+            * (0..self.scales)
+                .map(|scale| hessian[scale * self.scales + scale])
+                .fold(0.0, f64::max);
         // Each pass adds a stop or releases one after a decrease; 8 n passes are far above what is ever needed.
         for _ in 0..8 * self.scales + 8 {
             effort.spend(self.work());
@@ -329,8 +386,9 @@ impl QuadraticModel {
                 break;
             }
         }
-        let change: f64 =
-            (0..self.scales).map(|scale| 0.5 * (gradient[scale] + self.slope[scale]) * self.step[scale]).sum();
+        let change: f64 = (0..self.scales)
+            .map(|scale| 0.5 * (gradient[scale] + self.slope[scale]) * self.step[scale])
+            .sum();
         Some(-change)
     }
 
@@ -343,7 +401,8 @@ impl QuadraticModel {
     /// `move_to = -H_ff^-1 slope_f` over the free scales, by Cholesky.
     fn solve_free(&mut self, hessian: &[f64], ridge: f64) -> Option<()> {
         self.free.clear();
-        self.free.extend((0..self.scales).filter(|&scale| self.is_free[scale]));
+        self.free
+            .extend((0..self.scales).filter(|&scale| self.is_free[scale]));
         let size = self.free.len();
         for row in 0..size {
             for column in 0..=row {
@@ -352,13 +411,16 @@ impl QuadraticModel {
                     entry += ridge;
                 }
                 for inner in 0..column {
-                    entry -= self.factor[row * self.scales + inner] * self.factor[column * self.scales + inner];
+                    entry -= self.factor[row * self.scales + inner]
+                        * self.factor[column * self.scales + inner];
                 }
                 self.factor[row * self.scales + column] = if row > column {
                     entry / self.factor[column * self.scales + column]
                 } else if entry > 0.1 * ridge {
                     entry.sqrt()
-                } else if hessian[self.free[row] * self.scales + self.free[row]] == 0.0 && ridge == 0.0 {
+                } else if hessian[self.free[row] * self.scales + self.free[row]] == 0.0
+                    && ridge == 0.0
+                {
                     // Nothing bends anywhere: the objective does not depend on the scales.
                     1.0
                 } else {
@@ -408,20 +470,28 @@ impl QuadraticModel {
     fn update_slope(&mut self, gradient: &[f64], hessian: &[f64]) {
         for scale in 0..self.scales {
             let row = &hessian[scale * self.scales..(scale + 1) * self.scales];
-            self.slope[scale] = gradient[scale] + row.iter().zip(&self.step).map(|(h, d)| h * d).sum::<f64>();
+            self.slope[scale] =
+                gradient[scale] + row.iter().zip(&self.step).map(|(h, d)| h * d).sum::<f64>();
         }
     }
 
     /// The stopped scale whose release helps most, or `None` at the minimum.
     fn worst_stop(&self) -> Option<usize> {
-        let scale = self.slope.iter().fold(0.0_f64, |most, slope| most.max(slope.abs()));
+        let scale = self
+            .slope
+            .iter()
+            .fold(0.0_f64, |most, slope| most.max(slope.abs()));
         let mut worst = None;
         let mut greatest = 1e-14 * scale;
         for scale in 0..self.scales {
             if self.is_free[scale] || self.low[scale] >= self.high[scale] {
                 continue;
             }
-            let inward = if self.step[scale] <= self.low[scale] { -self.slope[scale] } else { self.slope[scale] };
+            let inward = if self.step[scale] <= self.low[scale] {
+                -self.slope[scale]
+            } else {
+                self.slope[scale]
+            };
             if inward > greatest {
                 greatest = inward;
                 worst = Some(scale);

@@ -72,7 +72,12 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(objective: &'a Objective, budget: ProofBudget, floor: f64, effort: &'a Effort<'a>) -> Self {
+    fn new(
+        objective: &'a Objective,
+        budget: ProofBudget,
+        floor: f64,
+        effort: &'a Effort<'a>,
+    ) -> Self {
         let scales = objective.scales();
         Self {
             objective,
@@ -98,7 +103,11 @@ impl<'a> Search<'a> {
     fn run(&mut self, start: &[f64]) -> Result<(), SearchStopped> {
         self.descend(start);
         let region = DifferenceBounds::of_box(&self.objective.lower, &self.objective.upper);
-        self.open.push(Node { bound: 0.0, region, start: self.minima[0].0.clone() });
+        self.open.push(Node {
+            bound: 0.0,
+            region,
+            start: self.minima[0].0.clone(),
+        });
         loop {
             self.effort.check()?;
             let bound = self.open.least_bound();
@@ -108,14 +117,18 @@ impl<'a> Search<'a> {
             if bound >= self.cutoff() || self.is_spent() {
                 return Ok(());
             }
-            let Some(node) = self.open.pop() else { return Ok(()) };
+            let Some(node) = self.open.pop() else {
+                return Ok(());
+            };
             self.visit(node);
         }
     }
 
     fn is_spent(&self) -> bool {
         let spent = self.effort.spent();
-        let listed = self.proven_at.is_some_and(|proven_at| spent - proven_at >= self.budget.listing);
+        let listed = self
+            .proven_at
+            .is_some_and(|proven_at| spent - proven_at >= self.budget.listing);
         listed || spent >= self.budget.work || self.open.is_full()
     }
 
@@ -136,12 +149,17 @@ impl<'a> Search<'a> {
     /// Lines 4 to 9.
     fn visit(&mut self, node: Node) {
         self.nodes += 1;
-        let Node { bound, region, mut start } = node;
+        let Node {
+            bound,
+            region,
+            mut start,
+        } = node;
         let listing = self.proven_at.is_some();
         if listing && self.is_searched(&region) {
             return self.close(bound);
         }
-        self.effort.spend(Underestimator::WORK_PER_TERM * self.objective.work());
+        self.effort
+            .spend(Underestimator::WORK_PER_TERM * self.objective.work());
         let underestimator = Underestimator::new(self.objective, &region, self.beyond);
         let goal = if listing { self.cutoff() } else { self.aim() };
         let bound = bound.max(self.lower_bound(&underestimator, &region, &mut start, goal));
@@ -151,18 +169,26 @@ impl<'a> Search<'a> {
         let known = self.minima.len();
         let value = self.objective.value(&start);
         // A minimum that is worth listing is below the cutoff, and so is a start near it.
-        if value < self.best || (value < NEAR * self.cutoff() && self.minimum_in(&region).is_none()) {
+        if value < self.best || (value < NEAR * self.cutoff() && self.minimum_in(&region).is_none())
+        {
             self.descend(&start);
         }
         if bound >= self.aim() {
-            if underestimator.is_exact() || (listing && self.minima.len() > known && self.is_searched(&region)) {
+            if underestimator.is_exact()
+                || (listing && self.minima.len() > known && self.is_searched(&region))
+            {
                 return self.close(bound);
             }
             if !listing {
-                return self.open.push(Node { bound, region, start });
+                return self.open.push(Node {
+                    bound,
+                    region,
+                    start,
+                });
             }
-        } else if let Some(convex) =
-            self.convex_bound(&region, underestimator.is_exact()).filter(|convex| *convex >= self.aim())
+        } else if let Some(convex) = self
+            .convex_bound(&region, underestimator.is_exact())
+            .filter(|convex| *convex >= self.aim())
         {
             return self.close(bound.max(convex));
         }
@@ -190,31 +216,44 @@ impl<'a> Search<'a> {
         let bounds = (self.lower.as_slice(), self.upper.as_slice());
         let exact = underestimator.is_exact();
         let mut best = f64::NEG_INFINITY;
-        self.newton.minimise(underestimator, bounds, start, |scales, at| {
-            best = best.max(tangent_bound(scales, at, bounds));
-            let loss = at.value.value - best;
-            // A node that will be branched anyway needs no sharper bound than its distance from the goal.
-            let branched_anyway = !exact && loss <= 0.05 * (goal - at.value.value);
-            let sharp = loss <= tolerance.max(2.0 * at.value.error);
-            best >= cutoff || branched_anyway || sharp || effort.spent() >= most
-        });
+        self.newton
+            .minimise(underestimator, bounds, start, |scales, at| {
+                best = best.max(tangent_bound(scales, at, bounds));
+                let loss = at.value.value - best;
+                // A node that will be branched anyway needs no sharper bound than its distance from the goal.
+                let branched_anyway = !exact && loss <= 0.05 * (goal - at.value.value);
+                let sharp = loss <= tolerance.max(2.0 * at.value.error);
+                best >= cutoff || branched_anyway || sharp || effort.spent() >= most
+            });
         best
     }
 
     /// Follows the objective down from `start` over the whole box, and keeps the minimum if it is new.
     fn descend(&mut self, start: &[f64]) {
         let mut scales = start.to_vec();
-        let bounds = (self.objective.lower.as_slice(), self.objective.upper.as_slice());
-        self.newton.minimise(self.objective, bounds, &mut scales, |_, _| false);
+        let bounds = (
+            self.objective.lower.as_slice(),
+            self.objective.upper.as_slice(),
+        );
+        self.newton
+            .minimise(self.objective, bounds, &mut scales, |_, _| false);
         let value = self.newton.reached.value.value;
         if value < self.best {
-            let curvature = self.newton.reached.hessian.iter().fold(0.0_f64, |most, entry| most.max(entry.abs()));
+            let curvature = self
+                .newton
+                .reached
+                .hessian
+                .iter()
+                .fold(0.0_f64, |most, entry| most.max(entry.abs()));
             self.beyond = 8.0 * curvature;
         }
-        self.effort.spend((self.minima.len() * self.objective.terms.len()) as u64);
+        self.effort
+            .spend((self.minima.len() * self.objective.terms.len()) as u64);
         let same = |(known, _): &(Vec<f64>, f64)| self.is_same(known, &scales);
         match self.minima.iter().position(same) {
-            Some(position) if value < self.minima[position].1 => self.minima[position] = (scales, value),
+            Some(position) if value < self.minima[position].1 => {
+                self.minima[position] = (scales, value)
+            }
             Some(_) => {}
             None => self.minima.push((scales, value)),
         }
@@ -224,7 +263,10 @@ impl<'a> Search<'a> {
     /// Whether two minima are one, found twice: nothing lies between them, as the curvature of the terms measures it.
     fn is_same(&self, known: &[f64], found: &[f64]) -> bool {
         let changes = self.objective.terms.iter().map(|term| {
-            let (here, there) = (known[term.to] - known[term.from], found[term.to] - found[term.from]);
+            let (here, there) = (
+                known[term.to] - known[term.from],
+                found[term.to] - found[term.from],
+            );
             (term, here, (there - here).abs())
         });
         let (mut longest, mut rise) = (0.0_f64, 0.0);
@@ -237,8 +279,11 @@ impl<'a> Search<'a> {
 
     fn minimum_in(&self, region: &DifferenceBounds) -> Option<usize> {
         let scales = self.objective.scales();
-        self.effort.spend((self.minima.len() * scales * scales) as u64 / 16);
-        self.minima.iter().position(|(scales, _)| region.holds(scales))
+        self.effort
+            .spend((self.minima.len() * scales * scales) as u64 / 16);
+        self.minima
+            .iter()
+            .position(|(scales, _)| region.holds(scales))
     }
 
     /// The bound of a node that, with the best minimum, lies where the objective is convex (`exact`: every term of it is, over
@@ -254,7 +299,11 @@ impl<'a> Search<'a> {
         self.objective.expand(scales, Curvature::True, &mut at);
         hull.write_box(&mut self.lower, &mut self.upper);
         let tangent = tangent_bound(scales, &at, (&self.lower, &self.upper));
-        Some(self.exclusion.bound_at(scales, &at).map_or(tangent, |quadratic| quadratic.max(tangent)))
+        Some(
+            self.exclusion
+                .bound_at(scales, &at)
+                .map_or(tangent, |quadratic| quadratic.max(tangent)),
+        )
     }
 
     /// Whether the node holds no local minimum, or none but a known one.
@@ -269,18 +318,33 @@ impl<'a> Search<'a> {
 
     /// Branches where the node's bound loses most or, where nothing is lost or the best is already proven, so that what is
     /// convex comes apart from what is not, and then so that the slopes vary less.
-    fn branch(&mut self, underestimator: &Underestimator<'_>, region: &DifferenceBounds, bound: f64, start: &[f64]) {
-        self.effort.spend(4 * self.objective.work() + (start.len() * start.len()) as u64 / 4);
+    fn branch(
+        &mut self,
+        underestimator: &Underestimator<'_>,
+        region: &DifferenceBounds,
+        bound: f64,
+        start: &[f64],
+    ) {
+        self.effort
+            .spend(4 * self.objective.work() + (start.len() * start.len()) as u64 / 4);
         let listing = self.proven_at.is_some();
         let least_gap = 1e-13 * self.denominator();
-        let gap =
-            underestimator.widest_gap(start).filter(|(_, gap)| !listing && *gap > least_gap).map(|(term, _)| term);
-        let ends = if gap.is_none() { underestimator.concave_ends(start) } else { Vec::new() };
+        let gap = underestimator
+            .widest_gap(start)
+            .filter(|(_, gap)| !listing && *gap > least_gap)
+            .map(|(term, _)| term);
+        let ends = if gap.is_none() {
+            underestimator.concave_ends(start)
+        } else {
+            Vec::new()
+        };
         if !ends.is_empty() {
             let count = if listing { ends.len() } else { 1 };
             return self.split_concave(&ends[..count], region, bound, start);
         }
-        let widest = gap.or_else(|| underestimator.widest_slope()).map(|term| (term, region.range(term.from, term.to)));
+        let widest = gap
+            .or_else(|| underestimator.widest_slope())
+            .map(|term| (term, region.range(term.from, term.to)));
         let Some((term, (low, high))) = widest.filter(|(_, (low, high))| high - low > 1e-11) else {
             // The bound is as sharp as rounding allows.
             self.all_minima &= !listing;
@@ -293,13 +357,23 @@ impl<'a> Search<'a> {
     }
 
     /// Takes off what lies beyond each end of a concave interval, seen from `start`, and keeps the rest as one node.
-    fn split_concave(&mut self, ends: &[(usize, usize, f64)], region: &DifferenceBounds, bound: f64, start: &[f64]) {
+    fn split_concave(
+        &mut self,
+        ends: &[(usize, usize, f64)],
+        region: &DifferenceBounds,
+        bound: f64,
+        start: &[f64],
+    ) {
         let mut rest = Some(region.clone());
         for &(from, to, at) in ends {
             let Some(region) = rest else { return };
             self.effort.spend((start.len() * start.len()) as u64 / 4);
             let (below, above) = (region.below(from, to, at), region.above(from, to, at));
-            let (inner, outer) = if start[to] - start[from] < at { (below, above) } else { (above, below) };
+            let (inner, outer) = if start[to] - start[from] < at {
+                (below, above)
+            } else {
+                (above, below)
+            };
             self.push(outer, bound, start);
             rest = inner;
         }
@@ -308,7 +382,11 @@ impl<'a> Search<'a> {
 
     fn push(&mut self, region: Option<DifferenceBounds>, bound: f64, start: &[f64]) {
         if let Some(region) = region {
-            self.open.push(Node { bound, region, start: start.to_vec() });
+            self.open.push(Node {
+                bound,
+                region,
+                start: start.to_vec(),
+            });
         }
     }
 
@@ -329,7 +407,12 @@ impl<'a> Search<'a> {
         };
         self.minima.sort_by(|a, b| a.1.total_cmp(&b.1));
         // The best itself always stays.
-        let kept = self.minima.iter().take_while(|(_, value)| *value <= cutoff).count().max(1);
+        let kept = self
+            .minima
+            .iter()
+            .take_while(|(_, value)| *value <= cutoff)
+            .count()
+            .max(1);
         self.minima.truncate(kept);
         Minima {
             minima: self.minima,
@@ -360,7 +443,11 @@ impl Default for ProofBudget {
     /// About two seconds of one core and 64 MB: far more than a condition with its on-axis responses held needs. Of that at most
     /// some milliseconds for the other minima.
     fn default() -> Self {
-        Self { work: 80_000_000, listing: 200_000, bytes: 64_000_000 }
+        Self {
+            work: 80_000_000,
+            listing: 200_000,
+            bytes: 64_000_000,
+        }
     }
 }
 
@@ -393,7 +480,12 @@ impl<'a> Effort<'a> {
 
     /// Nothing spent yet.
     pub(crate) fn new(stop: &'a dyn Fn() -> bool) -> Self {
-        Self { stop, work: Cell::new(0), asked_at: Cell::new(0), stopped: Cell::new(stop()) }
+        Self {
+            stop,
+            work: Cell::new(0),
+            asked_at: Cell::new(0),
+            stopped: Cell::new(stop()),
+        }
     }
 
     /// Counts `work`.
@@ -418,7 +510,11 @@ impl<'a> Effort<'a> {
 
     /// An error where the search was told to stop.
     pub(crate) fn check(&self) -> Result<(), SearchStopped> {
-        if self.is_stopped() { Err(SearchStopped) } else { Ok(()) }
+        if self.is_stopped() {
+            Err(SearchStopped)
+        } else {
+            Ok(())
+        }
     }
 }
 
@@ -464,8 +560,15 @@ impl OpenNodes {
     /// None yet, of so many scales each, in at most so many bytes; one there is always room for.
     pub(super) fn new(scales: usize, bytes: usize) -> Self {
         // What an allocation takes besides its content, twice, and the growth of the heap, which doubles its memory.
-        let of_node = DifferenceBounds::bytes(scales) + scales * size_of::<f64>() + 32 + 3 * size_of::<Node>();
-        Self { heap: BinaryHeap::new(), most: (bytes / of_node).max(1), refused: f64::INFINITY }
+        let of_node = DifferenceBounds::bytes(scales)
+            + scales * size_of::<f64>()
+            + 32
+            + 3 * size_of::<Node>();
+        Self {
+            heap: BinaryHeap::new(),
+            most: (bytes / of_node).max(1),
+            refused: f64::INFINITY,
+        }
     }
 
     /// Adds a node, or only its bound where there is no room.
@@ -489,7 +592,10 @@ impl OpenNodes {
 
     /// The least bound of all, refused ones too; infinite where there are none.
     pub(super) fn least_bound(&self) -> f64 {
-        self.heap.peek().map_or(f64::INFINITY, |node| node.bound).min(self.refused)
+        self.heap
+            .peek()
+            .map_or(f64::INFINITY, |node| node.bound)
+            .min(self.refused)
     }
 }
 
@@ -499,8 +605,11 @@ mod tests {
 
     #[test]
     fn nodes_beyond_the_memory_leave_their_bound_only() {
-        let node =
-            |bound: f64| Node { bound, region: DifferenceBounds::of_box(&[0.0; 20], &[0.0; 20]), start: vec![0.0; 20] };
+        let node = |bound: f64| Node {
+            bound,
+            region: DifferenceBounds::of_box(&[0.0; 20], &[0.0; 20]),
+            start: vec![0.0; 20],
+        };
         let mut open = OpenNodes::new(20, 40_000);
         let kept = (0..100).take_while(|&index| {
             open.push(node(100.0 - f64::from(index)));

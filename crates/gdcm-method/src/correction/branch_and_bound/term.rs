@@ -17,21 +17,37 @@ pub(crate) struct Term {
 #[derive(Clone, Debug)]
 pub(crate) enum Function {
     /// `weight (u - centre)^2`: gains compared in dB, and delays. The weight is known to `relative`.
-    Quadratic { weight: f64, centre: Rounded, relative: f64 },
+    Quadratic {
+        weight: f64,
+        centre: Rounded,
+        relative: f64,
+    },
     /// `forward` in `u` plus `backward` in `-u`: gains compared as ratios.
-    Exponential { forward: Exponential, backward: Exponential, concave: Option<(f64, f64)> },
+    Exponential {
+        forward: Exponential,
+        backward: Exponential,
+        concave: Option<(f64, f64)>,
+    },
 }
 
 impl Function {
     /// The two exponentials, with the interval of `u` on which their sum is concave.
     pub(crate) fn exponential(forward: Exponential, backward: Exponential) -> Self {
-        Function::Exponential { forward, backward, concave: concave_interval(&forward, &backward) }
+        Function::Exponential {
+            forward,
+            backward,
+            concave: concave_interval(&forward, &backward),
+        }
     }
 
     /// Value, slope and curvature at `u`.
     pub(crate) fn at(&self, u: f64) -> Derivatives {
         match self {
-            Function::Quadratic { weight, centre, relative } => {
+            Function::Quadratic {
+                weight,
+                centre,
+                relative,
+            } => {
                 let away = u - centre.value;
                 let error = centre.error + f64::EPSILON * (u.abs() + away.abs());
                 let slope = 2.0 * weight * away;
@@ -44,10 +60,16 @@ impl Function {
                     curvature: 2.0 * weight,
                 }
             }
-            Function::Exponential { forward, backward, .. } => {
+            Function::Exponential {
+                forward, backward, ..
+            } => {
                 let z = u.exp();
                 let ahead = forward.at(u, z);
-                if backward.is_zero() { ahead } else { both(ahead, backward.at(-u, 1.0 / z)) }
+                if backward.is_zero() {
+                    ahead
+                } else {
+                    both(ahead, backward.at(-u, 1.0 / z))
+                }
             }
         }
     }
@@ -56,13 +78,19 @@ impl Function {
     pub(crate) fn is_convex_over(&self, (low, high): (f64, f64)) -> bool {
         match self {
             Function::Quadratic { .. } => true,
-            Function::Exponential { concave, .. } => concave.is_none_or(|(from, to)| high <= from || low >= to),
+            Function::Exponential { concave, .. } => {
+                concave.is_none_or(|(from, to)| high <= from || low >= to)
+            }
         }
     }
 
     /// The end of the concave interval that parts `u` from it, if `u` is outside and the end is inside `(low, high)`.
     pub(crate) fn concave_end(&self, u: f64, (low, high): (f64, f64)) -> Option<f64> {
-        let Function::Exponential { concave: Some((from, to)), .. } = self else {
+        let Function::Exponential {
+            concave: Some((from, to)),
+            ..
+        } = self
+        else {
             return None;
         };
         let end = if u < *from {
@@ -81,13 +109,23 @@ impl Function {
             Function::Quadratic { .. } => {
                 let (down, up) = (self.at(low).slope, self.at(high).slope);
                 let size = down.value.abs().max(up.value.abs());
-                Range { least: down.value - down.error, most: up.value + up.error, size }
+                Range {
+                    least: down.value - down.error,
+                    most: up.value + up.error,
+                    size,
+                }
             }
-            Function::Exponential { forward, backward, .. } => {
+            Function::Exponential {
+                forward, backward, ..
+            } => {
                 let ahead = forward.slopes((low, high));
                 let behind = backward.slopes((-high, -low));
                 let size = ahead.size + behind.size;
-                Range { least: ahead.least - behind.most, most: ahead.most - behind.least, size }
+                Range {
+                    least: ahead.least - behind.most,
+                    most: ahead.most - behind.least,
+                    size,
+                }
             }
         }
     }
@@ -95,15 +133,34 @@ impl Function {
     /// The curvature over `[low, high]`, of which only the least is sharp.
     pub(crate) fn curvatures(&self, (low, high): (f64, f64)) -> Range {
         match self {
-            Function::Quadratic { weight, relative, .. } => {
+            Function::Quadratic {
+                weight, relative, ..
+            } => {
                 let size = 2.0 * weight;
-                Range { least: size * (1.0 - relative), most: size * (1.0 + relative), size }
+                Range {
+                    least: size * (1.0 - relative),
+                    most: size * (1.0 + relative),
+                    size,
+                }
             }
-            Function::Exponential { forward, backward, .. } => {
-                let (ahead, behind) = (forward.curvatures((low, high)), backward.curvatures((-high, -low)));
+            Function::Exponential {
+                forward, backward, ..
+            } => {
+                let (ahead, behind) = (
+                    forward.curvatures((low, high)),
+                    backward.curvatures((-high, -low)),
+                );
                 let least = ahead.least + behind.least;
-                let least = if self.is_convex_over((low, high)) { least.max(0.0) } else { least };
-                Range { least, most: ahead.most + behind.most, size: ahead.size + behind.size }
+                let least = if self.is_convex_over((low, high)) {
+                    least.max(0.0)
+                } else {
+                    least
+                };
+                Range {
+                    least,
+                    most: ahead.most + behind.most,
+                    size: ahead.size + behind.size,
+                }
             }
         }
     }
@@ -115,7 +172,11 @@ pub(super) fn both(ahead: Derivatives, behind: Derivatives) -> Derivatives {
     value.add(behind.value);
     let mut slope = ahead.slope;
     slope.add(-behind.slope);
-    Derivatives { value, slope, curvature: ahead.curvature + behind.curvature }
+    Derivatives {
+        value,
+        slope,
+        curvature: ahead.curvature + behind.curvature,
+    }
 }
 
 /// One entry of a least squares objective: `weight (delta - offset - (s_input - s_output))^2`.
@@ -139,9 +200,23 @@ impl SquareEntry {
         let difference = self.delta - self.offset.value;
         let error = self.offset.error + f64::EPSILON * (self.delta.abs() + difference.abs());
         if self.output < self.input {
-            (self.output, self.input, Rounded { value: difference, error })
+            (
+                self.output,
+                self.input,
+                Rounded {
+                    value: difference,
+                    error,
+                },
+            )
         } else {
-            (self.input, self.output, Rounded { value: -difference, error })
+            (
+                self.input,
+                self.output,
+                Rounded {
+                    value: -difference,
+                    error,
+                },
+            )
         }
     }
 }
@@ -159,7 +234,10 @@ struct SquareGroup {
 impl SquareGroup {
     /// The difference of scales where the group is least: a quotient of sums, and no better known than the worst of its entries.
     fn centre(&self) -> Rounded {
-        Rounded { value: self.moment / self.weight, error: self.error + (self.count + 2.0) * f64::EPSILON * self.size }
+        Rounded {
+            value: self.moment / self.weight,
+            error: self.error + (self.count + 2.0) * f64::EPSILON * self.size,
+        }
     }
 }
 
@@ -179,7 +257,11 @@ pub(crate) fn quadratic_terms(entries: &[SquareEntry], scales: usize) -> (Vec<Te
     for entry in entries {
         let (from, to, difference) = entry.ordered();
         // Inside a component no scale changes the entry.
-        let met = if from == to { Rounded::default() } else { groups[from * scales + to].centre() };
+        let met = if from == to {
+            Rounded::default()
+        } else {
+            groups[from * scales + to].centre()
+        };
         let left = difference.value - met.value;
         let error = difference.error + met.error + f64::EPSILON * left.abs();
         constant.add(Rounded::square(entry.weight, left, error, f64::EPSILON));
@@ -220,7 +302,11 @@ fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<(f6
             2.0 * backward.weight / (z * z),
         ];
         let relative = 4.0 * forward.relative(u).max(backward.relative(u));
-        parts.iter().map(|part| part - relative * part.abs()).sum::<f64>() > 0.0
+        parts
+            .iter()
+            .map(|part| part - relative * part.abs())
+            .sum::<f64>()
+            > 0.0
     };
     // Outside [-ln(c2 / 2), ln(c1 / 2)] (in either order) both curve the same way; between them one is concave.
     let ends = (forward.inflection(), -backward.inflection());
@@ -311,7 +397,12 @@ impl ProductEntry {
     /// `weight (gain - e^logarithm e^v)^2`.
     pub(crate) fn new(weight: f64, gain: f64, logarithm: Rounded) -> Self {
         // The error of the logarithm is the product's own, and the exponential is good to an epsilon.
-        Self { weight, gain, product: logarithm.value.exp(), error: logarithm.error + f64::EPSILON }
+        Self {
+            weight,
+            gain,
+            product: logarithm.value.exp(),
+            error: logarithm.error + f64::EPSILON,
+        }
     }
 
     /// The square where `v` is 0.
@@ -336,14 +427,25 @@ impl Exponential {
         let mut least = Rounded::default();
         let mut worst = 0.0_f64;
         for entry in entries {
-            let met = ProductEntry { product: entry.product * centre, error: entry.error + f64::EPSILON, ..*entry };
+            let met = ProductEntry {
+                product: entry.product * centre,
+                error: entry.error + f64::EPSILON,
+                ..*entry
+            };
             least.add(met.square());
             worst = worst.max(entry.error);
         }
         // A sum of n positive terms is exact to n roundings of half an epsilon; the centre is the quotient of two of them, and
         // holds the product once more than twice.
         let rounding = 3.0 * worst + (entries.len() as f64 + 4.0) * f64::EPSILON;
-        (Self { weight, centre, rounding }, least)
+        (
+            Self {
+                weight,
+                centre,
+                rounding,
+            },
+            least,
+        )
     }
 
     /// Whether there is nothing in it.
@@ -370,7 +472,10 @@ impl Exponential {
         let slope = 2.0 * self.weight * z * away;
         Derivatives {
             value: Rounded::square(self.weight, away, error, relative),
-            slope: Rounded { value: slope, error: 2.0 * self.weight * z * error + 2.0 * relative * slope.abs() },
+            slope: Rounded {
+                value: slope,
+                error: 2.0 * self.weight * z * error + 2.0 * relative * slope.abs(),
+            },
             curvature: 2.0 * self.weight * z * (z + away),
         }
     }
@@ -381,7 +486,11 @@ impl Exponential {
         let curvature = |z: f64| 2.0 * self.weight * z * (2.0 * z - self.centre);
         let size = 2.0 * self.weight * most * (2.0 * most + self.centre);
         let margin = 4.0 * self.relative(low.abs().max(high.abs())) * size;
-        Range { least: curvature((0.25 * self.centre).clamp(least, most)) - margin, most: size + margin, size }
+        Range {
+            least: curvature((0.25 * self.centre).clamp(least, most)) - margin,
+            most: size + margin,
+            size,
+        }
     }
 
     /// The slope over `v` in `[low, high]`: a parabola in `e^v`, lowest at `centre / 2`.
@@ -390,8 +499,15 @@ impl Exponential {
         let slope = |z: f64| 2.0 * self.weight * z * (z - self.centre);
         let size = 2.0 * self.weight * most * (most + self.centre);
         let margin = 4.0 * self.relative(low.abs().max(high.abs())) * size;
-        let (lowest, highest) = (slope((0.5 * self.centre).clamp(least, most)), slope(least).max(slope(most)));
-        Range { least: lowest - margin, most: highest + margin, size }
+        let (lowest, highest) = (
+            slope((0.5 * self.centre).clamp(least, most)),
+            slope(least).max(slope(most)),
+        );
+        Range {
+            least: lowest - margin,
+            most: highest + margin,
+            size,
+        }
     }
 }
 
@@ -409,7 +525,10 @@ impl Neg for Rounded {
     type Output = Self;
 
     fn neg(self) -> Self {
-        Self { value: -self.value, ..self }
+        Self {
+            value: -self.value,
+            ..self
+        }
     }
 }
 
@@ -424,6 +543,9 @@ impl Rounded {
     pub(crate) fn square(weight: f64, difference: f64, error: f64, relative: f64) -> Self {
         let value = weight * difference * difference;
         let of_difference = weight * error * (2.0 * difference.abs() + error);
-        Self { value, error: of_difference + (relative + 2.0 * f64::EPSILON) * value }
+        Self {
+            value,
+            error: of_difference + (relative + 2.0 * f64::EPSILON) * value,
+        }
     }
 }

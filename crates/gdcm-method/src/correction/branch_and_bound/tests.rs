@@ -35,16 +35,25 @@ impl Sample {
     fn new(problem: Problem) -> Self {
         let components = Components::new(&Held::of(&problem));
         let objective = objective(&problem, &components);
-        Self { problem, components, objective }
+        Self {
+            problem,
+            components,
+            objective,
+        }
     }
 
     /// The exact logarithms of the gains: an input's is its component's scale, a held output's what its entry leaves.
     fn logarithms(&self, scales: &[f64]) -> (Vec<Exact>, Vec<Exact>) {
-        let node = |placed: &crate::correction::Placement| exact(placed.offset.value) + exact(scales[placed.component]);
+        let node = |placed: &crate::correction::Placement| {
+            exact(placed.offset.value) + exact(scales[placed.component])
+        };
         let (inputs, outputs) = self.components.sides();
         let inputs: Vec<Exact> = inputs.iter().map(node).collect();
         let output = |(index, placed): (usize, &crate::correction::Placement)| {
-            let held = self.problem.held_entries().find(|(pair, _)| pair.output == index);
+            let held = self
+                .problem
+                .held_entries()
+                .find(|(pair, _)| pair.output == index);
             match held {
                 Some((pair, delta)) => exact(delta).ln() - &inputs[pair.input],
                 None => -node(placed),
@@ -77,8 +86,14 @@ impl Sample {
 
     /// The point of the box at these shares of its width.
     fn at(&self, shares: &[f64]) -> Vec<f64> {
-        let ends = self.objective.lower.iter().zip(&self.objective.upper).enumerate();
-        ends.map(|(index, (low, high))| low + (high - low) * shares[index]).collect()
+        let ends = self
+            .objective
+            .lower
+            .iter()
+            .zip(&self.objective.upper)
+            .enumerate();
+        ends.map(|(index, (low, high))| low + (high - low) * shares[index])
+            .collect()
     }
 
     /// Part of the box that holds `inside`: every difference is cut at a share of what is left on either side of it.
@@ -88,7 +103,11 @@ impl Sample {
             for to in 0..inside.len() {
                 let difference = inside[to] - inside[from];
                 let most = difference + width * (region.range(from, to).1 - difference).max(0.0);
-                region = if from == to { region } else { region.below(from, to, most).unwrap() };
+                region = if from == to {
+                    region
+                } else {
+                    region.below(from, to, most).unwrap()
+                };
             }
         }
         region
@@ -103,10 +122,18 @@ fn samples() -> impl Strategy<Value = Sample> {
     let bounds = (1e-3..0.3_f64, 3.0..1e3_f64);
     ((1..=3_usize, 1..=3_usize), gains, held, alpha, kind, bounds).prop_map(
         |((outputs, inputs), gains, held, alpha, kind, (lower, upper))| {
-            let delta = PairTable::from_fn(outputs, inputs, |pair| Some(gains[3 * pair.output + pair.input].exp()));
-            let constrained = PairTable::from_fn(outputs, inputs, |pair| held[pair.output] == Some(pair.input));
+            let delta = PairTable::from_fn(outputs, inputs, |pair| {
+                Some(gains[3 * pair.output + pair.input].exp())
+            });
+            let constrained = PairTable::from_fn(outputs, inputs, |pair| {
+                held[pair.output] == Some(pair.input)
+            });
             let problem = Problem::gains(delta, constrained, Bounds { lower, upper });
-            Sample::new(Problem { quantity: Quantity::Gain(kind), alpha, ..problem })
+            Sample::new(Problem {
+                quantity: Quantity::Gain(kind),
+                alpha,
+                ..problem
+            })
         },
     )
 }

@@ -16,9 +16,12 @@ impl TermUnder {
         let (low, high) = region.range(term.from, term.to);
         let range = (low, high.max(low));
         let envelopes = match &term.function {
-            Function::Exponential { forward, backward, .. } if !term.function.is_convex_over(range) => {
-                Some([envelope(forward, range), envelope(backward, (-range.1, -range.0))])
-            }
+            Function::Exponential {
+                forward, backward, ..
+            } if !term.function.is_convex_over(range) => Some([
+                envelope(forward, range),
+                envelope(backward, (-range.1, -range.0)),
+            ]),
             _ => None,
         };
         Self { envelopes, range }
@@ -36,9 +39,15 @@ impl TermUnder {
     /// The underestimator of `function` at `u` in the range.
     fn inside(&self, function: &Function, u: f64) -> Derivatives {
         match (function, &self.envelopes) {
-            (Function::Exponential { forward, backward, .. }, Some([ahead, behind])) => {
-                both(enveloped(forward, ahead.as_ref(), u), enveloped(backward, behind.as_ref(), -u))
-            }
+            (
+                Function::Exponential {
+                    forward, backward, ..
+                },
+                Some([ahead, behind]),
+            ) => both(
+                enveloped(forward, ahead.as_ref(), u),
+                enveloped(backward, behind.as_ref(), -u),
+            ),
             _ => function.at(u),
         }
     }
@@ -57,8 +66,16 @@ impl<'a> Underestimator<'a> {
 
     /// The underestimator of `objective` over `region`, with curvature `beyond` outside of the ranges of the differences.
     pub(crate) fn new(objective: &'a Objective, region: &DifferenceBounds, beyond: f64) -> Self {
-        let unders = objective.terms.iter().map(|term| TermUnder::of(term, region)).collect();
-        Self { objective, unders, beyond }
+        let unders = objective
+            .terms
+            .iter()
+            .map(|term| TermUnder::of(term, region))
+            .collect();
+        Self {
+            objective,
+            unders,
+            beyond,
+        }
     }
 
     /// Whether it is the objective itself: every term is convex over the node.
@@ -68,7 +85,11 @@ impl<'a> Underestimator<'a> {
 
     /// The terms that are not convex over the node.
     fn nonconvex(&self) -> impl Iterator<Item = (&'a Term, &TermUnder)> {
-        self.objective.terms.iter().zip(&self.unders).filter(|(_, under)| !under.is_exact())
+        self.objective
+            .terms
+            .iter()
+            .zip(&self.unders)
+            .filter(|(_, under)| !under.is_exact())
     }
 
     /// The term that lies furthest above its envelope at `scales` (kept inside the node's ranges), with that distance less the
@@ -76,7 +97,10 @@ impl<'a> Underestimator<'a> {
     pub(crate) fn widest_gap(&self, scales: &[f64]) -> Option<(&'a Term, f64)> {
         let gap = |(term, under): (&'a Term, &TermUnder)| {
             let u = under.difference(term, scales);
-            let (above, below) = (term.function.at(u).value, under.inside(&term.function, u).value);
+            let (above, below) = (
+                term.function.at(u).value,
+                under.inside(&term.function, u).value,
+            );
             (term, above.value - below.value - above.error - below.error)
         };
         self.nonconvex().map(gap).max_by(|a, b| a.1.total_cmp(&b.1))
@@ -92,7 +116,9 @@ impl<'a> Underestimator<'a> {
         };
         let mut ends: Vec<(&Term, f64, f64)> = self.nonconvex().filter_map(end).collect();
         ends.sort_by(|a, b| b.2.total_cmp(&a.2));
-        ends.into_iter().map(|(term, end, _)| (term.from, term.to, end)).collect()
+        ends.into_iter()
+            .map(|(term, end, _)| (term.from, term.to, end))
+            .collect()
     }
 
     /// The term whose slope varies most over the node, weighed with its range: what hides the sign of a scale's slope, or that
@@ -100,10 +126,15 @@ impl<'a> Underestimator<'a> {
     pub(crate) fn widest_slope(&self) -> Option<&'a Term> {
         let variation = |(term, under): (&'a Term, &TermUnder)| {
             let slopes = term.function.slopes(under.range);
-            (term, (slopes.most - slopes.least) * (under.range.1 - under.range.0))
+            (
+                term,
+                (slopes.most - slopes.least) * (under.range.1 - under.range.0),
+            )
         };
         let terms = self.objective.terms.iter().zip(&self.unders).map(variation);
-        terms.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(term, _)| term)
+        terms
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(term, _)| term)
     }
 
     fn at(&self, term: &Term, under: &TermUnder, scales: &[f64]) -> Derivatives {
@@ -114,9 +145,16 @@ impl<'a> Underestimator<'a> {
         if beyond != 0.0 {
             let bend = self.beyond * beyond;
             let rise = (at.slope.value + 0.5 * bend) * beyond;
-            let moved = at.slope.error * beyond.abs() + 4.0 * f64::EPSILON * (rise.abs() + (at.slope.value * u).abs());
-            at.value.add(Rounded { value: rise, error: moved });
-            at.slope.add(Rounded { value: bend, error: 2.0 * f64::EPSILON * (bend.abs() + self.beyond * u.abs()) });
+            let moved = at.slope.error * beyond.abs()
+                + 4.0 * f64::EPSILON * (rise.abs() + (at.slope.value * u).abs());
+            at.value.add(Rounded {
+                value: rise,
+                error: moved,
+            });
+            at.slope.add(Rounded {
+                value: bend,
+                error: 2.0 * f64::EPSILON * (bend.abs() + self.beyond * u.abs()),
+            });
             at.curvature = self.beyond;
         }
         at
@@ -141,7 +179,11 @@ impl Differentiable for Underestimator<'_> {
 
 /// A lower bound over a box of a function that is convex there, from its tangent plane at `scales` (inside the box), less the
 /// rounding of the value, of every slope and of their sum.
-pub(super) fn tangent_bound(scales: &[f64], at: &Expansion, (lower, upper): (&[f64], &[f64])) -> f64 {
+pub(super) fn tangent_bound(
+    scales: &[f64],
+    at: &Expansion,
+    (lower, upper): (&[f64], &[f64]),
+) -> f64 {
     let mut bound = at.value.value - at.value.error;
     for scale in 0..scales.len() {
         let (slope, error) = (at.gradient[scale], at.gradient_error[scale]);
@@ -202,7 +244,10 @@ impl DifferenceBounds {
 
     /// The least and the greatest `s_to - s_from`.
     pub(crate) fn range(&self, from: usize, to: usize) -> (f64, f64) {
-        (-self.bounds[to * self.count + from], self.bounds[from * self.count + to])
+        (
+            -self.bounds[to * self.count + from],
+            self.bounds[from * self.count + to],
+        )
     }
 
     /// The part with `s_to - s_from <= most`, with what follows for every other difference, or `None` where it is empty.
@@ -216,7 +261,10 @@ impl DifferenceBounds {
             for j in (0..count).filter(|&j| j != i) {
                 let (before, after) = (self.bounds[i * count + from], self.bounds[to * count + j]);
                 // Rounded outward, so that no point of the part is lost.
-                let implied = before + most + after + 2.0 * f64::EPSILON * (before.abs() + most.abs() + after.abs());
+                let implied = before
+                    + most
+                    + after
+                    + 2.0 * f64::EPSILON * (before.abs() + most.abs() + after.abs());
                 let bound = &mut part.bounds[i * count + j];
                 *bound = bound.min(implied);
             }
@@ -233,8 +281,12 @@ impl DifferenceBounds {
     /// The least bounds that hold these and `scales`.
     pub(crate) fn hull(&self, scales: &[f64]) -> Self {
         let count = self.count;
-        let bound = |index: usize| self.bounds[index].max(scales[index % count] - scales[index / count]);
-        Self { count, bounds: (0..count * count).map(bound).collect() }
+        let bound =
+            |index: usize| self.bounds[index].max(scales[index % count] - scales[index / count]);
+        Self {
+            count,
+            bounds: (0..count * count).map(bound).collect(),
+        }
     }
 
     /// Bytes that the bounds of so many scales take.
@@ -255,8 +307,10 @@ impl DifferenceBounds {
     /// Whether the bounds hold `scales`.
     pub(crate) fn holds(&self, scales: &[f64]) -> bool {
         let slack = 1e-13;
-        (0..self.count)
-            .all(|i| (0..self.count).all(|j| scales[j] - scales[i] <= self.bounds[i * self.count + j] + slack))
+        (0..self.count).all(|i| {
+            (0..self.count)
+                .all(|j| scales[j] - scales[i] <= self.bounds[i * self.count + j] + slack)
+        })
     }
 }
 
@@ -276,8 +330,18 @@ pub(super) fn enveloped(function: &Exponential, line: Option<&Line>, v: f64) -> 
             let rise = line.slope * (v - line.at);
             let moved = f64::EPSILON * (2.0 * rise.abs() + (line.slope * v).abs());
             let mut value = line.value;
-            value.add(Rounded { value: rise, error: moved });
-            Derivatives { value, slope: Rounded { value: line.slope, error: 0.0 }, curvature: 0.0 }
+            value.add(Rounded {
+                value: rise,
+                error: moved,
+            });
+            Derivatives {
+                value,
+                slope: Rounded {
+                    value: line.slope,
+                    error: 0.0,
+                },
+                curvature: 0.0,
+            }
         }
         _ if function.is_zero() => Derivatives::default(),
         _ => function.at(v, v.exp()),
@@ -293,7 +357,8 @@ pub(super) fn envelope(function: &Exponential, (low, high): (f64, f64)) -> Optio
     let start = function.at(low, low.exp());
     let end = function.at(high, high.exp());
     // Height over the left end of the tangent at b: falls as b moves right of the inflection.
-    let overshoot = |b: f64, at: &Derivatives| at.value.value + at.slope.value * (low - b) - start.value.value;
+    let overshoot =
+        |b: f64, at: &Derivatives| at.value.value + at.slope.value * (low - b) - start.value.value;
     if high <= function.inflection() || overshoot(high, &end) >= 0.0 {
         return Some(chord((low, start.value), (high, end.value)));
     }
@@ -303,7 +368,11 @@ pub(super) fn envelope(function: &Exponential, (low, high): (f64, f64)) -> Optio
     for _ in 0..14 {
         let excess = overshoot(under, &tangent);
         let newton = under - excess / (tangent.curvature * (low - under));
-        let next = if over < newton && newton < under { newton } else { 0.5 * (over + under) };
+        let next = if over < newton && newton < under {
+            newton
+        } else {
+            0.5 * (over + under)
+        };
         let at = function.at(next, next.exp());
         if overshoot(next, &at) > 0.0 {
             over = next;
@@ -316,16 +385,34 @@ pub(super) fn envelope(function: &Exponential, (low, high): (f64, f64)) -> Optio
         }
     }
     let error = start.value.error + tangent.value.error + 2.0 * tangent.slope.error * (under - low);
-    let value = Rounded { value: tangent.value.value, error: error + 4.0 * f64::EPSILON * start.value.value };
-    Some(Line { until: under, at: under, value, slope: tangent.slope.value })
+    let value = Rounded {
+        value: tangent.value.value,
+        error: error + 4.0 * f64::EPSILON * start.value.value,
+    };
+    Some(Line {
+        until: under,
+        at: under,
+        value,
+        slope: tangent.slope.value,
+    })
 }
 
 /// The line through both ends, or below them by their rounding.
 fn chord((low, start): (f64, Rounded), (high, end): (f64, Rounded)) -> Line {
-    let slope = if high > low { (end.value - start.value) / (high - low) } else { 0.0 };
-    let error = start.error + end.error + 4.0 * f64::EPSILON * (start.value.abs() + end.value.abs());
+    let slope = if high > low {
+        (end.value - start.value) / (high - low)
+    } else {
+        0.0
+    };
+    let error =
+        start.error + end.error + 4.0 * f64::EPSILON * (start.value.abs() + end.value.abs());
     let value = start.value.min(end.value - slope * (high - low));
-    Line { until: f64::INFINITY, at: low, value: Rounded { value, error }, slope }
+    Line {
+        until: f64::INFINITY,
+        at: low,
+        value: Rounded { value, error },
+        slope,
+    }
 }
 
 #[cfg(test)]
@@ -339,9 +426,21 @@ mod tests {
     }
 
     fn objective(forward: (f64, f64), backward: (f64, f64), range: (f64, f64)) -> Objective {
-        let function = Function::exponential(exponential(forward.0, forward.1), exponential(backward.0, backward.1));
-        let terms = vec![Term { from: 0, to: 1, function }];
-        Objective { lower: vec![range.0, 0.0], upper: vec![range.1, 0.0], terms, constant: Rounded::default() }
+        let function = Function::exponential(
+            exponential(forward.0, forward.1),
+            exponential(backward.0, backward.1),
+        );
+        let terms = vec![Term {
+            from: 0,
+            to: 1,
+            function,
+        }];
+        Objective {
+            lower: vec![range.0, 0.0],
+            upper: vec![range.1, 0.0],
+            terms,
+            constant: Rounded::default(),
+        }
     }
 
     proptest! {

@@ -8,13 +8,21 @@ use super::*;
 
 /// `|H_ref| / |H_sim|` at each frequency.
 fn ratios(mismatch: &Mismatch) -> Vec<f64> {
-    mismatch.magnitude_db.iter().map(|error| db_to_ratio(-error)).collect()
+    mismatch
+        .magnitude_db
+        .iter()
+        .map(|error| db_to_ratio(-error))
+        .collect()
 }
 
 /// `Δφ/ω` \[ms\] at each frequency, on the branch of M6b.
 fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
     let phases = mismatch.phase_difference(omega);
-    phases.iter().zip(mismatch.omega(omega)).map(|(phase, omega)| s_to_ms(phase / omega)).collect()
+    phases
+        .iter()
+        .zip(mismatch.omega(omega))
+        .map(|(phase, omega)| s_to_ms(phase / omega))
+        .collect()
 }
 
 /// How the median over the frequencies that count comes about.
@@ -28,16 +36,26 @@ fn middle_words(mismatch: &Mismatch, values: &[f64]) -> String {
 pub(super) fn gain(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let value = context.result.wanted_gain(pair)?;
     let mismatch = context.compensated_mismatch(pair)?;
-    let is_mean = context.settings().gain_source == GainSource::MeanOfPairs && context.result.compensated.is_none();
+    let is_mean = context.settings().gain_source == GainSource::MeanOfPairs
+        && context.result.compensated.is_none();
     let (equation, section) = match context.result.compensated {
-        _ if is_mean => {
-            ("G = exp mean ln median_ω |H_ref| / |H_sim|, the mean over all pairs of kept models", "M6, eq. (5)")
-        }
+        _ if is_mean => (
+            "G = exp mean ln median_ω |H_ref| / |H_sim|, the mean over all pairs of kept models",
+            "M6, eq. (5)",
+        ),
         None => ("G = median_ω |H_ref| / |H_sim|", "M6, eq. (5)"),
         Some(_) => ("G = median_ω |H_ref| / |L_o H_sim L_i|", "M15.5, eq. (5)"),
     };
     let (step, rests_on) = if is_mean {
-        let kept = |kind| context.result.representative(kind).scores.iter().flatten().count();
+        let kept = |kind| {
+            context
+                .result
+                .representative(kind)
+                .scores
+                .iter()
+                .flatten()
+                .count()
+        };
         let [physics, identified] = BundleKind::BOTH.map(kept);
         let models = format!("{physics} physics and {identified} identified models that are kept");
         ("G".to_owned(), vec![models, context.band()])
@@ -61,14 +79,28 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let mut rests_on = context.models_and_frequencies(mismatch);
     let (equation, step, section) = if context.result.asks_band_delays() {
         // The straight line of least squares through the missing phase.
-        let (omega, phase) = (mismatch.omega(context.omega()), mismatch.phase_difference(context.omega()));
+        let (omega, phase) = (
+            mismatch.omega(context.omega()),
+            mismatch.phase_difference(context.omega()),
+        );
         let weight = |place: usize| mismatch.weights().map_or(1.0, |weights| weights[place]);
-        let sum = |of: &[f64]| (0..omega.len()).map(|place| weight(place) * (omega[place] * of[place])).sum::<f64>();
-        let step = format!("{} rad²/s / {} rad²/s²", digits(sum(&phase)), digits(sum(omega)));
+        let sum = |of: &[f64]| {
+            (0..omega.len())
+                .map(|place| weight(place) * (omega[place] * of[place]))
+                .sum::<f64>()
+        };
+        let step = format!(
+            "{} rad²/s / {} rad²/s²",
+            digits(sum(&phase)),
+            digits(sum(omega))
+        );
         ("D = Σ W ω Δφ(H_sim, H_ref) / Σ W ω²", step, "M15.2")
     } else {
         if mismatch.leaves_half_a_turn() {
-            rests_on.push("at each frequency the turn nearest to the pure delay that fits best (M6b)".to_owned());
+            rests_on.push(
+                "at each frequency the turn nearest to the pure delay that fits best (M6b)"
+                    .to_owned(),
+            );
         }
         let step = middle_words(mismatch, &delays_ms(mismatch, context.omega()));
         ("D = median_ω Δφ(H_sim, H_ref) / ω", step, "M6, eq. (9)")
@@ -84,10 +116,17 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
 }
 
 /// The mismatches that are pooled: of the measuring responses, or of all where none of those is defined.
-fn pooled<'a>(context: &Context<'a>, mismatch: impl Fn(Pair) -> Option<&'a Mismatch>) -> Vec<&'a Mismatch> {
+fn pooled<'a>(
+    context: &Context<'a>,
+    mismatch: impl Fn(Pair) -> Option<&'a Mismatch>,
+) -> Vec<&'a Mismatch> {
     let measuring = context.analysis.study.dataset.measuring_pairs();
     let marked: Vec<&Mismatch> = measuring.marked().filter_map(&mismatch).collect();
-    if marked.is_empty() { measuring.pairs().filter_map(&mismatch).collect() } else { marked }
+    if marked.is_empty() {
+        measuring.pairs().filter_map(&mismatch).collect()
+    } else {
+        marked
+    }
 }
 
 fn pool_rests_on(context: &Context<'_>) -> Vec<String> {
@@ -100,21 +139,31 @@ pub(super) fn gain_bounds(context: &Context<'_>) -> Derivation {
     let percent = |share: f64| number((1e6 * share).round() / 1e4);
     let quantile = context.settings().quantile;
     let (with_numbers, rests_on) = match context.settings().gain_bounds {
-        Some(_) => (vec![format!("LB = {lower}"), format!("UB = {upper}")], vec!["set by hand".to_owned()]),
+        Some(_) => (
+            vec![format!("LB = {lower}"), format!("UB = {upper}")],
+            vec!["set by hand".to_owned()],
+        ),
         None => {
             let pool = pooled(context, |pair| context.compensated_mismatch(pair));
             let pool: Vec<f64> = pool.into_iter().flat_map(ratios).collect();
             let pool = spread(&pool);
             let steps = vec![
-                format!("LB = min(1, {} % quantile of {pool}) = {lower}", percent(quantile)),
-                format!("UB = max(1, {} % quantile of {pool}) = {upper}", percent(1.0 - quantile)),
+                format!(
+                    "LB = min(1, {} % quantile of {pool}) = {lower}",
+                    percent(quantile)
+                ),
+                format!(
+                    "UB = max(1, {} % quantile of {pool}) = {upper}",
+                    percent(1.0 - quantile)
+                ),
             ];
             (steps, pool_rests_on(context))
         }
     };
     Derivation {
         title: context.title("bounds of the gains"),
-        equation: "LB = min(1, q-quantile of |H_ref| / |H_sim|), UB = max(1, (1 − q)-quantile)".to_owned(),
+        equation: "LB = min(1, q-quantile of |H_ref| / |H_sim|), UB = max(1, (1 − q)-quantile)"
+            .to_owned(),
         with_numbers,
         rests_on,
         section: "M7",
@@ -126,12 +175,22 @@ pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
     let value = s_to_ms(context.result.delay_upper_s());
     let quantile = context.settings().quantile;
     let (with_numbers, rests_on) = match context.settings().delay_upper_s {
-        Some(_) => (vec![format!("UB = {} ms", digits(value))], vec!["set by hand".to_owned()]),
+        Some(_) => (
+            vec![format!("UB = {} ms", digits(value))],
+            vec!["set by hand".to_owned()],
+        ),
         None => {
             let pool = pooled(context, |pair| context.mismatch(pair));
-            let pool: Vec<f64> = pool.into_iter().flat_map(|mismatch| delays_ms(mismatch, context.omega())).collect();
+            let pool: Vec<f64> = pool
+                .into_iter()
+                .flat_map(|mismatch| delays_ms(mismatch, context.omega()))
+                .collect();
             let percent = number((1e6 * (1.0 - quantile)).round() / 1e4);
-            let step = format!("UB = max(0, {percent} % quantile of {}) = {} ms", spread(&pool), digits(value));
+            let step = format!(
+                "UB = max(0, {percent} % quantile of {}) = {} ms",
+                spread(&pool),
+                digits(value)
+            );
             (vec![step], pool_rests_on(context))
         }
     };
@@ -147,16 +206,31 @@ pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
 
 /// The bar of a figure with its parts, and the figure of every substitution; nothing where it has no bar, or that was not computed.
 pub(super) fn sure(analysis: &Analysis, target: &ExplainTarget) -> Vec<String> {
-    let Some((condition, scalar)) = scalar_of(analysis, target) else { return Vec::new() };
-    let Some(uncertainty) = &analysis.uncertainty else { return Vec::new() };
-    let Some(of) = uncertainty.conditions.get(&condition) else { return Vec::new() };
-    let Some(bar) = &of.bars[scalar] else { return Vec::new() };
+    let Some((condition, scalar)) = scalar_of(analysis, target) else {
+        return Vec::new();
+    };
+    let Some(uncertainty) = &analysis.uncertainty else {
+        return Vec::new();
+    };
+    let Some(of) = uncertainty.conditions.get(&condition) else {
+        return Vec::new();
+    };
+    let Some(bar) = &of.bars[scalar] else {
+        return Vec::new();
+    };
     let mut lines = bar_lines(bar, scalar, uncertainty.level);
-    let result = analysis.condition(condition).filter(|result| !takes_reported_error(result, scalar));
+    let result = analysis
+        .condition(condition)
+        .filter(|result| !takes_reported_error(result, scalar));
     if result.is_some_and(|result| reports_error(analysis, result)) {
         lines.push(SPREAD_ALONE.to_owned());
     }
-    lines.extend(substitution_lines(analysis, condition, &of.substitutions, scalar));
+    lines.extend(substitution_lines(
+        analysis,
+        condition,
+        &of.substitutions,
+        scalar,
+    ));
     lines
 }
 
@@ -178,11 +252,19 @@ fn scalar_of(analysis: &Analysis, target: &ExplainTarget) -> Option<(ConditionId
 
 fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     let told = |deviation: f64| {
-        if scalar.is_delay() { format!("{:.2} ms", s_to_ms(deviation)) } else { format!("{:.2} %", 100.0 * deviation) }
+        if scalar.is_delay() {
+            format!("{:.2} ms", s_to_ms(deviation))
+        } else {
+            format!("{:.2} %", 100.0 * deviation)
+        }
     };
     let part = |name: &str, part: Option<VarianceComponent>| match part {
         Some(part) => {
-            format!("{name}: {} ({:.1} degrees of freedom)", told(part.variance.sqrt()), part.degrees_of_freedom)
+            format!(
+                "{name}: {} ({:.1} degrees of freedom)",
+                told(part.variance.sqrt()),
+                part.degrees_of_freedom
+            )
         }
         None => format!("{name}: not included"),
     };
@@ -197,10 +279,17 @@ fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
         }
         _ => "no bar (M13)".to_owned(),
     };
-    let mut lines = vec![whole, part("trim", bar.trim), part("identification", bar.identification)];
+    let mut lines = vec![
+        whole,
+        part("trim", bar.trim),
+        part("identification", bar.identification),
+    ];
     lines.extend(bar.remarks().into_iter().map(str::to_owned));
     if bar.left_out > 0 {
-        lines.push(format!("{} substitutions have no such figure", bar.left_out));
+        lines.push(format!(
+            "{} substitutions have no such figure",
+            bar.left_out
+        ));
     }
     lines
 }
@@ -212,7 +301,9 @@ fn substitution_lines(
     substitutions: &ConditionSubstitutions,
     scalar: Scalar,
 ) -> Vec<String> {
-    let Some(result) = analysis.condition(condition) else { return Vec::new() };
+    let Some(result) = analysis.condition(condition) else {
+        return Vec::new();
+    };
     let line = |(kind, model, figures): &Swap| {
         let name = &result.condition.bundle(*kind)[*model].name;
         let words = match figures.as_ref().and_then(|figures| figures[scalar]) {
@@ -225,7 +316,11 @@ fn substitution_lines(
     substitutions.substitutions.iter().map(line).collect()
 }
 
-pub(super) fn scheduled_gain(analysis: &Analysis, channel: Channel, airspeed_kt: f64) -> Option<Derivation> {
+pub(super) fn scheduled_gain(
+    analysis: &Analysis,
+    channel: Channel,
+    airspeed_kt: f64,
+) -> Option<Derivation> {
     let schedule = analysis.schedule.as_ref().ok()?;
     let regression = schedule.gains.get(channel)?;
     let value = schedule.at(airspeed_kt).gain(channel);
@@ -234,10 +329,18 @@ pub(super) fn scheduled_gain(analysis: &Analysis, channel: Channel, airspeed_kt:
         ScheduledQuantity::LnGain => format!("ln {name}"),
         ScheduledQuantity::Gain => name.clone(),
     };
-    let ids: Vec<String> = analysis.scheduled().iter().map(ToString::to_string).collect();
+    let ids: Vec<String> = analysis
+        .scheduled()
+        .iter()
+        .map(ToString::to_string)
+        .collect();
     let mut with_numbers = fit_steps(schedule, regression, &symbol, airspeed_kt);
     if schedule.settings.quantity == ScheduledQuantity::LnGain {
-        with_numbers.push(format!("{name} = e^({}) = {}", digits(value.ln()), digits(value)));
+        with_numbers.push(format!(
+            "{name} = e^({}) = {}",
+            digits(value.ln()),
+            digits(value)
+        ));
     }
     Some(Derivation {
         title: format!("scheduled {name} at {} kt", number(airspeed_kt)),
@@ -245,12 +348,19 @@ pub(super) fn scheduled_gain(analysis: &Analysis, channel: Channel, airspeed_kt:
         with_numbers,
         rests_on: [
             format!("the optima of the conditions {}", ids.join(", ")),
-            format!("airspeeds {} to {} kt", number(schedule.airspeeds.min_kt), number(schedule.airspeeds.max_kt)),
+            format!(
+                "airspeeds {} to {} kt",
+                number(schedule.airspeeds.min_kt),
+                number(schedule.airspeeds.max_kt)
+            ),
         ]
         .into_iter()
         .chain(schedule.second.as_ref().map(|term| {
             let (middle, unit) = (number(term.middle()), term.variable.unit());
-            format!("with {}, here in the middle of its range, {middle} {unit}", term.variable)
+            format!(
+                "with {}, here in the middle of its range, {middle} {unit}",
+                term.variable
+            )
         }))
         .collect(),
         section: "M11",
@@ -261,32 +371,60 @@ pub(super) fn scheduled_gain(analysis: &Analysis, channel: Channel, airspeed_kt:
 fn equation(regression: &Regression, symbol: &str) -> String {
     match regression {
         Regression::Polynomial { .. } => {
-            format!("{symbol} = c₀ + c₁ v + c₂ v² + …, by least squares; v = (V − mean V) / (half the range of V)")
+            format!(
+                "{symbol} = c₀ + c₁ v + c₂ v² + …, by least squares; v = (V − mean V) / (half the range of V)"
+            )
         }
-        Regression::Table { .. } => format!("{symbol} linear between the means of each cluster of airspeeds"),
+        Regression::Table { .. } => {
+            format!("{symbol} linear between the means of each cluster of airspeeds")
+        }
     }
 }
 
-fn fit_steps(schedule: &Schedule, regression: &Regression, symbol: &str, airspeed_kt: f64) -> Vec<String> {
+fn fit_steps(
+    schedule: &Schedule,
+    regression: &Regression,
+    symbol: &str,
+    airspeed_kt: f64,
+) -> Vec<String> {
     const POWERS: [&str; 4] = ["", " v", " v²", " v³"];
     let airspeeds = &schedule.airspeeds;
     let fitted = digits(regression.at(airspeeds, airspeed_kt));
     match regression {
         Regression::Polynomial { coefficients } => {
             let v = airspeeds.scaled(airspeed_kt);
-            let terms =
-                coefficients.iter().zip(POWERS).map(|(coefficient, power)| format!("{}{power}", digits(*coefficient)));
+            let terms = coefficients
+                .iter()
+                .zip(POWERS)
+                .map(|(coefficient, power)| format!("{}{power}", digits(*coefficient)));
             let inside = airspeed_kt.clamp(airspeeds.min_kt, airspeeds.max_kt);
             let (mean_kt, half_kt) = (digits(airspeeds.mean_kt), digits(airspeeds.half_range_kt));
             vec![
-                format!("v = ({} − {mean_kt}) / {half_kt} = {}", number(inside), digits(v)),
-                format!("{symbol} = {} = {fitted}", terms.collect::<Vec<_>>().join(" + ").replace("+ −", "− ")),
+                format!(
+                    "v = ({} − {mean_kt}) / {half_kt} = {}",
+                    number(inside),
+                    digits(v)
+                ),
+                format!(
+                    "{symbol} = {} = {fitted}",
+                    terms.collect::<Vec<_>>().join(" + ").replace("+ −", "− ")
+                ),
             ]
         }
-        Regression::Table { airspeeds_kt, values } => {
-            let after = airspeeds_kt.partition_point(|&at| at < airspeed_kt).min(values.len() - 1);
-            let point = |at: usize| format!("{} at {} kt", digits(values[at]), digits(airspeeds_kt[at]));
-            let between = if after == 0 { point(0) } else { format!("{} and {}", point(after - 1), point(after)) };
+        Regression::Table {
+            airspeeds_kt,
+            values,
+        } => {
+            let after = airspeeds_kt
+                .partition_point(|&at| at < airspeed_kt)
+                .min(values.len() - 1);
+            let point =
+                |at: usize| format!("{} at {} kt", digits(values[at]), digits(airspeeds_kt[at]));
+            let between = if after == 0 {
+                point(0)
+            } else {
+                format!("{} and {}", point(after - 1), point(after))
+            };
             vec![format!("{symbol} between {between} = {fitted}")]
         }
     }

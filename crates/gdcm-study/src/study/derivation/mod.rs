@@ -81,10 +81,14 @@ pub fn derivation(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivat
         ExplainTarget::DelayObjective(id) => Some(channels::delay_objective(&of(id)?)),
         ExplainTarget::CostBefore(id, pair) => costs::cost(&of_pair(id, pair)?, *pair, false),
         ExplainTarget::CostAfter(id, pair) => costs::cost(&of_pair(id, pair)?, *pair, true),
-        ExplainTarget::CostChange(id, pair, choice) => costs::change(&of_pair(id, pair)?, *pair, *choice),
+        ExplainTarget::CostChange(id, pair, choice) => {
+            costs::change(&of_pair(id, pair)?, *pair, *choice)
+        }
         ExplainTarget::DiscontinuityRatio(model) => costs::ratio(&of(&model.condition)?, model),
         ExplainTarget::Score(model) => costs::score(&of(&model.condition)?, model),
-        ExplainTarget::ScheduledGain(channel, airspeed_kt) => deltas::scheduled_gain(analysis, *channel, *airspeed_kt),
+        ExplainTarget::ScheduledGain(channel, airspeed_kt) => {
+            deltas::scheduled_gain(analysis, *channel, *airspeed_kt)
+        }
     };
     found.map(|mut found| {
         found.rests_on.extend(deltas::sure(analysis, target));
@@ -104,7 +108,10 @@ fn average_word(average: CostAverage) -> &'static str {
 fn gain_objective_equation(objective: GainObjective) -> (&'static str, &'static str) {
     match objective {
         GainObjective::Ratio => ("Σ w (G − k_o k_i)² + α Σ (k_o − 1)²", ""),
-        GainObjective::Decibel => ("Σ w (20 log10 G − 20 log10 k_o k_i)² + α Σ (20 log10 k_o)²", " dB²"),
+        GainObjective::Decibel => (
+            "Σ w (20 log10 G − 20 log10 k_o k_i)² + α Σ (20 log10 k_o)²",
+            " dB²",
+        ),
     }
 }
 
@@ -117,7 +124,10 @@ struct Context<'a> {
 impl<'a> Context<'a> {
     /// The condition, where it has a result.
     fn of(analysis: &'a Analysis, condition: ConditionId) -> Option<Self> {
-        Some(Self { analysis, result: analysis.condition(condition)? })
+        Some(Self {
+            analysis,
+            result: analysis.condition(condition)?,
+        })
     }
 
     fn settings(&self) -> &'a Settings {
@@ -145,7 +155,12 @@ impl<'a> Context<'a> {
 
     /// The mismatch of the two representatives.
     fn mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
-        self.result.comparison.representative.mismatch.get(pair)?.as_ref()
+        self.result
+            .comparison
+            .representative
+            .mismatch
+            .get(pair)?
+            .as_ref()
     }
 
     /// The same after the leads of the channels, where there are any (M15.5).
@@ -159,14 +174,18 @@ impl<'a> Context<'a> {
     /// The two representatives.
     fn models(&self) -> Vec<String> {
         let of = |kind| self.result.representative_name(kind);
-        let couplings = self
-            .result
-            .coupled
-            .as_ref()
-            .map_or_else(String::new, |_| format!(", with {} (M16)", self.settings().couplings.name()));
+        let couplings = self.result.coupled.as_ref().map_or_else(String::new, |_| {
+            format!(", with {} (M16)", self.settings().couplings.name())
+        });
         vec![
-            format!("physics representative {}{couplings} (H_sim)", of(BundleKind::Physics)),
-            format!("identified representative {} (H_ref)", of(BundleKind::Identified)),
+            format!(
+                "physics representative {}{couplings} (H_sim)",
+                of(BundleKind::Physics)
+            ),
+            format!(
+                "identified representative {} (H_ref)",
+                of(BundleKind::Identified)
+            ),
         ]
     }
 
@@ -186,7 +205,11 @@ impl<'a> Context<'a> {
     /// The marked responses in words.
     fn pairs(&self, pairs: impl Iterator<Item = Pair>) -> String {
         let names: Vec<String> = pairs.map(|pair| self.pair(pair)).collect();
-        if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+        if names.is_empty() {
+            "none".to_owned()
+        } else {
+            names.join(", ")
+        }
     }
 
     /// The responses that bounds and distances are taken over.
@@ -204,20 +227,32 @@ impl<'a> Context<'a> {
 /// How many frequencies count and how much, where coherence says that.
 fn counted_words(mismatch: &Mismatch) -> Option<String> {
     let count = mismatch.weights()?.len();
-    Some(format!("{count} of the frequencies, each by its coherence: W = [1.58 (1 − e^(−γ²))]² (M4a)"))
+    Some(format!(
+        "{count} of the frequencies, each by its coherence: W = [1.58 (1 − e^(−γ²))]² (M4a)"
+    ))
 }
 
 /// The band and its frequencies.
 fn band_words(settings: &Settings) -> String {
-    let (min, max) = (six_digits(settings.band.min()), six_digits(settings.band.max()));
-    format!("{} frequencies from {min} to {max} rad/s, logarithmically spaced", settings.points)
+    let (min, max) = (
+        six_digits(settings.band.min()),
+        six_digits(settings.band.max()),
+    );
+    format!(
+        "{} frequencies from {min} to {max} rad/s, logarithmically spaced",
+        settings.points
+    )
 }
 
 /// Five significant digits, with a true minus sign.
 fn digits(value: f64) -> String {
     const SIGNIFICANT: i32 = 5;
     if value == 0.0 || !value.is_finite() {
-        return if value == 0.0 { "0".to_owned() } else { value.to_string() };
+        return if value == 0.0 {
+            "0".to_owned()
+        } else {
+            value.to_string()
+        };
     }
     let exponent = value.abs().log10().floor() as i32;
     let text = match exponent {
@@ -234,7 +269,12 @@ fn spread(values: &[f64]) -> String {
     match sorted.as_slice() {
         [] => "no values".to_owned(),
         [only] => digits(*only),
-        [least, .., most] => format!("{} values from {} to {}", sorted.len(), digits(*least), digits(*most)),
+        [least, .., most] => format!(
+            "{} values from {} to {}",
+            sorted.len(),
+            digits(*least),
+            digits(*most)
+        ),
     }
 }
 
@@ -245,10 +285,17 @@ fn median_words(values: &[f64]) -> String {
     let middle = sorted.len() / 2;
     match sorted.len() {
         0 => "no values".to_owned(),
-        count if count % 2 == 1 => format!("the middle one of {}: {}", spread(values), digits(sorted[middle])),
+        count if count % 2 == 1 => format!(
+            "the middle one of {}: {}",
+            spread(values),
+            digits(sorted[middle])
+        ),
         _ => {
             let (below, above) = (digits(sorted[middle - 1]), digits(sorted[middle]));
-            format!("the mean of the middle two of {}: ({below} + {above}) / 2", spread(values))
+            format!(
+                "the mean of the middle two of {}: ({below} + {above}) / 2",
+                spread(values)
+            )
         }
     }
 }
@@ -259,10 +306,16 @@ const TERMS: [(&str, &str); 30] = [
     ("D", "delay that the response wants [s]"),
     ("H_ref", "response of the identified representative"),
     ("H_sim", "response of the physics representative"),
-    ("Δφ", "phase of H_ref less that of H_sim, unwrapped [rad; in J deg]"),
+    (
+        "Δφ",
+        "phase of H_ref less that of H_sim, unwrapped [rad; in J deg]",
+    ),
     ("ΔdB", "magnitude of H_sim less that of H_ref [dB]"),
     ("ω", "frequency [rad/s]"),
-    ("W", "weight of a frequency, by coherence where that is used"),
+    (
+        "W",
+        "weight of a frequency, by coherence where that is used",
+    ),
     ("k_o", "gain of the output channel"),
     ("k_i", "gain of the input channel"),
     ("τ_o", "delay of the output channel [s]"),
@@ -277,11 +330,23 @@ const TERMS: [(&str, &str); 30] = [
     ("LB", "lower bound of the channels"),
     ("UB", "upper bound of the channels"),
     ("q", "quantile that sets the bounds"),
-    ("J", "cost of a response: what is left of magnitude and phase"),
+    (
+        "J",
+        "cost of a response: what is left of magnitude and phase",
+    ),
     ("ΔJ", "what the correction changes of J"),
-    ("d", "distance of two models: root of the mean J of one against the other"),
-    ("s_a", "score of a model: how far the others of its bundle are"),
-    ("r_a", "discontinuity ratio: the distance found over the one that the trims explain"),
+    (
+        "d",
+        "distance of two models: root of the mean J of one against the other",
+    ),
+    (
+        "s_a",
+        "score of a model: how far the others of its bundle are",
+    ),
+    (
+        "r_a",
+        "discontinuity ratio: the distance found over the one that the trims explain",
+    ),
     ("p_ak", "coordinate k of the trim of model a"),
     ("v", "airspeed, from −1 to 1 over the conditions"),
     ("V", "airspeed [kt]"),
@@ -292,7 +357,9 @@ impl Derivation {
     pub fn terms(&self) -> Vec<(&'static str, &'static str)> {
         let mut found: Vec<(usize, (&str, &str))> = TERMS
             .into_iter()
-            .filter_map(|(symbol, meaning)| Some((place_of(symbol, &self.equation)?, (symbol, meaning))))
+            .filter_map(|(symbol, meaning)| {
+                Some((place_of(symbol, &self.equation)?, (symbol, meaning)))
+            })
             .collect();
         found.sort_by_key(|(place, _)| *place);
         found.into_iter().map(|(_, term)| term).collect()
@@ -301,12 +368,16 @@ impl Derivation {
 
 /// Where a symbol stands in an equation by itself, not as a part of another.
 fn place_of(symbol: &str, equation: &str) -> Option<usize> {
-    let is_part = |neighbour: Option<char>| neighbour.is_some_and(|c| c.is_alphabetic() || c == '_');
-    equation.match_indices(symbol).map(|(place, _)| place).find(|&place| {
-        let before = equation[..place].chars().next_back();
-        let after = equation[place + symbol.len()..].chars().next();
-        !is_part(before) && !is_part(after)
-    })
+    let is_part =
+        |neighbour: Option<char>| neighbour.is_some_and(|c| c.is_alphabetic() || c == '_');
+    equation
+        .match_indices(symbol)
+        .map(|(place, _)| place)
+        .find(|&place| {
+            let before = equation[..place].chars().next_back();
+            let after = equation[place + symbol.len()..].chars().next();
+            !is_part(before) && !is_part(after)
+        })
 }
 
 #[cfg(test)]
@@ -316,14 +387,23 @@ mod tests {
     #[test]
     fn a_figure_has_five_digits() {
         let figures = [1.234_567, -0.012_345_6, 123_456.7, 0.0, 1e-9, 2.0];
-        assert_eq!(figures.map(digits), ["1.2346", "−0.012346", "123457", "0", "1.0000e−9", "2.0000"]);
+        assert_eq!(
+            figures.map(digits),
+            ["1.2346", "−0.012346", "123457", "0", "1.0000e−9", "2.0000"]
+        );
     }
 
     #[test]
     fn a_median_is_told_from_its_middle_values() {
-        assert_eq!(median_words(&[3.0, 1.0, 2.0]), "the middle one of 3 values from 1.0000 to 3.0000: 2.0000");
+        assert_eq!(
+            median_words(&[3.0, 1.0, 2.0]),
+            "the middle one of 3 values from 1.0000 to 3.0000: 2.0000"
+        );
         let even = median_words(&[4.0, 1.0, 3.0, 2.0]);
-        assert_eq!(even, "the mean of the middle two of 4 values from 1.0000 to 4.0000: (2.0000 + 3.0000) / 2");
+        assert_eq!(
+            even,
+            "the mean of the middle two of 4 values from 1.0000 to 4.0000: (2.0000 + 3.0000) / 2"
+        );
     }
 
     fn terms(equation: &str) -> Vec<&'static str> {
@@ -335,15 +415,27 @@ mod tests {
             section: "",
             value: 0.0,
         };
-        found.terms().into_iter().map(|(symbol, _)| symbol).collect()
+        found
+            .terms()
+            .into_iter()
+            .map(|(symbol, _)| symbol)
+            .collect()
     }
 
     #[test]
     fn the_symbols_of_an_equation_are_found_and_no_part_of_another() {
-        assert_eq!(terms("G = median_ω |H_ref| / |L_o H_sim L_i|"), ["G", "H_ref", "L_o", "H_sim", "L_i"]);
-        let gains = terms("min Σ w (G − k_o k_i)² + α Σ (k_o − 1)², subject to k_o k_i = G (held), LB ≤ k ≤ UB");
+        assert_eq!(
+            terms("G = median_ω |H_ref| / |L_o H_sim L_i|"),
+            ["G", "H_ref", "L_o", "H_sim", "L_i"]
+        );
+        let gains = terms(
+            "min Σ w (G − k_o k_i)² + α Σ (k_o − 1)², subject to k_o k_i = G (held), LB ≤ k ≤ UB",
+        );
         assert_eq!(gains, ["w", "G", "k_o", "k_i", "α", "LB", "k", "UB"]);
-        assert_eq!(terms("D = Σ W ω Δφ(H_sim, H_ref) / Σ W ω²"), ["D", "W", "ω", "Δφ", "H_sim", "H_ref"]);
+        assert_eq!(
+            terms("D = Σ W ω Δφ(H_sim, H_ref) / Σ W ω²"),
+            ["D", "W", "ω", "Δφ", "H_sim", "H_ref"]
+        );
         assert_eq!(terms("ΔJ = J(corrected) − J(uncorrected)"), ["ΔJ", "J"]);
     }
 }

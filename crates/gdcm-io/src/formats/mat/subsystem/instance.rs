@@ -6,7 +6,8 @@ use super::{Content, Property, Reference, Subsystem, is_enumeration, packed_text
 use crate::formats::mat::matrix::unread_because;
 use crate::formats::mat::{FieldPath, Step};
 use crate::variables::{
-    Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value, VariableFault,
+    Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value,
+    VariableFault,
 };
 
 /// The property that holds what a class makes of its objects to be saved.
@@ -34,26 +35,44 @@ impl Subsystem {
 
 impl<'s> Assembly<'s> {
     pub(super) fn new(subsystem: &'s Subsystem, budget: &'s ReadingBudget<'s>) -> Self {
-        Self { subsystem, budget, open: Vec::new() }
+        Self {
+            subsystem,
+            budget,
+            open: Vec::new(),
+        }
     }
 
     /// What a reference leads to; what is nested too deeply or cannot be decoded is opaque.
-    pub(super) fn referred(&mut self, reference: &Reference, trail: &FieldPath<'_>) -> Result<Value, VariableFault> {
+    pub(super) fn referred(
+        &mut self,
+        reference: &Reference,
+        trail: &FieldPath<'_>,
+    ) -> Result<Value, VariableFault> {
         let directory = &self.subsystem.directory;
         let class = directory.class(reference.class).unwrap_or("object");
         let opaque = |why: &str| Ok(unread_because(class, why, &trail.words()));
         if let ("string", &[object]) = (class, reference.objects.as_slice()) {
             let text = self.text(object)?;
-            return text.map_or_else(|| opaque("its texts are packed in an unknown way"), |text| Ok(Value::Text(text)));
+            return text.map_or_else(
+                || opaque("its texts are packed in an unknown way"),
+                |text| Ok(Value::Text(text)),
+            );
         }
-        if reference.objects.iter().any(|&object| object != 0 && self.open.contains(&object)) {
+        if reference
+            .objects
+            .iter()
+            .any(|&object| object != 0 && self.open.contains(&object))
+        {
             return opaque("it lies in itself");
         }
         let begun = self.open.len();
         let records = self.records(reference, trail);
         self.open.truncate(begun);
         match records {
-            Ok(records) => Ok(Value::Object(Object { class: class.to_owned(), records })),
+            Ok(records) => Ok(Value::Object(Object {
+                class: class.to_owned(),
+                records,
+            })),
             Err(VariableFault::TooDeep { .. }) => opaque("too many values lie in one another"),
             Err(VariableFault::Damaged { what, .. }) => opaque(&what),
             Err(fault) => Err(trail.name(fault)),
@@ -62,9 +81,22 @@ impl<'s> Assembly<'s> {
 
     /// The texts of a `string` object.
     fn text(&self, object: u32) -> Result<Option<TextArray>, VariableFault> {
-        let properties = self.subsystem.directory.object(object).map_or(&[][..], |(_, properties)| properties);
-        let Some(&Property { content: Content::Cell(cell), .. }) = properties.first() else { return Ok(None) };
-        let words = match (self.subsystem.long_words.get(&cell), self.subsystem.values.get(cell)) {
+        let properties = self
+            .subsystem
+            .directory
+            .object(object)
+            .map_or(&[][..], |(_, properties)| properties);
+        let Some(&Property {
+            content: Content::Cell(cell),
+            ..
+        }) = properties.first()
+        else {
+            return Ok(None);
+        };
+        let words = match (
+            self.subsystem.long_words.get(&cell),
+            self.subsystem.values.get(cell),
+        ) {
             (Some(words), _) => Some(words.clone()),
             (None, Some(Value::Array(array))) => exact_words(array),
             _ => None,
@@ -72,12 +104,20 @@ impl<'s> Assembly<'s> {
         words.map_or(Ok(None), |words| packed_text(&words, self.budget))
     }
 
-    fn records(&mut self, reference: &Reference, trail: &FieldPath<'_>) -> Result<StructArray, VariableFault> {
+    fn records(
+        &mut self,
+        reference: &Reference,
+        trail: &FieldPath<'_>,
+    ) -> Result<StructArray, VariableFault> {
         let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
         let mut places: HashMap<String, usize> = HashMap::new();
         for (at, &object) in reference.objects.iter().enumerate() {
             let record = trail.step(Step::Record(at))?;
-            let trail = if reference.objects.len() == 1 { trail } else { &record };
+            let trail = if reference.objects.len() == 1 {
+                trail
+            } else {
+                &record
+            };
             self.open.push(object);
             for (name, value) in self.properties(object, reference.class, trail)? {
                 let field = *places.entry(name).or_insert_with_key(|name| {
@@ -94,13 +134,17 @@ impl<'s> Assembly<'s> {
         for (_, values) in &mut fields {
             self.fill(values, reference.objects.len())?;
         }
-        Ok(StructArray { shape: reference.shape.clone(), fields })
+        Ok(StructArray {
+            shape: reference.shape.clone(),
+            fields,
+        })
     }
 
     /// Objects without a property that others of the array have get an empty one.
     fn fill(&self, values: &mut Vec<Value>, length: usize) -> Result<(), VariableFault> {
         let missing = length.saturating_sub(values.len());
-        self.budget.take(missing as u64, 2 * size_of::<Value>() as u64, "")?;
+        self.budget
+            .take(missing as u64, 2 * size_of::<Value>() as u64, "")?;
         values.extend((0..missing).map(|_| Value::empty()));
         Ok(())
     }
@@ -117,20 +161,29 @@ impl<'s> Assembly<'s> {
         }
         let subsystem = self.subsystem;
         let entry = subsystem.directory.object(object);
-        let (class, saved) =
-            entry.ok_or_else(|| super::damaged(format!("there is no object {object} of class {class}")))?;
+        let (class, saved) = entry.ok_or_else(|| {
+            super::damaged(format!("there is no object {object} of class {class}"))
+        })?;
         let mut properties: Vec<(String, Value)> = Vec::new();
         let mut known: HashSet<&str> = HashSet::new();
         for property in saved {
-            let name =
-                subsystem.directory.name(property.name).ok_or_else(|| super::damaged("a property has no name"))?;
+            let name = subsystem
+                .directory
+                .name(property.name)
+                .ok_or_else(|| super::damaged("a property has no name"))?;
             if known.insert(name) {
                 let value = self.property(property, &trail.step(Step::Field(name))?)?;
                 properties.push((name.to_owned(), value));
             }
         }
-        let defaults = if known.contains(MADE) { None } else { subsystem.defaults.get(class as usize) };
-        let Some(Value::Struct(defaults)) = defaults else { return Ok(properties) };
+        let defaults = if known.contains(MADE) {
+            None
+        } else {
+            subsystem.defaults.get(class as usize)
+        };
+        let Some(Value::Struct(defaults)) = defaults else {
+            return Ok(properties);
+        };
         for (name, values) in &defaults.fields {
             if let (Some(value), false) = (values.first(), known.contains(name.as_str())) {
                 let value = self.copy(value, &trail.step(Step::Field(name))?)?;
@@ -140,18 +193,31 @@ impl<'s> Assembly<'s> {
         Ok(properties)
     }
 
-    fn property(&mut self, property: &Property, trail: &FieldPath<'_>) -> Result<Value, VariableFault> {
+    fn property(
+        &mut self,
+        property: &Property,
+        trail: &FieldPath<'_>,
+    ) -> Result<Value, VariableFault> {
         let subsystem = self.subsystem;
         self.budget.take(1, 256, "")?;
         match property.content {
             Content::Cell(cell) => {
-                let value = subsystem.values.get(cell).ok_or_else(|| super::damaged("a property has no value"))?;
+                let value = subsystem
+                    .values
+                    .get(cell)
+                    .ok_or_else(|| super::damaged("a property has no value"))?;
                 self.copy(value, trail)
             }
-            Content::Name(name) => Ok(Value::text(subsystem.directory.name(name).unwrap_or_default())),
+            Content::Name(name) => Ok(Value::text(
+                subsystem.directory.name(name).unwrap_or_default(),
+            )),
             Content::Number(number) => Ok(Value::Array(Array {
                 shape: vec![1, 1],
-                kind: if number <= 1 { ElementKind::Logical } else { ElementKind::Integer },
+                kind: if number <= 1 {
+                    ElementKind::Logical
+                } else {
+                    ElementKind::Integer
+                },
                 re: vec![f64::from(number)],
                 im: None,
             })),
@@ -159,30 +225,49 @@ impl<'s> Assembly<'s> {
     }
 
     /// A value of a cell, with the objects that it refers to in their places.
-    pub(super) fn copy(&mut self, value: &Value, trail: &FieldPath<'_>) -> Result<Value, VariableFault> {
+    pub(super) fn copy(
+        &mut self,
+        value: &Value,
+        trail: &FieldPath<'_>,
+    ) -> Result<Value, VariableFault> {
         self.budget.take(1, value.own_memory(), "")?;
         if let Some(reference) = self.reference(value) {
             return self.referred(&reference, trail);
         }
         Ok(match value {
             Value::Array(_) | Value::Text(_) | Value::Opaque { .. } => value.clone(),
-            Value::Cell(cell) => Value::Cell(CellArray { shape: cell.shape.clone(), values: self.cells(cell, trail)? }),
+            Value::Cell(cell) => Value::Cell(CellArray {
+                shape: cell.shape.clone(),
+                values: self.cells(cell, trail)?,
+            }),
             Value::Struct(records) if is_enumeration(records) => {
-                self.subsystem.enumeration(records, "", trail, self.budget)?
+                self.subsystem
+                    .enumeration(records, "", trail, self.budget)?
             }
             Value::Struct(records) => Value::Struct(self.copied(records, trail)?),
-            Value::Object(object) => {
-                Value::Object(Object { class: object.class.clone(), records: self.copied(&object.records, trail)? })
-            }
+            Value::Object(object) => Value::Object(Object {
+                class: object.class.clone(),
+                records: self.copied(&object.records, trail)?,
+            }),
         })
     }
 
-    fn cells(&mut self, cell: &CellArray, trail: &FieldPath<'_>) -> Result<Vec<Value>, VariableFault> {
+    fn cells(
+        &mut self,
+        cell: &CellArray,
+        trail: &FieldPath<'_>,
+    ) -> Result<Vec<Value>, VariableFault> {
         let values = cell.values.iter().enumerate();
-        values.map(|(at, value)| self.copy(value, &trail.step(Step::Cell(at))?)).collect()
+        values
+            .map(|(at, value)| self.copy(value, &trail.step(Step::Cell(at))?))
+            .collect()
     }
 
-    fn copied(&mut self, records: &StructArray, trail: &FieldPath<'_>) -> Result<StructArray, VariableFault> {
+    fn copied(
+        &mut self,
+        records: &StructArray,
+        trail: &FieldPath<'_>,
+    ) -> Result<StructArray, VariableFault> {
         let mut fields = Vec::with_capacity(records.fields.len());
         for (name, values) in &records.fields {
             let mut copies = Vec::with_capacity(values.len());
@@ -193,7 +278,10 @@ impl<'s> Assembly<'s> {
             }
             fields.push((name.clone(), copies));
         }
-        Ok(StructArray { shape: records.shape.clone(), fields })
+        Ok(StructArray {
+            shape: records.shape.clone(),
+            fields,
+        })
     }
 
     /// The reference that a value is, if it leads to objects that there are: numbers may look like one by chance.
@@ -201,7 +289,10 @@ impl<'s> Assembly<'s> {
         let directory = &self.subsystem.directory;
         Reference::of(value).filter(|reference| {
             directory.class(reference.class).is_some()
-                && reference.objects.iter().all(|&object| directory.has_object(object))
+                && reference
+                    .objects
+                    .iter()
+                    .all(|&object| directory.has_object(object))
         })
     }
 }
@@ -209,5 +300,15 @@ impl<'s> Assembly<'s> {
 /// The numbers of an array if none of them can have lost digits.
 fn exact_words(array: &Array) -> Option<Vec<u64>> {
     const MOST: f64 = (1_u64 << 53) as f64;
-    array.re.iter().map(|&number| if (0.0..MOST).contains(&number) { Some(number as u64) } else { None }).collect()
+    array
+        .re
+        .iter()
+        .map(|&number| {
+            if (0.0..MOST).contains(&number) {
+                Some(number as u64)
+            } else {
+                None
+            }
+        })
+        .collect()
 }

@@ -17,16 +17,18 @@ use criterion::{Criterion, criterion_group, criterion_main};
 
 use gdcm::executor::Pool;
 use gdcm_io::{embedded_example, load_dataset};
-use gdcm_method::correction::{Delta, delay_upper_s, gain_bounds, mismatch_table};
+use gdcm_method::correction::delta::{Delta, delay_upper_s, gain_bounds, mismatch_table};
 use gdcm_method::fidelity::Discontinuity;
+use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::{
-    Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, Origin, StateSpace,
+    Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, StateSpace,
 };
+use gdcm_model::progress::Unobserved;
 use gdcm_model::response::{FrequencyGrid, PolarResponse};
-use gdcm_study::study::{
-    BundleMetrics, ConditionResponses, Edit, Engine, Execution, KnownPoles, PhaseCorrection, Study,
-    Unobserved, setting,
-};
+use gdcm_study::study::comparison::BundleMetrics;
+use gdcm_study::study::condition_responses::ConditionResponses;
+use gdcm_study::study::required_modes::KnownPoles;
+use gdcm_study::study::{Edit, Engine, Execution, PhaseCorrection, Study, setting};
 
 #[path = "random_model/mod.rs"]
 #[expect(dead_code, reason = "other benches use the rest of it")]
@@ -112,7 +114,8 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
     });
     let mut turn = 0.0;
     let mut drag = |name: &str, change: &dyn Fn(&mut Study, f64)| {
-        let (mut engine, mut study) = (engine(), Study::new(example()));
+        let mut engine = engine();
+        let mut study = Study::new(example());
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
                 turn += 1.0;
@@ -160,10 +163,8 @@ fn all_conditions(criterion: &mut Criterion, name: &str, engine: impl Fn() -> En
 /// What the stages are worth beside plain ways, in the same run: the shortest of a few runs each.
 fn ratios(_: &mut Criterion) {
     let dataset = example();
-    let (condition, grid) = (
-        &dataset.conditions()[9],
-        FrequencyGrid::logarithmic(dataset.band(), 200),
-    );
+    let condition = &dataset.conditions()[9];
+    let grid = FrequencyGrid::logarithmic(dataset.band(), 200);
     let alone = Execution::sequential();
     let ours = shortest(20, || {
         ConditionResponses::of(condition, (dataset.band(), 200), &alone)
@@ -191,7 +192,9 @@ fn ratios(_: &mut Criterion) {
         "everything anew: one core takes {:.2} times as long as all",
         anew.div_duration_f64(together)
     );
-    let (mut engine, mut dragged, mut alpha) = (Engine::default(), study.clone(), 1.0);
+    let mut engine = Engine::default();
+    let mut dragged = study.clone();
+    let mut alpha = 1.0;
     let drag = shortest(50, || {
         alpha += 1e-6;
         dragged
@@ -220,12 +223,10 @@ fn replaced_model(_: &mut Criterion) {
             } else {
                 1.0 + 1e-4 * index as f64
             };
-            let (a, b, c, d) = (
-                base.a().clone(),
-                factor * base.b(),
-                base.c().clone(),
-                base.d().clone(),
-            );
+            let a = base.a().clone();
+            let b = factor * base.b();
+            let c = base.c().clone();
+            let d = base.d().clone();
             let dynamics =
                 Dynamics::StateSpace(StateSpace::new(a, b, c, d).expect("the shapes agree"));
             let perturbation = None;
@@ -258,7 +259,8 @@ fn replaced_model(_: &mut Criterion) {
         curves(&mut engine, &before),
     );
     let mut scale = 1.0;
-    let (mut replaced, mut drawn) = (Duration::MAX, Duration::MAX);
+    let mut replaced = Duration::MAX;
+    let mut drawn = Duration::MAX;
     for _ in 0..20 {
         scale += 1e-6;
         let after = study(scale);

@@ -20,10 +20,9 @@ use gdcm_io::load_dataset;
 use gdcm_method::couplings::{CouplingCondition, CouplingProblem, Unknown, fit_couplings};
 use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, ModelId, Pair};
 use gdcm_model::executor::Sequential;
+use gdcm_model::progress::Unobserved;
 use gdcm_model::response::FrequencyResponse;
-use gdcm_study::study::{
-    CouplingCorrection, Edit, Engine, PhaseCorrection, Study, Unobserved, setting,
-};
+use gdcm_study::study::{CouplingCorrection, Edit, Engine, PhaseCorrection, Study, setting};
 
 #[path = "stopwatch/mod.rs"]
 mod stopwatch;
@@ -74,7 +73,8 @@ fn live_loop(criterion: &mut Criterion) {
     });
     let mut turn = 0.0;
     let mut again = |name: &str, change: &dyn Fn(&mut Study, f64)| {
-        let (mut engine, mut study) = (Engine::with_executor(Box::new(Pool)), study());
+        let mut engine = Engine::with_executor(Box::new(Pool));
+        let mut study = study();
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
                 turn += 1.0;
@@ -150,7 +150,8 @@ fn ratios(_: &mut Criterion) {
 /// One solve: dense rows of each condition, their product with themselves, Cholesky's factors.
 fn plain_solve(problem: &CouplingProblem, unknowns: &[Unknown]) -> Option<DMatrix<f64>> {
     let count = unknowns.len();
-    let (mut normal, mut right) = (DMatrix::zeros(count, count), DMatrix::zeros(count, 1));
+    let mut normal = DMatrix::zeros(count, count);
+    let mut right = DMatrix::zeros(count, 1);
     for condition in &problem.conditions {
         let (rows, wanted) = plain_rows(problem, condition, unknowns);
         normal += rows.tr_mul(&rows);
@@ -167,7 +168,8 @@ fn plain_rows(
     condition: &CouplingCondition,
     unknowns: &[Unknown],
 ) -> (DMatrix<f64>, DMatrix<f64>) {
-    let (outputs, inputs) = (problem.outputs(), problem.inputs());
+    let outputs = problem.outputs();
+    let inputs = problem.inputs();
     let at = |of: &FrequencyResponse, k: usize| -> DMatrix<Complex<f64>> {
         DMatrix::from_fn(outputs, inputs, |output, input| {
             of.curve(Pair::new(output, input))[k]
@@ -177,7 +179,8 @@ fn plain_rows(
     let mut rows = DMatrix::zeros(points * outputs * inputs * 2, unknowns.len());
     let mut wanted = DMatrix::zeros(rows.nrows(), 1);
     for k in 0..points {
-        let (f, flight) = (at(&condition.physics, k), at(&condition.flight, k));
+        let f = at(&condition.physics, k);
+        let flight = at(&condition.flight, k);
         for (place, (output, input)) in (0..outputs)
             .flat_map(|output| (0..inputs).map(move |input| (output, input)))
             .enumerate()

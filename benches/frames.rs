@@ -111,7 +111,8 @@ fn curve(number: usize, points: usize) -> BodeCurve {
         .collect();
     let corner = 2.0 + 0.05 * number as f64;
     let magnitude = |w: &f64| {
-        let (lag, notch) = ((w / corner).powi(2), (w / (2.0 * corner)).powi(2));
+        let lag = (w / corner).powi(2);
+        let notch = (w / (2.0 * corner)).powi(2);
         -10.0 * ((1.0 - lag).powi(2) + 0.3 * lag).log10()
             + 5.0 * ((1.0 - notch).powi(2) + 0.1 * notch).log10()
     };
@@ -149,7 +150,8 @@ fn curve(number: usize, points: usize) -> BodeCurve {
 
 /// The Bode plot alone, as the window draws it.
 fn bode(curves: &[BodeCurve]) -> Screen<'_> {
-    let (mut view, palette) = (BodeView::default(), Palette::dark());
+    let mut view = BodeView::default();
+    let palette = Palette::dark();
     Screen::new(Context::default(), Doing::Nothing, move |ui| {
         let scene = BodeScene::of("LON → Q", curves, (0.5, 12.0));
         bode_ui(ui, &scene, &mut view, &palette);

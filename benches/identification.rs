@@ -11,10 +11,11 @@ use std::time::Instant;
 use nalgebra::DMatrix;
 
 use gdcm::executor::Pool;
-use gdcm_io::{FolderProgress, embedded_example, read_records};
+use gdcm_io::record_files::read_records;
+use gdcm_io::{FolderProgress, embedded_example};
 use gdcm_model::dataset::{ConditionId, StateSpace};
 use gdcm_model::progress::Progress;
-use gdcm_study::study::IdentificationRequest;
+use gdcm_study::study::job::IdentificationRequest;
 use gdcm_sysid::identification::Preparation;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
 
@@ -80,7 +81,8 @@ fn main() {
     let (inputs, outputs) = dataset.names_of_channels();
     let preparation = Preparation::of(&borrowed(&inputs), &borrowed(&outputs));
     let band = dataset.band();
-    let (mut all_ms, mut worst) = (0.0, 0.0f64);
+    let mut all_ms = 0.0;
+    let mut worst = 0.0f64;
     for condition in dataset.conditions() {
         let own = records
             .iter()

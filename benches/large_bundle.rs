@@ -6,14 +6,20 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use criterion::Criterion;
+use nalgebra::DMatrix;
+
 use gdcm::executor::Pool;
+use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::{
-    Band, Condition, ConditionId, Dynamics, FlightState, Model, Origin, Pair, PairTable, StateSpace,
+    Band, Condition, ConditionId, Dynamics, Model, Pair, PairTable, StateSpace,
 };
 use gdcm_model::executor::{Executor, Sequential};
+use gdcm_model::progress::Unobserved;
 use gdcm_model::response::FrequencyGrid;
-use gdcm_study::study::{BundleMetrics, ConditionResponses, Execution, Unobserved};
-use nalgebra::DMatrix;
+use gdcm_study::study::Execution;
+use gdcm_study::study::comparison::BundleMetrics;
+use gdcm_study::study::condition_responses::ConditionResponses;
 
 #[path = "random_model/mod.rs"]
 mod random_model;
@@ -35,12 +41,16 @@ fn condition() -> Condition {
             0.05 * (seed + 7.3 * i as f64 + j as f64).sin()
         })
     };
-    let (by_roll, by_airspeed) = (change(0.1), change(0.7));
+    let by_roll = change(0.1);
+    let by_airspeed = change(0.7);
     let physics = (0..MODELS).map(|index| {
-        let (roll, airspeed) = ((index as f64).sin(), (index as f64 * 1.7).cos());
+        let roll = (index as f64).sin();
+        let airspeed = (index as f64 * 1.7).cos();
         let offset = if index == 0 { 0.0 } else { 1.0 };
         let a = base.a() + offset * (&by_roll * roll + &by_airspeed * airspeed);
-        let (b, c, d) = (base.b().clone(), base.c().clone(), base.d().clone());
+        let b = base.b().clone();
+        let c = base.c().clone();
+        let d = base.d().clone();
         let perturbation = BTreeMap::from([
             ("roll_deg".to_owned(), offset * roll),
             ("airspeed_kt".to_owned(), offset * airspeed),
@@ -110,10 +120,8 @@ fn main() {
     });
     group.finish();
     criterion.final_summary();
-    let (together, alone) = (
-        shortest(3, || responses(&Pool)),
-        shortest(3, || responses(&Sequential)),
-    );
+    let together = shortest(3, || responses(&Pool));
+    let alone = shortest(3, || responses(&Sequential));
     let dense = shortest(3, || dense_responses(&model(STATES), grid.omega())) * MODELS as u32;
     println!(
         "responses: {together:.2?} on all cores, {alone:.2?} on one; a dense LU for each would take {dense:.1?} on one"

@@ -9,7 +9,9 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use gdcm_method::correction::{Problem, ProofBudget, Solution, solve};
+
+use gdcm_method::correction::solve::solve;
+use gdcm_method::correction::{Problem, ProofBudget, Solution};
 
 #[path = "../crates/gdcm-io/tests/suite/optimiser/instances.rs"]
 // The tests use more of it.

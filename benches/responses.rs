@@ -17,11 +17,13 @@ use std::path::Path;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput};
-use gdcm_model::dataset::{Band, Pair, StateSpace};
-use gdcm_model::response::{FrequencyGrid, FrequencyResponse, evaluate, evaluate_on};
 use nalgebra::{Complex, DMatrix};
 use pulp::{Arch, Simd, WithSimd};
 use serde_json::json;
+
+use gdcm_model::dataset::{Band, Pair, StateSpace};
+use gdcm_model::response::elimination::evaluate_on;
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse, evaluate};
 
 #[path = "random_model/mod.rs"]
 mod random_model;
@@ -59,10 +61,8 @@ impl WithSimd for MultiplyAdds {
         // Two units with a latency of four or five cycles need ten; sixteen registers hold twelve.
         const CHAINS: usize = 12;
         const ROUNDS: usize = 10_000;
-        let (factor, addend) = (
-            simd.splat_f64s(black_box(0.999)),
-            simd.splat_f64s(black_box(0.001)),
-        );
+        let factor = simd.splat_f64s(black_box(0.999));
+        let addend = simd.splat_f64s(black_box(0.001));
         let mut sums = [addend; CHAINS];
         for _ in 0..ROUNDS {
             for sum in &mut sums {
@@ -88,7 +88,9 @@ fn compare(order: usize, omega: &[f64]) {
         let peak = arch.dispatch(MultiplyAdds)
             / shortest(400, || arch.dispatch(MultiplyAdds)).as_secs_f64();
         let part = multiply_adds(order) as f64 / seconds / peak;
-        let (time, ratio, peak) = (seconds * 1e6, dense / seconds, peak * 1e-9);
+        let time = seconds * 1e6;
+        let ratio = dense / seconds;
+        let peak = peak * 1e-9;
         println!(
             "{order:6}  {name:<8} {time:8.3} {:10.2} {ratio:8.1} {peak:12.1} {:7.0} %",
             dense * 1e6,

@@ -3,6 +3,6 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    gdcm_io::report_size_limit();
+    gdcm_io::output_set::report_size_limit();
     gdcm::cli::run(std::env::args_os(), gdcm::app::open)
 }

@@ -10,7 +10,8 @@ const PENALTY: f64 = 100.0;
 
 /// Objective of the gains that a projected gradient with a penalty for the held entries reaches.
 pub fn projected_gradient(problem: &Problem) -> f64 {
-    let (outputs, inputs) = (problem.delta.outputs(), problem.delta.inputs());
+    let outputs = problem.delta.outputs();
+    let inputs = problem.delta.inputs();
     let slope = |point: &[f64], gradient: &mut [f64]| {
         gradient.fill(0.0);
         let mut value = 0.0;
@@ -18,7 +19,8 @@ pub fn projected_gradient(problem: &Problem) -> f64 {
             let Some(delta) = delta else { continue };
             let weight = f64::from(u8::from(problem.fitted[pair]))
                 + PENALTY * f64::from(u8::from(problem.constrained[pair]));
-            let (input, output) = (point[pair.input], point[inputs + pair.output]);
+            let input = point[pair.input];
+            let output = point[inputs + pair.output];
             let error = input * output - delta;
             value += weight * error * error;
             gradient[pair.input] += 2.0 * weight * error * output;
@@ -40,7 +42,8 @@ pub fn projected_gradient(problem: &Problem) -> f64 {
 
 /// Objective of the delays that the same method reaches, in units of 0.1 s.
 pub fn delay_gradient(problem: &Problem) -> f64 {
-    let (outputs, inputs) = (problem.delta.outputs(), problem.delta.inputs());
+    let outputs = problem.delta.outputs();
+    let inputs = problem.delta.inputs();
     let slope = |point: &[f64], gradient: &mut [f64]| {
         gradient.fill(0.0);
         let mut value = 0.0;

@@ -1,7 +1,8 @@
 //! Models that several benches share, and the plain way to their responses.
 
-use gdcm_model::dataset::StateSpace;
 use nalgebra::{Complex, DMatrix};
+
+use gdcm_model::dataset::StateSpace;
 
 /// Number of outputs.
 pub const OUTPUTS: usize = 6;
@@ -22,11 +23,9 @@ pub fn model(order: usize) -> StateSpace {
         |rows, columns| DMatrix::from_fn(rows, columns, |_, _| uniform() + uniform() + uniform());
     let a = matrix(order, order) * (8.0 / (order as f64).sqrt())
         - DMatrix::identity(order, order) * 9.0;
-    let (b, c, d) = (
-        matrix(order, INPUTS),
-        matrix(OUTPUTS, order),
-        matrix(OUTPUTS, INPUTS),
-    );
+    let b = matrix(order, INPUTS);
+    let c = matrix(OUTPUTS, order);
+    let d = matrix(OUTPUTS, INPUTS);
     StateSpace::new(a, b, c, d).expect("the shapes agree")
 }
 

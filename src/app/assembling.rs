@@ -5,14 +5,18 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use gdcm_io::{
-    FolderProgress, FoundModels, add_dataset, add_rules, load_rules, read_models, relative_folder,
-    rules_path, sources_folder,
-};
+use gdcm_io::dataset_file::add_dataset;
+use gdcm_io::formats::sources_folder;
+use gdcm_io::model_files::FoundModels;
+use gdcm_io::rules_file::{add_rules, load_rules, rules_path};
+use gdcm_io::study_file::relative_folder;
+use gdcm_io::{FolderProgress, read_models};
 use gdcm_model::assembly::Rules;
 use gdcm_model::message_text::sanitized_path;
 
-use super::{DialogPurpose, GdcmApp, ReplySender};
+use super::GdcmApp;
+use super::files::DialogPurpose;
+use super::threads::ReplySender;
 use crate::view::FormKind;
 use crate::view::assembling::{AssemblingCommand, AssemblyState, Reading};
 
@@ -173,7 +177,8 @@ impl GdcmApp {
             .first()
             .and_then(|path| path.file_name())
             .map(|name| name.to_string_lossy().into_owned());
-        let (models, files) = (found.models.len(), found.files);
+        let models = found.models.len();
+        let files = found.files;
         bench.unused.extend(found.unused_words());
         bench.add(&name.unwrap_or_default(), found.models);
         bench.faults.extend(found.faults);

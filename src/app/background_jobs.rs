@@ -9,16 +9,20 @@ use std::time::Instant;
 use gdcm_method::correction::{Outcome, Problem, Solution};
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::executor::Executor;
-use gdcm_study::study::{
-    Analysis, CURVE_POINTS, Cancelled, ConditionAnalysis, ConditionFailure, CurvesJob, Engine, Job,
-    KnownModels, Progress, ProofJob, Study, TogglesJob, UncertaintyJob, WantedFirst, curves_band,
-};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_study::study::analysis::ConditionFailure;
+use gdcm_study::study::condition_responses::{CURVE_POINTS, KnownModels, curves_band};
+use gdcm_study::study::engine::WantedFirst;
+use gdcm_study::study::job::{CurvesJob, Job, ProofJob, TogglesJob, UncertaintyJob};
+use gdcm_study::study::{Analysis, ConditionAnalysis, Engine, Study};
 
+use super::GdcmApp;
+use super::job_queue::JobQueue;
 use super::threads::{Fault, ReplySender};
-use super::{GdcmApp, JobQueue};
 use crate::executor::Pool;
+use crate::view::state::{Background, FirstResult};
 use crate::view::views::{are_couplings_judged, couplings_job, overlay_job};
-use crate::view::{Background, FirstResult, Need, State, View};
+use crate::view::{Need, State, View};
 
 /// Makes an engine, at the start and anew after a panic, which may leave its caches half made.
 pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;
@@ -95,7 +99,8 @@ impl BackgroundJobs {
         // Those that work on the study as it is hold one response of each model together; a variant may have another band.
         let known = KnownModels::default();
         let engine = || {
-            let (make, known) = (Arc::clone(make_engine), known.clone());
+            let make = Arc::clone(make_engine);
+            let known = known.clone();
             move || make().sharing(&known)
         };
         let answers = JobKind {
@@ -351,7 +356,9 @@ fn started<J: Job>(
     kind: JobKind<J>,
     replies: &ReplySender,
 ) -> io::Result<Box<dyn AnyKind>> {
-    let (replies, take, withdraw) = (replies.clone(), kind.take, kind.withdraw);
+    let replies = replies.clone();
+    let take = kind.take;
+    let withdraw = kind.withdraw;
     let deliver = move |job: J, ending: Result<J::Output, Fault>| {
         replies.send(move |app| match ending {
             Ok(output) => take(app, job, output),
@@ -466,7 +473,8 @@ impl Job for AnalysisJob {
             .iter()
             .for_each(|(problem, solution)| engine.take_gains(problem, solution));
         let tell = |outcome: &Result<ConditionAnalysis, ConditionFailure>| {
-            let (dataset, condition) = (Arc::clone(&self.study.dataset), self.condition);
+            let dataset = Arc::clone(&self.study.dataset);
+            let condition = self.condition;
             let first = FirstResult {
                 generation: self.generation,
                 dataset,

@@ -3,14 +3,15 @@
 
 use std::path::{Path, PathBuf};
 
+use gdcm_io::output_set::OutputSet;
+use gdcm_io::source::{at_home, file_exists};
+use gdcm_io::study_file::{STUDY_EXTENSION, holds_models, open_study_of};
+use gdcm_io::user_state::{add_recent_file, recent_files};
 use gdcm_io::variables::ReadingBudget;
-use gdcm_io::{
-    Existing, FileError, LoadedDataset, Opened, OutputSet, STUDY_EXTENSION, add_recent_file,
-    at_home, embedded_example, file_exists, holds_models, load_any, open_study_of, recent_files,
-    save_study,
-};
+use gdcm_io::{Existing, FileError, LoadedDataset, Opened, embedded_example, load_any, save_study};
 use gdcm_model::message_text::{sanitized, sanitized_path};
-use gdcm_study::study::{Difference, Study};
+use gdcm_study::study::Study;
+use gdcm_study::study::differences::Difference;
 
 use super::GdcmApp;
 use super::threads::caught;
@@ -143,10 +144,8 @@ impl GdcmApp {
 
     /// Opens a dataset or a study; what is open stays until it is read. The dataset of a study may have moved.
     pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
-        let (path, moved) = (
-            self.at_home(path),
-            moved.map(|dataset| self.at_home(dataset)),
-        );
+        let path = self.at_home(path);
+        let moved = moved.map(|dataset| self.at_home(dataset));
         if path.extension().is_some() && holds_models(&path) {
             let path = sanitized_path(&path);
             return self.notify_error(format!(

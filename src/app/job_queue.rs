@@ -5,8 +5,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_study::study::job::Job;
+
 use super::threads::{Fault, Mailbox, caught};
-use gdcm_study::study::{Cancelled, Job, Progress};
 
 /// What a job has made, or the fault that ended it; nothing is told of a job that was given up.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
@@ -221,8 +223,9 @@ fn work<J: Job>(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use std::sync::mpsc::{Receiver, Sender, channel};
+
+    use super::*;
 
     /// Far above what the slowest machine needs: only a hang gets here.
     const LIMIT: Duration = Duration::from_secs(60);

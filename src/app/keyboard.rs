@@ -4,8 +4,9 @@ use std::cmp::Reverse;
 
 use egui::{Context, Event, Key, KeyboardShortcut, Plugin, Popup, RawInput};
 
-use crate::view::command_table::command_table;
-use crate::view::{Command, Entry, Reach, State, was_focused};
+use crate::view::command_table::{Entry, Reach, command_table};
+use crate::view::focus::was_focused;
+use crate::view::{Command, State};
 
 /// The commands of the keys pressed since the last frame.
 pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
@@ -141,8 +142,9 @@ impl Plugin for KeyOrder {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use egui::{Modifiers, PointerButton, Pos2};
+
+    use super::*;
 
     fn key(key: Key) -> Event {
         Event::Key {

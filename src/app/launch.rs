@@ -11,21 +11,23 @@ use std::time::Duration;
 use eframe::{App, NativeOptions};
 use egui::ViewportBuilder;
 
-use crate::executor::{Pool, start_threads};
-use crate::view::assembling::AssemblingCommand;
-use crate::view::start_page::OpensWith;
-use crate::view::{Command, Preferences};
+use gdcm_io::source::file_exists;
+use gdcm_io::study_file::holds_models;
+use gdcm_io::user_state::recent_files;
 use gdcm_io::variables::ReadingBudget;
-use gdcm_io::{
-    FileError, Opened, embedded_example, file_exists, holds_models, load_any, recent_files,
-};
+use gdcm_io::{FileError, Opened, embedded_example, load_any};
 use gdcm_model::message_text::{sanitized, sanitized_path, shortened_message};
-use gdcm_study::study::{Engine, LIVE_PROOF};
+use gdcm_study::study::Engine;
+use gdcm_study::study::engine::LIVE_PROOF;
 
 use super::recovery::{Autosave, LAST_WAIT, end_words};
 use super::threads::{self, Fault, caught};
 use super::window::PREFERENCES;
 use super::{EngineMaker, GdcmApp};
+use crate::executor::{Pool, start_threads};
+use crate::view::assembling::AssemblingCommand;
+use crate::view::start_page::OpensWith;
+use crate::view::{Command, Preferences};
 
 /// What the desktop knows the program by; also the name of the directory for its data.
 pub(super) const APP_ID: &str = "gdcm";
@@ -246,7 +248,8 @@ fn mend_zoom(preferences: &Path) -> Option<String> {
         return None;
     }
     let path = sanitized_path(preferences);
-    let (least, most) = (ZOOM.start(), ZOOM.end());
+    let least = ZOOM.start();
+    let most = ZOOM.end();
     let why = format!(
         "{path}: expected a zoom factor from {least} to {most}, found {}",
         sanitized(stored)
@@ -329,7 +332,7 @@ mod tests {
         let autosave = Autosave::start(
             Some(folder.path()),
             Duration::from_secs(3),
-            super::super::ReplySender::new(&egui::Context::default()).0,
+            super::super::threads::ReplySender::new(&egui::Context::default()).0,
         )
         .unwrap();
         let words = ending(fault(), Some(&autosave), "").unwrap_err();

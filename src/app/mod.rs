@@ -14,10 +14,6 @@ pub mod threads;
 mod update;
 mod window;
 
-use files::{DialogPurpose, PendingAction, ReadFor};
-use job_queue::JobQueue;
-use threads::ReplySender;
-
 pub use background_jobs::EngineMaker;
 pub use launch::{Setup, open};
 pub use window::GdcmApp;

@@ -4,24 +4,27 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use gdcm_io::{
-    Existing, ExportFormat, ExportRequest, ExportSource, FileError, OutputSet, ReportSource,
-    ReportSubject, add_tolerances, csv_text, export_contents, figure_format, load_tolerances,
-    read_levels, report, save_report, save_tables, write_export, write_figure, write_results,
-};
+use gdcm_io::corrections_file::write_results;
+use gdcm_io::exports::{ExportFormat, ExportRequest, ExportSource, export_contents, write_export};
+use gdcm_io::figure_file::{csv_text, figure_format, save_tables, write_figure};
+use gdcm_io::output_set::OutputSet;
+use gdcm_io::report_file::{ReportSource, ReportSubject, report, save_report};
+use gdcm_io::requirements_file::{add_tolerances, load_tolerances, read_levels};
+use gdcm_io::{Existing, FileError};
 use gdcm_model::message_text::sanitized_path;
+use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat, FigureKind};
-use gdcm_study::study::{
-    Analysis, Cancelled, Edit, Engine, HistoryRecords, Job, KnownPoles, Progress,
-    RequirementSettings, Table,
-};
+use gdcm_study::study::job::Job;
+use gdcm_study::study::required_modes::KnownPoles;
+use gdcm_study::study::requirements::RequirementSettings;
+use gdcm_study::study::time_histories::HistoryRecords;
+use gdcm_study::study::{Analysis, Edit, Engine, Table};
 
 use super::GdcmApp;
 use super::files::study_name;
+use crate::view::figures::{figure_name, figure_of, tables_in_place};
 use crate::view::views::{all_records, known_poles};
-use crate::view::{
-    Command, FormKind, RequirementTable, View, figure_name, figure_of, tables_in_place,
-};
+use crate::view::{Command, FormKind, RequirementTable, View};
 
 impl GdcmApp {
     /// Writes the corrections of the conditions chosen in the form.
@@ -342,14 +345,17 @@ impl GdcmApp {
         let Some(analysis) = self.unless_error(self.analysis_to_write("write the report")) else {
             return;
         };
-        let (path, inputs, existing) = (self.at_home(path), self.inputs(), self.existing);
+        let path = self.at_home(path);
+        let inputs = self.inputs();
+        let existing = self.existing;
         match self.outputs().check(&[&path]) {
             Ok(()) => {
                 let source = ReportSource::of(&self.loaded, self.saved.path.as_deref());
                 self.state.forms.shown = None;
                 // What requirements are asked with has no part in the live answer, which may be older.
                 let analysis = Arc::new(analysis.asked_with(&self.state.study.requirements));
-                let (records, known) = (all_records(&self.state), known_poles(&self.state));
+                let records = all_records(&self.state);
+                let known = known_poles(&self.state);
                 self.reporting = Some(ReportJob {
                     analysis,
                     records,

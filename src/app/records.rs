@@ -5,22 +5,27 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use gdcm_io::dataset_file::add_dataset;
+use gdcm_io::record_files::{example_records, load_records, read_records, relative_entry};
 use gdcm_io::variables::ReadingBudget;
-use gdcm_io::{
-    DatasetOrigin, FileError, FolderProgress, add_dataset, example_records, load_records,
-    read_records, relative_entry,
-};
+use gdcm_io::{DatasetOrigin, FileError, FolderProgress};
 use gdcm_model::assembly::ChannelRule;
-use gdcm_model::dataset::{Band, ChannelRemedy, ConditionId, ConditionRecord, Dataset};
-use gdcm_study::study::{AdoptedModels, Edit, IdentifyJob, OfferedModels};
-use gdcm_sysid::identification::{Identification, IdentificationError, Signal};
+use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord};
+use gdcm_model::dataset::{Band, ConditionId, Dataset};
+use gdcm_model::simulation::Signal;
+use gdcm_study::study::Edit;
+use gdcm_study::study::changed_models::{AdoptedModels, OfferedModels};
+use gdcm_study::study::job::IdentifyJob;
+use gdcm_sysid::identification::{Identification, IdentificationError};
+use gdcm_sysid::records::record_channels::dataset_of_records;
 use gdcm_sysid::records::{
-    LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, dataset_of_records,
-    leave_out_copies, with_topics_joined,
+    LaidOutRecord, RecordChannels, RecordLayout, RecordTable, TimeWish, leave_out_copies,
+    with_topics_joined,
 };
 
+use super::GdcmApp;
+use super::files::DialogPurpose;
 use super::threads::Untold;
-use super::{DialogPurpose, GdcmApp};
 use crate::view::records::{
     AddedRecord, ConditionRecords, RecordsBefore, RecordsCommand, RecordsPage, WantedDataset,
 };
@@ -59,10 +64,10 @@ impl GdcmApp {
             RecordsCommand::ChooseParts(chooses) => self.state.records.chooses_parts = chooses,
             RecordsCommand::ShowSpectrogram(input) => self.state.records.spectrogram = input,
             RecordsCommand::ShowTimeModel(model, true) => {
-                drop(self.state.records.time_models.insert(model))
+                self.state.records.time_models.insert(model);
             }
             RecordsCommand::ShowTimeModel(model, false) => {
-                drop(self.state.records.time_models.remove(&model))
+                self.state.records.time_models.remove(&model);
             }
             RecordsCommand::Identify => self.identify_conditions(&[condition]),
             RecordsCommand::IdentifyAll => {
@@ -130,7 +135,8 @@ impl GdcmApp {
             return;
         };
         let edited = (Arc::clone(&row.table), row.layout.clone());
-        let (table, former) = (&edited.0, &edited.1);
+        let table = &edited.0;
+        let former = &edited.1;
         let is_named = table.entry_of_dataset(&dataset).is_some();
         let label = format!("columns of {}", table.name);
         let is_told = |id: ConditionId| id == condition || !is_named;
@@ -164,7 +170,8 @@ impl GdcmApp {
             let Some(records) = self.state.records.conditions.get_mut(&id) else {
                 continue;
             };
-            let (mut is_changed, mut is_any_clear_now) = (false, false);
+            let mut is_changed = false;
+            let mut is_any_clear_now = false;
             for row in &mut records.rows {
                 if let Some(layout) = layout_of(id, row).filter(|layout| *layout != row.layout) {
                     let was_clear = row.flight.is_some();
@@ -290,10 +297,8 @@ impl GdcmApp {
             Ok(said) => said,
             Err(why) => return records.wanted.problems.push(why),
         };
-        let (sources, typed) = (
-            records.sources.clone(),
-            PathBuf::from(records.wanted.path.trim()),
-        );
+        let sources = records.sources.clone();
+        let typed = PathBuf::from(records.wanted.path.trim());
         let path = self.at_home(typed);
         let (number, stop) = self.record_reader.join();
         self.state.records.reading = Some("records".to_owned());
@@ -514,7 +519,8 @@ impl GdcmApp {
         let mut refusal = None;
         for id in conditions {
             self.follow_band(*id);
-            let (band, channels) = (self.identified_band(*id), self.record_channels(*id));
+            let band = self.identified_band(*id);
+            let channels = self.record_channels(*id);
             let Some(records) = self.state.records.conditions.get(id) else {
                 continue;
             };

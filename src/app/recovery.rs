@@ -6,15 +6,18 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
-use gdcm_io::variables::ReadingBudget;
-use gdcm_io::{FileError, LoadedDataset, LostStudy, Opened, RecoveryFile, load_any, lost_studies};
-use gdcm_model::message_text::{sanitized, sanitized_path};
-use gdcm_study::study::Study;
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 
-use super::files::study_name;
-use super::{GdcmApp, ReadFor, ReplySender};
+use gdcm_io::user_state::{LostStudy, RecoveryFile, lost_studies};
+use gdcm_io::variables::ReadingBudget;
+use gdcm_io::{FileError, LoadedDataset, Opened, load_any};
+use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_study::study::Study;
+
+use super::GdcmApp;
+use super::files::{ReadFor, study_name};
+use super::threads::ReplySender;
 use crate::view::Bar;
 
 /// Folder of the recovery files in the program's directory.
@@ -107,7 +110,9 @@ impl Autosave {
             if let Some(lost) = folder.as_deref().map(lost_studies) {
                 replies.send(move |app| app.offer(lost));
             }
-            let (file, waits, restored) = (None, None, Vec::new());
+            let file = None;
+            let waits = None;
+            let restored = Vec::new();
             Keeper {
                 folder,
                 keep_after,
@@ -295,7 +300,8 @@ impl GdcmApp {
     /// Keeps what is not saved, or forgets what is.
     pub(super) fn keep_unsaved(&self) {
         if self.state.unsaved {
-            let (study, loaded) = (self.state.study.clone(), self.loaded.clone());
+            let study = self.state.study.clone();
+            let loaded = self.loaded.clone();
             self.autosave.keep(Unsaved {
                 study,
                 loaded,
@@ -440,7 +446,7 @@ mod tests {
         let Remains::Kept(kept) = autosave.flush(LONG) else {
             panic!("{:?}", autosave.flush(LONG))
         };
-        assert!(kept.path.is_file() && gdcm_io::open_study(&kept.path).is_ok());
+        assert!(kept.path.is_file() && gdcm_io::study_file::open_study(&kept.path).is_ok());
         let words = end_words("no display", &autosave.flush(LONG));
         assert!(
             words.contains(&*kept.path.to_string_lossy()) && !words.contains("lost"),

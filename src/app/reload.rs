@@ -5,9 +5,13 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
-use gdcm_io::{FileStamp, LoadedDataset, Opened, file_sha256, load_dataset_within};
+use gdcm_io::dataset_file::load_dataset_within;
+use gdcm_io::source::{FileStamp, file_sha256};
+use gdcm_io::{LoadedDataset, Opened};
 
-use super::{GdcmApp, ReadFor, ReplySender};
+use super::GdcmApp;
+use super::files::ReadFor;
+use super::threads::ReplySender;
 use crate::view::Bar;
 
 impl GdcmApp {
@@ -168,7 +172,8 @@ impl Known {
 }
 
 fn look(to_watch: &Receiver<Option<PathBuf>>, every: Duration, replies: &ReplySender) {
-    let (mut known, mut watched) = (Known::default(), None);
+    let mut known = Known::default();
+    let mut watched = None;
     loop {
         match to_watch.recv_timeout(every) {
             Ok(path) => watched = path,

@@ -3,21 +3,24 @@
 use std::fmt::Display as InWords;
 
 use egui::ViewportCommand;
-use gdcm_model::message_text::{sanitized, shortened_message};
 
-use crate::view::plot::{FigureView, Pane};
-use crate::view::records::{RecordsBefore, RecordsState};
-use crate::view::state::State;
-use crate::view::views::PairSet;
-use crate::view::{
-    Arrangement, Command, CurveCommand, Display, FormKind, Notice, NoticeKind, View, focus_field,
-    leave_region, table_of,
-};
 use gdcm_io::Existing;
 use gdcm_model::dataset::ConditionId;
+use gdcm_model::message_text::{sanitized, shortened_message};
 use gdcm_study::study::{Edit, History, Study};
 
-use super::{DialogPurpose, GdcmApp, PendingAction};
+use super::GdcmApp;
+use super::files::{DialogPurpose, PendingAction};
+use crate::view::controls::focus_field;
+use crate::view::curve_display::CurveCommand;
+use crate::view::display::Display;
+use crate::view::focus::leave_region;
+use crate::view::plot::{FigureView, Pane};
+use crate::view::records::{RecordsBefore, RecordsState};
+use crate::view::state::{Notice, NoticeKind, State};
+use crate::view::tables::table_of;
+use crate::view::views::PairSet;
+use crate::view::{Arrangement, Command, FormKind, View};
 
 /// What the focus is to go to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

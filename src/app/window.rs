@@ -9,32 +9,36 @@ use egui::{
     Visuals,
 };
 
-use crate::view::assembling::{AssemblingCommand, assembling_ui};
-use crate::view::palette::{self, Palette};
-use crate::view::records::RecordsCommand;
-use crate::view::start_page::OpensWith;
-use crate::view::{
-    Bar, Command, Need, Preferences, Sheet, State, View, restore_panel_size, sheet_ui,
-};
-use crate::view::{
-    answer_panel, bars, centre, conditions_panel, explanation, focus, forms, help, models_panel,
-    start_page,
-};
-use gdcm_io::{Existing, LoadedDataset, LostStudy, Opened, holds_models, is_first_start};
-use gdcm_method::correction::{ProblemError, Solution};
+use gdcm_io::study_file::holds_models;
+use gdcm_io::user_state::{LostStudy, is_first_start};
+use gdcm_io::{Existing, LoadedDataset, Opened};
+use gdcm_method::correction::Solution;
+use gdcm_method::correction::problem::ProblemError;
 use gdcm_model::dataset::{BundleKind, ConditionId};
-use gdcm_study::study::{Analysis, ConditionCurves, CurvesJob, ProofJob, Study};
+use gdcm_study::study::condition_responses::ConditionCurves;
+use gdcm_study::study::job::{CurvesJob, ProofJob};
+use gdcm_study::study::{Analysis, Study};
 
+use super::Setup;
 use super::background_jobs::{AnalysisJob, BackgroundJobs, Proof};
-use super::files::SavedStudy;
+use super::files::{PendingAction, SavedStudy};
 use super::keyboard::{self, KeyOrder};
 use super::outputs::ReportJob;
 use super::records::DatasetOfRecords;
 use super::recovery::{Autosave, LAST_WAIT};
 use super::reload::DiskWatch;
-use super::threads::{Fault, Reader, Reply};
+use super::threads::{Fault, Reader, Reply, ReplySender};
 use super::update::NextFocus;
-use super::{PendingAction, ReplySender, Setup};
+use crate::view::assembling::{AssemblingCommand, assembling_ui};
+use crate::view::explanation::sheet_ui;
+use crate::view::palette::{self, Palette};
+use crate::view::records::RecordsCommand;
+use crate::view::start_page::OpensWith;
+use crate::view::{
+    Bar, Command, Need, Preferences, Sheet, State, View, answer_panel, bars, centre,
+    conditions_panel, explanation, focus, forms, help, models_panel, restore_panel_size,
+    start_page,
+};
 
 /// The program's window.
 pub struct GdcmApp {
@@ -172,7 +176,8 @@ impl GdcmApp {
     /// Asks for what the study and the condition shown need, unless it was asked for already.
     fn request(&mut self) {
         let now = self.now();
-        let (study, condition) = (&self.state.study, self.state.condition().id());
+        let study = &self.state.study;
+        let condition = self.state.condition().id();
         if self
             .requested
             .as_ref()
@@ -194,7 +199,8 @@ impl GdcmApp {
             return;
         };
         let number = self.asked.as_ref().map_or(0, |job| job.number + 1);
-        let (generation, proofs) = (self.state.results.requested, self.proven.clone());
+        let generation = self.state.results.requested;
+        let proofs = self.proven.clone();
         let replies = self.replies.clone();
         self.asked = Some(AnalysisJob {
             number,

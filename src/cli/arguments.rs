@@ -8,7 +8,10 @@ use clap::{Arg, ArgAction, ArgMatches, Args, FromArgMatches, Parser, Subcommand}
 
 use gdcm_model::assembly::FileScope;
 use gdcm_plot::figure::{ColumnWidth, FigureKind, Role};
-use gdcm_study::study::{AcrossRole, Kind, SETTINGS, Setting, SignRole};
+use gdcm_study::study::AcrossRole;
+use gdcm_study::study::changed_models::SignRole;
+use gdcm_study::study::setting::SETTINGS;
+use gdcm_study::study::setting_row::{Kind, Setting};
 
 use super::identify_arguments::IdentifyArguments;
 use super::records::HistoryArguments;
@@ -199,7 +202,8 @@ impl FromArgMatches for SettingOptions {
 impl Args for SettingOptions {
     fn augment_args(command: clap::Command) -> clap::Command {
         command.args(SETTINGS.map(|setting| {
-            let (name, unit) = (setting.option, setting.unit.file);
+            let name = setting.option;
+            let unit = setting.unit.file;
             let unit = if unit.is_empty() {
                 String::new()
             } else {

@@ -3,18 +3,20 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use gdcm_io::{
-    ContentFault, FileError, LoadedDataset, Opened, OpenedStudy, check_beginning, dataset_faults,
-    holds_models,
-};
-use gdcm_model::dataset::{
-    BundleKind, Channel, ConditionRecord, Dataset, Dynamics, Model, RecordKind,
-};
+use gdcm_io::beginning::check_beginning;
+use gdcm_io::dataset_file::dataset_faults;
+use gdcm_io::file_error::ContentFault;
+use gdcm_io::study_file::{OpenedStudy, holds_models};
+use gdcm_io::{FileError, LoadedDataset, Opened};
+use gdcm_model::dataset::condition::{ConditionRecord, RecordKind};
+use gdcm_model::dataset::{BundleKind, Channel, Dataset, Dynamics, Model};
 use gdcm_model::message_text::{sanitized, sanitized_path};
+use gdcm_model::progress::Unobserved;
 use gdcm_model::units::number;
-use gdcm_study::study::{
-    ConditionFailure, Execution, Study, Table, Unobserved, cautions_of_models, doubts_of_models,
-};
+use gdcm_study::study::analysis::ConditionFailure;
+use gdcm_study::study::comparison::cautions_of_models;
+use gdcm_study::study::convention_doubt::doubts_of_models;
+use gdcm_study::study::{Execution, Study, Table};
 
 use super::arguments::{ChannelSign, OpeningArguments};
 use super::open;
@@ -170,10 +172,8 @@ fn condition_table(dataset: &Dataset) -> String {
         ],
     );
     for condition in dataset.conditions() {
-        let (state, [physics, identified]) = (
-            condition.flight_state(),
-            BundleKind::BOTH.map(|of| condition.bundle(of)),
-        );
+        let state = condition.flight_state();
+        let [physics, identified] = BundleKind::BOTH.map(|of| condition.bundle(of));
         table.row([
             state.id.to_string(),
             format!("{} kt", number(state.airspeed_kt)),
@@ -278,7 +278,8 @@ fn order_words(models: &[Model]) -> String {
 fn decisions(file: &Path, study: &Study) -> String {
     let mut text = line("Study", &sanitized_path(file));
     for condition in study.dataset.conditions() {
-        let (id, choice) = (condition.id(), study.choice(condition.id()));
+        let id = condition.id();
+        let choice = study.choice(condition.id());
         let rejected: Vec<String> = study
             .rejected_names(id)
             .into_iter()

@@ -4,21 +4,29 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use gdcm_io::dataset_file::add_dataset;
+use gdcm_io::models_file::{IdentifiedModels, add_identified};
+use gdcm_io::output_set::{OutputSet, make_directory};
+use gdcm_io::record_files::relative_entry;
+use gdcm_io::study_file::relative_folder;
 use gdcm_io::variables::ReadingBudget;
-use gdcm_io::{
-    IdentifiedModels, Opened, OutputSet, add_dataset, add_identified, load_any, make_directory,
-    relative_entry, relative_folder,
-};
-use gdcm_model::dataset::{
-    Band, BundleKind, ChannelRemedy, ChannelSide, ConditionId, ConditionRecord, Dataset,
-};
+use gdcm_io::{Opened, load_any};
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord};
+use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dataset};
 use gdcm_model::message_text::sanitized_path;
-use gdcm_study::study::{AdoptedModels, ChannelTimeSkew, IdentificationRequest};
+use gdcm_model::simulation::Signal;
+use gdcm_study::study::changed_models::AdoptedModels;
+use gdcm_study::study::channel_time_skew::ChannelTimeSkew;
+use gdcm_study::study::job::IdentificationRequest;
+use gdcm_sysid::identification::preparation::RecordUse;
+use gdcm_sysid::identification::topics::is_held;
 use gdcm_sysid::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationCaution,
-    IdentificationError, Preparation, RecordUse, Signal, is_held,
+    IdentificationError, Preparation,
 };
-use gdcm_sysid::records::{LaidOutRecord, RecordChannels, median_step};
+use gdcm_sysid::records::record_table::median_step;
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
 
 use super::existing;
 use super::identify_arguments::{IdentifyArguments, has_channel, of_one_record, unknown};
@@ -67,7 +75,9 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         .iter()
         .map(IdentificationTask::table)
         .collect::<String>())?;
-    let (mut lines, mut taken, mut of_use) = (String::new(), 0, false);
+    let mut lines = String::new();
+    let mut taken = 0;
+    let mut of_use = false;
     let mut cautions = Vec::new();
     for (task, file) in tasks.iter().zip(&files) {
         let found = match task.run() {
@@ -269,12 +279,14 @@ impl IdentificationTask {
         };
         let channels = self.request.options.preparation.outputs.iter().enumerate();
         let signal = |(index, channel): (usize, &ChannelPreparation)| {
-            let (role, name) = (ChannelSide::Output, channel.name.clone());
+            let role = ChannelSide::Output;
+            let name = channel.name.clone();
             Signal { role, index, name }
         };
         let outputs: Vec<Signal> = channels.map(signal).collect();
         let options = records.iter().filter_map(|of| {
-            let (record, fault) = (&of.name, of.fault.as_ref()?);
+            let record = &of.name;
+            let fault = of.fault.as_ref()?;
             let options = fault
                 .remedies(&outputs)
                 .into_iter()

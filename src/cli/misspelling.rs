@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::Path;
 
 use clap::CommandFactory;
+
 use gdcm_model::message_text::{sanitized, shortened};
 
 use super::arguments::Arguments;

@@ -5,17 +5,19 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use gdcm_io::{FoundRecords, read_records};
+use gdcm_io::record_files::{FoundRecords, read_records};
 use gdcm_model::dataset::{Band, ConditionId, Dataset};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::{number, telling};
-use gdcm_study::study::{
-    Analysis, Execution, HistoryRecords, Table, TimeHistories, time_histories_of,
-};
+use gdcm_study::study::time_histories::{HistoryRecords, TimeHistories, time_histories_of};
+use gdcm_study::study::{Analysis, Execution, Table};
 use gdcm_sysid::identification::{CautionNote, Preparation};
+use gdcm_sysid::records::layout_problem::LayoutCaution;
+use gdcm_sysid::records::record_channels::SaidConversion;
+use gdcm_sysid::records::record_table::median_step;
 use gdcm_sysid::records::{
-    LaidOutRecord, LayoutCaution, LayoutProblem, RecordChannels, RecordSource, RecordTable,
-    SaidConversion, TimeWish, leave_out_copies, median_step, with_topics_joined,
+    LaidOutRecord, LayoutProblem, RecordChannels, RecordSource, RecordTable, TimeWish,
+    leave_out_copies, with_topics_joined,
 };
 
 use super::arguments::OfChannel;
@@ -233,7 +235,8 @@ fn parts(
             match known.or_else(|| lay_out(table).span_s()) {
                 Some(span_s) => {
                     if known.is_none() {
-                        let (name, source) = (table.name.clone(), table.source.clone());
+                        let name = table.name.clone();
+                        let source = table.source.clone();
                         wholes.push(WholeRecord {
                             name,
                             source,

@@ -7,22 +7,27 @@ use std::sync::Arc;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-use gdcm_io::{
-    EXPORTERS, ExportFormat, ExportRequest, ExportSource, ExportedRole, ReportSource,
-    ReportSubject, check_export, export_contents, figure_format, make_directory,
-    report as report_of, result_paths, save_report, write_export, write_figure, write_results,
+use gdcm_io::corrections_file::{result_paths, write_results};
+use gdcm_io::exports::{
+    EXPORTERS, ExportFormat, ExportRequest, ExportSource, ExportedRole, check_export,
+    export_contents, write_export,
 };
-use gdcm_method::correction::{Channel, HIGHEST_PADE_ORDER, Pade};
+use gdcm_io::figure_file::{figure_format, write_figure};
+use gdcm_io::output_set::make_directory;
+use gdcm_io::report_file::{ReportSource, ReportSubject, report as report_of, save_report};
+use gdcm_method::correction::corrected_model::HIGHEST_PADE_ORDER;
+use gdcm_method::correction::{Channel, Pade};
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
 use gdcm_model::message_text::{sanitized, sanitized_path};
-use gdcm_plot::figure::{
-    Across, BodeOptions, ConditionSource, Figure, FigureKind, FigureRequest, FrequencyUnit,
-    Measure, Role, all_channels,
-};
-use gdcm_study::study::{
-    Analysis, AssessedCorrection, CURVE_POINTS, CouplingCorrection, CouplingsAssessment, Engine,
-    KnownPoles, Study, Unobserved, curves_band,
-};
+use gdcm_model::progress::Unobserved;
+use gdcm_plot::figure::axis::FrequencyUnit;
+use gdcm_plot::figure::bode::BodeOptions;
+use gdcm_plot::figure::gains::{Across, Measure};
+use gdcm_plot::figure::{ConditionSource, Figure, FigureKind, FigureRequest, Role, all_channels};
+use gdcm_study::study::condition_responses::{CURVE_POINTS, curves_band};
+use gdcm_study::study::couplings_assessment::CouplingsAssessment;
+use gdcm_study::study::required_modes::KnownPoles;
+use gdcm_study::study::{Analysis, AssessedCorrection, CouplingCorrection, Engine, Study};
 
 use super::arguments::{
     AnalyzeArguments, FigureArguments, PairChoice, ReportArguments, StudyArguments, real_number,
@@ -404,7 +409,8 @@ fn chosen_channels(dataset: &Dataset, choice: Option<&str>) -> Result<Vec<Channe
     let is_input = |channel: &Channel| matches!(channel, Channel::Input(_));
     let find = |name: &str| {
         all.iter().copied().find(|channel| channel.name(&inputs, &outputs) == name).ok_or_else(|| {
-            let (of_inputs, of_outputs) = (names(dataset.inputs()), names(dataset.outputs()));
+            let of_inputs = names(dataset.inputs());
+            let of_outputs = names(dataset.outputs());
             let reason = format!("the dataset has no channel {name}; inputs are {of_inputs}; outputs are {of_outputs}");
             Failure::option("--channel", reason)
         })

@@ -2,11 +2,15 @@
 
 use std::sync::Arc;
 
-use gdcm_io::{LoadedDataset, OutputSet, embedded_example, load_tolerances, read_levels};
+use gdcm_io::output_set::OutputSet;
+use gdcm_io::requirements_file::{load_tolerances, read_levels};
+use gdcm_io::{LoadedDataset, embedded_example};
 use gdcm_method::correction;
 use gdcm_model::dataset::{BundleKind, Channel, ConditionId, Dataset, ModelId, Pair};
 use gdcm_model::message_text::sanitized;
-use gdcm_study::study::{Analysis, ConditionFailure, Edit, Engine, RequirementSettings, Study};
+use gdcm_study::study::analysis::ConditionFailure;
+use gdcm_study::study::requirements::RequirementSettings;
+use gdcm_study::study::{Analysis, Edit, Engine, Study};
 
 use super::arguments::{ChannelSign, OfChannel, Rejection, StudyArguments};
 use super::identify_arguments::said_twice;
@@ -174,7 +178,8 @@ fn require(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure>
         settings.levels = read_levels(path)?;
         let unknown = settings.levels.unknown_axes(&outputs);
         if !unknown.is_empty() {
-            let (unknown, outputs) = (unknown.join(", "), outputs.join(", "));
+            let unknown = unknown.join(", ");
+            let outputs = outputs.join(", ");
             caution(&sanitized(&format!(
                 "levels of {unknown} are drawn nowhere: outputs are {outputs}"
             )));
@@ -215,7 +220,8 @@ fn check_second_variable(study: &Study) -> Result<(), Failure> {
     if lacking.is_empty() {
         return Ok(());
     }
-    let (unit, of) = (variable.unit(), listed_conditions(&lacking));
+    let unit = variable.unit();
+    let of = listed_conditions(&lacking);
     let reason = format!(
         "a schedule of airspeed and {variable} needs the {variable} [{unit}] of every scheduled condition, and the dataset does not \
          say that of {of}"
@@ -243,7 +249,8 @@ pub(super) fn turn(study: &mut Study, signs: &[ChannelSign]) -> Result<(), Failu
             .filter(|channel| channel.name(&inputs, &outputs) == *name)
             .collect();
         let [channel] = named[..] else {
-            let (found, all) = (named.len(), [inputs, outputs].concat().join(", "));
+            let found = named.len();
+            let all = [inputs, outputs].concat().join(", ");
             let reason = sanitized(&format!(
                 "expected one of {all}; {found} channels are called {name}"
             ));

@@ -2,17 +2,24 @@
 
 use std::path::Path;
 
-use gdcm_io::{LoadedDataset, RESULT_FILES, assessment_sentence};
-use gdcm_method::correction::{ChannelCorrection, ChannelLeads, GainSource, LeadPrice, Outcome};
+use gdcm_io::LoadedDataset;
+use gdcm_io::corrections_file::RESULT_FILES;
+use gdcm_io::report_file::assessment_sentence;
+use gdcm_method::correction::delta::GainSource;
+use gdcm_method::correction::leads::ChannelLeads;
+use gdcm_method::correction::{ChannelCorrection, LeadPrice, Outcome};
 use gdcm_method::schedule::{Schedule, ScheduleCaution, ScheduledQuantity};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, Pair};
 use gdcm_model::message_text::{sanitized, sanitized_path};
 use gdcm_model::units::{number, s_to_ms, signed, six_digits};
+use gdcm_study::study::assessment_table::{AssessedModel, AssessmentChoice, held_out_verdict};
+use gdcm_study::study::convention_doubt::ConventionDoubt;
+use gdcm_study::study::lead_compensation::lead_limit_words;
+use gdcm_study::study::remark::{Remark, RemarkKind, Repeated, remarks};
+use gdcm_study::study::table::scatter_table;
 use gdcm_study::study::{
-    Analysis, AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable,
-    ConditionAnalysis, ConventionDoubt, PhaseCorrection, Remark, RemarkKind, Repeated, Study,
-    Table, held_out_verdict, lead_limit_words, remarks, scatter_table,
+    Analysis, AssessedCorrection, AssessmentTable, ConditionAnalysis, PhaseCorrection, Study, Table,
 };
 
 use super::terminal::{
@@ -60,7 +67,8 @@ pub(super) fn doubt_words(doubt: &ConventionDoubt, dataset: &Dataset) -> String 
 }
 
 fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
-    let (study, settings) = (&analysis.study, &analysis.study.settings);
+    let study = &analysis.study;
+    let settings = &analysis.study.settings;
     let held: Vec<String> = settings
         .constrained
         .marked()
@@ -285,7 +293,8 @@ fn value(value: Option<f64>, digits: usize) -> String {
 }
 
 fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
-    let (dataset, correction) = (&analysis.study.dataset, &result.correction);
+    let dataset = &analysis.study.dataset;
+    let correction = &result.correction;
     if let Some(compensated) = &result.compensated {
         return indented(&lead_table(dataset, correction, &compensated.leads), 2);
     }
@@ -351,7 +360,8 @@ fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &Channel
 
 /// What most conditions have in one table with one sentence, and each other caution once with the conditions that it is of.
 fn cautions_section(analysis: &Analysis) -> String {
-    let (mut rows, mut others) = (Vec::new(), Vec::new());
+    let mut rows = Vec::new();
+    let mut others = Vec::new();
     for result in analysis
         .study
         .dataset
@@ -359,10 +369,8 @@ fn cautions_section(analysis: &Analysis) -> String {
         .iter()
         .filter_map(|of| analysis.condition(of.id()))
     {
-        let (id, said) = (
-            result.condition.id(),
-            remarks(&analysis.study, result, None),
-        );
+        let id = result.condition.id();
+        let said = remarks(&analysis.study, result, None);
         // What is said of signs and units stands above all conditions.
         let cautions = said
             .into_iter()
@@ -581,7 +589,8 @@ fn schedule_table(
     /// Airspeeds shown: the ends, the middle, and the quarters.
     const SHOWN: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
     let dataset = &analysis.study.dataset;
-    let (min, max) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
+    let min = schedule.airspeeds.min_kt;
+    let max = schedule.airspeeds.max_kt;
     let at = SHOWN.map(|fraction| min + fraction * (max - min));
     let heading = at.map(|airspeed| format!("{} kt", value(Some(airspeed), 0)));
     let mut table = Table::new("", std::iter::once("response".to_owned()).chain(heading));

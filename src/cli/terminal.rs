@@ -13,10 +13,13 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde::Serialize;
 
-use gdcm_io::{FileError, system_words, write_pretty};
+use gdcm_io::FileError;
+use gdcm_io::file_error::system_words;
+use gdcm_io::json_text::write_pretty;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::message_text::{sanitized, sanitized_path, shortened, shortened_message};
-use gdcm_study::study::{Cancelled, Progress, Table};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_study::study::Table;
 
 /// How a command says what it says.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -281,7 +284,8 @@ struct Interruption {
 
 #[cfg(unix)]
 static INTERRUPTION: LazyLock<Interruption> = LazyLock::new(|| {
-    use signal_hook::{consts::SIGINT, flag};
+    use signal_hook::consts::SIGINT;
+    use signal_hook::flag;
     let interruption = Interruption {
         is_asked: Arc::default(),
         ends_process: Arc::new(AtomicBool::new(true)),

@@ -5,17 +5,18 @@ use egui::{
     Sense, Ui, pos2, vec2,
 };
 
-use gdcm_method::correction::GainSource;
+use gdcm_method::correction::delta::GainSource;
 use gdcm_model::units::number;
 use gdcm_study::study::{PhaseCorrection, setting};
 
-use super::controls::{elided, text_width};
-use super::palette::{TITLE_SIZE, body, medium, small};
+use super::command::Command;
+use super::controls::{Asks, elided, named, named_switch, painted_text, text_width};
+use super::explanation::Sheet;
+use super::focus::{Region, region_ui, take_escape};
+use super::palette::{BODY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small};
+use super::state::State;
 use super::verdict::{Step, Verdict, VerdictRow, band_words, export};
-use super::{
-    Asks, BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, matrix_panel, named,
-    named_switch, painted_text, region_ui, result_panel, settings_panel, take_escape,
-};
+use super::{matrix_panel, result_panel, settings_panel};
 
 /// Space around everything \[pt\].
 const PADDING: f32 = 12.0;

@@ -7,14 +7,12 @@ use egui::{
 
 use gdcm_model::dataset::{BundleKind, Condition};
 
-use super::command_table::command_table;
-use super::controls::{elided, in_line_ui, text_width};
-use super::palette::{body, medium, small};
+use super::command::{Command, FormKind};
+use super::command_table::{Menu, command_table};
+use super::controls::{Asks, button_ui, elided, in_line_ui, named, painted_text, text_width};
+use super::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
 use super::records::RecordsState;
-use super::{
-    Asks, BODY_SIZE, Background, Command, FormKind, Menu, NoticeKind, Palette, RecentFile,
-    SMALL_SIZE, State, bar_words, button_ui, named, painted_text,
-};
+use super::state::{Background, NoticeKind, RecentFile, State, bar_words};
 
 /// Menus, the last step, the state of the document, and the way to every command.
 pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
@@ -259,10 +257,8 @@ fn bar_ui(ui: &mut Ui, bar: &Bar, palette: &Palette, commands: &mut Vec<Command>
             (sentence.clone(), buttons)
         }
         Bar::Recovery { offer, sentence } => {
-            let (restore, discard) = (
-                Command::RestoreRecovery(*offer),
-                Command::DiscardRecovery(*offer),
-            );
+            let restore = Command::RestoreRecovery(*offer);
+            let discard = Command::DiscardRecovery(*offer);
             (
                 sentence.clone(),
                 vec![("Restore", restore), ("Discard", discard), ("Later", close)],

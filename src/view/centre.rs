@@ -7,13 +7,17 @@ use egui::{
 };
 
 use super::answer_panel::chevron;
-use super::controls::{in_line_ui, text_width};
-use super::palette::{TITLE_SIZE, body, medium};
-use super::start_page::example_line_ui;
-use super::{
-    Asks, BODY_SIZE, Command, Palette, Region, State, View, ViewGroup, ViewTitle, button_ui,
-    entries_ui, figure_button_ui, named, named_switch, region_ui, restore_panel_size,
+use super::command::Command;
+use super::controls::{
+    Asks, button_ui, entries_ui, in_line_ui, named, named_switch, restore_panel_size, text_width,
 };
+use super::display::ViewGroup;
+use super::figures::figure_button_ui;
+use super::focus::{Region, region_ui};
+use super::palette::{BODY_SIZE, Palette, TITLE_SIZE, body, medium};
+use super::start_page::example_line_ui;
+use super::state::State;
+use super::views::{View, ViewTitle};
 
 /// Height of the bar of the views \[pt\].
 const BAR: f32 = 40.0;
@@ -43,10 +47,8 @@ pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &m
     if let Some(dock) = state.display.arrangement.dock() {
         dock_ui(ui, state, dock, palette, commands);
     }
-    let (view, beside) = (
-        state.display.arrangement.view(),
-        state.display.arrangement.beside(),
-    );
+    let view = state.display.arrangement.view();
+    let beside = state.display.arrangement.beside();
     let area = ui.available_rect_before_wrap();
     let Some(beside) = beside else {
         return part_ui(ui, area, state, view, palette, commands);

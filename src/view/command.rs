@@ -4,19 +4,25 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::ThemePreference;
-use gdcm_io::ExportFormat;
+
+use gdcm_io::exports::ExportFormat;
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
+use gdcm_plot::figure::axis::FrequencyUnit;
+use gdcm_plot::figure::gains::{Across, Measure};
 use gdcm_plot::figure::{ColumnWidth, FigureFormat};
 use gdcm_study::study::{AcrossRole, Edit, ExplainTarget, Table};
 
 use super::assembling::AssemblingCommand;
+use super::bars::Bar;
 use super::cost_map::MappedCost;
-use super::plot::{Across, FrequencyUnit, Measure};
+use super::curve_display::CurveCommand;
+use super::display::ViewGroup;
+use super::explanation::Sheet;
+use super::palette::PlotStyle;
 use super::records::RecordsCommand;
 use super::start_page::OpensWith;
-use super::views::PairSet;
-use super::views::{AssessedFigures, RequirementsPage};
-use super::{Bar, CurveCommand, PlotStyle, Sheet, TableKind, View, ViewGroup};
+use super::tables::TableKind;
+use super::views::{AssessedFigures, PairSet, RequirementsPage, View};
 
 /// One action of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,10 +5,11 @@ use std::cmp::Reverse;
 use egui::text::{CCursor, CCursorRange};
 use egui::{Key, Modifiers, Role, ScrollArea, TextEdit, Ui, WidgetInfo};
 
-use super::{
-    BODY_SIZE, Command, Entry, Palette, Room, SMALL_SIZE, State, every_command, row_text,
-    row_text_within, row_ui,
-};
+use super::command::Command;
+use super::command_table::{Entry, every_command};
+use super::controls::{Room, row_text, row_text_within, row_ui};
+use super::palette::{BODY_SIZE, Palette, SMALL_SIZE};
+use super::state::State;
 
 /// Height of the list \[pt\].
 const HEIGHT: f32 = 340.0;
@@ -39,7 +40,8 @@ pub fn command_palette_ui(
     }
     let pressed =
         |ui: &Ui, key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
-    let (down, up) = (pressed(ui, Key::ArrowDown), pressed(ui, Key::ArrowUp));
+    let down = pressed(ui, Key::ArrowDown);
+    let up = pressed(ui, Key::ArrowUp);
     let entered = pressed(ui, Key::Enter) > 0;
     if field_ui(ui, &mut form.query, opens) {
         form.chosen = 0;
@@ -49,7 +51,8 @@ pub fn command_palette_ui(
     form.chosen = (form.chosen + down)
         .saturating_sub(up)
         .min(found.len().saturating_sub(1));
-    let (chosen, has_moved) = (form.chosen, down + up > 0);
+    let chosen = form.chosen;
+    let has_moved = down + up > 0;
     ui.add_space(4.0);
     let mut taken = found.get(chosen).filter(|_| entered).copied();
     // As high whatever is found, so that the field stays in its place while letters are typed.
@@ -131,8 +134,10 @@ fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui
 /// is asked for. Of names that answer equally well that one comes first whose command, before its arguments, answers better, and
 /// then the shorter one.
 pub fn answer_score(name: &str, query: &str) -> Option<(bool, usize, usize, Reverse<usize>)> {
-    let (name, query) = (name.to_lowercase(), query.to_lowercase());
-    let (mut score, mut of_command) = (0, 0);
+    let name = name.to_lowercase();
+    let query = query.to_lowercase();
+    let mut score = 0;
+    let mut of_command = 0;
     let command = name.split(['(', ':']).next().unwrap_or_default();
     for word in query.split_whitespace() {
         score += word_score(&name, word)?;

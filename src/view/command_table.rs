@@ -4,16 +4,23 @@ use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 
 use gdcm_model::dataset::{BundleKind, ModelId, Pair};
 use gdcm_plot::figure::FigureFormat;
-use gdcm_study::study::{Edit, Kind, OfferedModels, SETTINGS, Value};
+use gdcm_plot::figure::axis::FrequencyUnit;
+use gdcm_study::study::Edit;
+use gdcm_study::study::changed_models::OfferedModels;
+use gdcm_study::study::setting::SETTINGS;
+use gdcm_study::study::setting_row::{Kind, Value};
 
 use super::assembling::AssemblingCommand;
-use super::plot::FrequencyUnit;
+use super::command::{Command, FormKind};
+use super::curve_display::curve_entries;
+use super::display::ViewGroup;
+use super::explanation::Sheet;
+use super::figures::views_with_figure;
 use super::records::RecordsCommand;
 use super::start_page::OpensWith;
-use super::views::PairSet;
-use super::{
-    Command, FormKind, Sheet, State, TableKind, View, ViewGroup, curve_entries, views_with_figure,
-};
+use super::state::State;
+use super::tables::TableKind;
+use super::views::{PairSet, View};
 
 /// A menu of the bar on top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +68,8 @@ pub struct Entry {
 impl Entry {
     /// An entry that only the palette has, without shortcut.
     pub(super) fn new(name: impl Into<String>, meaning: &'static str, command: Command) -> Self {
-        let (shortcuts, reach) = (Vec::new(), Reach::Everywhere);
+        let shortcuts = Vec::new();
+        let reach = Reach::Everywhere;
         Self {
             name: name.into(),
             meaning,
@@ -121,10 +129,8 @@ pub fn command_table(state: &State) -> Vec<Entry> {
     entries.extend(setting_entries(state));
     entries.extend(record_entries(state));
     for kind in TableKind::ALL {
-        let (copy, save) = (
-            format!("Copy table: {}", kind.name()),
-            format!("Save table: {}…", kind.name()),
-        );
+        let copy = format!("Copy table: {}", kind.name());
+        let save = format!("Save table: {}…", kind.name());
         entries.push(Entry::new(
             copy,
             "As text, one line a row",
@@ -137,10 +143,8 @@ pub fn command_table(state: &State) -> Vec<Entry> {
         ));
     }
     for view in views_with_figure() {
-        let (copy, save) = (
-            format!("Copy numbers of {}", view.name()),
-            format!("Save figure: {}…", view.name()),
-        );
+        let copy = format!("Copy numbers of {}", view.name());
+        let save = format!("Save figure: {}…", view.name());
         entries.push(Entry::new(
             copy,
             "As CSV, to the clipboard",
@@ -295,7 +299,8 @@ fn edit_entries(state: &State) -> Vec<Entry> {
     let step = |verb: &str, label: Option<&str>| {
         label.map_or(verb.to_owned(), |label| format!("{verb} {label}"))
     };
-    let (undo, redo) = (state.history.undo_label(), state.history.redo_label());
+    let undo = state.history.undo_label();
+    let redo = state.history.redo_label();
     let condition = state.condition().id();
     let choice = state.study.choice(condition);
     let models = state
@@ -306,7 +311,8 @@ fn edit_entries(state: &State) -> Vec<Entry> {
         0 => "Reject suggested".to_owned(),
         count => format!("Reject {count} suggested"),
     };
-    let (is_any_suggested, scheduled) = (!models.is_empty(), choice.scheduled);
+    let is_any_suggested = !models.is_empty();
+    let scheduled = choice.scheduled;
     let is_any_rejected =
         !choice.physics.rejected.is_empty() || !choice.identified.rejected.is_empty();
     let schedule = if scheduled {
@@ -375,10 +381,8 @@ fn edit_entries(state: &State) -> Vec<Entry> {
 
 /// "Hold LON → Q exactly" or "Release LON → Q"; a response that has no G cannot be held.
 pub(super) fn hold_entry(state: &State, pair: Pair) -> Entry {
-    let (held, name) = (
-        state.study.settings.constrained[pair],
-        state.dataset().pair_name(pair),
-    );
+    let held = state.study.settings.constrained[pair];
+    let name = state.dataset().pair_name(pair);
     let is_undefined = state
         .shown()
         .is_some_and(|shown| shown.comparison.undefined[pair].is_some());
@@ -546,10 +550,8 @@ fn steps(state: &State) -> [Entry; 4] {
             .free_key(key)
             .enabled(found.is_some())
     };
-    let (inputs, outputs) = (
-        state.dataset().inputs().len(),
-        state.dataset().outputs().len(),
-    );
+    let inputs = state.dataset().inputs().len();
+    let outputs = state.dataset().outputs().len();
     let at = state.display.pair.output * inputs + state.display.pair.input;
     let to_response = |name, key, place: Option<usize>| {
         let found = place.filter(|place| *place < inputs * outputs);
@@ -644,7 +646,8 @@ pub fn every_command(state: &State) -> Vec<Entry> {
         )
     }));
     entries.extend(state.dataset().conditions().iter().map(|condition| {
-        let (id, flight_state) = (condition.id(), condition.flight_state());
+        let id = condition.id();
+        let flight_state = condition.flight_state();
         let name = format!("Condition {id} · {}", flight_state.name);
         Entry::new(name, "Show this condition", Command::SelectCondition(id))
     }));

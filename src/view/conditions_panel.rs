@@ -5,18 +5,24 @@ use egui::{
     vec2,
 };
 
-use gdcm_method::correction::Unmatched;
+use gdcm_method::correction::solve::Unmatched;
 use gdcm_method::fidelity::Cost;
-use gdcm_model::dataset::{BundleKind, Condition, ConditionId, FlightState, Pair};
-use gdcm_plot::figure::{Classes, decimals};
+use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Pair};
+use gdcm_plot::figure::decimals;
+use gdcm_plot::figure::gains::Classes;
 use gdcm_study::study::Edit;
 
-use super::cost_map::{CostColumn, MappedCost, columns, cost_of_column};
-use super::palette::{HEAT_COSTS, body, medium, small};
-use super::{
-    Asks, BODY_SIZE, Command, Palette, Region, SMALL_SIZE, Sheet, State, TableKind, entries_ui,
-    named, painted_text, region_ui, row_of_height_ui, table_heading_ui, table_menu_ui,
+use super::command::Command;
+use super::controls::{
+    Asks, entries_ui, named, painted_text, row_of_height_ui, table_heading_ui, table_menu_ui,
 };
+use super::cost_map::{CostColumn, MappedCost, columns, cost_of_column};
+use super::explanation::Sheet;
+use super::focus::{Region, region_ui};
+use super::palette::{BODY_SIZE, HEAT_COSTS, Palette, SMALL_SIZE, body, medium, small};
+use super::state::State;
+use super::tables::TableKind;
 
 /// Where the number ends, the middle of the mark, and where the airspeed ends \[pt from the row's left edge\].
 const PLACES: [f32; 3] = [20.0, 33.0, 70.0];
@@ -290,7 +296,8 @@ impl<'a> Map<'a> {
         palette: &Palette,
         commands: &mut Vec<Command>,
     ) {
-        let (state, id) = (self.state, condition.id());
+        let state = self.state;
+        let id = condition.id();
         let marks = Marks::of(state, id);
         let flight_state = condition.flight_state();
         let name = format!(

@@ -11,11 +11,12 @@ use egui::{
 };
 
 use gdcm_model::units::number;
-use gdcm_study::study::Digits;
+use gdcm_study::study::setting_row::Digits;
 
+use super::command::Command;
 use super::focus::begin_with;
-use super::palette::medium;
-use super::{BODY_SIZE, Command, Palette, SMALL_SIZE, TableKind};
+use super::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
+use super::tables::TableKind;
 
 impl Palette {
     /// A small dim text: what stands beside a value.
@@ -36,7 +37,8 @@ impl Palette {
 
 /// Names a control for screen readers and tests.
 pub fn named(response: Response, role: Role, name: impl Into<String>) -> Response {
-    let (enabled, name) = (response.enabled(), name.into());
+    let enabled = response.enabled();
+    let name = name.into();
     response.widget_info(|| WidgetInfo::labeled(role, enabled, &name));
     response
 }
@@ -48,7 +50,8 @@ pub fn named_switch(
     is_on: bool,
     name: impl Into<String>,
 ) -> Response {
-    let (enabled, name) = (response.enabled(), name.into());
+    let enabled = response.enabled();
+    let name = name.into();
     response.widget_info(|| WidgetInfo::selected(role, enabled, is_on, &name));
     response
 }
@@ -257,7 +260,8 @@ fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
             .collect::<String>()
     };
     // The widths grow with what is kept: the greatest that fits is found by halving.
-    let (mut fits, mut too_wide) = (0, letters.len());
+    let mut fits = 0;
+    let mut too_wide = letters.len();
     while too_wide - fits > 1 {
         let middle = (fits + too_wide) / 2;
         if width(&keeping(middle)) <= room {
@@ -486,7 +490,9 @@ pub struct Entered {
 impl<'a> NumberField<'a> {
     /// A field for any pure number in the range, as wide as its text.
     pub fn new(name: &'a str, hint: &'a str, range: RangeInclusive<f64>) -> Self {
-        let (unit, shows_unit, is_whole) = ("", false, false);
+        let unit = "";
+        let shows_unit = false;
+        let is_whole = false;
         Self {
             name,
             hint,
@@ -590,7 +596,8 @@ impl<'a> NumberField<'a> {
         } else {
             "a number"
         };
-        let (least, most) = (number(*self.range.start()), number(*self.range.end()));
+        let least = number(*self.range.start());
+        let most = number(*self.range.end());
         let unit = if self.unit.is_empty() {
             String::new()
         } else {

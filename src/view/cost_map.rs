@@ -5,7 +5,7 @@ use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_study::study::CouplingCorrection;
 
-use super::State;
+use super::state::State;
 
 /// Which correction the map shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

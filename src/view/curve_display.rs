@@ -3,10 +3,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use egui::Key;
+
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 
-use super::plot::{CurveId, MagnitudeUnit, PhaseErrorUnit, PhaseUnit, Role};
-use super::{Command, CurveColors, Entry, Menu, PlotStyle, State};
+use super::command::Command;
+use super::command_table::{Entry, Menu};
+use super::palette::{CurveColors, PlotStyle};
+use super::plot::{CurveId, Role};
+use super::state::State;
+use crate::view::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 
 /// How the plots over frequency show their curves.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,19 +6,25 @@ use std::collections::{BTreeMap, BTreeSet};
 use serde::{Deserialize, Serialize};
 
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
-use gdcm_plot::figure::{AirspeedCache, ErrorCache, ResponseCache};
+use gdcm_plot::figure::axis::FrequencyUnit;
+use gdcm_plot::figure::error::ErrorCache;
+use gdcm_plot::figure::gains::{Across, Measure};
+use gdcm_plot::figure::responses::{AirspeedCache, ResponseCache};
 use gdcm_study::study::{AcrossRole, ExplainTarget};
 
 use super::cost_map::MappedCost;
-use super::plot::{
-    Across, BodeCurve, BodeView, FigureView, FrequencyUnit, MagnitudeUnit, Measure, OverviewView,
-    PhaseErrorUnit, PhaseUnit, Role,
-};
+use super::curve_display::CurveDisplay;
+use super::explanation::Sheet;
+use super::palette::PlotStyle;
+use super::plot::{BodeCurve, BodeView, FigureView, Role};
 use super::start_page::OpensWith;
-use super::views::{
-    AssessedFigures, CachedEvidence, CachedModes, ChannelsView, PairSet, RequirementsPage, View,
-};
-use super::{CurveDisplay, PlotStyle, Sheet, Sorting};
+use super::tables::Sorting;
+use super::views::{AssessedFigures, PairSet, RequirementsPage, View};
+use crate::view::plot::overview::OverviewView;
+use crate::view::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
+use crate::view::views::channels::ChannelsView;
+use crate::view::views::evidence::CachedEvidence;
+use crate::view::views::poles::CachedModes;
 
 /// What is shown, none of which changes a result.
 #[derive(Debug, Default)]

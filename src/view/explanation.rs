@@ -8,19 +8,22 @@ use egui::{
     Order, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke, Ui, WidgetText, vec2,
 };
 
-use gdcm_method::correction::{Channel, GainObjective, Outcome, Quantity, kkt_residual};
+use gdcm_method::correction::sensitivity::kkt_residual;
+use gdcm_method::correction::{Channel, GainObjective, Outcome, Quantity};
 use gdcm_model::dataset::Pair;
-use gdcm_study::study::{
-    ConditionAnalysis, Derivation, Edit, ExplainTarget, Remark, RemarkKind, SignRole, derivation,
-    details, lead_words, no_couplings, remarks, setting,
-};
+use gdcm_study::study::changed_models::SignRole;
+use gdcm_study::study::couplings_words::no_couplings;
+use gdcm_study::study::derivation::{Derivation, derivation};
+use gdcm_study::study::lead_compensation::lead_words;
+use gdcm_study::study::remark::{Remark, RemarkKind, details, remarks};
+use gdcm_study::study::{ConditionAnalysis, Edit, ExplainTarget, setting};
 
-use super::palette::{TITLE_SIZE, medium};
-use super::views::{offered_couplings, used_couplings};
-use super::{
-    Asks, BODY_SIZE, Command, Palette, SMALL_SIZE, State, View, button_ui, entries_ui, named,
-    take_escape,
-};
+use super::command::Command;
+use super::controls::{Asks, button_ui, entries_ui, named};
+use super::focus::take_escape;
+use super::palette::{BODY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, medium};
+use super::state::State;
+use super::views::{View, offered_couplings, used_couplings};
 
 /// What a sheet may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,17 +2,21 @@
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Role, Ui};
-use gdcm_plot::figure::{
-    BodeOptions, Figure, FigureFormat, FigureKind, FigureRequest, all_channels,
-};
+
+use gdcm_plot::figure::bode::BodeOptions;
+use gdcm_plot::figure::{Figure, FigureFormat, FigureKind, FigureRequest, all_channels};
 use gdcm_study::study::Table;
 
-use super::plot::{BodeView, PANES};
-use super::views::{
-    ViewFigure, assessment_choice, bode_options, condition_source, requirement_tables,
-    shown_couplings, shown_over_time, shown_requirements,
-};
-use super::{Command, State, View, named};
+use super::command::Command;
+use super::controls::named;
+use super::plot::BodeView;
+use super::state::State;
+use super::views::{View, ViewFigure, assessment_choice};
+use crate::view::plot::bode::PANES;
+use crate::view::views::couplings::shown_couplings;
+use crate::view::views::frequency::{bode_options, condition_source};
+use crate::view::views::histories::shown_over_time;
+use crate::view::views::requirements::{requirement_tables, shown_requirements};
 
 /// The figure that a view shows; none until its results are there.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {

@@ -9,16 +9,20 @@ use egui::{
     vec2,
 };
 
-use gdcm_io::{EXPORTERS, ExportContents, ExportRequest, export_contents};
+use gdcm_io::export_contents::ExportContents;
+use gdcm_io::exports::{EXPORTERS, ExportRequest, export_contents};
 use gdcm_model::dataset::ConditionId;
 use gdcm_plot::figure::ColumnWidth;
-use gdcm_study::study::{Analysis, Difference, Edit};
+use gdcm_study::study::differences::Difference;
+use gdcm_study::study::{Analysis, Edit};
 
+use super::command::{Command, FormKind, RequirementTable};
+use super::command_palette::command_palette_ui;
+use super::controls::{is_entered, name_text_field, named_switch, text_field_ui};
+use super::help::keys_page_ui;
+use super::palette::Palette;
 use super::records::{RecordsCommand, WantedDataset};
-use super::{
-    Command, FormKind, Forms, Palette, RequirementTable, State, command_palette_ui, is_entered,
-    keys_page_ui, name_text_field, named_switch, text_field_ui,
-};
+use super::state::{Forms, State};
 
 /// Shows the form that is asked for, if any. Its field has the focus when it opens; Enter submits it; Escape and a click outside
 /// close it.
@@ -596,7 +600,9 @@ impl Form<'_, '_> {
 
     /// What follows stands on one line.
     fn line(&mut self, add: impl FnOnce(&mut Form<'_, '_>)) {
-        let (opens, palette, commands) = (self.opens, self.palette, &mut *self.commands);
+        let opens = self.opens;
+        let palette = self.palette;
+        let commands = &mut *self.commands;
         self.ui.horizontal(|ui| {
             add(&mut Form {
                 ui,

@@ -5,8 +5,12 @@ use egui::{
     StrokeKind, Ui, Vec2, vec2,
 };
 
-use super::command_table::command_table;
-use super::{Asks, Command, Palette, Reach, Region, SMALL_SIZE, State, region_place, take_escape};
+use super::command::Command;
+use super::command_table::{Reach, command_table};
+use super::controls::Asks;
+use super::focus::{Region, region_place, take_escape};
+use super::palette::{Palette, SMALL_SIZE};
+use super::state::State;
 
 /// Width of the note \[pt\].
 const WIDTH: f32 = 300.0;

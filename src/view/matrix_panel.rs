@@ -10,16 +10,18 @@ use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::dataset::Pair;
 use gdcm_model::units::s_to_ms;
-use gdcm_study::study::{ConditionAnalysis, Edit, ExplainTarget, SignRole, Undefined};
-
 use gdcm_plot::figure::decimals;
+use gdcm_study::study::caution::Undefined;
+use gdcm_study::study::changed_models::SignRole;
+use gdcm_study::study::{ConditionAnalysis, Edit, ExplainTarget};
 
-use super::palette::{body, medium, small};
-use super::{
-    BODY_SIZE, Command, Palette, Region, SMALL_SIZE, State, Sureness, TableKind, check_ui,
-    entries_ui, gain_conflict_marks, named_switch, painted_text, question_menu_ui, region_ui,
-    table_menu_ui, turn_entry,
-};
+use super::command::Command;
+use super::controls::{check_ui, entries_ui, named_switch, painted_text, table_menu_ui};
+use super::explanation::{gain_conflict_marks, question_menu_ui, turn_entry};
+use super::focus::{Region, region_ui};
+use super::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
+use super::state::{State, Sureness};
+use super::tables::TableKind;
 
 /// Height of a cell, at least and at most \[pt\].
 const CELL_HEIGHTS: [f32; 2] = [34.0, 44.0];
@@ -92,7 +94,8 @@ fn cells_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let (outputs, inputs) = (state.dataset().outputs(), state.dataset().inputs());
+    let outputs = state.dataset().outputs();
+    let inputs = state.dataset().inputs();
     let width = ((ui.available_width() - ROW_LABEL_WIDTH + GAP) / inputs.len() as f32)
         .max(LEAST_CELL_WIDTH);
     let pitch = cell_height + GAP;
@@ -294,7 +297,8 @@ impl<'a> Cell<'a> {
         };
         let cost = shown.cost[self.pair];
         let parts = cost.map(|of| {
-            let (before, after) = (of.uncorrected, of.corrected);
+            let before = of.uncorrected;
+            let after = of.corrected;
             [
                 [before.magnitude, after.magnitude],
                 [before.phase, after.phase],
@@ -379,7 +383,8 @@ impl<'a> Cell<'a> {
         };
         entries_ui(ui, Channel::of(self.pair).map(turn), commands);
         if let Some(shown) = self.shown.filter(|_| self.undefined().is_none()) {
-            let (id, pair) = (shown.condition.id(), self.pair);
+            let id = shown.condition.id();
+            let pair = self.pair;
             let values = [
                 ("G", ExplainTarget::DeltaGain(id, pair)),
                 ("D", ExplainTarget::DeltaDelay(id, pair)),
@@ -396,7 +401,7 @@ impl<'a> Cell<'a> {
         }
     }
 
-    /// Four aligned rows; all else is behind [`QUESTION`](super::QUESTION) in the menu.
+    /// Four aligned rows; all else is behind [`QUESTION`](super::explanation::QUESTION) in the menu.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         let held = if self.constrained { "held" } else { "free" };
         let ignored = if self.fitted {
@@ -417,7 +422,8 @@ impl<'a> Cell<'a> {
 /// there is room for.
 fn underline(ui: &Ui, half: Rect, (before, after): (f64, f64), palette: &Palette) {
     let y = half.bottom() - 2.5;
-    let (left, room) = (half.left() + 4.0, half.width() - 8.0);
+    let left = half.left() + 4.0;
+    let room = half.width() - 8.0;
     let bar = |cost: f64, color: Color32| {
         let part = (cost / FULL_COST).clamp(0.0, 1.0) as f32;
         let place = Rect::from_min_size(pos2(left, y), vec2(part * room, 2.5));
@@ -473,11 +479,9 @@ pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<Ca
         let half = sureness
             .half(Scalar::Gain(pair))
             .map(|half| format!("{} %", decimals(100.0 * half, 1)));
-        let (wants, left, half) = (
-            decimals(gain, 3),
-            decimals(left, 3),
-            half.unwrap_or_default(),
-        );
+        let wants = decimals(gain, 3);
+        let left = decimals(left, 3);
+        let half = half.unwrap_or_default();
         rows.push(CardRow {
             name: "gain G",
             wants,
@@ -502,16 +506,15 @@ pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<Ca
         });
     }
     if let Some(change) = shown.cost[pair] {
-        let (before, after) = (change.uncorrected, change.corrected);
+        let before = change.uncorrected;
+        let after = change.corrected;
         for (name, before, after) in [
             ("J magnitude", before.magnitude, after.magnitude),
             ("J phase", before.phase, after.phase),
         ] {
-            let (wants, left, is_missed) = (
-                decimals(before, 1),
-                decimals(after, 1),
-                is_not_reduced(before, after),
-            );
+            let wants = decimals(before, 1);
+            let left = decimals(after, 1);
+            let is_missed = is_not_reduced(before, after);
             rows.push(CardRow {
                 name,
                 wants,

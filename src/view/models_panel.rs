@@ -8,18 +8,22 @@ use egui::{
 };
 
 use gdcm_method::fidelity::SUGGESTION_RATIO;
-use gdcm_model::dataset::{BundleKind, Model, ModelId, Origin};
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::{BundleKind, Model, ModelId};
+use gdcm_plot::figure::axis::compact;
 use gdcm_study::study::{Edit, ExplainTarget};
 
-use gdcm_plot::figure::compact;
-
 use super::answer_panel::chevron;
-use super::palette::{body, medium, small};
-use super::{
-    Asks, BODY_SIZE, Command, Palette, ROW_HEIGHT, Region, SMALL_SIZE, State, TableKind,
-    elided_among, entries_ui, named, named_switch, painted_text, question_menu_ui, region_ui,
-    row_text, table_heading_ui, table_menu_ui,
+use super::command::Command;
+use super::controls::{
+    Asks, ROW_HEIGHT, elided_among, entries_ui, named, named_switch, painted_text, row_text,
+    table_heading_ui, table_menu_ui,
 };
+use super::explanation::question_menu_ui;
+use super::focus::{Region, region_ui};
+use super::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
+use super::state::State;
+use super::tables::TableKind;
 
 /// The bundles of the condition shown, below one another in the left panel: the physics models, and the identified ones folded at
 /// its foot.
@@ -490,7 +494,8 @@ impl<'a> ModelRow<'a> {
                 palette.warning,
             );
         }
-        let (condition, bundle) = (self.id.condition, self.id.bundle);
+        let condition = self.id.condition;
+        let bundle = self.id.bundle;
         let edit = if self.pinned {
             Edit::Unpin { condition, bundle }
         } else {
@@ -599,7 +604,7 @@ impl<'a> ModelRow<'a> {
         );
     }
 
-    /// Its name over four aligned rows; all else is behind [`QUESTION`](super::QUESTION) in the menu.
+    /// Its name over four aligned rows; all else is behind [`QUESTION`](super::explanation::QUESTION) in the menu.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         ui.label(RichText::new(&self.model.name).font(medium(BODY_SIZE)));
         Grid::new("model")
@@ -692,8 +697,9 @@ fn method(model: &Model) -> Option<&str> {
 mod tests {
     use nalgebra::DMatrix;
 
-    use super::*;
     use gdcm_model::dataset::{Dynamics, StateSpace};
+
+    use super::*;
 
     #[test]
     fn names_are_shown_without_the_method_that_all_of_them_repeat() {

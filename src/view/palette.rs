@@ -1,9 +1,9 @@
 //! The colours of the window, dark and light, the egui style made of them, and how curves are drawn, apart from the theme.
 
-use egui::epaint::Shadow;
-use egui::style::{HandleShape, ScrollStyle, Selection, WidgetVisuals, Widgets};
 use std::sync::Arc;
 
+use egui::epaint::Shadow;
+use egui::style::{HandleShape, ScrollStyle, Selection, WidgetVisuals, Widgets};
 use egui::{
     Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, Stroke,
     Style, TextStyle, Theme, Visuals, vec2,
@@ -455,8 +455,9 @@ const fn for_all_eyes(is_dark: bool) -> [Color32; 4] {
 mod tests {
     use egui::Rgba;
 
+    use super::super::plot::Role;
     use super::*;
-    use crate::view::plot::{CurveStyle, Role};
+    use crate::view::plot::curve_style::CurveStyle;
 
     /// Relative luminance and contrast as the Web Content Accessibility Guidelines 2.2 define them.
     fn contrast(a: Color32, b: Color32) -> f32 {
@@ -464,7 +465,8 @@ mod tests {
             let [r, g, b, _] = egui::Rgba::from(color).to_array();
             0.2126 * r + 0.7152 * g + 0.0722 * b
         };
-        let (a, b) = (luminance(a), luminance(b));
+        let a = luminance(a);
+        let b = luminance(b);
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
     }
 
@@ -693,7 +695,8 @@ mod tests {
 
     /// Distance of two colours to the eye: CIE76, where 2.3 can just be told.
     fn distance(a: Color32, b: Color32, sight: &[[f32; 3]; 3]) -> f32 {
-        let (a, b) = (seen(a, sight), seen(b, sight));
+        let a = seen(a, sight);
+        let b = seen(b, sight);
         a.iter()
             .zip(b)
             .map(|(a, b)| (a - b).powi(2))
@@ -761,7 +764,8 @@ mod tests {
 
     #[test]
     fn the_eye_without_green_cones_confuses_red_with_green() {
-        let (red, green) = (Palette::dark().nominal, Palette::dark().corrected);
+        let red = Palette::dark().nominal;
+        let green = Palette::dark().corrected;
         assert!(distance(red, green, &SIGHTS[0].1) > 100.0);
         assert!(
             distance(red, green, &SIGHTS[2].1) < 20.0,

@@ -6,14 +6,16 @@ use gdcm_method::correction::{Channel, Outcome};
 use gdcm_method::uncertainty::Scalar;
 use gdcm_model::units::s_to_ms;
 use gdcm_plot::figure::decimals;
-use gdcm_study::study::{ConditionAnalysis, ExplainTarget, servo_words};
+use gdcm_study::study::lead_compensation::servo_words;
+use gdcm_study::study::{ConditionAnalysis, ExplainTarget};
 
-use super::palette::{body, medium, small};
-use super::views::bar_words;
-use super::{
-    Asks, BODY_SIZE, Command, Palette, QUESTION, Sheet, State, TableKind, named, painted_text,
-    table_menu_ui,
-};
+use super::command::Command;
+use super::controls::{Asks, named, painted_text, table_menu_ui};
+use super::explanation::{QUESTION, Sheet};
+use super::palette::{BODY_SIZE, Palette, body, medium, small};
+use super::state::State;
+use super::tables::TableKind;
+use crate::view::views::channels::bar_words;
 
 /// Height of a row \[pt\].
 const ROW: f32 = 18.0;
@@ -129,7 +131,8 @@ impl Side<'_> {
     }
 
     fn ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let (dataset, palette) = (self.state.dataset(), self.palette);
+        let dataset = self.state.dataset();
+        let palette = self.palette;
         let (title, channels) = if self.of_inputs {
             ("input", dataset.inputs())
         } else {

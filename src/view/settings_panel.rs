@@ -2,15 +2,17 @@
 
 use egui::{ComboBox, Grid, Role, Slider, Ui, WidgetInfo, pos2};
 
-use gdcm_method::correction::GainSource;
-use gdcm_study::study::{Kind, PhaseCorrection, Place, SETTINGS, Setting, Value, setting};
+use gdcm_method::correction::delta::GainSource;
+use gdcm_study::study::setting::SETTINGS;
+use gdcm_study::study::setting_row::{Kind, Place, Setting, Value};
+use gdcm_study::study::{PhaseCorrection, setting};
 
 use super::answer_panel::chevron;
-use super::palette::medium;
-use super::{
-    Asks, BODY_SIZE, Command, Entered, NumberField, Palette, Region, State, named_switch,
-    painted_text, region_ui, row_ui,
-};
+use super::command::Command;
+use super::controls::{Asks, Entered, NumberField, named_switch, painted_text, row_ui};
+use super::focus::{Region, region_ui};
+use super::palette::{BODY_SIZE, Palette, medium};
+use super::state::State;
 
 /// Largest value on a slider; more can be typed.
 const SLIDER_END: f64 = 1e3;

@@ -4,17 +4,21 @@ use egui::{
     Align, Align2, Button, Color32, Frame, Layout, Margin, Pos2, Rect, RichText, Role, ScrollArea,
     Sense, Shape, Stroke, StrokeKind, Ui, UiBuilder, pos2, vec2,
 };
-use gdcm_plot::figure::compact;
 use serde::{Deserialize, Serialize};
 
+use gdcm_plot::figure::axis::compact;
+
 use super::assembling::AssemblingCommand;
+use super::command::Command;
 use super::conditions_panel::cost_picture_ui;
-use super::controls::elided;
-use super::palette::{DISPLAY_SIZE, TITLE_SIZE, body, medium, small};
+use super::controls::{Asks, button_ui, elided, named, painted_text};
+use super::palette::{
+    BODY_SIZE, DISPLAY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, body, medium, small,
+};
 use super::plot::{BodeCurve, Pane, Role as CurveRole};
 use super::records::RecordsCommand;
-use super::views::bode_curves;
-use super::{Asks, BODY_SIZE, Command, Palette, SMALL_SIZE, State, button_ui, named, painted_text};
+use super::state::State;
+use crate::view::views::frequency::bode_curves;
 
 /// What the program opens with where it is given nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -494,12 +498,10 @@ fn phases_ui(ui: &Ui, plot: Rect, curves: &[BodeCurve], (min, max): (f64, f64), 
 }
 
 fn sheet_icon(ui: &Ui, place: Rect, color: Color32) {
-    let (left, right, top, bottom) = (
-        place.left() + 4.0,
-        place.right() - 4.0,
-        place.top() + 1.0,
-        place.bottom() - 1.0,
-    );
+    let left = place.left() + 4.0;
+    let right = place.right() - 4.0;
+    let top = place.top() + 1.0;
+    let bottom = place.bottom() - 1.0;
     let fold = right - 6.0;
     let outline = [
         pos2(fold, top),
@@ -521,12 +523,10 @@ fn sheet_icon(ui: &Ui, place: Rect, color: Color32) {
 }
 
 fn folder_icon(ui: &Ui, place: Rect, color: Color32) {
-    let (left, right, top, bottom) = (
-        place.left() + 1.0,
-        place.right() - 1.0,
-        place.top() + 3.0,
-        place.bottom() - 3.0,
-    );
+    let left = place.left() + 1.0;
+    let right = place.right() - 1.0;
+    let top = place.top() + 3.0;
+    let bottom = place.bottom() - 3.0;
     let outline = [
         (left, top),
         (left + 7.0, top),

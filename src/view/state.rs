@@ -4,24 +4,37 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gdcm_io::ExportFormat;
+use gdcm_io::exports::ExportFormat;
 use gdcm_method::correction::Problem;
 use gdcm_method::uncertainty::{Bar as ErrorBar, Scalar};
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};
+use gdcm_model::simulation::Validation;
 use gdcm_plot::figure::ColumnWidth;
-use gdcm_study::study::{
-    AcrossCurves, AcrossJob, Analysis, AssessedCouplings, AssessmentJob, AssessmentTable,
-    ConditionAnalysis, ConditionCurves, ConditionFailure, ConditionModes, CouplingsJob, CurvesJob,
-    Difference, History, ModesJob, RecordHistory, RecordHistoryJob, Requirements, RequirementsJob,
-    SimulationJob, Study, Table, TestAnswers, TestAnswersJob, TimeHistories, TimeHistoriesJob,
-    Toggles, TogglesJob, Uncertainty, UncertaintyJob, VariantJob,
+use gdcm_study::study::analysis::ConditionFailure;
+use gdcm_study::study::assessment_table::AssessmentJob;
+use gdcm_study::study::condition_answers::{
+    RecordHistory, RecordHistoryJob, TestAnswers, TestAnswersJob,
 };
-use gdcm_sysid::identification::Validation;
+use gdcm_study::study::condition_responses::ConditionCurves;
+use gdcm_study::study::couplings_assessment::{AssessedCouplings, CouplingsJob};
+use gdcm_study::study::differences::Difference;
+use gdcm_study::study::job::{
+    AcrossCurves, AcrossJob, ConditionModes, CurvesJob, ModesJob, SimulationJob, Toggles,
+    TogglesJob, UncertaintyJob, VariantJob,
+};
+use gdcm_study::study::requirements::Requirements;
+use gdcm_study::study::requirements_tables::RequirementsJob;
+use gdcm_study::study::time_histories::{TimeHistories, TimeHistoriesJob};
+use gdcm_study::study::uncertainty::Uncertainty;
+use gdcm_study::study::{Analysis, AssessmentTable, ConditionAnalysis, History, Study, Table};
 
 use super::assembling::AssemblyState;
+use super::bars::Bar;
+use super::command::FormKind;
+use super::command_palette::PaletteForm;
+use super::display::Display;
 use super::records::{RecordsBefore, RecordsState};
-use super::views::{all_records, assessed_correction, assessment_choice};
-use super::{Bar, Display, FormKind, PaletteForm, View};
+use super::views::{View, all_records, assessed_correction, assessment_choice};
 
 /// How a message is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -600,9 +613,11 @@ pub(super) fn bar_words((done, total): (usize, usize)) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use gdcm_io::embedded_example;
-    use gdcm_study::study::{Engine, Unobserved};
+    use gdcm_model::progress::Unobserved;
+    use gdcm_study::study::Engine;
+
+    use super::*;
 
     #[test]
     fn a_stop_before_the_first_result_leaves_none_and_one_after_it_leaves_that() {

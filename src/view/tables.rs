@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use egui::{Align, Button, Color32, Grid, Label, Layout, RichText, Role, ScrollArea, Sense, Ui};
+
 use gdcm_method::correction::Channel;
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_method::uncertainty::Scalar;
@@ -11,7 +12,10 @@ use gdcm_model::units::s_to_ms;
 use gdcm_plot::figure::all_channels;
 use gdcm_study::study::{ConditionAnalysis, Table};
 
-use super::{Command, Palette, SMALL_SIZE, State, Sureness, entries_ui, named};
+use super::command::Command;
+use super::controls::{entries_ui, named};
+use super::palette::{Palette, SMALL_SIZE};
+use super::state::{State, Sureness};
 
 /// A table of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,7 +112,8 @@ fn table_of_rows(title: String, rows: Vec<Row>) -> Table {
 
 fn conditions(state: &State) -> Table {
     let row = |condition: &Arc<Condition>| {
-        let (id, flight) = (condition.id(), condition.flight_state());
+        let id = condition.id();
+        let flight = condition.flight_state();
         let result = state.analysis().and_then(|analysis| analysis.condition(id));
         let count = |of: &dyn Fn(&ConditionAnalysis) -> usize| {
             result.map_or(String::new(), |result| of(result).to_string())
@@ -141,7 +146,8 @@ fn conditions(state: &State) -> Table {
 }
 
 fn models(state: &State, bundle: BundleKind) -> Table {
-    let (condition, shown) = (state.condition(), state.shown());
+    let condition = state.condition();
+    let shown = state.shown();
     let choice = state.study.choice(condition.id()).bundle(bundle);
     let row = |model: &Model| {
         let ratio = shown.filter(|_| bundle == BundleKind::Physics);
@@ -206,14 +212,14 @@ fn halves(sure: &Sureness<'_>, scalar: Scalar) -> [Option<f64>; 2] {
 
 /// G, D, net gain, each with its bars, net delay, and J, J_mag and J_phase before and after.
 fn matrix(state: &State) -> Table {
-    let (sure, shown, settings) = (state.sureness(), state.shown(), &state.study.settings);
+    let sure = state.sureness();
+    let shown = state.shown();
+    let settings = &state.study.settings;
     let row = |pair: Pair| {
         let (output, input) = state.dataset().channel_names(pair);
         let cost = shown.and_then(|shown| shown.cost[pair]);
-        let (before, after) = (
-            cost.map(|cost| cost.uncorrected),
-            cost.map(|cost| cost.corrected),
-        );
+        let before = cost.map(|cost| cost.uncorrected);
+        let after = cost.map(|cost| cost.corrected);
         let [gain, gain_inner] = halves(&sure, Scalar::Gain(pair));
         let [delay, delay_inner] =
             shown.map_or([None; 2], |shown| halves(&sure, shown.wanted_delay(pair)));
@@ -264,10 +270,8 @@ fn matrix(state: &State) -> Table {
 }
 
 fn channels(state: &State) -> Table {
-    let (sure, correction) = (
-        state.sureness(),
-        state.shown().map(|shown| &shown.correction),
-    );
+    let sure = state.sureness();
+    let correction = state.shown().map(|shown| &shown.correction);
     let (inputs, outputs) = state.dataset().names_of_channels();
     let row = |channel: Channel| {
         let side = if matches!(channel, Channel::Input(_)) {
@@ -327,7 +331,8 @@ impl Sorting {
         };
         let cells: Vec<String> = order.iter().map(|&row| cell(row, column)).collect();
         order.sort_by(|a, b| {
-            let (a, b) = (&cells[*a], &cells[*b]);
+            let a = &cells[*a];
+            let b = &cells[*b];
             let compared = match (number_in(a), number_in(b)) {
                 (Some(a), Some(b)) => a.total_cmp(&b),
                 _ => a.cmp(b),

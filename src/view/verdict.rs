@@ -1,17 +1,22 @@
 //! Whether the corrected model holds, and the one thing to do where it does not.
 
-use gdcm_method::correction::{ConflictKind, LeadPrice, Remedy};
+use gdcm_method::correction::LeadPrice;
+use gdcm_method::correction::conflict::{ConflictKind, Remedy};
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
 use gdcm_model::response::median;
 use gdcm_model::units::{number, s_to_ms, signed, six_digits, telling, told_apart};
-use gdcm_study::study::{
-    ConditionAnalysis, ConditionFailure, CouplingCorrection, CouplingCost, Edit, PhaseCorrection,
-    RemarkKind, SignRole, Value, setting,
-};
+use gdcm_study::study::analysis::ConditionFailure;
+use gdcm_study::study::changed_models::SignRole;
+use gdcm_study::study::couplings_assessment::CouplingCost;
+use gdcm_study::study::remark::RemarkKind;
+use gdcm_study::study::setting_row::Value;
+use gdcm_study::study::{ConditionAnalysis, CouplingCorrection, Edit, PhaseCorrection, setting};
 
-use super::views::{offered_couplings, used_couplings};
-use super::{Command, FormKind, Sheet, State, View, turn_entry};
+use super::command::{Command, FormKind};
+use super::explanation::{Sheet, turn_entry};
+use super::state::State;
+use super::views::{View, offered_couplings, used_couplings};
 
 /// Whether gain and phase of the held responses are met, here and in every condition, and what to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,7 +135,7 @@ impl Verdict {
     }
 
     fn of_result(state: &State, shown: &ConditionAnalysis) -> Self {
-        let reasons = super::remarks_shown(state, shown).len();
+        let reasons = super::explanation::remarks_shown(state, shown).len();
         let (steps, note) = steps(state, shown);
         let caution = caution(state, shown);
         let unstable_in_band = unstable_in_band(state);
@@ -244,7 +249,8 @@ fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
     let [first, rest @ ..] = pairs else {
         return None;
     };
-    let (inputs, outputs) = (state.dataset().inputs(), state.dataset().outputs());
+    let inputs = state.dataset().inputs();
+    let outputs = state.dataset().outputs();
     let input = rest
         .iter()
         .all(|pair| pair.input == first.input)
@@ -488,8 +494,11 @@ fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
 mod tests {
     use std::sync::Arc;
 
-    use gdcm_study::study::{Engine, Study, Unobserved, UnstablePole};
     use nalgebra::Complex;
+
+    use gdcm_model::progress::Unobserved;
+    use gdcm_study::study::couplings_assessment::UnstablePole;
+    use gdcm_study::study::{Engine, Study};
 
     use super::super::views::couplings_job;
     use super::*;

@@ -5,16 +5,19 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
 
-use gdcm_io::variables::{Array, CellArray, StructArray, TextArray, Value, Variable};
-use gdcm_io::{FolderProgress, FoundModels, load_dataset, read_models, write_mat, write_npz};
-use gdcm_model::assembly::{
-    Assembly, ChannelRule, FoundModel, Headings, ProblemKind, RowRole, UnitRule, proposed_rules,
-};
-use gdcm_model::dataset::{
-    BundleKind, Condition, ConditionRecord, Dataset, Dynamics, Model, StateSpace,
-};
 use nalgebra::DMatrix;
 use serde_json::json;
+
+use gdcm_io::formats::npy::write_npz;
+use gdcm_io::model_files::FoundModels;
+use gdcm_io::variables::{Array, CellArray, StructArray, TextArray, Value, Variable};
+use gdcm_io::{FolderProgress, load_dataset, read_models, write_mat};
+use gdcm_model::assembly::problem::ProblemKind;
+use gdcm_model::assembly::{
+    Assembly, ChannelRule, FoundModel, Headings, RowRole, UnitRule, proposed_rules,
+};
+use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::dataset::{BundleKind, Condition, Dataset, Dynamics, Model, StateSpace};
 
 use crate::commands::Ended;
 
@@ -267,7 +270,8 @@ fn assert_same_numbers(made: &Dataset, example: &Dataset, route: &str) {
     );
     for expected in example.conditions() {
         let found: &Arc<Condition> = made.condition(expected.id()).unwrap();
-        let (found_state, state) = (found.flight_state(), expected.flight_state());
+        let found_state = found.flight_state();
+        let state = expected.flight_state();
         assert_eq!(
             (
                 found_state.airspeed_kt,
@@ -354,7 +358,8 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
     let root = folder.path().join("csv");
     write_folders(&root, example, write_as_csv);
     let out = folder.path().join("made.json.gz");
-    let (root, made) = (root.to_str().unwrap(), out.to_str().unwrap());
+    let root = root.to_str().unwrap();
+    let made = out.to_str().unwrap();
     let first = run(&["assemble", root, "--out", made]);
     assert_eq!(first.status, 2, "{}", first.error);
     let said = &first.error;
@@ -743,7 +748,8 @@ fn columns_are_read_by_the_headings_that_the_rules_say_in_place_of_the_file_s() 
     let response = found.models[0].response().unwrap();
     // 1 Hz is 2 pi rad/s; -6 dB at -100 degrees.
     assert!((response.omega[0] - std::f64::consts::TAU).abs() < 1e-12);
-    let (magnitude, phase) = (10f64.powf(-0.3), -100f64.to_radians());
+    let magnitude = 10f64.powf(-0.3);
+    let phase = -100f64.to_radians();
     assert!((response.re.values[1] - magnitude * phase.cos()).abs() < 1e-12);
     assert_eq!(found.models[0].outputs[0].name.as_deref(), Some("P"));
 
@@ -878,7 +884,8 @@ fn the_flight_records_of_a_dataset_stay_with_its_condition_and_are_found_from_wh
         (old.clone(), "of_file.json"),
     ] {
         let made = made(&source, name);
-        let (condition, old) = (&made.conditions()[0], &before.conditions()[0]);
+        let condition = &made.conditions()[0];
+        let old = &before.conditions()[0];
         let unplaced = |records: &[ConditionRecord]| -> Vec<ConditionRecord> {
             records
                 .iter()

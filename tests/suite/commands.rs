@@ -6,9 +6,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
+use serde_json::{Value, json};
+
 use gdcm_io::{load_dataset, save_study};
 use gdcm_study::study::{Study, setting};
-use serde_json::{Value, json};
 
 use crate::{entries, members};
 
@@ -781,7 +782,8 @@ fn a_path_that_is_not_unicode_is_read_all_the_same() {
 fn a_study_whose_dataset_has_changed_or_moved_is_used_and_told_about_unless_it_has_to_be_the_same()
 {
     let desk = Desk::new();
-    let (study, dataset) = (desk.path("a.gdcm-study.json"), desk.path("small.json"));
+    let study = desk.path("a.gdcm-study.json");
+    let dataset = desk.path("small.json");
     let loaded = load_dataset(&dataset).unwrap();
     save_study(&Study::new(loaded.dataset.clone()), &loaded, &study).unwrap();
     desk.write("small.json", |file| {
@@ -980,7 +982,8 @@ fn check_finds_a_wrong_structure_without_reading_a_large_file_to_its_end() {
         .open(desk.path("large.json"))
         .unwrap();
     // More than is read: what reads it to its end says that.
-    file.set_len(gdcm_io::LARGEST_TEXT + 1).unwrap();
+    file.set_len(gdcm_model::dataset::limits::LARGEST_TEXT + 1)
+        .unwrap();
     desk.gdcm(&["check", "large.json"])
         .assert_failed(2, &["large.json: inputs: expected a list, found 5"]);
     desk.gdcm(&["analyze", "large.json", "--out", "out"])

@@ -38,8 +38,10 @@ fn analyze_says_what_couplings_mean_are_worth_and_cost_and_writes_them() {
     }
     let found = read_json(&desk.path("with/corrections.json"));
     assert_eq!(found["settings"]["couplings"], "feedback");
-    let (of, condition) = (&found["couplings"], &found["conditions"][9]["couplings"]);
-    let (feedback, deviations) = (numbers(&of["feedback"]), numbers(&of["feedback_sd"]));
+    let of = &found["couplings"];
+    let condition = &found["conditions"][9]["couplings"];
+    let feedback = numbers(&of["feedback"]);
+    let deviations = numbers(&of["feedback_sd"]);
     assert_eq!((feedback.len(), feedback[0].len()), (4, 6));
     assert!(
         deviations

@@ -54,7 +54,8 @@ fn the_commands_of_the_page_make_its_pictures() {
         let made = fs::read_to_string(desk.path(out)).unwrap();
         let kept = fs::read_to_string(docs.parent().unwrap().join(out)).unwrap();
         assert!(kept.len() < 220_000, "{out}: {} bytes", kept.len());
-        let (made, kept) = (words(&made), words(&kept));
+        let made = words(&made);
+        let kept = words(&kept);
         let same = made.iter().zip(&kept).all(|((a, at), (b, before))| {
             a == b && (at[0] - before[0]).abs() < MOVED_PT && (at[1] - before[1]).abs() < MOVED_PT
         });

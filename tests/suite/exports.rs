@@ -4,11 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use gdcm_io::{EXPORTERS, ExportFormat, FolderProgress, load_dataset, read_models};
+use serde_json::{Value, json};
+
+use gdcm_io::exports::{EXPORTERS, ExportFormat};
+use gdcm_io::{FolderProgress, load_dataset, read_models};
 use gdcm_model::assembly::{FoundModel, Headings};
 use gdcm_model::dataset::{Pair, StateSpace};
 use gdcm_model::response::evaluate;
-use serde_json::{Value, json};
 
 use crate::commands::Desk;
 use crate::{entries, members};
@@ -233,10 +235,8 @@ fn delays_of_held_responses_are_exported_unless_that_is_not_wanted() {
             let gdcm_model::dataset::Dynamics::StateSpace(flown) = &flown.dynamics else {
                 panic!("no matrices")
             };
-            let (flown, found) = (
-                evaluate(flown, &omega),
-                evaluate(&state_space(&found[place]), &omega),
-            );
+            let flown = evaluate(flown, &omega);
+            let found = evaluate(&state_space(&found[place]), &omega);
             for pair in [Pair::new(0, 1), Pair::new(1, 0)] {
                 for (found, flown) in found.curve(pair).iter().zip(flown.curve(pair)) {
                     // Two airspeeds bear a straight line, which goes through both.
@@ -559,19 +559,15 @@ fn corrected_models_are_the_program_s_in_every_format() {
         let gdcm_model::dataset::Dynamics::StateSpace(plain) = &physics.dynamics else {
             panic!("no matrices")
         };
-        let (corrected, plain) = (
-            evaluate(&state_space(model), &omega),
-            evaluate(plain, &omega),
-        );
+        let corrected = evaluate(&state_space(model), &omega);
+        let plain = evaluate(plain, &omega);
         for (output, output_gain) in figures("gains", "outputs").into_iter().enumerate() {
             for (input, input_gain) in figures("gains", "inputs").into_iter().enumerate() {
                 let delay =
                     figures("delays_s", "outputs")[output] + figures("delays_s", "inputs")[input];
                 delayed += usize::from(delay > 0.0);
-                let (corrected, plain) = (
-                    corrected.curve(Pair { output, input }),
-                    plain.curve(Pair { output, input }),
-                );
+                let corrected = corrected.curve(Pair { output, input });
+                let plain = plain.curve(Pair { output, input });
                 for (at, omega) in omega.into_iter().enumerate() {
                     let factor = nalgebra::Complex::new(0.0, -omega * delay).exp()
                         * output_gain
@@ -624,10 +620,8 @@ fn leads_are_exact_in_corrected_models_and_in_programs() {
         panic!("no matrices")
     };
     let omega = [0.5, 3.0, 12.0, 120.0];
-    let (corrected, plain) = (
-        evaluate(&state_space(&found[0]), &omega),
-        evaluate(plain, &omega),
-    );
+    let corrected = evaluate(&state_space(&found[0]), &omega);
+    let plain = evaluate(plain, &omega);
     let [input_leads, output_leads] = ["inputs", "outputs"].map(|side| members(&at["lead"][side]));
     for (output, output_gain) in numbers(members(&at["outputs"])).into_iter().enumerate() {
         for (input, input_gain) in numbers(members(&at["inputs"])).into_iter().enumerate() {

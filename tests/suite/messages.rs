@@ -1,16 +1,21 @@
 //! What messages say, whatever the names, the numbers and the mistakes.
 
-use gdcm_model::message_text::sanitized;
 use std::io::Write;
 use std::path::Path;
 
-use gdcm_io::{DatasetOrigin, load_dataset, load_dataset_bytes, open_study, save_study};
-use gdcm_method::correction::GainBounds;
-use gdcm_model::dataset::{Band, GREATEST_OMEGA, LEAST_OMEGA};
-use gdcm_model::units::number;
-use gdcm_study::study::{Kind, SETTINGS, Study, setting};
 use proptest::prelude::*;
 use serde_json::{Value, json};
+
+use gdcm_io::study_file::open_study;
+use gdcm_io::{DatasetOrigin, load_dataset, load_dataset_bytes, save_study};
+use gdcm_method::correction::GainBounds;
+use gdcm_model::dataset::Band;
+use gdcm_model::dataset::dataset::{GREATEST_OMEGA, LEAST_OMEGA};
+use gdcm_model::message_text::sanitized;
+use gdcm_model::units::number;
+use gdcm_study::study::setting::SETTINGS;
+use gdcm_study::study::setting_row::Kind;
+use gdcm_study::study::{Study, setting};
 
 use crate::commands::{Desk, SMALL};
 

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use egui_kittest::kittest::Queryable;
+
 use gdcm::view::state::NoticeKind;
 use gdcm_io::{load_dataset, save_study};
 use gdcm_study::study::Study;

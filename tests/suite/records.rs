@@ -3,12 +3,16 @@
 use std::fs;
 use std::path::Path;
 
-use gdcm_io::{embedded_example, example_records, load_dataset, records_of_bytes};
-use gdcm_model::assembly::standard_patterns;
-use gdcm_model::dataset::{BundleKind, ConditionId, RecordKind};
-use gdcm_sysid::records::{RecordChannels, RecordGuess, RecordLayout, TimeWish};
 use nalgebra::{Complex, DMatrix};
 use serde_json::{Value, json};
+
+use gdcm_io::record_files::{example_records, records_of_bytes};
+use gdcm_io::{embedded_example, load_dataset};
+use gdcm_model::assembly::rules::standard_patterns;
+use gdcm_model::dataset::condition::RecordKind;
+use gdcm_model::dataset::{BundleKind, ConditionId};
+use gdcm_sysid::records::laid_out_record::RecordGuess;
+use gdcm_sysid::records::{RecordChannels, RecordLayout, TimeWish};
 
 use crate::commands::Desk;
 use crate::window::records::late_dataset;
@@ -80,7 +84,8 @@ fn desk() -> Desk {
     let text = |head: &str, rate: f64| {
         let row = |k: u32| {
             let at = f64::from(k);
-            let (stick, roll) = (50.0 + 10.0 * (0.3 * at).sin(), rate * (0.2 * at).cos());
+            let stick = 50.0 + 10.0 * (0.3 * at).sin();
+            let roll = rate * (0.2 * at).cos();
             format!(
                 "{:.2},{stick:.3},{:.3},{roll:.4},{:.4}\n",
                 0.02 * at,
@@ -435,7 +440,8 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let records = root.join("assets/example-records-3-and-10.zip");
     let into = root.join("tests/data/reference/example-dataset.json.gz");
-    let (records, into) = (records.to_str().unwrap(), into.to_str().unwrap());
+    let records = records.to_str().unwrap();
+    let into = into.to_str().unwrap();
     let of_every = [
         "--every-condition",
         "--take",
@@ -472,10 +478,8 @@ fn records_of_many_conditions_fill_each_its_own_and_leave_the_others_as_they_are
         "{}",
         ended.out
     );
-    let (before, after) = (
-        &crate::REFERENCE_DATASET.dataset,
-        load_dataset(&desk.path("out/example-dataset.json.gz")).unwrap(),
-    );
+    let before = &crate::REFERENCE_DATASET.dataset;
+    let after = load_dataset(&desk.path("out/example-dataset.json.gz")).unwrap();
     assert_eq!(
         (after.dataset.description(), after.cautions),
         ("anew", vec![])
@@ -645,7 +649,8 @@ fn a_record_in_which_a_channel_is_late_or_turned_is_named_with_the_option_that_p
     let text = fs::read_to_string(desk.path("flight_3.csv")).unwrap();
     let rows: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     let place = |name: &str| rows[0].iter().position(|of| of.starts_with(name)).unwrap();
-    let (p, q) = (place("P"), place("Q"));
+    let p = place("P");
+    let q = place("Q");
     let written = |late: usize, sign: &str| {
         let row = |(at, row): (usize, &Vec<&str>)| {
             let mut row: Vec<String> = row.iter().map(|value| (*value).to_owned()).collect();
@@ -840,10 +845,8 @@ fn parts_of_records_are_records_of_their_own_in_the_dataset_too() {
         .iter()
         .map(said)
         .collect();
-    let (first, second) = (
-        (json!([0.0, 20.0]), json!(false)),
-        (json!([20.0, 40.0]), json!(true)),
-    );
+    let first = (json!([0.0, 20.0]), json!(false));
+    let second = (json!([20.0, 40.0]), json!(true));
     assert_eq!(records, [first.clone(), first, second.clone(), second]);
     // What is used of each lies within it, at 25 Hz.
     let used = &identified["records"][2]["used_s"][0];

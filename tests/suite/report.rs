@@ -5,17 +5,21 @@ use std::fs;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, LazyLock};
 
-use gdcm_io::{ReportSource, ReportSubject, example_records, load_dataset, report, save_study};
-use gdcm_method::requirements::ToleranceTable;
-use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
-use gdcm_study::study::{
-    Analysis, Cancelled, Edit, Engine, Execution, HistoryRecords, KnownPoles, Progress,
-    RequirementRole, Study, Unobserved, time_histories_of,
-};
-use gdcm_sysid::identification::Preparation;
-use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
 use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::{Value, json};
+
+use gdcm_io::record_files::example_records;
+use gdcm_io::report_file::{ReportSource, ReportSubject, report};
+use gdcm_io::{load_dataset, save_study};
+use gdcm_method::requirements::ToleranceTable;
+use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
+use gdcm_model::progress::{Cancelled, Progress, Unobserved};
+use gdcm_study::study::required_modes::KnownPoles;
+use gdcm_study::study::requirements::RequirementRole;
+use gdcm_study::study::time_histories::{HistoryRecords, time_histories_of};
+use gdcm_study::study::{Analysis, Edit, Engine, Execution, Study};
+use gdcm_sysid::identification::Preparation;
+use gdcm_sysid::records::{LaidOutRecord, RecordChannels, TimeWish};
 
 use crate::commands::Desk;
 use crate::window::{click, few_window, settle, state};

@@ -400,7 +400,8 @@ fn what_a_stick_commands_is_an_option_and_levels_are_drawn() {
     // The intervals of a number lie about it, those of swapped models too.
     let mut swapped = 0;
     for of in findings.iter().filter(|of| of["role"] == "physics") {
-        let (bandwidth, ends) = (&of["omega_bw_rad_s"], &of["interval"]["omega_bw_rad_s"]);
+        let bandwidth = &of["omega_bw_rad_s"];
+        let ends = &of["interval"]["omega_bw_rad_s"];
         if let (Some(bandwidth), Some(low), Some(high)) =
             (bandwidth.as_f64(), ends[0].as_f64(), ends[1].as_f64())
         {
@@ -449,7 +450,8 @@ fn what_a_stick_commands_is_an_option_and_levels_are_drawn() {
 
 #[test]
 fn what_requirements_are_asked_with_comes_back_with_the_study() {
-    use gdcm_study::study::{Edit, OverviewLimits, RequirementSettings, Study};
+    use gdcm_study::study::requirements::{OverviewLimits, RequirementSettings};
+    use gdcm_study::study::{Edit, Study};
     let desk = Desk::new();
     let loaded = gdcm_io::load_dataset(&desk.path("small.json")).unwrap();
     let mut study = Study::new(loaded.dataset.clone());
@@ -475,7 +477,7 @@ fn what_requirements_are_asked_with_comes_back_with_the_study() {
         .unwrap();
     let path = desk.path("a.gdcm-study.json");
     gdcm_io::save_study(&study, &loaded, &path).unwrap();
-    let opened = gdcm_io::open_study(&path).unwrap();
+    let opened = gdcm_io::study_file::open_study(&path).unwrap();
     assert_eq!(opened.study.requirements, study.requirements);
     // The command takes them from the study.
     desk.gdcm(&[
@@ -494,16 +496,20 @@ fn what_requirements_are_asked_with_comes_back_with_the_study() {
 #[test]
 fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
     use gdcm_model::executor::{Executor, Sequential};
-    use gdcm_plot::figure::{Mark, record_history_figure};
-    use gdcm_study::study::{
-        Engine, HistoryRecord, Job, RecordHistoryJob, RequirementRole, Study, Unobserved,
-    };
+    use gdcm_model::progress::Unobserved;
+    use gdcm_plot::figure::Mark;
+    use gdcm_plot::figure::requirements::record_history_figure;
+    use gdcm_study::study::condition_answers::RecordHistoryJob;
+    use gdcm_study::study::job::Job;
+    use gdcm_study::study::requirements::RequirementRole;
+    use gdcm_study::study::time_histories::HistoryRecord;
+    use gdcm_study::study::{Engine, Study};
     let dataset = crate::FEW.dataset.clone();
     let analysis = Engine::default()
         .analyze(&Study::new(dataset.clone()), &Unobserved)
         .unwrap();
     let channels = gdcm_sysid::records::RecordChannels::of_dataset(&dataset).of_named_records();
-    let table = gdcm_io::example_records(3).unwrap().remove(0);
+    let table = gdcm_io::record_files::example_records(3).unwrap().remove(0);
     let record =
         gdcm_sysid::records::LaidOutRecord::proposed(table, &channels, &Default::default()).0;
     let flight = std::sync::Arc::clone(record.used_flight().unwrap());
@@ -553,7 +559,8 @@ fn a_record_is_drawn_with_its_corridor_the_difference_and_what_is_outside() {
                 }
             });
             let [_, low, high] = corridor.unwrap().points[0];
-            let (flown, width) = (physics.windows[0].flown[0], physics.windows[0].width[0]);
+            let flown = physics.windows[0].flown[0];
+            let width = physics.windows[0].width[0];
             let middle = if is_difference { 0.0 } else { flown };
             assert!(
                 (low - (middle - width)).abs() < 1e-12 && (high - (middle + width)).abs() < 1e-12

@@ -23,7 +23,8 @@ fn desk_with_half() -> Desk {
 fn write_record(desk: &Desk) {
     let row = |k: u32| {
         let at = f64::from(k);
-        let (stick, rate) = ((0.3 * at).sin(), (0.2 * at).cos());
+        let stick = (0.3 * at).sin();
+        let rate = (0.2 * at).cos();
         format!(
             "{:.2},{stick:.3},{:.3},{rate:.3},{:.3}\n",
             0.02 * at,
@@ -400,7 +401,8 @@ fn stored_zip(files: &[(&str, &[u8])]) -> Vec<u8> {
         sum.update(bytes);
         sum.sum()
     };
-    let (mut archive, mut directory) = (Vec::new(), Vec::new());
+    let mut archive = Vec::new();
+    let mut directory = Vec::new();
     for (name, bytes) in files {
         let length = bytes.len() as u32;
         let numbers = [sum(bytes), length, length].map(u32::to_le_bytes).concat();
@@ -423,7 +425,8 @@ fn stored_zip(files: &[(&str, &[u8])]) -> Vec<u8> {
         );
         archive.extend([b"PK\x03\x04", fields.as_slice(), name.as_bytes(), bytes].concat());
     }
-    let (count, begin) = (files.len() as u8, (archive.len() as u32).to_le_bytes());
+    let count = files.len() as u8;
+    let begin = (archive.len() as u32).to_le_bytes();
     let length = (directory.len() as u32).to_le_bytes();
     archive.extend(directory);
     archive.extend(

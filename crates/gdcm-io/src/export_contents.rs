@@ -1,9 +1,11 @@
 //! What an export contains of a correction: gains, delays, leads and couplings, scheduled or a condition's own; and what it leaves out.
 
+use serde_json::{Value, json};
+
 use gdcm_method::schedule::{Schedule, ScheduleError};
 use gdcm_model::dataset::{ConditionId, Dataset};
-use gdcm_study::study::{Analysis, AssessedCorrection, DelayedChannel, PhaseCorrection};
-use serde_json::{Value, json};
+use gdcm_study::study::schedule_losses::DelayedChannel;
+use gdcm_study::study::{Analysis, AssessedCorrection, PhaseCorrection};
 
 /// Where a part of an exported correction comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,16 +6,18 @@ use std::io::{self, Write};
 use std::marker::PhantomData;
 use std::path::Path;
 
-use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_FREQUENCIES, MOST_STATES};
-use gdcm_model::dataset::{BundleKind, Location};
-use gdcm_model::message_text::{is_unprintable, sanitized, shortened};
-use gdcm_model::units::number;
 use nalgebra::DMatrix;
 use serde::de::{DeserializeSeed, Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::ser::{SerializeSeq, Serializer};
 use serde::{Deserialize, Serialize};
 use serde_json::error::Category;
 use serde_json::value::RawValue;
+
+use gdcm_model::dataset::BundleKind;
+use gdcm_model::dataset::channel::Location;
+use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_FREQUENCIES, MOST_STATES};
+use gdcm_model::message_text::{is_unprintable, sanitized, shortened};
+use gdcm_model::units::number;
 
 use crate::file_error::{ContentError, ContentFault, FileError};
 use crate::location::{Outline, Step, UnknownKeys, location_of};
@@ -133,7 +135,8 @@ fn check_object(text: &[u8], path: &Path) -> Result<(), FileError> {
     if text.trim_ascii_start().first() != Some(&b'[') {
         return Ok(());
     }
-    let (expected, found) = ("an object".to_owned(), "a list".to_owned());
+    let expected = "an object".to_owned();
+    let found = "a list".to_owned();
     let fault = ContentFault::Type {
         expected,
         found,
@@ -161,7 +164,8 @@ pub(super) fn json_error(
     place: Location,
     error: &serde_json::Error,
 ) -> FileError {
-    let (line, column) = (error.line(), error.column());
+    let line = error.line();
+    let column = error.column();
     let full = error.to_string();
     let reason = full
         .rsplit_once(" at line ")
@@ -197,10 +201,8 @@ pub(super) fn json_error(
             ),
             // A word where the reader can tell at once that none of those it knows will stand there.
             None if is_json_so_far(text) => {
-                let (expected, found) = (
-                    "a text in quotation marks".to_owned(),
-                    "something else".to_owned(),
-                );
+                let expected = "a text in quotation marks".to_owned();
+                let found = "something else".to_owned();
                 FileError::content(
                     path,
                     ContentError::new(

@@ -3,11 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use gdcm_model::assembly::{ChannelLabel, Facts, FoundModel, Headings};
-use gdcm_model::dataset::{
-    BundleKind, Condition, ConditionRecord, Dataset, Estimate, Model, ModelDraft, Origin,
-    Provenance, ResponseArray, ResponseDraft,
-};
+use gdcm_model::assembly::found_model::Facts;
+use gdcm_model::assembly::{ChannelLabel, FoundModel, Headings};
+use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::dataset::measured_response::Estimate;
+use gdcm_model::dataset::model::{Origin, Provenance};
+use gdcm_model::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
+use gdcm_model::dataset::{BundleKind, Condition, Dataset, Model};
 
 use crate::file_error::FileError;
 use crate::formats::text::{
@@ -164,7 +166,8 @@ impl ModelReading<'_> {
                 ignored,
             } => {
                 for (inner, contents) in files {
-                    let (inner_name, inner_path) = (format!("{name}/{inner}"), Path::new(&inner));
+                    let inner_name = format!("{name}/{inner}");
+                    let inner_path = Path::new(&inner);
                     let taken = contents.and_then(|contents| {
                         let sha256 = sha256.clone();
                         self.take(
@@ -517,7 +520,8 @@ fn model(
         shape: [1, 1, count],
         values,
     };
-    let (output, input) = (response.output.clone(), response.input.clone());
+    let output = response.output.clone();
+    let input = response.input.clone();
     let variable = match (several, &output, &input) {
         (true, Some(output), Some(input)) => Some(format!("{output}/{input}")),
         (true, Some(output), None) => Some(output.clone()),
@@ -565,9 +569,8 @@ fn model(
 
 #[cfg(test)]
 mod tests {
-    use crate::variables::Array;
-
     use super::*;
+    use crate::variables::Array;
 
     fn matrix(file: &str, rows: usize, columns: usize) -> LooseMatrix {
         let value = Value::Array(Array::matrix(rows, columns, vec![-1.0; rows * columns]));

@@ -4,17 +4,23 @@ use std::io::{self, Write};
 use std::iter::once;
 use std::path::Path;
 
-use gdcm_model::assembly::{ChannelLabel, ChannelRule, Facts, FoundModel};
-use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_MODELS_IN_ALL};
-use gdcm_model::dataset::{Channel, ConditionRecord, ModelDraft, Origin, Provenance, Timing};
-use gdcm_model::units::neper_to_db;
-use gdcm_model::whole_number::whole;
-use gdcm_sysid::identification::{
-    CautionNote, EstimatePoint, Identification, PoleEstimate, ResponseEstimate,
-};
-use gdcm_sysid::records::RecordChannels;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
+
+use gdcm_model::assembly::found_model::Facts;
+use gdcm_model::assembly::{ChannelLabel, ChannelRule, FoundModel};
+use gdcm_model::dataset::Channel;
+use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_MODELS_IN_ALL};
+use gdcm_model::dataset::model::{Origin, Provenance};
+use gdcm_model::dataset::state_space::Timing;
+use gdcm_model::dataset::unchecked_dataset::ModelDraft;
+use gdcm_model::response::pole_estimate::PoleEstimate;
+use gdcm_model::units::neper_to_db;
+use gdcm_model::whole_number::whole;
+use gdcm_sysid::identification::local_polynomial::EstimatePoint;
+use gdcm_sysid::identification::{CautionNote, Identification, ResponseEstimate};
+use gdcm_sysid::records::RecordChannels;
 
 use crate::corrections_file::without_empty;
 use crate::dataset_file::{LabelText, ModelText};
@@ -442,8 +448,8 @@ fn record_text(found: &Identification, index: usize, record: &ConditionRecord) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model_files::{FoundModels, models_of_bytes};
     use crate::output_set::Existing;
-    use crate::{FoundModels, models_of_bytes};
 
     const DATASET: &str = r#"{"format": "gdcm-dataset", "version": 1, "name": "one",
         "inputs": [{"name": "LAT", "unit": "%"}], "outputs": [{"name": "P", "unit": "rad/s"}],
@@ -527,11 +533,12 @@ mod identified_tests {
 
     use nalgebra::{Complex, DMatrix, DVector};
 
+    use gdcm_model::dataset::model::{ModelBands, Origin, Provenance};
+    use gdcm_model::dataset::{Dynamics, Model, PairTable, StateSpace};
+
     use super::*;
-    use crate::{Existing, models_of_bytes};
-    use gdcm_model::dataset::{
-        Dynamics, Model, ModelBands, Origin, PairTable, Provenance, StateSpace,
-    };
+    use crate::model_files::models_of_bytes;
+    use crate::output_set::Existing;
 
     fn model(name: &str, gain: f64) -> Model {
         let scalar = |value| DMatrix::from_element(1, 1, value);
@@ -608,7 +615,8 @@ mod identified_tests {
             unit: unit.into(),
             ..ChannelRule::named(name)
         };
-        let (inputs, outputs) = (vec![rule("LON", "%")], vec![rule("Q", "deg/s")]);
+        let inputs = vec![rule("LON", "%")];
+        let outputs = vec![rule("Q", "deg/s")];
         let channels = RecordChannels {
             inputs,
             outputs,

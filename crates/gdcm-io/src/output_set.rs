@@ -482,7 +482,8 @@ mod tests {
     #[test]
     fn a_set_of_which_one_file_is_there_and_whose_directory_has_two_names_takes_its_place() {
         let directory = tempfile::tempdir().unwrap();
-        let (real, link) = (directory.path().join("real"), directory.path().join("link"));
+        let real = directory.path().join("real");
+        let link = directory.path().join("link");
         fs::create_dir(&real).unwrap();
         std::os::unix::fs::symlink(&real, &link).unwrap();
         fs::write(real.join(SET[1]), "before").unwrap();
@@ -654,7 +655,8 @@ mod tests {
     fn the_mode_of_a_replaced_file_stays_and_a_link_still_leads_to_it() {
         use std::os::unix::fs::{PermissionsExt, symlink};
         let directory = tempfile::tempdir().unwrap();
-        let (path, link) = (directory.path().join("a"), directory.path().join("link"));
+        let path = directory.path().join("a");
+        let link = directory.path().join("link");
         fs::write(&path, "before").unwrap();
         fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
         symlink(&path, &link).unwrap();

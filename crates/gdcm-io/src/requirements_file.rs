@@ -4,15 +4,16 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use gdcm_method::requirements::{
-    BandwidthRule, LevelBoundaries, Tolerance, ToleranceError, ToleranceTable,
-};
-use gdcm_model::dataset::{ConditionId, Location};
-use gdcm_study::study::{
-    BandwidthFinding, HistoryFinding, ModeFinding, ModeNumbers, Requirements, SummaryFinding,
-    TimeHistories, ToleranceFinding,
-};
 use serde::{Deserialize, Serialize};
+
+use gdcm_method::requirements::tolerance::ToleranceError;
+use gdcm_method::requirements::{BandwidthRule, LevelBoundaries, Tolerance, ToleranceTable};
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::dataset::channel::Location;
+use gdcm_study::study::required_bandwidth::BandwidthFinding;
+use gdcm_study::study::required_modes::{ModeFinding, ModeNumbers};
+use gdcm_study::study::requirements::{Requirements, SummaryFinding};
+use gdcm_study::study::time_histories::{HistoryFinding, TimeHistories, ToleranceFinding};
 
 use crate::figure_file::write_records;
 use crate::file_error::{ContentError, ContentFault, FileError};

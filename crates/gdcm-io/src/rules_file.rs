@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use gdcm_model::assembly::{
-    ChannelRule, NamePattern, RowRule, Rules, ScopedDeclarations, Signs, UnitRule,
-    standard_patterns,
-};
-use gdcm_model::dataset::Location;
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::assembly::declarations::ScopedDeclarations;
+use gdcm_model::assembly::rules::{NamePattern, Signs, standard_patterns};
+use gdcm_model::assembly::{ChannelRule, RowRule, Rules, UnitRule};
+use gdcm_model::dataset::channel::Location;
 use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_PAIRS};
 use gdcm_model::whole_number::whole;
-use serde::{Deserialize, Serialize};
 
 use crate::file_error::{ContentError, ContentFault, FileError};
 use crate::json_text::{Format, list, write_pretty};
@@ -272,9 +272,8 @@ fn standard() -> Vec<String> {
 mod tests {
     use gdcm_model::assembly::{FileScope, RowRole};
 
-    use crate::output_set::Existing;
-
     use super::*;
+    use crate::output_set::Existing;
 
     #[test]
     fn rules_come_back_as_they_were_written() {

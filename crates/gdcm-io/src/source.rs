@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use flate2::bufread::{GzDecoder, MultiGzDecoder};
-use gdcm_model::dataset::limits::LARGEST_TEXT;
 use sha2::{Digest, Sha256};
+
+use gdcm_model::dataset::limits::LARGEST_TEXT;
 
 use crate::file_error::FileError;
 use crate::variables::ReadingBudget;
@@ -169,7 +170,8 @@ pub(super) fn text_of<'b>(
 ///
 /// A file may have several members (RFC 1952), and zeros behind the last, with which tapes and copying programs fill their blocks.
 fn unpack(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, FileError> {
-    let (mut text, mut rest) = (Vec::new(), bytes);
+    let mut text = Vec::new();
+    let mut rest = bytes;
     while rest.iter().any(|&byte| byte != 0) {
         let mut member = GzDecoder::new(rest);
         loop {

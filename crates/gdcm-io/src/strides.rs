@@ -372,7 +372,8 @@ mod sparse_tests {
     use super::*;
 
     fn entries(shape: [usize; 2]) -> Entries {
-        let (rows, columns) = (vec![0, 1], vec![1, 0]);
+        let rows = vec![0, 1];
+        let columns = vec![1, 0];
         Entries {
             shape,
             kind: ElementKind::Float,

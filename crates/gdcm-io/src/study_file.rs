@@ -6,14 +6,17 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
-use gdcm_model::dataset::{Condition, ConditionId, Dataset, Location};
-use gdcm_model::whole_number::whole;
-use gdcm_study::study::{
-    AdoptedModels, BundleChoice, ConditionChoice, Decisions, Difference, Inventory,
-    RequirementSettings, ResponseNames, Settings, Study, TurnedChannel,
-};
 use serde::{Deserialize, Serialize};
+
+use gdcm_model::dataset::channel::Location;
+use gdcm_model::dataset::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
+use gdcm_model::dataset::{Condition, ConditionId, Dataset};
+use gdcm_model::whole_number::whole;
+use gdcm_study::study::changed_models::{AdoptedModels, TurnedChannel};
+use gdcm_study::study::differences::{Decisions, Difference, Inventory};
+use gdcm_study::study::requirements::RequirementSettings;
+use gdcm_study::study::settings::{ResponseNames, Settings};
+use gdcm_study::study::{BundleChoice, ConditionChoice, Study};
 
 use crate::dataset_file::{
     DatasetOrigin, LoadedDataset, ModelText, RecordText, dataset_from, embedded_example,
@@ -325,10 +328,8 @@ fn save(
     path: &Path,
     path_text: impl FnOnce(&Path) -> Result<String, FileError>,
 ) -> Result<(), FileError> {
-    let (sha256, holds) = (
-        loaded.sha256.clone(),
-        Some(Inventory::of(study.file_dataset())),
-    );
+    let sha256 = loaded.sha256.clone();
+    let holds = Some(Inventory::of(study.file_dataset()));
     let reference = match &loaded.origin {
         DatasetOrigin::EmbeddedExample => DatasetReference {
             path: None,
@@ -471,7 +472,8 @@ fn referenced_path(study: &Path, relative: &str) -> PathBuf {
 
 /// The dataset's path as the study at `study` has to write it.
 fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
-    let (dataset, directory) = (settled(dataset)?, settled(study)?);
+    let dataset = settled(dataset)?;
+    let directory = settled(study)?;
     // No way leads to another drive: there the path is the dataset's own.
     let relative = directory
         .parent()

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, SystemTime};
 
+use serde::{Deserialize, Serialize};
+
 use gdcm_model::whole_number::whole;
 use gdcm_study::study::Study;
-use serde::{Deserialize, Serialize};
 
 use crate::dataset_file::LoadedDataset;
 use crate::file_error::FileError;
@@ -325,7 +326,8 @@ mod tests {
 #[cfg(test)]
 mod recovery_tests {
     use super::*;
-    use crate::{embedded_example, open_study};
+    use crate::dataset_file::embedded_example;
+    use crate::study_file::open_study;
 
     fn example() -> (Study, LoadedDataset) {
         let loaded = embedded_example().unwrap();
@@ -347,7 +349,8 @@ mod recovery_tests {
     #[test]
     fn the_file_of_a_window_that_is_open_is_not_offered_and_that_of_one_that_is_gone_is() {
         let directory = tempfile::tempdir().unwrap();
-        let (mine, other) = (written(directory.path()), written(directory.path()));
+        let mine = written(directory.path());
+        let other = written(directory.path());
         assert!(lost_studies(directory.path()).is_empty());
         drop(other);
         let lost = lost_studies(directory.path());

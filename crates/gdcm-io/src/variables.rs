@@ -611,7 +611,8 @@ mod budget_tests {
 
     #[test]
     fn whoever_holds_the_flag_stops_the_reader_and_the_listener_hears_what_is_taken() {
-        let (stop, heard) = (Arc::new(AtomicBool::new(false)), Cell::new(0));
+        let stop = Arc::new(AtomicBool::new(false));
+        let heard = Cell::new(0);
         let tell = |taken| heard.set(taken);
         let budget = ReadingBudget::new(1 << 20)
             .stopped_by(Arc::clone(&stop))
@@ -625,13 +626,15 @@ mod budget_tests {
 
 #[cfg(test)]
 mod limits_tests {
+    use gdcm_model::dataset::limits;
     use gdcm_model::dataset::limits::{
         LARGEST_TEXT, MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES,
         MOST_MODELS, MOST_MODELS_IN_ALL, MOST_STATES,
     };
-    use gdcm_model::dataset::{GREATEST_CHANNEL_DELAY_S, limits};
+    use gdcm_model::dataset::state_space::GREATEST_CHANNEL_DELAY_S;
     use gdcm_model::units::number;
-    use gdcm_study::study::{Kind, SETTINGS};
+    use gdcm_study::study::setting::SETTINGS;
+    use gdcm_study::study::setting_row::Kind;
 
     use super::MOST_WORK;
     use crate::formats::{DEEPEST, LARGEST_FILE, MOST_FILES, MOST_MEMORY};
@@ -689,7 +692,7 @@ mod limits_tests {
     }
 
     fn of_settings() -> String {
-        let row = |setting: &&gdcm_study::study::Setting| {
+        let row = |setting: &&gdcm_study::study::setting_row::Setting| {
             let ([least, greatest], whole) = match setting.kind {
                 Kind::Number { range, whole, .. } => (range, whole),
                 Kind::Optional { range, .. } | Kind::Range { range, .. } => (range, false),
@@ -701,7 +704,8 @@ mod limits_tests {
             } else {
                 format!(" {}", setting.unit.file)
             };
-            let (option, name) = (setting.option, setting.name);
+            let option = setting.option;
+            let name = setting.name;
             Some(format!(
                 "| {name}{kind} | `{option}` | {}{unit} | {}{unit} |\n",
                 number(least),
@@ -725,7 +729,8 @@ mod limits_tests {
                 .map(|line| line.len() + 1)
                 .sum::<usize>()
         };
-        let (files, settings) = (&files[..end(files)], &settings[..end(settings)]);
+        let files = &files[..end(files)];
+        let settings = &settings[..end(settings)];
         if std::env::var_os("GDCM_WRITE_FILES").is_some() {
             std::fs::write(
                 path,

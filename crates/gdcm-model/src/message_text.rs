@@ -62,7 +62,8 @@ fn without_middle(text: &str, [longest, kept]: [usize; 2]) -> String {
     if letters <= longest {
         return text.to_owned();
     }
-    let (start, end) = (text.chars().take(kept), text.chars().skip(letters - kept));
+    let start = text.chars().take(kept);
+    let end = text.chars().skip(letters - kept);
     start.chain(std::iter::once('…')).chain(end).collect()
 }
 

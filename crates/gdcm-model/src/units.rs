@@ -36,7 +36,8 @@ pub fn s_to_ms(seconds: f64) -> f64 {
 pub fn number(value: f64) -> String {
     /// Longest text without an exponent, where one with it would be shorter.
     const LONGEST: usize = 10;
-    let (plain, exponent) = (value.to_string(), format!("{value:e}"));
+    let plain = value.to_string();
+    let exponent = format!("{value:e}");
     if plain.len() > LONGEST && exponent.len() < plain.len() {
         exponent
     } else {

@@ -10,7 +10,7 @@
 //! Nothing here knows of files, windows or threads.
 //!
 //! ```
-//! use gdcm_sysid::identification::log_spaced;
+//! use gdcm_model::response::frequency_response::log_spaced;
 //!
 //! let omega = log_spaced(0.5, 12.0, 3);
 //! assert!((omega[1] - 6.0_f64.sqrt()).abs() < 1e-12);

@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use gdcm_io::formats::text::UnsaidUnit;
 use gdcm_model::assembly::{Assembly, FoundModel, Headings, RowRule, Rules, proposed_rules};
 
-use crate::view::{Command, Sorting};
-use gdcm_io::UnsaidUnit;
-
-use super::{COLUMNS, Preview};
+use super::COLUMNS;
+use super::details::Preview;
+use crate::view::command::Command;
+use crate::view::tables::Sorting;
 
 /// Most steps that can be undone.
 const MOST_STEPS: usize = 200;

@@ -6,20 +6,24 @@ use std::sync::Arc;
 use egui::{Grid, RichText, Role, Ui};
 use nalgebra::Complex;
 
-use gdcm_io::UnsaidUnit;
-use gdcm_model::assembly::{ChannelLabel, FoundModel, Part, RowRole, RowRule, Signs};
-use gdcm_model::dataset::{
-    Band, BundleKind, ChannelSide, ConditionId, Dynamics, ModelId, Pair, StateSpace,
-};
-use gdcm_model::response::{FrequencyGrid, PreparedModel, ResponseShape};
+use gdcm_io::formats::text::UnsaidUnit;
+use gdcm_model::assembly::assembly::Part;
+use gdcm_model::assembly::rules::Signs;
+use gdcm_model::assembly::{ChannelLabel, FoundModel, RowRole, RowRule};
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dynamics, ModelId, Pair, StateSpace};
+use gdcm_model::response::frequency_response::ResponseShape;
+use gdcm_model::response::{FrequencyGrid, PreparedModel};
 use gdcm_model::units::number;
+use gdcm_plot::figure::axis::FrequencyUnit;
 
 use super::{AssemblingCommand, AssemblyState};
-use crate::view::plot::{
-    BodeCurve, BodeQuantity, BodeScene, BodeView, CurveId, FrequencyUnit, Role as CurveRole,
-    bode_ui,
-};
-use crate::view::{Command, Palette, check_ui, choice_ui, entry_ui, named, typed_number};
+use crate::view::command::Command;
+use crate::view::controls::{check_ui, entry_ui, named, typed_number};
+use crate::view::palette::Palette;
+use crate::view::plot::quantity::BodeQuantity;
+use crate::view::plot::{BodeCurve, BodeScene, BodeView, CurveId, Role as CurveRole, bode_ui};
+use crate::view::settings_panel::choice_ui;
 
 const FIELD_WIDTH: f32 = 200.0;
 
@@ -156,7 +160,8 @@ fn field_ui(ui: &mut Ui, assembly: &AssemblyState, field: &Field, commands: &mut
 }
 
 fn fields(part: &Part, rule: Option<&RowRule>) -> Vec<Field> {
-    let (row, found) = (&part.row, &part.found);
+    let row = &part.row;
+    let found = &part.found;
     let field = |name, value: Option<String>, hint, says| Field {
         name,
         value: value.unwrap_or_default(),
@@ -504,7 +509,8 @@ pub(super) fn preview_ui(
 ) {
     // A panel without content would shrink.
     ui.set_min_size(ui.available_size());
-    let (selected, band) = (assembly.selected, assembly.assembly().rules().band);
+    let selected = assembly.selected;
+    let band = assembly.assembly().rules().band;
     let Some(found) = assembly
         .assembly()
         .parts()

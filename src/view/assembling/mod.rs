@@ -10,18 +10,18 @@ use egui::{
     Ui,
 };
 
-use gdcm_model::assembly::{ChannelRule, FileScope, ProblemKind, Rules, Signs, UnitRule};
-use gdcm_model::dataset::ChannelSide;
+use gdcm_model::assembly::problem::ProblemKind;
+use gdcm_model::assembly::rules::Signs;
+use gdcm_model::assembly::{ChannelRule, FileScope, Rules, UnitRule};
+use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::units::number;
 
-use super::{
-    Asks, Command, Palette, SMALL_SIZE, button_ui, entry_ui, is_entered, named, number_entry_ui,
-    text_field_ui,
+use super::command::Command;
+use super::controls::{
+    Asks, button_ui, entry_ui, is_entered, named, number_entry_ui, text_field_ui,
 };
-use details::{
-    Preview, columns_ui, details_ui, factors_of, preview_ui, signs_of, trim_words, unit_words,
-    units_of,
-};
+use super::palette::{Palette, SMALL_SIZE};
+use details::{details_ui, factors_of, preview_ui, signs_of, trim_words, unit_words, units_of};
 use table::{problems_ui, table_ui};
 
 pub use assembly_state::{AssemblingCommand, AssemblyState, Reading};
@@ -459,7 +459,8 @@ fn conversions_ui(
             if let Some(factor) = number_entry_ui(ui, &name, &known, "factor", 60.0, commands) {
                 commands.push(assembly.changed(|rules| {
                     rules.units.retain(|unit| !is_it(unit));
-                    let (channel, from) = (channel.clone(), from.clone());
+                    let channel = channel.clone();
+                    let from = from.clone();
                     rules.units.extend(factor.map(|factor| UnitRule {
                         channel,
                         from,

@@ -4,14 +4,14 @@ use egui::{
     Align, Button, Color32, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, vec2,
 };
 
-use crate::view::{
-    Asks, Command, Palette, ROW_HEIGHT, SMALL_SIZE, elided_among, named, named_switch, painted_text,
-};
-use gdcm_model::assembly::Part;
+use gdcm_model::assembly::assembly::Part;
 use gdcm_model::units::number;
 
-use super::{AssemblingCommand, AssemblyState, columns_ui};
-use crate::view::palette::small;
+use super::details::columns_ui;
+use super::{AssemblingCommand, AssemblyState};
+use crate::view::command::Command;
+use crate::view::controls::{Asks, ROW_HEIGHT, elided_among, named, named_switch, painted_text};
+use crate::view::palette::{Palette, SMALL_SIZE, small};
 
 /// A column of the table.
 pub struct Column {
@@ -190,7 +190,8 @@ fn paint_cells(
 ) {
     let mut left = row.left();
     for (index, column) in COLUMNS.iter().enumerate() {
-        let (text, room) = (column.text(part), row.width() * column.share);
+        let text = column.text(part);
+        let room = row.width() * column.share;
         let is_marked = is_incomplete && index == FILE;
         let color = match () {
             () if text == "?" => palette.warning,
@@ -229,7 +230,8 @@ pub(super) fn problems_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    let (assembly, problems) = (state.assembly(), state.assembly().told());
+    let assembly = state.assembly();
+    let problems = state.assembly().told();
     let heading = match problems.len() {
         0 => "Nothing is missing: the dataset can be made".to_owned(),
         1 => "1 item to complete".to_owned(),

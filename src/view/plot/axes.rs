@@ -4,9 +4,11 @@ use std::ops::RangeInclusive;
 
 use egui::{Align2, Color32, FontId, Id, Rangef, Rect, RichText, Sense, Ui, WidgetInfo};
 use egui_plot::{Axis, AxisHints, GridInput, GridMark, Plot};
+
 use gdcm_model::units::{db_to_ratio, ratio_to_db};
-pub use gdcm_plot::figure::FrequencyUnit;
-use gdcm_plot::figure::{Range, Scale, Tick, TickGaps, compact, ticks_of};
+use gdcm_plot::figure::Range;
+pub use gdcm_plot::figure::axis::FrequencyUnit;
+use gdcm_plot::figure::axis::{Scale, Tick, TickGaps, compact, ticks_of};
 
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
@@ -171,7 +173,8 @@ impl Ticks {
             )
         };
         // One number says nothing of the scale: in a low plot the numbers stand closer.
-        let (mut gap, mut found) = (labels, ticks(labels));
+        let mut gap = labels;
+        let mut found = ticks(labels);
         while found.iter().filter(|tick| tick.label.is_some()).count() < 2 && gap > CLOSEST {
             gap = (0.8 * gap).max(CLOSEST);
             found = ticks(gap);

@@ -4,7 +4,9 @@ use egui::{
     CursorIcon, Popup, PopupCloseBehavior, Rect, Response, RichText, Role, Sense, TextEdit, Ui,
     Vec2, WidgetInfo, vec2,
 };
-use gdcm_plot::figure::{Range, compact};
+
+use gdcm_plot::figure::Range;
+use gdcm_plot::figure::axis::compact;
 
 use super::axes::Ticks;
 use super::bode::BodeScene;
@@ -265,7 +267,7 @@ impl PlotAxis {
 
 #[cfg(test)]
 mod tests {
-    use gdcm_plot::figure::FrequencyUnit;
+    use gdcm_plot::figure::axis::FrequencyUnit;
 
     use super::*;
 

@@ -7,8 +7,9 @@ use egui::{
     UiBuilder, pos2, vec2,
 };
 use egui_plot::{PlotPoint, PlotTransform};
+
 use gdcm_model::units::signed;
-use gdcm_plot::figure::CoherenceCurve;
+use gdcm_plot::figure::bode::CoherenceCurve;
 
 use super::axes::{FrequencyUnit, TICKS_HEIGHT, caption_font, message_ui, use_frame_colors};
 use super::bode_pane::{
@@ -23,8 +24,8 @@ use super::legend::{Chip, Chips, role_chips};
 use super::navigation::{Hit, nearest, pressed_digit, touched};
 use super::quantity::BodeQuantity;
 use super::readout::{Readout, STRIP_HEIGHT, readout_strip_ui};
-use crate::view::CurveCommand;
 use crate::view::controls::{elided, named, painted_text, row_text};
+use crate::view::curve_display::CurveCommand;
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
 /// Part of the height that the magnitude plot gets.
@@ -500,7 +501,8 @@ fn headings_ui(
         let label = scene.quantity.axis_label(pane);
         let (name, unit) = label.split_once(" [").unwrap_or((&label, ""));
         let name = painted_text(ui, line, 0.0, name, medium(BODY_SIZE), palette.text);
-        let (unit, beside) = (unit.trim_end_matches(']'), name.right() - line.left() + 4.0);
+        let unit = unit.trim_end_matches(']');
+        let beside = name.right() - line.left() + 4.0;
         let unit = row_text(ui, line, beside, unit, BODY_SIZE, palette.dim_text);
         if let Some(note) = note {
             let color = if note.warns {

@@ -7,7 +7,7 @@ use egui::{
 use egui_plot::{
     Axis, FilledArea, LineStyle, PlotBounds, PlotPoint, PlotTransform, PlotUi, Span, VLine,
 };
-pub use gdcm_plot::figure::{BodeBand, Level, ReferenceKind, ReferenceLine};
+pub use gdcm_plot::figure::responses::{BodeBand, Level, ReferenceKind, ReferenceLine};
 
 use super::axes::{
     FrequencyUnit, TICKS_HEIGHT, Ticks, axis_hints, caption_font, keep_ground, quiet_plot,
@@ -179,24 +179,24 @@ fn hatch(plot: &mut PlotUi<'_>, scene: &BodeScene<'_>, palette: &Palette) {
     if scene.invalid.is_none() {
         return;
     }
-    let (from, stroke) = (
-        scene.band.1.log10(),
-        Stroke::new(1.0, palette.warning.gamma_multiply(0.14)),
-    );
+    let from = scene.band.1.log10();
+    let stroke = Stroke::new(1.0, palette.warning.gamma_multiply(0.14));
     plot.add(DrawnItem::new(move |transform, shapes| {
         let frame = *transform.frame();
         let left = transform
             .position_from_point(&PlotPoint::new(from, 0.0))
             .x
             .max(frame.left());
-        let (width, height) = (frame.right() - left, frame.height());
+        let width = frame.right() - left;
+        let height = frame.height();
         if width <= 0.0 {
             return;
         }
         for line in 1..=((width + height) / STEP) as usize {
             // A line of 45 degrees down to the left, cut off where it leaves the region.
             let along = line as f32 * STEP;
-            let (top, foot) = (along.min(width), (along - height).max(0.0));
+            let top = along.min(width);
+            let foot = (along - height).max(0.0);
             let point = |x: f32| pos2(left + x, frame.top() + along - x);
             shapes.push(Shape::line_segment([point(top), point(foot)], stroke));
         }
@@ -235,11 +235,13 @@ fn invalid_strip_ui(
     let Some([with, without]) = invalid.ends_db else {
         return;
     };
-    let (upper, lower) = (at(invalid.up_to, with), at(invalid.up_to, without));
+    let upper = at(invalid.up_to, with);
+    let lower = at(invalid.up_to, without);
     if !frame.contains(upper - vec2(6.0, 0.0)) || !frame.contains(lower - vec2(6.0, 0.0)) {
         return;
     }
-    let (x, stroke) = (upper.x - 9.0, Stroke::new(1.5, palette.warning));
+    let x = upper.x - 9.0;
+    let stroke = Stroke::new(1.5, palette.warning);
     ui.painter().vline(x, upper.y..=lower.y, stroke);
     for y in [upper.y, lower.y] {
         ui.painter().hline(x - 3.0..=x + 3.0, y, stroke);
@@ -417,8 +419,10 @@ pub(super) fn band_handles_ui(
     view: &BodeView,
     palette: &Palette,
 ) -> Option<BodeEvent> {
-    let (transform, place) = (view.transform(pane)?, scene.quantity.place(pane));
-    let (band, unit) = (scene.band, scene.unit);
+    let transform = view.transform(pane)?;
+    let place = scene.quantity.place(pane);
+    let band = scene.band;
+    let unit = scene.unit;
     let mut change = None;
     for end in [End::Lower, End::Upper] {
         let x = transform.position_from_point_x(end.of(band).log10());
@@ -620,7 +624,8 @@ pub(super) fn draw_band(
 
 /// Whether something of the band between two points, each a place with its lower and its upper value, is in view.
 fn is_in_view(from: &[f64; 3], to: &[f64; 3], view: &PlotBounds) -> bool {
-    let ([min_x, min_y], [max_x, max_y]) = (view.min(), view.max());
+    let [min_x, min_y] = view.min();
+    let [max_x, max_y] = view.max();
     let is_finite = from.iter().chain(to).all(|value| value.is_finite());
     is_finite
         && to[0] >= min_x

@@ -2,7 +2,9 @@
 
 use egui::{Pos2, Rect, Vec2};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
-use gdcm_plot::figure::{Range, fitted_values};
+
+use gdcm_plot::figure::Range;
+use gdcm_plot::figure::responses::fitted_values;
 
 use super::axis_strip::{LimitsForm, PlotAxis};
 use super::bode::{BodeScene, PANES};
@@ -191,7 +193,8 @@ impl BodeView {
 
     /// The part in view of a pane as egui_plot wants it.
     pub(super) fn bounds(&self, pane: Pane) -> PlotBounds {
-        let (frequencies, values) = (self.log_omega.range(), self.value_range(pane));
+        let frequencies = self.log_omega.range();
+        let values = self.value_range(pane);
         PlotBounds::from_min_max([frequencies.min, values.min], [frequencies.max, values.max])
     }
 
@@ -245,10 +248,8 @@ impl BodeView {
         let Some(transform) = self.transform(pane) else {
             return;
         };
-        let (a, b) = (
-            transform.value_from_position(area.min),
-            transform.value_from_position(area.max),
-        );
+        let a = transform.value_from_position(area.min);
+        let b = transform.value_from_position(area.max);
         self.log_omega.choose(Range::new(a.x, b.x));
         self.values[pane as usize].choose(Range::new(a.y, b.y));
     }

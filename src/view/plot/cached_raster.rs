@@ -87,10 +87,8 @@ impl CachedRaster {
 
 /// The least rectangle of whole pixels around `frame`, and its width and height in pixels.
 fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<(Rect, [u16; 2])> {
-    let (min, max) = (
-        (frame.min * pixels_per_point).floor(),
-        (frame.max * pixels_per_point).ceil(),
-    );
+    let min = (frame.min * pixels_per_point).floor();
+    let max = (frame.max * pixels_per_point).ceil();
     let side = |length: f32| {
         (1.0..=f32::from(u16::MAX))
             .contains(&length)
@@ -117,10 +115,8 @@ fn filled(
             ..Default::default()
         },
     );
-    let (scale, shift) = (
-        f64::from(pixels_per_point),
-        (-f64::from(origin.x), -f64::from(origin.y)),
-    );
+    let scale = f64::from(pixels_per_point);
+    let shift = (-f64::from(origin.x), -f64::from(origin.y));
     context.set_transform(Affine::scale(scale) * Affine::translate(shift));
     shapes.iter().for_each(|shape| fill(&mut context, shape));
     context.flush();
@@ -196,7 +192,8 @@ impl StillImage {
 #[cfg(test)]
 mod tests {
     use egui::{RawInput, vec2};
-    use gdcm_plot::figure::Dash;
+
+    use gdcm_plot::figure::drawing::Dash;
 
     use super::*;
 

@@ -3,7 +3,11 @@
 
 use egui::epaint::TextShape;
 use egui::{FontId, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
-use gdcm_plot::figure::{Area, Figure, Sample, Shape as Drawn, Stroke as Line, Text, dot_shapes};
+
+use gdcm_plot::figure::Figure;
+use gdcm_plot::figure::drawing::{Area, Shape as Drawn, Stroke as Line, Text};
+use gdcm_plot::figure::paint::dot_shapes;
+use gdcm_plot::figure::role::Sample;
 
 use crate::view::palette::Palette;
 

@@ -11,9 +11,9 @@ use egui_plot::{
     Points, Span, VLine,
 };
 
-use gdcm_plot::figure::{Pixel, thinned};
+use gdcm_plot::figure::Range;
+use gdcm_plot::figure::thinning::{Pixel, thinned};
 
-use super::Range;
 use super::axes::{
     FrequencyUnit, LABELLED_HEIGHT, TICKS_HEIGHT, Ticks, VERTICAL_TICK_GAP, axis_hints,
     caption_font, quiet_plot,
@@ -266,7 +266,8 @@ fn zoom_by_scrolling(plot: &mut PlotUi<'_>, chart: &Chart<'_>) {
             vec2(both.x * sideways, both.y)
         };
         let fixed = plot.plot_from_screen(pointer);
-        let (bounds, ends) = (plot.plot_bounds(), ends(chart));
+        let bounds = plot.plot_bounds();
+        let ends = ends(chart);
         let zoomed = |axis: usize, factor: f32, fixed: f64| {
             let Range { min, max } =
                 Range::new(bounds.min()[axis], bounds.max()[axis]).zoomed(f64::from(factor), fixed);

@@ -4,6 +4,7 @@ use egui::{
     Button, Id, Key, Popup, PopupCloseBehavior, Response, RichText, Role as WidgetRole, TextEdit,
     Ui, WidgetInfo,
 };
+
 use gdcm_study::study::ExplainTarget;
 
 use super::bode::{BodeEvent, BodeScene};
@@ -11,7 +12,7 @@ use super::bode_view::BodeView;
 use super::curve_style::Role;
 use super::drawn_curves::{BodeCurve, CurveId};
 use super::quantity::{BodeQuantity, PhaseUnit};
-use crate::view::CurveCommand;
+use crate::view::curve_display::CurveCommand;
 use crate::view::explanation::QUESTION;
 use crate::view::palette::{Palette, SMALL_SIZE};
 

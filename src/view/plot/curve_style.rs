@@ -1,8 +1,9 @@
 //! Colour, width and pattern of a line.
 
 use egui::{Color32, Pos2, Shape, Stroke};
+use gdcm_plot::figure::Color;
 pub use gdcm_plot::figure::Role;
-use gdcm_plot::figure::{Color, Dash, Hue};
+use gdcm_plot::figure::drawing::{Dash, Hue};
 
 use crate::view::palette::Palette;
 
@@ -119,7 +120,7 @@ impl Palette {
     }
 
     /// A line as this theme draws it, as wide as the engineer wants it.
-    pub fn curve_style(&self, line: gdcm_plot::figure::Stroke) -> CurveStyle {
+    pub fn curve_style(&self, line: gdcm_plot::figure::drawing::Stroke) -> CurveStyle {
         let length = match line.dash {
             Dash::Solid => 0.0,
             Dash::Long => 9.0,
@@ -127,10 +128,8 @@ impl Palette {
             Dash::Dotted => 4.5,
             Dash::DashDot => 11.0,
         };
-        let (color, width) = (
-            self.color(line.color),
-            line.width_pt as f32 * self.line_width,
-        );
+        let color = self.color(line.color);
+        let width = line.width_pt as f32 * self.line_width;
         CurveStyle {
             color,
             width,
@@ -197,7 +196,8 @@ mod tests {
     #[test]
     fn what_is_solid_or_broken_in_the_window_is_so_on_paper() {
         for role in Role::ALL {
-            let (window, paper) = (Palette::light().role_style(role, false), role.stroke(false));
+            let window = Palette::light().role_style(role, false);
+            let paper = role.stroke(false);
             assert_eq!(
                 window.is_broken(),
                 !paper.dash.pattern_pt().is_empty(),
@@ -224,10 +224,8 @@ mod tests {
             Role::Identified,
             Role::IdentifiedRepresentative,
         ] {
-            let (corrected, other) = (
-                palette.role_style(Role::Corrected, false),
-                palette.role_style(other, false),
-            );
+            let corrected = palette.role_style(Role::Corrected, false);
+            let other = palette.role_style(other, false);
             assert!(
                 corrected.dash != other.dash || (corrected.width - other.width).abs() > 1.5,
                 "{other:?}"
@@ -242,10 +240,8 @@ mod tests {
             ..Palette::dark()
         };
         for role in Role::ALL {
-            let (wide, usual) = (
-                palette.role_style(role, false),
-                Palette::dark().role_style(role, false),
-            );
+            let wide = palette.role_style(role, false);
+            let usual = Palette::dark().role_style(role, false);
             assert_eq!(
                 wide,
                 CurveStyle {
@@ -261,7 +257,8 @@ mod tests {
         for palette in [Palette::dark(), Palette::light()] {
             for a in Role::ALL {
                 for b in Role::ALL.into_iter().filter(|b| *b != a) {
-                    let (a, b) = (palette.role_style(a, false), palette.role_style(b, false));
+                    let a = palette.role_style(a, false);
+                    let b = palette.role_style(b, false);
                     assert!(
                         (a.dash, a.length) != (b.dash, b.length) || (a.width - b.width).abs() > 0.5,
                         "{a:?} {b:?}"

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use egui::{Color32, Pos2, Shape, Ui};
 use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotPoint, PlotTransform};
-pub use gdcm_plot::figure::{BodeCurve, CurveId, LogFrequencies, Pane};
-use gdcm_plot::figure::{Pixel, thinned};
+pub use gdcm_plot::figure::condition_source::CurveId;
+pub use gdcm_plot::figure::responses::{BodeCurve, LogFrequencies, Pane};
+use gdcm_plot::figure::thinning::{Pixel, thinned};
 
 use super::curve_style::CurveStyle;
 use crate::view::palette::Palette;
@@ -86,10 +87,8 @@ impl DrawnCurves {
                             .collect()
                     };
                     *made += 1;
-                    let (numbers, runs) = (
-                        CurveNumbers::of(curve, pane),
-                        runs.iter().map(points).collect(),
-                    );
+                    let numbers = CurveNumbers::of(curve, pane);
+                    let runs = runs.iter().map(points).collect();
                     DrawnCurve {
                         numbers,
                         margin,
@@ -174,8 +173,10 @@ fn take_filled(run: &mut Vec<[f64; 2]>) -> Option<Vec<[f64; 2]>> {
 }
 
 fn enlarged(view: &PlotBounds, margin: f64) -> PlotBounds {
-    let (min, max) = (view.min(), view.max());
-    let (width, height) = (margin * view.width(), margin * view.height());
+    let min = view.min();
+    let max = view.max();
+    let width = margin * view.width();
+    let height = margin * view.height();
     PlotBounds::from_min_max(
         [min[0] - width, min[1] - height],
         [max[0] + width, max[1] + height],
@@ -319,10 +320,8 @@ mod tests {
 
     #[test]
     fn points_are_kept_until_their_curve_or_the_view_changes() {
-        let (mut drawn, mut curves) = (
-            DrawnCurves::default(),
-            vec![curve(0, &[1.0, 9.0, 5.0]), curve(1, &[1.0; 3])],
-        );
+        let mut drawn = DrawnCurves::default();
+        let mut curves = vec![curve(0, &[1.0, 9.0, 5.0]), curve(1, &[1.0; 3])];
         update(&mut drawn, &curves, 10.0);
         let first = places(&drawn);
         curves[0].highlighted = true;

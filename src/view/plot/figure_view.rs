@@ -9,10 +9,12 @@ use egui::{
 use egui_plot::{
     Axis as Side, GridInput, GridMark, Plot as Frame, PlotBounds, PlotPoint, PlotTransform,
 };
-use gdcm_plot::figure::{
-    Along, Area, Dots, Figure, FrequencyUnit, Mark, MarkId, Panel, Plot, Range, Scale, Shape,
-    dot_shapes,
-};
+
+use gdcm_plot::figure::axis::{FrequencyUnit, Scale};
+use gdcm_plot::figure::drawing::{Area, Shape};
+use gdcm_plot::figure::figure::{Along, Dots, Plot};
+use gdcm_plot::figure::paint::dot_shapes;
+use gdcm_plot::figure::{Figure, Mark, MarkId, Panel, Range};
 use gdcm_study::study::ExplainTarget;
 
 use super::axes::{
@@ -111,8 +113,13 @@ impl<'a> FigureScene<'a> {
         message: &'a str,
         words: &'a dyn FigureWords,
     ) -> Self {
-        let (selected, highlighted, columns, accented) = (None, None, &[][..], None);
-        let (zooms, is_compact, words) = (false, false, (words, 0));
+        let selected = None;
+        let highlighted = None;
+        let columns = &[][..];
+        let accented = None;
+        let zooms = false;
+        let is_compact = false;
+        let words = (words, 0);
         Self {
             name,
             figure,
@@ -271,7 +278,8 @@ pub fn figure_within_ui(
                 let id = ui.make_persistent_id((scene.name, index));
                 let kept = (&mut view.plots[index], emphasized);
                 let (response, pointed) = panels_ui(ui, (id, rect), scene, index, kept, palette);
-                let (words, index) = (scene.words.0, scene.words.1 + index);
+                let words = scene.words.0;
+                let index = scene.words.1 + index;
                 let questions = pointed
                     .as_ref()
                     .map(|(id, _)| words.questions(index, id))
@@ -380,7 +388,9 @@ fn plot_ui(
     palette: &Palette,
 ) -> (Response, Option<(MarkId, [f64; 2])>) {
     let Plot { title, panels } = &scene.figure.plots[index];
-    let (panel, words, number) = (&panels[panel_number], scene.words.0, scene.words.1 + index);
+    let panel = &panels[panel_number];
+    let words = scene.words.0;
+    let number = scene.words.1 + index;
     let is_first = panel_number == 0;
     let above = if is_first { TITLE_HEIGHT } else { PANEL_GAP };
     let mut plot_rect = Rect::from_min_max(
@@ -405,7 +415,8 @@ fn plot_ui(
             plot.set_plot_bounds(PlotBounds::from_min_max([x.min, y.min], [x.max, y.max]));
         })
     });
-    let (response, transform) = (shown.inner.response, shown.inner.transform);
+    let response = shown.inner.response;
+    let transform = shown.inner.transform;
     let told = if is_first {
         words.plot(number)
     } else {
@@ -520,11 +531,10 @@ impl PlotView {
             return;
         };
         let frame = *transform.frame();
-        let (min, max) = (transform.bounds().min(), transform.bounds().max());
-        let (area, ranges) = (
-            area(frame),
-            [0, 1].map(|axis| Range::new(min[axis], max[axis])),
-        );
+        let min = transform.bounds().min();
+        let max = transform.bounds().max();
+        let area = area(frame);
+        let ranges = [0, 1].map(|axis| Range::new(min[axis], max[axis]));
         let ranges = [values(panel, ranges[0]), ranges[1]];
         let is_same = |(of, at, shown): &(Panel, Area, [Range; 2])| {
             (of, at, shown) == (panel, &area, &ranges)
@@ -600,13 +610,12 @@ impl PlotView {
         let Some(transform) = self.transform else {
             return;
         };
-        let (min, max) = (transform.bounds().min(), transform.bounds().max());
+        let min = transform.bounds().min();
+        let max = transform.bounds().max();
         let mut shown = [0, 1].map(|axis| Range::new(min[axis], max[axis]));
         if let Some((turn, pointer)) = turned(&response.ctx, response) {
-            let (factor, fixed) = (
-                f64::from(turn.along_one_axis()),
-                transform.value_from_position(pointer),
-            );
+            let factor = f64::from(turn.along_one_axis());
+            let fixed = transform.value_from_position(pointer);
             let zoomed = [
                 shown[0].zoomed(factor, fixed.x),
                 shown[1].zoomed(factor, fixed.y),
@@ -681,7 +690,8 @@ fn frame<'a>(
     } else {
         TICK_GAP
     };
-    let (is_named, values) = (!names.is_empty(), Ticks::Decimal(gap));
+    let is_named = !names.is_empty();
+    let values = Ticks::Decimal(gap);
     let width = |text: &str| {
         ui.painter()
             .layout_no_wrap(text.to_owned(), tick_font(), palette.text)
@@ -692,7 +702,8 @@ fn frame<'a>(
         .iter()
         .map(|(_, name)| width(name))
         .fold(0.0, f32::max);
-    let (count, digit) = (names.len(), f64::from(width("0")));
+    let count = names.len();
+    let digit = f64::from(width("0"));
     let along = match panel.x.scale {
         Scale::Logarithmic => Ticks::Frequency(FrequencyUnit::RadPerSecond),
         Scale::Linear | Scale::Degrees => Ticks::Decimal(TICK_GAP),

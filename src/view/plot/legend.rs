@@ -7,12 +7,12 @@ use egui::{
     vec2,
 };
 
-use gdcm_plot::figure::Dash;
+use gdcm_plot::figure::drawing::Dash;
 
 use super::bode::BodeEvent;
 use super::curve_style::{CurveStyle, Role};
 use super::drawn_curves::BodeCurve;
-use crate::view::CurveCommand;
+use crate::view::curve_display::CurveCommand;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
 /// Height of a chip, and of a line of them \[pt\].
@@ -133,10 +133,8 @@ impl Chips<'_> {
                 + 2.0 * PAD
                 + GAP
         };
-        let (bands, sample) = (
-            self.bands.map(|_| self.bands_text()),
-            SAMPLES[usize::from(self.is_tight)],
-        );
+        let bands = self.bands.map(|_| self.bands_text());
+        let sample = SAMPLES[usize::from(self.is_tight)];
         let names = self
             .roles
             .iter()
@@ -322,7 +320,8 @@ impl Row {
         } else {
             look
         };
-        let (left, middle) = (place.left() + PAD, place.center().y);
+        let left = place.left() + PAD;
+        let middle = place.center().y;
         let mut shapes = Vec::new();
         look.add_shapes(
             vec![pos2(left, middle), pos2(left + self.sample, middle)],

@@ -2,39 +2,32 @@
 
 mod axes;
 mod axis_strip;
-mod bode;
-mod bode_pane;
-mod bode_view;
+pub mod bode;
+pub mod bode_pane;
+pub mod bode_view;
 mod cached_raster;
-mod canvas;
-mod chart;
-mod curve_menu;
-mod curve_style;
-mod drawn_curves;
-mod figure_view;
-mod legend;
-mod navigation;
-mod overview;
-mod quantity;
-mod readout;
+pub mod canvas;
+pub mod chart;
+pub mod curve_menu;
+pub mod curve_style;
+pub mod drawn_curves;
+pub mod figure_view;
+pub mod legend;
+pub mod navigation;
+pub mod overview;
+pub mod quantity;
+pub mod readout;
 mod tiles;
 
-pub use gdcm_plot::figure::{Across, FrequencyUnit, Measure, Range, decimals};
-
-pub use bode::*;
-pub use bode_pane::*;
-pub use bode_view::*;
-pub use canvas::*;
-pub use chart::*;
-pub use curve_menu::*;
-pub use curve_style::*;
-pub use drawn_curves::*;
-pub use figure_view::*;
-pub use legend::*;
-pub use navigation::PICK_RADIUS;
-pub use overview::*;
-pub use quantity::*;
-pub use readout::*;
+pub use gdcm_plot::figure::axis::FrequencyUnit;
+pub use gdcm_plot::figure::gains::{Across, Measure};
+pub use gdcm_plot::figure::{Range, decimals};
 
 #[cfg(test)]
 mod tests;
+
+pub use bode::{BodeScene, bode_ui};
+pub use bode_view::BodeView;
+pub use curve_style::Role;
+pub use drawn_curves::{BodeCurve, CurveId, Pane};
+pub use figure_view::{FigureEvent, FigureScene, FigureView, FigureWords, figure_ui};

@@ -5,6 +5,7 @@ use egui::{
     Ui, Vec2, pos2, vec2,
 };
 use egui_plot::{PlotPoint, PlotTransform};
+
 use gdcm_plot::figure::{MarkId, Panel, Range};
 
 use super::bode_view::BodeView;
@@ -298,7 +299,8 @@ pub(super) fn touched(
 /// and method for line clipping", ACM TOG 3(1), 1984); it meets the area where the intervals have something in common.
 fn meets(from: Pos2, to: Pos2, area: Rect) -> bool {
     let along = to - from;
-    let (mut first, mut last) = (0.0f32, 1.0f32);
+    let mut first = 0.0f32;
+    let mut last = 1.0f32;
     for (start, step, low, high) in [
         (from.x, along.x, area.left(), area.right()),
         (from.y, along.y, area.top(), area.bottom()),
@@ -380,10 +382,8 @@ pub(super) fn drawn_box_ui(
     if is_done {
         return is_wanted.then_some(area);
     }
-    let (fill, stroke) = (
-        palette.accent.gamma_multiply(0.12),
-        Stroke::new(1.0, palette.accent),
-    );
+    let fill = palette.accent.gamma_multiply(0.12);
+    let stroke = Stroke::new(1.0, palette.accent);
     ui.painter()
         .with_clip_rect(frame)
         .rect(area, 0.0, fill, stroke, StrokeKind::Inside);

@@ -7,6 +7,7 @@ use egui::{
     Ui, UiBuilder, Vec2, WidgetInfo, pos2, vec2,
 };
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
+
 use gdcm_model::dataset::Pair;
 use gdcm_plot::figure::{Range, decimals};
 
@@ -464,10 +465,8 @@ mod tests {
 
     #[test]
     fn a_curve_that_reaches_farther_widens_what_is_in_view() {
-        let (mut sketch, mut curves) = (
-            Sketch::default(),
-            vec![curve(0, &[0.0, 9.0, 5.0]), curve(1, &[1.0, 2.0, 3.0])],
-        );
+        let mut sketch = Sketch::default();
+        let mut curves = vec![curve(0, &[0.0, 9.0, 5.0]), curve(1, &[1.0, 2.0, 3.0])];
         paint(&mut sketch, &curves);
         let before = sketch.transform;
         curves[1] = curve(1, &[1.0, 20.0, 3.0]);

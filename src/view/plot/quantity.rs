@@ -1,8 +1,9 @@
 //! What the two stacked panes show, and in which units.
 
 use gdcm_model::units::db_to_ratio;
-pub use gdcm_plot::figure::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
-use gdcm_plot::figure::{Range, compact, decimals};
+use gdcm_plot::figure::axis::compact;
+pub use gdcm_plot::figure::axis::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
+use gdcm_plot::figure::{Range, decimals};
 
 use super::axes::{Ticks, VERTICAL_TICK_GAP};
 use super::drawn_curves::Pane;

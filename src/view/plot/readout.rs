@@ -1,6 +1,7 @@
 //! What curves have where the pointer is: the one that it means in words, the roles in a strip between the panes.
 
 use egui::{FontId, Rect, Role as WidgetRole, Sense, Stroke, Ui, WidgetInfo, vec2};
+
 use gdcm_model::response::wrap;
 use gdcm_plot::figure::decimals;
 
@@ -37,7 +38,8 @@ pub(super) fn value_text(quantity: BodeQuantity<'_>, curve: &BodeCurve, omega: f
 fn branch_text(phase_deg: f64) -> Option<String> {
     let principal = wrap(phase_deg.to_radians()).to_degrees();
     let turns = ((phase_deg - principal) / 360.0).round();
-    let (word, count) = (if turns < 0.0 { "less" } else { "and" }, turns.abs());
+    let word = if turns < 0.0 { "less" } else { "and" };
+    let count = turns.abs();
     let noun = if count == 1.0 { "turn" } else { "turns" };
     (count > 0.0).then(|| format!(" ({}° {word} {count} {noun})", decimals(principal, 0)))
 }

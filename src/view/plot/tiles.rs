@@ -58,7 +58,8 @@ impl Tiles {
 
     /// The place of a tile in an area that begins at `origin`.
     fn rect(self, index: usize, origin: egui::Pos2) -> Rect {
-        let (column, row) = (index % self.columns, index / self.columns);
+        let column = index % self.columns;
+        let row = index / self.columns;
         let offset = vec2(column as f32 * self.size.x, row as f32 * self.size.y);
         Rect::from_min_size(origin + offset, self.size)
     }

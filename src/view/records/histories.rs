@@ -9,17 +9,25 @@ use egui::{
     vec2,
 };
 
-use crate::view::plot::{
-    Chart, ChartAxis, ChartImage, ChartLine, ChartSpan, chart_ui, chosen_stretch,
-};
-use crate::view::{Command, Palette, check_ui, choice_ui, entry_ui};
 use gdcm_model::dataset::Band;
 use gdcm_model::executor::Sequential;
+use gdcm_model::simulation::{FlightRecord, Segment};
 use gdcm_model::units::telling;
-use gdcm_sysid::identification::{CautionNote, FlightRecord, Segment, Treatment, spectra};
-use gdcm_sysid::records::{LaidOutRecord, ModeSpan, Spectrogram};
+use gdcm_sysid::identification::gaps::Treatment;
+use gdcm_sysid::identification::{CautionNote, spectra};
+use gdcm_sysid::records::spectrogram::Spectrogram;
+use gdcm_sysid::records::{LaidOutRecord, ModeSpan};
 
-use super::{ConditionRecords, Page, RecordsCommand, numbers, simulated, time_models_ui};
+use super::records_state::Page;
+use super::simulation::{simulated, time_models_ui};
+use super::{ConditionRecords, RecordsCommand, numbers};
+use crate::view::command::Command;
+use crate::view::controls::{check_ui, entry_ui};
+use crate::view::palette::Palette;
+use crate::view::plot::chart::{
+    Chart, ChartAxis, ChartImage, ChartLine, ChartSpan, chart_ui, chosen_stretch,
+};
+use crate::view::settings_panel::choice_ui;
 
 /// Least height of a chart \[pt\]; more of them scroll.
 const LEAST_HEIGHT: f32 = 84.0;
@@ -90,7 +98,8 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
                 .0;
             for (place, name) in names.iter().enumerate() {
                 // Down the first column, then down the second: inputs stand before outputs.
-                let (column, line) = (place / rows, place % rows);
+                let column = place / rows;
+                let line = place % rows;
                 let corner = area.min + vec2(column as f32 * width, line as f32 * height);
                 let is_last = line + 1 == rows || place + 1 == names.len();
                 let mut chart = Chart::new(
@@ -266,14 +275,16 @@ fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
         records,
         palette,
     } = page;
-    let (inputs, chosen) = (state.dataset().inputs(), state.records.spectrogram);
+    let inputs = state.dataset().inputs();
+    let chosen = state.records.spectrogram;
     let Some((index, channel)) = chosen.and_then(|index| Some((index, inputs.get(index)?))) else {
         return;
     };
     let band = records
         .band
         .map_or(state.study.settings.band.max(), |band| band[1]);
-    let (highest, is_dark) = (2.0 * band, ui.visuals().dark_mode);
+    let highest = 2.0 * band;
+    let is_dark = ui.visuals().dark_mode;
     let key = (index, highest.to_bits(), is_dark);
     let source: Source = Arc::clone(flight) as _;
     let found = kept(ui, "spectrogram", &[source], key, || {
@@ -292,16 +303,15 @@ fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
         );
         return;
     };
-    let (title, unit) = (
-        format!("{}: power over time, dB below the greatest", channel.name),
-        state.display.unit,
-    );
+    let title = format!("{}: power over time, dB below the greatest", channel.name);
+    let unit = state.display.unit;
     let label = unit.axis_label();
     let mut chart = Chart::new(&title, ChartAxis::Linear, "", &label);
     chart.group = Some(charts());
     chart.fits_values = true;
     chart.chooses = state.records.chooses_parts;
-    let (across, omega) = (found.time_s, found.omega);
+    let across = found.time_s;
+    let omega = found.omega;
     chart.image = Some(ChartImage {
         texture: texture.id(),
         across,
@@ -398,7 +408,7 @@ fn spans(records: &ConditionRecords, palette: &Palette) -> Vec<ChartSpan> {
     let record = (0..found.record_uses.len())
         .find(|record| records.row_of_record(*record) == Some(records.chosen));
     let gaps = record.map_or(&[][..], |record| &found.record_uses[record].gaps);
-    let span = |gap: &gdcm_sysid::identification::Gap| {
+    let span = |gap: &gdcm_sysid::identification::gaps::Gap| {
         let color = match gap.treatment {
             Treatment::Bridged => palette.accent.gamma_multiply(0.25),
             Treatment::CutOut => palette.warning.gamma_multiply(0.35),
@@ -437,7 +447,8 @@ pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
         .enumerate()
         .filter_map(|(index, row)| {
             let flight = row.flight.as_ref()?;
-            let (name, source) = (format!("autospectrum {index}"), Arc::clone(flight));
+            let name = format!("autospectrum {index}");
+            let source = Arc::clone(flight);
             let spectra = kept(ui, &name, &[source], band.max().to_bits(), || {
                 autospectra(flight, band.max())
             });
@@ -574,7 +585,8 @@ pub(super) fn kept<T: Send + Sync + 'static>(
 ) -> Arc<T> {
     let mut hasher = DefaultHasher::new();
     key.hash(&mut hasher);
-    let (place, key) = (Id::unique(("records page", name)), hasher.finish());
+    let place = Id::unique(("records page", name));
+    let key = hasher.finish();
     let are_same = |known: &[Source]| {
         known.len() == sources.len()
             && known
@@ -609,7 +621,8 @@ mod tests {
             .collect();
         let column = |values: &[f64]| nalgebra::DMatrix::from_column_slice(values.len(), 1, values);
         let time_s: Vec<f64> = (0..samples).map(|n| 0.02 * n as f64).collect();
-        let (inputs, outputs) = (column(&input), column(&input));
+        let inputs = column(&input);
+        let outputs = column(&input);
         let flight = FlightRecord {
             name: "record".to_owned(),
             time_s,
@@ -617,10 +630,8 @@ mod tests {
             outputs,
         };
         let autospectrum = autospectra(&flight, 1e6)[0].clone();
-        let (step_hz, mean) = (
-            SMOOTHED as f64 / (0.02 * samples as f64),
-            input.iter().sum::<f64>() / samples as f64,
-        );
+        let step_hz = SMOOTHED as f64 / (0.02 * samples as f64);
+        let mean = input.iter().sum::<f64>() / samples as f64;
         let integral: f64 = autospectrum
             .iter()
             .map(|[_, db]| 10f64.powf(0.1 * db) * step_hz)

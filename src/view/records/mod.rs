@@ -20,21 +20,24 @@ use gdcm_model::dataset::ConditionId;
 use gdcm_model::units::{number, six_digits};
 use gdcm_plot::figure::decimals;
 use gdcm_study::study::Table;
-use gdcm_sysid::identification::{HIGHEST_ORDER, LONGEST_PAST, SearchSpace};
+use gdcm_sysid::identification::SearchSpace;
+use gdcm_sysid::identification::identify::{HIGHEST_ORDER, LONGEST_PAST};
 use gdcm_sysid::records::LayoutProblem;
 
-use super::controls::page_tab_ui;
-use super::tables::{TableLook, table_ui};
-use super::{
-    Asks, Command, Palette, Sorting, State, button_ui, entry_ui, is_entered, named,
-    restore_panel_size, text_field_ui, typed_number,
+use super::command::Command;
+use super::controls::{
+    Asks, button_ui, entry_ui, is_entered, named, page_tab_ui, restore_panel_size, text_field_ui,
+    typed_number,
 };
-use histories::{Source, histories_ui, inputs_ui, kept};
+use super::palette::Palette;
+use super::state::State;
+use super::tables::{Sorting, TableLook, table_ui};
+use histories::{histories_ui, inputs_ui, kept};
 use outcome::{offered_menu_ui, outcome_ui};
-use record_list::{BAD, CHI_SQUARED, columns_ui, cost_text, record_list_ui};
+use record_list::{columns_ui, record_list_ui};
 use records_state::Page;
 use response::{identified_poles_ui, response_ui, stabilisation_ui};
-use simulation::{fit_ui, simulated, time_models_ui};
+use simulation::fit_ui;
 
 pub use records_state::{
     AddedRecord, ConditionRecords, RecordsBefore, RecordsCommand, RecordsPage, RecordsState,

@@ -4,20 +4,30 @@ use std::sync::Arc;
 
 use egui::{Label, ProgressBar, RichText, Ui};
 
-use crate::view::{Asks, Command, Palette, SMALL_SIZE};
-use gdcm_model::dataset::{BundleKind, ChannelRemedy, ChannelSide, Pair};
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::condition::ChannelRemedy;
+use gdcm_model::dataset::{BundleKind, Pair};
+use gdcm_model::simulation::Signal;
 use gdcm_model::units::s_to_ms;
-use gdcm_study::study::{ChannelTimeSkew, OfferedModels};
+use gdcm_study::study::changed_models::OfferedModels;
+use gdcm_study::study::channel_time_skew::ChannelTimeSkew;
+use gdcm_sysid::identification::diagnostics::HELD_OUT;
+use gdcm_sysid::identification::record_cautions::RecordCaution;
+use gdcm_sysid::identification::record_contrast::{ContradictingRecord, RecordFault};
 use gdcm_sysid::identification::{
-    ChannelPreparation, ContradictingRecord, HELD_OUT, Hold, Identification, IdentificationCaution,
-    IdentificationError, RecordCaution, RecordFault, Signal,
+    ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError,
 };
 use gdcm_sysid::records::LaidOutRecord;
 
+use super::histories::{Source, kept};
+use super::record_list::{BAD, CHI_SQUARED};
+use super::records_state::Page;
 use super::{
-    BAD, CHI_SQUARED, ConditionRecords, ORDERS, Page, REFERENCES, RecordsCommand, RecordsPage,
-    Source, kept, possible_references,
+    ConditionRecords, ORDERS, REFERENCES, RecordsCommand, RecordsPage, possible_references,
 };
+use crate::view::command::Command;
+use crate::view::controls::Asks;
+use crate::view::palette::{Palette, SMALL_SIZE};
 
 /// How far the identification is, or what came of it.
 pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
@@ -173,7 +183,8 @@ fn late_channel_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Some((job, Ok(found))) = &records.found else {
         return;
     };
-    let (dataset, condition) = (state.dataset(), state.condition());
+    let dataset = state.dataset();
+    let condition = state.condition();
     let Some(physics) = condition
         .bundle(BundleKind::Physics)
         .get(condition.nominal())
@@ -219,10 +230,12 @@ fn put_right(records: &ConditionRecords, of: &ContradictingRecord) -> Option<Act
         name,
         fault,
     } = of;
-    let (row, fault) = (records.row_of_record(*record)?, fault.as_ref()?);
+    let row = records.row_of_record(*record)?;
+    let fault = fault.as_ref()?;
     let mut layout = records.rows[row].layout.clone();
     let signal = |(index, channel): (usize, &ChannelPreparation)| {
-        let (role, name) = (ChannelSide::Output, channel.name.clone());
+        let role = ChannelSide::Output;
+        let name = channel.name.clone();
         Signal { role, index, name }
     };
     let outputs: Vec<Signal> = records.outputs.iter().enumerate().map(signal).collect();

@@ -4,17 +4,18 @@ use egui::{
     Align, Checkbox, Grid, Label, Layout, RichText, Role as AccessRole, ScrollArea, Sense, Ui, vec2,
 };
 
-use crate::view::controls::list_ui;
-use crate::view::{
-    Asks, BODY_SIZE, Command, Palette, SMALL_SIZE, elided_among, named, named_switch,
-    number_entry_ui,
-};
-use gdcm_model::dataset::{ChannelRemedy, ChannelSide, RecordKind};
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::condition::{ChannelRemedy, RecordKind};
+use gdcm_model::simulation::Signal;
 use gdcm_model::units::{ms_to_s, number, s_to_ms};
-use gdcm_sysid::identification::Signal;
-use gdcm_sysid::records::{ColumnUse, LaidOutRecord, LayoutProblem, RecordLayout, TimeBase};
+use gdcm_sysid::records::record_table::TimeBase;
+use gdcm_sysid::records::{ColumnUse, LaidOutRecord, LayoutProblem, RecordLayout};
 
-use super::{ConditionRecords, Page, RecordsCommand};
+use super::records_state::Page;
+use super::{ConditionRecords, RecordsCommand};
+use crate::view::command::Command;
+use crate::view::controls::{Asks, elided_among, list_ui, named, named_switch, number_entry_ui};
+use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
 /// Width of all columns but the names \[pt\].
 const OTHER_COLUMNS: f32 = 124.0;
@@ -82,8 +83,10 @@ pub(super) fn record_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
 
 /// Problems in words; those that page Columns mends in one sentence a kind, where they are of several channels.
 fn problem_words(problems: &[LayoutProblem]) -> Vec<String> {
-    let (mut missing, mut unsaid, mut others, mut columns) =
-        (Vec::new(), Vec::new(), Vec::new(), "");
+    let mut missing = Vec::new();
+    let mut unsaid = Vec::new();
+    let mut others = Vec::new();
+    let mut columns = "";
     for problem in problems {
         match problem {
             LayoutProblem::NoColumn { channel, found, .. } => {
@@ -337,7 +340,8 @@ fn channel_row_ui(
     unit: &str,
     commands: &mut Vec<Command>,
 ) {
-    let (row, name) = (&records.rows[records.chosen], &signal.name);
+    let row = &records.rows[records.chosen];
+    let name = &signal.name;
     ui.label(format!("{name} [{unit}]"));
     let (uses, channels) = match signal.role {
         ChannelSide::Input => (&row.layout.inputs, &records.inputs),

@@ -7,20 +7,29 @@ use std::sync::Arc;
 use egui::Ui;
 
 use gdcm_model::assembly::ChannelRule;
-use gdcm_model::dataset::{Band, ChannelRemedy, ChannelSide, ConditionId, Dataset, RecordKind};
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::condition::{ChannelRemedy, RecordKind};
+use gdcm_model::dataset::{Band, ConditionId, Dataset};
+use gdcm_model::simulation::Signal;
 use gdcm_model::units::{number, telling};
-use gdcm_study::study::{AdoptedModels, IdentificationRequest, IdentifyJob, OfferedModels};
+use gdcm_study::study::changed_models::{AdoptedModels, OfferedModels};
+use gdcm_study::study::job::{IdentificationRequest, IdentifyJob};
 use gdcm_sysid::identification::{
     CautionNote, ChannelPreparation, Hold, Identification, IdentificationError, Preparation,
-    SearchSpace, Signal,
+    SearchSpace,
 };
+use gdcm_sysid::records::record_channels::{ChannelList, SaidChannel};
+use gdcm_sysid::records::resampling::ResamplingWish;
 use gdcm_sysid::records::{
-    ChannelList, ColumnUse, LaidOutRecord, LayoutProblem, RecordChannels, RecordColumn,
-    RecordLayout, RecordSource, RecordTable, ResamplingWish, SaidChannel,
+    ColumnUse, LaidOutRecord, LayoutProblem, RecordChannels, RecordColumn, RecordLayout,
+    RecordSource, RecordTable,
 };
 
 use super::TimeModel;
-use crate::view::{Palette, Sorting, State, typed_number};
+use crate::view::controls::typed_number;
+use crate::view::palette::Palette;
+use crate::view::state::State;
+use crate::view::tables::Sorting;
 
 /// What a page of the view shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -469,7 +478,8 @@ impl ConditionRecords {
         if self.references.is_empty() {
             return Ok(row.clone());
         }
-        let (mut layout, mut channels) = (row.layout.clone(), channels.clone());
+        let mut layout = row.layout.clone();
+        let mut channels = channels.clone();
         for reference in &self.references {
             let column = row.table.find(reference);
             let column = column
@@ -754,10 +764,8 @@ impl WantedDataset {
             let list: ChannelList = text.parse().map_err(|error| format!("{side}: {error}"))?;
             Ok::<_, String>(list.channels.iter().map(SaidChannel::rule).collect())
         };
-        let (inputs, outputs) = (
-            rules("inputs", &self.inputs)?,
-            rules("outputs", &self.outputs)?,
-        );
+        let inputs = rules("inputs", &self.inputs)?;
+        let outputs = rules("outputs", &self.outputs)?;
         let end = |text: &String| typed_number(text).ok().flatten().unwrap_or(f64::NAN);
         let band =
             Band::new(end(&self.band[0]), end(&self.band[1])).map_err(|error| error.to_string())?;

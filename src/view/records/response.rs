@@ -3,21 +3,29 @@
 use std::sync::Arc;
 
 use egui::{Color32, Rect, RichText, Role, Sense, Shape, Stroke, Ui, vec2};
-
-use crate::view::controls::text_width;
-use crate::view::palette::small;
-use crate::view::plot::{Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan, chart_ui};
-use crate::view::{Palette, State, named, painted_text};
-use gdcm_model::dataset::{Pair, StateSpace};
-use gdcm_model::response::{ResponseShape, evaluate};
-use gdcm_model::units::neper_to_db;
-use gdcm_sysid::identification::{
-    CautionNote, EstimatePoint, Identification, IdentificationCaution, NARROW_WINDOW, PoleEstimate,
-    StabilisationPoint, TRUSTED_COHERENCE, TWO_SIDED_95, log_spaced,
-};
 use nalgebra::Complex;
 
-use super::{Page, kept};
+use gdcm_model::dataset::{Pair, StateSpace};
+use gdcm_model::response::evaluate;
+use gdcm_model::response::frequency_response::{ResponseShape, log_spaced};
+use gdcm_model::response::pole_estimate::PoleEstimate;
+use gdcm_model::units::neper_to_db;
+use gdcm_sysid::identification::diagnostics::NARROW_WINDOW;
+use gdcm_sysid::identification::local_polynomial::EstimatePoint;
+use gdcm_sysid::identification::subspace::StabilisationPoint;
+use gdcm_sysid::identification::uncertainty::TWO_SIDED_95;
+use gdcm_sysid::identification::{
+    CautionNote, Identification, IdentificationCaution, TRUSTED_COHERENCE,
+};
+
+use super::histories::kept;
+use super::records_state::Page;
+use crate::view::controls::{named, painted_text, text_width};
+use crate::view::palette::{Palette, small};
+use crate::view::plot::chart::{
+    Chart, ChartAxis, ChartBand, ChartLine, ChartMarks, ChartSpan, chart_ui,
+};
+use crate::view::state::State;
 
 /// Frequencies of a model's curve.
 const POINTS: usize = 200;
@@ -117,7 +125,8 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
 
 /// What speaks against the response shown, in a few words each: of the pair, of its input, its output, or of all.
 fn marks(Page { state, records, .. }: Page<'_>) -> impl Iterator<Item = &'static str> {
-    let (dataset, pair) = (state.dataset(), state.display.pair);
+    let dataset = state.dataset();
+    let pair = state.display.pair;
     let names = [
         &dataset.outputs()[pair.output].name,
         &dataset.inputs()[pair.input].name,
@@ -226,7 +235,8 @@ enum Key {
 
 impl Key {
     fn paint(self, ui: &Ui, rect: Rect, color: Color32) {
-        let (painter, stroke) = (ui.painter(), Stroke::new(2.0, color));
+        let painter = ui.painter();
+        let stroke = Stroke::new(2.0, color);
         let ends = [rect.left_center(), rect.right_center()];
         match self {
             Self::Line { dashed: false } => drop(painter.line_segment(ends, stroke)),
@@ -235,7 +245,7 @@ impl Key {
             }
             Self::Dot { filled: true } => drop(painter.circle_filled(rect.center(), 3.0, color)),
             Self::Dot { filled: false } => {
-                drop(painter.circle_stroke(rect.center(), 3.0, Stroke::new(1.0, color)))
+                painter.circle_stroke(rect.center(), 3.0, Stroke::new(1.0, color));
             }
             Self::Bar => drop(painter.rect_filled(
                 rect.shrink2(vec2(0.0, 4.0)),
@@ -324,7 +334,8 @@ fn drawn(
     band: [f64; 2],
     (pair, by_reference): (Pair, bool),
 ) -> DrawnResponse {
-    let (points, at) = (&found.measured.points, (pair.output, pair.input));
+    let points = &found.measured.points;
+    let at = (pair.output, pair.input);
     let sds = points.iter().map(|point| {
         Some(point.sd(at))
             .filter(|sd| sd.is_finite())

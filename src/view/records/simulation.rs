@@ -4,14 +4,19 @@ use std::sync::Arc;
 
 use egui::{Color32, Grid, Label, RichText, ScrollArea, Ui};
 
-use crate::view::plot::ChartLine;
-use crate::view::{Command, Palette, SMALL_SIZE, State};
 use gdcm_method::correction::Pade;
 use gdcm_model::dataset::{BundleKind, StateSpace};
-use gdcm_study::study::SimulationJob;
-use gdcm_sysid::identification::Validation;
+use gdcm_model::simulation::Validation;
+use gdcm_study::study::job::SimulationJob;
 
-use super::{ConditionRecords, Page, RecordsCommand, cost_text, kept};
+use super::histories::kept;
+use super::record_list::cost_text;
+use super::records_state::Page;
+use super::{ConditionRecords, RecordsCommand};
+use crate::view::command::Command;
+use crate::view::palette::{Palette, SMALL_SIZE};
+use crate::view::plot::chart::ChartLine;
+use crate::view::state::State;
 
 /// A model that can be compared with a record in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -131,7 +136,8 @@ fn jobs(state: &State) -> Vec<(TimeModel, SimulationJob)> {
     };
     let preparation = records.preparation();
     let of = |model: &TimeModel| {
-        let (record, preparation) = (Arc::clone(record), preparation.clone());
+        let record = Arc::clone(record);
+        let preparation = preparation.clone();
         Some((
             *model,
             SimulationJob {

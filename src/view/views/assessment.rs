@@ -1,22 +1,23 @@
 //! What the correction is worth, condition by condition.
 
 use egui::{Align, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
+
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{Condition, ConditionId, Pair};
-use gdcm_plot::figure::{
-    Axis, Bars, Color, Curve, Figure, Hue, MarkId, Note, Panel, Place, Plot, Range, Rule, Spans,
-    Stroke, change_table, decimals,
-};
-use gdcm_study::study::{
-    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, ExplainTarget, Table,
-    held_out_verdict,
-};
+use gdcm_plot::figure::assessment::change_table;
+use gdcm_plot::figure::axis::Axis;
+use gdcm_plot::figure::drawing::{Hue, Stroke};
+use gdcm_plot::figure::figure::{Bars, Curve, Note, Place, Plot, Rule, Spans};
+use gdcm_plot::figure::{Color, Figure, MarkId, Panel, Range, decimals};
+use gdcm_study::study::assessment_table::{AssessedModel, AssessmentChoice, held_out_verdict};
+use gdcm_study::study::{AssessedCorrection, AssessmentTable, ExplainTarget, Table};
 
 use super::View;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{FigureEvent, FigureScene, FigureWords, NamedFigure, figure_ui};
+use crate::view::plot::curve_menu::NamedFigure;
+use crate::view::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 use crate::view::tables::{TableLook, table_ui};
@@ -156,10 +157,8 @@ pub fn assessment_view_ui(
         .pairs
         .iter()
         .map(|&pair| Plot::new(state.dataset().pair_name(pair)).panel(plots.panel(pair)));
-    let (figure, message) = (
-        Figure::default().plots(figure),
-        "No response of this kind: choose others above",
-    );
+    let figure = Figure::default().plots(figure);
+    let message = "No response of this kind: choose others above";
     let scene = FigureScene {
         selected: Some(MarkId::Condition(state.condition().id())),
         columns: &ids,
@@ -295,7 +294,8 @@ impl AssessmentPlots<'_> {
             found.iter().flat_map(total),
         );
         let number = |(at, change): &(f64, CostChange)| {
-            let (total, by) = (change.total(), MARGINS[1] * range.width());
+            let total = change.total();
+            let by = MARGINS[1] * range.width();
             let end = ends(change)
                 .into_iter()
                 .fold(0.0, if total > 0.0 { f64::max } else { f64::min });

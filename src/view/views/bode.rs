@@ -2,12 +2,16 @@
 //! response of a condition, small.
 
 use egui::{Align2, Pos2, Rect, Ui, vec2};
+
 use gdcm_model::dataset::Pair;
 use gdcm_model::units::{number, ratio_to_db, s_to_ms};
-use gdcm_plot::figure::{
-    ConditionSource, airspeed_curves, decimals, muad_about, noticed, uncertainty_bands,
-};
-use gdcm_study::study::{AcrossJob, AcrossRole, Undefined, display_band};
+use gdcm_plot::figure::error::{muad_about, noticed};
+use gdcm_plot::figure::responses::{airspeed_curves, uncertainty_bands};
+use gdcm_plot::figure::{ConditionSource, decimals};
+use gdcm_study::study::AcrossRole;
+use gdcm_study::study::caution::Undefined;
+use gdcm_study::study::condition_responses::display_band;
+use gdcm_study::study::job::AcrossJob;
 
 use super::View;
 use super::frequency::{
@@ -17,11 +21,12 @@ use super::frequency::{
 use crate::view::command::Command;
 use crate::view::curve_display::CurveCommand;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{
-    BodeBand, BodeCurve, BodeEvent, BodeQuantity, BodeScene, CurveId, InvalidRegion, OverviewCell,
-    OverviewEvent, OverviewScene, Pane, PaneNote, PhaseErrorUnit, ResponsePlace, Role, bode_ui,
-    overview_ui, pointed_words,
-};
+use crate::view::plot::bode::{BodeEvent, InvalidRegion, PaneNote};
+use crate::view::plot::bode_pane::BodeBand;
+use crate::view::plot::overview::{OverviewCell, OverviewEvent, OverviewScene, overview_ui};
+use crate::view::plot::quantity::{BodeQuantity, PhaseErrorUnit, ResponsePlace};
+use crate::view::plot::readout::pointed_words;
+use crate::view::plot::{BodeCurve, BodeScene, CurveId, Pane, Role, bode_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
@@ -63,7 +68,8 @@ pub fn bode_view_ui(
     let notes = notes
         .as_ref()
         .map_or([None; 2], |notes| [Some(&notes[0]), Some(&notes[1])]);
-    let (band, message) = ((band.min(), band.max()), state.curves_message());
+    let band = (band.min(), band.max());
+    let message = state.curves_message();
     let scene = BodeScene {
         quantity,
         rules: &unnoticed,
@@ -121,10 +127,8 @@ fn missing_phase(curves: &[BodeCurve], (min, max): (f64, f64)) -> Option<BodeBan
             .iter()
             .find(|curve| !curve.hidden && curve.role == role)
     };
-    let (corrected, identified) = (
-        of_role(Role::Corrected)?,
-        of_role(Role::IdentifiedRepresentative)?,
-    );
+    let corrected = of_role(Role::Corrected)?;
+    let identified = of_role(Role::IdentifiedRepresentative)?;
     let within = corrected
         .omega
         .iter()
@@ -201,7 +205,8 @@ pub fn error_view_ui(
         .unwrap_or_default();
     let reference = error_reference(&curves);
     let strips = noticed(&curves, &options);
-    let (title, message) = (state.dataset().pair_name(pair), error_message(state, pair));
+    let title = state.dataset().pair_name(pair);
+    let message = error_message(state, pair);
     let quantity = BodeQuantity::Error {
         phase: options.phase_error,
     };
@@ -318,10 +323,8 @@ pub fn across_view_ui(
     fit_across(state);
     let band = state.study.settings.band;
     let title = state.dataset().pair_name(state.display.pair);
-    let (quantity, unit) = (
-        BodeQuantity::RESPONSE_OF_EVERY_CONDITION,
-        state.display.unit,
-    );
+    let quantity = BodeQuantity::RESPONSE_OF_EVERY_CONDITION;
+    let unit = state.display.unit;
     let scene = BodeScene {
         quantity,
         unit,
@@ -393,10 +396,8 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     };
     let pair = state.display.pair;
     let mut cached = std::mem::take(&mut state.display.across_shapes);
-    let (made_of, role) = (
-        (state.dataset(), state.analysis()),
-        state.display.across_role,
-    );
+    let made_of = (state.dataset(), state.analysis());
+    let role = state.display.across_role;
     let mut drawn = airspeed_curves(made_of, role, pair, &curves, &mut cached);
     for curve in &mut drawn {
         curve.highlighted =

@@ -1,20 +1,20 @@
 //! Channel gains against airspeed.
 
 use egui::{Align2, FontId, Rect, Ui, Vec2, pos2, vec2};
+
 use gdcm_method::uncertainty::{Bar, Scalar};
 use gdcm_model::units::s_to_ms;
-use gdcm_plot::figure::{
-    Across, Figure, GainQuantity, MarkId, Measure, all_channels, channels_figure, quieten,
-};
-use gdcm_study::study::{Edit, ExplainTarget, Uncertainty};
+use gdcm_plot::figure::gains::{Across, GainQuantity, Measure, channels_figure, quieten};
+use gdcm_plot::figure::{Figure, MarkId, all_channels};
+use gdcm_study::study::uncertainty::Uncertainty;
+use gdcm_study::study::{Edit, ExplainTarget};
 
 use super::net_gain::bars_switch_ui;
 use crate::view::command::Command;
 use crate::view::palette::{Palette, SMALL_SIZE};
-use crate::view::plot::{
-    FigureEvent, FigureScene, FigureView, FigureWords, NamedFigure, figure_ui, figure_within_ui,
-    rows,
-};
+use crate::view::plot::curve_menu::NamedFigure;
+use crate::view::plot::figure_view::{figure_within_ui, rows};
+use crate::view::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
@@ -73,7 +73,8 @@ pub fn channels_view_ui(
 ) {
     let mut view = std::mem::take(&mut state.display.channels);
     let plots = channel_plots(state);
-    let (mut inputs, mut outputs) = (plots.figure.clone(), plots.figure.clone());
+    let mut inputs = plots.figure.clone();
+    let mut outputs = plots.figure.clone();
     inputs.plots.truncate(state.dataset().inputs().len());
     outputs.plots.drain(..inputs.plots.len());
     let is_compact = plots.across == Across::Airspeed;
@@ -226,8 +227,10 @@ impl FigureWords for GainPlots<'_> {
         let MarkId::Condition(id) = id else {
             return None;
         };
-        let (condition, analysis) = (self.state.dataset().condition(*id)?, self.state.analysis()?);
-        let (of, airspeed_kt) = (self.quantities[plot], condition.flight_state().airspeed_kt);
+        let condition = self.state.dataset().condition(*id)?;
+        let analysis = self.state.analysis()?;
+        let of = self.quantities[plot];
+        let airspeed_kt = condition.flight_state().airspeed_kt;
         let text = |value: f64| of.measure().text(value);
         let schedule = of.measure().schedule_of(analysis, self.across);
         let scheduled = schedule

@@ -1,9 +1,12 @@
 //! Variants: decisions kept under names, beside the present ones.
 
 use egui::{Align, Button, Layout, RichText, Role, Ui};
+
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::signed;
-use gdcm_study::study::{Analysis, Edit, Table, Variant, VariantJob, decision_differences};
+use gdcm_study::study::differences::decision_differences;
+use gdcm_study::study::job::VariantJob;
+use gdcm_study::study::{Analysis, Edit, Table, Variant};
 
 use super::net_gain::net_gain_pairs;
 use crate::view::command::Command;

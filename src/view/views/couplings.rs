@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use egui::{Label, Panel, RichText, ScrollArea, Ui, vec2};
+
 use gdcm_method::couplings::LEAST_CONDITIONS;
 use gdcm_model::dataset::Dataset;
 use gdcm_model::units::telling;
-use gdcm_study::study::{
-    CouplingCorrection, CouplingCost, CouplingsAssessment, CouplingsJob, PhaseCorrection,
-    RemarkKind, Table, setting,
-};
+use gdcm_study::study::couplings_assessment::{CouplingCost, CouplingsAssessment, CouplingsJob};
+use gdcm_study::study::remark::RemarkKind;
+use gdcm_study::study::{CouplingCorrection, PhaseCorrection, Table, setting};
 
 use super::View;
 use super::frequency::condition_source;
@@ -17,7 +17,8 @@ use crate::view::command::Command;
 use crate::view::controls::restore_panel_size;
 use crate::view::figures::request;
 use crate::view::palette::{BODY_SIZE, Palette, medium};
-use crate::view::plot::{FigureScene, figure_legend_ui, figure_ui};
+use crate::view::plot::canvas::figure_legend_ui;
+use crate::view::plot::{FigureScene, figure_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 use crate::view::tables::{Sorting, TableLook, table_grid_ui};

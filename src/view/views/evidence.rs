@@ -5,13 +5,14 @@ use std::sync::Arc;
 use egui::{
     Align2, Color32, FontId, Grid, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, pos2, vec2,
 };
+
 use gdcm_method::schedule::{FormComparison, FormFit, LeadDegreeFit, LeadFit, ScheduleKind};
 use gdcm_method::uncertainty::VarianceDecomposition;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::{s_to_ms, signed};
-use gdcm_study::study::{
-    Analysis, Table, Uncertainty, difference_table, second_variable_table, setting,
-};
+use gdcm_study::study::table::{difference_table, second_variable_table};
+use gdcm_study::study::uncertainty::Uncertainty;
+use gdcm_study::study::{Analysis, Table, setting};
 
 use super::net_gain::net_gain_pairs;
 use crate::view::command::Command;
@@ -66,7 +67,8 @@ fn answer_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Pa
         .min_row_height(16.0)
         .show(ui, |ui| {
             for of in beyond {
-                let ([first, second], difference) = (of.conditions, &of.difference);
+                let [first, second] = of.conditions;
+                let difference = &of.difference;
                 let ratio = difference
                     .ratio()
                     .map_or_else(String::new, |ratio| format!("{ratio:.1} × expected"));

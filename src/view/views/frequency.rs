@@ -4,21 +4,26 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use egui::Ui;
+
 use gdcm_method::fidelity::summand;
 use gdcm_model::dataset::{Band, BundleKind, ModelId, Pair};
 use gdcm_model::response::wrap;
 use gdcm_model::units::telling;
-use gdcm_plot::figure::{BodeOptions, ConditionSource};
+use gdcm_plot::figure::ConditionSource;
+use gdcm_plot::figure::axis::FrequencyUnit;
+use gdcm_plot::figure::bode::BodeOptions;
 use gdcm_study::study::{Edit, setting};
 
 use super::compare::overlaid_analysis;
 use crate::view::command::Command;
 use crate::view::curve_display::CurveCommand;
 use crate::view::palette::Palette;
-use crate::view::plot::{
-    BodeCurve, BodeEvent, BodeQuantity, BodeScene, BodeView, Chip, CurveId, CurveWish,
-    FrequencyUnit, PANES, Pane, Readout, ReadoutCell, Role, ValueUnit, bode_ui, pointed_words,
-};
+use crate::view::plot::bode::{BodeEvent, PANES};
+use crate::view::plot::curve_menu::CurveWish;
+use crate::view::plot::legend::Chip;
+use crate::view::plot::quantity::{BodeQuantity, ValueUnit};
+use crate::view::plot::readout::{Readout, ReadoutCell, pointed_words};
+use crate::view::plot::{BodeCurve, BodeScene, BodeView, CurveId, Pane, Role, bode_ui};
 use crate::view::state::State;
 
 /// Draws a plot over frequency of the condition shown with what all of them have in common: cursors, what every role has there, chips.
@@ -31,7 +36,9 @@ pub(super) fn frequency_plot_ui(
     commands: &mut Vec<Command>,
 ) {
     let display = &state.display.curves;
-    let (quantity, curves, unit) = (scene.quantity, scene.curves, state.display.unit);
+    let quantity = scene.quantity;
+    let curves = scene.curves;
+    let unit = state.display.unit;
     let at = (display.cursor, display.pinned.as_slice());
     let readout = display
         .lists_values
@@ -259,7 +266,8 @@ pub(in crate::view) fn condition_source(state: &State) -> Option<ConditionSource
 
 /// What of the responses is shown, and how: the same on paper.
 pub(in crate::view) fn bode_options(state: &State) -> BodeOptions {
-    let (display, curves) = (&state.display, &state.display.curves);
+    let display = &state.display;
+    let curves = &state.display.curves;
     BodeOptions {
         unit: display.unit,
         magnitude: curves.magnitude,
@@ -386,7 +394,8 @@ pub fn cursor_readout(
             unit.readout(from).trim_start_matches("ω "),
             frequency(to)
         );
-        let (heading, cells) = ("change between marks".to_owned(), told.map(cell).collect());
+        let heading = "change between marks".to_owned();
+        let cells = told.map(cell).collect();
         return Some(Readout {
             heading,
             frequency,
@@ -480,9 +489,10 @@ fn largest_error(
 
 #[cfg(test)]
 mod tests {
+    use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
+
     use super::*;
     use crate::view::plot::CurveId;
-    use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 
     fn flat(name: &str, role: Role, magnitude_db: f64, phase_deg: f64) -> BodeCurve {
         BodeCurve {

@@ -4,19 +4,23 @@
 use std::sync::Arc;
 
 use egui::{CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
+
 use gdcm_method::requirements::{TestInput, TestInputShape};
 use gdcm_model::units::number;
 use gdcm_plot::figure::{Figure, FigureKind, OverTime};
-use gdcm_study::study::{
-    Analysis, HistoryRecord, RecordHistory, RecordHistoryJob, TestAnswersJob, Trend,
-};
+use gdcm_study::study::Analysis;
+use gdcm_study::study::condition_answers::{RecordHistory, RecordHistoryJob, TestAnswersJob};
+use gdcm_study::study::time_histories::{HistoryRecord, Trend};
 
-use super::{Need, RequirementsPage, View, decided, tolerances_ui};
+use super::requirement_limits::tolerances_ui;
+use super::requirements::{RequirementsPage, decided};
+use super::{Need, View};
 use crate::view::command::Command;
 use crate::view::controls::{number_entry_ui, restore_panel_size};
 use crate::view::figures::figure_of;
 use crate::view::palette::Palette;
-use crate::view::plot::{FigureScene, FigureWords, figure_legend_ui, figure_ui};
+use crate::view::plot::canvas::figure_legend_ui;
+use crate::view::plot::{FigureScene, FigureWords, figure_ui};
 use crate::view::records::RecordsCommand;
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
@@ -54,7 +58,8 @@ fn record_job(state: &State) -> Option<RecordHistoryJob> {
 }
 
 fn test_job(state: &State) -> Option<TestAnswersJob> {
-    let (condition, input) = (state.condition().id(), state.display.pair.input);
+    let condition = state.condition().id();
+    let input = state.display.pair.input;
     Some(TestAnswersJob {
         analysis: current(state)?.into(),
         condition,
@@ -134,14 +139,12 @@ pub fn histories_ui(
         OverTime::Test(_) => Some(1 + state.display.pair.output),
         OverTime::Record(..) => None,
     };
-    let (least, words) = (
-        if accented.is_some() {
-            LEAST_PLOT
-        } else {
-            LEAST_RECORD
-        },
-        HistoryWords(&figure),
-    );
+    let least = if accented.is_some() {
+        LEAST_PLOT
+    } else {
+        LEAST_RECORD
+    };
+    let words = HistoryWords(&figure);
     let scene = FigureScene::new(
         "requirements in time",
         &figure,

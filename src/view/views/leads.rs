@@ -1,6 +1,7 @@
 //! What delay or lead does in each channel of the condition, and what leads cost above the band.
 
 use egui::{Panel, Ui, vec2};
+
 use gdcm_method::correction::{Channel, LeadPrice};
 use gdcm_model::units::{number, s_to_ms, signed, telling};
 use gdcm_plot::figure::{Figure, FigureKind, FigureRequest, all_channels};
@@ -106,7 +107,8 @@ pub fn leads_table(state: &State) -> Option<Table> {
     ];
     let mut table = Table::new(title, columns);
     for channel in all_channels(state.dataset()) {
-        let (tau_s, filter) = (leads.taus_s[channel], leads.filters()[channel]);
+        let tau_s = leads.taus_s[channel];
+        let filter = leads.filters()[channel];
         let phase = filter.map_or(-top * tau_s.max(0.0), |filter| filter.phase(top));
         let servo = filter.map_or_else(
             || "–".to_owned(),

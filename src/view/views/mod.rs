@@ -4,43 +4,63 @@
 use std::sync::Arc;
 
 use egui::Ui;
-use gdcm_model::dataset::Pair;
-use gdcm_plot::figure::FigureKind;
-use gdcm_study::study::{
-    AcrossJob, AssessmentJob, CouplingsJob, ModesJob, PhaseCorrection, RecordHistoryJob,
-    RequirementsJob, SimulationJob, TestAnswersJob, TimeHistoriesJob, VariantJob,
-};
 use serde::{Deserialize, Serialize};
 
-use super::{Command, Palette, State, ViewGroup};
+use gdcm_model::dataset::Pair;
+use gdcm_plot::figure::FigureKind;
+use gdcm_study::study::PhaseCorrection;
+use gdcm_study::study::assessment_table::AssessmentJob;
+use gdcm_study::study::condition_answers::{RecordHistoryJob, TestAnswersJob};
+use gdcm_study::study::couplings_assessment::CouplingsJob;
+use gdcm_study::study::job::{AcrossJob, ModesJob, SimulationJob, VariantJob};
+use gdcm_study::study::requirements_tables::RequirementsJob;
+use gdcm_study::study::time_histories::TimeHistoriesJob;
 
-mod assessment;
-mod bode;
-mod channels;
-mod compare;
-mod couplings;
-mod evidence;
-mod frequency;
-mod histories;
-mod leads;
-mod net_gain;
-mod poles;
-mod requirement_limits;
-mod requirements;
+use super::command::Command;
+use super::display::ViewGroup;
+use super::palette::Palette;
+use super::state::State;
 
-pub use assessment::*;
-pub use bode::*;
-pub use channels::*;
-pub use compare::*;
-pub use couplings::*;
-pub use evidence::*;
-pub(in crate::view) use frequency::{bode_curves, bode_options, condition_source};
-pub use histories::*;
-pub use leads::*;
-pub use net_gain::*;
-pub use poles::*;
-pub use requirement_limits::*;
-pub use requirements::*;
+pub mod assessment;
+pub mod bode;
+pub mod channels;
+pub mod compare;
+pub mod couplings;
+pub mod evidence;
+pub(in crate::view) mod frequency;
+pub mod histories;
+pub mod leads;
+pub mod net_gain;
+pub mod poles;
+pub mod requirement_limits;
+pub mod requirements;
+
+pub use assessment::{AssessedFigures, assessment_choice};
+pub use compare::overlay_job;
+pub use couplings::{
+    are_couplings_judged, assessed_correction, couplings_job, offered_couplings, used_couplings,
+};
+pub use net_gain::PairSet;
+pub use requirements::{RequirementsPage, all_records, known_poles};
+
+use assessment::{assessed_pairs, assessment_header_ui, assessment_view_ui};
+use bode::{
+    across_header_ui, across_job, across_view_ui, bode_view_ui, error_header_ui, error_view_ui,
+    overview_view_ui,
+};
+use channels::{channels_header_ui, channels_view_ui};
+use compare::{compare_view_ui, variant_jobs};
+use couplings::{couplings_header_ui, couplings_view_ui};
+use evidence::evidence_view_ui;
+use histories::current;
+use leads::leads_view_ui;
+use net_gain::{
+    NET_GAIN_CONTROLS, net_gain_header_ui, net_gain_pairs, net_gain_view_ui, net_gain_words,
+};
+use poles::{poles_header_ui, poles_view_ui};
+use requirements::{
+    NO_QUALIFICATION, requirements_header_ui, requirements_needs, requirements_view_ui,
+};
 
 /// One of the plots between the side panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]

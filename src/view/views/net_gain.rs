@@ -2,12 +2,13 @@
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
-use gdcm_model::dataset::Pair;
-use gdcm_plot::figure::{
-    Across, GainQuantity, MarkId, add_variant, net_gain_figure, quieten, schedule_words,
-};
-use gdcm_study::study::setting;
 use serde::{Deserialize, Serialize};
+
+use gdcm_model::dataset::Pair;
+use gdcm_plot::figure::MarkId;
+use gdcm_plot::figure::condition_source::schedule_words;
+use gdcm_plot::figure::gains::{Across, GainQuantity, add_variant, net_gain_figure, quieten};
+use gdcm_study::study::setting;
 
 use super::View;
 use super::channels::{GainPlots, gain_command, shown_uncertainty};
@@ -275,7 +276,8 @@ impl PairSet {
 
 /// The responses of the plots of net gain, in the order of the matrix.
 pub fn net_gain_pairs(state: &State) -> Vec<Pair> {
-    let (display, constrained) = (&state.display, &state.study.settings.constrained);
+    let display = &state.display;
+    let constrained = &state.study.settings.constrained;
     let is_in = |pair: &Pair| match display.net_gain_pairs {
         PairSet::Held => constrained[*pair] || display.once_held.contains(pair),
         PairSet::Focused => display.pair == *pair,

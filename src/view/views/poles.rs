@@ -3,23 +3,28 @@
 use std::sync::Arc;
 
 use egui::{Panel, Ui, Vec2, vec2};
+use nalgebra::Complex;
+
 use gdcm_method::couplings::PoleShift;
 use gdcm_method::requirements::{ModeName, NamedBy};
 use gdcm_model::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
-use gdcm_model::response::{Mode, finite_zeros};
+use gdcm_model::response::Mode;
+use gdcm_model::response::zeros::finite_zeros;
 use gdcm_model::units::number;
-use gdcm_plot::figure::{Along, Figure, Mark, MarkId, Range, Role, damping_grid, poles_figure};
-use gdcm_study::study::{ConditionAnalysis, ConditionModes, Edit, FittedCouplings, Table};
-use nalgebra::Complex;
+use gdcm_plot::figure::figure::Along;
+use gdcm_plot::figure::poles::{damping_grid, poles_figure};
+use gdcm_plot::figure::{Figure, Mark, MarkId, Range, Role};
+use gdcm_study::study::fitted_couplings::FittedCouplings;
+use gdcm_study::study::job::ConditionModes;
+use gdcm_study::study::{ConditionAnalysis, Edit, Table};
 
 use super::View;
 use super::frequency::{bode_options, condition_source};
 use crate::view::command::Command;
 use crate::view::controls::restore_panel_size;
 use crate::view::palette::Palette;
-use crate::view::plot::{
-    FigureEvent, FigureScene, FigureView, FigureWords, figure_legend_ui, figure_ui,
-};
+use crate::view::plot::canvas::figure_legend_ui;
+use crate::view::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figure_ui};
 use crate::view::state::State;
 use crate::view::tables::{TableLook, table_ui};
 

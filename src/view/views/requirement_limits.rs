@@ -1,11 +1,12 @@
 //! The tables that requirements are asked with, in fields: tolerances of time histories and of modes, limits of the overview (M17).
 
 use egui::{Button, Grid, Ui};
+
 use gdcm_method::requirements::{ModeToleranceTable, ToleranceTable};
 use gdcm_model::units::number;
-use gdcm_study::study::OverviewLimits;
+use gdcm_study::study::requirements::OverviewLimits;
 
-use super::decided;
+use super::requirements::decided;
 use crate::view::command::{Command, RequirementTable};
 use crate::view::controls::{button_ui, number_entry_ui};
 use crate::view::palette::Palette;

@@ -4,25 +4,30 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{Button, CollapsingHeader, Label, Panel, ScrollArea, Ui, Vec2, vec2};
+
 use gdcm_method::fidelity::ACCEPTABLE;
 use gdcm_method::requirements::{AttitudeOutput, LevelBoundaries, ModeVerdict};
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::{s_to_ms, telling};
-use gdcm_plot::figure::{Color, Figure, FigureKind, Hue, MarkId, bandwidth_pairs, bandwidth_place};
-use gdcm_study::study::{
-    Edit, HistoryRecords, KnownPoles, RequirementRole, RequirementSettings, Requirements,
-    RequirementsJob, Table, TimeHistoriesJob, mode_verdict_words,
-};
+use gdcm_plot::figure::drawing::Hue;
+use gdcm_plot::figure::requirements::{bandwidth_pairs, bandwidth_place};
+use gdcm_plot::figure::{Color, Figure, FigureKind, MarkId};
+use gdcm_study::study::required_modes::KnownPoles;
+use gdcm_study::study::requirements::{RequirementRole, RequirementSettings, Requirements};
+use gdcm_study::study::requirements_tables::{RequirementsJob, mode_verdict_words};
+use gdcm_study::study::time_histories::{HistoryRecords, TimeHistoriesJob};
+use gdcm_study::study::{Edit, Table};
 
-use super::{
-    Need, View, current, histories_ui, mode_tolerances_ui, over_time_need, overview_limits_ui,
-};
-use crate::view::CurveCommand;
+use super::histories::{current, histories_ui, over_time_need};
+use super::requirement_limits::{mode_tolerances_ui, overview_limits_ui};
+use super::{Need, View};
 use crate::view::command::{Command, RequirementTable};
 use crate::view::controls::{button_ui, check_ui, page_tab_ui, restore_panel_size};
+use crate::view::curve_display::CurveCommand;
 use crate::view::figures::figure_of;
 use crate::view::palette::Palette;
-use crate::view::plot::{FigureEvent, FigureScene, FigureWords, figure_legend_ui, figure_ui};
+use crate::view::plot::canvas::figure_legend_ui;
+use crate::view::plot::{FigureEvent, FigureScene, FigureWords, figure_ui};
 use crate::view::records::ConditionRecords;
 use crate::view::state::State;
 use crate::view::tables::{TableClick, TableLook, table_grid_ui};

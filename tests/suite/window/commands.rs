@@ -2,8 +2,7 @@
 
 use gdcm::view::assembling::AssemblingCommand;
 use gdcm::view::command::FormKind;
-use gdcm::view::command_table::command_table;
-use gdcm::view::command_table::every_command;
+use gdcm::view::command_table::{command_table, every_command};
 use gdcm::view::tables::{TableKind, table_of};
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::Scalar;
@@ -249,7 +248,8 @@ fn tables_of_the_matrix_and_the_result_have_the_bars_of_their_figures() {
     let mut window = window();
     wait_for_bars(&mut window);
     let uncertainty = state(&window).uncertainty().unwrap();
-    let (condition, pair) = (state(&window).condition().id(), pair(&window, "Q", "LON"));
+    let condition = state(&window).condition().id();
+    let pair = pair(&window, "Q", "LON");
     let bar = |scalar: Scalar| uncertainty.bar(condition, scalar).unwrap();
     let percent = |half: Option<f64>| format!("{:?}", 100.0 * half.unwrap());
     let matrix = table_of(state(&window), TableKind::Matrix);

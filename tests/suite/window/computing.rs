@@ -4,14 +4,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, Once};
 
 use gdcm::app::threads;
+use gdcm::view::{Command, View};
 use gdcm_method::correction::{Outcome, ProofBudget};
 use gdcm_model::dataset::Condition;
 use gdcm_model::executor::{Executor, Task};
-use gdcm_study::study::{Engine, LIVE_PROOF, Study, Unobserved};
+use gdcm_model::progress::Unobserved;
+use gdcm_study::study::engine::LIVE_PROOF;
+use gdcm_study::study::{Engine, Study};
 
 use super::views::show;
 use super::*;
-use gdcm::view::{Command, View};
 
 /// Executes as the program does; while it is armed it panics inside one of the tasks, or keeps them waiting.
 #[derive(Clone, Default)]
@@ -411,7 +413,8 @@ fn gains_that_the_answer_leaves_open_are_proven_beside_it() {
         .zip(proven.conditions.values())
         .enumerate()
     {
-        let (beside, alone) = (beside.as_ref().unwrap(), alone.as_ref().unwrap());
+        let beside = beside.as_ref().unwrap();
+        let alone = alone.as_ref().unwrap();
         assert!(
             !is_open(beside.gains.proof.outcome),
             "condition {condition}"

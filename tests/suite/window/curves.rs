@@ -1,11 +1,13 @@
 //! Hands on every curve: the plot of errors, menus, boxes, cursors, units.
 
+use gdcm::view::View;
+use gdcm::view::plot::navigation::PICK_RADIUS;
+use gdcm_plot::figure::ConditionSource;
+use gdcm_plot::figure::bode::BodeOptions;
+
 use super::plots::{drag_along, place_on_nominal};
 use super::views::show;
 use super::*;
-use gdcm::view::View;
-use gdcm::view::plot::PICK_RADIUS;
-use gdcm_plot::figure::{BodeOptions, ConditionSource};
 
 /// The curve of a role in the plot of errors.
 fn error(window: &Window, role: CurveRole) -> BodeCurve {
@@ -30,16 +32,12 @@ fn the_plot_of_errors_shows_what_the_fit_sees() {
     show(&mut window, View::Error);
     let pair = pair(&window, "Q", "LON");
     let shown = state(&window).shown().unwrap().clone();
-    let (gain, delay_s) = (
-        shown.comparison.delta.gain[pair].unwrap(),
-        shown.comparison.delta.delay_s[pair].unwrap(),
-    );
+    let gain = shown.comparison.delta.gain[pair].unwrap();
+    let delay_s = shown.comparison.delta.delay_s[pair].unwrap();
     let before = error(&window, CurveRole::Representative);
     // The medians of M6 on the grid for drawing: it has other points than that of the comparison.
-    let (ratio_db, phase) = (
-        middle(before.magnitude_db.iter().copied()),
-        before.omega.iter().zip(&before.phase_deg[..]),
-    );
+    let ratio_db = middle(before.magnitude_db.iter().copied());
+    let phase = before.omega.iter().zip(&before.phase_deg[..]);
     assert!(
         (ratio_db - 20.0 * gain.log10()).abs() < 0.02,
         "{ratio_db} {gain}"
@@ -47,10 +45,8 @@ fn the_plot_of_errors_shows_what_the_fit_sees() {
     let delay = middle(phase.map(|(omega, phase)| phase.to_radians() / omega));
     assert!((delay - delay_s).abs() < 5e-4, "{delay} {delay_s}");
     let after = error(&window, CurveRole::Corrected);
-    let (net_db, net_delay_s) = (
-        20.0 * shown.correction.net_gain(pair).log10(),
-        shown.correction.net_delay_s(pair),
-    );
+    let net_db = 20.0 * shown.correction.net_gain(pair).log10();
+    let net_delay_s = shown.correction.net_delay_s(pair);
     for k in [0, before.omega.len() / 2, before.omega.len() - 1] {
         // A handful of roundings of numbers up to 360.
         assert!((before.magnitude_db[k] - net_db - after.magnitude_db[k]).abs() < 1e-10);
@@ -159,7 +155,8 @@ fn a_click_on_a_reference_line_of_the_errors_rejects_nothing() {
     show(&mut window, View::Error);
     settle(&mut window);
     let before = state(&window).study.clone();
-    let (panes, omegas) = ([Pane::Magnitude, Pane::Phase], [0.8, 1.5, 3.0, 7.0]);
+    let panes = [Pane::Magnitude, Pane::Phase];
+    let omegas = [0.8, 1.5, 3.0, 7.0];
     // Zero: the identified model that the others are compared with.
     for (pane, omega) in panes
         .into_iter()
@@ -263,7 +260,8 @@ fn choose_from_menu_of_nominal(window: &mut Window, entry: &str) {
     window.hover_at(place);
     window.run_steps(2);
     for pressed in [true, false] {
-        let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
+        let button = PointerButton::Secondary;
+        let modifiers = Modifiers::NONE;
         window.event(Event::PointerButton {
             pos: place,
             button,
@@ -323,7 +321,8 @@ fn what_a_box_was_drawn_over_is_rejected_and_restored_in_one_step() {
         )),
         "{selected:?}"
     );
-    let (one, count) = (selected.len() == 1, selected.len());
+    let one = selected.len() == 1;
+    let count = selected.len();
     let models = if one {
         "1 model".to_owned()
     } else {
@@ -365,7 +364,8 @@ fn the_values_of_every_role_at_the_cursor_are_listed_and_two_marks_show_what_cha
             "listed at the cursor"
         );
         for pressed in [true, false] {
-            let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
+            let button = PointerButton::Secondary;
+            let modifiers = Modifiers::NONE;
             window.event(Event::PointerButton {
                 pos: at,
                 button,
@@ -413,7 +413,7 @@ fn magnitudes_are_read_as_ratios_in_the_units_of_the_channels() {
     );
     assert_eq!(
         state(&window).display.curves.magnitude,
-        gdcm::view::plot::MagnitudeUnit::Ratio
+        gdcm::view::plot::quantity::MagnitudeUnit::Ratio
     );
 }
 
@@ -436,7 +436,8 @@ fn a_model_is_rejected_for_a_reason_in_words() {
     window.hover_at(place);
     window.run_steps(2);
     for pressed in [true, false] {
-        let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
+        let button = PointerButton::Secondary;
+        let modifiers = Modifiers::NONE;
         window.event(Event::PointerButton {
             pos: place,
             button,

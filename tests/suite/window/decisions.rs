@@ -1,10 +1,10 @@
 //! Decisions, by hand, and what they give.
 
-use gdcm_study::study::derivation;
+use gdcm::view::Command as Action;
+use gdcm_study::study::derivation::derivation;
 
 use super::views::give;
 use super::*;
-use gdcm::view::Command as Action;
 
 #[test]
 fn from_the_example_to_exported_corrections() {

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
+use gdcm::view::{Command as Action, Sheet};
 use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 
 use super::views::give;
 use super::*;
 use crate::made_up::two_lags;
-use gdcm::view::{Command as Action, Sheet};
 
 /// Its last identified model ends at 11.9 rad/s.
 const SHORT: &str = include_str!("../../data/edges/short-measurement.json");

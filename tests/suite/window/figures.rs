@@ -4,7 +4,7 @@ use std::fs;
 
 use gdcm::view::View;
 use gdcm::view::figures::{figure_of, views_with_figure};
-use gdcm_io::{csv_text, write_as};
+use gdcm_io::figure_file::{csv_text, write_as};
 use gdcm_plot::figure::{ColumnWidth, FigureFormat};
 
 use super::views::show;
@@ -90,10 +90,8 @@ fn a_figure_of_the_window_is_that_of_the_command() {
     choose_condition_10(&mut window);
     wait_for_bars(&mut window);
     let folder = tempfile::tempdir().unwrap();
-    let (ours, theirs) = (
-        folder.path().join("window.svg"),
-        folder.path().join("command.svg"),
-    );
+    let ours = folder.path().join("window.svg");
+    let theirs = folder.path().join("command.svg");
     save_figure(&mut window, View::Bode, "SVG", &ours);
     let desk = crate::commands::Desk::new();
     let command = [

@@ -96,10 +96,8 @@ fn decisions_are_saved_first_and_what_they_kept_waiting_is_opened_then() {
 #[test]
 fn a_study_whose_dataset_is_gone_loses_no_decision_before_the_dataset_is_found() {
     let folder = tempfile::tempdir().unwrap();
-    let (dataset, study) = (
-        folder.path().join("data.json"),
-        folder.path().join("theirs.gdcm-study.json"),
-    );
+    let dataset = folder.path().join("data.json");
+    let study = folder.path().join("theirs.gdcm-study.json");
     std::fs::copy(small_dataset(), &dataset).unwrap();
     let mut theirs = window_with(
         load_any(&dataset, &Default::default()).unwrap(),
@@ -201,7 +199,8 @@ fn a_dataset_opened_again_is_analysed_again() {
 
 #[test]
 fn files_opened_of_late_are_in_the_menu_and_a_missing_one_cannot_be_chosen() {
-    let (directory, folder) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let directory = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().unwrap();
     let setup = Setup {
         directory: Some(directory.path().to_owned()),
         ..Setup::default()

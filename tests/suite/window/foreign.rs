@@ -102,7 +102,8 @@ fn a_unit_that_neither_a_record_nor_its_samples_say_is_chosen_in_the_page_of_col
     let row = |k: u32| {
         let at = f64::from(k);
         // A rate of 40 is no radians in a second; one of 0.4 can be either.
-        let (rate, slow) = (40.0 * (0.2 * at).sin(), 0.4 * (0.2 * at).cos());
+        let rate = 40.0 * (0.2 * at).sin();
+        let slow = 0.4 * (0.2 * at).cos();
         format!(
             "{:.2},{},{},{rate},{slow}\n",
             0.02 * at,

@@ -102,7 +102,8 @@ fn escape_closes_each_form_and_decides_nothing() {
     let mut window = window();
     click(&mut window, "Keep physics model V+10kt");
     let before = state(&window).study.clone();
-    let (ctrl, shift) = (Modifiers::COMMAND, Modifiers::COMMAND | Modifiers::SHIFT);
+    let ctrl = Modifiers::COMMAND;
+    let shift = Modifiers::COMMAND | Modifiers::SHIFT;
     for (modifiers, key) in [
         (shift, Key::O),
         (ctrl, Key::E),

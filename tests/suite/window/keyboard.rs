@@ -1,6 +1,7 @@
 //! Worked without the pointer.
 
 use egui::{Color32, Shape};
+
 use gdcm::view::command::{Command as Action, FormKind};
 use gdcm::view::palette::Palette;
 use gdcm_method::correction::GainBounds;

@@ -1,6 +1,7 @@
 //! Where things are: on small screens, in the rail, in menus and forms.
 
 use egui::{LayerId, Order};
+
 use gdcm::view::Sheet;
 use gdcm::view::command::FormKind;
 

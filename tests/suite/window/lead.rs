@@ -1,14 +1,13 @@
 //! Leads by hand: taken, seen, and undone (M15).
 
-use gdcm::view::View;
 use gdcm::view::command::Command as Action;
+use gdcm::view::{Sheet, View};
 use gdcm_model::units::signed;
 use gdcm_study::study::{AssessedCorrection, PhaseCorrection, setting};
 
 use super::lists::texts_in;
 use super::views::{give, show};
 use super::*;
-use gdcm::view::Sheet;
 
 fn choose(window: &mut Window, list: &str, choice: &str) {
     unfold_settings(window, true);
@@ -154,10 +153,8 @@ fn the_phase_without_leads_lies_beside_the_corrected_one_and_the_result_tells_se
     let mut window = window();
     let gains_alone = drawn(&window, CurveRole::Corrected);
     choose(&mut window, "Phase correction", "delay or lead");
-    let (with, without) = (
-        drawn(&window, CurveRole::Corrected),
-        drawn(&window, CurveRole::WithoutLeads),
-    );
+    let with = drawn(&window, CurveRole::Corrected);
+    let without = drawn(&window, CurveRole::WithoutLeads);
     let top = state(&window).study.settings.band.max();
     let phase = |curve: &BodeCurve| curve.value_at(Pane::Phase, top).unwrap();
     assert!(

@@ -1,10 +1,10 @@
 //! What the lists say, and that it can be read.
 
+use gdcm::view::{Command as Action, Sheet};
 use gdcm_study::study::Edit;
 
 use super::views::give;
 use super::*;
-use gdcm::view::{Command as Action, Sheet};
 
 /// The window at its least width.
 fn narrow_window(height: f32) -> Window {

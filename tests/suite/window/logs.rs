@@ -1,9 +1,10 @@
 //! Logs as they come off aircraft, opened in the window: channels are proposed, and a dataset is made of them without a word typed.
 
+use gdcm::view::records::{RecordsCommand, WantedDataset};
+
 use super::records::rows_shown;
 use super::views::{give, show};
 use super::*;
-use gdcm::view::records::{RecordsCommand, WantedDataset};
 
 /// The window on a log, in the form that asks of which channels a dataset is to be made.
 fn asked(log: &str, bytes: &[u8]) -> (Window, tempfile::TempDir) {
@@ -84,8 +85,10 @@ fn a_log_of_ardupilot_proposes_outputs_of_its_controller_and_rates_of_its_identi
                     FMT, 141, 27, SIDD, Qffff, TimeUS,Time,Targ,Gx,Gy\n"
             .to_owned();
     for k in 0..4000 {
-        let (stamp, at) = (1_000_000 + 2500 * k, 0.0025 * f64::from(k));
-        let (stick, rate) = ((2.0 * at).sin(), (2.0 * at).cos());
+        let stamp = 1_000_000 + 2500 * k;
+        let at = 0.0025 * f64::from(k);
+        let stick = (2.0 * at).sin();
+        let rate = (2.0 * at).cos();
         text += &format!("RATE, {stamp}, {rate}, {stick}, {stick}, {rate}\n");
         text += &format!(
             "SIDD, {}, {at}, {stick}, {rate}, {}\n",

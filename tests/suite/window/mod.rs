@@ -44,13 +44,17 @@ use gdcm::app::{GdcmApp, Setup};
 use gdcm::executor::Pool;
 use gdcm::view::View;
 use gdcm::view::explanation::{gain_conflict_marks, remarks_shown, toggle_costs};
-use gdcm::view::plot::{Across, BodeCurve, Measure, Pane, Role as CurveRole};
+use gdcm::view::plot::{BodeCurve, Pane, Role as CurveRole};
 use gdcm::view::state::{Notice, NoticeKind, State};
-use gdcm::view::views::channel_plots;
-use gdcm_io::{Opened, OpenedStudy, load_any, open_study};
+use gdcm::view::views::channels::channel_plots;
+use gdcm_io::study_file::{OpenedStudy, open_study};
+use gdcm_io::{Opened, load_any};
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
+use gdcm_model::progress::Unobserved;
 use gdcm_plot::figure::MarkId;
-use gdcm_study::study::{Engine, LIVE_PROOF, Study, Unobserved};
+use gdcm_plot::figure::gains::{Across, Measure};
+use gdcm_study::study::engine::LIVE_PROOF;
+use gdcm_study::study::{Engine, Study};
 
 pub(crate) type Window = Harness<'static, GdcmApp>;
 

@@ -12,6 +12,7 @@ use dream_soft_render::{ClipRect, Color, Mesh, SoftwareRenderer, TextureId, Vert
 use egui::epaint::{ColorImage, ImageData, ImageDelta, Primitive};
 use egui::{TexturesDelta, ThemePreference};
 use egui_kittest::TestRenderer;
+
 use gdcm::view::View;
 use gdcm::view::assembling::AssemblingCommand;
 use gdcm::view::command::Command as Action;
@@ -98,7 +99,8 @@ fn colour(of: egui::Color32) -> Color {
 
 /// The pixels of what the window shows, red, green and blue, averaged over squares of the format's scale.
 fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
-    let ([width, height], scale) = (format.size, format.scale);
+    let [width, height] = format.size;
+    let scale = format.scale;
     let mut renderer = SoftwareRenderer::default();
     let known: HashMap<egui::TextureId, TextureId> = textures
         .0
@@ -129,7 +131,8 @@ fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
             continue;
         };
         let corner = |at: Pos2| [at.x.round().max(0.0) as u32, at.y.round().max(0.0) as u32];
-        let ([min_x, min_y], [max_x, max_y]) = (corner(of.clip_rect.min), corner(of.clip_rect.max));
+        let [min_x, min_y] = corner(of.clip_rect.min);
+        let [max_x, max_y] = corner(of.clip_rect.max);
         let vertices: Vec<Vertex> = mesh
             .vertices
             .iter()
@@ -170,7 +173,8 @@ fn picture(window: &Window, textures: &Textures, format: Format) -> Vec<u8> {
 }
 
 fn write(name: &str, pixels: &[u8], format: Format) {
-    let (path, [width, height]) = (format.path(name), format.pixels());
+    let path = format.path(name);
+    let [width, height] = format.pixels();
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
     let mut encoder = png::Encoder::new(File::create(path).unwrap(), width as u32, height as u32);
     encoder.set_color(png::ColorType::Rgb);

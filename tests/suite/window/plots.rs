@@ -2,7 +2,8 @@
 
 use gdcm::view::View;
 use gdcm::view::command::Command as Action;
-use gdcm_plot::figure::{AirspeedCache, Range, airspeed_curves, fitted_values};
+use gdcm_plot::figure::Range;
+use gdcm_plot::figure::responses::{AirspeedCache, airspeed_curves, fitted_values};
 use gdcm_study::study::AcrossRole;
 
 use super::lists::texts_in;
@@ -57,7 +58,8 @@ fn a_double_click_on_a_curve_leaves_no_decision() {
     for _ in 0..2 {
         // Both in one frame: a frame of the harness takes nearly as long as two clicks may be apart.
         for pressed in [true, false] {
-            let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+            let button = PointerButton::Primary;
+            let modifiers = Modifiers::NONE;
             window.input_mut().events.push(Event::PointerButton {
                 pos: place,
                 button,
@@ -162,14 +164,13 @@ fn a_zoom_outlives_whatever_is_computed_and_whatever_is_shown() {
         .transform(Pane::Magnitude)
         .unwrap()
         .frame();
-    let (from, to) = (
-        area.lerp_inside(vec2(0.3, 0.3)),
-        area.lerp_inside(vec2(0.7, 0.8)),
-    );
+    let from = area.lerp_inside(vec2(0.3, 0.3));
+    let to = area.lerp_inside(vec2(0.7, 0.8));
     window.hover_at(from);
     window.run_steps(2);
     let button = |pressed| {
-        let (pos, modifiers) = (if pressed { from } else { to }, Modifiers::NONE);
+        let pos = if pressed { from } else { to };
+        let modifiers = Modifiers::NONE;
         Event::PointerButton {
             pos,
             button: PointerButton::Secondary,
@@ -330,7 +331,8 @@ fn assert_little_is_hidden(window: &Window, what: &str) {
 /// How many triangles of the frame drawn last lie outside what they are clipped to, and how many there are.
 fn hidden_triangles(window: &Window) -> (usize, usize) {
     let output = window.output();
-    let (mut hidden, mut all) = (0, 0);
+    let mut hidden = 0;
+    let mut all = 0;
     for primitive in window
         .ctx
         .tessellate(output.shapes.clone(), output.pixels_per_point)
@@ -353,10 +355,8 @@ fn hidden_triangles(window: &Window) -> (usize, usize) {
 #[test]
 fn pointing_at_plots_starts_no_analysis() {
     let mut window = window();
-    let (requested, analysis) = (
-        state(&window).results.requested,
-        state(&window).results.analysis.clone(),
-    );
+    let requested = state(&window).results.requested;
+    let analysis = state(&window).results.analysis.clone();
     for step in 0..40 {
         // From corner to corner, across lists, plots, matrix and settings.
         window.hover_at(pos2(40.0 * step as f32, 25.0 * step as f32));
@@ -375,7 +375,8 @@ fn pointing_at_plots_starts_no_analysis() {
 /// What Airspeeds has to show of magnitude and phase: the values of its curves within the band.
 fn across_values(window: &Window) -> [Range; 2] {
     let state = state(window);
-    let (made_of, display) = ((state.dataset(), state.analysis()), &state.display);
+    let made_of = (state.dataset(), state.analysis());
+    let display = &state.display;
     let curves = state.across().expect("the responses are there");
     let drawn = airspeed_curves(
         made_of,

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use egui::Order;
-use gdcm::view::plot::OverviewView;
+
+use gdcm::view::plot::overview::OverviewView;
 
 use super::views::{give, show};
 use super::*;
@@ -81,7 +82,7 @@ fn pointing_at_a_curve_or_a_dot_opens_nothing_and_is_told_in_the_status_line() {
         state(window).modes().is_some()
     });
     window.run_steps(2);
-    let figure = gdcm::view::views::poles(state(&window)).expect("the modes are known");
+    let figure = gdcm::view::views::poles::poles(state(&window)).expect("the modes are known");
     let fastest = figure.plots[0].panels[0]
         .dots()
         .map(|dot| [dot.x, dot.y])
@@ -97,7 +98,10 @@ fn marked_frequencies_are_named_over_the_plot_and_not_over_its_curves() {
     let mut window = window();
     choose_condition_10(&mut window);
     let marks = vec![("ω180", 4.0)];
-    give(&mut window, gdcm::view::CurveCommand::MarkCrossings(marks));
+    give(
+        &mut window,
+        gdcm::view::curve_display::CurveCommand::MarkCrossings(marks),
+    );
     let chip = window.get_by_label_contains("ω180 4.0").rect();
     let frame = *state(&window)
         .display
@@ -168,7 +172,8 @@ fn a_tooltip_has_a_name_and_four_rows_at_most() {
 
 #[test]
 fn what_a_tooltip_does_not_say_is_behind_the_question() {
-    use gdcm_study::study::{ExplainTarget, derivation};
+    use gdcm_study::study::ExplainTarget;
+    use gdcm_study::study::derivation::derivation;
     let window = window();
     let id = ModelId::new(ConditionId(10), BundleKind::Physics, "V+10kt");
     let found = derivation(

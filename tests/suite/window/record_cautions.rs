@@ -2,11 +2,13 @@
 
 use std::fs;
 
+use serde_json::{Value, json};
+
+use gdcm::view::records::ConditionRecords;
+
 use super::records::late_dataset;
 use super::views::show;
 use super::*;
-use gdcm::view::records::ConditionRecords;
-use serde_json::{Value, json};
 
 const OF: ConditionId = ConditionId(7);
 

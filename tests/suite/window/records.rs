@@ -2,16 +2,19 @@
 
 use std::path::{Path, PathBuf};
 
+use nalgebra::DMatrix;
+use serde_json::{Value, json};
+
 use gdcm::view::View;
 use gdcm::view::command::Command as Action;
 use gdcm::view::records::{RecordsCommand, RecordsPage, condition_table};
-use gdcm_model::dataset::{Band, ChannelSide, RecordKind};
+use gdcm_model::dataset::Band;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::condition::RecordKind;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
+use gdcm_model::simulation::Signal;
 use gdcm_study::study::setting;
-use gdcm_sysid::identification::{SearchSpace, Signal};
-
-use nalgebra::DMatrix;
-use serde_json::{Value, json};
+use gdcm_sysid::identification::SearchSpace;
 
 use super::assembling::{fill_in, type_into};
 use super::views::{give, show};
@@ -786,7 +789,8 @@ fn a_record_is_added_once_a_changed_file_takes_its_place_and_another_of_its_name
         std::fs::create_dir_all(folder.path().join(day)).unwrap();
         folder.path().join(day).join("cond10_flight.csv")
     };
-    let (first, second) = (path("first"), path("second"));
+    let first = path("first");
+    let second = path("second");
     std::fs::write(&first, without_units(0.3)).unwrap();
     std::fs::write(&second, without_units(0.7)).unwrap();
     let mut window = records_window();
@@ -900,7 +904,8 @@ pub(crate) fn late_dataset(folder: &Path) -> PathBuf {
     {
         let rows: String = (0..record.time_s.len())
             .map(|at| {
-                let (u, y) = (&record.inputs, &record.outputs);
+                let u = &record.inputs;
+                let y = &record.outputs;
                 let late = y[(at.saturating_sub(3), 1)];
                 format!(
                     "{},{},{},{},{late}\n",

@@ -79,7 +79,8 @@ fn decisions_that_were_not_saved_are_offered_at_the_next_start_and_restored() {
 
 #[test]
 fn a_study_that_was_saved_before_is_offered_by_its_name_and_saved_there_again() {
-    let (directory, folder) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let directory = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().unwrap();
     let dataset = folder.path().join("data.json");
     std::fs::copy(
         Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json"),
@@ -120,7 +121,8 @@ fn a_study_that_was_saved_before_is_offered_by_its_name_and_saved_there_again() 
 
 #[test]
 fn what_is_saved_or_taken_back_leaves_no_recovery_file() {
-    let (directory, folder) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let directory = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().unwrap();
     let mut window = with_decisions(example(), directory.path());
     save_as(&mut window, &folder.path().join("mine.gdcm-study.json"));
     wait_until(&mut window, "saved: the file is gone", |_| {
@@ -185,7 +187,8 @@ fn decisions_that_are_lost_on_purpose_are_not_offered() {
 
 #[test]
 fn decisions_stay_safe_where_what_was_to_be_opened_in_their_place_cannot_be_read() {
-    let (directory, folder) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let directory = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().unwrap();
     let mut window = with_decisions(example(), directory.path());
     let broken = folder.path().join("broken.json");
     std::fs::write(&broken, "{").unwrap();

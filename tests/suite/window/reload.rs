@@ -16,7 +16,8 @@ impl Copy {
         let text = std::fs::read_to_string(
             Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/small-dataset.json"),
         );
-        let (folder, text) = (tempfile::tempdir().unwrap(), text.unwrap());
+        let folder = tempfile::tempdir().unwrap();
+        let text = text.unwrap();
         let path = folder.path().join("my-dataset.json");
         std::fs::write(&path, &text).unwrap();
         Self {

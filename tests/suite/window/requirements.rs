@@ -2,20 +2,20 @@
 
 use std::sync::Arc;
 
-use gdcm::view::View;
+use gdcm::view::command::Command as Action;
 use gdcm::view::views::RequirementsPage;
+use gdcm::view::{RequirementTable, View};
 use gdcm_method::requirements::{ModeVerdict, RecordCheck, ToleranceTable};
 use gdcm_model::dataset::ConditionId;
-use gdcm_study::study::{
-    BandwidthFinding, Edit, RecordHistory, RequirementRole, RequirementSettings,
-};
+use gdcm_study::study::Edit;
+use gdcm_study::study::condition_answers::RecordHistory;
+use gdcm_study::study::required_bandwidth::BandwidthFinding;
+use gdcm_study::study::requirements::{RequirementRole, RequirementSettings};
 
 use super::assembling::type_into;
 use super::lists::texts_in;
 use super::views::{give, show};
 use super::*;
-use gdcm::view::RequirementTable;
-use gdcm::view::command::Command as Action;
 
 fn texts(window: &Window) -> String {
     texts_in(window, egui::Rect::EVERYTHING)
@@ -103,7 +103,7 @@ fn bandwidth_modes_and_summary_stand_in_tables_and_a_row_is_marked_in_bode() {
         ],
         "of the row's model"
     );
-    let figure = gdcm::view::figure_of(state(&window), View::Bode).unwrap();
+    let figure = gdcm::view::figures::figure_of(state(&window), View::Bode).unwrap();
     let words = format!("{figure:?}");
     assert!(
         words.contains("ω_phase") && words.contains("ω180"),
@@ -121,7 +121,7 @@ fn a_click_on_a_mark_is_of_that_model() {
     let role = RequirementRole::Identified;
     let of_role = |of: &&BandwidthFinding| of.pair == p_lat && of.role == role;
     // The one that lies farthest from all other marks: nothing hides it.
-    let places = |of: &BandwidthFinding| gdcm_plot::figure::bandwidth_place(of);
+    let places = |of: &BandwidthFinding| gdcm_plot::figure::requirements::bandwidth_place(of);
     let apart = |of: &BandwidthFinding| -> f64 {
         let Some([x, y]) = places(of) else {
             return -1.0;
@@ -142,7 +142,7 @@ fn a_click_on_a_mark_is_of_that_model() {
         .filter(of_role)
         .max_by(|a, b| apart(a).total_cmp(&apart(b)))
         .unwrap();
-    let plot = gdcm_plot::figure::bandwidth_pairs(&requirements)
+    let plot = gdcm_plot::figure::requirements::bandwidth_pairs(&requirements)
         .iter()
         .position(|of| *of == p_lat)
         .unwrap();
@@ -172,7 +172,9 @@ fn a_click_on_a_mark_is_of_that_model() {
     }
 }
 
-fn shown_requirements(window: &mut Window) -> std::sync::Arc<gdcm_study::study::Requirements> {
+fn shown_requirements(
+    window: &mut Window,
+) -> std::sync::Arc<gdcm_study::study::requirements::Requirements> {
     wait_until(window, "the requirements", |window| {
         let decided = &state(window).study.requirements.attitude_command;
         state(window)

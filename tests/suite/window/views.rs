@@ -1,16 +1,18 @@
 //! The views: what each shows, by its controls.
 
 use gdcm::view::command::Command as Action;
-use gdcm::view::display::Preferences;
-use gdcm::view::views::poles;
-use gdcm::view::views::{AssessedPairs, assessment_sentences, assessment_text_table};
-use gdcm::view::views::{PairSet, net_gain_pairs};
-use gdcm::view::{Arrangement, View, ViewGroup};
+use gdcm::view::display::{Preferences, ViewGroup};
+use gdcm::view::views::PairSet;
+use gdcm::view::views::assessment::{AssessedPairs, assessment_sentences, assessment_text_table};
+use gdcm::view::views::net_gain::net_gain_pairs;
+use gdcm::view::views::poles::poles;
+use gdcm::view::{Arrangement, View};
 use gdcm_method::correction::Channel;
-use gdcm_plot::figure::{DotShape, Mark, Panel};
-use gdcm_study::study::{
-    AcrossRole, Analysis, AssessedCorrection, AssessedModel, Edit, ExplainTarget, derivation,
-};
+use gdcm_plot::figure::figure::DotShape;
+use gdcm_plot::figure::{Mark, Panel};
+use gdcm_study::study::assessment_table::AssessedModel;
+use gdcm_study::study::derivation::derivation;
+use gdcm_study::study::{AcrossRole, Analysis, AssessedCorrection, Edit, ExplainTarget};
 
 use super::*;
 
@@ -285,7 +287,7 @@ fn error_bars_come_beside_the_answer_and_can_be_switched_off() {
     show(&mut window, View::NetGain);
     wait_for_bars(&mut window);
     let panels = |window: &Window| -> Vec<Panel> {
-        let plots = gdcm::view::views::net_gain_plots(state(window))
+        let plots = gdcm::view::views::net_gain::net_gain_plots(state(window))
             .figure
             .plots;
         plots.into_iter().flat_map(|plot| plot.panels).collect()
@@ -337,8 +339,11 @@ fn a_condition_that_is_held_out_leaves_the_schedule_and_judges_it() {
     );
     show(&mut window, View::Assessment);
     let choice = gdcm::view::views::assessment_choice(state(&window));
-    let words =
-        gdcm_study::study::held_out_verdict(state(&window).analysis().unwrap(), choice).unwrap();
+    let words = gdcm_study::study::assessment_table::held_out_verdict(
+        state(&window).analysis().unwrap(),
+        choice,
+    )
+    .unwrap();
     assert!(
         words.starts_with("held out (3): better in ") && words.contains("; the others: better in "),
         "{words}"
@@ -369,7 +374,8 @@ fn an_assessment_can_be_had_for_every_model_correction_and_response() {
     let text = assessment_text_table(shown, table);
     assert_eq!((text.rows.len(), text.columns.len()), (24, 12));
     // The condition's own J, as the matrix shows it.
-    let (condition, lon_q) = (shown.condition().id(), pair(&window, "Q", "LON"));
+    let condition = shown.condition().id();
+    let lon_q = pair(&window, "Q", "LON");
     let own = shown.shown().unwrap().cost[lon_q].unwrap();
     let change = table.change(condition, lon_q).unwrap();
     assert!(
@@ -454,7 +460,7 @@ fn a_variant_is_laid_over_bode_and_net_gain_until_that_is_taken_back() {
         "{drawn_db} dB drawn, {ratio_db} dB"
     );
     let has_key = |window: &Window| {
-        let figure = gdcm::view::views::net_gain_plots(state(window)).figure;
+        let figure = gdcm::view::views::net_gain::net_gain_plots(state(window)).figure;
         figure.plots[0].panels[0]
             .marks
             .iter()
@@ -489,7 +495,8 @@ fn a_double_click_on_its_edge_puts_a_panel_back() {
         .ctx
         .options_mut(|options| options.input_options.max_double_click_delay = 5.0);
     let edge = |window: &Window| window.get_by_label("Export corrections…").rect().left();
-    let (before, y) = (edge(&window), 500.0);
+    let before = edge(&window);
+    let y = 500.0;
     // The edge of the answer panel, some points left of what it holds.
     let at = pos2((1600.0_f32 - 352.0).round(), y);
     window.drag_at(at);

@@ -3,7 +3,8 @@
 use gdcm::view::View;
 use gdcm::view::command::Command as Action;
 use gdcm::view::command_table::every_command;
-use gdcm_study::study::{Engine, Unobserved, setting};
+use gdcm_model::progress::Unobserved;
+use gdcm_study::study::{Engine, setting};
 
 use super::*;
 use crate::made_up::tries;

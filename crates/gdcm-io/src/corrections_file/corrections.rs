@@ -2,22 +2,25 @@
 
 use std::collections::BTreeSet;
 
+use serde_json::{Map, Value, json};
+
+use gdcm_method::correction::conflict::{Conflict, ConflictKind};
+use gdcm_method::correction::sensitivity::{
+    ActiveConstraint, Sensitivity, kkt_residual, sensitivities,
+};
 use gdcm_method::correction::{
-    ActiveConstraint, Channel, ChannelCorrection, Channels, Conflict, ConflictKind, LeadPrice,
-    Outcome, Problem, Quantity, Sensitivity, Solution, kkt_residual, sensitivities,
+    Channel, ChannelCorrection, Channels, LeadPrice, Outcome, Problem, Quantity, Solution,
 };
 use gdcm_method::fidelity::Cost;
 use gdcm_method::schedule::{
     Regression, Schedule, ScheduleCaution, ScheduleKind, ScheduledQuantity,
 };
-use gdcm_model::dataset::{
-    self, BundleKind, Condition, ConditionId, Model, Pair, PairTable, Provenance,
-};
-use gdcm_study::study::{
-    Analysis, AxisCost, Caution, ConditionAnalysis, CouplingCost, CouplingsAssessment,
-    lead_cautions,
-};
-use serde_json::{Map, Value, json};
+use gdcm_model::dataset::model::Provenance;
+use gdcm_model::dataset::{self, BundleKind, Condition, ConditionId, Model, Pair, PairTable};
+use gdcm_study::study::caution::Caution;
+use gdcm_study::study::couplings_assessment::{AxisCost, CouplingCost, CouplingsAssessment};
+use gdcm_study::study::lead_compensation::lead_cautions;
+use gdcm_study::study::{Analysis, ConditionAnalysis};
 
 use crate::corrections_file::uncertainty::{bars, net_gain_bar, uncertainty};
 use crate::corrections_file::{NAME, VERSION};
@@ -32,8 +35,10 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
     let names = ChannelNames::of(analysis);
     let is_chosen = |condition: &&std::sync::Arc<Condition>| chosen.contains(&condition.id());
     let without = |id: ConditionId, why: &str| json!({"id": id.0, "why": why});
-    let (mut conditions, mut failed, mut assessed, mut left_out) =
-        (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut conditions = Vec::new();
+    let mut failed = Vec::new();
+    let mut assessed = Vec::new();
+    let mut left_out = Vec::new();
     for condition in dataset.conditions().iter().filter(is_chosen) {
         let id = condition.id();
         match analysis.conditions.get(&id) {
@@ -205,7 +210,8 @@ impl<'a> ChannelNames<'a> {
 
     fn condition(&self, condition: &Condition, result: &ConditionAnalysis) -> Value {
         let study = &self.analysis.study;
-        let (choice, correction) = (study.choice(condition.id()), &result.correction);
+        let choice = study.choice(condition.id());
+        let correction = &result.correction;
         let words = |caution: &Caution| caution.words(|pair| study.dataset.pair_name(pair));
         let set_aside = result.cautions.iter().filter_map(|caution| match caution {
             Caution::SetAside { model, .. } => {
@@ -310,7 +316,8 @@ impl<'a> ChannelNames<'a> {
                 why = format!("{why} {}", entry.why.words(&self.inputs, &self.outputs));
             }
             let phase_left_deg = entry.phase_left_deg(top);
-            let (target_s, wanted_s) = (entry.target, entry.delta);
+            let target_s = entry.target;
+            let wanted_s = entry.delta;
             let figures = json!({
                 "target_s": target_s, "wanted_s": wanted_s, "phase_left_deg": phase_left_deg, "why": why,
             });

@@ -12,6 +12,7 @@ use gdcm_method::schedule::CostChange;
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
 use gdcm_model::dataset::{Condition, ConditionId, Pair};
 use gdcm_model::response::LeadFilter;
+use gdcm_plot::figure::all_channels;
 use gdcm_study::study::{Analysis, ConditionAnalysis};
 
 use crate::export_contents::ExportContents;
@@ -19,7 +20,6 @@ use crate::figure_file::write_records;
 use crate::file_error::FileError;
 use crate::json_text::write_pretty;
 use crate::output_set::{OutputSet, make_directory};
-use gdcm_plot::figure::all_channels;
 
 pub use corrections::corrections;
 pub(crate) use corrections::without_empty;
@@ -453,11 +453,10 @@ impl ChannelRow<'_> {
         let Some(fitted) = self.found.analysis.fitted_couplings() else {
             return Vec::new();
         };
-        let (matrices, airspeed_kt) = (
-            fitted.matrices(),
-            self.found.condition.flight_state().airspeed_kt,
-        );
-        let (mixing, feedback) = (matrices.normalised_mixing(airspeed_kt), matrices.feedback());
+        let matrices = fitted.matrices();
+        let airspeed_kt = self.found.condition.flight_state().airspeed_kt;
+        let mixing = matrices.normalised_mixing(airspeed_kt);
+        let feedback = matrices.feedback();
         match self.channel {
             Channel::Input(to) => {
                 let taken = (0..mixing.ncols()).map(|from| mixing[(to, from)]);

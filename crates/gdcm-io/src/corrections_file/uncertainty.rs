@@ -5,8 +5,9 @@ use serde_json::{Value, json};
 use gdcm_method::correction::Channel;
 use gdcm_method::uncertainty::{Bar, Scalar, VarianceDecomposition};
 use gdcm_model::dataset::{ConditionId, Pair};
-use gdcm_study::study::{
-    AirspeedDifference, Analysis, PairScatter, SecondVariableTest, Uncertainty,
+use gdcm_study::study::Analysis;
+use gdcm_study::study::uncertainty::{
+    AirspeedDifference, PairScatter, SecondVariableTest, Uncertainty,
 };
 
 use super::corrections::{ChannelNames, rows_of, says_nothing, without_empty};

@@ -11,6 +11,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 
 use gdcm_model::dataset::Dataset;
+use gdcm_model::message_text::{sanitized, sanitized_path};
 
 use super::file_error::FileError;
 use super::json_text::write_compact;
@@ -18,8 +19,6 @@ use super::output_set::{Existing, OutputSet, make_directory};
 use super::source::Source;
 use super::variables::ReadingBudget;
 use crate::file_error::ContentError;
-use gdcm_model::message_text::{sanitized, sanitized_path};
-
 use text::{DatasetText, FORMAT};
 
 pub(super) use text::{LabelText, ModelText, RecordText};

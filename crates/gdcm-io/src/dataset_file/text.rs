@@ -2,19 +2,24 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::DMatrix;
+use serde::de::Deserializer;
+use serde::{Deserialize, Serialize};
+
+use gdcm_model::dataset::channel::{ChannelSide, Location};
+use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord, FlightState, RecordKind};
 use gdcm_model::dataset::limits::{
     MOST_CHANNELS, MOST_CONDITIONS, MOST_COORDINATES, MOST_FREQUENCIES, MOST_MODELS,
     MOST_MODELS_IN_ALL, MOST_PAIRS, MOST_PIECES, MOST_RECORDS, MOST_STATES,
 };
-use gdcm_model::dataset::{
-    BandsDraft, BundleKind, Channel, ChannelRemedy, ChannelSide, Condition, ConditionDraft,
-    ConditionId, ConditionRecord, Dataset, DatasetDraft, Estimate, FlightState, Location, Model,
-    ModelDraft, Origin, Provenance, RecordKind, ResponseArray, ResponseDraft, Timing,
+use gdcm_model::dataset::measured_response::Estimate;
+use gdcm_model::dataset::model::{Origin, Provenance};
+use gdcm_model::dataset::state_space::Timing;
+use gdcm_model::dataset::unchecked_dataset::{
+    BandsDraft, ConditionDraft, DatasetDraft, ModelDraft, ResponseArray, ResponseDraft,
 };
+use gdcm_model::dataset::{BundleKind, Channel, Condition, ConditionId, Dataset, Model};
 use gdcm_model::whole_number::{whole, whole_or_none};
-use nalgebra::DMatrix;
-use serde::de::Deserializer;
-use serde::{Deserialize, Serialize};
 
 use crate::file_error::{ContentError, ContentFault};
 use crate::json_text::{Format, Limited, Nested, Numbers, list, list_while};

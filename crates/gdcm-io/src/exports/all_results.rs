@@ -2,9 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use serde_json::{Value as Tree, json};
+
 use gdcm_model::dataset::{Channel, ConditionId, Dataset};
 use gdcm_study::study::Analysis;
-use serde_json::{Value as Tree, json};
 
 use super::matlab_struct::{Layout, cell_of_texts};
 use super::{Export, ExportFormat, Exported};
@@ -197,10 +198,11 @@ mod tests {
 
     use gdcm_method::schedule::SecondVariable;
     use gdcm_model::dataset::{BundleKind, ModelId};
-    use gdcm_study::study::{Edit, Engine, PhaseCorrection, Study, Unobserved, setting};
+    use gdcm_model::progress::Unobserved;
+    use gdcm_study::study::{Edit, Engine, PhaseCorrection, Study, setting};
 
     use super::*;
-    use crate::embedded_example;
+    use crate::dataset_file::embedded_example;
 
     /// The paths of everything that JSON holds, without places in lists and names of channels and models.
     fn json_paths(json: &serde_json::Value, path: &str, found: &mut BTreeSet<String>) {
@@ -264,7 +266,8 @@ mod tests {
             .apply(&setting::PHASE.to(PhaseCorrection::Lead))
             .unwrap();
         let mut engine = Engine::default();
-        let (mut of_json, mut of_matlab) = (BTreeSet::new(), BTreeSet::new());
+        let mut of_json = BTreeSet::new();
+        let mut of_matlab = BTreeSet::new();
         for study in [altitude, leads] {
             let mut analysis = engine.analyze(&study, &Unobserved).unwrap();
             analysis.uncertainty = Some(Arc::new(

@@ -5,11 +5,14 @@ use std::sync::Arc;
 
 use nalgebra::DMatrix;
 
-use gdcm_method::correction::{self, ChannelCorrection, CorrectedModel, LeadPrice};
-use gdcm_model::assembly::{Facts, FoundModel};
+use gdcm_method::correction::corrected_model::CorrectedModel;
+use gdcm_method::correction::{self, ChannelCorrection, LeadPrice};
+use gdcm_model::assembly::FoundModel;
+use gdcm_model::assembly::found_model::Facts;
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::unchecked_dataset::ModelDraft;
 use gdcm_model::dataset::{
-    BundleKind, Channel, Condition, ConditionId, Dataset, Dynamics, Model, ModelDraft, Origin,
-    StateSpace,
+    BundleKind, Channel, Condition, ConditionId, Dataset, Dynamics, Model, StateSpace,
 };
 use gdcm_model::units::{number, telling};
 use gdcm_study::study::{Analysis, AssessedCorrection, ConditionAnalysis, CouplingCorrection};
@@ -144,7 +147,8 @@ fn contents_of(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
 
 /// The greatest phase \[deg\] at `omega` \[rad/s\] that the delays of a condition's own correction add and an export leaves out.
 fn left_out_phase_deg(contents: &ExportContents, omega: f64) -> f64 {
-    let (mut input_s, mut output_s) = (0.0_f64, 0.0_f64);
+    let mut input_s = 0.0_f64;
+    let mut output_s = 0.0_f64;
     for part in &contents.left_out {
         let LeftOutPart::Delay(delayed) = part else {
             continue;
@@ -353,8 +357,9 @@ impl ExportedModel {
             .as_ref()
             .map(|(_, words)| format!("; {words}"))
             .unwrap_or_default();
-        let (delays, left_out, couplings) =
-            (self.delay_words(), self.left_out_words(), self.couplings);
+        let delays = self.delay_words();
+        let left_out = self.left_out_words();
+        let couplings = self.couplings;
         format!(
             "condition {condition}, model {name}, {correction} correction: {delays}{left_out}{couplings}{price}"
         )
@@ -373,7 +378,8 @@ impl ExportedModel {
         if self.left_out_deg == 0.0 {
             return String::new();
         }
-        let (left_out, top) = (telling(self.left_out_deg, 3), number(self.band_top_rad_s));
+        let left_out = telling(self.left_out_deg, 3);
+        let top = number(self.band_top_rad_s);
         format!(
             "; the delays of the condition's own correction are left out, up to {left_out} deg at {top} rad/s"
         )
@@ -605,11 +611,12 @@ fn row_of_texts<T: ToString>(texts: impl Iterator<Item = T>) -> Value {
 
 #[cfg(test)]
 mod tests {
+    use gdcm_model::progress::Unobserved;
     use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
-    use gdcm_study::study::{Engine, PhaseCorrection, Study, Unobserved, setting};
+    use gdcm_study::study::{Engine, PhaseCorrection, Study, setting};
 
     use super::*;
-    use crate::embedded_example;
+    use crate::dataset_file::embedded_example;
     use crate::formats::zip_files::read_npz;
     use crate::variables::ReadingBudget;
 

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::iter::once;
 
 use gdcm_method::correction::Channel;
+use gdcm_plot::figure::all_channels;
 
 use super::matlab_struct::{Fields, cell_of_texts, column, matrix, row};
 use super::programs::comment;
@@ -12,7 +13,6 @@ use super::{ExportFault, ExportFormat, Exported};
 use crate::export_contents::ExportContents;
 use crate::formats::mat;
 use crate::variables::{Value, Variable};
-use gdcm_plot::figure::all_channels;
 
 /// The lookup table in text.
 pub(super) const CSV: ExportFormat = ExportFormat {
@@ -481,13 +481,12 @@ impl TableError {
         for index in 1..=GRID {
             best.improve(error, least + index as f64 * step);
         }
-        let (mut low, mut high) = (
-            (best.airspeed_kt - step).max(least),
-            (best.airspeed_kt + step).min(most),
-        );
+        let mut low = (best.airspeed_kt - step).max(least);
+        let mut high = (best.airspeed_kt + step).min(most);
         let ratio = (5_f64.sqrt() - 1.0) / 2.0;
         for _ in 0..STEPS {
-            let (left, right) = (high - ratio * (high - low), low + ratio * (high - low));
+            let left = high - ratio * (high - low);
+            let right = low + ratio * (high - low);
             let left_is_greater = error(left) > error(right);
             best.improve(error, if left_is_greater { left } else { right });
             if left_is_greater {
@@ -527,11 +526,12 @@ fn interpolated(points: &[f64], values: &[f64], airspeed_kt: f64) -> f64 {
 mod tests {
     use gdcm_method::correction::ChannelCorrection;
     use gdcm_method::schedule::{DelayScheduling, SecondVariable};
-    use gdcm_study::study::{Analysis, Engine, Study, Unobserved};
+    use gdcm_model::progress::Unobserved;
+    use gdcm_study::study::{Analysis, Engine, Study};
 
     use super::super::ExportSource;
     use super::*;
-    use crate::embedded_example;
+    use crate::dataset_file::embedded_example;
     use crate::formats::text::read_table;
     use crate::variables::{ReadingBudget, Value};
 
@@ -572,7 +572,8 @@ mod tests {
     }
 
     fn table<'a>(analysis: &'a Analysis, source: &'a ExportSource) -> BreakpointTable<'a> {
-        let (schedule, dataset) = (analysis.schedule.as_ref().unwrap(), &analysis.study.dataset);
+        let schedule = analysis.schedule.as_ref().unwrap();
+        let dataset = &analysis.study.dataset;
         let contents = ExportContents::of_scheduled(analysis);
         let of = Scheduled {
             schedule,
@@ -593,11 +594,10 @@ mod tests {
 
     #[test]
     fn the_table_holds_the_schedule_at_its_airspeeds() {
-        let (analysis, source) = (analysis(None), source());
-        let (table, schedule) = (
-            table(&analysis, &source),
-            analysis.schedule.as_ref().unwrap(),
-        );
+        let analysis = analysis(None);
+        let source = source();
+        let table = table(&analysis, &source);
+        let schedule = analysis.schedule.as_ref().unwrap();
         let read = read_table(&table.csv(), &ReadingBudget::new(1 << 20)).unwrap();
         assert_eq!(
             (&read.columns[0][..], read.columns.len()),
@@ -630,7 +630,8 @@ mod tests {
 
     #[test]
     fn the_greatest_error_stands_above_the_table_and_airspeeds_have_to_increase() {
-        let (analysis, source) = (analysis(None), source());
+        let analysis = analysis(None);
+        let source = source();
         let table = table(&analysis, &source);
         let worst = table.columns[0].error;
         assert!(
@@ -655,7 +656,8 @@ mod tests {
 
     #[test]
     fn every_airspeed_stands_at_three_values_of_a_second_variable() {
-        let (analysis, source) = (analysis(Some(SecondVariable::Altitude)), source());
+        let analysis = analysis(Some(SecondVariable::Altitude));
+        let source = source();
         let table = table(&analysis, &source);
         let schedule = analysis.schedule.as_ref().unwrap();
         assert_eq!(table.rows.len(), 3 * POINTS.len());

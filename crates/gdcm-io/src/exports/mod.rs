@@ -16,12 +16,12 @@ use gdcm_method::schedule::ScheduleError;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::message_text::quoted;
 use gdcm_study::study::{Analysis, AssessedCorrection};
-use scheduled::Scheduled;
 
 use crate::export_contents::ExportContents;
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
 use crate::variables::VariableFault;
+use scheduled::Scheduled;
 
 /// Something that a study's corrections can be exported as.
 #[derive(Clone, Copy, Debug)]
@@ -312,7 +312,7 @@ pub enum ExportFault {
         condition: ConditionId,
         /// The model.
         model: String,
-        /// Why not; see [`CorrectedModelError`](gdcm_method::correction::CorrectedModelError).
+        /// Why not; see [`CorrectedModelError`](gdcm_method::correction::corrected_model::CorrectedModelError).
         words: String,
     },
 }

@@ -3,17 +3,18 @@
 use std::io;
 use std::path::Path;
 
+use minijinja::syntax::SyntaxConfig;
+use minijinja::{Environment, Value, context};
+
 use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;
 use gdcm_method::schedule::{Airspeeds, Regression};
-use minijinja::syntax::SyntaxConfig;
-use minijinja::{Environment, Value, context};
+use gdcm_plot::figure::all_channels;
 
 use super::matlab_struct::LONGEST_NAME;
 use super::scheduled::{Curve, Scheduled, number};
 use super::{Export, ExportFault, ExportFormat, Exported};
 use crate::export_contents::ExportContents;
-use gdcm_plot::figure::all_channels;
 
 /// A programming language: the template of a file, and how it writes the value of a curve.
 struct Language {
@@ -104,7 +105,8 @@ impl Language {
     fn export<'e>(self, of: &Export<'e>) -> Result<Exported<'e>, ExportFault> {
         let scheduled = of.scheduled()?;
         scheduled.check()?;
-        let (name, remarks) = (stem(of.path), scheduled.notes_of_curves());
+        let name = stem(of.path);
+        let remarks = scheduled.notes_of_curves();
         let write = move |file: &mut dyn io::Write| {
             file.write_all(self.text(&scheduled, &name)?.as_bytes())
         };
@@ -378,20 +380,21 @@ mod tests {
     use std::process::Command;
     use std::sync::Arc;
 
+    use nalgebra::DMatrix;
+    use proptest::prelude::*;
+
     use gdcm_method::schedule::{
         DelayScheduling, ScheduleKind, ScheduleSettings, ScheduledQuantity, SecondVariable,
     };
     use gdcm_model::dataset::Dataset;
+    use gdcm_model::progress::Unobserved;
     use gdcm_study::study::{
-        Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, Study, Unobserved, setting,
+        Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, Study, setting,
     };
-
-    use nalgebra::DMatrix;
-    use proptest::prelude::*;
 
     use super::super::{EXPORTERS, ExportRequest, ExportSource};
     use super::*;
-    use crate::embedded_example;
+    use crate::dataset_file::embedded_example;
 
     /// The example under every form of the schedule: kind, quantity, delays.
     fn analyses() -> Vec<(String, Analysis)> {
@@ -587,10 +590,8 @@ mod tests {
                 ("h", "GDCM_NOT_VALID_ABOVE_RAD_S 1.2"),
             ] {
                 let text = program(language, &analysis, "k");
-                let (says, has_number) = (
-                    text.contains("Note: not valid above 12 rad/s: at 120 rad/s"),
-                    text.contains(limit),
-                );
+                let says = text.contains("Note: not valid above 12 rad/s: at 120 rad/s");
+                let has_number = text.contains(limit);
                 assert!(
                     text.is_ascii() && says == price.is_some(),
                     "{words}: {text}"

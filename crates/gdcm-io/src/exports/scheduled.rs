@@ -6,11 +6,11 @@ use gdcm_method::couplings::CouplingMatrices;
 use gdcm_method::schedule::{Regression, Schedule, ScheduledQuantity};
 use gdcm_model::dataset::Dataset;
 use gdcm_model::message_text::shortened;
+use gdcm_plot::figure::all_channels;
 
 use super::programs::comment;
 use super::{ExportFault, ExportSource};
 use crate::export_contents::ExportContents;
-use gdcm_plot::figure::all_channels;
 
 /// A schedule, with the dataset and the study that it is of.
 #[derive(Clone)]
@@ -84,10 +84,8 @@ impl Scheduled<'_> {
     pub(super) fn delay_s(&self, channel: Channel) -> Curve {
         let (figures, upper) = match (&self.schedule.leads, &self.schedule.delays) {
             (Some(leads), _) => {
-                let (airspeeds_kt, values) = (
-                    vec![self.schedule.airspeeds.min_kt],
-                    vec![leads.bounds_s[1]],
-                );
+                let airspeeds_kt = vec![self.schedule.airspeeds.min_kt];
+                let values = vec![leads.bounds_s[1]];
                 (
                     &leads.taus_s[channel],
                     Regression::Table {
@@ -109,10 +107,8 @@ impl Scheduled<'_> {
     /// without leads.
     pub(super) fn zero_s(&self, channel: Channel) -> Option<Curve> {
         let leads = self.schedule.leads.as_ref()?;
-        let (least, most) = (
-            self.schedule.airspeeds.min_kt,
-            self.schedule.airspeeds.max_kt,
-        );
+        let least = self.schedule.airspeeds.min_kt;
+        let most = self.schedule.airspeeds.max_kt;
         let figures = &leads.taus_s[channel];
         let at = |kt: f64| {
             let tau_s = figures

@@ -6,12 +6,13 @@ use std::path::Path;
 
 use gdcm_model::message_text::sanitized;
 use gdcm_model::units::without_sign_of_zero;
+use gdcm_plot::figure::tables::LONG_COLUMNS;
+use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat};
+use gdcm_plot::paper::{pdf, svg, write_png};
 use gdcm_study::study::Table;
 
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
-use gdcm_plot::figure::{ColumnWidth, Figure, FigureFormat, LONG_COLUMNS};
-use gdcm_plot::paper::{pdf, svg, write_png};
 
 /// The format that the end of a file's name says.
 ///
@@ -138,9 +139,13 @@ pub fn save_tables(tables: &[Table], path: &Path, mut outputs: OutputSet) -> Res
 
 #[cfg(test)]
 mod tests {
+    use gdcm_plot::figure::axis::Axis;
+    use gdcm_plot::figure::drawing::Stroke;
+    use gdcm_plot::figure::figure::{Curve, Plot};
+    use gdcm_plot::figure::{Color, Panel};
+
     use super::*;
-    use crate::Existing;
-    use gdcm_plot::figure::{Axis, Color, Curve, Panel, Plot, Stroke};
+    use crate::output_set::Existing;
 
     /// A curve of a model whose name would turn a terminal red and hide what follows.
     fn named_by_codes() -> Figure {
@@ -206,7 +211,7 @@ mod tests {
 #[cfg(test)]
 mod csv_tests {
     use super::*;
-    use crate::Existing;
+    use crate::output_set::Existing;
 
     fn table(title: &str) -> Table {
         let mut table = Table::new(title, ["model", "J [-]"]);

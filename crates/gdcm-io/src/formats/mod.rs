@@ -10,11 +10,11 @@
 
 pub(crate) mod json_values;
 pub(crate) mod logs;
-pub(crate) mod mat;
+pub mod mat;
 pub(crate) mod mat73;
-pub(crate) mod npy;
+pub mod npy;
 pub(crate) mod octave;
-pub(crate) mod text;
+pub mod text;
 pub(crate) mod zip_files;
 
 use std::fs;
@@ -203,7 +203,8 @@ pub(crate) fn import(
 ) -> Result<(usize, Vec<String>), FileError> {
     let mut faults = Vec::new();
     let files = files_of(paths, &mut faults)?;
-    let (stop, tell) = (progress.stop(), |taken| progress.taken(taken));
+    let stop = progress.stop();
+    let tell = |taken| progress.taken(taken);
     for (index, (path, name)) in files.iter().enumerate() {
         if stop.load(Ordering::Relaxed) {
             break;
@@ -354,7 +355,8 @@ fn ending_of(path: &Path) -> String {
 /// A key that sorts "c2" before "c10".
 fn natural(name: &str) -> Vec<(String, u64)> {
     let mut parts = Vec::new();
-    let (mut text, mut digits) = (String::new(), String::new());
+    let mut text = String::new();
+    let mut digits = String::new();
     for letter in name.chars().chain(['\0']) {
         if letter.is_ascii_digit() && digits.len() < 18 {
             digits.push(letter);

@@ -36,8 +36,10 @@ pub(crate) fn read_archive(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
 ) -> Result<Contents, VariableFault> {
-    let (mut names, mut variables) = (HashSet::new(), Vec::new());
-    let (mut files, mut ignored) = (Vec::new(), Vec::new());
+    let mut names = HashSet::new();
+    let mut variables = Vec::new();
+    let mut files = Vec::new();
+    let mut ignored = Vec::new();
     visit_files(bytes, |file| {
         // A few bytes in the archive's directory become a variable or a file, whatever it holds.
         budget.take(
@@ -134,7 +136,8 @@ impl ZipFile<'_, '_> {
         let found = self.archive.get_entry(self.entry.wayfinder());
         let found =
             found.map_err(|error| VariableFault::damaged(name, error.to_string(), self.offset))?;
-        let (packed, length) = (found.data(), self.entry.uncompressed_size_hint());
+        let packed = found.data();
+        let length = self.entry.uncompressed_size_hint();
         if length > (packed.len() as u64).saturating_mul(LARGEST_RATIO) {
             return Err(VariableFault::damaged(
                 name,

@@ -1,9 +1,10 @@
 //! Delays beside a model: which fields hold them, in which unit, and which only look as if they did.
 
-use gdcm_model::assembly::{SAMPLE_TIME_NAMES, folded_name};
-use gdcm_model::dataset::{GREATEST_CHANNEL_DELAY_S, Timing};
-use gdcm_model::units::number;
 use nalgebra::DMatrix;
+
+use gdcm_model::assembly::channel_match::{SAMPLE_TIME_NAMES, folded_name};
+use gdcm_model::dataset::state_space::{GREATEST_CHANNEL_DELAY_S, Timing};
+use gdcm_model::units::number;
 
 use crate::recognise::record::{Field, Record, array_of, list_of, scalar_of, texts_of};
 use crate::variables::{Array, Value};
@@ -296,7 +297,8 @@ impl DelayReading {
     /// Delays of single responses, split into one of each input and one of each output.
     fn of_responses(&mut self, field: &DelayField<'_>) -> Result<SplitDelays, String> {
         let name = field.name;
-        let (p, m) = (self.outputs, self.inputs);
+        let p = self.outputs;
+        let m = self.inputs;
         if p == 0 || m == 0 {
             return Ok(SplitDelays {
                 inputs: vec![0.0; m],

@@ -12,9 +12,12 @@ use std::collections::{BTreeSet, HashMap};
 use std::f64::consts::TAU;
 use std::rc::Rc;
 
-use gdcm_model::assembly::{Dimension, FoundModel, PhysicalUnit};
+use gdcm_model::assembly::physical_unit::Dimension;
+use gdcm_model::assembly::{FoundModel, PhysicalUnit};
 use gdcm_model::dataset::limits::MOST_PIECES;
-use gdcm_model::dataset::{Estimate, ModelDraft, Origin, Provenance, ResponseArray, ResponseDraft};
+use gdcm_model::dataset::measured_response::Estimate;
+use gdcm_model::dataset::model::{Origin, Provenance};
+use gdcm_model::dataset::unchecked_dataset::{ModelDraft, ResponseArray, ResponseDraft};
 
 use crate::models_file::bare_draft;
 use crate::recognise::delays::{is_delay, refuse_delays};
@@ -456,10 +459,8 @@ fn complex<'v>(record: &Record<'v>) -> Option<&'v Array> {
 }
 
 fn parts<'v>(record: &Record<'v>) -> Option<(&'v Array, &'v Array)> {
-    let (re, im) = (
-        record.find(&["re", "real", "Hre"])?,
-        record.find(&["im", "imag", "Him"])?,
-    );
+    let re = record.find(&["re", "real", "Hre"])?;
+    let im = record.find(&["im", "imag", "Him"])?;
     let parts = array_of(re.1).zip(array_of(im.1))?;
     record.use_field(re.0);
     record.use_field(im.0);
@@ -648,9 +649,8 @@ fn in_order(
 mod tests {
     use gdcm_model::assembly::ChannelLabel;
 
-    use crate::variables::{Array, CellArray, ElementKind, Object, TextArray};
-
     use super::*;
+    use crate::variables::{Array, CellArray, ElementKind, Object, TextArray};
 
     fn numbers(rows: usize, columns: usize, values: &[f64]) -> Value {
         Value::Array(Array::matrix(rows, columns, values.to_vec()))
@@ -844,7 +844,7 @@ mod tests {
     }
 
     fn json(text: &str) -> Found<FoundModel> {
-        let found = crate::models_of_bytes(
+        let found = crate::model_files::models_of_bytes(
             text.as_bytes(),
             "c1_90kt/m.json",
             &ReadingBudget::new(1 << 24),

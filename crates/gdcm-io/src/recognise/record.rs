@@ -4,10 +4,14 @@ use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::rc::Rc;
 
-use gdcm_model::assembly::{ChannelLabel, Facts, RowRole, direction_of, folded_name};
-use gdcm_model::dataset::{ChannelSide, Origin};
-use gdcm_model::units::number;
 use nalgebra::{Complex, DMatrix};
+
+use gdcm_model::assembly::channel_match::{direction_of, folded_name};
+use gdcm_model::assembly::found_model::Facts;
+use gdcm_model::assembly::{ChannelLabel, RowRole};
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::units::number;
 
 use crate::recognise::delays::{DelayField, delay_fields};
 use crate::variables::{Array, StructArray, Value, Variable};
@@ -419,7 +423,8 @@ fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String
                 .and_then(texts_of)
                 .and_then(|texts| texts.into_iter().next())
         };
-        let (name, unit) = (text(LABEL_NAMES)?, text(LABEL_UNITS).unwrap_or_default());
+        let name = text(LABEL_NAMES)?;
+        let unit = text(LABEL_UNITS).unwrap_or_default();
         Some(if unit.is_empty() || label_of(&name).unit.is_some() {
             name
         } else {

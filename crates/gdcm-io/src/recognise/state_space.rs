@@ -1,10 +1,13 @@
 //! Models by their matrices.
 
+use nalgebra::{Complex, DMatrix};
+
 use gdcm_model::assembly::FoundModel;
 use gdcm_model::dataset::limits::MOST_STATES;
-use gdcm_model::dataset::{ModelDraft, Provenance, Timing};
+use gdcm_model::dataset::model::Provenance;
+use gdcm_model::dataset::state_space::Timing;
+use gdcm_model::dataset::unchecked_dataset::ModelDraft;
 use gdcm_model::units::number;
-use nalgebra::{Complex, DMatrix};
 
 use crate::models_file::bare_draft;
 use crate::recognise::delays::timing_of;
@@ -47,8 +50,9 @@ pub(super) fn state_spaces(
     }
     // Which index counts the models shows where the others fit one another.
     let fits = |first: bool| {
-        let ((pages, of_a), (of_pages, of_b), (pages_of_c, of_c)) =
-            (pages_of(a, first), pages_of(b, first), pages_of(c, first));
+        let (pages, of_a) = pages_of(a, first);
+        let (of_pages, of_b) = pages_of(b, first);
+        let (pages_of_c, of_c) = pages_of(c, first);
         let is_as_many = |count: usize| count == pages || count == 1;
         of_a[0] == of_a[1]
             && of_b[0] == of_a[0]
@@ -139,10 +143,8 @@ pub(super) fn found(
     [a, b, c, d]: [DMatrix<f64>; 4],
     timing: Timing,
 ) -> Result<FoundModel, String> {
-    let (inputs, outputs) = (
-        inputs_of(record, b.ncols())?,
-        outputs_of(record, c.nrows())?,
-    );
+    let inputs = inputs_of(record, b.ncols())?;
+    let outputs = outputs_of(record, c.nrows())?;
     let states = states_of(record, a.nrows());
     let source = Some(variable.to_owned()).filter(|variable| !variable.is_empty());
     Ok(FoundModel {
@@ -228,7 +230,8 @@ pub(super) fn solved(
         return Ok((a, b));
     }
     let singular = e.singular_values();
-    let (most, least) = (singular.max(), singular.min());
+    let most = singular.max();
+    let least = singular.min();
     if least <= 0.0 || most / least > WORST_CONDITION {
         let condition = if least > 0.0 {
             number(most / least)
@@ -256,15 +259,14 @@ pub(super) fn is_transfer_function(record: &Record<'_>) -> bool {
 }
 
 fn polynomials<'v>(record: &Record<'v>) -> Option<(&'v Value, &'v Value)> {
-    let (numerator, denominator) = (
-        record.find(&["num", "Numerator"])?,
-        record.find(&["den", "Denominator"])?,
-    );
+    let numerator = record.find(&["num", "Numerator"])?;
+    let denominator = record.find(&["den", "Denominator"])?;
     Some((record.used(numerator), record.used(denominator)))
 }
 
 fn factors<'v>(record: &Record<'v>) -> Option<(&'v Value, &'v Value, &'v Value)> {
-    let (zeros, poles) = (record.find(&["z", "Zeros"])?, record.find(&["p", "Poles"])?);
+    let zeros = record.find(&["z", "Zeros"])?;
+    let poles = record.find(&["p", "Poles"])?;
     let gains = record.find(&["k", "Gain"])?;
     Some((record.used(zeros), record.used(poles), record.used(gains)))
 }
@@ -287,7 +289,8 @@ impl Fraction {
             polynomial[first..].to_vec()
         };
         at_most(denominator.len().saturating_sub(1), "states", place)?;
-        let (numerator, denominator) = (strip(numerator), strip(denominator));
+        let numerator = strip(numerator);
+        let denominator = strip(denominator);
         let Some(&leading) = denominator.first() else {
             return Err(format!("{place}: the denominator is zero"));
         };
@@ -337,7 +340,9 @@ pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<F
     let mut d = DMatrix::zeros(outputs, inputs);
     let mut start = 0;
     for (index, fraction) in fractions.iter().enumerate() {
-        let (output, input, n) = (index % outputs, index / outputs, fraction.order());
+        let output = index % outputs;
+        let input = index / outputs;
+        let n = fraction.order();
         let numerator = fraction.padded();
         d[(output, input)] = numerator[0];
         for state in 0..n {
@@ -401,10 +406,8 @@ fn fractions_of(record: &Record<'_>) -> Result<(Vec<Fraction>, usize, usize), St
         let gain = gains
             .get(index)
             .ok_or_else(|| format!("{place}: no gain"))?;
-        let (zeros, poles) = (
-            complex_list_of("zeros", zeros)?,
-            complex_list_of("poles", poles)?,
-        );
+        let zeros = complex_list_of("zeros", zeros)?;
+        let poles = complex_list_of("poles", poles)?;
         at_most(zeros.len().max(poles.len()), "states", &place)?;
         let numerator: Vec<f64> = polynomial(&zeros).iter().map(|term| term * gain).collect();
         Fraction::new(&numerator, &polynomial(&poles), &place)
@@ -480,9 +483,8 @@ mod descriptor_tests {
 
 #[cfg(test)]
 mod transfer_function_tests {
-    use crate::variables::{Array, Variable};
-
     use super::*;
+    use crate::variables::{Array, Variable};
 
     fn row(name: &str, values: &[f64]) -> Variable {
         Variable {

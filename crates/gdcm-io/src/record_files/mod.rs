@@ -13,14 +13,15 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use gdcm_model::assembly::standard_patterns;
-use gdcm_model::dataset::ConditionRecord;
-use gdcm_sysid::records::{
-    ModeSpan, RecordColumn, RecordGuess, RecordSource, RecordTable, Separation,
-};
+use gdcm_model::assembly::rules::standard_patterns;
+use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_sysid::records::laid_out_record::RecordGuess;
+use gdcm_sysid::records::record_table::Separation;
+use gdcm_sysid::records::{ModeSpan, RecordColumn, RecordSource, RecordTable};
 
 use crate::file_error::FileError;
-use crate::formats::text::{NumberedText, TextTable, numbered_words, read_table, sections};
+use crate::formats::text::separator::sections;
+use crate::formats::text::{NumberedText, TextTable, numbered_words, read_table};
 use crate::formats::{
     Contents, FolderProgress, ImportedFile, MOST_MEMORY, import, import_bytes, import_file, of_file,
 };
@@ -54,10 +55,12 @@ pub fn read_records(
     paths: &[PathBuf],
     progress: &dyn FolderProgress,
 ) -> Result<FoundRecords, FileError> {
-    let (mut found, mut whole) = (FoundRecords::default(), Vec::new());
+    let mut found = FoundRecords::default();
+    let mut whole = Vec::new();
     let (files, faults) = import(paths, progress, |file, budget| {
-        let (path, records, faults) =
-            (file.path.to_owned(), found.tables.len(), found.faults.len());
+        let path = file.path.to_owned();
+        let records = found.tables.len();
+        let faults = found.faults.len();
         found.take(file, budget)?;
         whole
             .extend((found.tables.len() > records && found.faults.len() == faults).then_some(path));
@@ -188,7 +191,8 @@ impl FoundRecords {
                 for (inner, contents) in files {
                     let mut found = FoundRecords::default();
                     let taken = contents.and_then(|contents| {
-                        let (path, sha256) = (Path::new(&inner), sha256.clone());
+                        let path = Path::new(&inner);
+                        let sha256 = sha256.clone();
                         found.take(
                             ImportedFile {
                                 path,
@@ -213,10 +217,8 @@ impl FoundRecords {
                             .source
                             .variable
                             .map(|variable| format!("{inner}, {variable}"));
-                        let (file, variable) = (
-                            name.to_owned(),
-                            Some(variable.unwrap_or_else(|| inner.clone())),
-                        );
+                        let file = name.to_owned();
+                        let variable = Some(variable.unwrap_or_else(|| inner.clone()));
                         table.source = RecordSource {
                             file,
                             variable,
@@ -383,7 +385,8 @@ fn of_table(table: TextTable) -> Columns {
     } = table;
     let named = names.is_some();
     let names = names.unwrap_or_default();
-    let (columns, mut notes) = (columns, notes);
+    let columns = columns;
+    let mut notes = notes;
     let columns = if named {
         columns
     } else {
@@ -527,13 +530,14 @@ mod example_tests {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::variables::{Array, CellArray, Object, StructArray, TextArray, Value};
     use gdcm_model::assembly::ChannelRule;
-    use gdcm_model::dataset::ChannelSide;
+    use gdcm_model::dataset::channel::ChannelSide;
     use gdcm_sysid::records::{
         ColumnUse, LaidOutRecord, RecordChannels, RecordLayout, TimeWish, with_topics_joined,
     };
+
+    use super::*;
+    use crate::variables::{Array, CellArray, Object, StructArray, TextArray, Value};
 
     const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/records/");
 
@@ -560,7 +564,7 @@ mod tests {
     }
 
     /// The record of a table, by the layout proposed; of columns without names it is said which is which, and that "az" is up.
-    fn flight(table: &RecordTable) -> gdcm_sysid::identification::FlightRecord {
+    fn flight(table: &RecordTable) -> gdcm_model::simulation::FlightRecord {
         let mut channels = channels();
         let rules = channels.inputs.iter_mut().chain(&mut channels.outputs);
         for (index, rule) in rules.enumerate().filter(|_| !table.named) {
@@ -647,7 +651,8 @@ mod tests {
                 })
                 .collect::<Vec<_>>()
         };
-        let (input, output) = (Some(ChannelSide::Input), Some(ChannelSide::Output));
+        let input = Some(ChannelSide::Input);
+        let output = Some(ChannelSide::Output);
         let column = |name: &str, unit: &str, side| (name.to_owned(), unit.to_owned(), side);
         assert_eq!(
             of("units.csv")[..2],
@@ -746,7 +751,8 @@ mod tests {
     #[test]
     fn words_and_times_of_the_clock_stand_among_the_numbers_of_a_log() {
         let row = |k: usize, run: &str| {
-            let (at, cs) = (k as f64, 2 * k);
+            let at = k as f64;
+            let cs = 2 * k;
             let stick = (
                 50.0 + 10.0 * (0.3 * at).sin(),
                 45.0 + 8.0 * (0.2 * at).cos(),
@@ -986,7 +992,8 @@ mod tests {
             });
             vec![numbers(60, columns, |k| k as f64), label]
         };
-        let (first, second) = (signal("LON [%]", 1), signal("rates", 2));
+        let first = signal("LON [%]", 1);
+        let second = signal("rates", 2);
         let fields = ["values", "label"].into_iter().enumerate();
         let fields = fields
             .map(|(at, name)| (name.to_owned(), vec![first[at].clone(), second[at].clone()]))

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use gdcm_model::assembly::{SAMPLE_TIME_NAMES, folded_name, time_name_rank};
-use gdcm_model::dataset::ChannelSide;
+use gdcm_model::assembly::channel_match::{SAMPLE_TIME_NAMES, folded_name, time_name_rank};
+use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_sysid::records::RecordColumn;
 
 use crate::recognise::record::{Record, label_of, texts_of};
@@ -154,7 +154,10 @@ pub(super) fn columns_of(record: &Record<'_>, variable: &str) -> Option<Columns>
         return None;
     }
     let mut columns: Vec<RecordColumn> = Vec::new();
-    let (mut matrices, mut vectors, mut labelled, mut left_out) = (0, 0, false, Vec::new());
+    let mut matrices = 0;
+    let mut vectors = 0;
+    let mut labelled = false;
+    let mut left_out = Vec::new();
     for (name, value) in record.fields() {
         let Some(samples) = samples_of(value, Some(rows)) else {
             continue;
@@ -257,7 +260,8 @@ fn sample_time(record: &Record<'_>) -> Option<f64> {
 
 /// Columns of one name, numbered where there are several.
 fn side_by_side(name: &str, values: Vec<Vec<f64>>) -> impl Iterator<Item = RecordColumn> + use<> {
-    let (name, is_one) = (name.to_owned(), values.len() == 1);
+    let name = name.to_owned();
+    let is_one = values.len() == 1;
     values.into_iter().enumerate().map(move |(index, values)| {
         let name = if is_one {
             name.clone()
@@ -492,7 +496,8 @@ fn side_columns(
     rows: Option<usize>,
 ) -> Vec<RecordColumn> {
     let samples = part_of(record, &side.data, index).and_then(|value| samples_of(value, rows));
-    let (names, units) = (texts(record, &side.names), texts(record, &side.units));
+    let names = texts(record, &side.names);
+    let units = texts(record, &side.units);
     let of = |list: &Option<Vec<String>>, at: usize| {
         list.as_ref()?
             .get(at)
@@ -547,16 +552,15 @@ pub(super) fn timetable_columns(record: &Record<'_>, variable: &str) -> Option<C
     match record.class? {
         "timetable" => {
             let inner = inner(record.get(&["any"])?)?;
-            let (names, units) = (
-                texts_of(inner.get(&["varNames"])?)?,
-                inner.get(&["varUnits"]).and_then(texts_of),
-            );
+            let names = texts_of(inner.get(&["varNames"])?)?;
+            let units = inner.get(&["varUnits"]).and_then(texts_of);
             let Value::Cell(data) = inner.get(&["data"])? else {
                 return None;
             };
             let mut columns = columns(&data.values, &names, units.as_deref());
             let rows = columns.first()?.values.len();
-            let (mut sample_time_s, mut notes) = (None, Vec::new());
+            let mut sample_time_s = None;
+            let mut notes = Vec::new();
             match row_times(inner.get(&["rowTimes"])?)? {
                 RowTimes::Step(step_s) => sample_time_s = Some(step_s),
                 RowTimes::Stamps(values, note) => {

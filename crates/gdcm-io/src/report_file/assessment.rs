@@ -6,18 +6,20 @@ use std::sync::Arc;
 use gdcm_method::fidelity::ACCEPTABLE;
 use gdcm_method::schedule::CostChange;
 use gdcm_model::dataset::{ConditionId, Pair, PairTable};
+use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_model::units::signed;
-use gdcm_study::study::{
-    Analysis, AssessmentChoice, AssessmentTable, Cancelled, Engine, Progress, Table, bar_table,
-    difference_table, held_out_verdict, scatter_table, second_variable_table,
+use gdcm_plot::figure::assessment::{
+    assessment_figure, average_word, change_table, evidence_figure, usual_choice,
 };
+use gdcm_plot::figure::axis::FrequencyUnit;
+use gdcm_plot::figure::decimals;
+use gdcm_plot::figure::poles::couplings_figure;
+use gdcm_study::study::assessment_table::{AssessmentChoice, held_out_verdict};
+use gdcm_study::study::table::{bar_table, difference_table, scatter_table, second_variable_table};
+use gdcm_study::study::{Analysis, AssessmentTable, Engine, Table};
 
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, PAIRS_DRAWN, Page};
-use gdcm_plot::figure::{
-    FrequencyUnit, assessment_figure, average_word, change_table, couplings_figure, decimals,
-    evidence_figure, usual_choice,
-};
 
 /// The analysis with how sure its figures are.
 ///

@@ -5,18 +5,23 @@ use std::collections::BTreeSet;
 use gdcm_method::correction::{Channel, Outcome};
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, ModelId, Pair};
+use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 use gdcm_model::units::{number, s_to_ms, signed};
-use gdcm_study::study::{
-    Analysis, CURVE_POINTS, Cancelled, ConditionAnalysis, ConditionModes, Engine, Progress,
-    RemarkKind, Study, Table, Unobserved, curves_band, details, lead_words, remarks,
-};
+use gdcm_plot::figure::axis::compact;
+use gdcm_plot::figure::bode::{BodeOptions, bode_figure, overview_figure};
+use gdcm_plot::figure::condition_source::condition_words;
+use gdcm_plot::figure::error::error_figure;
+use gdcm_plot::figure::gains::class_names;
+use gdcm_plot::figure::poles::poles_figure;
+use gdcm_plot::figure::{ConditionSource, Figure, Mark, Role, all_channels, decimals};
+use gdcm_study::study::condition_responses::{CURVE_POINTS, curves_band};
+use gdcm_study::study::job::ConditionModes;
+use gdcm_study::study::lead_compensation::lead_words;
+use gdcm_study::study::remark::{RemarkKind, details, remarks};
+use gdcm_study::study::{Analysis, ConditionAnalysis, Engine, Study, Table};
 
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, names};
-use gdcm_plot::figure::{
-    BodeOptions, ConditionSource, Figure, Mark, Role, all_channels, bode_figure, class_names,
-    compact, condition_words, decimals, error_figure, overview_figure, poles_figure,
-};
 
 /// Adds the section on the conditions: representatives, gains and delays, what they rest on, and plots of each.
 pub(super) fn add(
@@ -111,7 +116,8 @@ pub(super) fn proof_word(result: &ConditionAnalysis) -> &'static str {
 
 fn facts<'a>(analysis: &Analysis, result: &ConditionAnalysis) -> Vec<(&'a str, String)> {
     let bounds = result.gain_bounds();
-    let (gains, delays) = (&result.gains, &result.delays);
+    let gains = &result.gains;
+    let delays = &result.delays;
     let least_ms = compact(s_to_ms(result.delay_bounds_s()[0]));
     let most_ms = decimals(s_to_ms(result.delay_upper_s()), 2);
     let bound = gains.proof.lower_bound;
@@ -197,7 +203,8 @@ fn representative(analysis: &Analysis, result: &ConditionAnalysis, kind: BundleK
 }
 
 fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
-    let (dataset, correction) = (&analysis.study.dataset, &result.correction);
+    let dataset = &analysis.study.dataset;
+    let correction = &result.correction;
     let title = format!(
         "Condition {}: gain and delay of each channel",
         result.condition.id()
@@ -210,7 +217,8 @@ fn channel_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
         } else {
             "output"
         };
-        let (gain, delay_s) = (correction.gain(channel), correction.delay_s(channel));
+        let gain = correction.gain(channel);
+        let delay_s = correction.delay_s(channel);
         let name = channel.name(&inputs, &outputs);
         table.row([
             name,

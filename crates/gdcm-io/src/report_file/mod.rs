@@ -9,13 +9,15 @@ mod study;
 
 use std::path::Path;
 
-use gdcm_study::study::{Analysis, Cancelled, Engine, KnownPoles, Progress, TimeHistories};
+use gdcm_model::message_text::sanitized;
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_study::study::required_modes::KnownPoles;
+use gdcm_study::study::time_histories::TimeHistories;
+use gdcm_study::study::{Analysis, Engine};
 
 use super::dataset_file::LoadedDataset;
 use super::file_error::FileError;
 use super::output_set::OutputSet;
-use gdcm_model::message_text::sanitized;
-
 use page::Page;
 
 pub use study::assessment_sentence;

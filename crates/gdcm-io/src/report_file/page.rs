@@ -2,10 +2,10 @@
 //! HTML and well-formed XML at once.
 
 use gdcm_model::message_text::sanitized;
-use gdcm_study::study::Table;
-
-use gdcm_plot::figure::{ColumnWidth, Drawing, Figure};
+use gdcm_plot::figure::drawing::Drawing;
+use gdcm_plot::figure::{ColumnWidth, Figure};
 use gdcm_plot::paper::{escaped, inline_svg};
+use gdcm_study::study::Table;
 
 /// Conditions that have figures; all have tables.
 pub(super) const CONDITIONS_DRAWN: usize = 60;
@@ -225,7 +225,8 @@ impl Page {
             .map(|line| classed("p", "below", line))
             .collect();
         let contents = self.contents();
-        let (head, style) = (words(title), STYLE.trim_end());
+        let head = words(title);
+        let style = STYLE.trim_end();
         let body = self.body;
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
@@ -283,10 +284,15 @@ fn classed(tag: &str, class: &str, text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use gdcm_plot::figure::{Axis, Curve, Panel, Plot, Role};
-    use roxmltree::{Document, ParsingOptions};
     use std::collections::BTreeSet;
+
+    use roxmltree::{Document, ParsingOptions};
+
+    use gdcm_plot::figure::axis::Axis;
+    use gdcm_plot::figure::figure::{Curve, Plot};
+    use gdcm_plot::figure::{Panel, Role};
+
+    use super::*;
 
     fn figure() -> Figure {
         let curve = Curve::new("a", Role::Nominal.stroke(false), [1.0, 2.0], [1.0, 2.0]).key("a");

@@ -3,14 +3,16 @@
 use std::collections::BTreeMap;
 
 use gdcm_model::dataset::ConditionId;
-use gdcm_study::study::{
-    BandwidthFinding, Cancelled, Engine, Progress, Requirements, RequirementsOverview, Study,
-    Table, TimeHistories,
-};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_plot::figure::requirements::requirements_figure;
+use gdcm_study::study::required_bandwidth::BandwidthFinding;
+use gdcm_study::study::requirements::Requirements;
+use gdcm_study::study::requirements_tables::RequirementsOverview;
+use gdcm_study::study::time_histories::TimeHistories;
+use gdcm_study::study::{Engine, Study, Table};
 
 use super::page::Page;
 use super::{ReportSubject, Unobtrusive};
-use gdcm_plot::figure::requirements_figure;
 
 /// Columns of a table that fit a sheet.
 const COLUMNS: usize = 9;

@@ -4,14 +4,14 @@ use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::Schedule;
 use gdcm_model::dataset::{ConditionId, Pair};
 use gdcm_model::units::{number, s_to_ms};
+use gdcm_plot::figure::axis::compact;
+use gdcm_plot::figure::condition_source::quantity_symbol;
+use gdcm_plot::figure::gains::{Across, Measure, channels_figure, net_gain_figure};
+use gdcm_plot::figure::{all_channels, decimals};
 use gdcm_study::study::{Analysis, Study, Table};
 
 use super::page::{PAIRS_DRAWN, Page, names};
 use super::study::schedule_words;
-use gdcm_plot::figure::{
-    Across, Measure, all_channels, channels_figure, net_gain_figure, quantity_symbol,
-};
-use gdcm_plot::figure::{compact, decimals};
 
 /// Channels in one figure, in two rows.
 const IN_A_FIGURE: usize = 12;
@@ -68,10 +68,8 @@ fn add_channels(
 
 fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, channels: &[Channel]) {
     let (inputs, outputs) = analysis.study.dataset.names_of_channels();
-    let (low, high) = (
-        number(schedule.airspeeds.min_kt),
-        number(schedule.airspeeds.max_kt),
-    );
+    let low = number(schedule.airspeeds.min_kt);
+    let high = number(schedule.airspeeds.max_kt);
     let left_out = not_scheduled(analysis);
     page.facts([
         ("Form", schedule_words(&schedule.settings)),
@@ -176,7 +174,8 @@ fn add_coefficients(
 fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let dataset = &analysis.study.dataset;
     let (inputs, outputs) = dataset.names_of_channels();
-    let (channels, pairs) = (all_channels(dataset), shown_pairs(&analysis.study));
+    let channels = all_channels(dataset);
+    let pairs = shown_pairs(&analysis.study);
     let named = |symbol: &str| -> Vec<String> {
         channels
             .iter()

@@ -4,17 +4,20 @@ use std::collections::BTreeMap;
 
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings};
-use gdcm_model::dataset::{BundleKind, Channel, Condition, ModelId, Pair, PairTable, Provenance};
+use gdcm_model::dataset::model::Provenance;
+use gdcm_model::dataset::{BundleKind, Channel, Condition, ModelId, Pair, PairTable};
 use gdcm_model::units::{number, six_digits};
-use gdcm_study::study::{
-    Analysis, AssessmentTable, Caution, ConditionAnalysis, SETTINGS, Study, Table, setting,
-};
+use gdcm_plot::figure::assessment::usual_choice;
+use gdcm_plot::figure::condition_source::quantity_symbol;
+use gdcm_plot::figure::decimals;
+use gdcm_study::study::caution::Caution;
+use gdcm_study::study::setting::SETTINGS;
+use gdcm_study::study::{Analysis, AssessmentTable, ConditionAnalysis, Study, Table, setting};
 
 use super::assessment::capital;
 use super::conditions::proof_word;
 use super::page::{NAMES_SHOWN, Page, names};
 use super::{PROGRAM, ReportSource};
-use gdcm_plot::figure::{decimals, quantity_symbol, usual_choice};
 
 /// What came of the study, at a glance.
 pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
@@ -128,7 +131,8 @@ fn matched(result: &ConditionAnalysis) -> [String; 2] {
 /// Adds the section on the settings: which responses are held and ignored, then every setting that has an effect.
 pub(super) fn add_settings(page: &mut Page, study: &Study) {
     page.section("Settings");
-    let (settings, dataset) = (&study.settings, &study.dataset);
+    let settings = &study.settings;
+    let dataset = &study.dataset;
     let pairs = |marked: &PairTable<bool>| {
         let found: Vec<String> = marked
             .marked()
@@ -332,7 +336,8 @@ fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, t
         .bundle(kind)
         .iter()
         .filter(|model| study.is_rejected(&id(&model.name)));
-    let (mut bare, mut more) = (0, 0);
+    let mut bare = 0;
+    let mut more = 0;
     for model in rejected {
         let reason = study.reason(&id(&model.name));
         bare += usize::from(reason.is_none());
@@ -366,7 +371,8 @@ fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, t
 
 /// What is set aside in a condition, what is suspected and kept all the same, and what was pinned.
 fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
-    let (study, id) = (&analysis.study, condition.id());
+    let study = &analysis.study;
+    let id = condition.id();
     let Some(result) = analysis.condition(id) else {
         return Vec::new();
     };

@@ -9,17 +9,20 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
+use nalgebra::{Complex, DMatrix, Matrix3, Matrix3x4, Matrix4, Matrix4x3};
+use serde_json::json;
+
+use gdcm_io::formats::npy::write_npz;
 use gdcm_io::variables::{Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable};
-use gdcm_io::{FolderProgress, read_models, write_mat, write_npz};
+use gdcm_io::{FolderProgress, read_models, write_mat};
 use gdcm_method::correction::GainBounds;
 use gdcm_model::assembly::{
     Assembly, ChannelRule, FileScope, FoundModel, Headings, Rules, UnitRule,
 };
 use gdcm_model::dataset::{Band, Dataset, Pair};
+use gdcm_model::progress::Unobserved;
 use gdcm_model::response::FrequencyGrid;
-use gdcm_study::study::{Engine, Study, Unobserved, setting};
-use nalgebra::{Complex, DMatrix, Matrix3, Matrix3x4, Matrix4, Matrix4x3};
-use serde_json::json;
+use gdcm_study::study::{Engine, Study, setting};
 
 use crate::program_folder;
 

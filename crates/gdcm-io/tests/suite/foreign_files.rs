@@ -1,12 +1,12 @@
 //! Models and responses as GNU Octave, NumPy, python-control and spreadsheets write them.
 
-use gdcm_io::variables::ReadingBudget;
-use gdcm_io::{FoundModels, models_of_bytes};
-use gdcm_model::assembly::{
-    Assembly, ChannelLabel, FoundModel, ProblemKind, Rules, proposed_rules,
-};
-use gdcm_model::dataset::ResponseDraft;
 use nalgebra::DMatrix;
+
+use gdcm_io::model_files::{FoundModels, models_of_bytes};
+use gdcm_io::variables::ReadingBudget;
+use gdcm_model::assembly::problem::ProblemKind;
+use gdcm_model::assembly::{Assembly, ChannelLabel, FoundModel, Rules, proposed_rules};
+use gdcm_model::dataset::unchecked_dataset::ResponseDraft;
 
 use crate::program_folder;
 

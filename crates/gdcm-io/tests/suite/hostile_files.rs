@@ -5,11 +5,10 @@ use std::io::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use gdcm_io::model_files::models_of_bytes;
+use gdcm_io::record_files::records_of_bytes;
 use gdcm_io::variables::ReadingBudget;
-use gdcm_io::{
-    FileError, FolderProgress, load_any, load_dataset, models_of_bytes, read_models,
-    records_of_bytes,
-};
+use gdcm_io::{FileError, FolderProgress, load_any, load_dataset, read_models};
 
 /// Memory that the variables of a file may take here.
 const MOST: u64 = 64 << 20;
@@ -66,7 +65,8 @@ fn json_of_any_shape_takes_no_more_memory_than_it_may() {
 #[test]
 fn an_archive_of_many_entries_to_the_same_bytes_is_refused_as_one_that_holds_them_all() {
     // One file of 4 MiB of blanks, and a directory in which it stands a hundred times.
-    let (mut bytes, mut archive) = (Vec::new(), Vec::new());
+    let mut bytes = Vec::new();
+    let mut archive = Vec::new();
     let mut writer = flate2::write::DeflateEncoder::new(&mut bytes, flate2::Compression::best());
     writer.write_all(&vec![b' '; 4 << 20]).unwrap();
     writer.finish().unwrap();
@@ -259,7 +259,8 @@ fn the_reader_of_every_format_ends_at_once_wherever_it_is_stopped() {
     {
         // How often the reader takes memory, and how often after the flag was set at one of these times.
         let taken = |stopped_at: usize| {
-            let (stop, count) = (Arc::new(AtomicBool::new(false)), Cell::new(0));
+            let stop = Arc::new(AtomicBool::new(false));
+            let count = Cell::new(0);
             let tell = |_| {
                 count.set(count.get() + 1);
                 stop.store(count.get() >= stopped_at, Ordering::Relaxed);

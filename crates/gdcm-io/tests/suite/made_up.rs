@@ -1,9 +1,10 @@
 //! Made-up aircraft, flights of them in closed loop through gusts, and datasets: for the tests here and for those of the program.
 
-use gdcm_model::dataset::StateSpace;
-use gdcm_sysid::identification::FlightRecord;
 use nalgebra::{DMatrix, DVector, dmatrix};
 use serde_json::{Value, json};
+
+use gdcm_model::dataset::StateSpace;
+use gdcm_model::simulation::FlightRecord;
 
 /// How often something is tried: `few` times, or `many` where the environment says `GDCM_THOROUGH`, as it does before a change is
 /// taken in.
@@ -70,8 +71,12 @@ impl Flight {
     fn record(&self, seed: u64, record: usize) -> FlightRecord {
         const FINER: usize = 10;
         let step_s = self.sample_time_s / FINER as f64;
-        let (a, b, c) = (self.aircraft.a(), self.aircraft.b(), self.aircraft.c());
-        let (order, inputs, outputs) = (a.nrows(), b.ncols(), c.nrows());
+        let a = self.aircraft.a();
+        let b = self.aircraft.b();
+        let c = self.aircraft.c();
+        let order = a.nrows();
+        let inputs = b.ncols();
+        let outputs = c.nrows();
         let mut random = Random(
             seed.wrapping_mul(1000)
                 .wrapping_add(record as u64 + 1)
@@ -102,10 +107,8 @@ impl Flight {
         let trim = DVector::from_fn(outputs, |output, _| 0.5 + output as f64 + record as f64);
         let mut x = DVector::from_fn(order, |_, _| random.normal());
         let mut gust = DVector::zeros(order);
-        let (mut u, mut y) = (
-            DMatrix::zeros(samples, inputs),
-            DMatrix::zeros(samples, outputs),
-        );
+        let mut u = DMatrix::zeros(samples, inputs);
+        let mut y = DMatrix::zeros(samples, outputs);
         for sample in 0..samples {
             let time = sample as f64 * self.sample_time_s;
             let output = c * &x;

@@ -3,9 +3,10 @@
 
 use std::ops::Index;
 
-use super::ChannelLeads;
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::response::{GainDelay, LeadFilter};
+
+use super::leads::ChannelLeads;
 
 /// One channel: an input or an output, each with a gain and a delay of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

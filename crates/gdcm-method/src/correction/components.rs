@@ -1,7 +1,10 @@
 //! The channels that held products tie together, and what the held entries can be held at (stage 1).
 
-use super::{Function, Objective, Problem, Rounded, Term};
 use gdcm_model::dataset::Pair;
+
+use super::problem::Problem;
+use crate::correction::branch_and_bound::objective::Objective;
+use crate::correction::branch_and_bound::term::{Function, Rounded, Term};
 
 /// What is asked of the channels: sums of coordinates over the held entries, in a box.
 ///
@@ -183,10 +186,8 @@ impl Components {
         self.upper.fill(f64::INFINITY);
         for (index, node) in self.nodes.iter().enumerate() {
             let (least, most) = held.ends(index);
-            let (lower, upper) = (
-                &mut self.lower[node.component],
-                &mut self.upper[node.component],
-            );
+            let lower = &mut self.lower[node.component];
+            let upper = &mut self.upper[node.component];
             *lower = lower.max(least - node.offset.value);
             *upper = upper.min(most - node.offset.value);
         }

@@ -2,9 +2,13 @@
 
 use std::collections::{BTreeSet, VecDeque};
 
-use super::*;
 use gdcm_model::dataset::Pair;
 use gdcm_model::units::{s_to_ms, telling, told_apart};
+
+use super::channels::{Channel, pair_name, pair_names};
+use super::components::{Components, Held, Placement, Reached, STRAIN};
+use super::problem::{Bounds, Problem, Quantity, three_digits};
+use crate::correction::branch_and_bound::search::{Effort, SearchStopped};
 
 /// A smallest set of held entries and bounds that cannot hold together: without any one of them the rest can.
 #[derive(Clone, Debug, PartialEq)]
@@ -159,8 +163,8 @@ impl Conflict {
                        asked: f64,
                        (sign, bound, end): (&str, f64, &str),
                        (which, new): (&str, f64)| {
-            let ((first, second), (limit, asked)) =
-                (names(channels), told_apart(bound.powi(2), asked, 3));
+            let (first, second) = names(channels);
+            let (limit, asked) = told_apart(bound.powi(2), asked, 3);
             format!(
                 "with gains {sign} {bound:.3} the product {first} {second} is at {end} {limit}, not {asked}; set the {which} \
                  bound to {new} or"
@@ -183,8 +187,8 @@ impl Conflict {
                 },
                 delay,
             ) => {
-                let ((first, second), (most, asked)) =
-                    (names(channels), apart_ms(2.0 * high, asked));
+                let (first, second) = names(channels);
+                let (most, asked) = apart_ms(2.0 * high, asked);
                 let of_delay = if delay == Quantity::SignedDelay {
                     " of delay"
                 } else {
@@ -214,7 +218,8 @@ impl Conflict {
                 },
                 Quantity::Delay,
             ) => {
-                let ((first, second), lead_ms) = (names(channels), telling(s_to_ms(-asked), 1));
+                let (first, second) = names(channels);
+                let lead_ms = telling(s_to_ms(-asked), 1);
                 format!(
                     "{first} and {second} would have to give {lead_ms} ms of lead together, and a delay cannot;"
                 )
@@ -225,8 +230,8 @@ impl Conflict {
                 },
                 Quantity::SignedDelay,
             ) => {
-                let ((first, second), (most, asked)) =
-                    (names(channels), apart_ms(-2.0 * low, -asked));
+                let (first, second) = names(channels);
+                let (most, asked) = apart_ms(-2.0 * low, -asked);
                 format!(
                     "R_max lets {first} and {second} give {most} ms of lead together, not {asked}: {HELP}, or"
                 )
@@ -241,8 +246,8 @@ impl Conflict {
                 },
                 Quantity::Gain(_),
             ) => {
-                let ((greater, lesser), (most, asked)) =
-                    (names((greater, lesser)), told_apart(high / low, asked, 3));
+                let (greater, lesser) = names((greater, lesser));
+                let (most, asked) = told_apart(high / low, asked, 3);
                 let lower = lower.unwrap_or(low);
                 format!(
                     "with {greater} <= {high:.3} and {lesser} >= {low:.3} their ratio is at most {most}, not {asked}; set \
@@ -259,8 +264,8 @@ impl Conflict {
                 },
                 Quantity::Delay,
             ) => {
-                let ((greater, lesser), (most, asked)) =
-                    (names((greater, lesser)), apart_ms(high, asked));
+                let (greater, lesser) = names((greater, lesser));
+                let (most, asked) = apart_ms(high, asked);
                 format!(
                     "{greater} cannot be {asked} ms above {lesser} with delays <= {most} ms; set the upper bound to {upper} s or"
                 )
@@ -275,9 +280,10 @@ impl Conflict {
                 },
                 Quantity::SignedDelay,
             ) => {
-                let ((greater, lesser), (most, asked)) =
-                    (names((greater, lesser)), apart_ms(high - low, asked));
-                let (lead_ms, delay_ms) = (telling(s_to_ms(-low), 1), telling(s_to_ms(high), 1));
+                let (greater, lesser) = names((greater, lesser));
+                let (most, asked) = apart_ms(high - low, asked);
+                let lead_ms = telling(s_to_ms(-low), 1);
+                let delay_ms = telling(s_to_ms(high), 1);
                 format!(
                     "{greater} cannot be {asked} ms above {lesser}: with at most {lead_ms} ms of lead and {delay_ms} ms of delay a \
                      channel it is {most} ms; set the upper bound to {upper} s; {HELP}, or"
@@ -347,7 +353,8 @@ struct Flow<'a> {
 
 impl<'a> Flow<'a> {
     fn new(problem: &'a Problem, held: &'a Held, reached: &Reached, point: &[f64]) -> Self {
-        let (mut pulls, mut net) = (Vec::new(), vec![0.0; held.nodes()]);
+        let mut pulls = Vec::new();
+        let mut net = vec![0.0; held.nodes()];
         for (&(pair, delta), (_, target)) in held.entries.iter().zip(&reached.targets) {
             let (input, output) = held.nodes_of(pair);
             let missing = delta - target;
@@ -457,15 +464,11 @@ impl<'a> Flow<'a> {
     /// The clash of a path from a node at its least value to one at its greatest.
     fn clash(&self, path: &[Pull]) -> Conflict {
         let needed: f64 = path.iter().map(|pull| pull.weight).sum();
-        let (start, end) = (
-            path.first().map_or(0, |pull| pull.from),
-            path.last().map_or(0, |pull| pull.to),
-        );
-        let (quantity, bounds, coordinate) = (
-            self.problem.quantity,
-            self.problem.bounds,
-            self.problem.coordinate(),
-        );
+        let start = path.first().map_or(0, |pull| pull.from);
+        let end = path.last().map_or(0, |pull| pull.to);
+        let quantity = self.problem.quantity;
+        let bounds = self.problem.bounds;
+        let coordinate = self.problem.coordinate();
         let movable = |lower: f64| {
             quantity
                 .has_lower_bound()
@@ -579,7 +582,8 @@ impl Remedy {
         if conflicts.is_empty() {
             return Ok(None);
         }
-        let (quantity, coordinate) = (problem.quantity, problem.coordinate());
+        let quantity = problem.quantity;
+        let coordinate = problem.coordinate();
         let suspects: BTreeSet<Pair> = conflicts
             .iter()
             .flat_map(|conflict| conflict.entries.iter().copied())
@@ -645,7 +649,8 @@ impl Remedy {
 /// The greatest lower and the least upper end of every channel's range that would do, each with the other as it is, in coordinates; none
 /// where a loop of held entries does not lead back to where it began.
 fn range_that_does(held: &Held) -> [Option<f64>; 2] {
-    let ((low, high), components) = (held.range, Components::new(held));
+    let (low, high) = held.range;
+    let components = Components::new(held);
     if !held
         .entries
         .iter()
@@ -654,7 +659,9 @@ fn range_that_does(held: &Held) -> [Option<f64>; 2] {
         return [None; 2];
     }
     let (inputs, outputs) = components.sides();
-    let (mut widest, mut lowest, mut highest) = (0.0_f64, f64::INFINITY, f64::NEG_INFINITY);
+    let mut widest = 0.0_f64;
+    let mut lowest = f64::INFINITY;
+    let mut highest = f64::NEG_INFINITY;
     for component in 0..components.count() {
         // A component without inputs or outputs is a single channel, which is always possible.
         let ends = ends_of(inputs, component).zip(ends_of(outputs, component));

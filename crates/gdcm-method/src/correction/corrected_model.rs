@@ -2,11 +2,13 @@
 
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 
-use super::{Channel, ChannelCorrection, Channels};
+use gdcm_model::dataset::StateSpace;
 use gdcm_model::dataset::limits::MOST_STATES;
-use gdcm_model::dataset::{StateSpace, StateSpaceError, Timing};
+use gdcm_model::dataset::state_space::{StateSpaceError, Timing};
 use gdcm_model::response::{LeadFilter, LeadOrder};
 use gdcm_model::units::number;
+
+use super::channels::{Channel, ChannelCorrection, Channels};
 
 /// How far a delay may lie from a whole number of samples: parts of one. Delays that were computed are rounded.
 const SAMPLE_TOLERANCE: f64 = 1e-6;
@@ -270,10 +272,8 @@ impl Blocks {
 
     /// Channels beside one another, each with its own delay.
     fn block_diagonal(channels: &[ChannelModel]) -> Self {
-        let (states, count) = (
-            channels.iter().map(ChannelModel::order).sum(),
-            channels.len(),
-        );
+        let states = channels.iter().map(ChannelModel::order).sum();
+        let count = channels.len();
         let mut blocks = Self {
             a: DMatrix::zeros(states, states),
             b: DMatrix::zeros(states, count),
@@ -303,7 +303,8 @@ impl Blocks {
 
     /// The series connection: what comes out of these goes into `next`. These states come first.
     fn then(&self, next: &Self) -> Self {
-        let (first, second) = (self.a.nrows(), next.a.nrows());
+        let first = self.a.nrows();
+        let second = next.a.nrows();
         let states = first + second;
         let mut a = DMatrix::zeros(states, states);
         a.view_mut((0, 0), (first, first)).copy_from(&self.a);
@@ -444,11 +445,9 @@ impl ChannelModel {
     /// w2)`, `D = R`.
     pub fn lead(filter: LeadFilter) -> Self {
         const ROOT: f64 = std::f64::consts::SQRT_2;
-        let (w1, w2, r) = (
-            filter.zero_rad_s(),
-            filter.lag_rad_s(),
-            filter.gain_at_infinity(),
-        );
+        let w1 = filter.zero_rad_s();
+        let w2 = filter.lag_rad_s();
+        let r = filter.gain_at_infinity();
         match filter.order {
             LeadOrder::First => Self {
                 a: DMatrix::from_element(1, 1, -w2),
@@ -469,10 +468,8 @@ impl ChannelModel {
     /// T/2)^-1` it is `M (I + A T/2)`, `T M B`, `C M`, `D + C M B T/2`. None where `T` puts a pole of the filter on that of the rule.
     pub fn sampled_lead(filter: LeadFilter, sample_time_s: f64) -> Option<Self> {
         let Self { a, b, c, d } = Self::lead(filter);
-        let (one, half) = (
-            DMatrix::identity(a.nrows(), a.nrows()),
-            0.5 * sample_time_s * &a,
-        );
+        let one = DMatrix::identity(a.nrows(), a.nrows());
+        let half = 0.5 * sample_time_s * &a;
         let inverse = (&one - &half).try_inverse()?;
         let direct = (&c * &inverse * &b).sum() * 0.5 * sample_time_s;
         Some(Self {
@@ -491,10 +488,11 @@ impl ChannelModel {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::correction::{ChannelLeads, LeadDesign, LeadSettings};
     use gdcm_model::dataset::{Band, Dynamics, Pair};
     use gdcm_model::response::{FrequencyGrid, PreparedModel};
+
+    use super::super::leads::{ChannelLeads, LeadDesign, LeadSettings};
+    use super::*;
 
     /// Two inputs, two outputs, three states; poles of 1 to 5 rad/s.
     fn plant() -> StateSpace {
@@ -531,7 +529,8 @@ mod tests {
             .map(|model| PreparedModel::of(&Dynamics::StateSpace(model.clone())).response(&grid));
         let correction = correction();
         for pair in [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(output, input)| Pair { output, input }) {
-            let (found, plain) = (found.curve(pair), plain.curve(pair));
+            let found = found.curve(pair);
+            let plain = plain.curve(pair);
             for (at, &omega) in grid.omega().iter().enumerate() {
                 let delays = delay(omega, corrected.delays_s.inputs[pair.input])
                     * delay(omega, corrected.delays_s.outputs[pair.output]);
@@ -759,8 +758,8 @@ mod tests {
                 let model = Pade::new(order).unwrap().model(delay_s);
                 for angle in [1e-3, 0.3, 1.0, 4.0, 15.0, 80.0] {
                     let s = Complex::new(0.0, angle / delay_s);
-                    let (found, expected) =
-                        (response(&model, s), by_polynomials(order, s * delay_s));
+                    let found = response(&model, s);
+                    let expected = by_polynomials(order, s * delay_s);
                     assert!(
                         (found - expected).norm() < 1e-12,
                         "{order}, {delay_s} s, {angle}: {found} {expected}"
@@ -791,7 +790,8 @@ mod tests {
     fn the_phase_error_is_that_of_the_response_followed_over_frequency() {
         for order in 1..=HIGHEST_PADE_ORDER {
             let pade = Pade::new(order).unwrap();
-            let (mut followed, mut before) = (0.0, Complex::from(1.0));
+            let mut followed = 0.0;
+            let mut before = Complex::from(1.0);
             // Steps far below a half turn, up to where the approximant has long stopped to lag.
             for step in 1..=4000 {
                 let angle = f64::from(step) * 0.01;

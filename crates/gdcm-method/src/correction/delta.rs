@@ -3,11 +3,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::response::PolarResponse;
+use gdcm_model::response::curve_values::quantile;
+use gdcm_model::units::db_to_ratio;
+
 use super::GainBounds;
 use crate::fidelity::{CoherenceWeights, Mismatch};
-use gdcm_model::dataset::{Pair, PairTable};
-use gdcm_model::response::{PolarResponse, quantile};
-use gdcm_model::units::db_to_ratio;
 
 /// Which models G is taken from; D is always that of the representatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -52,7 +54,8 @@ impl Delta {
             mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.phase_difference(omega)));
         let of_each = |value: fn(&Mismatch, &[f64], &[f64]) -> f64| {
             mismatch.map(|pair, entry| {
-                let (entry, phase) = (entry.as_ref()?, phases[pair].as_ref()?);
+                let entry = entry.as_ref()?;
+                let phase = phases[pair].as_ref()?;
                 Some(value(entry, phase, entry.omega(omega)))
             })
         };
@@ -79,7 +82,8 @@ pub(crate) fn band_delay_s(
     weights: Option<&[f64]>,
 ) -> f64 {
     let weight = |place: usize| weights.map_or(1.0, |weights| weights[place]);
-    let (mut moment, mut square) = (0.0, 0.0);
+    let mut moment = 0.0;
+    let mut square = 0.0;
     for (place, (phase, omega)) in phase.zip(omega).enumerate() {
         moment += weight(place) * omega * phase;
         square += weight(place) * omega * omega;

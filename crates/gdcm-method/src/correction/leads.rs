@@ -6,10 +6,12 @@ use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};
 
-use super::{Channel, Channels, band_delay_s};
 use gdcm_model::dataset::Pair;
 use gdcm_model::response::{LeadFilter, LeadOrder};
 use gdcm_model::units::{number, signed};
+
+use super::channels::{Channel, Channels};
+use super::delta::band_delay_s;
 
 /// What the lead filters of all channels have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -138,7 +140,8 @@ impl LeadDesign {
     pub fn lead_s(&self, tau_s: f64) -> f64 {
         const STEPS: usize = 100;
         const SMALL: f64 = 1e-9;
-        let (mut low, mut high) = (0.0, self.longest_lead_s());
+        let mut low = 0.0;
+        let mut high = self.longest_lead_s();
         if tau_s >= 0.0 {
             return 0.0;
         }
@@ -350,10 +353,10 @@ impl LeadPrice {
 mod tests {
     use proptest::prelude::*;
 
-    use super::*;
-    use crate::correction::{LeadDesign, LeadSettings};
     use gdcm_model::dataset::Band;
     use gdcm_model::response::FrequencyGrid;
+
+    use super::{LeadDesign, LeadSettings, *};
 
     fn design(order: LeadOrder, pole: f64) -> LeadDesign {
         let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 200);

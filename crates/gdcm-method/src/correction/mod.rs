@@ -5,27 +5,23 @@
 //! a convex program of the same kind, whose negative ones [`LeadDesign`] makes into filters. It explains what cannot be held and what would help; [`sensitivities`] and
 //! [`toggles`] tell what each held entry costs. Tables are `[output, input]`, gains are ratios, delays are seconds.
 
-mod branch_and_bound;
-mod channels;
+pub mod branch_and_bound;
+pub mod channels;
 mod components;
-mod conflict;
-mod corrected_model;
-mod delta;
-mod leads;
-mod problem;
-mod sensitivity;
-mod solve;
+pub mod conflict;
+pub mod corrected_model;
+pub mod delta;
+pub mod leads;
+pub mod problem;
+pub mod sensitivity;
+pub mod solve;
 
-pub use branch_and_bound::*;
-pub use channels::*;
-use components::*;
-pub use conflict::*;
-pub use corrected_model::*;
-pub use delta::*;
-pub use leads::*;
-pub use problem::*;
-pub use sensitivity::*;
-pub use solve::*;
+pub use branch_and_bound::search::ProofBudget;
+pub use channels::{Channel, ChannelCorrection, Channels};
+pub use corrected_model::Pade;
+pub use leads::LeadPrice;
+pub use problem::{Bounds, GainObjective, Problem, Quantity};
+pub use solve::{Outcome, Solution};
 
 /// Bounds of the channel gains.
 pub type GainBounds = Bounds;

@@ -5,8 +5,14 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::*;
 use gdcm_model::dataset::{Pair, PairTable};
+
+use super::components::Components;
+use crate::correction::branch_and_bound::objective::Objective;
+use crate::correction::branch_and_bound::search::SearchStopped;
+use crate::correction::branch_and_bound::term::{
+    Exponential, Function, ProductEntry, Rounded, SquareEntry, Term, quadratic_terms,
+};
 
 /// Least and greatest value of every channel (M7): gains `0 < lower <= upper`, delays \[s\] `lower = 0`, signed delays \[s\]
 /// `lower <= 0 <= upper` (M15.4).
@@ -236,7 +242,8 @@ impl Problem {
                 _ => {}
             }
         }
-        let (Bounds { lower, upper }, times) = (self.bounds, 0.0..=1e50);
+        let Bounds { lower, upper } = self.bounds;
+        let times = 0.0..=1e50;
         let are_bounds = match quantity {
             Quantity::Gain(_) => {
                 GAIN_BOUNDS.contains(&lower) && GAIN_BOUNDS.contains(&upper) && lower <= upper
@@ -316,10 +323,8 @@ impl Problem {
     /// Least and greatest coordinate of every channel.
     pub(crate) fn range(&self) -> (f64, f64) {
         let coordinate = self.coordinate();
-        let (low, high) = (
-            coordinate.of(self.bounds.lower),
-            coordinate.of(self.bounds.upper),
-        );
+        let low = coordinate.of(self.bounds.lower);
+        let high = coordinate.of(self.bounds.upper);
         match coordinate {
             Coordinate::Logarithm => (low, high),
             // No path of held entries asks a channel for more than one unit each: a bound above that never acts.
@@ -507,10 +512,12 @@ pub(crate) fn three_digits(value: f64, round: fn(f64) -> f64) -> f64 {
 /// The objective of `problem` over the scales of `components`, in the problem's coordinate.
 pub(crate) fn objective(problem: &Problem, components: &Components) -> Objective {
     let ground = components.count();
-    let (quantity, coordinate, (inputs, outputs)) =
-        (problem.quantity, problem.coordinate(), components.sides());
+    let quantity = problem.quantity;
+    let coordinate = problem.coordinate();
+    let (inputs, outputs) = components.sides();
     let fit = problem.fit_entries().map(|(pair, delta)| {
-        let (output, input) = (outputs[pair.output], inputs[pair.input]);
+        let output = outputs[pair.output];
+        let input = inputs[pair.input];
         let mut offset = -output.offset;
         offset.add(input.offset);
         SquareEntry {
@@ -522,7 +529,8 @@ pub(crate) fn objective(problem: &Problem, components: &Components) -> Objective
         }
     });
     let departure = |output: usize, input: usize, offset: Rounded| {
-        let (weight, delta) = (problem.alpha, quantity.neutral());
+        let weight = problem.alpha;
+        let delta = quantity.neutral();
         SquareEntry {
             output,
             input,
@@ -553,7 +561,8 @@ pub(crate) fn objective(problem: &Problem, components: &Components) -> Objective
         }
         Quantity::Delay | Quantity::SignedDelay => quadratic_terms(&in_coordinate(1.0), ground + 1),
     };
-    let (mut lower, mut upper) = (components.lower.clone(), components.upper.clone());
+    let mut lower = components.lower.clone();
+    let mut upper = components.upper.clone();
     lower.push(0.0);
     upper.push(0.0);
     Objective {

@@ -2,9 +2,14 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::*;
 use gdcm_model::dataset::Pair;
 use gdcm_model::units::number;
+
+use super::channels::{Channel, pair_name};
+use super::problem::{Problem, ProblemError, Quantity};
+use super::solve::{Outcome, Solution, solve};
+use crate::correction::branch_and_bound::objective::pieces;
+use crate::correction::branch_and_bound::search::ProofBudget;
 
 /// Something that keeps the channels from a lower objective.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +53,8 @@ impl Sensitivity {
         // An objective next to nothing is all gone before the least step ends.
         let percent = (100.0 * step * self.share_per_unit.abs()).min(100.0);
         let step = number(step);
-        let (gain, is_dear) = (self.quantity.is_gain(), self.per_unit > 0.0);
+        let gain = self.quantity.is_gain();
+        let is_dear = self.per_unit > 0.0;
         let name = match self.restraint {
             ActiveConstraint::Held(pair) => pair_name(pair, inputs, outputs),
             ActiveConstraint::LowerBound(channel) | ActiveConstraint::UpperBound(channel) => {
@@ -134,7 +140,8 @@ pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity>
 
 /// Slope of the objective in the logarithm of each channel gain, or in each delay; inputs first.
 fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
-    let (quantity, inputs) = (problem.quantity, solution.inputs.len());
+    let quantity = problem.quantity;
+    let inputs = solution.inputs.len();
     let mut slopes = vec![0.0; inputs + solution.outputs.len()];
     for (pair, delta) in problem.fit_entries() {
         let slope = quantity.slope(

@@ -1,12 +1,23 @@
 //! The solution of equations (7) and (11), and of the program of signed delays (M15.4), with the convex quadratic program: the gains or
 //! delays found, and how sure they are.
 
+use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::response::curve_values::mean;
+use gdcm_model::units::{s_to_ms, telling, told_apart};
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 
-use super::*;
-use gdcm_model::dataset::{Pair, PairTable};
-use gdcm_model::response::mean;
-use gdcm_model::units::{s_to_ms, telling, told_apart};
+use super::channels::{Channels, pair_name};
+use super::components::{Components, Held, Placement, Reached, reach};
+use super::conflict::{Conflict, ConflictKind, Remedy, clashes};
+use super::problem::{
+    Coordinate, GainObjective, Problem, ProblemError, Quantity, floor, objective,
+};
+use crate::correction::branch_and_bound::objective::{
+    Curvature, Differentiable, Expansion, Newton, Objective,
+};
+use crate::correction::branch_and_bound::search::{
+    Effort, Limit, Minima, ProofBudget, SearchStopped, search,
+};
 
 /// Whether the answer is known to be the best there is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,7 +170,7 @@ pub struct Solution {
     /// Product or sum at which each held entry is held, p x m: its delta where that is possible (M8 and M9, stage 1).
     pub targets: PairTable<Option<f64>>,
     /// Whether every held entry is held at its delta, within 1e-8 of its logarithm, or of the greatest delay in the problem (or a
-    /// nanosecond, where that is more); or within the tolerance of [`Problem::agreement`](super::Problem::agreement) where a loop of entries asks for it.
+    /// nanosecond, where that is more); or within the tolerance of [`Problem::agreement`](super::problem::Problem::agreement) where a loop of entries asks for it.
     pub matched: bool,
     /// The entries that are not.
     pub unmatched: Vec<Unmatched>,
@@ -214,7 +225,7 @@ fn matched_within(coordinate: Coordinate) -> f64 {
 /// let solution = solve(&problem, ProofBudget::default(), &|| false)?;
 /// assert!((solution.outputs[0] * solution.inputs[0] - 1.2).abs() < 1e-12);
 /// assert!(matches!(solution.proof.outcome, Outcome::Proven { .. }));
-/// # Ok::<(), gdcm_method::correction::ProblemError>(())
+/// # Ok::<(), super::problem::ProblemError>(())
 /// ```
 ///
 /// # Errors
@@ -227,7 +238,8 @@ pub fn solve(
 ) -> Result<Solution, ProblemError> {
     problem.check()?;
     let effort = Effort::new(stop);
-    let (held, coordinate) = (Held::of(problem), problem.coordinate());
+    let held = Held::of(problem);
+    let coordinate = problem.coordinate();
     let reached = reach(&held, |nearest| {
         minimise(nearest, problem.quantity, &effort)
     })?;
@@ -310,10 +322,8 @@ fn settle(quantity: Quantity, components: &Components, objective: &Objective, sc
                 .collect()
         };
         let (input_nodes, output_nodes) = components.sides();
-        let (inputs, outputs) = (
-            of_piece(input_nodes, &inputs),
-            of_piece(output_nodes, &outputs),
-        );
+        let inputs = of_piece(input_nodes, &inputs);
+        let outputs = of_piece(output_nodes, &outputs);
         if quantity.regularises_inputs() {
             let apart = outputs.iter().sum::<f64>() - inputs.iter().sum::<f64>();
             return apart / (inputs.len() + outputs.len()).max(1) as f64;
@@ -334,8 +344,10 @@ fn settle(quantity: Quantity, components: &Components, objective: &Objective, sc
 
 /// Gains or delays of the inputs and of the outputs at these scales, exactly on the bounds they reach.
 fn channels_at(problem: &Problem, components: &Components, scales: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let (bounds, coordinate) = (problem.bounds, problem.coordinate());
-    let (low, high) = (coordinate.of(bounds.lower), coordinate.of(bounds.upper));
+    let bounds = problem.bounds;
+    let coordinate = problem.coordinate();
+    let low = coordinate.of(bounds.lower);
+    let high = coordinate.of(bounds.upper);
     // A few roundings of coordinates of this size.
     let rounding = 16.0 * f64::EPSILON * (1.0 + low.abs().max(high.abs()));
     let value = |at: &f64| {
@@ -393,7 +405,8 @@ fn misses(
     reached: &Reached,
     effort: &Effort<'_>,
 ) -> Result<Vec<Unmatched>, SearchStopped> {
-    let (quantity, coordinate) = (problem.quantity, problem.coordinate());
+    let quantity = problem.quantity;
+    let coordinate = problem.coordinate();
     let tolerance = matched_within(coordinate);
     let clashes = clashes(problem, held, reached, tolerance, effort)?;
     let why = |pair: Pair| match clashes.iter().find(|(missed, _)| *missed == pair) {
@@ -408,7 +421,8 @@ fn misses(
     let entries = held.entries.iter().zip(&reached.targets);
     let missed = entries.filter(|((_, delta), (_, target))| (target - delta).abs() > tolerance);
     let missed = missed.map(|((pair, delta_at), (_, target_at))| {
-        let (delta, target) = (coordinate.value(*delta_at), coordinate.value(*target_at));
+        let delta = coordinate.value(*delta_at);
+        let target = coordinate.value(*target_at);
         let excess = if quantity.is_gain() {
             quantity.difference(target_at - delta_at, coordinate)
         } else {
@@ -481,7 +495,8 @@ pub(crate) fn interior_point(objective: &Objective) -> Result<Vec<f64>, ProblemE
 
 /// `min s' P s / 2 + q' s` over `lower <= s <= upper` of the free scales; the others stay where they are.
 fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, ProblemError> {
-    let (size, scales) = (free.len(), objective.scales());
+    let size = free.len();
+    let scales = objective.scales();
     // Slope and curvature where the free scales are 0: the objective is a sum of squares.
     let mut origin = objective.lower.clone();
     free.iter().for_each(|&index| origin[index] = 0.0);

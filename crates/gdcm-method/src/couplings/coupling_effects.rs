@@ -3,12 +3,15 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use super::{CoupledModelError, CouplingMatrices, CouplingProblem};
+use gdcm_model::dataset::{ConditionId, Pair, PairTable, StateSpace};
+use gdcm_model::response::eigenvalues::ModesError;
+use gdcm_model::response::{FrequencyResponse, modes};
+use gdcm_model::units::ratio_to_db;
+
+use super::coupling_matrices::{CoupledModelError, CouplingMatrices};
+use super::problem::CouplingProblem;
 use crate::correction::Pade;
 use crate::fidelity::{ModeTrack, mode_tracks};
-use gdcm_model::dataset::{ConditionId, Pair, PairTable, StateSpace};
-use gdcm_model::response::{FrequencyResponse, ModesError, modes};
-use gdcm_model::units::ratio_to_db;
 
 /// What an entry of `K` takes of the stick, where it takes most.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +40,8 @@ pub fn feedback_shares(
     let largest: Vec<_> = (0..problem.outputs())
         .map(|output| largest_response(problem, output))
         .collect();
-    let (inputs, feedback) = (problem.inputs(), couplings.feedback());
+    let inputs = problem.inputs();
+    let feedback = couplings.feedback();
     let share = |(input, output): (usize, usize)| {
         let (magnitude, moved, condition, omega_rad_s) = largest[output]?;
         let entry = feedback[(input, output)];
@@ -206,7 +210,8 @@ pub fn relative_change_db(
     k: usize,
 ) -> PairTable<Option<f64>> {
     physics.curves().map(|pair, curve| {
-        let (before, after) = (curve.get(k)?, coupled.curve(pair).get(k)?);
+        let before = curve.get(k)?;
+        let after = coupled.curve(pair).get(k)?;
         let ratio = (after - before).norm() / before.norm();
         ratio.is_finite().then(|| ratio_to_db(ratio))
     })
@@ -256,10 +261,8 @@ impl CouplingMatrices {
         airspeed_kt: f64,
         pade: Pade,
     ) -> Result<Vec<PoleShift>, PoleShiftError> {
-        let (before, after) = (
-            modes(physics)?,
-            modes(&self.model(physics, airspeed_kt, pade)?)?,
-        );
+        let before = modes(physics)?;
+        let after = modes(&self.model(physics, airspeed_kt, pade)?)?;
         let tracks = mode_tracks(&[&before, &after], 1);
         let shift = |track: ModeTrack| PoleShift {
             before: track.modes[0].map(|mode| before[mode].pole),

@@ -14,12 +14,15 @@
 
 use nalgebra::{Complex, DMatrix, Dyn, LU};
 
-use super::{CouplingError, Unknown};
-use crate::correction::{ChannelCorrection, CorrectedModel, CorrectedModelError, Pade};
-use crate::schedule::{Airspeeds, Regression};
-use gdcm_model::dataset::{Pair, StateSpace, StateSpaceError, Timing};
+use gdcm_model::dataset::state_space::{StateSpaceError, Timing};
+use gdcm_model::dataset::{Pair, StateSpace};
 use gdcm_model::response::FrequencyResponse;
 use gdcm_model::units::number;
+
+use super::problem::{CouplingError, Unknown};
+use crate::correction::corrected_model::{CorrectedModel, CorrectedModelError};
+use crate::correction::{ChannelCorrection, Pade};
+use crate::schedule::{Airspeeds, Regression};
 
 /// `M(V)`, m x m, and `K`, m x p: `y = H (u' + K y)`, `u' = M~(V) u`.
 #[derive(Clone, Debug, PartialEq)]
@@ -127,7 +130,8 @@ impl CouplingMatrices {
     /// response and that is not fed back has none.
     #[must_use]
     pub fn response(&self, physics: &FrequencyResponse, airspeed_kt: f64) -> FrequencyResponse {
-        let (inputs, outputs) = (physics.inputs(), physics.outputs());
+        let inputs = physics.inputs();
+        let outputs = physics.outputs();
         let mixing = self.normalised_mixing(airspeed_kt);
         let mut closed_loop = ClosedLoop::new(&self.feedback);
         let mut coupled = physics.curves().clone();
@@ -347,13 +351,18 @@ impl CouplingMatrices {
         pade: Pade,
     ) -> Result<StateSpace, CoupledModelError> {
         let (inputs, outputs) = self.feedback.shape();
-        let (found, expected) = ((physics.outputs(), physics.inputs()), (outputs, inputs));
+        let found = (physics.outputs(), physics.inputs());
+        let expected = (outputs, inputs);
         if found != expected {
             return Err(CoupledModelError::Channels { found, expected });
         }
         let physics = without_delays(physics, pade)?;
-        let (a, b, c, d) = (physics.a(), physics.b(), physics.c(), physics.d());
-        let (k, mixing) = (self.feedback(), self.normalised_mixing(airspeed_kt));
+        let a = physics.a();
+        let b = physics.b();
+        let c = physics.c();
+        let d = physics.d();
+        let k = self.feedback();
+        let mixing = self.normalised_mixing(airspeed_kt);
         let algebraic = algebraic_loop(d, k)?;
         let refused = || CoupledModelError::AlgebraicLoop {
             condition_number: f64::INFINITY,
@@ -395,7 +404,8 @@ pub fn without_delays(physics: &StateSpace, pade: Pade) -> Result<StateSpace, Co
     if *physics.timing() == timing {
         return Ok(physics.clone());
     }
-    let (inputs, outputs) = (physics.inputs(), physics.outputs());
+    let inputs = physics.inputs();
+    let outputs = physics.outputs();
     let no_correction = ChannelCorrection {
         input_gains: vec![1.0; inputs],
         output_gains: vec![1.0; outputs],

@@ -9,14 +9,15 @@
 
 use nalgebra::DMatrix;
 
-use super::{
-    ConditionBlocks, CouplingError, CouplingMatrices, CouplingProblem, NormalEquations, Unknown,
-    UnknownLayout, WeightedCondition,
-};
-use crate::uncertainty::student_quantile;
 use gdcm_model::dataset::ConditionId;
 use gdcm_model::executor::{Executor, Sequential, each};
 use gdcm_model::progress::{Cancelled, Portion, Progress, Shares};
+
+use super::coupling_matrices::CouplingMatrices;
+use super::normal_equations::{ConditionBlocks, NormalEquations, UnknownLayout};
+use super::problem::{CouplingError, CouplingProblem, Unknown};
+use super::weighted_condition::WeightedCondition;
+use crate::uncertainty::student_quantile;
 
 /// The couplings of a problem, and how they were found.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,7 +54,8 @@ pub fn fit_couplings(
     progress: &dyn Progress,
 ) -> Result<CouplingFit, CouplingError> {
     problem.check()?;
-    let (airspeeds, fed_back) = (problem.airspeeds()?, problem.fed_back());
+    let airspeeds = problem.airspeeds()?;
+    let fed_back = problem.fed_back();
     let unknowns = Unknown::all(problem, &airspeeds, &fed_back);
     let conditions = each(executor, &problem.conditions, |of| {
         WeightedCondition::new(problem, of, &fed_back)
@@ -73,7 +75,9 @@ pub fn fit_couplings(
         share: 1.0 / (solves * (conditions.len() + 1)) as f64,
     };
     let mut matrices = CouplingMatrices::none(airspeeds, problem.inputs(), problem.outputs());
-    let (mut coefficients, mut residual, mut undetermined) = (Vec::new(), 0.0, Vec::new());
+    let mut coefficients = Vec::new();
+    let mut residual = 0.0;
+    let mut undetermined = Vec::new();
     for _ in 0..solves {
         let pass = fitting
             .equations(&matrices, executor)?
@@ -121,7 +125,8 @@ impl Fitting<'_> {
         last: &CouplingMatrices,
         executor: &dyn Executor,
     ) -> Result<NormalEquations<'_>, CouplingError> {
-        let (inputs, airspeeds) = (last.feedback().nrows(), last.airspeeds());
+        let inputs = last.feedback().nrows();
+        let airspeeds = last.airspeeds();
         let together =
             (BLOCK_MEMORY / ConditionBlocks::bytes(inputs, self.fed_back.len()).max(1)).max(1);
         let mut equations = NormalEquations::zeros(&self.layout, inputs, self.fed_back.len());

@@ -20,19 +20,17 @@
 //!
 //! Index order `[output, input]` of responses, `[to, from]` of `M` (input, input) and of `K` (input, output); omega in rad/s.
 
-mod coupling_effects;
-mod coupling_matrices;
-mod fit;
+pub mod coupling_effects;
+pub mod coupling_matrices;
+pub mod fit;
 mod normal_equations;
-mod problem;
+pub mod problem;
 mod weighted_condition;
-
-pub use coupling_effects::*;
-pub use coupling_matrices::*;
-pub use fit::*;
-use normal_equations::*;
-pub use problem::*;
-use weighted_condition::*;
 
 #[cfg(test)]
 mod tests;
+
+pub use coupling_effects::{LoopMargin, PoleShift};
+pub use coupling_matrices::{CoupledModelError, CouplingMatrices};
+pub use fit::{CouplingBars, LEAST_CONDITIONS, LeftOutFit, fit_couplings};
+pub use problem::{CouplingCondition, CouplingKind, CouplingProblem, Unknown};

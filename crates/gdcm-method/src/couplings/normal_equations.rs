@@ -26,8 +26,11 @@
 
 use nalgebra::{Cholesky, Complex, DMatrix, DMatrixView, DVector, Dyn};
 
-use super::{ClosedLoop, CouplingError, CouplingMatrices, Unknown, WeightedCondition};
 use gdcm_model::progress::{Cancelled, Progress};
+
+use super::coupling_matrices::{ClosedLoop, CouplingMatrices};
+use super::problem::{CouplingError, Unknown};
+use super::weighted_condition::WeightedCondition;
 
 /// Frequencies whose products are summed at once: their factors stay in the processor's cache.
 const CHUNK: usize = 64;
@@ -305,8 +308,10 @@ impl Closed {
                 omega_rad_s: condition.omega[k],
             });
         }
-        let (inputs, outputs) = (condition.inputs(), condition.outputs());
-        let (mut re, mut im) = (Vec::with_capacity(f.len()), Vec::with_capacity(f.len()));
+        let inputs = condition.inputs();
+        let outputs = condition.outputs();
+        let mut re = Vec::with_capacity(f.len());
+        let mut im = Vec::with_capacity(f.len());
         for output in 0..outputs {
             for input in 0..inputs {
                 let value = f[input * outputs + output];
@@ -333,7 +338,8 @@ impl Chunk {
 
     /// The next column of each, from the numbers `t` and from `F` with its weights.
     fn push(&mut self, t: &[Complex<f64>], at: &Closed, squared: &[f64]) {
-        let (pairs, inputs) = (self.t_re.nrows(), at.re.len() / squared.len());
+        let pairs = self.t_re.nrows();
+        let inputs = at.re.len() / squared.len();
         let t_re = &mut self.t_re.as_mut_slice()[self.filled * pairs..][..pairs];
         let t_im = &mut self.t_im.as_mut_slice()[self.filled * pairs..][..pairs];
         let mut place = 0;
@@ -364,8 +370,10 @@ impl Chunk {
 fn add_outer_product(re: &[f64], im: &[f64], squared: f64, p_re: &mut [f64], p_im: &mut [f64]) {
     let mut start = 0;
     for j in 0..re.len() {
-        let (left_re, left_im) = (squared * re[j], squared * im[j]);
-        let (re, im) = (&re[j..], &im[j..]);
+        let left_re = squared * re[j];
+        let left_im = squared * im[j];
+        let re = &re[j..];
+        let im = &im[j..];
         let end = start + re.len();
         for (sum, (re, im)) in p_re[start..end].iter_mut().zip(re.iter().zip(im)) {
             *sum += left_re * re + left_im * im;
@@ -699,7 +707,8 @@ struct EliminatedColumn {
 impl ScaledEquations {
     /// The steps 1 to 3 of the box above; none where there are no Cholesky factors.
     fn solve(&self) -> Option<ScaledSolution> {
-        let (mut corner, mut right) = (self.corner.clone(), self.right.clone());
+        let mut corner = self.corner.clone();
+        let mut right = self.right.clone();
         let mut eliminated = Vec::with_capacity(self.columns.len());
         for equations in &self.columns {
             let column = EliminatedColumn::new(equations)?;
@@ -723,7 +732,8 @@ impl ScaledEquations {
 
     /// Largest residual over the largest right side.
     fn residual(&self, solution: &ScaledSolution) -> f64 {
-        let (mut largest, mut most_right) = (0.0_f64, self.right.amax());
+        let mut largest = 0.0_f64;
+        let mut most_right = self.right.amax();
         let mut of_feedback = &self.corner * &solution.feedback - &self.right;
         for (equations, mixing) in self.columns.iter().zip(&solution.mixing) {
             let left = &equations.block * mixing + &equations.border * &solution.feedback

@@ -6,14 +6,18 @@ use std::sync::Arc;
 
 use nalgebra::Complex;
 
-use crate::correction::{Channel, Channels, LeadDesign};
+use gdcm_model::dataset::model::ModelBands;
+use gdcm_model::dataset::{ConditionId, Pair, PairTable};
+use gdcm_model::progress::Cancelled;
+use gdcm_model::response::FrequencyResponse;
+use gdcm_model::response::curve_values::interpolate_values;
+use gdcm_model::units::{number, telling};
+
+use crate::correction::leads::LeadDesign;
+use crate::correction::{Channel, Channels};
 use crate::fidelity::CoherenceWeights;
 use crate::schedule::Airspeeds;
-use crate::uncertainty::Measurement;
-use gdcm_model::dataset::{ConditionId, ModelBands, Pair, PairTable};
-use gdcm_model::progress::Cancelled;
-use gdcm_model::response::{FrequencyResponse, interpolate_values};
-use gdcm_model::units::{number, telling};
+use crate::uncertainty::spread::Measurement;
 
 /// Which couplings are put at the inputs of a physics model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -41,12 +45,12 @@ pub struct CouplingCondition {
     pub airspeed_kt: f64,
     /// `H`, p x m: the physics representative, not finite where it has no response.
     pub physics: Arc<FrequencyResponse>,
-    /// `R'`, p x m: the identified representative without the channels' delays and leads, see [`super::without_channels`]; not finite
+    /// `R'`, p x m: the identified representative without the channels' delays and leads, see [`self::without_channels`]; not finite
     /// where it has no response.
     pub flight: FrequencyResponse,
     /// The responses that both representatives have (M6, M6a); the others have weight 0.
     pub usable: PairTable<bool>,
-    /// Standard deviation of the identified model's `ln H`, one value for each frequency, see [`super::response_deviation`]; none: 0.
+    /// Standard deviation of the identified model's `ln H`, one value for each frequency, see [`self::response_deviation`]; none: 0.
     pub deviation: Option<PairTable<Vec<f64>>>,
     /// Frequencies that count by the coherence of the identified representative, and how much (M4a); none: all alike.
     pub coherence: Option<PairTable<CoherenceWeights>>,
@@ -169,7 +173,8 @@ impl CouplingProblem {
     pub(super) fn check(&self) -> Result<(), CouplingError> {
         let expected @ [.., points] = [self.outputs(), self.inputs(), self.omega.len()];
         for condition in &self.conditions {
-            let (usable, coherence) = (&condition.usable, condition.coherence.as_ref());
+            let usable = &condition.usable;
+            let coherence = condition.coherence.as_ref();
             let found = [
                 Some(shape_of(condition.physics.curves(), points)),
                 Some(shape_of(condition.flight.curves(), points)),
@@ -381,7 +386,8 @@ pub fn without_channels(
     };
     let channels = delays_s.map(|_, &tau_s| of_channel(tau_s));
     FrequencyResponse::new(flight.curves().map(|pair, curve| {
-        let (output, input) = (&channels.outputs[pair.output], &channels.inputs[pair.input]);
+        let output = &channels.outputs[pair.output];
+        let input = &channels.inputs[pair.input];
         curve
             .iter()
             .zip(output.iter().zip(input))
@@ -395,7 +401,8 @@ pub fn without_channels(
 pub fn response_deviation(bands: &ModelBands, omega: &[f64]) -> PairTable<Vec<f64>> {
     let on_grid = |values: &[f64]| interpolate_values(bands.omega(), values, omega);
     bands.sd_db().map(|pair, sd_db| {
-        let (sd_db, sd_deg) = (on_grid(sd_db), on_grid(&bands.sd_deg()[pair]));
+        let sd_db = on_grid(sd_db);
+        let sd_deg = on_grid(&bands.sd_deg()[pair]);
         let both = |(db, deg): (&f64, &f64)| {
             (0.5 * ((db * LN_10 / 20.0).powi(2) + deg.to_radians().powi(2))).sqrt()
         };
@@ -420,7 +427,7 @@ pub fn coherence_deviation(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::correction::LeadSettings;
+    use crate::correction::leads::LeadSettings;
 
     #[test]
     fn an_input_that_is_turned_around_is_named() {

@@ -8,14 +8,19 @@ use nalgebra::{Complex, DMatrix, DVector, dmatrix};
 use proptest::prelude::*;
 use serde_json::Value;
 
-use super::*;
-use crate::correction::Pade;
-use crate::fidelity::CoherenceWeights;
-use crate::schedule::Airspeeds;
-use gdcm_model::dataset::{Band, ConditionId, Dynamics, Pair, PairTable, StateSpace, Timing};
+use gdcm_model::dataset::state_space::Timing;
+use gdcm_model::dataset::{Band, ConditionId, Dynamics, Pair, PairTable, StateSpace};
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Progress, Unobserved};
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
+
+use super::*;
+use crate::correction::Pade;
+use crate::couplings::coupling_effects::relative_change_db;
+use crate::couplings::fit::{CouplingFit, left_out_fits};
+use crate::couplings::problem::{CouplingError, CouplingOptions};
+use crate::fidelity::CoherenceWeights;
+use crate::schedule::Airspeeds;
 
 static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
     serde_json::from_str(include_str!("../../../../tests/data/reference/mixing.json")).unwrap()
@@ -41,10 +46,8 @@ fn response(value: &Value) -> FrequencyResponse {
         value[part][k][pair.output][pair.input].as_f64().unwrap()
     };
     let points = value[0].as_array().unwrap().len();
-    let (outputs, inputs) = (
-        value[0][0].as_array().unwrap().len(),
-        value[0][0][0].as_array().unwrap().len(),
-    );
+    let outputs = value[0][0].as_array().unwrap().len();
+    let inputs = value[0][0][0].as_array().unwrap().len();
     let value = |pair, k| Complex::new(part(0, k, pair), part(1, k, pair));
     FrequencyResponse::new(PairTable::from_fn(outputs, inputs, |pair| {
         (0..points).map(|k| value(pair, k)).collect()
@@ -235,10 +238,8 @@ fn apart(one: &FrequencyResponse, other: &FrequencyResponse) -> f64 {
 
 #[test]
 fn without_couplings_nothing_changes() {
-    let (physics, none) = (
-        small_aircraft(),
-        constant(&DMatrix::identity(2, 2), &DMatrix::zeros(2, 3)),
-    );
+    let physics = small_aircraft();
+    let none = constant(&DMatrix::identity(2, 2), &DMatrix::zeros(2, 3));
     assert_eq!(none.model(&physics, 60.0, pade()).unwrap(), physics);
     assert_eq!(
         none.response(&response_of(&physics), 60.0),
@@ -287,7 +288,8 @@ fn the_matrices_have_the_response_of_the_loop() {
 
 #[test]
 fn the_response_of_the_loop_is_that_of_its_formula() {
-    let (h, couplings) = (response_of(&small_aircraft()), small_couplings());
+    let h = response_of(&small_aircraft());
+    let couplings = small_couplings();
     let coupled = couplings.response(&h, 60.0);
     let mixing = couplings.normalised_mixing(60.0).map(Complex::from);
     for k in 0..grid().len() {
@@ -307,8 +309,8 @@ fn the_response_of_the_loop_is_that_of_its_formula() {
 #[test]
 fn delays_of_channels_stand_inside_the_loop() {
     let delayed = |input_s: f64, output_s: f64| {
-        let (input_delays_s, output_delays_s) =
-            (Some(vec![input_s, 0.0]), Some(vec![0.0, output_s, 0.0]));
+        let input_delays_s = Some(vec![input_s, 0.0]);
+        let output_delays_s = Some(vec![0.0, output_s, 0.0]);
         small_aircraft()
             .timed(Timing {
                 sample_time_s: None,
@@ -400,11 +402,13 @@ impl DenseProblem {
                 let at = |of: &FrequencyResponse| {
                     DMatrix::from_fn(3, 2, |o, i| of.curve(Pair::new(o, i))[k])
                 };
-                let (h, r) = (at(&condition.physics), at(&condition.flight));
+                let h = at(&condition.physics);
+                let r = at(&condition.flight);
                 let s = (DMatrix::identity(3, 3) - &h * last.feedback().map(Complex::from))
                     .try_inverse()
                     .unwrap();
-                let (f, target) = (&s * &h, &s * &r);
+                let f = &s * &h;
+                let target = &s * &r;
                 let coupled = &f * last.mixing(condition.airspeed_kt).map(Complex::from);
                 for pair in problem.on_axis.pairs() {
                     let place = (pair.output, pair.input);
@@ -412,7 +416,8 @@ impl DenseProblem {
                     let axis = if problem.on_axis[pair] { 2.0 } else { 1.0 };
                     let weight = axis / (1.0 + (deviation / 0.06_f64).powi(2)).sqrt();
                     let ratio = coupled[place] / r[place];
-                    let (db, deg) = (20.0 * ratio.norm().log10(), ratio.arg().to_degrees());
+                    let db = 20.0 * ratio.norm().log10();
+                    let deg = ratio.arg().to_degrees();
                     let e = (20.0 * db * db + 20.0 * 0.0175 * deg * deg).sqrt();
                     let floor = r[place].norm().max(0.5 * coupled[place].norm());
                     let q = weight / floor / (1.0 + (e * weight / 10.0).powi(2)).powf(0.25);
@@ -505,12 +510,12 @@ fn permuted(problem: &CouplingProblem, outputs: &[usize], inputs: &[usize]) -> C
 
 #[test]
 fn permuting_the_channels_permutes_the_answer() {
-    let (outputs, inputs) = ([2, 0, 1], [1, 0]);
-    let (found, moved) = (
-        fit(&disturbed()),
-        fit(&permuted(&disturbed(), &outputs, &inputs)),
-    );
-    let (m, k) = (found.matrices.mixing(70.0), found.matrices.feedback());
+    let outputs = [2, 0, 1];
+    let inputs = [1, 0];
+    let found = fit(&disturbed());
+    let moved = fit(&permuted(&disturbed(), &outputs, &inputs));
+    let m = found.matrices.mixing(70.0);
+    let k = found.matrices.feedback();
     let expected_m = DMatrix::from_fn(2, 2, |to, from| m[(inputs[to], inputs[from])]);
     let expected_k = DMatrix::from_fn(2, 3, |input, output| k[(inputs[input], outputs[output])]);
     // Sums in another order, five times.
@@ -725,7 +730,8 @@ proptest! {
         inputs in proptest::collection::vec(-2.0..2.0_f64, 2),
     ) {
         let [outputs, inputs] = [outputs, inputs].map(|of| of.into_iter().map(|power| 10_f64.powf(power)).collect::<Vec<_>>());
-        let (found, scaled) = (fit(&disturbed()), fit(&in_other_units(&disturbed(), &outputs, &inputs)));
+        let found = fit(&disturbed());
+        let scaled = fit(&in_other_units(&disturbed(), &outputs, &inputs));
         for (to, from) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let [a, b] = [&found, &scaled].map(|of| of.matrices.mixing(70.0)[(to, from)]);
             // Roundings of five solves, whose normal matrices have condition numbers of some 1e4 once scaled.
@@ -795,7 +801,9 @@ fn two_outputs() -> CouplingProblem {
 
 #[test]
 fn an_output_that_one_side_lacks_everywhere_is_not_fed_back_and_changes_nothing_else() {
-    let (mut of_flight, mut of_physics, expected) = (disturbed(), disturbed(), fit(&two_outputs()));
+    let mut of_flight = disturbed();
+    let mut of_physics = disturbed();
+    let expected = fit(&two_outputs());
     for condition in &mut of_flight.conditions {
         condition.flight = without(&condition.flight, |pair, _| pair.output == 2);
     }
@@ -822,7 +830,8 @@ fn an_output_that_one_side_lacks_everywhere_is_not_fed_back_and_changes_nothing_
 
 #[test]
 fn an_input_column_is_skipped_where_flight_lacks_an_output_that_is_fed_back() {
-    let (mut lacking, mut unusable) = (disturbed(), disturbed());
+    let mut lacking = disturbed();
+    let mut unusable = disturbed();
     // The first condition lacks one response; the same as if none of that input counted there.
     lacking.conditions[0].flight = without(&lacking.conditions[0].flight, |pair, _| {
         pair == Pair::new(2, 1)
@@ -830,7 +839,8 @@ fn an_input_column_is_skipped_where_flight_lacks_an_output_that_is_fed_back() {
     for output in 0..3 {
         unusable.conditions[0].usable[Pair::new(output, 1)] = false;
     }
-    let (found, expected) = (fit(&lacking), fit(&unusable));
+    let found = fit(&lacking);
+    let expected = fit(&unusable);
     assert_eq!(
         (found.coefficients, found.not_fed_back),
         (expected.coefficients, vec![])
@@ -838,7 +848,8 @@ fn an_input_column_is_skipped_where_flight_lacks_an_output_that_is_fed_back() {
     // A mixing alone needs no other response of the column.
     (lacking.kind, unusable.kind) = (CouplingKind::Mixing, CouplingKind::Mixing);
     unusable.conditions[0].usable = PairTable::from_fn(3, 2, |pair| pair != Pair::new(2, 1));
-    let (found, expected) = (fit(&lacking), fit(&unusable));
+    let found = fit(&lacking);
+    let expected = fit(&unusable);
     assert_eq!(
         (found.coefficients, found.not_fed_back),
         (expected.coefficients, vec![])
@@ -847,7 +858,8 @@ fn an_input_column_is_skipped_where_flight_lacks_an_output_that_is_fed_back() {
 
 #[test]
 fn a_frequency_is_skipped_where_the_physics_model_lacks_an_output_that_is_fed_back() {
-    let (mut lacking, mut shorter) = (disturbed(), disturbed());
+    let mut lacking = disturbed();
+    let mut shorter = disturbed();
     lacking.conditions[2].physics = Arc::new(without(&lacking.conditions[2].physics, |pair, k| {
         pair.output == 1 && k == 4
     }));
@@ -876,7 +888,8 @@ fn an_input_that_flight_never_moved_stays_as_it_is() {
 
 #[test]
 fn what_was_not_measured_coherently_does_not_count() {
-    let (mut measured, mut unusable) = (disturbed(), disturbed());
+    let mut measured = disturbed();
+    let mut unusable = disturbed();
     let omega = Arc::clone(&measured.omega);
     for (condition, other) in measured.conditions.iter_mut().zip(&mut unusable.conditions) {
         condition.coherence = Some(PairTable::from_fn(3, 2, |pair| {
@@ -885,7 +898,8 @@ fn what_was_not_measured_coherently_does_not_count() {
         }));
         other.usable[Pair::new(2, 0)] = false;
     }
-    let (found, expected) = (fit(&measured), fit(&unusable));
+    let found = fit(&measured);
+    let expected = fit(&unusable);
     for (found, expected) in found
         .coefficients
         .iter()
@@ -904,7 +918,8 @@ fn a_response_that_a_physics_model_lacks_is_lacking_once_coupled_and_only_what_d
     let lacking = without(physics, |pair, k| pair == Pair::new(2, 0) && k == 3);
     let mixing = dmatrix![1.0, 0.1; 0.2, 1.0];
     let free = constant(&mixing, &dmatrix![0.1, 0.2, 0.0; 0.0, 0.1, 0.0]);
-    let (found, expected) = (free.response(&lacking, 60.0), free.response(physics, 60.0));
+    let found = free.response(&lacking, 60.0);
+    let expected = free.response(physics, 60.0);
     for (pair, curve) in expected.curves().iter() {
         for (k, expected) in curve.iter().enumerate() {
             let value = found.curve(pair)[k];

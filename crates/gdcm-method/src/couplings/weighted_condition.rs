@@ -2,9 +2,10 @@
 
 use nalgebra::Complex;
 
-use super::{CouplingCondition, CouplingProblem};
-use crate::fidelity::summand;
 use gdcm_model::dataset::{ConditionId, Pair, PairTable};
+
+use super::problem::{CouplingCondition, CouplingProblem};
+use crate::fidelity::summand;
 
 /// Weight of an on-axis response beside the others, `w_p`.
 const ON_AXIS: f64 = 2.0;
@@ -46,7 +47,8 @@ impl<'a> WeightedCondition<'a> {
         condition: &CouplingCondition,
         fed_back: &[usize],
     ) -> Self {
-        let (outputs, inputs) = (problem.outputs(), problem.inputs());
+        let outputs = problem.outputs();
+        let inputs = problem.inputs();
         let weights = fixed_weights(problem, condition, fed_back);
         let columns = |of: &PairTable<Vec<Complex<f64>>>| {
             let mut values = Vec::with_capacity(problem.omega.len() * inputs * outputs);
@@ -139,7 +141,8 @@ impl<'a> WeightedCondition<'a> {
 
 impl FixedWeight {
     fn squared(self, coupled: Complex<f64>, flight: Complex<f64>) -> f64 {
-        let (of_coupled, of_flight) = (coupled.norm_sqr(), flight.norm_sqr());
+        let of_coupled = coupled.norm_sqr();
+        let of_flight = flight.norm_sqr();
         let db = 10.0 * (of_coupled / of_flight).log10();
         let deg = (coupled * flight.conj()).arg().to_degrees();
         let error = summand(db, deg);
@@ -155,7 +158,9 @@ fn fixed_weights(
     condition: &CouplingCondition,
     fed_back: &[usize],
 ) -> Vec<FixedWeight> {
-    let (outputs, inputs, points) = (problem.outputs(), problem.inputs(), problem.omega.len());
+    let outputs = problem.outputs();
+    let inputs = problem.inputs();
+    let points = problem.omega.len();
     let coherence = condition.coherence.as_ref();
     let coherence = coherence.map(|table| table.map(|_, of| of.spread(&of.weights, points)));
     let mut weights = Vec::with_capacity(points * inputs * outputs);

@@ -1,8 +1,9 @@
 //! Linear fits of least absolute deviations, with weights that are not negative, by the vertices of the fit and the edges between
 //! them.
 
-use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 use nalgebra::{DMatrix, DVector};
+
+use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 
 /// Why there is no fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -102,7 +103,9 @@ fn best_vertex(
 /// The linear program `min sum t` subject to `x w - t <= y`, `-x w - t <= -y`, `w >= 0`.
 fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Vec<f64>, FitError> {
     let rows = x.len();
-    let (mut i, mut j, mut v) = (Vec::new(), Vec::new(), Vec::new());
+    let mut i = Vec::new();
+    let mut j = Vec::new();
+    let mut v = Vec::new();
     let mut entry = |row: usize, column: usize, value: f64| {
         i.push(row);
         j.push(column);
@@ -289,7 +292,8 @@ fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
             .total_cmp(&b.step)
             .then(a.constraint.cmp(&b.constraint))
     };
-    let (mut left, mut risen) = (crossings.as_mut_slice(), 0.0);
+    let mut left = crossings.as_mut_slice();
+    let mut risen = 0.0;
     loop {
         if left.len() <= 1 {
             return left
@@ -456,7 +460,9 @@ impl Vertex {
 /// Rates at which the sum of deviations changes along `direction` and against it, and the most it could change.
 fn slopes(fit: &Fit<'_>, deviations: &[f64], direction: &[f64]) -> ([f64; 2], f64) {
     // A deviation of zero grows either way.
-    let (mut growing, mut signed, mut scale) = (0.0, 0.0, 0.0);
+    let mut growing = 0.0;
+    let mut signed = 0.0;
+    let mut scale = 0.0;
     for (row, deviation) in deviations[..fit.y.len()].iter().enumerate() {
         let change = fit.left(row, direction);
         if deviation.abs() <= ZERO {

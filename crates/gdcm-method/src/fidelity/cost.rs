@@ -5,7 +5,9 @@ use std::f64::consts::{PI, TAU};
 use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
-use gdcm_model::response::{PolarCurve, mean, median, weighted_median};
+use gdcm_model::response::curve_values::{mean, weighted_median};
+use gdcm_model::response::frequency_response::PolarCurve;
+use gdcm_model::response::median;
 
 /// Weight of the squared magnitude error \[dB^2\], `W_g`.
 const MAGNITUDE_WEIGHT: f64 = 1.0;
@@ -102,7 +104,7 @@ impl Cost {
 /// J of `simulated` against `reference`, on the same frequencies:
 /// `J = 20 / N sum_k (W_g e_dB,k^2 + W_p e_deg,k^2)` (M4, M5).
 ///
-/// It is [`super::Mismatch::cost`] with the mean, without gain or delay: distances within a bundle of `n` models take
+/// It is [`super::mismatch::Mismatch::cost`] with the mean, without gain or delay: distances within a bundle of `n` models take
 /// `n (n - 1) / 2` of these for each response, and a dozen operations for each frequency.
 pub(super) fn mean_cost(simulated: &PolarCurve, reference: &PolarCurve) -> f64 {
     let [magnitude, phase] = Arch::new().dispatch(SquaredDifferences {
@@ -158,7 +160,8 @@ impl WithSimd for SquaredDifferences<'_> {
 /// The principal value in (-pi, pi] of a difference of two.
 #[inline(always)]
 fn principal<S: Simd>(simd: S, difference: S::f64s) -> S::f64s {
-    let (turn, zero) = (simd.splat_f64s(TAU), simd.splat_f64s(0.0));
+    let turn = simd.splat_f64s(TAU);
+    let zero = simd.splat_f64s(0.0);
     let above = simd.greater_than_f64s(difference, simd.splat_f64s(PI));
     let below = simd.less_than_or_equal_f64s(difference, simd.splat_f64s(-PI));
     let less = simd.sub_f64s(difference, simd.select_f64s(above, turn, zero));
@@ -200,7 +203,8 @@ mod tests {
     #[test]
     fn weights_are_tischlers_in_the_mean_and_a_weighted_median_in_the_median() {
         let cost = |average| {
-            let (magnitude, phase) = ([1.0, 3.0, 2.0].into_iter(), [0.0; 3].into_iter());
+            let magnitude = [1.0, 3.0, 2.0].into_iter();
+            let phase = [0.0; 3].into_iter();
             Cost::of(
                 magnitude,
                 phase,
@@ -218,9 +222,10 @@ mod tests {
 
 #[cfg(test)]
 mod mean_cost_tests {
-    use super::*;
-    use crate::fidelity::{CostAverage, Mismatch};
     use gdcm_model::response::{GainDelay, wrap};
+
+    use super::{CostAverage, *};
+    use crate::fidelity::mismatch::Mismatch;
 
     #[test]
     fn it_is_the_cost_of_the_mismatch_with_the_mean() {

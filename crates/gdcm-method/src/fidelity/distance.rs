@@ -3,9 +3,13 @@
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::*;
 use gdcm_model::dataset::{Pair, PairTable};
-use gdcm_model::response::{PolarCurve, PolarResponse, median};
+use gdcm_model::response::frequency_response::PolarCurve;
+use gdcm_model::response::{PolarResponse, median};
+
+use super::absolute_deviations::{FitError, least_absolute_deviations};
+use super::cost::{Cost, CostAverage, mean_cost};
+use super::mismatch::{CoherenceWeights, Mismatch};
 
 /// Which responses measure distance in a bundle, and what each model lacks of them (M5b).
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +70,8 @@ pub struct BundleDistance {
 impl BundleDistance {
     /// The distances of which row `a` are those of [`distances_from`] the `a`-th model that is not set aside.
     pub fn from_rows(rows: Vec<Vec<f64>>, measured: MeasuredPairs) -> Self {
-        let (count, mut places) = (rows.len(), vec![None; measured.lacks.len()]);
+        let count = rows.len();
+        let mut places = vec![None; measured.lacks.len()];
         for (place, model) in measured.compared_models().into_iter().enumerate() {
             places[model] = Some(place);
         }
@@ -80,8 +85,10 @@ impl BundleDistance {
 
     /// `d(a, b)`, zero where `a = b`; `None` where one of them is set aside.
     pub fn between(&self, a: usize, b: usize) -> Option<f64> {
-        let (a, b) = (self.places[a]?, self.places[b]?);
-        let (low, high) = (a.min(b), a.max(b));
+        let a = self.places[a]?;
+        let b = self.places[b]?;
+        let low = a.min(b);
+        let high = a.max(b);
         if low == high {
             return Some(0.0);
         }
@@ -110,10 +117,8 @@ impl ComparedModel<'_> {
     fn cost_as_reference(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> Option<f64> {
         let mismatch =
             Mismatch::new(a, b).coherence_weighted(Some(&self.coherence_weights?[pair]))?;
-        let (magnitude_db, phase) = (
-            mismatch.magnitude_db.iter().copied(),
-            mismatch.phase.iter().copied(),
-        );
+        let magnitude_db = mismatch.magnitude_db.iter().copied();
+        let phase = mismatch.phase.iter().copied();
         Some(
             Cost::of(
                 magnitude_db,
@@ -134,10 +139,8 @@ impl ComparedModel<'_> {
 /// no frequency counts is compared over all of them, for models that were hardly measured must not look alike.
 pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
     let of_pair = |b: &ComparedModel<'_>, pair: Pair| {
-        let (from, to) = (
-            models[a].responses.curves()[pair].as_ref()?,
-            b.responses.curves()[pair].as_ref()?,
-        );
+        let from = models[a].responses.curves()[pair].as_ref()?;
+        let to = b.responses.curves()[pair].as_ref()?;
         if models[a].coherence_weights.is_none() && b.coherence_weights.is_none() {
             return Some(mean_cost(from, to));
         }
@@ -262,7 +265,8 @@ impl Discontinuity {
         }
         let perturbations: Vec<_> = models.iter().map(|&model| perturbations[model]).collect();
         let (largest, coordinates) = scaled_coordinates(&perturbations)?;
-        let (mut rows, mut squares) = (Vec::new(), Vec::new());
+        let mut rows = Vec::new();
+        let mut squares = Vec::new();
         for (a, b) in model_pairs(models.len()) {
             if let Some(distance) = distance.between(models[a], models[b]) {
                 squares.push(distance.powi(2));
@@ -366,9 +370,11 @@ fn squared_offsets(a: &[f64], b: &[f64]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use gdcm_model::dataset::{Dynamics, MeasuredResponse};
+    use gdcm_model::dataset::Dynamics;
+    use gdcm_model::dataset::measured_response::MeasuredResponse;
     use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
+
+    use super::*;
 
     /// A response of 1 but for the upper half of the band, where it is `upper`, of this coherence there.
     fn measured(upper: f64, coherence: f64) -> Dynamics {
@@ -404,7 +410,8 @@ mod tests {
 
     #[test]
     fn what_was_not_measured_counts_in_a_distance_one_way_only_where_the_other_model_has_it() {
-        let (good, bad) = (measured(1.0, 0.9), measured(2.0, 0.1));
+        let good = measured(1.0, 0.9);
+        let bad = measured(2.0, 0.1);
         let [apart] = distances(&[good.clone(), bad.clone()], None)[..] else {
             panic!("one distance")
         };
@@ -418,7 +425,8 @@ mod tests {
         assert!(weighed > 0.0 && weighed < apart);
         // Half of J at the weight 0.879 of the one, and none of it by the other.
         assert!(
-            (weighed / apart - (0.5 * crate::fidelity::coherence_weight(0.9)).sqrt()).abs() < 0.01
+            (weighed / apart - (0.5 * super::super::mismatch::coherence_weight(0.9)).sqrt()).abs()
+                < 0.01
         );
     }
 }

@@ -4,11 +4,12 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Complex;
 
-use super::{Cost, CostAverage};
 use gdcm_model::dataset::{Dynamics, Pair, PairTable};
-use gdcm_model::response::{
-    GainDelay, PolarCurve, centred_unwrap, coherence_at, median, weighted_median, wrap,
-};
+use gdcm_model::response::curve_values::{centred_unwrap, coherence_at, weighted_median};
+use gdcm_model::response::frequency_response::PolarCurve;
+use gdcm_model::response::{GainDelay, median, wrap};
+
+use super::cost::{Cost, CostAverage};
 
 /// What a gain and a delay have to act upon: the difference of a simulated response from its reference.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,10 +50,8 @@ impl Mismatch {
         let Some(coherence_weights) = coherence_weights else {
             return Some(self);
         };
-        let (magnitude_db, phase) = (
-            coherence_weights.pick(&self.magnitude_db),
-            coherence_weights.pick(&self.phase),
-        );
+        let magnitude_db = coherence_weights.pick(&self.magnitude_db);
+        let phase = coherence_weights.pick(&self.phase);
         (!coherence_weights.omega.is_empty()).then(|| Self {
             magnitude_db,
             phase,
@@ -142,7 +141,8 @@ impl Mismatch {
     /// `Delta phi(sim, ref)` \[rad\] as a delay takes it from `omega`: that of M3 where it stays within half a turn, else at
     /// each frequency the turn nearest to the pure delay that fits best (M6b).
     pub fn phase_difference(&self, omega: &[f64]) -> Vec<f64> {
-        let (mut phase, omega) = (self.unwrapped(), self.omega(omega));
+        let mut phase = self.unwrapped();
+        let omega = self.omega(omega);
         if phase.iter().any(|phase| phase.abs() > PI) {
             let delay_s = nearest_pure_delay_s(&phase, omega);
             for (phase, omega) in phase.iter_mut().zip(omega) {
@@ -308,8 +308,9 @@ impl CoherenceWeights {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use gdcm_model::units::db_to_ratio;
+
+    use super::*;
 
     fn curve(gain_db: f64, delay_s: f64, omega: &[f64]) -> PolarCurve {
         PolarCurve {
@@ -397,7 +398,8 @@ mod tests {
         let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &reference)
             .coherence_weighted(Some(&coherence_weights))
             .unwrap();
-        let (phase, left) = (mismatch.phase_difference(&omega), mismatch.omega(&omega));
+        let phase = mismatch.phase_difference(&omega);
+        let left = mismatch.omega(&omega);
         assert_eq!((phase.len(), left.len()), (210, 210));
         assert!(
             phase

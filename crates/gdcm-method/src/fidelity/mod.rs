@@ -1,16 +1,15 @@
 //! How well models agree: the cost J, the distance of two models, the representative of a bundle, outliers (M4, M5); modes from
 //! model to model, and what a pilot does not notice.
 
-mod absolute_deviations;
-mod cost;
-mod distance;
-mod mismatch;
-mod mode_tracks;
-mod muad;
+pub mod absolute_deviations;
+pub mod cost;
+pub mod distance;
+pub mod mismatch;
+pub mod mode_tracks;
+pub mod muad;
 
-pub use absolute_deviations::*;
-pub use cost::*;
-pub use distance::*;
-pub use mismatch::*;
-pub use mode_tracks::*;
-pub use muad::*;
+pub use cost::{ACCEPTABLE, Cost, CostAverage, summand};
+pub use distance::{Discontinuity, SUGGESTION_RATIO};
+pub use mismatch::{CoherenceWeights, Mismatch};
+pub use mode_tracks::{ModeTrack, mode_tracks};
+pub use muad::{Muad, leaves};

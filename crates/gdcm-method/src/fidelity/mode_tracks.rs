@@ -137,7 +137,8 @@ fn augment(
     // The column before on the way from the new row; none where that is the row itself.
     let mut before: Vec<Option<usize>> = vec![None; columns];
     let mut in_tree = vec![false; columns];
-    let (mut at, mut row) = (None, new);
+    let mut at = None;
+    let mut row = new;
     loop {
         for column in (0..columns).filter(|&column| !in_tree[column]) {
             let reduced = cost(row, column) - of_row[row] - of_column[column];
@@ -175,10 +176,12 @@ fn augment(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use nalgebra::{DMatrix, dmatrix};
+
     use gdcm_model::dataset::StateSpace;
     use gdcm_model::response::modes;
-    use nalgebra::{DMatrix, dmatrix};
+
+    use super::*;
 
     fn of(a: DMatrix<f64>) -> Vec<Mode> {
         let n = a.nrows();
@@ -196,7 +199,8 @@ mod tests {
 
     /// A lag of `rate` and an oscillator of `frequency` damped 0.2.
     fn lag_and_oscillator(rate: f64, frequency: f64) -> Vec<Mode> {
-        let (stiffness, damping) = (-frequency * frequency, -0.4 * frequency);
+        let stiffness = -frequency * frequency;
+        let damping = -0.4 * frequency;
         of(dmatrix![-rate, 0.0, 0.0; 0.0, 0.0, 1.0; 0.0, stiffness, damping])
     }
 
@@ -241,7 +245,8 @@ mod tests {
 
     #[test]
     fn models_of_other_orders_leave_gaps() {
-        let (small, large) = (of(dmatrix![-1.0]), of(dmatrix![-9.0, 0.0; 0.0, -1.1]));
+        let small = of(dmatrix![-1.0]);
+        let large = of(dmatrix![-9.0, 0.0; 0.0, -1.1]);
         assert_eq!(
             mode_tracks(&[&small, &large], 0)[0].modes,
             [Some(0), Some(0)]
@@ -260,8 +265,9 @@ mod tests {
 
 #[cfg(test)]
 mod assignment_tests {
-    use super::*;
     use proptest::prelude::*;
+
+    use super::*;
 
     /// The least total over every assignment, one after the other.
     fn tried_out(costs: &[Vec<f64>], row: usize, taken: &mut Vec<usize>) -> f64 {

@@ -8,9 +8,9 @@ use nalgebra::Complex;
 use gdcm_model::assembly::PhysicalUnit;
 use gdcm_model::dataset::{Band, Channel, Dynamics, Pair};
 use gdcm_model::message_text::quoted;
-use gdcm_model::response::{
-    FrequencyResponse, GainDelay, PreparedModel, between, log_spaced, unwrap, wrap,
-};
+use gdcm_model::response::curve_values::{between, unwrap};
+use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::{FrequencyResponse, GainDelay, PreparedModel, wrap};
 use gdcm_model::units::{number, ratio_to_db};
 
 /// Frequencies on which sign changes are looked for.
@@ -233,7 +233,8 @@ impl SampledModel {
     pub fn of(dynamics: &Dynamics, band: Band) -> Self {
         let prepared = PreparedModel::of(dynamics);
         let mut omega = search_frequencies(band);
-        let (searched, highest) = (omega.len(), omega[omega.len() - 1]);
+        let searched = omega.len();
+        let highest = omega[omega.len() - 1];
         let ratio = omega[1] / omega[0];
         let beyond = std::iter::successors(Some(highest * ratio), |omega| Some(omega * ratio));
         // One more than needed, for the interpolation to have a neighbour.
@@ -274,7 +275,8 @@ impl SampledModel {
         pair: Pair,
         correction: GainDelay,
     ) -> impl Fn(&[f64]) -> Vec<Complex<f64>> + '_ {
-        let (curve, start) = (self.values.curve(pair), self.omega[0].ln());
+        let curve = self.values.curve(pair);
+        let start = self.omega[0].ln();
         let step = (self.omega[1] / self.omega[0]).ln();
         let between = move |omega: f64| {
             let place = (omega.ln() - start) / step;

@@ -30,11 +30,14 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use super::AttitudeResponse;
-use crate::uncertainty::{Bar, IdentificationSource, VarianceComponent};
-use gdcm_model::dataset::{Band, ModelBands, Pair};
-use gdcm_model::response::{between, log_spaced, mean};
+use gdcm_model::dataset::model::ModelBands;
+use gdcm_model::dataset::{Band, Pair};
+use gdcm_model::response::curve_values::{between, mean};
+use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::units::number;
+
+use super::attitude_response::AttitudeResponse;
+use crate::uncertainty::{Bar, IdentificationSource, VarianceComponent};
 
 /// Relative width of the bracket of a crossing at which the search ends.
 const ROOT_TOLERANCE: f64 = 1e-12;
@@ -246,7 +249,8 @@ impl Reading<'_> {
         read_at: [f64; 2],
         deviation: Option<f64>,
     ) -> Result<Metric, NoMetric> {
-        let (band, [lowest, highest]) = (self.settings.band, read_at);
+        let band = self.settings.band;
+        let [lowest, highest] = read_at;
         let rests_above_band = highest > band.max();
         if rests_above_band && self.settings.above_band == AboveBand::Refused {
             return Err(NoMetric::AboveBand {
@@ -266,13 +270,12 @@ impl Reading<'_> {
 
     /// The frequency at which the phase falls through a level: of the band the lowest, unless it has fallen through below and stayed there.
     fn phase_crossing(&self, level_deg: f64) -> Result<Metric, NoMetric> {
-        let (omega, phase, level) = (
-            &self.attitude.omega,
-            &self.attitude.phase,
-            level_deg.to_radians(),
-        );
+        let omega = &self.attitude.omega;
+        let phase = &self.attitude.phase;
+        let level = level_deg.to_radians();
         let falls = |k: &usize| phase[*k] > level && phase[k + 1] <= level;
-        let (first, last) = (self.attitude.lowest_of_band, phase.len() - 1);
+        let first = self.attitude.lowest_of_band;
+        let last = phase.len() - 1;
         let is_below = phase[first] <= level;
         let below = (0..first).rev().find(|k| is_below && falls(k));
         let Some(k) = below.or_else(|| (first..last).find(falls)) else {
@@ -301,7 +304,8 @@ impl Reading<'_> {
 
     /// The greatest frequency below `omega_180` at which the magnitude is 6 dB above that at `omega_180`.
     fn gain_crossing(&self, omega_180: Metric) -> Result<Metric, NoMetric> {
-        let (grid, top) = (&self.attitude.omega, omega_180.value);
+        let grid = &self.attitude.omega;
+        let top = omega_180.value;
         let none = NoMetric::NoGainCrossing {
             omega_180: top,
             down_to: self.attitude.omega[0],
@@ -360,7 +364,8 @@ impl Reading<'_> {
 
     /// The phase delay, and the phase that it is read from.
     fn phase_delay(&self, omega_180: Metric) -> Result<(Metric, PhaseLine), NoMetric> {
-        let (from, to) = (omega_180.value, 2.0 * omega_180.value);
+        let from = omega_180.value;
+        let to = 2.0 * omega_180.value;
         let omega = log_spaced(from, to, LINE_POINTS);
         let phase = self
             .attitude
@@ -392,7 +397,8 @@ impl Reading<'_> {
 fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> f64 {
     // Where there is no value, the root is taken to lie above.
     let sided = |omega: f64| value(omega).filter(|value| !value.is_nan()).unwrap_or(-1.0);
-    let (mut a, mut b) = ((high, sided(high)), (low, sided(low)));
+    let mut a = (high, sided(high));
+    let mut b = (low, sided(low));
     let mut part = 0.5;
     loop {
         let at = a.0 + part * (b.0 - a.0);
@@ -408,7 +414,8 @@ fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> f6
         if least > 0.5 || best.1 == 0.0 || !least.is_finite() {
             return best.0;
         }
-        let (xi, phi) = ((a.0 - b.0) / (c.0 - b.0), (a.1 - b.1) / (c.1 - b.1));
+        let xi = (a.0 - b.0) / (c.0 - b.0);
+        let phi = (a.1 - b.1) / (c.1 - b.1);
         let is_monotonic = phi.powi(2) < xi && (1.0 - phi).powi(2) < 1.0 - xi;
         let quadratic = a.1 / (b.1 - a.1) * c.1 / (b.1 - c.1)
             + (c.0 - a.0) / (b.0 - a.0) * a.1 / (c.1 - a.1) * b.1 / (c.1 - b.1);
@@ -432,7 +439,8 @@ fn chord_departure(omega: &[f64], phase: &[f64]) -> f64 {
 
 /// The slope \[s\] of the least-squares line of `phase` over `omega`.
 fn slope(omega: &[f64], phase: &[f64]) -> f64 {
-    let (centre, level) = (mean(omega), mean(phase));
+    let centre = mean(omega);
+    let level = mean(phase);
     let product: f64 = omega
         .iter()
         .zip(phase)
@@ -509,7 +517,8 @@ impl PairBand<'_> {
 }
 
 fn difference_quotient(omega: f64, value: impl Fn(f64) -> Option<f64>) -> Option<f64> {
-    let (low, high) = (omega * (1.0 - HALF_STEP), omega * (1.0 + HALF_STEP));
+    let low = omega * (1.0 - HALF_STEP);
+    let high = omega * (1.0 + HALF_STEP);
     let slope = (value(high)? - value(low)?) / (high - low);
     (slope != 0.0).then_some(slope)
 }
@@ -540,11 +549,15 @@ mod tests {
     use nalgebra::{Complex, dmatrix};
     use proptest::prelude::*;
 
+    use gdcm_model::dataset::measured_response::MeasuredResponse;
+    use gdcm_model::dataset::state_space::Timing;
+    use gdcm_model::dataset::{Channel, Dynamics, PairTable, StateSpace};
+    use gdcm_model::response::GainDelay;
+
     use super::*;
+    use crate::requirements::attitude_response::{ResponseAt, SampledModel, search_frequencies};
     use crate::requirements::known_answers::{answers, attitudes, number};
     use crate::requirements::*;
-    use gdcm_model::dataset::{Channel, Dynamics, MeasuredResponse, PairTable, StateSpace, Timing};
-    use gdcm_model::response::GainDelay;
 
     const ONLY: Pair = Pair {
         output: 0,
@@ -741,7 +754,8 @@ mod tests {
         let turned =
             |s: Complex<f64>| short(s) * (s * s + 0.1 * s + 0.03) / (s * s - 0.04 * s + 0.04);
         let rate = settings(CommandType::Rate);
-        let (plain, found) = (of_attitude(short, &rate), of_attitude(turned, &rate));
+        let plain = of_attitude(short, &rate);
+        let found = of_attitude(turned, &rate);
         assert!((value(found.omega_180) / value(plain.omega_180) - 1.0).abs() < 0.1);
         assert!((value(found.omega_bw) / value(plain.omega_bw) - 1.0).abs() < 0.2);
         // A phase that dips through -135 deg below the band only has its crossing within.
@@ -964,7 +978,8 @@ mod tests {
     #[test]
     fn deviations_are_those_of_moving_the_response() {
         let [.., short] = attitudes();
-        let (sd_deg, sd_db) = (0.3, 0.05);
+        let sd_deg = 0.3;
+        let sd_db = 0.05;
         // Nowhere but about omega_180 does the phase err; nowhere but about omega_gain does the magnitude.
         let frequencies = log_spaced(0.1, 48.0, 400);
         let bands = |sd_db: f64, sd_deg: f64| {
@@ -997,11 +1012,9 @@ mod tests {
             )
         };
         let phase_only = bands(0.0, sd_deg);
-        let (low, middle, high) = (
-            of(-sd_deg, &phase_only),
-            of(0.0, &phase_only),
-            of(sd_deg, &phase_only),
-        );
+        let low = of(-sd_deg, &phase_only);
+        let middle = of(0.0, &phase_only);
+        let high = of(sd_deg, &phase_only);
         let half = |metric: fn(&Bandwidth) -> Result<Metric, NoMetric>| {
             0.5 * (value(metric(&high)) - value(metric(&low))).abs()
         };
@@ -1077,10 +1090,8 @@ mod tests {
         #[test]
         fn scaling_the_gain_changes_no_bandwidth(gain in 1e-3_f64..1e3, case in 0_usize..4) {
             let attitude = attitudes()[case];
-            let (plain, scaled) = (
-                of_attitude(attitude, &settings(CommandType::Rate)),
-                of_attitude(|s| gain * attitude(s), &settings(CommandType::Rate)),
-            );
+            let plain = of_attitude(attitude, &settings(CommandType::Rate));
+            let scaled = of_attitude(|s| gain * attitude(s), &settings(CommandType::Rate));
             for (plain, scaled) in [
                 (plain.omega_180, scaled.omega_180),
                 (plain.omega_phase, scaled.omega_phase),
@@ -1097,7 +1108,8 @@ mod tests {
         ) {
             // 1/s and a delay: the phase is straight. It loses pi/2 to omega_180 and as much again to twice that.
             let of = |delay_s: f64| of_attitude(move |s| (-delay_s * s).exp() / s, &settings(CommandType::Rate));
-            let (less, more) = (of(delay_s), of(delay_s + more_s));
+            let less = of(delay_s);
+            let more = of(delay_s + more_s);
             prop_assert!(less.phase_line.unwrap().is_straight() && less.phase_line.unwrap().departure_deg < 1e-9);
             for (found, delay_s) in [(less, delay_s), (more, delay_s + more_s)] {
                 prop_assert!((value(found.phase_delay_s) - 0.5 * delay_s).abs() < 1e-10);

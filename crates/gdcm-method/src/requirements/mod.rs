@@ -11,25 +11,23 @@
 //! | `summary` | J, rms in time, Theil's coefficients, MUAD | MIL-STD-1797A, appendix A, 4.2.1.2 |
 //! | `tolerance` | time histories within tolerances | 14 CFR part 60, appendix C, table C2A; CS-FSTD(H) |
 
-mod attitude_response;
-mod bandwidth;
-mod level_boundary;
-mod mode_comparison;
-mod mode_name;
-mod mode_pairing;
-mod summary;
-mod test_input;
-mod tolerance;
+pub mod attitude_response;
+pub mod bandwidth;
+pub mod level_boundary;
+pub mod mode_comparison;
+pub mod mode_name;
+pub mod mode_pairing;
+pub mod summary;
+pub mod test_input;
+pub mod tolerance;
 
-pub use attitude_response::*;
-pub use bandwidth::*;
-pub use level_boundary::*;
-pub use mode_comparison::*;
-pub use mode_name::*;
-pub use mode_pairing::*;
-pub use summary::*;
-pub use test_input::*;
-pub use tolerance::*;
+pub use attitude_response::AttitudeOutput;
+pub use bandwidth::BandwidthRule;
+pub use level_boundary::LevelBoundaries;
+pub use mode_comparison::{ModeToleranceTable, ModeVerdict};
+pub use mode_name::{ModeName, NamedBy};
+pub use test_input::{TestInput, TestInputShape};
+pub use tolerance::{RecordCheck, Tolerance, ToleranceTable};
 
 /// The first of some named numbers that is not finite, or not above zero.
 fn not_positive<const N: usize>(

@@ -16,13 +16,15 @@ use std::f64::consts::{LN_2, TAU};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
-use super::mode_pairing::{ModePair, mode_pairs, single_modes};
-use super::{ModeName, NamedBy, not_positive};
 use gdcm_model::dataset::Band;
 use gdcm_model::message_text::quoted;
 use gdcm_model::response::Mode;
-use gdcm_model::response::PoleEstimate;
+use gdcm_model::response::pole_estimate::PoleEstimate;
 use gdcm_model::units::number;
+
+use super::mode_name::{ModeName, NamedBy};
+use super::mode_pairing::{ModePair, mode_pairs, single_modes};
+use super::not_positive;
 
 /// Distance, as a part of the pole's modulus, within which an estimate is that of a pole: the same model written otherwise.
 const SAME_POLE: f64 = 1e-3;
@@ -60,7 +62,9 @@ impl ModeValues {
     /// The standard deviations of a mode's values, to first order of those of its pole (M14.5).
     pub fn deviation(mode: &Mode, pole: &PoleEstimate) -> Self {
         let values = Self::of(mode);
-        let (re, im, size) = (mode.pole.re.abs(), mode.pole.im.abs(), mode.pole.norm());
+        let re = mode.pole.re.abs();
+        let im = mode.pole.im.abs();
+        let size = mode.pole.norm();
         let damping = (im * im * pole.sd_re).hypot(re * im * pole.sd_im) / size.powi(3);
         Self {
             period_s: values.period_s.map(|period_s| period_s * pole.sd_im / im),
@@ -412,10 +416,10 @@ impl Default for ModeToleranceTable {
 mod tests {
     use nalgebra::{DMatrix, dmatrix};
 
-    use super::*;
-    use crate::requirements::*;
     use gdcm_model::dataset::StateSpace;
     use gdcm_model::response::modes;
+
+    use super::*;
 
     fn pair(re: f64, im: f64) -> Vec<Mode> {
         of(dmatrix![re, im; -im, re])
@@ -445,7 +449,8 @@ mod tests {
 
     /// Verdict of a Dutch roll against a flown one of -0.4 + 2j.
     fn verdict(re: f64, im: f64, estimates: &[PoleEstimate]) -> ModeVerdict {
-        let (flown, model) = (pair(-0.4, 2.0), pair(re, im));
+        let flown = pair(-0.4, 2.0);
+        let model = pair(re, im);
         let rows = compare_modes(
             unnamed(&flown),
             &[unnamed(&model)],
@@ -531,7 +536,8 @@ mod tests {
 
     #[test]
     fn deviations_are_those_of_moving_the_pole() {
-        let (sd_re, sd_im) = (1e-4, 2e-4);
+        let sd_re = 1e-4;
+        let sd_im = 2e-4;
         let deviation = ModeValues::deviation(&pair(-0.4, 2.0)[0], &estimate(sd_re, sd_im));
         let half = |values: fn(&ModeValues) -> Option<f64>, re: f64, im: f64| {
             let at = |sign: f64| {
@@ -578,10 +584,8 @@ mod tests {
 
     #[test]
     fn rows_are_named_by_the_physics_model_and_gaps_are_said() {
-        let (flown, physics) = (
-            of(dmatrix![-0.4, 2.0, 0.0; -2.0, -0.4, 0.0; 0.0, 0.0, -3.0]),
-            pair(-0.5, 2.1),
-        );
+        let flown = of(dmatrix![-0.4, 2.0, 0.0; -2.0, -0.4, 0.0; 0.0, 0.0, -3.0]);
+        let physics = pair(-0.5, 2.1);
         let states = ["w".to_owned(), "q".to_owned()];
         let physics = ModelModes {
             modes: &physics,
@@ -623,7 +627,8 @@ mod tests {
     fn a_mode_is_named_once_and_a_fast_flown_pole_is_no_phugoid() {
         // An overdamped flown pole, and a physics phugoid of two poles: they were two rows named phugoid.
         let flown = of(dmatrix![-0.26, 0.0; 0.0, -2.8]);
-        let (physics, states) = (pair(-0.26, 0.1), ["u".to_owned(), "theta".to_owned()]);
+        let physics = pair(-0.26, 0.1);
+        let states = ["u".to_owned(), "theta".to_owned()];
         let physics = ModelModes {
             modes: &physics,
             states: &states,
@@ -649,13 +654,11 @@ mod tests {
         assert_eq!(found, expected);
         // Of two flown poles with a partner of the same name the nearer one keeps it.
         let split = of(dmatrix![-0.26, 0.0; 0.0, -0.6]);
-        let (physics, flown) = (
-            ModelModes {
-                modes: &split,
-                states: &states,
-            },
-            of(dmatrix![-0.27, 0.0; 0.0, -0.8]),
-        );
+        let physics = ModelModes {
+            modes: &split,
+            states: &states,
+        };
+        let flown = of(dmatrix![-0.27, 0.0; 0.0, -0.8]);
         let rows = compare_modes(unnamed(&flown), &[physics], &[], band(), &table);
         assert_eq!(
             rows.iter().map(|row| row.name).collect::<Vec<_>>(),

@@ -168,10 +168,12 @@ impl ModeName {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use nalgebra::{DMatrix, dmatrix};
+
     use gdcm_model::dataset::StateSpace;
     use gdcm_model::response::modes;
-    use nalgebra::{DMatrix, dmatrix};
+
+    use super::*;
 
     fn modes_of(a: DMatrix<f64>) -> Vec<Mode> {
         let n = a.nrows();

@@ -14,8 +14,9 @@
 
 use nalgebra::Complex;
 
-use crate::fidelity::least_total;
 use gdcm_model::response::Mode;
+
+use crate::fidelity::mode_tracks::least_total;
 
 /// Distance in the s-plane beyond which two modes are no pair, as a part of the larger modulus.
 pub const LARGEST_PAIR_DISTANCE: f64 = 0.5;
@@ -105,7 +106,8 @@ fn likeness(flown: &Mode, model: &Mode, scales: &[f64]) -> Option<f64> {
     let mut is_reached = false;
     for ((flown, model), scale) in of_flown?.iter().zip(of_model?).zip(scales) {
         if *scale > 0.0 {
-            let (flown, model) = (flown / scale, model / scale);
+            let flown = flown / scale;
+            let model = model / scale;
             product += flown.conj() * model;
             squares[0] += flown.norm_sqr();
             squares[1] += model.norm_sqr();
@@ -121,9 +123,10 @@ fn likeness(flown: &Mode, model: &Mode, scales: &[f64]) -> Option<f64> {
 mod tests {
     use nalgebra::{DMatrix, dmatrix};
 
-    use super::*;
     use gdcm_model::dataset::StateSpace;
     use gdcm_model::response::modes;
+
+    use super::*;
 
     /// The modes of lags `-rate`, each seen by the outputs as its row says.
     fn lags(rates: &[f64], shapes: &[[f64; 2]]) -> Vec<Mode> {
@@ -148,7 +151,8 @@ mod tests {
 
     #[test]
     fn of_two_modes_as_near_that_of_the_same_shape_is_the_partner() {
-        let (roll, pitch) = ([1.0, 0.0], [0.0, 1.0]);
+        let roll = [1.0, 0.0];
+        let pitch = [0.0, 1.0];
         let flown = lags(&[2.0, 3.0], &[pitch, roll]);
         // By distance alone the first would go with the first.
         assert_eq!(
@@ -163,7 +167,8 @@ mod tests {
 
     #[test]
     fn units_of_the_outputs_do_not_matter() {
-        let (roll, pitch) = ([1.0, 0.2], [0.1, 1.0]);
+        let roll = [1.0, 0.2];
+        let pitch = [0.1, 1.0];
         let in_other_units = |[first, second]: [f64; 2]| [first, 1e-3 * second];
         let [flown, model] = [[2.0, 3.0], [2.4, 2.6]];
         let before = mode_pairs(

@@ -11,11 +11,14 @@
 //! Tischler & Remple, "Aircraft and Rotorcraft System Identification", 2nd ed. 2012, 14.3 (J_rms and its weights); MIL-STD-1797A,
 //! appendix A, 4.2.1.2 (MUAD).
 
-use crate::fidelity::{CostAverage, Mismatch, leaves};
-use gdcm_model::assembly::{Dimension, PhysicalUnit, conversion_factor};
+use gdcm_model::assembly::PhysicalUnit;
+use gdcm_model::assembly::physical_unit::{Dimension, conversion_factor};
 use gdcm_model::dataset::{Channel, Pair, PairTable};
-use gdcm_model::response::{GainDelay, mean, wrap};
+use gdcm_model::response::curve_values::mean;
+use gdcm_model::response::{GainDelay, wrap};
 use gdcm_model::simulation::{Validation, ValidationWindow};
+
+use crate::fidelity::{CostAverage, Mismatch, leaves};
 
 /// A mean over the on-axis responses, and over all.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -59,7 +62,8 @@ impl RmsCost {
             .enumerate()
             .filter_map(|(output, weight)| Some((output, (*weight)?)))
             .collect();
-        let (mut sum, mut samples) = (0.0, 0);
+        let mut sum = 0.0;
+        let mut samples = 0;
         for window in windows {
             samples += window.measured.nrows();
             for &(output, factor) in counted
@@ -179,10 +183,12 @@ impl Summary {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use gdcm_model::response::log_spaced;
-    use gdcm_model::units::db_to_ratio;
     use nalgebra::DMatrix;
+
+    use gdcm_model::response::frequency_response::log_spaced;
+    use gdcm_model::units::db_to_ratio;
+
+    use super::*;
 
     fn omega() -> Vec<f64> {
         log_spaced(0.5, 12.0, 200)
@@ -200,7 +206,8 @@ mod tests {
 
     fn window(measured: &[f64], simulated: &[f64]) -> ValidationWindow {
         let columns = |values: &[f64]| DMatrix::from_column_slice(values.len() / 3, 3, values);
-        let (measured, simulated) = (columns(measured), columns(simulated));
+        let measured = columns(measured);
+        let simulated = columns(simulated);
         ValidationWindow {
             record: 0,
             start_s: 0.0,
@@ -239,10 +246,8 @@ mod tests {
 
     #[test]
     fn a_model_without_error_is_wholly_inside_and_costs_nothing() {
-        let (table, on_axis) = (
-            PairTable::filled(1, 1, Some(mismatch(0.0, 0.0))),
-            PairTable::filled(1, 1, true),
-        );
+        let table = PairTable::filled(1, 1, Some(mismatch(0.0, 0.0)));
+        let on_axis = PairTable::filled(1, 1, true);
         let source = SummarySource {
             mismatch: &table,
             correction: &|_| Some(GainDelay::NONE),
@@ -263,7 +268,8 @@ mod tests {
     #[test]
     fn the_share_inside_is_that_of_the_band_in_log_frequency() {
         // 2 dB leave the upper magnitude between some 2 and 6 rad/s (muad.rs).
-        let (omega, two_db) = (omega(), mismatch(2.0, 0.0));
+        let omega = omega();
+        let two_db = mismatch(2.0, 0.0);
         let ranges = leaves(&omega, &[2.0; 200], &[0.0; 200]);
         let expected = 1.0 - (ranges[0].1 / ranges[0].0).ln() / 24.0_f64.ln();
         assert!((muad_share(&two_db, &omega, GainDelay::NONE).unwrap() - expected).abs() < 1e-14);

@@ -164,9 +164,11 @@ impl TestInput {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use gdcm_model::dataset::Timing;
     use nalgebra::dmatrix;
+
+    use gdcm_model::dataset::state_space::Timing;
+
+    use super::*;
 
     fn test(shape: TestInputShape) -> TestInput {
         TestInput {

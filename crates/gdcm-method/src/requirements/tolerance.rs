@@ -15,13 +15,15 @@
 use nalgebra::{DMatrix, Vector3};
 use serde::{Deserialize, Serialize};
 
-use super::not_positive;
-use gdcm_model::assembly::{Dimension, PhysicalUnit, conversion_factor};
+use gdcm_model::assembly::PhysicalUnit;
+use gdcm_model::assembly::physical_unit::{Dimension, conversion_factor};
 use gdcm_model::dataset::Channel;
 use gdcm_model::message_text::quoted;
-use gdcm_model::response::mean;
+use gdcm_model::response::curve_values::mean;
 use gdcm_model::simulation::ValidationWindow;
 use gdcm_model::units::number;
+
+use super::not_positive;
 
 /// Where the default table comes from.
 const DEFAULT_SOURCE: &str = "14 CFR part 60, appendix C, table C2A; CS-FSTD(H)";
@@ -191,7 +193,8 @@ impl Tolerance {
     /// # Errors
     /// [`ToleranceError`] where there is no such output, it is no rate whose integral is an attitude, or units do not fit.
     pub fn of_outputs(&self, outputs: &[Channel]) -> Result<ChannelTolerance, ToleranceError> {
-        let (quantity, channel) = (self.quantity.clone(), self.channel.clone());
+        let quantity = self.quantity.clone();
+        let channel = self.channel.clone();
         let Some(output) = outputs
             .iter()
             .position(|output| output.name == self.channel)
@@ -409,9 +412,11 @@ pub struct ToleranceCheck {
 
 /// What a correlation is made of: the sums of the squares of flown and of simulated samples about their means, and of their products.
 fn moments(flown: &[f64], simulated: &[f64]) -> Vector3<f64> {
-    let (flown_mean, simulated_mean) = (mean(flown), mean(simulated));
+    let flown_mean = mean(flown);
+    let simulated_mean = mean(simulated);
     let of_sample = |(flown, simulated): (&f64, &f64)| {
-        let (flown, simulated) = (flown - flown_mean, simulated - simulated_mean);
+        let flown = flown - flown_mean;
+        let simulated = simulated - simulated_mean;
         Vector3::new(flown * flown, simulated * simulated, flown * simulated)
     };
     flown.iter().zip(simulated).map(of_sample).sum()
@@ -462,10 +467,8 @@ impl ToleranceCheck {
                 None => Ok(samples),
             }
         };
-        let (flown, simulated) = (
-            compared("flown", measured)?,
-            compared("simulated", simulated)?,
-        );
+        let flown = compared("flown", measured)?;
+        let simulated = compared("simulated", simulated)?;
         let start = flown[0];
         let wider = |flown: &f64| {
             tolerance
@@ -515,7 +518,8 @@ impl ToleranceCheck {
         let mut parts: Vec<[f64; 2]> = Vec::new();
         let mut was_outside = false;
         for (n, excess) in excesses(&self.flown, &self.simulated, &self.width).enumerate() {
-            let (time_s, is_outside) = (self.start_s + self.sample_time_s * n as f64, excess > 0.0);
+            let time_s = self.start_s + self.sample_time_s * n as f64;
+            let is_outside = excess > 0.0;
             match parts.last_mut().filter(|_| was_outside && is_outside) {
                 Some(part) => part[1] = time_s,
                 None if is_outside => parts.push([time_s; 2]),
@@ -611,11 +615,12 @@ mod tests {
     use nalgebra::{dmatrix, dvector};
     use proptest::prelude::*;
 
-    use super::*;
-    use crate::requirements::known_answers::{answers, number};
     use gdcm_model::dataset::StateSpace;
     use gdcm_model::executor::Sequential;
     use gdcm_model::simulation::{FirstOrderHold, Segment, ValidationSettings, validate};
+
+    use super::*;
+    use crate::requirements::known_answers::{answers, number};
 
     const SAMPLE_TIME_S: f64 = 0.02;
 
@@ -635,7 +640,8 @@ mod tests {
         tolerance: &ChannelTolerance,
     ) -> Result<ToleranceCheck, ToleranceCheckError> {
         let column = |samples: &[f64]| DMatrix::from_column_slice(samples.len(), 1, samples);
-        let (measured, simulated) = (column(flown), column(simulated));
+        let measured = column(flown);
+        let simulated = column(simulated);
         let window = ValidationWindow {
             record: 0,
             start_s: 0.0,
@@ -669,7 +675,8 @@ mod tests {
 
     #[test]
     fn shares_and_excesses_are_the_known_ones() {
-        let ((flown, simulated), answers) = (made_up(), answers());
+        let (flown, simulated) = made_up();
+        let answers = answers();
         for case in answers["tolerance"]["cases"].as_array().unwrap() {
             let check = check_of(
                 &flown,
@@ -812,7 +819,8 @@ mod tests {
                 .unwrap()
                 .remove(0)
         };
-        let (right, wrong) = (record(2.0), record(1.0));
+        let right = record(2.0);
+        let wrong = record(1.0);
         assert_eq!((right.windows.len(), right.share_inside()), (2, 1.0));
         assert!(right.correlation().unwrap() > 0.999_999);
         assert!(wrong.share_inside() < 0.5 && wrong.worst().unwrap().largest_excess > 1.0);

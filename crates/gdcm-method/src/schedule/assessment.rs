@@ -1,11 +1,13 @@
 //! What speaks for one form or degree of the schedule or another: what it misses, and what it would have said of a condition
 //! that it has not seen (M11, M15.5); and what a correction is worth, J before and after (M12).
 
-use crate::correction::ChannelCorrection;
-use crate::fidelity::{Cost, CostAverage, Mismatch};
 use gdcm_model::dataset::{Pair, PairTable};
 
-use super::*;
+use super::{
+    HIGHEST_DEGREE, Schedule, ScheduleError, ScheduleKind, ScheduleSettings, ScheduledPoint,
+};
+use crate::correction::ChannelCorrection;
+use crate::fidelity::{Cost, CostAverage, Mismatch};
 
 /// Every form that a schedule can have: polynomials from the mean to the cubic, and the table.
 pub const SCHEDULE_KINDS: [ScheduleKind; 5] = [
@@ -435,7 +437,8 @@ mod tests {
 mod lead_tests {
     use super::super::tests::points;
     use super::*;
-    use crate::correction::{ChannelCorrection, ChannelLeads, Channels, LeadDesign, LeadSettings};
+    use crate::correction::leads::{ChannelLeads, LeadDesign, LeadSettings};
+    use crate::correction::{ChannelCorrection, Channels};
 
     #[test]
     fn a_mean_leaves_out_worse_than_it_fits_by_the_number_of_conditions() {

@@ -1,24 +1,31 @@
 //! One correction for all airspeeds, signed delays included, what speaks for it, and what it is worth (M11, M12, M15.5).
 
-mod assessment;
-mod regression;
-mod second_variable;
+pub mod assessment;
+pub mod regression;
+pub mod second_variable;
 
-use std::sync::Arc;
+pub use assessment::{
+    CostChange, FormComparison, FormFit, LeadDegreeFit, LeadFit, SCHEDULE_KINDS, assess,
+    corrected_cost,
+};
+pub use regression::{Airspeeds, Regression, airspeed_indicators};
+pub use second_variable::SecondVariable;
 
 use std::fmt;
+use std::sync::Arc;
 
 use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
-use crate::correction::{
-    Channel, ChannelCorrection, ChannelLeads, Channels, LeadDesign, LeadPrice,
-};
-use gdcm_model::dataset::{ConditionId, FlightState};
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::dataset::condition::FlightState;
 use gdcm_model::units::{s_to_ms, signed, told_apart};
 use gdcm_model::whole_number::{whole, whole_or_none};
 
-pub use self::{assessment::*, regression::*, second_variable::*};
+use crate::correction::leads::{ChannelLeads, LeadDesign};
+use crate::correction::{Channel, ChannelCorrection, Channels, LeadPrice};
+use regression::design;
+use second_variable::SecondTerm;
 
 /// Places between two airspeeds at which a schedule is looked at.
 const STEPS: u32 = 100;
@@ -572,7 +579,8 @@ impl Schedule {
         });
         // Where all gains are one, rounding is no overshoot.
         let mut farthest = 0.5 * (range[1] - range[0]) + 1e-9 * range[1];
-        let (mut found, clusters) = (None, self.airspeeds.clusters_kt());
+        let mut found = None;
+        let clusters = self.airspeeds.clusters_kt();
         for between in clusters.windows(2) {
             for step in 1..STEPS {
                 let airspeed_kt =
@@ -724,8 +732,9 @@ impl LeadSchedule {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use gdcm_model::dataset::Pair;
+
+    use super::*;
 
     fn correction(gain: f64) -> ChannelCorrection {
         ChannelCorrection {
@@ -909,7 +918,8 @@ mod tests {
 mod lead_schedule_tests {
     use super::tests::points;
     use super::*;
-    use crate::correction::{ChannelCorrection, LeadSettings};
+    use crate::correction::ChannelCorrection;
+    use crate::correction::leads::LeadSettings;
 
     fn corrections(taus_s: &[[f64; 2]]) -> Vec<ChannelCorrection> {
         let design = Arc::new(LeadDesign::new(

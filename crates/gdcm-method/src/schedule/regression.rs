@@ -2,9 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::{LeadSchedule, Schedule, ScheduleKind, ScheduledQuantity};
 use crate::correction::Channel;
-
-use super::*;
 
 /// The airspeeds of the scheduled conditions, centred and scaled: `v = (V - mean V) / (half the range of V)` (M11).
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +27,8 @@ impl Airspeeds {
     pub fn new(values_kt: Vec<f64>, tolerance_kt: f64) -> Option<Self> {
         let mut rising: Vec<usize> = (0..values_kt.len()).collect();
         rising.sort_by(|&a, &b| values_kt[a].total_cmp(&values_kt[b]));
-        let (min_kt, max_kt) = (values_kt[*rising.first()?], values_kt[*rising.last()?]);
+        let min_kt = values_kt[*rising.first()?];
+        let max_kt = values_kt[*rising.last()?];
         let near = |a: &usize, b: &usize| values_kt[*b] - values_kt[*a] <= tolerance_kt;
         let mut clusters: Vec<Vec<usize>> = rising.chunk_by(near).map(<[usize]>::to_vec).collect();
         clusters
@@ -273,7 +273,8 @@ impl Schedule {
                     .iter()
                     .map(|&power| power.to_owned())
                     .collect();
-                let (mean_kt, half_kt) = (self.airspeeds.mean_kt, self.airspeeds.half_range_kt);
+                let mean_kt = self.airspeeds.mean_kt;
+                let half_kt = self.airspeeds.half_range_kt;
                 (
                     columns,
                     format!("v = (V − {mean_kt:.2} kt) / {half_kt:.2} kt"),
@@ -331,8 +332,9 @@ impl Schedule {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use proptest::prelude::*;
+
+    use super::*;
 
     fn airspeeds() -> Airspeeds {
         Airspeeds::new(vec![45.0, 60.0, 60.0, 90.0, 140.0], 2.0).unwrap()

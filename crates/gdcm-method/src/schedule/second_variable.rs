@@ -2,14 +2,13 @@
 
 use std::fmt;
 
+use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use nalgebra::{DMatrix, DVector};
+use gdcm_model::dataset::condition::FlightState;
 
+use super::ScheduleError;
 use crate::correction::Channels;
-use gdcm_model::dataset::FlightState;
-
-use super::*;
 
 /// A column of which less than this is left beside the others is a combination of them.
 const DEPENDENT: f64 = 1e-9;

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
-use super::Measurement;
+use super::spread::Measurement;
 
 /// Source of the identification part of a bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -163,7 +163,8 @@ pub fn satterthwaite(parts: impl IntoIterator<Item = VarianceComponent>) -> Opti
         .collect();
     // Relative to the largest, because squares of small variances underflow.
     let greatest = parts.iter().map(|part| part.variance).fold(0.0, f64::max);
-    let (mut sum, mut spread) = (0.0, 0.0);
+    let mut sum = 0.0;
+    let mut spread = 0.0;
     for part in &parts {
         let share = part.variance / greatest;
         sum += share;

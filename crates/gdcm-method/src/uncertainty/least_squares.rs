@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{
+use super::bar::{
     Bar, VarianceComponent, chi_squared_quantile, fisher_upper, satterthwaite, student_quantile,
     student_two_sided,
 };
@@ -43,7 +43,8 @@ impl Design {
         let matrix = DMatrix::from_fn(rows.len(), columns, |row, column| rows[row][column]);
         let lengths: Vec<f64> = matrix.column_iter().map(|column| column.norm()).collect();
         let qr = matrix.qr();
-        let (q, r) = (qr.q(), qr.r());
+        let q = qr.q();
+        let r = qr.r();
         let depends =
             (0..columns).any(|column| r[(column, column)].abs() <= DEPENDENT * lengths[column]);
         (!depends).then_some(Self { q, r })
@@ -184,7 +185,8 @@ impl VarianceDecomposition {
             let of_bar = |(bar, hat): (&Bar, &f64)| Some(part(bar)?.scaled((1.0 - hat) / f));
             bars.iter().zip(&hats).filter_map(of_bar).collect()
         };
-        let (trim, identification) = (expected(|bar| bar.trim), expected(|bar| bar.identification));
+        let trim = expected(|bar| bar.trim);
+        let identification = expected(|bar| bar.identification);
         let sum = |parts: &[VarianceComponent]| parts.iter().map(|part| part.variance).sum::<f64>();
         Some(Self {
             freedom,
@@ -375,7 +377,8 @@ mod tests {
 
     #[test]
     fn hat_values_sum_to_the_number_of_columns_and_foresee_the_condition_left_out() {
-        let (places, figures) = ([0.0, 1.0, 2.0, 4.0], [1.0, 1.5, 3.0, 3.5]);
+        let places = [0.0, 1.0, 2.0, 4.0];
+        let figures = [1.0, 1.5, 3.0, 3.5];
         let design = Design::new(&line(&places)).unwrap();
         assert!((design.hat_values().iter().sum::<f64>() - 2.0).abs() < 1e-14);
         let without_last = Design::new(&line(&places[..3]))

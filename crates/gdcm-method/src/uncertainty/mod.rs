@@ -14,10 +14,12 @@
 //! 10  second variable: its coefficient beside the schedule's columns, and leave-one-out errors with and without it
 //! ```
 
-mod bar;
-mod least_squares;
-mod spread;
+pub mod bar;
+pub mod least_squares;
+pub mod spread;
 
-pub use bar::*;
-pub use least_squares::*;
-pub use spread::*;
+pub use bar::{Bar, Difference, IdentificationSource, VarianceComponent, holm, student_quantile};
+pub use least_squares::{
+    BandWidths, Design, ScheduleBand, SecondVariableDesign, VarianceDecomposition,
+};
+pub use spread::Scalar;

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::ops::Index;
 
-use super::{Bar, IdentificationSource, VarianceComponent, pooled};
-use crate::correction::Channel;
 use gdcm_model::dataset::Pair;
 use gdcm_model::response::median;
+
+use super::bar::{Bar, IdentificationSource, VarianceComponent, pooled};
+use crate::correction::Channel;
 
 /// Every scalar of a condition; `None` where it does not exist.
 pub type Figures = ScalarTable<Option<f64>>;
@@ -54,7 +55,8 @@ impl ConditionSpread {
                     .filter_map(|figures| Some((*figures)?[scalar]? - base))
                     .collect()
             };
-            let (by_trim, by_own) = (changed(trim), changed(own));
+            let by_trim = changed(trim);
+            let by_own = changed(own);
             let left_out = trim.len() + own.len() - by_trim.len() - by_own.len();
             Changes {
                 trim: VarianceComponent::of_changes(&by_trim),

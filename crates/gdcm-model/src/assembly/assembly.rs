@@ -1,11 +1,26 @@
 //! Models found in files, the rules about them, and what both make.
 
-use super::*;
-use crate::dataset::{
-    BandsDraft, Channel, ConditionDraft, ConditionId, Dataset, DatasetDraft, FlightState,
-    Provenance, ResponseArray, Timing,
-};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
 use nalgebra::DMatrix;
+
+use super::channel_match::{ChannelMatch, ChannelUse};
+use super::found_model::{
+    ChannelLabel, FoundModel, NameContradiction, Row, RowRole, proposed_rows,
+};
+use super::problem::{Problem, ProblemKind, find_scopes, problems_of_condition, row_problems};
+use super::response_name::KnownChannels;
+use super::rules::{ChannelRule, Rules};
+use crate::dataset::channel::ChannelSide;
+use crate::dataset::condition::{ConditionRecord, FlightState};
+use crate::dataset::model::{Origin, Provenance};
+use crate::dataset::state_space::Timing;
+use crate::dataset::unchecked_dataset::{
+    BandsDraft, ConditionDraft, DatasetDraft, ModelDraft, ResponseArray, ResponseDraft,
+};
+use crate::dataset::{Channel, ConditionId, Dataset};
+use crate::units::number;
 
 /// One model, and what it is to be.
 #[derive(Clone, Debug, PartialEq)]
@@ -825,6 +840,7 @@ fn picked(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assembly::found_model::{Facts, proposed_rules};
 
     fn used(index: usize, factor: f64) -> Option<ChannelUse> {
         Some(ChannelUse {
@@ -1053,7 +1069,8 @@ mod tests {
             .iter()
             .map(|part| (part.row.condition, part.row.role))
             .collect();
-        let (nominal, identified) = (Some(RowRole::Nominal), Some(RowRole::Identified));
+        let nominal = Some(RowRole::Nominal);
+        let identified = Some(RowRole::Identified);
         assert_eq!(
             rows,
             [

@@ -1,6 +1,12 @@
 //! Which channel of a file is which of the dataset, and what its numbers are multiplied by.
 
-use super::*;
+use super::declarations::DeclaredChannels;
+use super::found_model::ChannelLabel;
+use super::physical_unit::{Dimension, PhysicalUnit, conversion_factor};
+use super::problem::ProblemKind;
+use super::rules::ChannelRule;
+use crate::dataset::channel::ChannelSide;
+use crate::units::number;
 
 /// A channel of the file that becomes one of the dataset.
 #[derive(Clone, Debug, PartialEq)]
@@ -182,7 +188,8 @@ impl ChannelMatch {
             )
         };
         let Some(sign) = said.or_else(of_name) else {
-            let (channel, found) = (rule.name.clone(), name.unwrap_or_default().to_owned());
+            let channel = rule.name.clone();
+            let found = name.unwrap_or_default().to_owned();
             self.problems.push(ProblemKind::Sign { channel, found });
             return used;
         };
@@ -250,7 +257,8 @@ impl ChannelMatch {
             .find(|of| of.channel == rule.name && of.from.trim() == from.trim())
             .map(|of| of.factor);
         let Some(factor) = by_rule.or_else(|| conversion_factor(from, &rule.unit)) else {
-            let (channel, to) = (rule.name.clone(), rule.unit.clone());
+            let channel = rule.name.clone();
+            let to = rule.unit.clone();
             self.problems.push(ProblemKind::Conversion {
                 channel,
                 from: from.to_owned(),
@@ -446,7 +454,8 @@ pub fn sign_between(label: &str, channel: &str) -> Option<f64> {
     if label.trim() == channel.trim() {
         return Some(1.0);
     }
-    let (of_label, of_channel) = (SignedName::of(label), SignedName::of(channel));
+    let of_label = SignedName::of(label);
+    let of_channel = SignedName::of(channel);
     let minus = if of_label.minus == of_channel.minus {
         1.0
     } else {
@@ -512,7 +521,11 @@ pub fn time_name_rank(name: &str) -> Option<u8> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
+    use crate::assembly::declarations::ChannelDeclarations;
+    use crate::assembly::rules::UnitRule;
 
     /// The channels of one side under rules that declare nothing else.
     fn matched(

@@ -5,7 +5,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::{FoundModel, RowRole, Signs, UnitRule};
+use super::found_model::{FoundModel, RowRole};
+use super::rules::{Signs, UnitRule};
 
 /// Units, factors and signs of channels, by their names in the dataset. They go before what files say.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]

@@ -1,6 +1,20 @@
 //! A model as some file gave it, what it is to be in the dataset, and the rules proposed where none were made yet.
 
-use super::*;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::channel_match::{SignedName, same_channel};
+use super::physical_unit::conversion_factor;
+use super::problem::ProblemKind;
+use super::response_name::{KnownChannels, ResponseName};
+use super::rules::{ChannelRule, Rules, unread_offsets};
+use crate::dataset::channel::ChannelSide;
+use crate::dataset::condition::ConditionRecord;
+use crate::dataset::model::Origin;
+use crate::dataset::unchecked_dataset::{ModelDraft, ResponseDraft};
+use crate::units::number;
 
 /// What a file says of one channel.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -567,7 +581,8 @@ fn contradiction(
     of_name: Option<f64>,
     tolerance: f64,
 ) -> Option<NameContradiction> {
-    let (of_file, of_name) = (of_file?, of_name?);
+    let of_file = of_file?;
+    let of_name = of_name?;
     if (of_file - of_name).abs() <= tolerance {
         return None;
     }

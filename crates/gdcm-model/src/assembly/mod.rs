@@ -10,28 +10,17 @@
     clippy::module_inception,
     reason = "the folder is named for its noun, and so is the file that holds it"
 )]
-mod assembly;
-mod channel_match;
-mod declarations;
-mod found_model;
-mod physical_unit;
-mod problem;
-mod response_name;
-mod rules;
+pub mod assembly;
+pub mod channel_match;
+pub mod declarations;
+pub mod found_model;
+pub mod physical_unit;
+pub mod problem;
+pub mod response_name;
+pub mod rules;
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
-
-use serde::{Deserialize, Serialize};
-
-use crate::dataset::{ChannelSide, ConditionRecord, ModelDraft, Origin, ResponseDraft};
-use crate::units::number;
-
-pub use assembly::*;
-pub use channel_match::*;
-pub use declarations::*;
-pub use found_model::*;
-pub use physical_unit::*;
-pub use problem::*;
-pub use response_name::*;
-pub use rules::*;
+pub use assembly::Assembly;
+pub use declarations::FileScope;
+pub use found_model::{ChannelLabel, FoundModel, RowRole, proposed_rules};
+pub use physical_unit::PhysicalUnit;
+pub use rules::{ChannelRule, Headings, RowRule, Rules, UnitRule};

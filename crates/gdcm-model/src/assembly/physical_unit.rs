@@ -170,7 +170,8 @@ pub fn conversion_factor(from: &str, to: &str) -> Option<f64> {
     if from.trim() == to.trim() {
         return Some(1.0);
     }
-    let (from, to) = (PhysicalUnit::of(from)?, PhysicalUnit::of(to)?);
+    let from = PhysicalUnit::of(from)?;
+    let to = PhysicalUnit::of(to)?;
     let same = from.dimension == to.dimension;
     same.then(|| {
         if from.size == to.size {

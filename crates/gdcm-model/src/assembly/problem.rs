@@ -1,6 +1,15 @@
 //! What is still to be said before the files are a dataset.
 
-use super::*;
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::assembly::Part;
+use super::channel_match::ChannelMatch;
+use super::declarations::FileScope;
+use super::found_model::{Row, RowRole};
+use super::response_name::ResponseNameError;
+use super::rules::{ChannelRule, Rules};
+use crate::dataset::channel::ChannelSide;
+use crate::dataset::unchecked_dataset::ResponseDraft;
 
 /// What is missing or contradicts itself.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -503,7 +512,8 @@ fn name_problems(condition: i64, parts: &[(usize, &Part)], rules: &Rules) -> Vec
                         [end(of.omega.first()), end(of.omega.last())],
                     )
                 };
-                let (first, second) = (last.found.key(), part.found.key());
+                let first = last.found.key();
+                let second = part.found.key();
                 Some(ProblemKind::Grids {
                     first,
                     first_grid: grid(a),

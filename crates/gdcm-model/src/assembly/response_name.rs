@@ -2,8 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::channel_match::{FIELD_INPUTS, canonical, field_names};
-use super::{ChannelRule, Dimension, PhysicalUnit, SignedName, folded_name, same_channel};
+use super::channel_match::{
+    FIELD_INPUTS, SignedName, canonical, field_names, folded_name, same_channel,
+};
+use super::physical_unit::{Dimension, PhysicalUnit};
+use super::rules::ChannelRule;
 
 /// Most words of a text that are put together to the name of one channel.
 const LONGEST_NAME: usize = 4;
@@ -363,10 +366,8 @@ mod tests {
     }
 
     fn read(text: &str) -> Result<(String, String), ResponseNameError> {
-        let (inputs, outputs) = (
-            rules(&["LON", "LAT", "PED", "COL"]),
-            rules(&["P", "Q", "R", "NZ"]),
-        );
+        let inputs = rules(&["LON", "LAT", "PED", "COL"]);
+        let outputs = rules(&["P", "Q", "R", "NZ"]);
         let name = ResponseName::find(
             text,
             KnownChannels::Dataset {

@@ -1,11 +1,16 @@
 //! What the engineer says about the files of a folder: all that assembling depends on besides the files.
 
-use super::declarations::{declared_of, rename_key};
-use super::*;
+use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use regex::{Regex, RegexBuilder};
+use serde::{Deserialize, Serialize};
 
+use super::declarations::{
+    ChannelDeclarations, DeclaredChannels, FileScope, ScopedDeclarations, declared_of, rename_key,
+};
+use super::found_model::{FoundModel, Row, RowRole, standard_on_axis};
+use crate::dataset::channel::ChannelSide;
 use crate::message_text::{quoted, sanitized, shortened};
 use crate::whole_number::whole_or_none;
 
@@ -197,7 +202,7 @@ pub struct Rules {
     pub sample_time_s: Option<f64>,
     /// What the columns of tables hold, in place of their own headings: what a file of columns is read by.
     pub headings: Headings,
-    /// What is said of single models, by [`super::FoundModel::key`].
+    /// What is said of single models, by [`super::found_model::FoundModel::key`].
     pub rows: BTreeMap<String, RowRule>,
 }
 
@@ -250,7 +255,8 @@ impl Rules {
             }
         }
         let of_new = |other: &ChannelRule| {
-            let (other, name) = (other.name.clone(), name.clone());
+            let other = other.name.clone();
+            let name = name.clone();
             if side == ChannelSide::Input {
                 (other, name)
             } else {

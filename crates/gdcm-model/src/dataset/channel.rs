@@ -1,10 +1,12 @@
 //! Channels of the helicopter, one response of a dataset, and a table with one entry for each response.
 
-use crate::message_text::quoted;
-use crate::whole_number::whole;
-use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::{Index, IndexMut};
+
+use serde::{Deserialize, Serialize};
+
+use crate::message_text::quoted;
+use crate::whole_number::whole;
 
 /// An input (a control position) or an output (a measured motion), as the dataset names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -77,7 +79,8 @@ impl<T> PairTable<T> {
 
     /// Where the entry of a response stands.
     fn place(&self, pair: Pair) -> usize {
-        let (outputs, inputs) = (self.outputs, self.inputs);
+        let outputs = self.outputs;
+        let inputs = self.inputs;
         assert!(
             pair.output < outputs && pair.input < inputs,
             "{pair:?} is outside a {outputs} x {inputs} table"

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{BundleKind, ConditionId, Model};
+use super::channel::{BundleKind, ConditionId};
+use super::model::Model;
 use crate::units::number;
 
 /// What describes a flight condition, besides its models.
@@ -302,7 +303,8 @@ fn check_records(records: &[ConditionRecord]) -> Result<(), ConditionError> {
             });
         }
         let wrong = |field, expected, value| {
-            let (name, position) = (record.name.clone(), second + 1);
+            let name = record.name.clone();
+            let position = second + 1;
             Err(ConditionError::Record {
                 name,
                 position,

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::{
-    BundleKind, Channel, Condition, ConditionId, Dynamics, Model, ModelId, Pair, PairTable,
-};
+use super::channel::{BundleKind, Channel, ConditionId, ModelId, Pair, PairTable};
+use super::condition::Condition;
+use super::model::{Dynamics, Model};
 use crate::units::number;
 
 /// Channels, on-axis responses, the default band, and the flight conditions with their models (M1).
@@ -182,7 +182,8 @@ impl Dataset {
     pub fn with_condition(&self, condition: Condition) -> Result<Self, DatasetError> {
         let shape = (self.header.outputs.len(), self.header.inputs.len());
         check_conditions(std::slice::from_ref(&condition), shape)?;
-        let (id, condition) = (condition.id(), Arc::new(condition));
+        let id = condition.id();
+        let condition = Arc::new(condition);
         let replaced = |other: &Arc<Condition>| {
             if other.id() == id {
                 condition.clone()

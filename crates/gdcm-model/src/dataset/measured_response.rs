@@ -2,8 +2,8 @@
 
 use nalgebra::Complex;
 
+use super::channel::{Pair, PairTable};
 use super::limits::{AVERAGES, WINDOW_S};
-use super::{Pair, PairTable};
 use crate::units::number;
 
 /// A frequency response measured (or exported) at `N` frequencies, in place of a state-space model.
@@ -142,7 +142,8 @@ impl MeasuredResponse {
     ) -> Result<Self, MeasuredResponseError> {
         let is_band = |[low, high]: [f64; 2]| (0.0..=high).contains(&low) && high.is_finite();
         if let Some((pair, &band)) = bands.iter().find(|(_, band)| !is_band(**band)) {
-            let (output, input) = (pair.output + 1, pair.input + 1);
+            let output = pair.output + 1;
+            let input = pair.input + 1;
             return Err(MeasuredResponseError::ValidBand {
                 output,
                 input,
@@ -235,7 +236,8 @@ pub(super) fn check_values(
     accepts: impl Fn(f64) -> bool,
 ) -> Result<(), MeasuredResponseError> {
     for (pair, values) in table.iter() {
-        let (output, input) = (pair.output + 1, pair.input + 1);
+        let output = pair.output + 1;
+        let input = pair.input + 1;
         if values.len() != length {
             let found = values.len();
             return Err(MeasuredResponseError::Length {
@@ -247,7 +249,8 @@ pub(super) fn check_values(
             });
         }
         if let Some(index) = values.iter().position(|&value| !accepts(value)) {
-            let (entry, value) = (index + 1, values[index]);
+            let entry = index + 1;
+            let value = values[index];
             return Err(MeasuredResponseError::Value {
                 array,
                 output,

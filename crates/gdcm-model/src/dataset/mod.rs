@@ -1,24 +1,22 @@
 //! What the engineer loads: channels, models, flight conditions; checked once, at construction (M1).
 
-mod channel;
-mod condition;
+pub mod channel;
+pub mod condition;
 #[expect(
     clippy::module_inception,
     reason = "the room is named by what it holds"
 )]
-mod dataset;
-mod measured_response;
-mod model;
-mod state_space;
-mod unchecked_dataset;
+pub mod dataset;
+pub mod measured_response;
+pub mod model;
+pub mod state_space;
+pub mod unchecked_dataset;
 
-pub use channel::*;
-pub use condition::*;
-pub use dataset::*;
-pub use measured_response::*;
-pub use model::*;
-pub use state_space::*;
-pub use unchecked_dataset::*;
+pub use channel::{BundleKind, Channel, ConditionId, ModelId, Pair, PairTable};
+pub use condition::Condition;
+pub use dataset::{Band, Dataset};
+pub use model::{Dynamics, Model};
+pub use state_space::StateSpace;
 
 /// The most that is read of anything: what a mistaken or hostile file can make the program allocate, and how long it can work.
 pub mod limits {

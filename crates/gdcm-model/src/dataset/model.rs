@@ -6,10 +6,11 @@ use std::sync::Arc;
 use nalgebra::DMatrix;
 use sha2::{Digest, Sha256};
 
-use super::{
-    ChannelSide, MeasuredResponse, MeasuredResponseError, PairTable, StateSpace, Timing,
-    check_frequencies, check_values,
+use super::channel::{ChannelSide, PairTable};
+use super::measured_response::{
+    MeasuredResponse, MeasuredResponseError, check_frequencies, check_values,
 };
+use super::state_space::{StateSpace, Timing};
 
 /// How the response of a model is known.
 #[derive(Clone, Debug, PartialEq)]
@@ -337,7 +338,7 @@ mod tests {
         let bands =
             |sd_deg: &[f64]| ModelBands::new(vec![1.0, 2.0], table(&[0.0, 0.5]), table(sd_deg));
         assert_eq!(
-            bands(&[1.0, 2.0]).unwrap().sd_deg()[crate::dataset::Pair::new(0, 0)],
+            bands(&[1.0, 2.0]).unwrap().sd_deg()[super::super::channel::Pair::new(0, 0)],
             [1.0, 2.0]
         );
         let words = bands(&[1.0, -2.0]).unwrap_err().to_string();

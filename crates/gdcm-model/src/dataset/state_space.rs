@@ -57,7 +57,9 @@ impl StateSpace {
         c: DMatrix<f64>,
         d: DMatrix<f64>,
     ) -> Result<Self, StateSpaceError> {
-        let (n, p, m) = (a.nrows(), d.nrows(), d.ncols());
+        let n = a.nrows();
+        let p = d.nrows();
+        let m = d.ncols();
         for (matrix, of, expected) in [('A', &a, (n, n)), ('B', &b, (n, m)), ('C', &c, (p, n))] {
             if of.shape() != expected {
                 return Err(StateSpaceError::Shape {

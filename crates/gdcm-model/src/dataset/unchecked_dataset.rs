@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use nalgebra::{Complex, DMatrix};
 
+use super::channel::{BundleKind, Channel, Location, Pair, PairTable};
+use super::condition::{Condition, ConditionError, ConditionRecord, FlightState};
+use super::dataset::{Band, BandError, Dataset, DatasetError, DatasetHeader};
 use super::limits::{MOST_CHANNELS, MOST_CONDITIONS, MOST_MODELS, MOST_RECORDS};
-use super::{
-    Band, BandError, BundleKind, Channel, Condition, ConditionError, ConditionRecord, Dataset,
-    DatasetError, DatasetHeader, Dynamics, Estimate, FlightState, Location, MeasuredResponse,
-    MeasuredResponseError, Model, ModelBands, Origin, Pair, PairTable, Provenance, StateSpace,
-    StateSpaceError, Timing,
-};
+use super::measured_response::{Estimate, MeasuredResponse, MeasuredResponseError};
+use super::model::{Dynamics, Model, ModelBands, Origin, Provenance};
+use super::state_space::{StateSpace, StateSpaceError, Timing};
 
 /// A table of numbers for each response and frequency, `[output][input][frequency]`, the last index running fastest.
 #[derive(Clone, Debug, PartialEq)]
@@ -385,7 +385,8 @@ impl Dataset {
     /// # Errors
     /// What keeps the draft from being a model of the dataset, with its place in the model.
     pub fn identified_model(&self, draft: ModelDraft) -> Result<(Model, Vec<Warning>), DraftError> {
-        let (outputs, inputs) = (self.outputs().len(), self.inputs().len());
+        let outputs = self.outputs().len();
+        let inputs = self.inputs().len();
         let mut checker = Checker {
             outputs,
             inputs,
@@ -543,17 +544,16 @@ impl Checker {
         matrices: [Option<DMatrix<f64>>; 4],
         timing: Timing,
     ) -> Result<StateSpace, DraftError> {
-        let (p, m) = (self.outputs, self.inputs);
+        let p = self.outputs;
+        let m = self.inputs;
         let [a, b, c, d] = matrices;
         let given = |matrix: char, of: Option<DMatrix<f64>>| {
             of.ok_or_else(|| DraftError::new(place.clone(), DraftFault::MissingMatrix(matrix)))
         };
-        let (a, b, c, d) = (
-            given('A', a)?,
-            given('B', b)?,
-            given('C', c)?,
-            given('D', d)?,
-        );
+        let a = given('A', a)?;
+        let b = given('B', b)?;
+        let c = given('C', c)?;
+        let d = given('D', d)?;
         // Checked before the others are checked against it, so that they are not blamed for it.
         if d.shape() != (p, m) {
             let fault = DraftFault::Shape {
@@ -592,7 +592,8 @@ impl Checker {
                 (count, "frequencies"),
             )
         };
-        let (re, im) = (table(&draft.re, "re")?, table(&draft.im, "im")?);
+        let re = table(&draft.re, "re")?;
+        let im = table(&draft.im, "im")?;
         let coherence = draft
             .coherence
             .as_ref()
@@ -627,10 +628,8 @@ impl Checker {
                 (count, "frequencies"),
             )
         };
-        let (sd_db, sd_deg) = (
-            table(&draft.sd_db, "sd_db")?,
-            table(&draft.sd_deg, "sd_deg")?,
-        );
+        let sd_db = table(&draft.sd_db, "sd_db")?;
+        let sd_deg = table(&draft.sd_deg, "sd_deg")?;
         let bands = ModelBands::new(draft.omega.clone(), sd_db, sd_deg);
         bands.map_err(|error| DraftError::new(place.at("bands"), error))
     }

@@ -5,7 +5,8 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Complex;
 
-use crate::dataset::{MeasuredResponse, PairTable};
+use crate::dataset::PairTable;
+use crate::dataset::measured_response::MeasuredResponse;
 use crate::units::{db_to_ratio, ratio_to_db};
 
 /// The angle \[rad\] in (-pi, pi] that differs from `angle` by a multiple of 2 pi.
@@ -30,7 +31,8 @@ pub fn unwrap(angles: &mut [f64]) {
     let Some(&first) = angles.first() else {
         return;
     };
-    let (mut before, mut turns) = (first, 0.0);
+    let mut before = first;
+    let mut turns = 0.0;
     for angle in angles {
         let step = *angle - before;
         before = *angle;
@@ -164,7 +166,8 @@ impl Place {
         } else if after == 0 {
             None
         } else {
-            let (low, high) = (measured[after - 1], measured[after]);
+            let low = measured[after - 1];
+            let high = measured[after];
             Some(Self {
                 after,
                 fraction: (omega / low).ln() / (high / low).ln(),
@@ -176,7 +179,8 @@ impl Place {
         if self.fraction == 1.0 {
             return values[self.after];
         }
-        let (low, high) = (values[self.after - 1], values[self.after]);
+        let low = values[self.after - 1];
+        let high = values[self.after];
         low + self.fraction * (high - low)
     }
 
@@ -386,7 +390,8 @@ mod tests {
     #[test]
     fn a_measured_zero_is_zero_beside_it_too() {
         let table = |values: [f64; 4]| PairTable::filled(1, 1, values.to_vec());
-        let (re, im) = (table([2.0, 0.0, 0.0, 2.0]), table([0.0; 4]));
+        let re = table([2.0, 0.0, 0.0, 2.0]);
+        let im = table([0.0; 4]);
         let response = MeasuredResponse::new(vec![1.0, 2.0, 3.0, 4.0], &re, &im, None).unwrap();
         let found = interpolate(&response, &[1.0, 1.5, 2.0, 2.5, 3.5, 4.0]);
         let magnitudes: Vec<f64> = found[crate::dataset::Pair::new(0, 0)]

@@ -27,7 +27,8 @@
 
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
-use super::{LargeEntry, balance};
+use super::hessenberg_form::balance;
+use super::prepared_model::LargeEntry;
 use crate::dataset::{Dynamics, StateSpace};
 
 /// Movement of a pole for each unit of change of the balanced A from which its eigenvectors mean nothing: a double pole of one
@@ -114,11 +115,9 @@ pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
         return Err(ModesError::TooLarge(entry));
     }
     let plane = SPlane::of(model);
-    let (mut a, mut b, mut c) = (
-        plane.matrix(model.a()),
-        model.b().clone(),
-        model.c().clone(),
-    );
+    let mut a = plane.matrix(model.a());
+    let mut b = model.b().clone();
+    let mut c = model.c().clone();
     balance(&mut a, &mut b, &mut c);
     let form = SchurForm::of(&a).ok_or(ModesError::NotConverged)?;
     let rounding = 4.0 * f64::EPSILON * a.nrows() as f64 * a.norm();
@@ -182,7 +181,8 @@ struct Eigenvectors {
 impl Eigenvectors {
     /// Those of the eigenvalue at this place of the diagonal.
     fn of(form: &SchurForm, index: usize) -> Result<Self, NearDefective> {
-        let (x, y) = (form.right(index), form.left(index));
+        let x = form.right(index);
+        let y = form.left(index);
         let movement = x.norm() * y.norm();
         // Not a number, too, where they overflow.
         if !movement.le(&NEAR_DEFECTIVE) {
@@ -349,13 +349,17 @@ impl SchurForm {
 
     /// Makes the block of the rows `first` and `first + 1` triangular.
     fn split(&mut self, first: usize, block: [[f64; 2]; 2]) {
-        let (second, size) = (first + 1, self.t.nrows());
+        let second = first + 1;
+        let size = self.t.nrows();
         let eigenvalues = eigenvalues_of_block(block);
-        let (mu, below) = (eigenvalues[0] - block[1][1], block[1][0]);
+        let mu = eigenvalues[0] - block[1][1];
+        let below = block[1][0];
         let norm = mu.norm().hypot(below);
-        let (c, s) = (mu / norm, below / norm);
+        let c = mu / norm;
+        let s = below / norm;
         for column in first..size {
-            let (upper, lower) = (self.t[(first, column)], self.t[(second, column)]);
+            let upper = self.t[(first, column)];
+            let lower = self.t[(second, column)];
             self.t[(first, column)] = c.conj() * upper + lower * s;
             self.t[(second, column)] = c * lower - upper * s;
         }
@@ -376,14 +380,16 @@ fn rotate_columns(
     first: usize,
     (c, s): (Complex<f64>, f64),
 ) {
-    let (left, right) = (matrix[(row, first)], matrix[(row, first + 1)]);
+    let left = matrix[(row, first)];
+    let right = matrix[(row, first + 1)];
     matrix[(row, first)] = left * c + right * s;
     matrix[(row, first + 1)] = right * c.conj() - left * s;
 }
 
 /// The eigenvalues of two rows `[p q; r s]`, the one with a positive imaginary part first.
 fn eigenvalues_of_block([[p, q], [r, s]]: [[f64; 2]; 2]) -> [Complex<f64>; 2] {
-    let (mean, half) = (0.5 * (p + s), 0.5 * (p - s));
+    let mean = 0.5 * (p + s);
+    let half = 0.5 * (p - s);
     let squared = half * half + q * r;
     if squared < 0.0 {
         let imaginary = (-squared).sqrt();
@@ -436,23 +442,28 @@ impl SchurForm {
     /// Exchanges the eigenvalues at `upper` and `upper + 1` by one rotation of these two rows and columns.
     fn exchange(&mut self, upper: usize) {
         let lower = upper + 1;
-        let (first, second) = (self.t[(upper, upper)], self.t[(lower, lower)]);
+        let first = self.t[(upper, upper)];
+        let second = self.t[(lower, lower)];
         // The eigenvector of `second` in these two rows.
-        let (x, y) = (self.t[(upper, lower)], second - first);
+        let x = self.t[(upper, lower)];
+        let y = second - first;
         let norm = x.norm().hypot(y.norm());
         if norm == 0.0 {
             return;
         }
-        let (c, s) = (x / norm, y / norm);
+        let c = x / norm;
+        let s = y / norm;
         for matrix in [&mut self.t, &mut self.q] {
             for row in 0..matrix.nrows() {
-                let (left, right) = (matrix[(row, upper)], matrix[(row, lower)]);
+                let left = matrix[(row, upper)];
+                let right = matrix[(row, lower)];
                 matrix[(row, upper)] = left * c + right * s;
                 matrix[(row, lower)] = right * c.conj() - left * s.conj();
             }
         }
         for column in 0..self.t.ncols() {
-            let (above, below) = (self.t[(upper, column)], self.t[(lower, column)]);
+            let above = self.t[(upper, column)];
+            let below = self.t[(lower, column)];
             self.t[(upper, column)] = above * c.conj() + below * s.conj();
             self.t[(lower, column)] = below * c - above * s;
         }
@@ -472,10 +483,11 @@ pub fn poles(model: &StateSpace) -> Option<Vec<Complex<f64>>> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::dataset::Timing;
     use nalgebra::dmatrix;
     use proptest::prelude::*;
+
+    use super::*;
+    use crate::dataset::state_space::Timing;
 
     fn model(a: DMatrix<f64>) -> StateSpace {
         let n = a.nrows();
@@ -592,7 +604,8 @@ mod tests {
             let a = DMatrix::from_vec(5, 5, entries);
             // Powers of two: nothing is rounded.
             let scaled = DMatrix::from_fn(5, 5, |row, column| a[(row, column)] * 2.0_f64.powi(exponents[row] - exponents[column]));
-            let (plain, scaled) = (modes(&model(a.clone())).unwrap(), modes(&model(scaled)).unwrap());
+            let plain = modes(&model(a.clone())).unwrap();
+            let scaled = modes(&model(scaled)).unwrap();
             for mode in &plain {
                 let Ok(shares) = &mode.participation else { continue };
                 let near = |other: &&Mode| (other.pole - mode.pole).norm();
@@ -640,8 +653,9 @@ mod s_plane_tests {
 
 #[cfg(test)]
 mod schur_form_tests {
-    use super::*;
     use nalgebra::dmatrix;
+
+    use super::*;
 
     fn check(a: &DMatrix<f64>) {
         let form = SchurForm::of(a).unwrap();

@@ -19,9 +19,9 @@
 use nalgebra::Complex;
 use pulp::{Arch, Simd, WithSimd};
 
-use super::HessenbergForm;
+use super::frequency_response::FrequencyResponse;
+use super::hessenberg_form::HessenbergForm;
 use crate::dataset::{PairTable, StateSpace};
-use crate::response::FrequencyResponse;
 
 /// `H(j omega) = C (j omega I - A)^-1 B + D` at each `omega` \[rad/s\]: a p x m table of `N` values.
 ///
@@ -33,10 +33,10 @@ use crate::response::FrequencyResponse;
 /// only. It has the same bits wherever fused multiply-adds are (AVX2, AVX-512, NEON). Its error is that of a model whose
 /// entries are changed by less than 1e-10 of the largest of the balanced A, in practice by some 1e-13, so the relative error
 /// grows as `j omega` comes close to a pole; at a pole, where elimination meets a zero, the values are not finite. Entries
-/// beyond [`super::LargeEntry`]'s limit may overflow.
+/// beyond [`super::prepared_model::LargeEntry`]'s limit may overflow.
 ///
-/// The matrices alone count, as those of continuous time: for a model with [`crate::dataset::Timing`] see
-/// [`super::PreparedModel`].
+/// The matrices alone count, as those of continuous time: for a model with [`crate::dataset::state_space::Timing`] see
+/// [`super::prepared_model::PreparedModel`].
 pub fn evaluate(model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
     evaluate_on(Arch::new(), model, omega)
 }
@@ -90,7 +90,8 @@ impl WithSimd for Elimination<'_> {
             });
         }
         for at in self.at.chunks(GROUP) {
-            let (mut re, mut im) = ([0.0; GROUP], [0.0; GROUP]);
+            let mut re = [0.0; GROUP];
+            let mut im = [0.0; GROUP];
             for lane in 0..GROUP {
                 // If there are fewer, the last is in the other lanes.
                 let at = at[lane.min(at.len() - 1)] * form.frequency_scale;
@@ -101,7 +102,8 @@ impl WithSimd for Elimination<'_> {
                     (at.re, at.im)
                 };
             }
-            let (re, im) = (S::as_simd_f64s(&re).0, S::as_simd_f64s(&im).0);
+            let re = S::as_simd_f64s(&re).0;
+            let im = S::as_simd_f64s(&im).0;
             let vectors = &mut vectors[..at.len().div_ceil(S::F64_LANES)];
             for (rows, (re, im)) in vectors.iter_mut().zip(re.iter().zip(im)) {
                 rows.start(simd, form, ComplexLanes { re: *re, im: *im });
@@ -178,12 +180,14 @@ impl<S: Simd> ComplexRows<S> {
     /// Clears a column, with an interchange of active and next row where the one is larger.
     #[inline(always)]
     fn clear(&mut self, simd: S, form: &HessenbergForm, column: usize, interchange: bool) {
-        let (next, subdiagonal) = (form.next_row(column), &form.subdiagonals[column]);
+        let next = form.next_row(column);
+        let subdiagonal = &form.subdiagonals[column];
         let shift = self
             .shift
             .scaled(simd, simd.splat_f64s(subdiagonal.reciprocal));
         let (active, others) = self.entries.split_at_mut(form.width());
-        let (pivot, active) = (active[column], &mut active[column + 1..]);
+        let pivot = active[column];
+        let active = &mut active[column + 1..];
         if !interchange {
             subtract_next(simd, active, pivot, next, shift);
             for row in others.chunks_exact_mut(form.width()) {
@@ -299,7 +303,8 @@ impl Subdiagonal {
             };
         }
         let largest = PIVOT_THRESHOLD / order as f64 * entry;
-        let (reciprocal, inverse_square_threshold) = (1.0 / entry, 1.0 / (largest * largest));
+        let reciprocal = 1.0 / entry;
+        let inverse_square_threshold = 1.0 / (largest * largest);
         Self {
             entry,
             divisor: entry,
@@ -577,11 +582,9 @@ mod tests {
 
     #[test]
     fn units_of_the_states_do_not_matter() {
-        let (a, b, c) = (
-            dmatrix![-1.0, 2.0; -3.0, -0.5],
-            dmatrix![1.0; 0.5],
-            dmatrix![1.0, -2.0],
-        );
+        let a = dmatrix![-1.0, 2.0; -3.0, -0.5];
+        let b = dmatrix![1.0; 0.5];
+        let c = dmatrix![1.0, -2.0];
         let scale = DMatrix::from_diagonal(&nalgebra::dvector![1e-9, 1e9]);
         let inverse = DMatrix::from_diagonal(&nalgebra::dvector![1e9, 1e-9]);
         let plain = only(evaluate(
@@ -631,11 +634,9 @@ mod tests {
 
     fn model(order: usize, outputs: usize, inputs: usize) -> StateSpace {
         let a = matrix(order, order, 0.3) - DMatrix::identity(order, order) * 2.0;
-        let (b, c, d) = (
-            matrix(order, inputs, 1.1),
-            matrix(outputs, order, 2.3),
-            matrix(outputs, inputs, 3.7),
-        );
+        let b = matrix(order, inputs, 1.1);
+        let c = matrix(outputs, order, 2.3);
+        let d = matrix(outputs, inputs, 3.7);
         StateSpace::new(a, b, c, d).unwrap()
     }
 
@@ -662,7 +663,8 @@ mod tests {
                 .flat_map(|(_, values)| values.clone())
                 .collect::<Vec<_>>()
         };
-        let (found, expected) = (all(found), all(expected));
+        let found = all(found);
+        let expected = all(expected);
         let largest = expected
             .iter()
             .map(|value| value.norm())
@@ -681,7 +683,8 @@ mod tests {
     #[test]
     fn vectors_of_every_length_agree_with_scalars_at_every_remainder_length() {
         for count in 0..=17 {
-            let (model, omega) = (model(9, 3, 3), wide(count));
+            let model = model(9, 3, 3);
+            let omega = wide(count);
             let scalar = on(Scalar::new(), &model, &omega);
             for vectors in on_vectors(&model, &omega) {
                 // Two backward stable solutions of order 9: rounding errors of at most 9 tau times 1e-16 each.
@@ -705,7 +708,8 @@ mod tests {
             (8, 7, 6),
             (7, 9, 9),
         ] {
-            let (model, omega) = (model(order, outputs, inputs), wide(61));
+            let model = model(order, outputs, inputs);
+            let omega = wide(61);
             let all = on_vectors(&model, &omega);
             assert!(
                 all.windows(2).all(|pair| pair[0] == pair[1]),
@@ -716,7 +720,8 @@ mod tests {
 
     #[test]
     fn values_depend_on_the_frequencies_of_their_group_only() {
-        let (model, omega) = (model(14, 6, 4), wide(45));
+        let model = model(14, 6, 4);
+        let omega = wide(45);
         let together = on_vectors(&model, &omega);
         for (k, omega) in omega.chunks(GROUP).enumerate() {
             let alone = on_vectors(&model, omega);
@@ -756,7 +761,8 @@ mod tests {
     #[test]
     fn poles_on_the_grid_are_survived_by_models_of_any_order() {
         for order in 1..=9 {
-            let (b, c) = (matrix(order, 2, 1.1), matrix(3, order, 2.3));
+            let b = matrix(order, 2, 1.1);
+            let c = matrix(3, order, 2.3);
             // All poles in zero; then pairs at 2 rad/s, with one in zero left over.
             let turning = DMatrix::from_fn(order, order, |row, column| match (row % 2, column) {
                 (0, column) if column == row + 1 => 2.0,
@@ -820,9 +826,12 @@ mod tests {
     #[test]
     fn a_model_of_two_separate_parts_is_the_sum_of_both() {
         let a = dmatrix![-1.0, 2.0, 0.0, 0.0; -3.0, -0.5, 0.0, 0.0; 0.0, 0.0, -0.2, 4.0; 0.0, 0.0, -5.0, -0.3];
-        let (b, c) = (dmatrix![1.0; 0.5; -1.0; 2.0], dmatrix![1.0, -2.0, 0.5, 3.0]);
+        let b = dmatrix![1.0; 0.5; -1.0; 2.0];
+        let c = dmatrix![1.0, -2.0, 0.5, 3.0];
         let part = |at: usize| {
-            let (a, b, c) = (a.view((at, at), (2, 2)), b.rows(at, 2), c.columns(at, 2));
+            let a = a.view((at, at), (2, 2));
+            let b = b.rows(at, 2);
+            let c = c.columns(at, 2);
             StateSpace::new(
                 a.into_owned(),
                 b.into_owned(),
@@ -833,10 +842,8 @@ mod tests {
         };
         let whole = StateSpace::new(a.clone(), b.clone(), c.clone(), dmatrix![0.0]).unwrap();
         let omega = wide(11);
-        let (first, second) = (
-            on(Scalar::new(), &part(0), &omega),
-            on(Scalar::new(), &part(2), &omega),
-        );
+        let first = on(Scalar::new(), &part(0), &omega);
+        let second = on(Scalar::new(), &part(2), &omega);
         let sum = first.map(|pair, values| {
             values
                 .iter()

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use nalgebra::Complex;
 
-use super::{GainDelay, PreparedModel, nearest_turn_offset, unwrap, wrap};
+use super::curve_values::{nearest_turn_offset, unwrap, wrap};
+use super::lead_filter::GainDelay;
+use super::prepared_model::PreparedModel;
 use crate::dataset::{Band, Dynamics, Pair, PairTable};
 use crate::units::ratio_to_db;
 
@@ -110,7 +112,9 @@ impl FrequencyGrid {
 /// `omega_k = exp(ln low + (k / (N - 1)) (ln high - ln low))` \[rad/s\], k = 0 ... N - 1, for `N = max(count, 2)`; the ends as given.
 #[must_use]
 pub fn log_spaced(lowest: f64, highest: f64, count: usize) -> Vec<f64> {
-    let (low, high, last) = (lowest.ln(), highest.ln(), count.max(2) - 1);
+    let low = lowest.ln();
+    let high = highest.ln();
+    let last = count.max(2) - 1;
     let mut omega: Vec<f64> = (0..=last)
         .map(|k| (low + (high - low) * k as f64 / last as f64).exp())
         .collect();

@@ -6,7 +6,7 @@ use std::ops::Range;
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
 
-use super::Subdiagonal;
+use super::elimination::Subdiagonal;
 use crate::dataset::{Pair, StateSpace};
 
 /// Least `alpha`, 2^-450 rad/s: the poles of a slower model are all in zero, as seen from any frequency in use.
@@ -74,14 +74,17 @@ impl HessenbergForm {
         a *= frequency_scale;
         b *= input_scale;
         // One after the other, the larger first: what both leave in range must not underflow between them.
-        let (one, other) = (frequency_scale, 1.0 / input_scale);
+        let one = frequency_scale;
+        let other = 1.0 / input_scale;
         c *= one.max(other);
         c *= one.min(other);
         if first_input > 0 {
             b.swap_columns(0, first_input);
             d.swap_columns(0, first_input);
         }
-        let (order, inputs, outputs) = (a.nrows(), b.ncols(), c.nrows());
+        let order = a.nrows();
+        let inputs = b.ncols();
+        let outputs = c.nrows();
         let mut rows = DMatrix::zeros(order + inputs, order + outputs);
         for (matrix, row, column) in [(a, 0, 0), (b, 0, order), (c, order, 0), (d, order, order)] {
             rows.view_mut((column, row), (matrix.ncols(), matrix.nrows()))
@@ -240,7 +243,8 @@ fn reflect(rows: &mut DMatrix<f64>, states: Range<usize>, v: &[f64], beta: f64) 
     let width = rows.nrows();
     // What stands before is done; v is zero there. Partial sums begin at whole blocks.
     let from = states.start / LANES * LANES;
-    let (mut y, mut w) = (vec![0.0; rows.ncols()], vec![0.0; width]);
+    let mut y = vec![0.0; rows.ncols()];
+    let mut w = vec![0.0; width];
     for (y, row) in y.iter_mut().zip(rows.as_slice().chunks_exact(width)) {
         *y = beta * dot(&row[from..], &v[from..]);
     }
@@ -267,8 +271,8 @@ fn reflect(rows: &mut DMatrix<f64>, states: Range<usize>, v: &[f64], beta: f64) 
 fn dot(left: &[f64], right: &[f64]) -> f64 {
     let mut sums = [0.0_f64; LANES];
     let count = left.len().min(right.len());
-    let ((left, left_rest), (right, right_rest)) =
-        (left[..count].as_chunks(), right[..count].as_chunks());
+    let (left, left_rest) = left[..count].as_chunks();
+    let (right, right_rest) = right[..count].as_chunks();
     for (left, right) in left.iter().zip(right) {
         add_products::<LANES>(&mut sums, left, right);
     }
@@ -332,9 +336,12 @@ pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatri
 
 /// The power of two that brings a column and its row closest together; `None` where that gains less than 5 % of their squares.
 fn factor(a: &DMatrix<f64>, state: usize) -> Option<f64> {
-    let (column, row) = (a.column(state).norm_squared(), a.row(state).norm_squared());
+    let column = a.column(state).norm_squared();
+    let row = a.row(state).norm_squared();
     let whole = column + row;
-    let (mut column, mut row, mut factor) = (column.sqrt(), row.sqrt(), 1.0);
+    let mut column = column.sqrt();
+    let mut row = row.sqrt();
+    let mut factor = 1.0;
     if column == 0.0 || row == 0.0 {
         return None;
     }
@@ -369,7 +376,9 @@ mod tests {
     #[test]
     fn the_inputs_or_outputs_whichever_are_fewer_are_solved_for() {
         let model = |p, m| {
-            let (a, b, c) = (dmatrix![-1.0], DMatrix::zeros(1, m), DMatrix::zeros(p, 1));
+            let a = dmatrix![-1.0];
+            let b = DMatrix::zeros(1, m);
+            let c = DMatrix::zeros(p, 1);
             form(&StateSpace::new(a, b, c, DMatrix::zeros(p, m)).unwrap())
         };
         assert_eq!((model(6, 4).inputs, model(6, 4).dual), (4, false));
@@ -466,7 +475,8 @@ mod tests {
 
     #[test]
     fn from_inputs_to_outputs_nothing_changes() {
-        let (before, after) = (rows(), reduced(Arch::new()));
+        let before = rows();
+        let after = reduced(Arch::new());
         for (power, output, input) in [(0, 0, 0), (1, 2, 1), (5, 1, 0)] {
             let [before, after] =
                 [&before, &after].map(|rows| markov_parameter(rows, power, output, input));
@@ -493,11 +503,10 @@ mod tests {
         let a = DMatrix::from_fn(7, 7, |row, column| {
             (1.0 + 7.3 * row as f64 + 2.9 * column as f64).sin() * 10_f64.powi(3 * row as i32)
         });
-        let (mut ours, mut theirs) = (a.clone(), a);
-        let (mut b, mut c) = (
-            DMatrix::from_element(7, 1, 1.0),
-            DMatrix::from_element(1, 7, 1.0),
-        );
+        let mut ours = a.clone();
+        let mut theirs = a;
+        let mut b = DMatrix::from_element(7, 1, 1.0);
+        let mut c = DMatrix::from_element(1, 7, 1.0);
         balance(&mut ours, &mut b, &mut c);
         let scales = balance_parlett_reinsch(&mut theirs);
         assert_eq!(ours, theirs);
@@ -513,10 +522,8 @@ mod tests {
             -1 => 1.0,
             _ => 0.0,
         });
-        let (mut b, mut c) = (
-            DMatrix::from_element(60, 1, 1.0),
-            DMatrix::from_element(1, 60, 1.0),
-        );
+        let mut b = DMatrix::from_element(60, 1, 1.0);
+        let mut c = DMatrix::from_element(1, 60, 1.0);
         balance(&mut a, &mut b, &mut c);
         assert!(
             b.iter()
@@ -527,11 +534,9 @@ mod tests {
 
     #[test]
     fn a_state_that_nothing_leads_to_is_left_as_it_is() {
-        let (mut a, mut b, mut c) = (
-            dmatrix![-1.0, 0.0; 1e9, 0.0],
-            dmatrix![1.0; 1.0],
-            dmatrix![1.0, 1.0],
-        );
+        let mut a = dmatrix![-1.0, 0.0; 1e9, 0.0];
+        let mut b = dmatrix![1.0; 1.0];
+        let mut c = dmatrix![1.0, 1.0];
         balance(&mut a, &mut b, &mut c);
         assert!(a[(1, 0)] != 0.0 && b[1] == 1.0, "the second column is zero");
     }

@@ -3,9 +3,8 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
-use serde::{Deserialize, Serialize};
-
 use nalgebra::Complex;
+use serde::{Deserialize, Serialize};
 
 use crate::units::{db_to_ratio, ratio_to_db};
 
@@ -106,7 +105,8 @@ impl LeadFilter {
     /// `arg L(j omega)` \[rad\], continuous in `omega`, from 0 to less than pi: that of the numerator times the conjugate of the
     /// denominator, in which no near equals are taken from one another.
     pub fn phase(self, omega: f64) -> f64 {
-        let (x, y) = (self.zero_s * omega, self.lag_s * omega);
+        let x = self.zero_s * omega;
+        let y = self.lag_s * omega;
         match self.order {
             LeadOrder::First => ((x - y) / (1.0 + x * y)).atan(),
             LeadOrder::Second => (SQRT_2 * (x - y) * (1.0 + x * y))
@@ -198,8 +198,9 @@ impl GainDelay {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use proptest::prelude::*;
+
+    use super::*;
 
     #[test]
     fn a_lead_of_nothing_leaves_everything() {
@@ -233,8 +234,7 @@ mod tests {
 
 #[cfg(test)]
 mod gain_delay_tests {
-    use super::*;
-    use crate::response::LeadOrder;
+    use super::{LeadOrder, *};
 
     #[test]
     fn a_correction_multiplies_the_magnitude_and_delays_the_phase() {

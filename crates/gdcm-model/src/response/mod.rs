@@ -1,21 +1,18 @@
 //! Frequency responses: the grid, the evaluation of a model on it, magnitude and phase (M2, M3); poles and zeros of a model.
 
-mod curve_values;
-mod eigenvalues;
-mod elimination;
-mod frequency_response;
+pub mod curve_values;
+pub mod eigenvalues;
+pub mod elimination;
+pub mod frequency_response;
 mod hessenberg_form;
-mod lead_filter;
-mod pole_estimate;
-mod prepared_model;
-mod zeros;
+pub mod lead_filter;
+pub mod pole_estimate;
+pub mod prepared_model;
+pub mod zeros;
 
-pub use curve_values::*;
-pub use eigenvalues::*;
-pub use elimination::*;
-pub use frequency_response::*;
-use hessenberg_form::*;
-pub use lead_filter::*;
-pub use pole_estimate::*;
-pub use prepared_model::*;
-pub use zeros::*;
+pub use curve_values::{median, wrap};
+pub use eigenvalues::{Mode, modes};
+pub use elimination::evaluate;
+pub use frequency_response::{FrequencyGrid, FrequencyResponse, PolarResponse};
+pub use lead_filter::{GainDelay, LeadFilter, LeadOrder};
+pub use prepared_model::PreparedModel;

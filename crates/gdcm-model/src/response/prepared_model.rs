@@ -13,8 +13,13 @@ use std::f64::consts::PI;
 use nalgebra::{Complex, DMatrix};
 use pulp::Arch;
 
-use super::{Elimination, FrequencyGrid, FrequencyResponse, HessenbergForm, SPlane, interpolate};
-use crate::dataset::{Dynamics, MeasuredResponse, Pair, PairTable, StateSpace};
+use super::curve_values::interpolate;
+use super::eigenvalues::SPlane;
+use super::elimination::Elimination;
+use super::frequency_response::{FrequencyGrid, FrequencyResponse};
+use super::hessenberg_form::HessenbergForm;
+use crate::dataset::measured_response::MeasuredResponse;
+use crate::dataset::{Dynamics, Pair, PairTable, StateSpace};
 
 /// What of a response does not depend on the grid: made once for each model, it serves every band and every drawing.
 ///
@@ -254,9 +259,11 @@ fn spread(a: &DMatrix<f64>, mut reached: Vec<bool>) -> Vec<bool> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::dataset::{Band, Pair, Timing};
     use nalgebra::{DMatrix, dmatrix};
+
+    use super::*;
+    use crate::dataset::state_space::Timing;
+    use crate::dataset::{Band, Pair};
 
     fn oscillator() -> StateSpace {
         StateSpace::new(
@@ -281,15 +288,14 @@ mod tests {
 
     /// `A_d = e^(A T)`, `B_d = integral of e^(A t) B`: a hold of the inputs between samples.
     fn held(model: &StateSpace, sample_time_s: f64) -> StateSpace {
-        let (n, m) = (model.order(), model.inputs());
+        let n = model.order();
+        let m = model.inputs();
         let mut joined = DMatrix::zeros(n + m, n + m);
         joined.view_mut((0, 0), (n, n)).copy_from(model.a());
         joined.view_mut((0, n), (n, m)).copy_from(model.b());
         let powers = (joined * sample_time_s).exp();
-        let (a, b) = (
-            powers.view((0, 0), (n, n)).into_owned(),
-            powers.view((0, n), (n, m)).into_owned(),
-        );
+        let a = powers.view((0, 0), (n, n)).into_owned();
+        let b = powers.view((0, n), (n, m)).into_owned();
         let timing = Timing {
             sample_time_s: Some(sample_time_s),
             ..Timing::default()
@@ -302,7 +308,9 @@ mod tests {
 
     #[test]
     fn a_model_sampled_fast_has_the_response_of_continuous_time_and_half_a_sample_of_lag() {
-        let (sample_time_s, expected, grid) = (1e-5, curve(oscillator()), grid());
+        let sample_time_s = 1e-5;
+        let expected = curve(oscillator());
+        let grid = grid();
         let found = curve(held(&oscillator(), sample_time_s));
         for ((value, expected), omega) in found.iter().zip(&expected).zip(grid.omega()) {
             let lag = Complex::from_polar(1.0, -0.5 * omega * sample_time_s);
@@ -342,9 +350,10 @@ mod tests {
 
 #[cfg(test)]
 mod discrete_form_tests {
+    use nalgebra::dmatrix;
+
     use super::*;
     use crate::dataset::Pair;
-    use nalgebra::dmatrix;
 
     fn noise(seed: f64) -> impl Fn(usize, usize) -> f64 {
         move |row, column| {
@@ -389,16 +398,15 @@ mod discrete_form_tests {
     fn a_dense_solution_gives_the_same_to_1e_minus_9_of_the_largest() {
         for order in [1, 2, 7, 30] {
             let a = DMatrix::from_fn(order, order, noise(1.0)) * (0.9 / (order as f64).sqrt());
-            let (b, c) = (
-                DMatrix::from_fn(order, 3, noise(2.0)),
-                DMatrix::from_fn(2, order, noise(3.0)),
-            );
+            let b = DMatrix::from_fn(order, 3, noise(2.0));
+            let c = DMatrix::from_fn(2, order, noise(3.0));
             let d = DMatrix::from_fn(2, 3, noise(4.0));
             let model = StateSpace::new(a.clone(), b.clone(), c.clone(), d.clone()).unwrap();
             let omega: Vec<f64> = (0..50).map(|k| 0.01 * 1.15_f64.powi(k)).collect();
             let response = discrete(&model, 0.02, &omega);
             let complex = |matrix: &DMatrix<f64>| matrix.map(Complex::from);
-            let (mut largest, mut error) = (0.0_f64, 0.0_f64);
+            let mut largest = 0.0_f64;
+            let mut error = 0.0_f64;
             for (k, omega) in omega.iter().enumerate() {
                 let z = Complex::from_polar(1.0, 0.02 * omega);
                 let resolvent = DMatrix::from_diagonal_element(order, order, z) - complex(&a);
@@ -456,16 +464,15 @@ mod discrete_form_tests {
 
 #[cfg(test)]
 mod structure_tests {
-    use super::*;
     use nalgebra::dmatrix;
+
+    use super::*;
 
     #[test]
     fn two_separate_lags_do_not_answer_to_each_other() {
-        let (a, b, c) = (
-            dmatrix![-1.0, 0.0; 0.0, -2.0],
-            dmatrix![1.0, 0.0; 0.0, 1.0],
-            dmatrix![1.0, 0.0; 0.0, 1.0],
-        );
+        let a = dmatrix![-1.0, 0.0; 0.0, -2.0];
+        let b = dmatrix![1.0, 0.0; 0.0, 1.0];
+        let c = dmatrix![1.0, 0.0; 0.0, 1.0];
         let model = StateSpace::new(a, b, c, dmatrix![0.0, 0.0; 0.0, 0.0]).unwrap();
         let table = connected(&model);
         assert_eq!(
@@ -476,11 +483,9 @@ mod structure_tests {
 
     #[test]
     fn a_chain_of_states_or_the_feed_through_connects() {
-        let (a, b, c) = (
-            dmatrix![-1.0, 0.0; 3.0, -2.0],
-            dmatrix![1.0, 0.0; 0.0, 0.0],
-            dmatrix![0.0, 1.0],
-        );
+        let a = dmatrix![-1.0, 0.0; 3.0, -2.0];
+        let b = dmatrix![1.0, 0.0; 0.0, 0.0];
+        let c = dmatrix![0.0, 1.0];
         let model = StateSpace::new(a, b, c, dmatrix![0.0, 5.0]).unwrap();
         assert_eq!(connected(&model).marked().count(), 2);
     }

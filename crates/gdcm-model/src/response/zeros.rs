@@ -17,7 +17,9 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::{LargeEntry, SPlane, SchurForm, balance, leading_states};
+use super::eigenvalues::{SPlane, SchurForm};
+use super::hessenberg_form::balance;
+use super::prepared_model::{LargeEntry, leading_states};
 use crate::dataset::{Dynamics, Pair, StateSpace};
 
 /// The transmission zeros of one response.
@@ -285,10 +287,11 @@ impl SingleResponse {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::dataset::Timing;
     use nalgebra::{dmatrix, dvector};
     use proptest::prelude::*;
+
+    use super::*;
+    use crate::dataset::state_space::Timing;
 
     const ONLY: Pair = Pair {
         output: 0,
@@ -308,7 +311,8 @@ mod tests {
     /// `gain (s - z1) ... / (s - p1) ...` in the controllable canonical form.
     fn canonical(gain: f64, zeros: &[f64], poles: &[f64]) -> StateSpace {
         let n = poles.len();
-        let (mut numerator, denominator) = (polynomial(zeros), polynomial(poles));
+        let mut numerator = polynomial(zeros);
+        let denominator = polynomial(poles);
         while numerator.len() <= n {
             numerator.insert(0, 0.0);
         }
@@ -510,8 +514,9 @@ mod tests {
 
 #[cfg(test)]
 mod staircase_tests {
-    use super::*;
     use nalgebra::{dmatrix, dvector};
+
+    use super::*;
 
     #[test]
     fn states_that_the_input_does_not_reach_are_left_out() {
@@ -555,7 +560,8 @@ mod staircase_tests {
         let below = (0..6).flat_map(|column| (column + 2..6).map(move |row| (row, column)));
         assert!(below.into_iter().all(|at| reached.a[at] == 0.0));
         // c A b is the same in any coordinates.
-        let (before, after) = (b.dot(&(&a * &b)), reached.c.dot(&(&reached.a * &reached.b)));
+        let before = b.dot(&(&a * &b));
+        let after = reached.c.dot(&(&reached.a * &reached.b));
         assert!((before - after).abs() < 1e-13 * before.abs());
     }
 }

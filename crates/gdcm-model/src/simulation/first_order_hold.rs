@@ -25,7 +25,8 @@ impl FirstOrderHold {
     /// `model` over `sample_time_s` \[s\]; none where the result is not finite.
     #[must_use]
     pub fn of(model: &StateSpace, sample_time_s: f64) -> Option<Self> {
-        let (n, m) = (model.order(), model.inputs());
+        let n = model.order();
+        let m = model.inputs();
         let mut exponent = DMatrix::zeros(n + 2 * m, n + 2 * m);
         exponent
             .view_mut((0, 0), (n, n))

@@ -4,7 +4,7 @@ use std::fmt;
 
 use nalgebra::{DMatrix, DVectorView};
 
-use crate::dataset::ChannelSide;
+use crate::dataset::channel::ChannelSide;
 
 /// A flight record: samples of every input and output at stamped times, in the units of the file.
 #[derive(Clone, Debug, PartialEq)]

@@ -100,7 +100,8 @@ fn oddly_reflected(samples: &[f64], reach: usize) -> Vec<f64> {
     let mut extended = vec![first; length + 2 * reach];
     extended[reach..reach + length].copy_from_slice(samples);
     if length > 1 {
-        let (start, end) = (reach, reach + length - 1);
+        let start = reach;
+        let end = reach + length - 1;
         for k in 1..=reach {
             // Both ends grow together, so that what is reflected is there by then, however short the signal.
             extended[start - k] = 2.0 * first - extended[start + k];

@@ -7,7 +7,7 @@ use super::flight_record::{Segment, centred};
 use super::low_pass::LowPass;
 use crate::dataset::StateSpace;
 use crate::executor::{Executor, each};
-use crate::response::poles;
+use crate::response::eigenvalues::poles;
 
 /// Time constants of the fastest diverging mode that a window lasts (M14, 6).
 const TIME_CONSTANTS: f64 = 3.0;
@@ -218,7 +218,8 @@ fn windows(
     let window = |k: usize| {
         // The product is taken in 128 bits: it may be large.
         let bound = |k: usize| (samples as u128 * k as u128 / count as u128) as usize;
-        let (from, length) = (bound(k), bound(k + 1) - bound(k));
+        let from = bound(k);
+        let length = bound(k + 1) - bound(k);
         let measured = segment.outputs.rows(from, length).into_owned();
         let simulated = best_simulation(
             &held,

@@ -1,7 +1,8 @@
 //! An axis of a panel: what is along it, in which unit, which part of it is shown, where it has ticks, and what stands beside them.
 
-use gdcm_model::units::rad_s_to_hz;
 use serde::{Deserialize, Serialize};
+
+use gdcm_model::units::rad_s_to_hz;
 
 /// Space on either side of what is shown, as a part of its width.
 const MARGIN: f64 = 0.05;
@@ -132,7 +133,8 @@ impl Axis {
             Scale::Logarithmic => value.log10(),
             Scale::Linear | Scale::Degrees => value,
         };
-        let (low, high) = (place(range.min), place(range.max));
+        let low = place(range.min);
+        let high = place(range.max);
         self.can_show(value)
             .then(|| (place(value) - low) / (high - low))
     }
@@ -226,7 +228,8 @@ impl Range {
     ///
     /// Keeps zooming and panning away from where numbers lose their meaning; a range that is not finite gives nothing.
     pub fn limited(self, widths: Self) -> Option<Self> {
-        let (width, middle) = (self.width(), self.middle());
+        let width = self.width();
+        let middle = self.middle();
         if !(width.is_finite() && middle.is_finite()) {
             return None;
         }
@@ -356,7 +359,8 @@ pub fn step_above(least: f64) -> f64 {
 /// Ticks at 1 to 9 of each decade, labelled at 1, 2 and 5 or at the decades, whichever has room; of a small part of a decade, equal
 /// steps.
 fn decades(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
-    let (low, high) = (range.min.log10(), range.max.log10());
+    let low = range.min.log10();
+    let high = range.max.log10();
     let decade_pt = length_pt / (high - low);
     let has_two_and_five = decade_pt * 2f64.log10() >= gaps.labels;
     let has_nine = decade_pt * NINE_TO_TEN >= NINE_LABELS_GAP;
@@ -521,10 +525,8 @@ mod tests {
 
     #[test]
     fn a_decade_is_as_long_as_another_on_a_logarithmic_axis() {
-        let (axis, range) = (
-            Axis::logarithmic("Frequency [rad/s]"),
-            Range::new(0.1, 10.0),
-        );
+        let axis = Axis::logarithmic("Frequency [rad/s]");
+        let range = Range::new(0.1, 10.0);
         assert_eq!(axis.fraction(0.1, range), Some(0.0));
         assert!((axis.fraction(1.0, range).unwrap() - 0.5).abs() < 1e-15);
         assert_eq!(axis.fraction(-1.0, range), None);

@@ -7,10 +7,11 @@ use std::sync::Arc;
 use gdcm_model::dataset::{
     Band as BandOfComparison, BundleKind, ConditionId, Dynamics, ModelId, Pair,
 };
+use gdcm_model::progress::Unobserved;
 use gdcm_model::units::db_to_ratio;
-use gdcm_study::study::{
-    AcrossJob, AcrossRole, Analysis, CURVE_POINTS, Job, Unobserved, display_band,
-};
+use gdcm_study::study::condition_responses::{CURVE_POINTS, display_band};
+use gdcm_study::study::job::{AcrossJob, Job};
+use gdcm_study::study::{AcrossRole, Analysis};
 use gdcm_sysid::identification::TRUSTED_COHERENCE;
 
 use super::axis::{Axis, FrequencyUnit, MagnitudeUnit, PhaseErrorUnit, PhaseUnit, Range};
@@ -346,7 +347,8 @@ fn plot(
         });
         panel.with_all(rules)
     };
-    let (magnitude, phase) = (marked(magnitude, true), marked(phase, false));
+    let magnitude = marked(magnitude, true);
+    let phase = marked(phase, false);
     Plot::default()
         .panel(on_ground(magnitude).weight(MAGNITUDE_WEIGHT))
         .panel(on_ground(phase))
@@ -360,7 +362,8 @@ pub fn airspeeds_figure(
     role: AcrossRole,
     options: &BodeOptions,
 ) -> Option<Figure> {
-    let (dataset, settings) = (&analysis.study.dataset, &analysis.study.settings);
+    let dataset = &analysis.study.dataset;
+    let settings = &analysis.study.settings;
     let job = AcrossJob::of(
         dataset,
         Some(analysis),

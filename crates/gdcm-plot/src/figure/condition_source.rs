@@ -5,12 +5,13 @@ use std::sync::Arc;
 use gdcm_method::correction::ChannelCorrection;
 use gdcm_method::fidelity::SUGGESTION_RATIO;
 use gdcm_method::schedule::{Schedule, ScheduleKind, ScheduleSettings, ScheduledQuantity};
-use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, FlightState, Model, ModelId, Pair};
+use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Model, ModelId, Pair};
 use gdcm_model::response::GainDelay;
 use gdcm_model::units::s_to_ms;
-use gdcm_study::study::{
-    ConditionAnalysis, ConditionCurves, CouplingCorrection, PhaseCorrection, Settings, Study,
-};
+use gdcm_study::study::condition_responses::ConditionCurves;
+use gdcm_study::study::settings::Settings;
+use gdcm_study::study::{ConditionAnalysis, CouplingCorrection, PhaseCorrection, Study};
 
 use super::axis::compact;
 use super::bode::BodeOptions;
@@ -84,10 +85,8 @@ impl<'a> ConditionSource<'a> {
 
     /// `(deg/s)/in`: the unit of the ratio of a response's output to its input.
     pub fn ratio_unit(dataset: &Dataset, pair: Pair) -> String {
-        let (output, input) = (
-            &dataset.outputs()[pair.output].unit,
-            &dataset.inputs()[pair.input].unit,
-        );
+        let output = &dataset.outputs()[pair.output].unit;
+        let input = &dataset.inputs()[pair.input].unit;
         let bracketed = |unit: &str| {
             if unit.contains('/') {
                 format!("({unit})")
@@ -226,12 +225,11 @@ impl<'a> ConditionSource<'a> {
                   correction: &ChannelCorrection| {
             let name = result.representative_name(BundleKind::Physics);
             let model = self.curves.condition.position(BundleKind::Physics, name)?;
-            let (gain, delay_ms) = (
-                correction.net_gain(pair),
-                s_to_ms(correction.net_delay_s(pair)),
-            );
+            let gain = correction.net_gain(pair);
+            let delay_ms = s_to_ms(correction.net_delay_s(pair));
             let detail = format!("net gain {gain:.3}, net delay {delay_ms:.1} ms");
-            let (label, hidden) = (format!("{name}, {words}"), options.hidden.contains(&role));
+            let label = format!("{name}, {words}");
+            let hidden = options.hidden.contains(&role);
             let curve = BodeCurve {
                 label,
                 detail,
@@ -313,7 +311,8 @@ pub fn condition_words(FlightState { id, name, .. }: &FlightState) -> String {
 
 /// The dataset, and the settings that every figure of the analysis rests on.
 pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
-    let (low, high) = (compact(settings.band.min()), compact(settings.band.max()));
+    let low = compact(settings.band.min());
+    let high = compact(settings.band.max());
     let phase = match settings.phase {
         PhaseCorrection::Delay => "",
         PhaseCorrection::None => " No correction of the phase.",

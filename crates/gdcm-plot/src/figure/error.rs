@@ -4,9 +4,12 @@ use std::sync::Arc;
 
 use gdcm_method::fidelity::{CoherenceWeights, Mismatch, Muad, leaves};
 use gdcm_model::dataset::{BundleKind, Pair};
-use gdcm_model::response::{FrequencyResponse, GainDelay, PolarCurve, quantile, wrap};
+use gdcm_model::response::curve_values::quantile;
+use gdcm_model::response::frequency_response::PolarCurve;
+use gdcm_model::response::{FrequencyResponse, GainDelay, wrap};
 use gdcm_model::units::{ratio_to_db, s_to_ms};
-use gdcm_study::study::{ConditionAnalysis, ConditionCurves};
+use gdcm_study::study::ConditionAnalysis;
+use gdcm_study::study::condition_responses::ConditionCurves;
 
 use super::axis::{Axis, PhaseErrorUnit};
 use super::bode::{BodeOptions, FrequencyPanels, figure_of_pairs};
@@ -20,10 +23,8 @@ use super::role::Role;
 pub fn error_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
     figure_of_pairs(source, pairs, "Error", |pair| {
         let curves = source.error_curves(pair, options, &mut ErrorCache::default());
-        let (references, strips) = (
-            source.error_references(pair, options, &curves),
-            noticed(&curves, options),
-        );
+        let references = source.error_references(pair, options, &curves);
+        let strips = noticed(&curves, options);
         let panels = FrequencyPanels {
             curves: &curves,
             references: &references,
@@ -58,11 +59,10 @@ impl ConditionSource<'_> {
         options: &BodeOptions,
         cache: &mut ErrorCache,
     ) -> Vec<BodeCurve> {
-        let (band, coherence) = (
-            self.study.settings.band,
-            self.study.settings.coherence_threshold,
-        );
-        let (reference, unit) = (self.reference(), options.phase_error);
+        let band = self.study.settings.band;
+        let coherence = self.study.settings.coherence_threshold;
+        let reference = self.reference();
+        let unit = options.phase_error;
         let curves = Arc::clone(self.curves);
         cache.refresh(Made {
             curves,
@@ -319,7 +319,9 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
     let Some(curve) = identified.filter(|_| options.shows_muad) else {
         return Vec::new();
     };
-    let (omega, magnitude_db, phase_deg) = (&curve.omega, &curve.magnitude_db, &curve.phase_deg);
+    let omega = &curve.omega;
+    let magnitude_db = &curve.magnitude_db;
+    let phase_deg = &curve.phase_deg;
     let ends = [(0, "unnoticed above, MUAD"), (1, "unnoticed below, MUAD")];
     let lines = |(end, label): (usize, &str)| {
         [
@@ -364,7 +366,9 @@ pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
         .omega
         .iter()
         .zip(curve.magnitude_db.iter().zip(curve.phase_deg.iter()));
-    let (mut omega, mut error_db, mut principal_deg) = (Vec::new(), Vec::new(), Vec::new());
+    let mut omega = Vec::new();
+    let mut error_db = Vec::new();
+    let mut principal_deg = Vec::new();
     // There is no error at frequencies that do not count.
     for (&at, (&db, &phase)) in errors.filter(|(_, (db, _))| db.is_finite()) {
         let radians = match options.phase_error {
@@ -430,7 +434,8 @@ fn delta_rules(shown: &ConditionAnalysis, pair: Pair, unit: PhaseErrorUnit) -> V
 }
 
 fn bound_rules(shown: &ConditionAnalysis, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
-    let (bounds, delay_s) = (shown.gain_bounds(), shown.delay_upper_s());
+    let bounds = shown.gain_bounds();
+    let delay_s = shown.delay_upper_s();
     vec![
         gain_rule(
             ReferenceKind::Bound,
@@ -467,10 +472,8 @@ fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<Refere
             .filter(|value| value.is_finite())
             .collect::<Vec<f64>>()
     };
-    let (mut ratios_db, mut delays_s) = (
-        finite(&mut curve.magnitude_db.iter().copied()),
-        finite(&mut { delays }),
-    );
+    let mut ratios_db = finite(&mut curve.magnitude_db.iter().copied());
+    let mut delays_s = finite(&mut { delays });
     let label = |q: f64| format!("{:.0} % quantile", 100.0 * q);
     [q, 1.0 - q]
         .into_iter()
@@ -533,13 +536,11 @@ mod tests {
 
     #[test]
     fn frequencies_that_do_not_count_are_gaps() {
-        let (omega, polar) = (
-            [1.0, 2.0, 3.0],
-            PolarCurve {
-                magnitude_db: vec![1.0; 3],
-                phase: vec![0.1; 3],
-            },
-        );
+        let omega = [1.0, 2.0, 3.0];
+        let polar = PolarCurve {
+            magnitude_db: vec![1.0; 3],
+            phase: vec![0.1; 3],
+        };
         let coherence_weights = CoherenceWeights::of(&omega, &[0.9, 0.2, 0.9], 0.6, None);
         let shape = ErrorShape::of(&polar, &polar, &omega, Some(&coherence_weights)).unwrap();
         assert!(shape.mismatch_db[1].is_nan() && shape.phase[1].is_nan());

@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::Schedule;
 use gdcm_method::uncertainty::{BandWidths, Bar, Scalar};
-use gdcm_model::dataset::{Dataset, FlightState, Pair};
+use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::units::s_to_ms;
-use gdcm_study::study::{
-    AirspeedDifference, Analysis, ConditionAnalysis, ConditionChoice, Uncertainty,
-};
+use gdcm_study::study::uncertainty::{AirspeedDifference, Uncertainty};
+use gdcm_study::study::{Analysis, ConditionAnalysis, ConditionChoice};
 
 use super::axis::{Axis, Range, decimals};
 use super::condition_source::{schedule_words, settings_words};
@@ -180,7 +180,8 @@ pub fn add_variant(
     analysis: &Analysis,
     name: &str,
 ) {
-    let (role, across) = (Role::Variant.stroke(false), Across::Airspeed);
+    let role = Role::Variant.stroke(false);
+    let across = Across::Airspeed;
     let key = format!("variant {name}");
     for (panel, quantity) in figure
         .plots
@@ -408,7 +409,8 @@ impl GainQuantity {
 
     /// Samples of the scheduled figure from the least to the greatest of the conditions' airspeeds: airspeed \[kt\], and figure.
     fn samples(self, schedule: &Schedule) -> Vec<[f64; 2]> {
-        let (from, to) = (schedule.airspeeds.min_kt, schedule.airspeeds.max_kt);
+        let from = schedule.airspeeds.min_kt;
+        let to = schedule.airspeeds.max_kt;
         let airspeed = |sample: usize| from + (to - from) * sample as f64 / SAMPLES as f64;
         (0..=SAMPLES)
             .map(airspeed)
@@ -543,7 +545,8 @@ impl GainQuantity {
                     value * half(widths).exp(),
                 ]
             };
-            let (name, points) = (name.to_owned(), widths.iter().map(end).collect());
+            let name = name.to_owned();
+            let points = widths.iter().map(end).collect();
             let edge = Some(Stroke::dashed(color, 0.6, dash));
             Envelope {
                 name,

@@ -1,8 +1,9 @@
 //! Where the panels of a figure stand on paper, and what stands around them.
 
-use gdcm_model::message_text::sanitized;
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
+
+use gdcm_model::message_text::sanitized;
 
 use super::axis::{Axis, Range, Tick, ticks};
 use super::drawing::Area;
@@ -268,7 +269,8 @@ impl<'f> Table<'f> {
         let gutters: Vec<f64> = (0..self.columns)
             .map(|column| self.gutter(column, frame_width, top))
             .collect();
-        let (mut panels, mut y) = (Vec::new(), top);
+        let mut panels = Vec::new();
+        let mut y = top;
         for row in 0..self.rows {
             y += self.above(row);
             let mut x = 0.0;

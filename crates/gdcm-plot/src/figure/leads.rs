@@ -1,6 +1,7 @@
 //! What delay or lead does in each channel of one condition, to ten times the band: where the model ends to be valid, and what that costs.
 
-use gdcm_method::correction::{ABOVE_BAND, Channel, ChannelCorrection, LeadPrice};
+use gdcm_method::correction::leads::ABOVE_BAND;
+use gdcm_method::correction::{Channel, ChannelCorrection, LeadPrice};
 use gdcm_model::dataset::Pair;
 use gdcm_model::response::GainDelay;
 
@@ -38,7 +39,8 @@ pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
 
 /// Gain and phase of one response's channels, those of the other channels behind them.
 fn plots(source: &ConditionSource<'_>, correction: &ChannelCorrection, pair: Pair) -> [Plot; 2] {
-    let (dataset, band) = (source.dataset(), source.study.settings.band);
+    let dataset = source.dataset();
+    let band = source.study.settings.band;
     let (inputs, outputs) = dataset.names_of_channels();
     let omega = frequencies(band.min(), ABOVE_BAND * band.max());
     let [output, input] = Channel::of(pair);

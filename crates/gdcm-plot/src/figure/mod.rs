@@ -18,56 +18,55 @@
 //! assert_eq!(figure.drawing(ColumnWidth::Single).size[0].round(), 238.0);
 //! ```
 
-use gdcm_method::correction::Channel;
 use std::sync::Arc;
 
+use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{ModelId, Pair};
-use gdcm_study::study::{
-    AcrossRole, Analysis, AssessmentChoice, ConditionAnalysis, ConditionModes, CouplingsAssessment,
-    RecordHistory, Requirements, TestAnswers, Unobserved,
-};
+use gdcm_model::progress::Unobserved;
+use gdcm_study::study::assessment_table::AssessmentChoice;
+use gdcm_study::study::condition_answers::{RecordHistory, TestAnswers};
+use gdcm_study::study::couplings_assessment::CouplingsAssessment;
+use gdcm_study::study::job::ConditionModes;
+use gdcm_study::study::requirements::Requirements;
+use gdcm_study::study::{AcrossRole, Analysis, ConditionAnalysis};
 
-mod assessment;
-mod axis;
-mod bode;
-mod condition_source;
-mod drawing;
-mod error;
+pub mod assessment;
+pub mod axis;
+pub mod bode;
+pub mod condition_source;
+pub mod drawing;
+pub mod error;
 #[expect(
     clippy::module_inception,
     reason = "the room is named by what it makes"
 )]
-mod figure;
-mod gains;
-mod label_places;
-mod layout;
-mod leads;
-mod paint;
-mod poles;
-mod requirements;
-mod responses;
-mod role;
-mod tables;
-mod thinning;
+pub mod figure;
+pub mod gains;
+pub mod label_places;
+pub mod layout;
+pub mod leads;
+pub mod paint;
+pub mod poles;
+pub mod requirements;
+pub mod responses;
+pub mod role;
+pub mod tables;
+pub mod thinning;
 
-pub use assessment::*;
-pub use axis::*;
-pub use bode::*;
-pub use condition_source::*;
-pub use drawing::*;
-pub use error::*;
-pub use figure::*;
-pub use gains::*;
-pub use label_places::*;
-pub use layout::*;
-pub use leads::*;
-pub use paint::*;
-pub use poles::*;
-pub use requirements::*;
-pub use responses::*;
-pub use role::*;
-pub use tables::LONG_COLUMNS;
-pub use thinning::{Pixel, thinned};
+pub use axis::{Range, decimals};
+pub use condition_source::ConditionSource;
+pub use drawing::Color;
+pub use figure::{ColumnWidth, Figure, FigureFormat, Mark, MarkId, Panel};
+pub use gains::all_channels;
+pub use role::Role;
+
+use assessment::{assessment_figure, evidence_figure, usual_choice};
+use bode::{BodeOptions, airspeeds_figure, bode_figure, overview_figure};
+use error::error_figure;
+use gains::{Across, Measure, channels_figure, net_gain_figure};
+use leads::leads_figure;
+use poles::{couplings_figure, poles_figure, zeros_of_model};
+use requirements::{record_history_figure, requirements_figure, test_answers_figure};
 
 /// Which of the program's figures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

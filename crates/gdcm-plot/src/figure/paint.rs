@@ -127,7 +127,8 @@ fn text(
 
 /// Draws the legend in lines as wide as the figure, from `top` down; gives where it ends.
 fn legend(shapes: &mut Vec<Shape>, entries: &[Entry], top: f64, inner: f64) -> f64 {
-    let (mut x, mut y) = (0.0, top + 0.5 * LABEL_LINE);
+    let mut x = 0.0;
+    let mut y = top + 0.5 * LABEL_LINE;
     for entry in entries {
         let sample = match entry.sample {
             Sample::Line(_) => SAMPLE,
@@ -368,10 +369,8 @@ fn rectangle(from: [f64; 2], to: [f64; 2], color: Color, stroke: Option<Stroke>)
 fn bands(placed: &Placed<'_>) -> Vec<Shape> {
     let band = |mark: &Mark| {
         let Mark::Band(band) = mark else { return None };
-        let ([from, _], [_, far]) = (
-            placed.across(Along::X, band.range.min)?,
-            placed.across(Along::X, band.range.max)?,
-        );
+        let [from, _] = placed.across(Along::X, band.range.min)?;
+        let [_, far] = placed.across(Along::X, band.range.max)?;
         Some(rectangle(from, far, band.color, None))
     };
     placed.panel.marks.iter().filter_map(band).collect()
@@ -455,10 +454,8 @@ fn curve_lines(placed: &Placed<'_>, curve: &Curve) -> Vec<Shape> {
 fn bar_shapes(placed: &Placed<'_>, bars: &Bars) -> Vec<Shape> {
     let bar = |(&[x, _], [foot, top]): (&[f64; 2], [f64; 2])| {
         let left = x + bars.beside - 0.5 * bars.width;
-        let (foot, top) = (
-            placed.at([left, foot])?,
-            placed.at([left + bars.width, top])?,
-        );
+        let foot = placed.at([left, foot])?;
+        let top = placed.at([left + bars.width, top])?;
         Some(rectangle(
             foot,
             top,
@@ -477,7 +474,8 @@ fn bracket_line([from, to]: [[f64; 2]; 2], [near, far]: [[f64; 2]; 2], stroke: S
 /// Dots are drawn whole where their middle is in the frame, with their texts around them, and those of brackets beside these; how
 /// many texts have no room.
 fn dots_and_labels(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
-    let (mut shapes, mut labels) = (Vec::new(), Vec::new());
+    let mut shapes = Vec::new();
+    let mut labels = Vec::new();
     for mark in &placed.panel.marks {
         match mark {
             Mark::Dots(Dots {
@@ -519,7 +517,9 @@ fn dots_and_labels(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
         }
     }
     let dots: Vec<LabelledDot> = labels.iter().map(|(dot, ..)| *dot).collect();
-    let (mut leaders, mut texts, mut left_out) = (Vec::new(), Vec::new(), 0);
+    let mut leaders = Vec::new();
+    let mut texts = Vec::new();
+    let mut left_out = 0;
     for (place, (dot, label, color)) in place_labels(&dots, &surroundings(placed))
         .into_iter()
         .zip(labels)
@@ -557,9 +557,11 @@ fn labelled(placed: &Placed<'_>, center: [f64; 2], radius: f64, label: &str) -> 
 
 /// What the labels of a panel keep clear of.
 fn surroundings(placed: &Placed<'_>) -> Surroundings {
-    let (mut path, mut bars) = (Vec::new(), Vec::new());
+    let mut path = Vec::new();
+    let mut bars = Vec::new();
     let mut upright = |from: [f64; 2], to: [f64; 2], width: f64| {
-        let (top, bottom) = (from[1].min(to[1]), from[1].max(to[1]));
+        let top = from[1].min(to[1]);
+        let bottom = from[1].max(to[1]);
         bars.push(Area::new(from[0] - 0.5 * width, top, width, bottom - top));
     };
     for mark in &placed.panel.marks {
@@ -687,10 +689,8 @@ fn words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
         Mark::Note(Note { at, text: words }) => match at {
             Place::Value { x, y, upright } => {
                 // Words about a name of an axis need room beside those of the next.
-                let (slot, is_named) = (
-                    placed.frame.width / placed.x.range.width(),
-                    placed.panel.x.names.is_some(),
-                );
+                let slot = placed.frame.width / placed.x.range.width();
+                let is_named = placed.panel.x.names.is_some();
                 if is_named && !upright && size_pt * width(words) > slot {
                     return None;
                 }
@@ -700,7 +700,8 @@ fn words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
                 } else {
                     ([x, y + HALF_HEIGHT * size_pt], false)
                 };
-                let (words, anchor) = (words.clone(), Anchor::Middle);
+                let words = words.clone();
+                let anchor = Anchor::Middle;
                 Some(Shape::Text(Text {
                     at,
                     words,
@@ -782,8 +783,10 @@ fn vertical(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
     }
     if side.has_label {
         let [x, y] = frame.at(0.0, 0.5);
-        let (words, at) = (axis.label.clone(), [x - side.depth - 2.5, y]);
-        let (anchor, color) = (Anchor::Middle, Color::INK);
+        let words = axis.label.clone();
+        let at = [x - side.depth - 2.5, y];
+        let anchor = Anchor::Middle;
+        let color = Color::INK;
         shapes.push(Shape::Text(Text {
             at,
             words,

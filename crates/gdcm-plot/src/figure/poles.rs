@@ -1,10 +1,12 @@
 //! Poles of every model of one condition in the s-plane, and what couplings do: to the loop they make, and to the poles (M16.4).
 
+use nalgebra::Complex;
+
 use gdcm_method::couplings::{LoopMargin, PoleShift};
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
-use gdcm_model::response::finite_zeros;
-use gdcm_study::study::{ConditionModes, CouplingsAssessment};
-use nalgebra::Complex;
+use gdcm_model::response::zeros::finite_zeros;
+use gdcm_study::study::couplings_assessment::CouplingsAssessment;
+use gdcm_study::study::job::ConditionModes;
 
 use super::axis::{Axis, FrequencyUnit, Range, step_above};
 use super::bode::BodeOptions;
@@ -60,7 +62,8 @@ pub fn poles_figure(
     let values = |of: fn(&Dot) -> f64| {
         Range::of(dots.iter().flat_map(|dots| &dots.dots).map(of)).unwrap_or(Range::new(-1.0, 1.0))
     };
-    let (real, imaginary) = (values(|dot| dot.x), values(|dot| dot.y));
+    let real = values(|dot| dot.x);
+    let imaginary = values(|dot| dot.y);
     let reach = imaginary.max.abs().max(imaginary.min.abs());
     let whole = [
         real.including(0.0).with_margin(0.06, 1.0),
@@ -317,7 +320,8 @@ fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: Frequen
 
 /// Where the poles go.
 fn pole_plot(assessment: &CouplingsAssessment, shown: ConditionId) -> Plot {
-    let (x, y) = (Axis::linear("Re λ [rad/s]"), Axis::linear("Im λ [rad/s]"));
+    let x = Axis::linear("Re λ [rad/s]");
+    let y = Axis::linear("Im λ [rad/s]");
     let within = 1.5 * assessment.band.max();
     let poles = assessment.conditions[&shown].poles.iter().flatten();
     let near: Vec<PoleShift> = poles

@@ -1,14 +1,14 @@
 //! What a qualification asks: phase delay over bandwidth of every attitude response (M17.1), and models over time, what they answer to a test
 //! input and to a flight record within the corridors about it (M17.2).
 
-use gdcm_method::requirements::{
-    LevelBoundaries, LevelBoundary, RecordCheck, TestInputShape, ToleranceCheck,
-};
+use gdcm_method::requirements::level_boundary::LevelBoundary;
+use gdcm_method::requirements::tolerance::ToleranceCheck;
+use gdcm_method::requirements::{LevelBoundaries, RecordCheck, TestInputShape};
 use gdcm_model::dataset::{Dataset, Pair};
 use gdcm_model::units::{number, s_to_ms};
-use gdcm_study::study::{
-    BandwidthFinding, QuantityHistory, RecordHistory, RequirementRole, Requirements, TestAnswers,
-};
+use gdcm_study::study::condition_answers::{QuantityHistory, RecordHistory, TestAnswers};
+use gdcm_study::study::required_bandwidth::BandwidthFinding;
+use gdcm_study::study::requirements::{RequirementRole, Requirements};
 
 use super::axis::{Axis, Range};
 use super::drawing::{Color, Dash, Hue, Stroke};
@@ -66,10 +66,8 @@ pub fn requirements_figure(
     let plots = bandwidth_pairs(requirements).into_iter().map(|pair| {
         let name = dataset.pair_name(pair);
         let axis = &dataset.outputs()[pair.output].name;
-        let (x, y) = (
-            Axis::linear("bandwidth [rad/s]"),
-            Axis::linear("phase delay [ms]").including(0.0),
-        );
+        let x = Axis::linear("bandwidth [rad/s]");
+        let y = Axis::linear("phase delay [ms]").including(0.0);
         let panel = Panel::new(x, y)
             .with_all(beyond(levels, axis))
             .with_all(boundaries(levels, axis));
@@ -298,7 +296,8 @@ pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
         TestInputShape::Step => "step",
         TestInputShape::Doublet => "doublet",
     };
-    let (size, duration) = (number(answers.test.size), number(answers.test.duration_s));
+    let size = number(answers.test.size);
+    let duration = number(answers.test.duration_s);
     let title = format!(
         "Condition {}: {shape} of {} by {size} {} for {duration} s",
         answers.condition, input.name, input.unit
@@ -417,7 +416,8 @@ fn history_marks(of: &QuantityHistory, shown: Shown) -> Vec<Mark> {
     };
     let corridor = samples(about).map(|(time, at)| match at {
         Some((window, n)) => {
-            let (flown, width) = (shown.of(window.flown[n], window, n), window.width[n]);
+            let flown = shown.of(window.flown[n], window, n);
+            let width = window.width[n];
             [time, flown - width, flown + width]
         }
         None => [time, f64::NAN, f64::NAN],
@@ -477,7 +477,8 @@ mod tests {
             (points[0], points[6], points.len()),
             ([1.0, 10.0], [3.0, 10.0], 7)
         );
-        let (tip, wings) = (points[1], [points[2], points[4]]);
+        let tip = points[1];
+        let wings = [points[2], points[4]];
         for wing in wings {
             assert!(
                 wing[0] < tip[0] && ((tip[0] - wing[0]) / 2.0 - HEAD[0]).abs() < 1e-12,

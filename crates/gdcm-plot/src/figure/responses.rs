@@ -3,13 +3,15 @@
 
 use std::sync::Arc;
 
-use gdcm_model::dataset::{
-    Band as BandOfComparison, BundleKind, Dataset, ModelBands, ModelId, Pair,
-};
-use gdcm_model::response::{FrequencyResponse, GainDelay, ResponseShape, wrapped_deg};
+use gdcm_model::dataset::model::ModelBands;
+use gdcm_model::dataset::{Band as BandOfComparison, BundleKind, Dataset, ModelId, Pair};
+use gdcm_model::response::frequency_response::{ResponseShape, wrapped_deg};
+use gdcm_model::response::{FrequencyResponse, GainDelay};
 use gdcm_model::units::signed;
-use gdcm_study::study::{AcrossCurves, AcrossRole, Analysis, ConditionCurves, display_band};
-use gdcm_sysid::identification::TWO_SIDED_95;
+use gdcm_study::study::condition_responses::{ConditionCurves, display_band};
+use gdcm_study::study::job::AcrossCurves;
+use gdcm_study::study::{AcrossRole, Analysis};
+use gdcm_sysid::identification::uncertainty::TWO_SIDED_95;
 
 use super::axis::{PhaseUnit, Range};
 use super::bode::BodeOptions;
@@ -142,7 +144,8 @@ impl ResponseCache {
                 .map(|response| self.laid(response, pair))
                 .collect::<Vec<_>>()
         };
-        let (physics, identified) = (shapes(BundleKind::Physics), shapes(BundleKind::Identified));
+        let physics = shapes(BundleKind::Physics);
+        let identified = shapes(BundleKind::Identified);
         self.physics = physics;
         self.identified = identified
             .into_iter()
@@ -183,7 +186,8 @@ pub fn uncertainty_bands(dataset: &Dataset, pair: Pair, curves: &[BodeCurve]) ->
 }
 
 fn band_around(curve: &BodeCurve, bands: &ModelBands, pair: Pair) -> BodeBand {
-    let (db, deg) = (&bands.sd_db()[pair], &bands.sd_deg()[pair]);
+    let db = &bands.sd_db()[pair];
+    let deg = &bands.sd_deg()[pair];
     let mut band = BodeBand::default();
     for (index, omega) in curve.omega.iter().enumerate() {
         let Some((at, part)) = place(bands.omega(), *omega) else {
@@ -328,9 +332,14 @@ pub struct BodeCurve {
 impl BodeCurve {
     /// A curve of this role without words and numbers yet.
     pub fn new(id: CurveId, role: Role) -> Self {
-        let (label, detail, none) = (String::new(), String::new(), Arc::<[f64]>::default());
-        let (magnitude_db, phase_deg) = (Arc::clone(&none), Arc::clone(&none));
-        let (rejected, highlighted, hidden) = (false, false, false);
+        let label = String::new();
+        let detail = String::new();
+        let none = Arc::<[f64]>::default();
+        let magnitude_db = Arc::clone(&none);
+        let phase_deg = Arc::clone(&none);
+        let rejected = false;
+        let highlighted = false;
+        let hidden = false;
         Self {
             id,
             label,
@@ -352,11 +361,9 @@ impl BodeCurve {
         magnitude_db: &Arc<[f64]>,
         phase_deg: &Arc<[f64]>,
     ) -> Self {
-        let (omega, magnitude_db, phase_deg) = (
-            Arc::clone(omega),
-            Arc::clone(magnitude_db),
-            Arc::clone(phase_deg),
-        );
+        let omega = Arc::clone(omega);
+        let magnitude_db = Arc::clone(magnitude_db);
+        let phase_deg = Arc::clone(phase_deg);
         Self {
             omega,
             magnitude_db,
@@ -424,9 +431,11 @@ impl BodeCurve {
             *values.get(after)?
         } else {
             let before = after.checked_sub(1)?;
-            let (start, end) = (self.omega.get(before)?, self.omega.get(after)?);
+            let start = self.omega.get(before)?;
+            let end = self.omega.get(after)?;
             let fraction = (omega / start).ln() / (end / start).ln();
-            let (from, to) = (values.get(before)?, values.get(after)?);
+            let from = values.get(before)?;
+            let to = values.get(after)?;
             from + fraction * (to - from)
         };
         value.is_finite().then_some(value)

@@ -1,8 +1,9 @@
 //! What a curve stands for, and how it therefore looks on paper: the same in every figure.
 
-use gdcm_model::dataset::BundleKind;
-use gdcm_study::study::RequirementRole;
 use serde::{Deserialize, Serialize};
+
+use gdcm_model::dataset::BundleKind;
+use gdcm_study::study::requirements::RequirementRole;
 
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{DotShape, Mark};
@@ -252,14 +253,15 @@ fn place(text: &str) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use super::super::figure::Curve;
     use super::*;
-    use crate::figure::Curve;
 
     #[test]
     fn roles_differ_without_their_colours() {
         for a in Role::ALL {
             for b in Role::ALL.into_iter().filter(|b| *b != a) {
-                let (a, b) = (a.stroke(false), b.stroke(false));
+                let a = a.stroke(false);
+                let b = b.stroke(false);
                 assert!(
                     a.dash != b.dash || (a.width_pt - b.width_pt).abs() > 0.3,
                     "{a:?} {b:?}"

@@ -103,7 +103,8 @@ impl Panel {
             rows.push([line.to_owned(), String::new(), String::new(), figure(value)]);
         }
         rows.into_iter().map(move |[curve, label, x, y]| {
-            let (x_quantity, y_quantity) = (self.x.label.clone(), self.y.label.clone());
+            let x_quantity = self.x.label.clone();
+            let y_quantity = self.y.label.clone();
             [
                 figure_title.to_owned(),
                 name.clone(),
@@ -291,9 +292,8 @@ fn figure(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::drawing::{Color, Stroke};
-    use super::super::figure::Plot;
+    use super::super::figure::{Bars, Curve, DotShape, Dots, Plot, Rule};
     use super::*;
-    use crate::figure::{Bars, Curve, DotShape, Dots, Rule};
 
     const LINE: Stroke = Stroke::solid(Color::INK, 1.0);
 

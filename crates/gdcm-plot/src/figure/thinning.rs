@@ -86,7 +86,8 @@ fn along_wedges(run: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
         return Vec::new();
     };
     let mut kept = vec![*first];
-    let (mut anchor, mut previous) = (*first, *first);
+    let mut anchor = *first;
+    let mut previous = *first;
     let mut slopes = (f64::NEG_INFINITY, f64::INFINITY);
     for point in rest {
         let slope_to = |y: f64, anchor: [f64; 2]| (y - anchor[1]) / (point[0] - anchor[0]);
@@ -116,7 +117,8 @@ mod tests {
         let after = kept
             .partition_point(|point| point[0] < x)
             .clamp(1, kept.len() - 1);
-        let ([x0, y0], [x1, y1]) = (kept[after - 1], kept[after]);
+        let [x0, y0] = kept[after - 1];
+        let [x1, y1] = kept[after];
         y0 + (y1 - y0) * (x - x0) / (x1 - x0)
     }
 
@@ -180,11 +182,13 @@ mod tests {
         fn what_is_drawn_in_a_column_reaches_as_far_as_its_points(run in run()) {
             let kept = thinned(&run, COLUMN);
             for column in COLUMN.columns(&run) {
-                let (first, last) = (column[0], column[column.len() - 1]);
+                let first = column[0];
+                let last = column[column.len() - 1];
                 let inside = |point: &&[f64; 2]| (first[0]..=last[0]).contains(&point[0]);
                 let mut drawn: Vec<[f64; 2]> = kept.iter().filter(inside).copied().collect();
                 drawn.extend([first, last].map(|end| [end[0], drawn_at(&kept, end[0])]));
-                let (wanted, drawn) = (extremes(column), extremes(&drawn));
+                let wanted = extremes(column);
+                let drawn = extremes(&drawn);
                 let slack = COLUMN.tolerance + 1e-9;
                 prop_assert!((wanted.0 - drawn.0).abs() < slack && (wanted.1 - drawn.1).abs() < slack);
             }

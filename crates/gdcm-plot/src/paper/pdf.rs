@@ -4,7 +4,6 @@ use std::io::{self, Write};
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use gdcm_model::message_text::sanitized;
 use pdf_writer::types::{
     CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, UnicodeCmap,
 };
@@ -13,7 +12,11 @@ use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, MetadataProvider};
 use subsetter::GlyphRemapper;
 
-use crate::figure::{Area, Color, Drawing, FONTS, Letter, Shape, Stroke, Text, letters, width};
+use gdcm_model::message_text::sanitized;
+
+use crate::figure::Color;
+use crate::figure::drawing::{Area, Drawing, Shape, Stroke, Text};
+use crate::figure::layout::{FONTS, Letter, letters, width};
 
 /// The part of a radius at which the handles of a quarter of a circle are, made of one cubic curve.
 const QUARTER: f64 = 0.552_284_749_830_793_4;

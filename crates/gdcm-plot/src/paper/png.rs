@@ -12,7 +12,9 @@ use vello_cpu::kurbo::{
 };
 use vello_cpu::{Level, Pixmap, RenderContext, RenderSettings, Resources};
 
-use crate::figure::{Area, Color, Drawing, FONTS, Shape, Stroke, Text, letters, width};
+use crate::figure::Color;
+use crate::figure::drawing::{Area, Drawing, Shape, Stroke, Text};
+use crate::figure::layout::{FONTS, letters, width};
 
 /// Dots to the inch: what journals ask for.
 const DOTS_PER_INCH: f64 = 300.0;

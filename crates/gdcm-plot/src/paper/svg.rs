@@ -4,7 +4,9 @@ use std::fmt::Write;
 
 use gdcm_model::message_text::sanitized;
 
-use crate::figure::{Anchor, Area, Color, Drawing, FONTS, PT_PER_MM, Shape, Stroke, Text, width};
+use crate::figure::Color;
+use crate::figure::drawing::{Anchor, Area, Drawing, PT_PER_MM, Shape, Stroke, Text};
+use crate::figure::layout::{FONTS, width};
 
 /// Fonts to take where a reader does not have ours, about as wide.
 const OTHER_FONTS: &str = "Helvetica, Arial, sans-serif";
@@ -95,7 +97,9 @@ impl Svg<'_> {
                 fill,
                 stroke,
             } => {
-                let (x, y, radius) = (number(*x), number(*y), number(*radius));
+                let x = number(*x);
+                let y = number(*y);
+                let radius = number(*radius);
                 self.line(&format!(
                     "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"{}/>",
                     paint(*fill, *stroke)
@@ -136,7 +140,9 @@ impl Svg<'_> {
             Anchor::Middle => " text-anchor=\"middle\"",
             Anchor::End => " text-anchor=\"end\"",
         };
-        let (x, y, size) = (number(*x), number(*y), number(*size_pt));
+        let x = number(*x);
+        let y = number(*y);
+        let size = number(*size_pt);
         let turn = if *upright {
             format!(" transform=\"rotate(-90 {x} {y})\"")
         } else {
@@ -145,7 +151,8 @@ impl Svg<'_> {
         // As long as it was laid out, in whatever letters the reader has.
         let length = number(size_pt * width(words));
         let length = format!(" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\"");
-        let (color, words) = (hex(*color), escaped(&sanitized(words)));
+        let color = hex(*color);
+        let words = escaped(&sanitized(words));
         self.line(&format!(
             "<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\" fill=\"{color}\"{anchor}{turn}{length}>{words}</text>"
         ));

@@ -1,9 +1,29 @@
 //! The result of a whole study.
 
-use gdcm_method::fidelity::{Discontinuity, Representative};
-use gdcm_method::schedule::{FormComparison, LeadDegreeFit, compare_forms, compare_lead_degrees};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use super::*;
+use gdcm_method::correction::problem::ProblemError;
+use gdcm_method::correction::{ChannelCorrection, GainBounds, Problem, Solution};
+use gdcm_method::couplings::problem::CouplingError;
+use gdcm_method::fidelity::Discontinuity;
+use gdcm_method::fidelity::distance::Representative;
+use gdcm_method::schedule::assessment::{compare_forms, compare_lead_degrees};
+use gdcm_method::schedule::{CostChange, FormComparison, LeadDegreeFit, Schedule, ScheduleError};
+use gdcm_method::uncertainty::Scalar;
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Model, Pair, PairTable};
+
+use super::Study;
+use super::caution::Caution;
+use super::comparison::{BundleMetrics, Comparison};
+use super::convention_doubt::ConventionDoubt;
+use super::couplings_assessment::CouplingsAssessment;
+use super::couplings_words::no_couplings;
+use super::engine::{schedule_settings, scheduled_points};
+use super::fitted_couplings::{CoupledCondition, FittedCouplings};
+use super::lead_compensation::{LeadCompensated, LeadOffer};
+use super::remark::Remark;
+use super::uncertainty::Uncertainty;
 
 /// J of every response of the nominal model of a condition before and after the scheduled correction (M12), or in words why the
 /// condition is left out.
@@ -20,7 +40,7 @@ pub struct Analysis {
     pub conditions: BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>,
     /// The couplings that every physics model has gone through, or why there are none; nothing where they are not asked for (M16).
     pub couplings: Option<Result<Arc<FittedCouplings>, CouplingError>>,
-    /// What the couplings are worth and what they cost, once that was asked for ([`super::CouplingsJob`]).
+    /// What the couplings are worth and what they cost, once that was asked for ([`super::couplings_assessment::CouplingsJob`]).
     pub coupling_assessment: Option<Arc<CouplingsAssessment>>,
     /// Channels that one side seems to have in another sign or unit: what is said first.
     pub doubts: Vec<ConventionDoubt>,
@@ -28,7 +48,7 @@ pub struct Analysis {
     pub schedule: Result<Schedule, ScheduleError>,
     /// Assessment of each condition.
     pub assessment: BTreeMap<ConditionId, Assessed>,
-    /// How sure its figures are, once that has been asked for ([`Engine::uncertainty`](super::Engine::uncertainty)).
+    /// How sure its figures are, once that has been asked for ([`Engine::uncertainty`](super::engine::Engine::uncertainty)).
     pub uncertainty: Option<Arc<Uncertainty>>,
 }
 
@@ -171,7 +191,8 @@ impl ConditionAnalysis {
 
     /// Whether the delays were asked for the D of M15.2, which leads always are, and not for that of eq. (9).
     pub fn asks_band_delays(&self) -> bool {
-        let (asked, delta) = (&self.delay_problem.delta, &self.comparison.delta);
+        let asked = &self.delay_problem.delta;
+        let delta = &self.comparison.delta;
         *asked == delta.band_delay_s && *asked != delta.delay_s
     }
 

@@ -1,9 +1,21 @@
 //! What a correction is worth, response by response and condition by condition, for the model and the correction that are asked
 //! for (M12, Figures 8 to 19).
 
-use gdcm_method::schedule::corrected_cost;
+use std::sync::Arc;
 
-use super::*;
+use gdcm_method::correction::ChannelCorrection;
+use gdcm_method::fidelity::CostAverage;
+use gdcm_method::schedule::{CostChange, ScheduleError, corrected_cost};
+use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_model::response::GainDelay;
+use gdcm_model::units::{number, signed};
+
+use super::analysis::{Analysis, ConditionAnalysis};
+use super::comparison::ModelMismatch;
+use super::execution::in_turn;
+use super::job::{Job, Shared};
+use super::settings::Settings;
 
 /// Which physics model is assessed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -39,7 +51,8 @@ impl AssessedCorrection {
         analysis: &Analysis,
         result: &ConditionAnalysis,
     ) -> Result<ChannelCorrection, ScheduleError> {
-        let (id, state) = (result.condition.id(), result.condition.flight_state());
+        let id = result.condition.id();
+        let state = result.condition.flight_state();
         let scheduled = || {
             analysis
                 .schedule
@@ -81,7 +94,8 @@ pub struct AssessmentChoice {
 impl AssessmentChoice {
     /// What the paper assesses: the nominal model under the schedule.
     pub(super) fn of_paper(settings: &Settings) -> Self {
-        let (model, correction) = (AssessedModel::Nominal, AssessedCorrection::Scheduled);
+        let model = AssessedModel::Nominal;
+        let correction = AssessedCorrection::Scheduled;
         Self {
             model,
             correction,
@@ -196,7 +210,8 @@ impl AssessmentSummary {
         let Some((condition, pair, change)) = self.worst else {
             return "nothing to assess".to_owned();
         };
-        let (pair, change) = (dataset.pair_name(pair), signed(change, 1));
+        let pair = dataset.pair_name(pair);
+        let change = signed(change, 1);
         format!(
             "better in {} of {}, worst {pair} in condition {condition}: {change}",
             self.better, self.compared

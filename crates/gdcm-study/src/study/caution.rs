@@ -1,10 +1,16 @@
 //! What the engineer has to know about a result that could be had all the same.
 
-use gdcm_method::correction::LARGEST_GAIN_DB;
-use gdcm_method::fidelity::{DiscontinuityError, MeasuredPairs};
-use gdcm_model::response::{LargeEntry, PolarResponse};
+use std::fmt;
+use std::sync::Arc;
 
-use super::*;
+use gdcm_method::correction::delta::LARGEST_GAIN_DB;
+use gdcm_method::fidelity::distance::{DiscontinuityError, MeasuredPairs};
+use gdcm_model::dataset::{BundleKind, Condition, Dynamics, Model, Pair};
+use gdcm_model::response::prepared_model::LargeEntry;
+use gdcm_model::response::{FrequencyResponse, PolarResponse};
+use gdcm_model::units::number;
+
+use super::BundleChoice;
 
 /// A caution that travels with a result.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,10 +123,8 @@ impl GainOutOfRange {
         identified: &PolarResponse,
         pair: Pair,
     ) -> Option<Self> {
-        let (physics, identified) = (
-            physics.curves()[pair].as_ref()?,
-            identified.curves()[pair].as_ref()?,
-        );
+        let physics = physics.curves()[pair].as_ref()?;
+        let identified = identified.curves()[pair].as_ref()?;
         let gains_db = identified
             .magnitude_db
             .iter()
@@ -292,7 +296,8 @@ impl fmt::Display for NotFinite {
             NotFinite::Measured { min, max } => {
                 // Six decimals at most: what is lost is no reason to look for.
                 let round = |omega: f64| (omega * 1e6).round() / 1e6;
-                let (min, max) = (round(*min), round(*max));
+                let min = round(*min);
+                let max = round(*max);
                 write!(formatter, "it is measured from {min} to {max} rad/s only: narrow the band, or reject the model")
             }
             NotFinite::Sampled { sample_time_s, nyquist_rad_s } => write!(

@@ -2,10 +2,23 @@
 //! channels whose models are turned, because one side counts them positive the other way round. They are changed where the study takes
 //! them, so that nothing else has to know of it.
 
-use gdcm_model::dataset::{ChannelSide, ConditionRecord, MeasuredResponse, Origin};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_method::correction::Channel;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::dataset::measured_response::MeasuredResponse;
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::{
+    BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, Pair, StateSpace,
+};
 use gdcm_sysid::identification::Identification;
 
-use super::*;
+use super::edit::EditRefusal;
+use super::{BundleChoice, Study};
 
 /// Which models of an identification are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -307,10 +320,8 @@ fn turned_condition(condition: &Condition, signs: &Signs) -> Result<Condition, S
             })
             .collect()
     };
-    let (physics, identified) = (
-        bundle(BundleKind::Physics)?,
-        bundle(BundleKind::Identified)?,
-    );
+    let physics = bundle(BundleKind::Physics)?;
+    let identified = bundle(BundleKind::Identified)?;
     let turned = Condition::new(condition.flight_state().clone(), physics, identified);
     turned
         .and_then(|turned| turned.with_records(condition.records().to_vec()))
@@ -320,7 +331,9 @@ fn turned_condition(condition: &Condition, signs: &Signs) -> Result<Condition, S
 fn turned_dynamics(dynamics: &Dynamics, sign: impl Fn(Channel) -> f64) -> Result<Dynamics, String> {
     match dynamics {
         Dynamics::StateSpace(model) => {
-            let (mut b, mut c, mut d) = (model.b().clone(), model.c().clone(), model.d().clone());
+            let mut b = model.b().clone();
+            let mut c = model.c().clone();
+            let mut d = model.d().clone();
             for input in 0..model.inputs() {
                 b.column_mut(input).scale_mut(sign(Channel::Input(input)));
                 d.column_mut(input).scale_mut(sign(Channel::Input(input)));

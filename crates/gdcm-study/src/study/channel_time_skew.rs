@@ -16,11 +16,13 @@
 //!
 //! `common`, what all channels have in common, is no matter of one channel: the leads say it (M15, section 6).
 
-use gdcm_model::dataset::ChannelSide;
-use gdcm_model::response::unwrap;
-use gdcm_sysid::identification::{ResponseEstimate, Signal, TRUSTED_COHERENCE};
-
-use super::*;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
+use gdcm_model::response::curve_values::unwrap;
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse, median};
+use gdcm_model::simulation::Signal;
+use gdcm_model::units::{s_to_ms, telling};
+use gdcm_sysid::identification::{ResponseEstimate, TRUSTED_COHERENCE};
 
 /// Share of the points in the band at which a response is coherent, at least.
 const LEAST_SHOWN: f64 = 0.5;
@@ -98,10 +100,8 @@ impl ChannelTimeSkew {
 
     /// What is said of it; `name` is the channel's, `physics` the physics model's.
     pub fn words(&self, name: &str, physics: &str) -> String {
-        let (ms, how) = (
-            telling(s_to_ms(self.delay_s.abs()), 0),
-            if self.delay_s < 0.0 { "early" } else { "late" },
-        );
+        let ms = telling(s_to_ms(self.delay_s.abs()), 0);
+        let how = if self.delay_s < 0.0 { "early" } else { "late" };
         format!(
             "{name} seems to be logged {ms} ms {how} in all records: against the physics model \"{physics}\" its responses differ as by a \
              delay, and the others do not. That delay can be taken out. Leave it where the sensor or servo is as slow as that: the \
@@ -135,7 +135,8 @@ fn lags(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Opti
         .iter()
         .filter(|point| (band[0]..=band[1]).contains(&point.omega))
         .collect();
-    let (first, last) = (points.first()?, points.last()?);
+    let first = points.first()?;
+    let last = points.last()?;
     let grid = FrequencyGrid::logarithmic(Band::new(first.omega, last.omega).ok()?, points.len());
     let same = grid.len() == points.len()
         && grid
@@ -153,7 +154,8 @@ fn lags(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Opti
                 && value.norm() > 0.0
                 && point.response[at].norm() > 0.0
         });
-        let (mut angles, mut others) = (Vec::new(), Vec::new());
+        let mut angles = Vec::new();
+        let mut others = Vec::new();
         for (point, value) in trusted {
             angles.push((point.response[at] / value).arg());
             let variance = 0.5 * point.variance[at] / point.response[at].norm_sqr();
@@ -212,7 +214,8 @@ impl Suspect {
             .iter()
             .all(|lag| (lag.delay_s - common_s - delay_s).abs() <= tolerance_s);
         let left = |delay_s: f64| own.iter().map(|lag| lag.left(delay_s)).sum::<f64>();
-        let (before, after) = (left(common_s), left(common_s + delay_s));
+        let before = left(common_s);
+        let after = left(common_s + delay_s);
         let is_late = delay_s.abs() > tolerance_s && agree && after <= MOST_LEFT * before;
         // The responses to an input that is logged late come too early.
         let delay_s = if role == ChannelSide::Output {

@@ -1,13 +1,26 @@
 //! The stages of a condition's analysis that do not depend on constraints, alpha or bounds.
 
-use gdcm_method::correction::mismatch_table;
-use gdcm_method::fidelity::{
-    BundleDistance, CoherenceWeights, ComparedModel, Discontinuity, DiscontinuityError, FitError,
-    MeasuredPairs, Representative, distances_from,
-};
-use gdcm_model::response::PolarResponse;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
-use super::*;
+use nalgebra::Complex;
+
+use gdcm_method::correction::delta::{Delta, delta_gains, mismatch_table};
+use gdcm_method::fidelity::absolute_deviations::FitError;
+use gdcm_method::fidelity::distance::{
+    BundleDistance, ComparedModel, DiscontinuityError, MeasuredPairs, Representative,
+    distances_from,
+};
+use gdcm_method::fidelity::{CoherenceWeights, Cost, CostAverage, Discontinuity, Mismatch};
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dynamics, Pair, PairTable};
+use gdcm_model::progress::Cancelled;
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse, GainDelay, PolarResponse};
+
+use super::analysis::ConditionFailure;
+use super::caution::{BundleModel, Caution, GainOutOfRange, Undefined};
+use super::condition_responses::ConditionResponses;
+use super::execution::Execution;
+use super::{BundleChoice, ConditionChoice, Study, caution};
 
 /// Distances within each bundle and discontinuity ratios of the physics bundle; they do not depend on what is rejected.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,10 +54,8 @@ impl BundleMetrics {
                 execution,
             )
         };
-        let (physics, identified) = (
-            distances(BundleKind::Physics)?,
-            distances(BundleKind::Identified)?,
-        );
+        let physics = distances(BundleKind::Physics)?;
+        let identified = distances(BundleKind::Identified)?;
         let models = condition.bundle(BundleKind::Physics);
         let perturbations: Vec<(&str, Option<&BTreeMap<String, f64>>)> = models
             .iter()
@@ -258,10 +269,8 @@ impl Comparison {
             );
             representative.ok_or(ConditionFailure::AllSetAside { bundle: kind })
         };
-        let (physics, identified) = (
-            representative(BundleKind::Physics)?,
-            representative(BundleKind::Identified)?,
-        );
+        let physics = representative(BundleKind::Physics)?;
+        let identified = representative(BundleKind::Identified)?;
         let flight = &condition.bundle(BundleKind::Identified)[identified.model].dynamics;
         let compared =
             |kind, model| Compared::of(condition, responses, (kind, model), (grid, coherence));

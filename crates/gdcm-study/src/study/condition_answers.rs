@@ -1,9 +1,26 @@
 //! What the models of one condition answer, to be drawn (M17.2): to the sticks of a flight record, with the corridors about flight, and to a
 //! test input, where no record is there to compare them with.
 
-use gdcm_method::requirements::{ChannelTolerance, RecordCheck, TestInput, Tolerance};
+use std::sync::Arc;
 
-use super::*;
+use nalgebra::DMatrix;
+
+use gdcm_method::requirements::tolerance::ChannelTolerance;
+use gdcm_method::requirements::{RecordCheck, TestInput, Tolerance, ToleranceTable};
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::executor::{Executor, each};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_model::simulation::{FlightRecord, Validation, validate};
+use gdcm_model::units::telling;
+use gdcm_sysid::identification::Preparation;
+use gdcm_sysid::identification::preparation::segments_of;
+
+use super::analysis::Analysis;
+use super::job::{Job, Shared};
+use super::requirements::RequirementRole;
+use super::table::Table;
+use super::time_histories::{Comparer, HistoryRecord, LEAST_PIECE_S, Trend, common_windows};
+use super::time_history_tables::percent;
 
 /// One quantity of a record: flown, and as each model answers.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,7 +123,8 @@ impl RecordHistoryJob {
         };
         let segments =
             segments_of(&self.record.flight, &preparation).map_err(|error| error.to_string())?;
-        let (mut missing, mut models) = (Vec::new(), Vec::new());
+        let mut missing = Vec::new();
+        let mut models = Vec::new();
         for role in RequirementRole::ALL {
             match self.analysis.role_model(result, role) {
                 Ok(model) => models.push((role, model)),
@@ -139,7 +157,8 @@ impl RecordHistoryJob {
             }
         };
         let quantities = comparer.rows.iter().map(quantity).collect();
-        let (record, held_out) = (self.record.flight.name.clone(), self.record.held_out);
+        let record = self.record.flight.name.clone();
+        let held_out = self.record.held_out;
         let flight = self.record.flight.clone();
         Ok(RecordHistory {
             condition: self.condition,
@@ -204,7 +223,8 @@ impl TestAnswers {
             input,
             test,
         } = job;
-        let (condition, input) = (*condition, *input);
+        let condition = *condition;
+        let input = *input;
         let result = analysis.result(condition)?;
         let sample_time_s = LEAST_SHOWN_S.max(SHOWN * test.duration_s) / STEPS as f64;
         let answer = |role: &RequirementRole| {
@@ -270,12 +290,13 @@ impl Job for TestAnswersJob {
 
 #[cfg(test)]
 mod tests {
-    use super::couplings_tests::EXAMPLE;
-    use super::*;
-    use crate::study::Unobserved;
     use gdcm_method::correction::Pade;
     use gdcm_method::requirements::TestInputShape;
     use gdcm_model::dataset::BundleKind;
+    use gdcm_model::progress::Unobserved;
+
+    use super::super::couplings_tests::EXAMPLE;
+    use super::*;
 
     fn answers(test: TestInput) -> TestAnswers {
         let analysis = EXAMPLE.analysis.clone();
@@ -297,9 +318,11 @@ mod tests {
             size: 1.0,
             duration_s: 1.0,
         };
-        let (one, three) = (answers(test), answers(TestInput { size: 3.0, ..test }));
+        let one = answers(test);
+        let three = answers(TestInput { size: 3.0, ..test });
         for ((role, small), (_, large)) in one.models.iter().zip(&three.models) {
-            let (small, large) = (small.as_ref().unwrap(), large.as_ref().unwrap());
+            let small = small.as_ref().unwrap();
+            let large = large.as_ref().unwrap();
             // Linear models; rounding of a thousand steps.
             assert!(
                 (3.0 * small - large).amax() <= 1e-9 * large.amax(),

@@ -1,12 +1,18 @@
 //! Responses of every model of a condition, each kept by what it is computed from.
 
 use std::collections::HashMap;
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
-use gdcm_method::correction::ABOVE_BAND;
-use gdcm_model::dataset::ContentHash;
+use gdcm_method::correction::leads::ABOVE_BAND;
+use gdcm_model::dataset::model::ContentHash;
+use gdcm_model::dataset::{Band, BundleKind, Condition, Model};
+use gdcm_model::progress::Cancelled;
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse, PreparedModel};
 
-use super::*;
+use super::analysis::ConditionAnalysis;
+use super::execution::{Execution, Memo};
+use super::fitted_couplings::FittedCouplings;
+use super::settings::{PhaseCorrection, Settings};
 
 /// What a response depends on besides the numbers of its model: the band and the number of frequencies in it.
 pub(super) type GridKey = (Band, usize);
@@ -129,7 +135,7 @@ impl ModelResponses {
 }
 
 /// The models that some condition of some engine holds, by their numbers: a model that stays, or comes back under another name or in
-/// another place, keeps its responses. Engines of one study that share them ([`super::Engine::sharing`]) compute and hold each once.
+/// another place, keeps its responses. Engines of one study that share them ([`super::engine::Engine::sharing`]) compute and hold each once.
 #[derive(Clone, Debug, Default)]
 pub struct KnownModels {
     by_content: Arc<Mutex<HashMap<ContentHash, Weak<ModelResponses>>>>,

@@ -1,11 +1,34 @@
 //! The stages of one condition, each kept while what it depends on stays the same.
 
-use gdcm_method::correction::{
-    Bounds, DELAY_AGREEMENT_S, LeadDesign, delay_upper_s, gain_bounds, solve,
-};
-use gdcm_method::schedule::assess;
+use std::sync::Arc;
 
-use super::*;
+use gdcm_method::correction::delta::{Delta, GainSource, delay_upper_s, gain_bounds};
+use gdcm_method::correction::leads::{ChannelLeads, LeadDesign};
+use gdcm_method::correction::problem::{DELAY_AGREEMENT_S, ProblemError};
+use gdcm_method::correction::solve::solve;
+use gdcm_method::correction::{
+    Bounds, ChannelCorrection, Problem, ProofBudget, Quantity, Solution,
+};
+use gdcm_method::fidelity::CostAverage;
+use gdcm_method::schedule::{CostChange, assess};
+use gdcm_model::dataset::{BundleKind, Condition, Pair, PairTable};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_model::response::FrequencyGrid;
+
+use super::analysis::{ConditionAnalysis, ConditionFailure};
+use super::caution::Caution;
+use super::comparison::{BundleMetrics, Comparison, Mismatches};
+use super::condition_responses::{
+    ConditionModels, ConditionResponses, CoupledResponses, GridKey, Purpose,
+};
+use super::execution::{Execution, Memo};
+use super::fitted_couplings::{CoupledCondition, CouplingSource, FittedCouplings};
+use super::lead_compensation::{LeadCompensated, LeadOffer};
+use super::settings::{DelayFrom, PhaseCorrection, Settings};
+use super::substitutions::{
+    ConditionSubstitutions, SubstitutedOptimum, Substituting, SubstitutionMemo,
+};
+use super::{ConditionChoice, Study};
 
 /// What the distances depend on, besides the models: the grid, the responses that measure them, and the coherence that counts.
 type FiguresKey = (GridKey, PairTable<bool>, Option<f64>);
@@ -111,10 +134,8 @@ impl ConditionStages {
         } = run;
         let condition = Arc::clone(self.models.condition());
         let grid_key = (study.settings.band, study.settings.points);
-        let (measuring, coherence) = (
-            study.dataset.measuring_pairs(),
-            study.settings.coherence_threshold,
-        );
+        let measuring = study.dataset.measuring_pairs();
+        let coherence = study.settings.coherence_threshold;
         let figures_key = (grid_key, measuring.clone(), coherence);
         let responses = self
             .models
@@ -338,8 +359,10 @@ impl SolvedStages {
             Ok(comparison) => comparison,
             Err(failure) => return Ok(Err(failure)),
         };
-        let (settings, omega) = (&measured.run.study.settings, measured.run.grid.omega());
-        let (models, average) = (&comparison.representative, settings.cost_average);
+        let settings = &measured.run.study.settings;
+        let omega = measured.run.grid.omega();
+        let models = &comparison.representative;
+        let average = settings.cost_average;
         let input = measured.solve_input(&comparison);
         let solved = match self.solve(&input)? {
             Ok(solved) => solved,
@@ -387,7 +410,8 @@ impl SolvedStages {
         held: &PairTable<bool>,
         now: &PairTable<Option<CostChange>>,
     ) -> Result<Option<LeadOffer>, Cancelled> {
-        let (settings, omega) = (input.settings(), input.run.grid.omega());
+        let settings = input.settings();
+        let omega = input.run.grid.omega();
         let mut held_s = held
             .marked()
             .map(|pair| input.delta.band_delay_s[pair].unwrap_or_default())
@@ -529,7 +553,8 @@ impl<'a> SolveInput<'a> {
     }
 
     fn gain_problem(&self, compensated: Option<&LeadCompensated>) -> Problem {
-        let (settings, delta) = (self.settings(), self.delta);
+        let settings = self.settings();
+        let delta = self.delta;
         let mismatch = compensated.map_or(self.mismatch, |compensated| &compensated.mismatch);
         let by_quantile = || gain_bounds(mismatch, self.measuring, settings.quantile);
         Problem {
@@ -549,7 +574,8 @@ impl<'a> SolveInput<'a> {
 
     /// Delays of the D that is chosen, signed ones of the band delay; none at all where the phase is left as it is.
     fn delay_problem(&self, design: Option<&LeadDesign>) -> Problem {
-        let (settings, delta) = (self.settings(), self.delta);
+        let settings = self.settings();
+        let delta = self.delta;
         let upper_s = if settings.phase == PhaseCorrection::None {
             0.0
         } else {

@@ -1,8 +1,20 @@
 //! Signs and units that one side seems to have otherwise: said before any delay, zero or mode is blamed for what they do.
 
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
-use super::*;
+use gdcm_method::correction::Channel;
+use gdcm_method::correction::delta::delta_gains;
+use gdcm_method::fidelity::Mismatch;
+use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Pair, PairTable};
+use gdcm_model::progress::Cancelled;
+use gdcm_model::response::{FrequencyGrid, median};
+use gdcm_model::units::number;
+
+use super::Study;
+use super::comparison::{Compared, Mismatches};
+use super::condition_responses::ConditionResponses;
+use super::execution::Execution;
 
 /// Within this \[rad\] of half a turn a phase difference speaks for another sign.
 const NEAR_HALF_A_TURN: f64 = 20.0 / 180.0 * PI;
@@ -220,10 +232,8 @@ fn sign_doubt(
     let shown = samples.iter().map(|sample| {
         // Of the two channels of a response that one is to blame whose other responses are opposed too; the output where both are.
         let is_to_blame = |pair: Pair| {
-            let (own, of_other) = (
-                sample.opposed(channel),
-                sample.opposed(other(channel, pair)),
-            );
+            let own = sample.opposed(channel);
+            let of_other = sample.opposed(other(channel, pair));
             own > of_other || (own == of_other && matches!(channel, Channel::Output(_)))
         };
         let turned = sample
@@ -249,7 +259,8 @@ fn factor_doubt(
         // Of the two channels of a response that one is to blame whose other responses have about the same factor.
         let is_to_blame = |pair: Pair, ln_gain: f64| {
             let apart = |channel| (median(&mut sample.ln_gains(channel)) - ln_gain).abs();
-            let (here, there) = (apart(channel), apart(other(channel, pair)));
+            let here = apart(channel);
+            let there = apart(other(channel, pair));
             here < there || (here == there && matches!(channel, Channel::Output(_)))
         };
         let measured = sample
@@ -314,7 +325,8 @@ pub fn doubts_of_models(
     study: &Study,
     execution: &Execution<'_>,
 ) -> Result<Vec<ConventionDoubt>, Cancelled> {
-    let (band, points) = (study.settings.band, study.settings.points);
+    let band = study.settings.band;
+    let points = study.settings.points;
     let grid = FrequencyGrid::logarithmic(band, points);
     let mut tables = Vec::new();
     for condition in study.dataset.conditions() {

@@ -1,14 +1,33 @@
 //! What couplings are worth and what they cost: how sure their entries are, J without and with them and of conditions left out, the poles
 //! that move, how near the loop is to ringing, what it does above the band (M16.4).
 
-use gdcm_method::correction::ABOVE_BAND;
-use gdcm_method::couplings::{
-    CouplingBars, LEAST_CONDITIONS, LeftOutFit, LoopMargin, PoleShift, relative_change_db,
-};
-use gdcm_model::progress::{Portion, Shares};
-use gdcm_model::response::log_spaced;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use super::*;
+use nalgebra::{Complex, DMatrix};
+use serde::Serialize;
+
+use gdcm_method::correction::Pade;
+use gdcm_method::correction::leads::ABOVE_BAND;
+use gdcm_method::couplings::coupling_effects::relative_change_db;
+use gdcm_method::couplings::problem::CouplingError;
+use gdcm_method::couplings::{CouplingBars, LEAST_CONDITIONS, LeftOutFit, LoopMargin, PoleShift};
+use gdcm_method::schedule::CostChange;
+use gdcm_model::dataset::{Band, BundleKind, ConditionId, Model, Pair, PairTable};
+use gdcm_model::executor::{Sequential, each};
+use gdcm_model::progress::{Cancelled, Portion, Progress, Shares};
+use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::{FrequencyGrid, PreparedModel};
+
+use super::Study;
+use super::analysis::{Analysis, ConditionAnalysis};
+use super::assessment_table::{AssessedCorrection, AssessedModel, AssessmentChoice, assessed};
+use super::condition_stages::SUBSTITUTION_PROOF;
+use super::edit::Edit;
+use super::engine::Engine;
+use super::fitted_couplings::FittedCouplings;
+use super::job::{Job, VariantJob};
+use super::settings::CouplingCorrection;
 
 /// The step that an assessment reports.
 const LEAVING_OUT: &str = "couplings without each condition";
@@ -100,10 +119,8 @@ impl CouplingsAssessment {
 
     /// `M~`, m x m, at an airspeed, with its bars.
     pub fn mixing(&self, airspeed_kt: f64) -> DMatrix<CouplingEntry> {
-        let (values, bars) = (
-            self.fitted.matrices().normalised_mixing(airspeed_kt),
-            self.bars(airspeed_kt),
-        );
+        let values = self.fitted.matrices().normalised_mixing(airspeed_kt);
+        let bars = self.bars(airspeed_kt);
         entries(
             &values,
             bars.as_ref().map(|bars| (&bars.mixing, bars.quantile)),
@@ -355,10 +372,8 @@ fn costs(without: &Analysis, with: &Analysis, left_out: &[LeftOutCondition]) -> 
         }
         sums
     };
-    let (own, scheduled) = (
-        of(AssessedCorrection::Own),
-        of(AssessedCorrection::Scheduled),
-    );
+    let own = of(AssessedCorrection::Own);
+    let scheduled = of(AssessedCorrection::Scheduled);
     let mut unseen = CostSums::new(on_axis);
     left_out.iter().for_each(
         |LeftOutCondition {
@@ -390,10 +405,8 @@ fn of_condition(
     grid: &FrequencyGrid,
     progress: &dyn Progress,
 ) -> Result<(ConditionCouplings, Vec<UnstablePole>), Cancelled> {
-    let (id, airspeed_kt) = (
-        result.condition.id(),
-        result.condition.flight_state().airspeed_kt,
-    );
+    let id = result.condition.id();
+    let airspeed_kt = result.condition.flight_state().airspeed_kt;
     let physics = result.condition.bundle(BundleKind::Physics);
     let chosen = result.comparison.physics.model;
     let Some(coupled) = &result.coupled else {
@@ -418,7 +431,8 @@ fn of_condition(
         &result.coupled_response(&response),
         grid.len() - 1,
     );
-    let (mut unstable, mut refused) = (Vec::new(), Vec::new());
+    let mut unstable = Vec::new();
+    let mut refused = Vec::new();
     let mut poles = Err(String::new());
     for (index, model) in physics.iter().enumerate() {
         if progress.cancelled() {
@@ -579,13 +593,21 @@ mod tests {
 
     use nalgebra::DMatrix;
 
-    use super::couplings_tests::{
+    use gdcm_method::couplings::{CouplingMatrices, Unknown};
+    use gdcm_method::schedule::Airspeeds;
+    use gdcm_model::dataset::condition::FlightState;
+    use gdcm_model::dataset::dataset::DatasetHeader;
+    use gdcm_model::dataset::model::Origin;
+    use gdcm_model::dataset::{Channel, *};
+    use gdcm_model::progress::Unobserved;
+
+    use super::super::couplings_tests::{
         COUPLED, EXAMPLE, REFERENCE, assert_close, engine, list, number, numbers, own_and_scheduled,
     };
     use super::*;
-    use gdcm_method::couplings::{CouplingMatrices, Unknown};
-    use gdcm_method::schedule::Airspeeds;
-    use gdcm_model::dataset::{Channel, *};
+    use crate::study::remark::RemarkKind;
+    use crate::study::setting;
+    use crate::study::settings::PhaseCorrection;
 
     /// The assessment of mixing and feedback of the reference dataset.
     static ASSESSED: LazyLock<Arc<CouplingsAssessment>> = LazyLock::new(|| {

@@ -7,13 +7,23 @@ use std::sync::{Arc, LazyLock};
 use nalgebra::DMatrix;
 use serde_json::Value;
 
-use super::*;
 use gdcm_method::correction::{Channels, Pade};
+use gdcm_method::couplings::coupling_effects::{cyclic_inputs, feedback_shares, mixing_shares};
+use gdcm_method::couplings::fit::{CouplingFit, left_out_fits};
+use gdcm_method::couplings::problem::{
+    CouplingOptions, mean_delays_s, response_deviation, without_channels,
+};
 use gdcm_method::couplings::*;
 use gdcm_method::schedule::CostChange;
+use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::dataset::dataset::DatasetHeader;
+use gdcm_model::dataset::model::{ModelBands, Origin};
 use gdcm_model::dataset::{Channel, *};
 use gdcm_model::executor::{Executor, Sequential, Task};
 use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
+
+use super::*;
+use crate::study::assessment_table::{AssessedModel, AssessmentChoice};
 
 pub(super) static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
     serde_json::from_str(include_str!("../../../../tests/data/reference/mixing.json")).unwrap()
@@ -118,7 +128,8 @@ fn dataset_of(packed: &[u8]) -> Dataset {
             .map(|of| Channel::new(text(&of["name"]), text(&of["unit"])))
             .collect()
     };
-    let (inputs, outputs) = (channels("inputs"), channels("outputs"));
+    let inputs = channels("inputs");
+    let outputs = channels("outputs");
     let is_on_axis = |pair: Pair| {
         let named = |on_axis: &&Value| {
             on_axis[0] == outputs[pair.output].name.as_str()
@@ -265,10 +276,8 @@ impl Example {
         let mut unstable = Vec::new();
         for condition in self.dataset.conditions() {
             for model in condition.bundle(BundleKind::Physics) {
-                let (physics, airspeed_kt) = (
-                    model.state_space().unwrap(),
-                    condition.flight_state().airspeed_kt,
-                );
+                let physics = model.state_space().unwrap();
+                let airspeed_kt = condition.flight_state().airspeed_kt;
                 let shifts = matrices
                     .pole_shifts(physics, airspeed_kt, Pade::new(4).unwrap())
                     .unwrap();
@@ -311,7 +320,8 @@ pub(super) fn mean_costs(of: impl Iterator<Item = PairTable<Option<CostChange>>>
 }
 
 fn the_example_agrees(fit: &CouplingFit, name: &str) {
-    let (reference, tolerance) = (&REFERENCE["example"][name], &REFERENCE["tolerance"]);
+    let reference = &REFERENCE["example"][name];
+    let tolerance = &REFERENCE["tolerance"];
     let [coefficient, tau_s, cost] =
         ["coefficients", "tau_s", "mean_J"].map(|name| number(&tolerance[name]));
     let delays_s = EXAMPLE.mean_delays_s();
@@ -356,10 +366,8 @@ fn the_example_agrees(fit: &CouplingFit, name: &str) {
             &row_by_row(&matrix(&expected["K"])),
             coefficient,
         );
-        let (at, signed_s) = (
-            format!("condition {id}"),
-            found.correction.signed_delays_s(),
-        );
+        let at = format!("condition {id}");
+        let signed_s = found.correction.signed_delays_s();
         assert_close(
             &at,
             &signed_s.outputs,
@@ -433,7 +441,8 @@ fn the_embedded_example_reads_as_what_was_put_in() {
         let found = mixing[(at(to), at(from))];
         assert!((found - expected).abs() < 0.01, "{from} to {to}: {found}");
     }
-    let (low, high) = (example.dataset.band().min(), example.dataset.band().max());
+    let low = example.dataset.band().min();
+    let high = example.dataset.band().max();
     let margins =
         [(low, high), (high, 10.0 * high)].map(|range| example.least_margin(&fit.matrices, range));
     assert!(
@@ -568,10 +577,8 @@ fn the_engine_with_mixing_and_feedback_gives_the_known_answers() {
     assert_eq!(analysis.fitted_couplings().unwrap().fit, *FEEDBACK);
     agrees(analysis, "feedback");
     for (id, result) in &analysis.conditions {
-        let (result, before) = (
-            result.as_ref().unwrap(),
-            EXAMPLE.analysis.condition(*id).unwrap(),
-        );
+        let result = result.as_ref().unwrap();
+        let before = EXAMPLE.analysis.condition(*id).unwrap();
         let representatives = |of: &ConditionAnalysis| {
             BundleKind::BOTH.map(|kind| of.representative_name(kind).to_owned())
         };

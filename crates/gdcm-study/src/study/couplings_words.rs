@@ -1,13 +1,23 @@
 //! What couplings say, in the engineer's words: a diagnosis first, then what they are worth, then what they cost (M16.4); and the same as
 //! tables (M16.5).
 
-use gdcm_method::couplings::{
-    FeedbackShare, LEAST_CONDITIONS, LoopMargin, MixingShare, Unknown, cyclic_inputs,
-    feedback_shares, mixing_shares,
-};
-use gdcm_model::dataset::Channel;
+use std::collections::BTreeMap;
 
-use super::*;
+use nalgebra::{Complex, DMatrix};
+
+use gdcm_method::couplings::coupling_effects::{
+    FeedbackShare, MixingShare, cyclic_inputs, feedback_shares, mixing_shares,
+};
+use gdcm_method::couplings::{LEAST_CONDITIONS, LoopMargin, Unknown};
+use gdcm_model::dataset::{Channel, ConditionId, Dataset, Pair};
+use gdcm_model::units::{number, signed, telling};
+
+use super::couplings_assessment::{
+    AxisCost, CouplingCost, CouplingEntry, CouplingsAssessment, UnstablePole,
+};
+use super::remark::{Remark, RemarkKind};
+use super::settings::CouplingCorrection;
+use super::table::Table;
 
 /// Entries told of each matrix, the largest.
 const TOLD: usize = 3;
@@ -51,7 +61,8 @@ impl CouplingsAssessment {
         let is_told =
             |entries: &DMatrix<CouplingEntry>, place: (usize, usize)| !entries[place].is_within_bar;
         let is_rate = |output: usize| is_rate(&dataset.outputs()[output]);
-        let (mixing, feedback) = (self.mixing(airspeed_kt), self.feedback());
+        let mixing = self.mixing(airspeed_kt);
+        let feedback = self.feedback();
         let matrices = self.fitted.matrices();
         let cyclic = cyclic_inputs(dataset.on_axis(), is_rate);
         let mixed = mixing_shares(&matrices.normalised_mixing(airspeed_kt), cyclic);
@@ -249,10 +260,8 @@ impl CouplingsAssessment {
 
     /// Some condition without which there are no couplings, and how many there are.
     fn partly_left_out(&self) -> Option<String> {
-        let (all, known) = (
-            self.fitted.problem.conditions.len(),
-            self.left_out_fits.len(),
-        );
+        let all = self.fitted.problem.conditions.len();
+        let known = self.left_out_fits.len();
         (all >= LEAST_CONDITIONS && known < all).then(|| {
             format!(
                 "J of conditions left out and the bars of the couplings rest on {known} of {all} conditions: without each of the others \
@@ -325,7 +334,8 @@ fn mixing_words(dataset: &Dataset, of: &MixingShare) -> String {
 
 /// "PED follows NY by 1.2 % per m/s²: directional stiffness that the physics model does not have".
 fn feedback_words(dataset: &Dataset, of: &FeedbackShare) -> String {
-    let (input, output) = (&dataset.inputs()[of.input], &dataset.outputs()[of.output]);
+    let input = &dataset.inputs()[of.input];
+    let output = &dataset.outputs()[of.output];
     let is_of = |output: usize| dataset.on_axis()[Pair::new(output, of.input)];
     let has_rate =
         (0..dataset.outputs().len()).any(|at| is_of(at) && is_rate(&dataset.outputs()[at]));
@@ -568,9 +578,10 @@ fn entry_words(entry: &CouplingEntry) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::couplings_tests::EXAMPLE;
+    use gdcm_model::dataset::dataset::DatasetHeader;
+
+    use super::super::couplings_tests::EXAMPLE;
     use super::*;
-    use gdcm_model::dataset::DatasetHeader;
 
     #[test]
     fn a_share_of_a_stick_in_another_unit_is_no_percentage() {

@@ -1,7 +1,21 @@
 //! What differs between two sets of decisions about one dataset, and between two states of one dataset, with the decisions carried over from
 //! one to the other.
 
-use super::*;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use gdcm_method::correction::Channel;
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId, PairTable};
+
+use super::changed_models::{AdoptedModels, TurnedChannel};
+use super::edit::Edit;
+use super::requirements::RequirementSettings;
+use super::setting::SETTINGS;
+use super::settings::{ResponseNames, Settings};
+use super::{BundleChoice, ConditionChoice, Study, Variant};
 
 /// One decision that was taken otherwise.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,7 +47,8 @@ impl fmt::Display for DecisionDifference {
 /// Every decision in which `after` differs from `before`, a study of the same dataset: settings, responses, then condition by
 /// condition. What was kept under names does not count.
 pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
-    let (a, b) = (&before.settings, &after.settings);
+    let a = &before.settings;
+    let b = &after.settings;
     let changed = SETTINGS
         .iter()
         .filter(|setting| setting.value(a) != setting.value(b));
@@ -65,7 +80,8 @@ pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDiffer
     }
     for condition in before.dataset.conditions() {
         let id = condition.id();
-        let (a, b) = (before.choice(id), after.choice(id));
+        let a = before.choice(id);
+        let b = after.choice(id);
         let mut compare = |before: bool, after: bool, [no, yes]: [&str; 2]| {
             let word = |is_so: bool| if is_so { yes } else { no };
             let difference =
@@ -401,7 +417,8 @@ impl Inventory {
                 (Some(_), None) => differences.push(Difference::ConditionRemoved(id)),
                 (None, Some(_)) => differences.push(Difference::ConditionAdded(id)),
                 (Some(before), Some(now)) => {
-                    let (before_kt, now_kt) = (before.airspeed_kt, now.airspeed_kt);
+                    let before_kt = before.airspeed_kt;
+                    let now_kt = now.airspeed_kt;
                     if before_kt != now_kt {
                         differences.push(Difference::AirspeedChanged {
                             condition: id,

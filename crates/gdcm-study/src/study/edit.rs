@@ -1,8 +1,16 @@
 //! Every decision the engineer can take about a study, and the only code that carries one out.
 
-use gdcm_model::dataset::BandError;
+use std::sync::Arc;
 
-use super::*;
+use gdcm_method::correction::Channel;
+use gdcm_model::dataset::dataset::BandError;
+use gdcm_model::dataset::{BundleKind, Condition, ConditionId, ModelId, Pair, PairTable};
+use gdcm_model::units::number;
+
+use super::changed_models::{AdoptedModels, SignRole};
+use super::requirements::RequirementSettings;
+use super::setting_row::{Setting, Value};
+use super::{ConditionChoice, Study};
 
 /// One decision about a study.
 #[derive(Clone, Debug, PartialEq)]
@@ -402,7 +410,8 @@ impl Study {
     }
 
     fn set_reason(&mut self, id: &ModelId, reason: &str) -> Result<(), EditRefusal> {
-        let (reason, (_, choice)) = (reason.trim(), self.model(id)?);
+        let reason = reason.trim();
+        let (_, choice) = self.model(id)?;
         let choice = choice.bundle_mut(id.bundle);
         if !choice.rejected.contains(&id.name) {
             return Err(EditRefusal::ReasonOfKept {

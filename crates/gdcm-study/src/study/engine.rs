@@ -1,12 +1,28 @@
 //! The analysis of a study, stage by stage, each kept while what it depends on stays the same.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use gdcm_method::correction::leads::ChannelLeads;
+use gdcm_method::correction::{Channel, Problem, ProofBudget, Solution};
 use gdcm_method::schedule::{
-    DelayScheduling, NOTABLE_DELAY_S, ScheduleCaution, ScheduleSettings, ScheduledPoint,
+    DelayScheduling, NOTABLE_DELAY_S, Schedule, ScheduleCaution, ScheduleSettings, ScheduledPoint,
 };
+use gdcm_model::dataset::{Band, Condition, ConditionId, Dataset};
+use gdcm_model::executor::{Executor, Sequential};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_model::response::FrequencyGrid;
 
-use super::*;
+use super::analysis::{Analysis, ConditionAnalysis, ConditionFailure};
+use super::assessment_table::{AssessmentChoice, assessed};
+use super::condition_responses::{ConditionCurves, ConditionModels, KnownModels, Purpose};
+use super::condition_stages::{ConditionStages, Run, SUBSTITUTION_PROOF, model_count};
+use super::convention_doubt::{ConventionDoubt, convention_doubts};
+use super::execution::{Execution, Memo};
+use super::fitted_couplings::{CouplingFitKey, CouplingOutcome, CouplingSource, FittedCouplings};
+use super::uncertainty::Uncertainty;
+use super::{Study, schedule_losses};
 
 /// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
 /// with one other model, one response is computed.
@@ -30,7 +46,7 @@ pub struct Engine {
     curves: Memo<(Band, usize), Arc<ConditionCurves>>,
 }
 
-/// The budget of a proof that an answer may wait for; what needs more of it is proven beside the answer ([`super::ProofJob`]).
+/// The budget of a proof that an answer may wait for; what needs more of it is proven beside the answer ([`super::job::ProofJob`]).
 pub const LIVE_PROOF: ProofBudget = ProofBudget {
     work: 1_000_000,
     listing: 100_000,
@@ -131,7 +147,8 @@ impl Engine {
                 .cautions
                 .extend(signed_delays_apart(study, &conditions));
         }
-        let (study, omega) = (study.clone(), grid.omega().into());
+        let study = study.clone();
+        let omega = grid.omega().into();
         let assessment = BTreeMap::new();
         let mut analysis = Analysis {
             study,
@@ -213,7 +230,8 @@ impl Engine {
         let Some(stages) = self.conditions.get(&condition) else {
             return Ok(None);
         };
-        let (executor, models) = (self.executor.as_ref(), stages.models());
+        let executor = self.executor.as_ref();
+        let models = stages.models();
         let curves = self.curves.get_or_fail((band, points), |&key| {
             let grid = FrequencyGrid::logarithmic(band, points);
             let execution = Execution::new(executor, progress, model_count(models.condition()));

@@ -3,7 +3,8 @@
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::*;
+use gdcm_model::executor::{Executor, Sequential, each};
+use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 
 /// Carries out the pieces of one analysis, stops between two of them, and tells how far it is.
 pub struct Execution<'a> {
@@ -164,8 +165,9 @@ impl<K: PartialEq, V: Clone> Memo<K, V> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use std::sync::Mutex;
+
+    use super::*;
 
     /// Stops after so many pieces of work, and keeps what it hears.
     struct Impatient {

@@ -2,18 +2,35 @@
 //! place where what leaves takes them (M16.3).
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
-use gdcm_method::correction::{Channels, CorrectedModel, LeadDesign, LeadSettings};
+use gdcm_method::correction::corrected_model::CorrectedModel;
+use gdcm_method::correction::leads::{LeadDesign, LeadSettings};
+use gdcm_method::correction::{ChannelCorrection, Channels, Pade};
+use gdcm_method::couplings::fit::CouplingFit;
+use gdcm_method::couplings::problem::{
+    CouplingError, CouplingOptions, coherence_deviation, mean_delays_s, response_deviation,
+    without_channels,
+};
 use gdcm_method::couplings::{
-    CoupledModelError, CouplingCondition, CouplingFit, CouplingKind, CouplingMatrices,
-    CouplingOptions, CouplingProblem, PoleShift, coherence_deviation, fit_couplings, mean_delays_s,
-    response_deviation, without_channels,
+    CoupledModelError, CouplingCondition, CouplingKind, CouplingMatrices, CouplingProblem,
+    PoleShift, fit_couplings,
 };
 use gdcm_method::fidelity::CoherenceWeights;
-use gdcm_model::dataset::{ContentHash, ModelBands};
-use gdcm_model::response::coherence_at;
+use gdcm_model::dataset::model::{ContentHash, ModelBands};
+use gdcm_model::dataset::{
+    BundleKind, Condition, ConditionId, Dynamics, Model, PairTable, StateSpace,
+};
+use gdcm_model::executor::Executor;
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_model::response::curve_values::coherence_at;
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
 
-use super::*;
+use super::Study;
+use super::analysis::{Analysis, ConditionAnalysis};
+use super::comparison::Comparison;
+use super::condition_responses::GridKey;
+use super::settings::PhaseCorrection;
 
 /// The couplings of a study.
 #[derive(Clone, Debug)]

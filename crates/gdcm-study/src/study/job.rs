@@ -1,18 +1,34 @@
 //! Long work that is done beside the live answer.
 
 use std::ops::Deref;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use gdcm_method::correction::{Toggle, toggles};
+use gdcm_method::correction::problem::ProblemError;
+use gdcm_method::correction::sensitivity::{Toggle, toggles};
+use gdcm_method::correction::{Problem, ProofBudget, Solution};
 use gdcm_method::fidelity::{ModeTrack, mode_tracks};
-use gdcm_model::response::{Mode, ModesError, modes_of};
-use gdcm_sysid::identification::{
-    Identification, IdentificationError, Options, ValidationSettings, identify,
+use gdcm_model::dataset::{
+    Band, BundleKind, Condition, ConditionId, Dataset, Model, ModelId, Pair, StateSpace,
 };
+use gdcm_model::executor::Executor;
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_model::response::eigenvalues::{ModesError, modes_of};
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse, GainDelay, Mode, PreparedModel};
+use gdcm_model::simulation::{FlightRecord, Validation, ValidationSettings, validate};
+use gdcm_sysid::identification::identify::identify;
+use gdcm_sysid::identification::preparation::segments_of;
+use gdcm_sysid::identification::{Identification, IdentificationError, Options, Preparation};
 use gdcm_sysid::records::LaidOutRecord;
 
-use super::*;
+use super::Study;
+use super::analysis::{Analysis, ConditionAnalysis};
+use super::condition_responses::ConditionCurves;
+use super::condition_stages::solved;
+use super::engine::Engine;
+use super::execution::in_turn;
+use super::fitted_couplings::FittedCouplings;
+use super::uncertainty::Uncertainty;
 
 /// A value that several hold, equal to itself alone: two of them are compared without a look at their numbers.
 #[derive(Debug)]
@@ -96,7 +112,8 @@ impl TogglesJob {
     /// Whether the costs are those of this result: they depend on its two problems, and on the objectives that they are
     /// compared with.
     pub fn is_of(&self, condition: &ConditionAnalysis) -> bool {
-        let (a, b) = (&self.condition, condition);
+        let a = &self.condition;
+        let b = condition;
         let same_problems = a.gain_problem == b.gain_problem && a.delay_problem == b.delay_problem;
         same_problems
             && a.gains.objective == b.gains.objective
@@ -341,7 +358,8 @@ pub struct VariantJob {
 impl PartialEq for VariantJob {
     /// The same dataset and the same decisions: the words that they are explained with do not count.
     fn eq(&self, other: &Self) -> bool {
-        let (a, b) = (&self.study, &other.study);
+        let a = &self.study;
+        let b = &other.study;
         Arc::ptr_eq(&a.dataset, &b.dataset)
             && a.settings == b.settings
             && a.dataset

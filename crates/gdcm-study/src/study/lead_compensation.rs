@@ -1,11 +1,22 @@
 //! What lead filters leave of the difference between two representatives (M15.5).
 
-use gdcm_method::correction::LeadPrice;
-use gdcm_method::schedule::corrected_cost;
-use gdcm_model::response::LeadFilter;
-use gdcm_model::units::ratio_to_db;
+use std::sync::Arc;
 
-use super::*;
+use gdcm_method::correction::delta::delta_gains;
+use gdcm_method::correction::leads::ChannelLeads;
+use gdcm_method::correction::{Channel, ChannelCorrection, LeadPrice};
+use gdcm_method::fidelity::{Cost, CostAverage, Mismatch};
+use gdcm_method::schedule::{CostChange, corrected_cost};
+use gdcm_method::uncertainty::Scalar;
+use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::response::LeadFilter;
+use gdcm_model::units::{number, ratio_to_db, s_to_ms, signed, telling};
+
+use super::Study;
+use super::analysis::ConditionAnalysis;
+use super::remark::{Remark, RemarkKind, Repeated, miss_words};
+use super::settings::PhaseCorrection;
+use super::uncertainty::Uncertainty;
 
 /// The physics representative with the leads of its channels against the identified one: what the gains are found on.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,7 +68,8 @@ impl LeadOffer {
         let phase_alone = ChannelCorrection::of_leads(leads.taus_s.map(|_, _| 1.0), leads);
         let left = corrected_cost(mismatch, &phase_alone, omega, average);
         let of_both = |(pair, left): (Pair, &Option<Cost>)| {
-            let (left, now) = ((*left)?.phase, now[pair]?.corrected);
+            let left = (*left)?.phase;
+            let now = now[pair]?.corrected;
             Some([now.total(), now.magnitude + left])
         };
         let both: Vec<[f64; 2]> = left.iter().filter_map(of_both).collect();
@@ -204,7 +216,8 @@ pub(super) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Rem
     }
     remarks.extend(not_of_a_delay(study, result).map(caution));
     remarks.extend(result.offer.map(|offer| {
-        let (without, with) = (telling(offer.without, 0), telling(offer.with, 0));
+        let without = telling(offer.without, 0);
+        let with = telling(offer.with, 0);
         let text = format!(
             "All held responses want lead: with a delay or lead in each channel their J would be about {with} in the mean, in place \
              of {without}."
@@ -244,7 +257,8 @@ fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
 
 /// Whether every held response gets what it wants; which does not and why.
 fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
-    let (held, delays) = (result.held().marked().count(), &result.delays);
+    let held = result.held().marked().count();
+    let delays = &result.delays;
     if delays
         .inputs
         .iter()
@@ -299,7 +313,8 @@ fn not_of_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<String> {
         .marked()
         .filter(|pair| !is_doubted(pair))
         .filter_map(|pair| {
-            let (median_s, band_s) = (delta.delay_s[pair]?, delta.band_delay_s[pair]?);
+            let median_s = delta.delay_s[pair]?;
+            let band_s = delta.band_delay_s[pair]?;
             let ms = |delay_s: f64| signed(s_to_ms(delay_s), 0);
             let name = study.dataset.pair_name(pair);
             ((median_s - band_s).abs() > APART_S).then(|| {

@@ -1,79 +1,64 @@
 //! What the engineer does: settings, rejections, pins; and the analysis of it all, in cached stages.
 
-mod analysis;
-mod assessment_table;
-mod caution;
-mod changed_models;
-mod channel_time_skew;
-mod comparison;
-mod condition_answers;
-mod condition_responses;
+pub mod analysis;
+pub mod assessment_table;
+pub mod caution;
+pub mod changed_models;
+pub mod channel_time_skew;
+pub mod comparison;
+pub mod condition_answers;
+pub mod condition_responses;
 mod condition_stages;
-mod convention_doubt;
-mod couplings_assessment;
-mod couplings_words;
-mod derivation;
-mod differences;
-mod edit;
-mod engine;
-mod execution;
-mod fitted_couplings;
-mod job;
-mod lead_compensation;
-mod remark;
-mod required_bandwidth;
-mod required_modes;
-mod requirements;
-mod requirements_tables;
-mod schedule_losses;
+pub mod convention_doubt;
+pub mod couplings_assessment;
+pub mod couplings_words;
+pub mod derivation;
+pub mod differences;
+pub mod edit;
+pub mod engine;
+pub mod execution;
+pub mod fitted_couplings;
+pub mod job;
+pub mod lead_compensation;
+pub mod remark;
+pub mod required_bandwidth;
+pub mod required_modes;
+pub mod requirements;
+pub mod requirements_tables;
+pub mod schedule_losses;
 pub mod setting;
-mod setting_row;
-mod settings;
-mod substitutions;
-mod table;
-mod time_histories;
+pub mod setting_row;
+pub mod settings;
+pub mod substitutions;
+pub mod table;
+pub mod time_histories;
 mod time_history_tables;
-mod uncertainty;
+pub mod uncertainty;
+
+pub use analysis::{Analysis, ConditionAnalysis};
+pub use assessment_table::{AssessedCorrection, AssessmentTable};
+pub use edit::Edit;
+pub use engine::Engine;
+pub use execution::Execution;
+pub use job::AcrossRole;
+pub use settings::{CouplingCorrection, PhaseCorrection};
+pub use table::Table;
+
+use changed_models::{AdoptedModels, Signs};
+use edit::{EditRefusal, check_length};
+use requirements::RequirementSettings;
+use settings::Settings;
 
 // What most files of the room speak of: they take it from here, with one another's types, by `use super::*`.
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 use std::sync::{Arc, LazyLock};
 
-use nalgebra::{Complex, DMatrix};
 use serde::{Deserialize, Serialize};
 
-use gdcm_method::correction::{
-    Channel, ChannelCorrection, ChannelLeads, Delta, GainBounds, GainObjective, GainSource, Pade,
-    Problem, ProblemError, ProofBudget, Quantity, Solution, delta_gains,
-};
-use gdcm_method::couplings::CouplingError;
-use gdcm_method::fidelity::{Cost, CostAverage, Mismatch};
-use gdcm_method::requirements::{ModeVerdict, ToleranceTable};
-use gdcm_method::schedule::{
-    CostChange, Schedule, ScheduleError, ScheduledQuantity, SecondVariable,
-};
-use gdcm_method::uncertainty::Scalar;
-use gdcm_model::dataset::{
-    Band, BundleKind, Condition, ConditionId, Dataset, Dynamics, Model, ModelId, Pair, PairTable,
-    StateSpace,
-};
-use gdcm_model::executor::{Executor, Sequential, each};
-use gdcm_model::response::{FrequencyGrid, FrequencyResponse, GainDelay, PreparedModel, median};
-use gdcm_model::units::{number, s_to_ms, signed, telling};
-use gdcm_sysid::identification::{FlightRecord, Preparation, Validation, segments_of, validate};
+use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, ModelId};
 
-pub use self::derivation::{Derivation, ExplainTarget, derivation};
-pub use self::setting::SETTINGS;
-pub use self::{
-    analysis::*, assessment_table::*, caution::*, changed_models::*, channel_time_skew::*,
-    comparison::*, condition_answers::*, condition_responses::*, convention_doubt::*,
-    couplings_assessment::*, couplings_words::*, differences::*, edit::*, engine::*, execution::*,
-    fitted_couplings::*, job::*, lead_compensation::*, remark::*, required_bandwidth::*,
-    required_modes::*, requirements::*, requirements_tables::*, schedule_losses::*, setting_row::*,
-    settings::*, substitutions::*, table::*, time_histories::*, uncertainty::*,
-};
-use self::{condition_stages::*, time_history_tables::*};
+pub use self::derivation::ExplainTarget;
+
 pub use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 
 /// The engineer's choices in one bundle.
@@ -293,7 +278,8 @@ impl Study {
         let Variant {
             settings, choices, ..
         } = self.variant(name)?;
-        let (settings, choices) = (settings.clone(), choices.clone());
+        let settings = settings.clone();
+        let choices = choices.clone();
         Some(Study {
             settings,
             choices,
@@ -304,7 +290,8 @@ impl Study {
 
     pub(super) fn keep_variant(&mut self, name: &str) -> Result<(), EditRefusal> {
         let name = self.new_variant_name(name)?;
-        let (settings, choices) = (self.settings.clone(), self.choices.clone());
+        let settings = self.settings.clone();
+        let choices = self.choices.clone();
         self.variants.push(Arc::new(Variant {
             name,
             settings,

@@ -1,9 +1,17 @@
 //! What the result of a condition says, in the engineer's words: the same in the window and in a terminal.
 
-use gdcm_method::correction::{Sensitivity, kkt_residual, sensitivities};
-use gdcm_model::units::told_apart;
+use gdcm_method::correction::sensitivity::{Sensitivity, kkt_residual, sensitivities};
+use gdcm_method::correction::{Channel, Solution};
+use gdcm_method::schedule::Schedule;
+use gdcm_model::dataset::Pair;
+use gdcm_model::units::{number, s_to_ms, telling, told_apart};
 
-use super::*;
+use super::Study;
+use super::analysis::ConditionAnalysis;
+use super::caution::Caution;
+use super::changed_models::SignRole;
+use super::lead_compensation::lead_remarks;
+use super::settings::PhaseCorrection;
 
 /// How a remark is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,7 +126,8 @@ fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         ..Remark::new(RemarkKind::Caution, doubt.words(&study.dataset))
     });
     let turned = study.signs.iter().map(|(channel, of)| {
-        let (name, of) = (channel.name_in(&study.dataset), of.models());
+        let name = channel.name_in(&study.dataset);
+        let of = of.models();
         let text = format!("{name} of {of} is turned: its sign is not that of the file.");
         Remark {
             turn: Some((*channel, None)),
@@ -244,7 +253,8 @@ fn others_worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Rema
 }
 
 fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
-    let (held, unmatched) = (result.held().marked().count(), &result.delays.unmatched);
+    let held = result.held().marked().count();
+    let unmatched = &result.delays.unmatched;
     if unmatched.is_empty() {
         let how = if result.delays.agreeing.is_empty() {
             "exactly"
@@ -306,10 +316,8 @@ pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
                 .collect::<Vec<_>>()
                 .join(", ")
         };
-        let (of_inputs, of_outputs) = (
-            figures(&inputs, &other.inputs),
-            figures(&outputs, &other.outputs),
-        );
+        let of_inputs = figures(&inputs, &other.inputs);
+        let of_outputs = figures(&outputs, &other.outputs);
         format!("Another set of gains is only {worse:.2} % worse: {of_inputs}; {of_outputs}.")
     }));
     let top = study.settings.band.max();

@@ -7,16 +7,28 @@
 //! ```
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
-use gdcm_method::requirements::{
-    AboveBand, AttitudeOutput, AttitudeResponse, AttitudeResponseError, Bandwidth, BandwidthRule,
-    BandwidthSettings, Metric, NoMetric, PairBand, PhaseLine, ResponseAt, SampledModel,
-    search_frequencies, substitution_bar,
+use serde::Serialize;
+
+use gdcm_method::correction::leads::ChannelLeads;
+use gdcm_method::correction::{Channel, ChannelCorrection, Pade};
+use gdcm_method::requirements::attitude_response::{
+    AttitudeResponse, AttitudeResponseError, ResponseAt, SampledModel, search_frequencies,
 };
-use gdcm_method::uncertainty::{Figures, student_quantile};
-use gdcm_model::dataset::ModelBands;
+use gdcm_method::requirements::bandwidth::{
+    AboveBand, Bandwidth, BandwidthSettings, Metric, NoMetric, PairBand, PhaseLine,
+    substitution_bar,
+};
+use gdcm_method::requirements::{AttitudeOutput, BandwidthRule};
+use gdcm_method::uncertainty::spread::Figures;
+use gdcm_method::uncertainty::{Scalar, student_quantile};
+use gdcm_model::dataset::model::ModelBands;
+use gdcm_model::dataset::{Band, BundleKind, ConditionId, Dynamics, Pair};
+use gdcm_model::response::GainDelay;
 
-use super::*;
+use super::requirements::{AskedCondition, RequirementRole};
+use super::substitutions::Swap;
 
 /// Bandwidth and phase delay of one response of one model of a condition.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -264,7 +276,8 @@ impl<'a> PreparedModels<'a> {
         between: Between,
     ) -> Result<(Bandwidth, Option<f64>), AttitudeResponseError> {
         let study = &self.asked.analysis.study;
-        let (band, channel) = (study.settings.band, &study.dataset.outputs()[pair.output]);
+        let band = study.settings.band;
+        let channel = &study.dataset.outputs()[pair.output];
         let output = AttitudeOutput::of(channel)?;
         let exact = model.sampled.exact(pair, correction.multiplier);
         let interpolated = model.sampled.interpolated(pair, correction.multiplier);

@@ -1,13 +1,21 @@
 //! The modes of the physics representative, as it is and with the couplings of the study, against those of the identified one, where both
 //! are known by their matrices (M17.3).
 
-use gdcm_method::requirements::{
-    ComparedMode, ModeName, ModeRow, ModeTolerance, ModeValues, ModelModes, NamedBy, compare_modes,
-};
-use gdcm_model::response::{Mode, modes_of};
-use gdcm_sysid::identification::PoleEstimate;
+use std::collections::BTreeMap;
 
-use super::*;
+use serde::Serialize;
+
+use gdcm_method::correction::Pade;
+use gdcm_method::requirements::mode_comparison::{
+    ComparedMode, ModeRow, ModeTolerance, ModeValues, ModelModes, compare_modes,
+};
+use gdcm_method::requirements::{ModeName, ModeVerdict, NamedBy};
+use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Model};
+use gdcm_model::response::Mode;
+use gdcm_model::response::eigenvalues::modes_of;
+use gdcm_model::response::pole_estimate::PoleEstimate;
+
+use super::requirements::AskedCondition;
 
 /// The poles that were identified of conditions, with how sure they are: a dataset does not keep that.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -121,7 +129,8 @@ pub(super) fn mode_findings(
     let tolerances = &asked.analysis.study.requirements.mode_tolerances;
     let [physics, identified] =
         BundleKind::BOTH.map(|kind| asked.result.representative_model(kind));
-    let (of_physics, of_identified) = (known_modes(physics)?, known_modes(identified)?);
+    let of_physics = known_modes(physics)?;
+    let of_identified = known_modes(identified)?;
     let of_corrected = coupled_modes(asked, physics)?;
     let flown = ModelModes {
         modes: &of_identified,
@@ -201,10 +210,13 @@ fn known_modes(model: &Model) -> Result<Vec<Mode>, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Execution, requirements_of};
-    use super::couplings_tests::EXAMPLE;
+    use gdcm_method::requirements::ModeVerdict;
+    use gdcm_method::requirements::mode_pairing::LARGEST_PAIR_DISTANCE;
+
+    use super::super::couplings_tests::EXAMPLE;
+    use super::super::execution::Execution;
+    use super::super::requirements::requirements_of;
     use super::*;
-    use gdcm_method::requirements::{LARGEST_PAIR_DISTANCE, ModeVerdict};
 
     #[test]
     fn modes_of_the_example_are_paired_and_named_once_and_within_the_distance() {
@@ -230,7 +242,8 @@ mod tests {
                     assert_eq!(mode.verdict, ModeVerdict::NotPaired);
                     continue;
                 };
-                let (flown, physics) = (pole(&mode.identified), pole(physics));
+                let flown = pole(&mode.identified);
+                let physics = pole(physics);
                 let largest = flown.norm().max(physics.norm()).max(least);
                 assert!(
                     (flown - physics).norm() <= LARGEST_PAIR_DISTANCE * largest,

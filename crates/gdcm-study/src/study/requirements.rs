@@ -1,13 +1,30 @@
 //! What a qualification asks of the models of every condition (M17), without flight records: bandwidth and phase delay, modes, summary
 //! costs; what it is asked with, and of which models.
 
-use gdcm_method::correction::CorrectedModelError;
-use gdcm_method::couplings::{CoupledModelError, without_delays};
-use gdcm_method::requirements::{
-    CommandType, LevelBoundaries, ModeToleranceTable, Summary, SummarySource, TestInput,
-};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
-use super::*;
+use serde::{Deserialize, Serialize};
+
+use gdcm_method::correction::corrected_model::CorrectedModelError;
+use gdcm_method::correction::{ChannelCorrection, Pade};
+use gdcm_method::couplings::CoupledModelError;
+use gdcm_method::couplings::coupling_matrices::without_delays;
+use gdcm_method::requirements::bandwidth::CommandType;
+use gdcm_method::requirements::summary::{Summary, SummarySource};
+use gdcm_method::requirements::{LevelBoundaries, ModeToleranceTable, TestInput, ToleranceTable};
+use gdcm_method::schedule::ScheduleError;
+use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Model, Pair, StateSpace};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_model::units::number;
+
+use super::analysis::{Analysis, ConditionAnalysis};
+use super::assessment_table::AssessedCorrection;
+use super::engine::Engine;
+use super::execution::Execution;
+use super::required_bandwidth::{BandwidthFinding, bandwidth_findings};
+use super::required_modes::{KnownPoles, ModeFinding, mode_findings};
+use super::settings::is_default;
 
 /// What requirements are asked with; a part that is left out is the default.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -521,8 +538,9 @@ fn continuous(model: &Model) -> Result<&StateSpace, RoleModelError> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use gdcm_method::requirements::{TestInputShape, Tolerance};
+
+    use super::*;
 
     #[test]
     fn what_was_not_decided_is_not_written_and_what_was_comes_back() {

@@ -8,9 +8,27 @@
 //! modes         those beyond their tolerance, of those that have one and are determined
 //! ```
 
-use gdcm_method::requirements::{BandwidthRule, NamedBy};
+use std::sync::Arc;
 
-use super::*;
+use gdcm_method::requirements::{BandwidthRule, ModeVerdict, NamedBy};
+use gdcm_model::dataset::{ConditionId, Dataset, Pair};
+use gdcm_model::executor::Executor;
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_model::units::{number, s_to_ms, signed, telling};
+
+use super::analysis::Analysis;
+use super::execution::Execution;
+use super::job::{Job, Shared};
+use super::required_bandwidth::BandwidthFinding;
+use super::required_modes::{KnownPoles, ModeNumbers};
+use super::requirements::{
+    MissingFinding, OverviewLimits, RequirementRole, RequirementSettings, Requirements,
+    SummaryFinding, requirements_of,
+};
+use super::table::Table;
+use super::time_histories::TimeHistories;
+use super::time_history_tables::percent;
+use super::uncertainty::Uncertainty;
 
 /// What a qualification asks of an analysis, with its error bars where they are known.
 #[derive(Clone, Debug, PartialEq)]
@@ -463,7 +481,8 @@ impl Requirements {
             .map(|of| of.corrected_verdict.unwrap_or(of.verdict))
             .collect();
         let count = |verdict| verdicts.iter().filter(|of| **of == verdict).count();
-        let (within, outside) = (count(ModeVerdict::Within), count(ModeVerdict::Outside));
+        let within = count(ModeVerdict::Within);
+        let outside = count(ModeVerdict::Outside);
         (within + outside > 0).then(|| (format!("{outside} of {}", within + outside), outside > 0))
     }
 }
@@ -475,8 +494,10 @@ fn limit(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Execution, KnownPoles, requirements_of};
-    use super::couplings_tests::EXAMPLE;
+    use super::super::couplings_tests::EXAMPLE;
+    use super::super::execution::Execution;
+    use super::super::required_modes::KnownPoles;
+    use super::super::requirements::requirements_of;
     use super::*;
 
     #[test]

@@ -1,11 +1,13 @@
 //! What the schedule loses of the conditions' own corrections: delays that it leaves out, and J.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
-use gdcm_method::schedule::{ScheduleCaution, ScheduledCost, corrected_cost_on};
+use gdcm_method::schedule::assessment::corrected_cost_on;
+use gdcm_method::schedule::{ScheduleCaution, ScheduledCost};
 use gdcm_model::dataset::{BundleKind, ConditionId, Dataset, Pair};
 use gdcm_model::units::s_to_ms;
 
-use super::{Analysis, ConditionAnalysis, ModelMismatch};
+use super::analysis::{Analysis, ConditionAnalysis};
+use super::comparison::ModelMismatch;
 
 /// Delay \[s\] below which a channel counts as having none: it reads as 0.0 ms.
 const NO_DELAY_S: f64 = 5e-5;
@@ -39,7 +41,8 @@ impl DelayedChannel {
         let Some(longest) = self.delays.first() else {
             return format!("delay of {side} {name}: none");
         };
-        let (delay_ms, condition) = (s_to_ms(longest.delay_s), longest.condition);
+        let delay_ms = s_to_ms(longest.delay_s);
+        let condition = longest.condition;
         match self.delays.len() {
             1 => format!("delay of {side} {name}: {delay_ms:.1} ms in condition {condition}"),
             2 => format!(

@@ -1,11 +1,19 @@
 //! The one table of settings: what each is called, where it stands in files and on a command line, what it may be, and how the
 //! window shows it. Undo, comparisons of decisions, refusals, the report, the command line and the window read it.
 
-use gdcm_method::schedule::{DelayScheduling, ScheduleKind};
-use gdcm_model::dataset::{GREATEST_OMEGA, LEAST_OMEGA, limits};
+use gdcm_method::correction::delta::GainSource;
+use gdcm_method::correction::{GainBounds, GainObjective};
+use gdcm_method::fidelity::CostAverage;
+use gdcm_method::schedule::{DelayScheduling, ScheduleKind, ScheduledQuantity, SecondVariable};
+use gdcm_model::dataset::dataset::{GREATEST_OMEGA, LEAST_OMEGA};
+use gdcm_model::dataset::{Band, limits};
 use gdcm_model::response::LeadOrder;
 
-use super::*;
+use super::Study;
+use super::setting_row::{Choice, Control, Digits, Kind, Place, Setting, Unit};
+use super::settings::{
+    CouplingCorrection, DEFAULT_COHERENCE, DelayFrom, PhaseCorrection, Settings,
+};
 
 /// A row of name, key and option before what is special about it.
 const fn row([name, key, option]: [&'static str; 3], help: &'static str, kind: Kind) -> Setting {

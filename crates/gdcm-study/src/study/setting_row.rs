@@ -1,10 +1,19 @@
 //! What a row of the table of settings says, and what can be done with it: give it a value, refuse one, tell it, read it.
 
-use gdcm_method::schedule::{DelayScheduling, SCHEDULE_KINDS, ScheduleKind};
+use gdcm_method::correction::delta::GainSource;
+use gdcm_method::correction::{GainBounds, GainObjective};
+use gdcm_method::fidelity::CostAverage;
+use gdcm_method::schedule::{
+    DelayScheduling, SCHEDULE_KINDS, ScheduleKind, ScheduledQuantity, SecondVariable,
+};
+use gdcm_model::dataset::Band;
 use gdcm_model::response::LeadOrder;
-use gdcm_model::units::six_digits;
+use gdcm_model::units::{number, six_digits};
 
-use super::*;
+use super::Study;
+use super::edit::{Edit, EditRefusal};
+use super::setting::SETTINGS;
+use super::settings::{CouplingCorrection, DelayFrom, PhaseCorrection, Settings};
 
 /// One setting: a row of [`SETTINGS`].
 #[derive(Debug)]

@@ -1,14 +1,20 @@
 //! Every setting that changes a result: the values, as files hold them. What each is called, may be and looks like stands in
 //! [`super::setting`].
 
-use gdcm_method::correction::LeadSettings;
-use gdcm_method::couplings::CouplingKind;
-use gdcm_method::schedule::{DelayScheduling, ScheduleSettings};
-use gdcm_method::uncertainty::UncertaintySettings;
-use gdcm_model::dataset::limits::MOST_PAIRS;
-use gdcm_model::whole_number::whole;
+use std::fmt;
 
-use super::*;
+use serde::{Deserialize, Serialize};
+
+use gdcm_method::correction::delta::GainSource;
+use gdcm_method::correction::leads::LeadSettings;
+use gdcm_method::correction::{GainBounds, GainObjective};
+use gdcm_method::couplings::CouplingKind;
+use gdcm_method::fidelity::CostAverage;
+use gdcm_method::schedule::{DelayScheduling, ScheduleSettings};
+use gdcm_method::uncertainty::bar::UncertaintySettings;
+use gdcm_model::dataset::limits::MOST_PAIRS;
+use gdcm_model::dataset::{Band, Dataset, PairTable};
+use gdcm_model::whole_number::whole;
 
 /// Mismatch of a loop of held gains that counts as agreement \[dB\] before any decision.
 const DEFAULT_AGREEMENT_DB: f64 = 0.05;

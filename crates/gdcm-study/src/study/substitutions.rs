@@ -1,12 +1,26 @@
 //! Other models of the bundles in place of the representatives, one at a time (M13.1).
 
-use gdcm_method::uncertainty::{
-    BarSource, CoherenceError, ConditionSpread, Figures, IdentificationSource, ReportedUncertainty,
-    ScalarTable, VarianceComponent,
-};
-use gdcm_model::response::{coherence_at, quantile};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use super::*;
+use gdcm_method::correction::ChannelCorrection;
+use gdcm_method::correction::delta::{Delta, GainSource};
+use gdcm_method::uncertainty::spread::{
+    BarSource, CoherenceError, ConditionSpread, Figures, ReportedUncertainty, ScalarTable,
+};
+use gdcm_method::uncertainty::{IdentificationSource, Scalar, VarianceComponent};
+use gdcm_model::dataset::{BundleKind, Dynamics, Pair, PairTable};
+use gdcm_model::progress::Cancelled;
+use gdcm_model::response::curve_values::{coherence_at, quantile};
+use gdcm_model::response::median;
+
+use super::Study;
+use super::analysis::{Analysis, ConditionAnalysis};
+use super::comparison::{Compared, Mismatches};
+use super::condition_responses::ConditionResponses;
+use super::condition_stages::Run;
+use super::fitted_couplings::FittedCouplings;
+use super::settings::Settings;
 
 /// What came of the substitutions of one condition.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,7 +120,8 @@ impl Substituting<'_> {
         let scores = representative.scores.iter().enumerate();
         let kept =
             scores.filter(|(model, score)| score.is_some() && *model != representative.model);
-        let (responses, mut distinct) = (self.responses.bundle(kind), Vec::new());
+        let responses = self.responses.bundle(kind);
+        let mut distinct = Vec::new();
         // Models of the same numbers share their response.
         let is_copy = |a: usize, b: usize| Arc::ptr_eq(&responses[a], &responses[b]);
         let mut copies = Vec::new();

@@ -1,9 +1,11 @@
 //! A table of what was found, to be read, copied and saved: the same texts wherever it goes.
 
-use gdcm_method::uncertainty::VarianceDecomposition;
-use gdcm_model::units::without_sign_of_zero;
+use gdcm_method::uncertainty::{Scalar, VarianceDecomposition};
+use gdcm_model::dataset::Dataset;
+use gdcm_model::units::{signed, without_sign_of_zero};
 
-use super::*;
+use super::analysis::Analysis;
+use super::uncertainty::{AirspeedDifference, Uncertainty};
 
 /// Rows of texts under headings. Headings name quantity and unit (`airspeed [kt]`), so that a table can stand alone.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -185,10 +187,8 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
     ];
     let mut table = Table::new("Does the schedule need a second variable?", columns);
     for test in &uncertainty.second_variables {
-        let (name, variable) = (
-            dataset.pair_name(test.pair),
-            test.variable.name().to_owned(),
-        );
+        let name = dataset.pair_name(test.pair);
+        let variable = test.variable.name().to_owned();
         let cells = match &test.effect {
             Err(error) => [vec![NONE.to_owned(); 5], vec![error.to_string()]].concat(),
             Ok(effect) => vec![

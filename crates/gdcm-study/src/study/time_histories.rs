@@ -7,14 +7,29 @@
 //! 3  each row of the table of tolerances whose output and unit are there: share inside, largest excess, correlation
 //! ```
 
-use gdcm_method::requirements::{
-    ChannelTolerance, RecordCheck, RmsCost, Tolerance, ToleranceCheck,
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use gdcm_method::requirements::summary::RmsCost;
+use gdcm_method::requirements::tolerance::{ChannelTolerance, ToleranceCheck};
+use gdcm_method::requirements::{RecordCheck, Tolerance, ToleranceTable};
+use gdcm_model::dataset::{Channel, ConditionId, Pair, PairTable, StateSpace};
+use gdcm_model::executor::{Executor, Sequential};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_model::simulation::{
+    FlightRecord, Segment, ValidationSettings, ValidationWindow, validate,
 };
-use gdcm_model::dataset::Channel;
-use gdcm_sysid::identification::{Segment, ValidationSettings, ValidationWindow};
+use gdcm_sysid::identification::Preparation;
+use gdcm_sysid::identification::preparation::segments_of;
 use gdcm_sysid::records::LaidOutRecord;
 
-use super::*;
+use super::analysis::{Analysis, ConditionAnalysis};
+use super::engine::Engine;
+use super::execution::Execution;
+use super::job::{Job, Shared};
+use super::requirements::{MissingFinding, RequirementRole, RoleModelError};
 
 /// The shortest piece of a record that is compared \[s\]: tests of qualifications are short steps and doublets.
 pub(super) const LEAST_PIECE_S: f64 = 2.0;
@@ -543,15 +558,17 @@ mod tests {
 
     use nalgebra::{DMatrix, DVector};
 
-    use super::couplings_tests::{COUPLED, EXAMPLE};
-    use super::*;
     use gdcm_method::requirements::{Tolerance, ToleranceTable};
     use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Pair, StateSpace};
     use gdcm_model::executor::Sequential;
+    use gdcm_model::progress::Unobserved;
     use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
-    use gdcm_sysid::identification::{
-        FirstOrderHold, FlightRecord, Preparation, segments_of, validate,
-    };
+    use gdcm_model::simulation::{FirstOrderHold, FlightRecord, validate};
+    use gdcm_sysid::identification::Preparation;
+    use gdcm_sysid::identification::preparation::segments_of;
+
+    use super::super::couplings_tests::{COUPLED, EXAMPLE};
+    use super::*;
 
     const CONDITION: ConditionId = ConditionId(3);
     const SAMPLE_TIME_S: f64 = 0.02;

@@ -1,6 +1,13 @@
 //! Time histories within tolerances, as tables (M17.2).
 
-use super::*;
+use std::collections::BTreeSet;
+
+use gdcm_model::dataset::ConditionId;
+use gdcm_model::units::telling;
+
+use super::requirements::RequirementRole;
+use super::table::Table;
+use super::time_histories::{HistoryFinding, TimeHistories, ToleranceFinding, Trend};
 
 impl TimeHistories {
     /// The conditions that have records, each with their number.

@@ -1,15 +1,22 @@
 //! How sure the figures of an analysis are, what their scatter over the conditions is made of, and what follows for the schedule
 //! (M13).
 
-use gdcm_method::schedule::airspeed_indicators;
-use gdcm_method::uncertainty::{
-    BandWidths, Bar, BarSource, Design, Difference, ScalarTable, ScheduleBand,
-    SecondVariableDesign, SecondVariableEffect, SecondVariableError, VarianceDecomposition, bars,
-    holm,
-};
-use gdcm_model::dataset::FlightState;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
 
-use super::*;
+use gdcm_method::schedule::{Schedule, ScheduledQuantity, SecondVariable, airspeed_indicators};
+use gdcm_method::uncertainty::least_squares::{SecondVariableEffect, SecondVariableError};
+use gdcm_method::uncertainty::spread::{BarSource, ScalarTable, bars};
+use gdcm_method::uncertainty::{
+    BandWidths, Bar, Design, Difference, Scalar, ScheduleBand, SecondVariableDesign,
+    VarianceDecomposition, holm,
+};
+use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::dataset::{Condition, ConditionId, Dataset, Pair, PairTable};
+
+use super::analysis::{Analysis, ConditionAnalysis};
+use super::substitutions::{ConditionSubstitutions, bar_source, left_in_band};
 
 /// How sure the figures of an analysis are.
 #[derive(Clone, Debug, PartialEq)]
@@ -76,7 +83,8 @@ impl fmt::Display for SecondVariableTest {
             Ok(effect) => effect,
             Err(error) => return write!(formatter, "{variable}: {error}"),
         };
-        let (percent, visible) = (100.0 * effect.effect, 100.0 * effect.visible);
+        let percent = 100.0 * effect.effect;
+        let visible = 100.0 * effect.visible;
         let verdict = if self.needed { "needed" } else { "not needed" };
         let sign = if percent < 0.0 { "−" } else { "+" };
         write!(
@@ -128,7 +136,8 @@ impl Uncertainty {
         analysis: &Analysis,
         substitutions: &[(ConditionId, ConditionSubstitutions)],
     ) -> Self {
-        let (study, level) = (&analysis.study, analysis.study.settings.uncertainty.level);
+        let study = &analysis.study;
+        let level = analysis.study.settings.uncertainty.level;
         let analysed: Vec<(&ConditionAnalysis, &ConditionSubstitutions)> = substitutions
             .iter()
             .filter_map(|(id, substitutions)| Some((analysis.condition(*id)?, substitutions)))
@@ -142,7 +151,8 @@ impl Uncertainty {
             .iter()
             .zip(made)
             .map(|(&(result, substitutions), bars)| {
-                let (left_in_band, substitutions) = (left_in_band(result), substitutions.clone());
+                let left_in_band = left_in_band(result);
+                let substitutions = substitutions.clone();
                 (
                     result.condition.id(),
                     ConditionUncertainty {
@@ -343,7 +353,8 @@ impl AirspeedDifference {
     /// physical effect, or a model-form error".
     pub fn words(&self, level: f64) -> String {
         let [first, second] = self.conditions;
-        let (airspeed, percent) = (self.airspeed_kt, 100.0 * self.difference.delta.abs());
+        let airspeed = self.airspeed_kt;
+        let percent = 100.0 * self.difference.delta.abs();
         let differ =
             format!("conditions {first} and {second} ({airspeed:.0} kt) differ by {percent:.0} %");
         let Some(ratio) = self.difference.ratio() else {
@@ -387,11 +398,13 @@ pub(super) fn differences(
     for &pair in pairs {
         for (place, (first, of_first)) in analysed.iter().enumerate() {
             for (second, of_second) in &analysed[place + 1..] {
-                let (a, b) = (airspeed(first), airspeed(second));
+                let a = airspeed(first);
+                let b = airspeed(second);
                 let bars =
                     of_first.bars[Scalar::NetGain(pair)].zip(of_second.bars[Scalar::NetGain(pair)]);
                 if let Some((one, other)) = bars.filter(|_| (a - b).abs() <= EQUAL_AIRSPEED_KT) {
-                    let (conditions, airspeed_kt) = ([first.id(), second.id()], 0.5 * (a + b));
+                    let conditions = [first.id(), second.id()];
+                    let airspeed_kt = 0.5 * (a + b);
                     let difference = Difference::of(&one, &other);
                     found.push(AirspeedDifference {
                         pair,

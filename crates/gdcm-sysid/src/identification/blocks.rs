@@ -7,7 +7,10 @@
 //!
 //! A block holds a complex pair *or* two real poles, so that pairs may split and merge.
 
-use super::*;
+use nalgebra::{Complex, DMatrix, DVector};
+
+use gdcm_model::dataset::StateSpace;
+use gdcm_model::response::eigenvalues::SchurForm;
 
 /// Imaginary part over modulus below which an eigenvalue is real: what the Schur iteration leaves of it.
 const REAL: f64 = 1e-9;
@@ -100,7 +103,9 @@ impl BlockModel {
         if order == 0 {
             return None;
         }
-        let (mut blocks, mut basis, mut next) = (Vec::new(), DMatrix::zeros(order, order), 0);
+        let mut blocks = Vec::new();
+        let mut basis = DMatrix::zeros(order, order);
+        let mut next = 0;
         for (block, columns) in modal_blocks(model)? {
             columns
                 .iter()
@@ -109,7 +114,8 @@ impl BlockModel {
             next += block.size();
             blocks.push(block);
         }
-        let (b, c) = (basis.clone().lu().solve(model.b())?, model.c() * basis);
+        let b = basis.clone().lu().solve(model.b())?;
+        let c = model.c() * basis;
         let mut found = Self {
             blocks,
             b,
@@ -129,10 +135,8 @@ impl BlockModel {
     fn balance(&mut self) {
         let rows: Vec<_> = self.rows().collect();
         for (first, block) in rows {
-            let (mut b, mut c) = (
-                self.b.rows_mut(first, block.size()),
-                self.c.columns_mut(first, block.size()),
-            );
+            let mut b = self.b.rows_mut(first, block.size());
+            let mut c = self.c.columns_mut(first, block.size());
             let ratio = (c.norm() / b.norm()).sqrt();
             if ratio.is_finite() && ratio > 0.0 {
                 b.scale_mut(ratio);
@@ -201,7 +205,8 @@ impl BlockModel {
             match block {
                 Block::Single(pole) => x[first] /= s - pole,
                 Block::Pair { a0, a1 } => {
-                    let (upper, lower) = (x[first], x[first + 1]);
+                    let upper = x[first];
+                    let lower = x[first + 1];
                     let inverse = 1.0 / (s * s + s * a1 + a0);
                     x[first] = (upper * (s + a1) + lower) * inverse;
                     x[first + 1] = (lower * s - upper * a0) * inverse;
@@ -224,9 +229,11 @@ impl BlockModel {
                 }
                 Block::Pair { a0, a1 } => {
                     let inverse = 1.0 / (s * s + s * a1 + a0);
-                    let (from_first, from_second) = ((s + a1) * inverse, s * inverse);
+                    let from_first = (s + a1) * inverse;
+                    let from_second = s * inverse;
                     for o in 0..outputs {
-                        let (one, two) = (c[at + o], c[at + outputs + o]);
+                        let one = c[at + o];
+                        let two = c[at + outputs + o];
                         cr[at + o] = from_first * one - inverse * (a0 * two);
                         cr[at + outputs + o] = inverse * one + from_second * two;
                     }
@@ -308,7 +315,12 @@ fn modal_blocks(model: &StateSpace) -> Option<Vec<(Block, Vec<DVector<f64>>)>> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::dmatrix;
+
+    use gdcm_model::response::eigenvalues::poles;
+
     use super::*;
+    use crate::identification::known_answers_tests::response_at;
 
     fn model() -> StateSpace {
         StateSpace::new(

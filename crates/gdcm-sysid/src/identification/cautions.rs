@@ -1,6 +1,12 @@
 //! What the engineer should know of an identified model, and what can be done about it (M14, section 10).
 
-use super::*;
+use gdcm_model::simulation::{Signal, ValidationError};
+
+use super::feedback::FeedbackLevel;
+use super::gaps::listed;
+use super::local_polynomial::TRUSTED_COHERENCE;
+use super::record_cautions::RecordCaution;
+use super::record_contrast::{ContradictingRecord, RecordFault};
 
 /// Something that speaks against the model or a part of it, with what an action against it needs.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -236,7 +242,8 @@ fn contradiction(records: &[ContradictingRecord], contrast: f64) -> String {
         let words = faults
             .iter()
             .map(|(name, fault)| format!(" If it is {name}, it looks as if there {fault}."));
-        let (names, words) = (listed(&names), words.collect::<String>());
+        let names = listed(&names);
+        let words = words.collect::<String>();
         return format!(
             "{names} contradict one another {agreement}; a third record would tell which is wrong.{words}"
         );

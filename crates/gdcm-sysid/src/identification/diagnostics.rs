@@ -1,6 +1,20 @@
 //! What speaks against the recommended model, record by record and channel by channel (M14, section 10).
 
-use super::*;
+use nalgebra::{Complex, DMatrix};
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::simulation::FlightRecord;
+
+use super::blocks::BlockModel;
+use super::cautions::IdentificationCaution;
+use super::identify::Options;
+use super::likelihood::{Likelihood, SegmentCost};
+use super::local_polynomial::{EstimatePoint, ResponseEstimate, local_polynomial};
+use super::order::parameters_of_order;
+use super::prepared_data::PreparedData;
+use super::refinement::Fit;
+use super::spectrum::Spectrum;
+use super::uncertainty::ParameterCovariance;
 
 /// Cost per degree of freedom above which a model is not adequate.
 const ADEQUATE: f64 = 1.5;
@@ -43,10 +57,8 @@ impl Diagnostics<'_> {
             .max_by(|a, b| a.1.total_cmp(b.1))
             .map_or(0, |(output, _)| output);
         if let Some(worst) = worst.filter(|_| cost > ADEQUATE) {
-            let (record, signal) = (
-                self.record_name(worst.record),
-                self.options.signal(ChannelSide::Output, output),
-            );
+            let record = self.record_name(worst.record);
+            let signal = self.options.signal(ChannelSide::Output, output);
             cautions.push(IdentificationCaution::Inadequate {
                 cost,
                 record,
@@ -127,7 +139,8 @@ impl RecordFits {
         model: &BlockModel,
         covariance: &ParameterCovariance,
     ) -> Option<Self> {
-        let (fitted, held_out) = (data.likelihood.parts(model)?, data.held_out.parts(model)?);
+        let fitted = data.likelihood.parts(model)?;
+        let held_out = data.held_out.parts(model)?;
         let moved = covariance.moved_cost(&data.held_out, model, &held_out);
         let all = data.likelihood.freedom(model.order());
         let spare = all.checked_sub(parameters_of_order(
@@ -291,7 +304,8 @@ pub(super) fn departure(
             && point.half_width <= NARROW_WINDOW * point.omega
     };
     let of_point = |(point, model): (&EstimatePoint, &DMatrix<Complex<f64>>)| {
-        let (own, found) = (model[pair], point.response[pair]);
+        let own = model[pair];
+        let found = point.response[pair];
         let distance = (own - found).norm_sqr() / point.variance[pair].max(f64::MIN_POSITIVE);
         (point.omega, distance, (own / found - 1.0).norm())
     };
@@ -302,14 +316,17 @@ pub(super) fn departure(
         .filter(is_tested)
         .map(of_point)
         .collect();
-    let (mut greatest, mut left) = (0.0_f64, None);
+    let mut greatest = 0.0_f64;
+    let mut left = None;
     for near in tested.windows(POINTS) {
         let mean =
             |part: fn(&(f64, f64, f64)) -> f64| near.iter().map(part).sum::<f64>() / POINTS as f64;
-        let (t, d) = (mean(|of| of.1), mean(|of| of.2));
+        let t = mean(|of| of.1);
+        let d = mean(|of| of.2);
         greatest = greatest.max(t);
         if t > LEAVES.0 && d > LEAVES.1 {
-            let (from, to) = (near[0].0, near[POINTS - 1].0);
+            let from = near[0].0;
+            let to = near[POINTS - 1].0;
             let before = left.map_or((from, 0.0), |([from, _], strength): ([f64; 2], f64)| {
                 (from, strength)
             });

@@ -12,7 +12,18 @@
 //!
 //! With feedback the inputs hold what gusts did to the outputs, and the cost stays at 1 however wrong the model is.
 
-use super::*;
+use nalgebra::{Complex, DMatrix, DVector};
+
+use gdcm_model::executor::{Executor, each};
+use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::median;
+use gdcm_model::simulation::Segment;
+
+use super::blocks::BlockModel;
+use super::likelihood::scale_columns;
+use super::local_polynomial::{EstimatePoint, ResponseEstimate, local_polynomial};
+use super::prepared_data::PreparedData;
+use super::spectrum::Spectrum;
 
 /// Samples of the predictor over the time in which the upper end of the band turns by one radian.
 const STEP: f64 = 0.25;
@@ -144,7 +155,8 @@ impl Feedback {
             .map(|point| model.response(point.omega).map(|g| g.norm()))
             .collect();
         let (outputs, inputs) = model.d.shape();
-        let (mut sure, mut every) = (Vec::new(), Vec::new());
+        let mut sure = Vec::new();
+        let mut every = Vec::new();
         for output in 0..outputs {
             let largest = responses
                 .iter()
@@ -152,11 +164,9 @@ impl Feedback {
                 .fold(0.0, f64::max);
             for (g, point) in responses.iter().zip(&fed.points) {
                 for input in 0..inputs {
-                    let (own, of_noise, variance) = (
-                        g[(output, input)],
-                        point.response[(output, input)].norm(),
-                        point.variance[(output, input)],
-                    );
+                    let own = g[(output, input)];
+                    let of_noise = point.response[(output, input)].norm();
+                    let variance = point.variance[(output, input)];
                     let both = (
                         of_noise / own,
                         of_noise * of_noise / variance.max(f64::MIN_POSITIVE),
@@ -190,7 +200,8 @@ impl Feedback {
 
 /// Every `step`-th sample of a segment less the means, one column an instant: inputs, then outputs.
 fn thinned(segment: &Segment, step: usize) -> DMatrix<f64> {
-    let (inputs, outputs) = (segment.inputs.ncols(), segment.outputs.ncols());
+    let inputs = segment.inputs.ncols();
+    let outputs = segment.outputs.ncols();
     let count = segment.inputs.nrows().div_ceil(step);
     let mut samples = DMatrix::zeros(inputs + outputs, count);
     for (channel, column) in segment

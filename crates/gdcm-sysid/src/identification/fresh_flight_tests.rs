@@ -1,13 +1,18 @@
 //! Fresh flights of one axis, good ones and such as have one thing wrong each: the right caution, and no other.
 
-use super::real_flight_tests::{Flown, Generator, codes, known, options};
-use super::*;
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use nalgebra::DMatrix;
+
 use gdcm_model::dataset::{Band, Dynamics, Pair, StateSpace};
 use gdcm_model::executor::Sequential;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
-use nalgebra::DMatrix;
-use std::collections::BTreeSet;
-use std::ops::Range;
+
+use super::real_flight_tests::{Flown, Generator, codes, known, options};
+use super::*;
+use crate::identification::identify::identify;
+use crate::identification::preparation::{RecordUse, prepare};
 
 /// What is said of records, each code once.
 fn said((records, options): &(Vec<FlightRecord>, Options)) -> BTreeSet<&'static str> {
@@ -350,17 +355,16 @@ fn assert_identified(inputs: usize, outputs: usize) {
             .map(|at| format!("{letter}{at}"))
             .collect::<Vec<_>>()
     };
-    let (of_inputs, of_outputs) = (names('u', inputs), names('y', outputs));
+    let of_inputs = names('u', inputs);
+    let of_outputs = names('y', outputs);
     let [of_inputs, of_outputs]: [Vec<&str>; 2] =
         [&of_inputs, &of_outputs].map(|names| names.iter().map(String::as_str).collect());
     let options = Options::new([1.0, 12.0], Preparation::of(&of_inputs, &of_outputs));
     let found = identify(&records, &options, &Sequential, &Unobserved).unwrap();
     let grid = FrequencyGrid::logarithmic(Band::new(1.2, 10.0).unwrap(), 8);
     let response = |dynamics: &Dynamics| PreparedModel::of(dynamics).response(&grid);
-    let (is, expected) = (
-        response(&found.refined.dynamics),
-        response(&Dynamics::StateSpace(truth)),
-    );
+    let is = response(&found.refined.dynamics);
+    let expected = response(&Dynamics::StateSpace(truth));
     for output in 0..outputs {
         let strongest = (0..inputs)
             .flat_map(|input| expected.curve(Pair::new(output, input)))

@@ -1,6 +1,8 @@
 //! Gaps of a flight record, and words for its channels.
 
-use super::*;
+use std::fmt;
+
+use gdcm_model::simulation::Signal;
 
 /// The names of `signals` in a row: `P, Q and R`.
 pub(super) fn names(signals: &[Signal]) -> String {

@@ -1,8 +1,29 @@
 //! The identification of one flight condition from its records, and what is said of the recommended model (M14, sections 5 to 7).
 
-use super::*;
-use gdcm_model::dataset::{Dynamics, Model, Origin, Provenance};
 use std::sync::Arc;
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::model::{ModelBands, Origin, Provenance};
+use gdcm_model::dataset::{Dynamics, Model, Pair};
+use gdcm_model::executor::Executor;
+use gdcm_model::progress::{Cancelled, Progress, Shares};
+use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::response::pole_estimate::PoleEstimate;
+use gdcm_model::simulation::{FlightRecord, Signal, Validation, ValidationSettings, validate};
+
+use super::blocks::BlockModel;
+use super::cautions::IdentificationCaution;
+use super::diagnostics::{Diagnostics, RecordFit, RecordFits};
+use super::feedback::{Feedback, FeedbackLevel};
+use super::gaps::names;
+use super::local_polynomial::{LocalPolynomialError, ResponseEstimate};
+use super::order::fast_unstable_pole;
+use super::preparation::{Preparation, PreparationError, RecordUse};
+use super::prepared_data::{PreparedData, ScalingError};
+use super::record_contrast::{RecordContrast, RecordContrasts};
+use super::refinement::{Proposal, Refinement, propose, refine};
+use super::subspace::StabilisationPoint;
+use super::uncertainty::{ParameterCovariance, without_each_record};
 
 /// Methods, as models carry them and as their names begin (M14).
 const REFINED: &str = "CT-PBSID, refined";
@@ -191,7 +212,8 @@ fn report(
             .as_ref()
             .filter(|_| level > FeedbackLevel::None)
             .map(|of| {
-                let (share, significance) = (of.share, of.significance);
+                let share = of.share;
+                let significance = of.significance;
                 IdentificationCaution::Feedback {
                     level,
                     share,
@@ -302,7 +324,8 @@ fn report(
 
 /// Output and input of the responses that are known too badly in the middle of the band.
 fn not_identified(bands: &ModelBands) -> Vec<(usize, usize)> {
-    let (outputs, inputs) = (bands.sd_db().outputs(), bands.sd_db().inputs());
+    let outputs = bands.sd_db().outputs();
+    let inputs = bands.sd_db().inputs();
     let pairs =
         (0..inputs).flat_map(|input| (0..outputs).map(move |output| Pair { output, input }));
     let is_wide = |pair: &Pair| bands.sd_db()[*pair][bands.omega().len() / 2] > NOT_IDENTIFIED;

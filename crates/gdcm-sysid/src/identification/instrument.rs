@@ -12,7 +12,16 @@
 //! The ends of a chirp's band, where its smooth spectrum and the transient look alike, are what the leverage leaves out. The cost per degree of freedom is
 //! far below 1 and says nothing.
 
-use super::*;
+use nalgebra::{Complex, DMatrix, DVector};
+
+use gdcm_model::dataset::PairTable;
+use gdcm_model::dataset::model::ModelBands;
+use gdcm_model::executor::Executor;
+
+use super::local_polynomial::{
+    EstimatePoint, LocalFit, LocalPolynomialError, ResponseEstimate, between, condition, local_fits,
+};
+use super::spectrum::Spectrum;
 
 /// Half width of a window over its centre.
 const HALF_WIDTH: f64 = 0.15;
@@ -83,10 +92,8 @@ impl InstrumentPoint {
     fn of(fit: &LocalFit, outputs: usize) -> Self {
         let gamma = fit.response();
         let inputs = gamma.nrows() - outputs;
-        let (of_outputs, of_inputs) = (
-            gamma.rows(0, outputs).into_owned(),
-            gamma.rows(outputs, inputs).into_owned(),
-        );
+        let of_outputs = gamma.rows(0, outputs).into_owned();
+        let of_inputs = gamma.rows(outputs, inputs).into_owned();
         let response = &of_outputs * pseudo_inverse(&of_inputs);
         // [I, -G] Cov N [I, -G]'.
         let mut left = DMatrix::zeros(outputs, outputs + inputs);
@@ -150,11 +157,13 @@ impl ResponseEstimate {
 
 /// The lines as the reference shows them, less those that it determines by themselves.
 fn seen(lines: &Spectrum, points: &[InstrumentPoint], outputs: usize) -> Spectrum {
-    let (mut omega, mut all) = (Vec::new(), Vec::new());
+    let mut omega = Vec::new();
+    let mut all = Vec::new();
     let omegas: Vec<f64> = points.iter().map(|point| point.estimate.omega).collect();
     for (k, &at) in lines.omega.iter().enumerate() {
         let (before, after, share) = between(&omegas, at);
-        let (one, other) = (&points[before], &points[after]);
+        let one = &points[before];
+        let other = &points[after];
         let reference = lines.inputs.column(k);
         let leverage = |point: &InstrumentPoint| {
             (reference.transpose() * &point.spread * reference.map(|r| r.conj()))[0].re

@@ -1,10 +1,13 @@
 //! Known answers for the tests of this module: made-up systems, computed by independent numpy code.
 
-use super::*;
-use gdcm_model::dataset::{Pair, StateSpace};
-use gdcm_model::executor::Sequential;
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
+
+use gdcm_model::dataset::{Pair, StateSpace};
+use gdcm_model::executor::Sequential;
+
+use super::*;
+use crate::identification::spectrum::Spectrum;
 
 /// The whole file.
 pub(super) fn answers() -> Value {

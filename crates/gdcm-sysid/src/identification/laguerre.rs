@@ -13,7 +13,11 @@
 //! Bergamasco & Lovera, "Continuous-time predictor-based subspace identification using Laguerre filters", IET Control
 //! Theory & Applications 5(7), 2011.
 
-use super::*;
+use nalgebra::{DMatrix, DMatrixView, DVector};
+
+use gdcm_model::dataset::StateSpace;
+use gdcm_model::executor::{Executor, each};
+use gdcm_model::simulation::Segment;
 
 /// The filters of one Laguerre pole at one sample time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +42,8 @@ impl LaguerreBank {
     pub(super) fn projections(self, signal: &[f64], past: usize) -> DMatrix<f64> {
         let samples = signal.len();
         let mut projections = DMatrix::zeros(samples, past + 1);
-        let (mut before, mut state) = (0.0, 0.0);
+        let mut before = 0.0;
+        let mut state = 0.0;
         for (&now, to) in signal
             .iter()
             .zip(projections.column_mut(0).iter_mut())
@@ -51,7 +56,8 @@ impl LaguerreBank {
         let all = projections.as_mut_slice();
         for k in 1..=past {
             let (done, rest) = all.split_at_mut(k * samples);
-            let (mut before, mut state) = (0.0, 0.0);
+            let mut before = 0.0;
+            let mut state = 0.0;
             for (&now, to) in done[(k - 1) * samples..]
                 .iter()
                 .zip(&mut rest[..samples])
@@ -99,7 +105,8 @@ impl Projections {
         let step = ((self.spacing_s / segment.sample_time_s).round() as usize).max(1);
         let last = samples.saturating_sub((end / segment.sample_time_s).ceil() as usize);
         let instants: Vec<usize> = (0..last).step_by(step).collect();
-        let (inputs, outputs) = (segment.inputs.ncols(), segment.outputs.ncols());
+        let inputs = segment.inputs.ncols();
+        let outputs = segment.outputs.ncols();
         let channels = inputs + outputs;
         let mut rows = DMatrix::zeros(instants.len(), (self.past + 1) * channels);
         let bank = LaguerreBank::new(self.pole, segment.sample_time_s);
@@ -183,10 +190,14 @@ fn take_off_trend(rows: &mut DMatrix<f64>) {
 /// M = (Ao + I)^-1,   A = a M (Ao - I),   B = sqrt(2a) M Bo,   C = sqrt(2a) Co M,   D = Do - Co M Bo
 /// ```
 pub(super) fn continuous(pole: f64, law: &StateSpace) -> Option<StateSpace> {
-    let (a, b, c, d) = (law.a(), law.b(), law.c(), law.d());
+    let a = law.a();
+    let b = law.b();
+    let c = law.c();
+    let d = law.d();
     let identity = DMatrix::identity(a.nrows(), a.nrows());
     let m = (a + &identity).try_inverse()?;
-    let (mb, cm) = (&m * b, c * &m);
+    let mb = &m * b;
+    let cm = c * &m;
     let root = (2.0 * pole).sqrt();
     StateSpace::new(
         &m * (a - &identity) * pole,
@@ -356,6 +367,7 @@ pub(super) fn least_squares(a: &DMatrix<f64>, y: &DMatrix<f64>) -> Option<DMatri
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identification::known_answers_tests::{answers, matrix, number};
 
     #[test]
     fn projections_are_those_of_independent_code() {

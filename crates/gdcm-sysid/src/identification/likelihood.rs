@@ -13,7 +13,14 @@
 //! end and its initial and final states are what tau, c1 and c0 stand for. `J` over its degrees of freedom is 1 where the
 //! model is adequate, because W makes the noise white with real and imaginary parts of variance one.
 
-use super::*;
+use nalgebra::{Complex, DMatrix, DVector};
+
+use gdcm_model::executor::{Executor, each};
+
+use super::blocks::BlockModel;
+use super::local_polynomial::NoiseCovariance;
+use super::normal_system::NormalSystem;
+use super::spectrum::Spectrum;
 
 /// Share of the greatest eigenvalue of a transient's Gram matrix below which its columns depend on each other.
 pub(super) const DEPENDENT: f64 = 1e-12;
@@ -63,10 +70,8 @@ impl SpectralLines {
     pub(super) fn weighted(spectrum: &Spectrum, weights: Vec<DMatrix<f64>>) -> Self {
         let (outputs, lines) = spectrum.outputs.shape();
         let mut whitened = DMatrix::zeros(outputs, lines);
-        let (mut constant, mut drift) = (
-            DMatrix::zeros(outputs * lines, outputs),
-            DMatrix::zeros(outputs * lines, outputs),
-        );
+        let mut constant = DMatrix::zeros(outputs * lines, outputs);
+        let mut drift = DMatrix::zeros(outputs * lines, outputs);
         for (k, weight) in weights.iter().enumerate() {
             whiten(weight, spectrum.outputs.column(k).as_slice(), |o, value| {
                 whitened[(o, k)] = value
@@ -147,10 +152,8 @@ impl SpectralLines {
         let (outputs, lines) = self.outputs.shape();
         let order = model.order();
         // Real and imaginary parts of [T e0], one row for each output of each line.
-        let (mut real, mut imaginary) = (
-            DMatrix::zeros(outputs * lines, order + 1),
-            DMatrix::zeros(outputs * lines, order + 1),
-        );
+        let mut real = DMatrix::zeros(outputs * lines, order + 1);
+        let mut imaginary = DMatrix::zeros(outputs * lines, order + 1);
         let mut cr = vec![Complex::default(); outputs * order];
         let mut e0 = vec![Complex::default(); outputs];
         for (k, (&omega, weight)) in self.omega.iter().zip(&self.weights).enumerate() {
@@ -175,7 +178,8 @@ impl SpectralLines {
         let transient = &root * (root.transpose() * gram.view((0, order), (order, 1)));
         let transient = DVector::from_column_slice(transient.as_slice());
         let left = |part: &DMatrix<f64>| part.column(order) - part.columns(0, order) * &transient;
-        let (real, imaginary) = (left(&real), left(&imaginary));
+        let real = left(&real);
+        let imaginary = left(&imaginary);
         let cost = real.norm_squared() + imaginary.norm_squared();
         let residual = real
             .iter()

@@ -1,7 +1,14 @@
 //! The local polynomial method: the frequency response straight from the lines, without a model.
 
-use super::*;
-use gdcm_model::dataset::MeasuredResponse;
+use nalgebra::{Complex, DMatrix, DVector};
+
+use gdcm_model::dataset::measured_response::MeasuredResponse;
+use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::executor::{Executor, each};
+use gdcm_model::response::median;
+
+use super::prepared_data::Scales;
+use super::spectrum::Spectrum;
 
 /// Terms of a local polynomial: 1, x, x^2.
 pub(super) const TERMS: usize = 3;
@@ -130,7 +137,8 @@ impl Window {
         terms: usize,
     ) -> Result<Self, LocalPolynomialError> {
         let first = &spectra[0];
-        let (inputs, outputs) = (first.inputs.nrows(), first.outputs.nrows());
+        let inputs = first.inputs.nrows();
+        let outputs = first.outputs.nrows();
         let spare = if terms == TERMS {
             SPARE_LINES.0
         } else {
@@ -144,7 +152,8 @@ impl Window {
             .iter()
             .map(|line| (line - omega).abs())
             .fold(0.0, f64::max);
-        let (mut half_width, mut wider) = (HALF_WIDTH.0.max(share * omega), WIDER.0);
+        let mut half_width = HALF_WIDTH.0.max(share * omega);
+        let mut wider = WIDER.0;
         loop {
             let window = Self::of_width(spectra, omega, half_width, terms);
             let needed = terms * inputs + window.transients + outputs + spare;
@@ -206,7 +215,8 @@ pub(super) struct LocalFit {
 
 impl LocalFit {
     fn of(spectra: &[Spectrum], window: Window) -> Self {
-        let (inputs, outputs) = (spectra[0].inputs.nrows(), spectra[0].outputs.nrows());
+        let inputs = spectra[0].inputs.nrows();
+        let outputs = spectra[0].outputs.nrows();
         let freedom = window.count - window.transients - window.terms * inputs;
         let (rows, power) = regression(spectra, &window);
         Self {
@@ -276,7 +286,8 @@ impl LocalFit {
 
     /// Multiple coherence of each output.
     pub(super) fn coherence(&self) -> Vec<f64> {
-        let (left, all) = (self.squares(self.unknowns()), self.squares(0));
+        let left = self.squares(self.unknowns());
+        let all = self.squares(0);
         left.into_iter()
             .zip(all)
             .map(|(left, all)| explained(left, all))
@@ -285,7 +296,8 @@ impl LocalFit {
 
     /// `|V|^2` of each output when input `i` is left out: the triangular factor without its columns, made triangular again.
     fn left_without(&self, i: usize) -> Vec<f64> {
-        let (unknowns, from) = (self.unknowns(), self.unknowns() - self.window.terms);
+        let unknowns = self.unknowns();
+        let from = self.unknowns() - self.window.terms;
         let is_kept = |column: &usize| *column >= unknowns || column % self.inputs != i;
         let kept: Vec<usize> = (0..unknowns + self.outputs).filter(is_kept).collect();
         let smaller = self.r.select_columns(&kept).qr().unpack_r();
@@ -296,7 +308,8 @@ impl LocalFit {
 
     /// The estimate; see [`local_polynomial`].
     fn estimate(&self) -> EstimatePoint {
-        let (inputs, outputs) = (self.inputs, self.outputs);
+        let inputs = self.inputs;
+        let outputs = self.outputs;
         let noise = self.covariance().map(|value| value.re);
         let spread = self.spread();
         let left = self.squares(self.unknowns());
@@ -331,8 +344,10 @@ fn explained(left: f64, all: f64) -> f64 {
 
 /// The rows `[A B]` of all records with the ridge below them, and the sum of `|Y|^2` of each output.
 fn regression(spectra: &[Spectrum], window: &Window) -> (DMatrix<Complex<f64>>, DVector<f64>) {
-    let (inputs, outputs) = (spectra[0].inputs.nrows(), spectra[0].outputs.nrows());
-    let (terms, unknowns) = (window.terms, window.terms * inputs);
+    let inputs = spectra[0].inputs.nrows();
+    let outputs = spectra[0].outputs.nrows();
+    let terms = window.terms;
+    let unknowns = window.terms * inputs;
     let mut rows = DMatrix::zeros(window.count + unknowns, unknowns + outputs);
     let mut power = DVector::zeros(outputs);
     let mut top = 0;
@@ -342,10 +357,8 @@ fn regression(spectra: &[Spectrum], window: &Window) -> (DMatrix<Complex<f64>>, 
             .map(|w| (w - window.omega) / window.half_width)
             .collect();
         for (k, x) in x.iter().enumerate() {
-            let (input, output) = (
-                spectrum.inputs.column(from + k),
-                spectrum.outputs.column(from + k),
-            );
+            let input = spectrum.inputs.column(from + k);
+            let output = spectrum.outputs.column(from + k);
             for (i, u) in input.iter().enumerate() {
                 let mut term = *u;
                 for power in 0..terms {
@@ -392,7 +405,8 @@ pub(super) fn between(ascending: &[f64], x: f64) -> (usize, usize, f64) {
         .partition_point(|at| *at <= x)
         .min(ascending.len() - 1);
     let before = after.saturating_sub(1);
-    let (from, to) = (ascending[before], ascending[after]);
+    let from = ascending[before];
+    let to = ascending[after];
     (
         before,
         after,
@@ -538,10 +552,8 @@ impl ResponseEstimate {
             };
             PairTable::<Vec<f64>>::from_fn(outputs, inputs, curve)
         };
-        let (re, im) = (
-            table(&|point, at| point.response[at].re),
-            table(&|point, at| point.response[at].im),
-        );
+        let re = table(&|point, at| point.response[at].re);
+        let im = table(&|point, at| point.response[at].im);
         let coherence = table(&|point, at| point.partial_coherence[at].clamp(0.0, 1.0));
         MeasuredResponse::new(
             self.points.iter().map(|point| point.omega).collect(),
@@ -617,7 +629,8 @@ impl NoiseCovariance {
         let points = &measured.points;
         let smoothed = |k: usize| {
             let reach = SMOOTHING.len() / 2;
-            let (mut sum, mut weights) = (points[k].noise.scale(0.0), 0.0);
+            let mut sum = points[k].noise.scale(0.0);
+            let mut weights = 0.0;
             for (weight, neighbour) in SMOOTHING.iter().zip(k..) {
                 if let Some(point) = neighbour
                     .checked_sub(reach)

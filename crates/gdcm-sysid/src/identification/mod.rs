@@ -1,60 +1,50 @@
 //! Identified models from flight records (M14).
 mod blocks;
-mod cautions;
-mod diagnostics;
-mod feedback;
+pub mod cautions;
+pub mod diagnostics;
+pub mod feedback;
 #[cfg(test)]
 mod fresh_flight_tests;
-mod gaps;
-mod identify;
+pub mod gaps;
+pub mod identify;
 mod instrument;
 #[cfg(test)]
 mod known_answers_tests;
 mod laguerre;
 mod likelihood;
-mod local_polynomial;
+pub mod local_polynomial;
 mod mode_removal;
 mod normal_system;
 mod order;
-mod preparation;
-mod prepared_data;
+pub mod preparation;
+pub mod prepared_data;
 #[cfg(test)]
 mod real_flight_tests;
-mod record_cautions;
-mod record_contrast;
+pub mod record_cautions;
+pub mod record_contrast;
 mod refinement;
 mod sampling;
-mod spectrum;
-mod subspace;
-mod topics;
-mod uncertainty;
+pub mod spectrum;
+pub mod subspace;
+pub mod topics;
+pub mod uncertainty;
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
+pub use cautions::{CautionNote, IdentificationCaution};
+pub use identify::{Identification, IdentificationError, Options, SearchSpace};
+pub use local_polynomial::{ResponseEstimate, TRUSTED_COHERENCE};
+pub use preparation::{ChannelPreparation, Hold, Preparation};
+pub use spectrum::spectra;
 
-use nalgebra::{Complex, DMatrix, DMatrixView, DVector, dmatrix};
-
-use gdcm_model::dataset::{ChannelRemedy, ChannelSide, ModelBands, Pair, PairTable, StateSpace};
-use gdcm_model::executor::{Executor, each};
 #[cfg(test)]
 use gdcm_model::progress::Unobserved;
-use gdcm_model::progress::{Cancelled, Progress, Shares};
-pub use gdcm_model::response::{PoleEstimate, log_spaced};
-use gdcm_model::response::{SchurForm, median, poles, quantile};
-use gdcm_model::simulation::centred;
+pub use gdcm_model::response::frequency_response::log_spaced;
+pub use gdcm_model::response::pole_estimate::PoleEstimate;
 pub use gdcm_model::simulation::{
     FirstOrderHold, FlightRecord, LowPass, Segment, Signal, Validation, ValidationError,
     ValidationSettings, ValidationWindow, validate,
 };
 
 #[cfg(test)]
-use self::known_answers_tests::*;
-use self::{
-    blocks::*, instrument::*, laguerre::*, likelihood::*, mode_removal::*, normal_system::*,
-    order::*, refinement::*, sampling::*,
-};
-pub use self::{
-    cautions::*, diagnostics::*, feedback::*, gaps::*, identify::*, local_polynomial::*,
-    preparation::*, prepared_data::*, record_cautions::*, record_contrast::*, spectrum::*,
-    subspace::*, topics::*, uncertainty::*,
-};
+use self::likelihood::{Likelihood, SpectralLines};
+#[cfg(test)]
+use self::refinement::{propose, refine};

@@ -6,7 +6,13 @@
 //! 2  the mode with the least sum goes; the mean of its real part is kept in D
 //! ```
 
-use super::*;
+use nalgebra::{Complex, DMatrix, dmatrix};
+
+use gdcm_model::dataset::StateSpace;
+use gdcm_model::response::eigenvalues::SchurForm;
+
+use super::blocks::{Block, BlockModel};
+use super::local_polynomial::{EstimatePoint, ResponseEstimate};
 
 impl BlockModel {
     /// The model without the complex pair (`size` 2) or the real pole (`size` 1) that `measured` misses least; none where it has no
@@ -83,9 +89,11 @@ impl BlockModel {
             match (block, poles.as_slice()) {
                 (Block::Pair { .. }, [one, two]) if one.im == 0.0 && one.re != two.re => {
                     // Columns (1, p) are the eigenvectors of [0 1; -a0 -a1].
-                    let (p, q) = (one.re, two.re);
+                    let p = one.re;
+                    let q = two.re;
                     let inverse = dmatrix![q, -1.0; -p, 1.0] / (q - p);
-                    let (b, c) = (inverse * b, c * dmatrix![1.0, 1.0; p, q]);
+                    let b = inverse * b;
+                    let c = c * dmatrix![1.0, 1.0; p, q];
                     let single = |row: usize, pole: f64| {
                         part(
                             Block::Single(pole),
@@ -117,7 +125,10 @@ impl BlockModel {
 /// The model without the modes with `|lambda| > limit` \[rad/s\], equal to it at omega = 0; none where an iteration does not
 /// end, fast and slow modes cannot be told apart, or none is slow.
 pub(super) fn without_fast_modes(model: &StateSpace, limit: f64) -> Option<StateSpace> {
-    let (a, b, c, order) = (model.a(), model.b(), model.c(), model.order());
+    let a = model.a();
+    let b = model.b();
+    let c = model.c();
+    let order = model.order();
     let mut schur = SchurForm::of(a)?;
     let slow = schur.order_by(|eigenvalue| eigenvalue.norm() <= limit);
     if slow == order {
@@ -127,8 +138,10 @@ pub(super) fn without_fast_modes(model: &StateSpace, limit: f64) -> Option<State
         return None;
     }
     let basis = real_basis(&schur.q, slow);
-    let (q1, q2) = (basis.columns(0, slow), basis.columns(slow, order - slow));
-    let (a1, a2) = (q1.transpose() * a * q1, q2.transpose() * a * q2);
+    let q1 = basis.columns(0, slow);
+    let q2 = basis.columns(slow, order - slow);
+    let a1 = q1.transpose() * a * q1;
+    let a2 = q2.transpose() * a * q2;
     let x = sylvester(&a1, &a2, &(q1.transpose() * a * q2))?;
     let b2 = q2.transpose() * b;
     let c2 = c * (q1 * &x + q2);
@@ -171,6 +184,10 @@ fn sylvester(a1: &DMatrix<f64>, a2: &DMatrix<f64>, a12: &DMatrix<f64>) -> Option
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DVector;
+
+    use gdcm_model::response::frequency_response::log_spaced;
+
     use super::*;
     use crate::identification::known_answers_tests::*;
 

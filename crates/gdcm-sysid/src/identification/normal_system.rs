@@ -12,7 +12,14 @@
 //!
 //! With tau in X the gradient is exact: variable projection in the form of Kaufman, BIT 15, 1975.
 
-use super::*;
+use nalgebra::{Complex, DMatrix, DVector};
+
+use gdcm_model::executor::each;
+
+use super::blocks::{Block, BlockModel};
+use super::likelihood::{
+    DEPENDENT, Likelihood, SegmentCost, SpectralLines, pseudo_inverse_root, scale_columns, whiten,
+};
 
 /// `G`, `g` and the cost: a step `d` changes the cost by `-2 g'd + d'G d`.
 #[derive(Clone, Debug)]
@@ -104,13 +111,13 @@ struct Gram<'a> {
 
 impl<'a> Gram<'a> {
     fn new(lines: &'a SpectralLines, model: &'a BlockModel, part: &'a SegmentCost) -> Self {
-        let (order, inputs, outputs) = (model.order(), model.b.ncols(), model.c.nrows());
+        let order = model.order();
+        let inputs = model.b.ncols();
+        let outputs = model.c.nrows();
         let count = lines.omega.len();
         let mut resolvent = DMatrix::zeros(outputs, order * count);
-        let (mut resolvent_scalars, mut weight_scalars) = (
-            DMatrix::zeros(inputs + 1, count),
-            DMatrix::zeros(order + inputs + 2, count),
-        );
+        let mut resolvent_scalars = DMatrix::zeros(inputs + 1, count);
+        let mut weight_scalars = DMatrix::zeros(order + inputs + 2, count);
         let mut cr = vec![Complex::default(); outputs * order];
         for (k, &omega) in lines.omega.iter().enumerate() {
             model.output_resolvent(omega, &mut cr);
@@ -133,10 +140,8 @@ impl<'a> Gram<'a> {
             weight_scalars[(order + inputs + 1, k)] = Complex::from(1.0);
         }
         let size = model.parameters() + order + 2 * outputs;
-        let (matrix, gradient) = (
-            DMatrix::zeros(size, size),
-            DVector::zeros(model.parameters()),
-        );
+        let matrix = DMatrix::zeros(size, size);
+        let gradient = DVector::zeros(model.parameters());
         Self {
             model,
             lines,
@@ -156,7 +161,8 @@ impl<'a> Gram<'a> {
         self.add_resolvent_with_weight();
         self.add_blocks();
         self.add_gradient();
-        let (size, parameters) = (self.matrix.nrows(), self.model.parameters());
+        let size = self.matrix.nrows();
+        let parameters = self.model.parameters();
         let nuisance = size - parameters;
         let transient = self
             .matrix
@@ -186,11 +192,9 @@ impl<'a> Gram<'a> {
 
     /// Column of the vector `W e_output` times the scalar of this number.
     fn weight_column(&self, output: usize, scalar: usize) -> usize {
-        let (order, inputs, outputs) = (
-            self.model.order(),
-            self.model.b.ncols(),
-            self.model.c.nrows(),
-        );
+        let order = self.model.order();
+        let inputs = self.model.b.ncols();
+        let outputs = self.model.c.nrows();
         if scalar < order {
             self.model.place_of_c(output, scalar)
         } else if scalar < order + inputs {
@@ -208,10 +212,8 @@ impl<'a> Gram<'a> {
     /// `(W C R)_i^H (W C R)_i'` at line `k`.
     fn resolvent_product(&self, k: usize, i: usize, other: usize) -> Complex<f64> {
         let order = self.model.order();
-        let (left, right) = (
-            self.resolvent.column(k * order + i),
-            self.resolvent.column(k * order + other),
-        );
+        let left = self.resolvent.column(k * order + i);
+        let right = self.resolvent.column(k * order + other);
         left.iter()
             .zip(right.iter())
             .map(|(a, b)| a.conj() * b)
@@ -237,7 +239,8 @@ impl<'a> Gram<'a> {
 
     /// `B` and tau with themselves.
     fn add_resolvent(&mut self) {
-        let (order, scalars) = (self.model.order(), self.resolvent_scalars.nrows());
+        let order = self.model.order();
+        let scalars = self.resolvent_scalars.nrows();
         let pairs: Vec<_> = (0..order)
             .flat_map(|i| (i..order).map(move |other| (i, other)))
             .collect();
@@ -266,7 +269,8 @@ impl<'a> Gram<'a> {
 
     /// `C`, `D`, c1 and c0 with themselves: `W'W` is real.
     fn add_weight(&mut self) {
-        let (outputs, scalars) = (self.model.c.nrows(), self.weight_scalars.nrows());
+        let outputs = self.model.c.nrows();
+        let scalars = self.weight_scalars.nrows();
         let count = self.lines.omega.len();
         let pairs: Vec<_> = (0..outputs)
             .flat_map(|o| (o..outputs).map(move |other| (o, other)))
@@ -317,12 +321,13 @@ impl<'a> Gram<'a> {
 
     /// `B` and tau with `C`, `D`, c1 and c0.
     fn add_resolvent_with_weight(&mut self) {
-        let (order, outputs) = (self.model.order(), self.model.c.nrows());
+        let order = self.model.order();
+        let outputs = self.model.c.nrows();
         let product =
             |k: usize, row: usize| self.weight_product(k, row % outputs, row / outputs).conj();
         let left = self.line_products(order * outputs, product);
-        let (resolvent_count, weight_count) =
-            (self.resolvent_scalars.nrows(), self.weight_scalars.nrows());
+        let resolvent_count = self.resolvent_scalars.nrows();
+        let weight_count = self.weight_scalars.nrows();
         let scalar_pairs: Vec<_> = (0..resolvent_count)
             .flat_map(|s| (0..weight_count).map(move |t| (s, t)))
             .collect();
@@ -330,10 +335,8 @@ impl<'a> Gram<'a> {
             left * scalar_products(&self.resolvent_scalars, &self.weight_scalars, &scalar_pairs);
         for row in 0..order * outputs {
             for (column, &(s, t)) in scalar_pairs.iter().enumerate() {
-                let (p, q) = (
-                    self.resolvent_column(row / outputs, s),
-                    self.weight_column(row % outputs, t),
-                );
+                let p = self.resolvent_column(row / outputs, s);
+                let q = self.weight_column(row % outputs, t);
                 self.put(p, q, products[(row, column)]);
             }
         }
@@ -350,9 +353,10 @@ impl<'a> Gram<'a> {
 
     /// The blocks with everything.
     fn add_blocks(&mut self) {
-        let (order, outputs) = (self.model.order(), self.model.c.nrows());
-        let (resolvent_count, weight_count) =
-            (self.resolvent_scalars.nrows(), self.weight_scalars.nrows());
+        let order = self.model.order();
+        let outputs = self.model.c.nrows();
+        let resolvent_count = self.resolvent_scalars.nrows();
+        let weight_count = self.weight_scalars.nrows();
         let columns = self.block_columns();
         let [resolvent_parts, weight_parts] =
             [&self.resolvent_scalars, &self.weight_scalars].map(parts);
@@ -383,14 +387,13 @@ impl<'a> Gram<'a> {
 
     /// `J'e`.
     fn add_gradient(&mut self) {
-        let (order, inputs, outputs) = (
-            self.model.order(),
-            self.model.b.ncols(),
-            self.model.c.nrows(),
-        );
+        let order = self.model.order();
+        let inputs = self.model.b.ncols();
+        let outputs = self.model.c.nrows();
         let columns = self.block_columns();
         for k in 0..self.lines.omega.len() {
-            let (e, weight) = (self.residual.column(k), &self.lines.weights[k]);
+            let e = self.residual.column(k);
+            let weight = &self.lines.weights[k];
             let of_state = |i: usize| -> Complex<f64> {
                 let column = self.resolvent.column(k * order + i);
                 column.iter().zip(e.iter()).map(|(v, e)| v.conj() * e).sum()
@@ -446,8 +449,13 @@ fn parts(scalars: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use serde_json::Value;
+
+    use super::*;
+    use crate::identification::known_answers_tests::{
+        answers, known_records, matrix, number, numbers,
+    };
+    use crate::identification::spectrum::Spectrum;
 
     fn known_start(known: &Value) -> BlockModel {
         let start = &known["blocks_at_start"];
@@ -482,10 +490,8 @@ mod tests {
             (cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8,
             "{cost}"
         );
-        let (gradient, diagonal) = (
-            numbers(&known["g_at_start"]),
-            numbers(&known["G_diagonal_at_start"]),
-        );
+        let gradient = numbers(&known["g_at_start"]);
+        let diagonal = numbers(&known["G_diagonal_at_start"]);
         let largest = gradient
             .iter()
             .fold(0.0_f64, |largest, entry| largest.max(entry.abs()));

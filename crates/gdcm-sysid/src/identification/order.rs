@@ -12,7 +12,16 @@
 //! A record that was held out decides between orders whose BIC differ by less than 1 %. An unstable pole above the lines used is no finding: an
 //! order within 3 % without one goes first.
 
-use super::*;
+use std::collections::BTreeMap;
+
+use gdcm_model::executor::each;
+use gdcm_model::progress::Shares;
+
+use super::blocks::BlockModel;
+use super::identify::IdentificationError;
+use super::likelihood::Likelihood;
+use super::prepared_data::{FIGURES_AN_UNKNOWN, PreparedData};
+use super::refinement::Fit;
 
 /// The highest order at which the search begins.
 const FIRST: usize = 16;
@@ -98,10 +107,8 @@ pub(super) fn effective_parameters(fit: &Fit) -> usize {
 
 /// `BIC` of a fit; none where it has more parameters than degrees of freedom.
 fn criterion(fit: &Fit, likelihood: &Likelihood) -> Option<f64> {
-    let (k, n) = (
-        effective_parameters(fit) as f64,
-        likelihood.freedom(fit.model.order()) as f64,
-    );
+    let k = effective_parameters(fit) as f64;
+    let n = likelihood.freedom(fit.model.order()) as f64;
     (n > k).then(|| fit.cost * (1.0 + k * n.ln() / (n - k)))
 }
 

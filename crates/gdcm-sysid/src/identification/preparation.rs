@@ -1,6 +1,14 @@
 //! From flight records as they were logged to segments without gaps on a uniform grid (M14, 1).
 
-use super::*;
+use nalgebra::DMatrix;
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::executor::{Executor, each};
+use gdcm_model::simulation::{FlightRecord, Segment, Signal};
+
+use super::gaps::{Cause, Gap, Treatment, names};
+use super::record_cautions::{RecordCaution, channel_cautions, inputs_at_limit, stuck_caution};
+use super::sampling::{Clock, Track};
 
 /// The longest shift of a channel that is a delay and not an error \[s\].
 const LONGEST_SHIFT_S: f64 = 10.0;
@@ -349,7 +357,9 @@ pub fn prepare(
     });
     let prepared = prepared.into_iter().collect::<Result<Vec<_>, _>>()?;
     let longest_s = prepared.iter().map(|one| one.longest_s).fold(0.0, f64::max);
-    let (mut segments, mut uses, mut cautions) = (Vec::new(), Vec::new(), Vec::new());
+    let mut segments = Vec::new();
+    let mut uses = Vec::new();
+    let mut cautions = Vec::new();
     for one in prepared {
         segments.extend(one.segments);
         uses.push(one.used);
@@ -429,7 +439,8 @@ fn prepare_record(
     let clock = Clock::of(record, preparation.longest_bridge)?;
     let mut cautions = Vec::new();
     if clock.is_uneven() {
-        let (name, percent) = (record.name.clone(), clock.jitter_percent);
+        let name = record.name.clone();
+        let percent = clock.jitter_percent;
         if !preparation.resample {
             return Err(PreparationError::UnevenSampling {
                 record: name,
@@ -445,19 +456,19 @@ fn prepare_record(
     gaps.extend(clock.gaps());
     let runs = runs(&clock, &tracks);
 
-    let (mut segments, mut longest_s) = (Vec::new(), 0.0_f64);
+    let mut segments = Vec::new();
+    let mut longest_s = 0.0_f64;
     for run in runs {
-        let (start_s, samples) = (
-            clock.start_s + clock.sample_time_s * run.first,
-            run.rows.len() / tracks.len(),
-        );
+        let start_s = clock.start_s + clock.sample_time_s * run.first;
+        let samples = run.rows.len() / tracks.len();
         let length_s = clock.sample_time_s * samples as f64;
         longest_s = longest_s.max(length_s);
         // A hair of tolerance, so that 500 samples of 0.02 s are 10 s.
         if length_s >= preparation.least_segment_s * (1.0 - 1e-9) {
             segments.push(run.segment(index, start_s, clock.sample_time_s, preparation));
         } else {
-            let (cause, treatment) = (Cause::SegmentTooShort(length_s), Treatment::CutOut);
+            let cause = Cause::SegmentTooShort(length_s);
+            let treatment = Treatment::CutOut;
             gaps.push(Gap {
                 start_s,
                 end_s: start_s + length_s,
@@ -480,8 +491,9 @@ fn prepare_record(
         .iter()
         .map(|segment| segment.sample_time_s * segment.inputs.nrows() as f64)
         .sum();
-    let (record, sample_time_s, logged_s) =
-        (record.name.clone(), clock.sample_time_s, clock.logged_s());
+    let record = record.name.clone();
+    let sample_time_s = clock.sample_time_s;
+    let logged_s = clock.logged_s();
     Ok(PreparedRecord {
         segments,
         used: RecordUse {
@@ -510,11 +522,9 @@ fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), P
             });
         }
     }
-    let (stamps, inputs, outputs) = (
-        record.time_s.len(),
-        record.inputs.nrows(),
-        record.outputs.nrows(),
-    );
+    let stamps = record.time_s.len();
+    let inputs = record.inputs.nrows();
+    let outputs = record.outputs.nrows();
     if stamps != inputs || stamps != outputs {
         return Err(PreparationError::LengthsDiffer {
             record: record.name.clone(),
@@ -542,7 +552,8 @@ impl Run {
         sample_time_s: f64,
         preparation: &Preparation,
     ) -> Segment {
-        let (inputs, outputs) = (preparation.inputs.len(), preparation.outputs.len());
+        let inputs = preparation.inputs.len();
+        let outputs = preparation.outputs.len();
         let width = inputs + outputs;
         let samples = self.rows.len() / width;
         Segment {

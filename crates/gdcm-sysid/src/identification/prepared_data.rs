@@ -1,7 +1,27 @@
 //! What models are made from and judged by, in scaled units.
 
-use super::*;
 use std::f64::consts::TAU;
+
+use nalgebra::DMatrix;
+
+use gdcm_model::dataset::StateSpace;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::executor::Executor;
+use gdcm_model::progress::Shares;
+use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::simulation::{FlightRecord, Segment, centred};
+
+use super::blocks::BlockModel;
+use super::cautions::IdentificationCaution;
+use super::identify::{IdentificationError, Options};
+use super::instrument::Instrument;
+use super::likelihood::{Likelihood, SpectralLines};
+use super::local_polynomial::{NoiseCovariance, ResponseEstimate, local_polynomial};
+use super::order::{Extent, parameters_of_order};
+use super::preparation::{RecordUse, prepare};
+use super::record_cautions::RecordCaution;
+use super::spectrum::{CutOff, Spectrum, spectra};
+use super::subspace::SubspaceSettings;
 
 /// Points of the measured response.
 const MEASURED_POINTS: usize = 40;
@@ -87,7 +107,8 @@ impl<'a> PreparedData<'a> {
         check_inputs(&segments, options)?;
 
         progress.next(0.02, "measured response")?;
-        let (lowest, highest) = (options.lowest(), options.highest());
+        let lowest = options.lowest();
+        let highest = options.highest();
         let lines = LineRange {
             lowest,
             highest: BEYOND * highest,
@@ -143,13 +164,11 @@ impl<'a> PreparedData<'a> {
                 Some(likelihood(&narrow, &logged()?)?),
             )
         };
-        let (fit, held_out) = (
-            likelihood(&narrow, &measured)?,
-            likelihood(
-                &LineRange { lowest, highest }.of(&scaled(&held_out_segments), executor),
-                &measured,
-            )?,
-        );
+        let fit = likelihood(&narrow, &measured)?;
+        let held_out = likelihood(
+            &LineRange { lowest, highest }.of(&scaled(&held_out_segments), executor),
+            &measured,
+        )?;
 
         progress.next(0.07, "low-pass")?;
         let cut_off = CutOff::choose(&segments, highest, executor);
@@ -192,7 +211,8 @@ impl<'a> PreparedData<'a> {
 
     /// What CT-PBSID is run with: what the options say, and where they say nothing what the records can carry (M14.13).
     pub(super) fn subspace_settings(&self, options: &Options) -> SubspaceSettings {
-        let (inputs, outputs) = (self.scales.inputs.len(), self.scales.outputs.len());
+        let inputs = self.scales.inputs.len();
+        let outputs = self.scales.outputs.len();
         let lines: usize = self
             .spectra
             .iter()
@@ -342,7 +362,8 @@ fn checked_length(
     lines: &[Spectrum],
     options: &Options,
 ) -> Result<Option<IdentificationCaution>, IdentificationError> {
-    let (lowest, period_s) = (options.band[0], TAU / options.band[0]);
+    let lowest = options.band[0];
+    let period_s = TAU / options.band[0];
     let length_s = |segment: &Segment| segment.sample_time_s * segment.inputs.nrows() as f64;
     let longest_s = segments.iter().map(length_s).fold(0.0, f64::max);
     let of_inputs = if segments.len() == 1 {
@@ -531,8 +552,9 @@ fn rms(
     side: fn(&Segment) -> &DMatrix<f64>,
 ) -> Result<Vec<Option<f64>>, ScalingError> {
     let channels = segments.first().map_or(0, |segment| side(segment).ncols());
-    let (mut squares, mut greatest, mut samples) =
-        (vec![0.0; channels], vec![0.0_f64; channels], 0);
+    let mut squares = vec![0.0; channels];
+    let mut greatest = vec![0.0_f64; channels];
+    let mut samples = 0;
     for (index, segment) in segments.iter().enumerate() {
         let rows = side(segment).nrows();
         samples += rows;

@@ -1,9 +1,23 @@
 //! Known answers of M14.12 to M14.18: flights of one axis by a stated generator, computed by independent numpy code.
 
-use super::*;
-use gdcm_model::executor::Sequential;
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
+
+use gdcm_model::dataset::channel::Pair;
+use gdcm_model::executor::Sequential;
+use gdcm_model::progress::Shares;
+
+use super::*;
+use crate::identification::diagnostics::{Diagnostics, departure, model_at_points};
+use crate::identification::feedback::Feedback;
+use crate::identification::identify::identify;
+use crate::identification::known_answers_tests::{matrix, number, numbers, response_at};
+use crate::identification::local_polynomial::{EstimatePoint, local_polynomial};
+use crate::identification::preparation::prepare;
+use crate::identification::prepared_data::{PreparedData, Scales};
+use crate::identification::record_cautions::clipping;
+use crate::identification::record_contrast::{RecordContrasts, RecordFault};
+use crate::identification::uncertainty::ParameterCovariance;
 
 /// The whole file.
 pub(super) fn known() -> Value {
@@ -47,7 +61,9 @@ pub(super) struct Flown {
 impl Flown {
     fn of(known: &Value, seed: u64) -> Self {
         let of = |name: &str| number(&known[name]);
-        let (gust, amp, noise) = (of("gust"), of("amp"), of("noise"));
+        let gust = of("gust");
+        let amp = of("amp");
+        let noise = of("noise");
         Self {
             seed,
             seconds: of("T"),
@@ -77,16 +93,23 @@ impl Flown {
     /// The record, and what drove it from outside.
     pub(super) fn record(self, file: &Value) -> (FlightRecord, Vec<f64>) {
         let generator = &file["generator"];
-        let (f, g) = (matrix(&generator["F"]), matrix(&generator["G"]));
+        let f = matrix(&generator["F"]);
+        let g = matrix(&generator["G"]);
         let dt = number(&generator["dt"]);
         let samples = (self.seconds / dt).round() as usize;
         let mut random = Generator::of(self.seed);
-        let (ag, ar) = ((-dt / 0.7_f64).exp(), (-dt / 0.3_f64).exp());
-        let (f0, f1) = (0.13_f64, 2.6_f64);
+        let ag = (-dt / 0.7_f64).exp();
+        let ar = (-dt / 0.3_f64).exp();
+        let f0 = 0.13_f64;
+        let f1 = 2.6_f64;
         let rate = (f1 / f0).ln();
-        let (mut x, mut gust, mut remnant, mut before) =
-            (nalgebra::DVector::zeros(3), 0.0, 0.0, 0.0);
-        let (mut u, mut y, mut sweep) = (Vec::new(), Vec::new(), Vec::new());
+        let mut x = nalgebra::DVector::zeros(3);
+        let mut gust = 0.0;
+        let mut remnant = 0.0;
+        let mut before = 0.0;
+        let mut u = Vec::new();
+        let mut y = Vec::new();
+        let mut sweep = Vec::new();
         for i in 0..samples {
             let time = i as f64 * dt;
             let turns = f0 * self.seconds / rate * ((f1 / f0).powf(time / self.seconds) - 1.0);
@@ -210,10 +233,8 @@ fn the_short_record_of_one_axis_gives_the_model_of_independent_code() {
             "{omega} rad/s: {h}, not {expected_h}"
         );
     }
-    let (raw, moved) = (
-        found.held_out_cost.unwrap(),
-        found.held_out_normalised.unwrap(),
-    );
+    let raw = found.held_out_cost.unwrap();
+    let moved = found.held_out_normalised.unwrap();
     let tolerance = number(&known["held_out"]["tolerance"]);
     assert!(
         (raw - number(&known["held_out"]["raw"])).abs() < tolerance,
@@ -245,11 +266,9 @@ fn the_measured_response_of_a_short_record_is_that_of_independent_code() {
     let omegas = numbers(&lpm["w"]);
     let measured = local_polynomial(&lines.collect::<Vec<_>>(), &omegas, &Sequential).unwrap();
     let tolerance = number(&lpm["tolerance_relative"]);
-    let (response, noise, half) = (
-        line(&lpm["G_scaled"]),
-        numbers(&lpm["Cv"]),
-        numbers(&lpm["half"]),
-    );
+    let response = line(&lpm["G_scaled"]);
+    let noise = numbers(&lpm["Cv"]);
+    let half = numbers(&lpm["half"]);
     for (k, point) in measured.points.iter().enumerate() {
         assert!(
             (point.half_width / point.omega / half[k] - 1.0).abs() < tolerance,
@@ -372,7 +391,8 @@ fn bands_are_widened_by_what_is_fed_back_from_a_share_of_0_04_on() {
                 .bands(&fit.model, &[], fed, &omegas, &Sequential)
                 .unwrap()
         };
-        let (plain, widened) = (of(None), of(Some(&feedback)));
+        let plain = of(None);
+        let widened = of(Some(&feedback));
         assert_eq!(
             feedback.share >= 0.04,
             is_widened,
@@ -473,7 +493,8 @@ fn clipped_samples_are_counted_as_independent_code_counts_them() {
         }
         let mean = samples.iter().sum::<f64>() / 4000.0;
         let deviation = (samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 4000.0).sqrt();
-        let (limit, quantum) = (number(&known["limit_sd"]), number(&known["quantum_sd"]));
+        let limit = number(&known["limit_sd"]);
+        let quantum = number(&known["quantum_sd"]);
         for x in &mut samples {
             *x = (*x / deviation).clamp(-limit, limit);
             *x = if quantum > 0.0 {
@@ -674,13 +695,11 @@ fn the_quadrotors_sweep_shows_its_feedback_and_the_reference_mends_that() {
     );
     // The bands are those of the lines as logged (M14.15): they hold what the binary sequence tells, known to 0.7 dB itself.
     let bands = mended.refined.bands.clone().unwrap();
-    let (omega, by_reference) = (
-        bands.omega(),
-        &bands.sd_db()[Pair {
-            output: 0,
-            input: 0,
-        }],
-    );
+    let omega = bands.omega();
+    let by_reference = &bands.sd_db()[Pair {
+        output: 0,
+        input: 0,
+    }];
     for (at, found, expected) in [
         (5.0, magnitudes_db(&mended)[0], 35.9),
         (8.0, magnitudes_db(&mended)[1], 30.8),

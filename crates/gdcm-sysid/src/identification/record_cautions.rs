@@ -1,6 +1,17 @@
 //! What the engineer should know of the flight records, and how it is found in their channels.
 
-use super::*;
+use std::collections::BTreeSet;
+
+use nalgebra::DMatrix;
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::response::curve_values::quantile;
+use gdcm_model::response::median;
+use gdcm_model::simulation::{FlightRecord, Segment, Signal, centred};
+
+use super::cautions::CautionNote;
+use super::gaps::{Cause, names};
+use super::preparation::{Hold, Preparation, RecordUse};
 
 /// A channel with more equal consecutive samples than this while it moves is a stair (M14, 1.3).
 const HELD: f64 = 0.5;
@@ -186,7 +197,8 @@ pub(super) fn stuck_caution(used: &RecordUse) -> Option<RecordCaution> {
         Cause::Frozen(signals) => Some((signals, gap.end_s - gap.start_s)),
         _ => None,
     });
-    let (mut all, mut seconds) = (BTreeSet::new(), 0.0);
+    let mut all = BTreeSet::new();
+    let mut seconds = 0.0;
     for (signals, length_s) in frozen {
         all.extend(signals.iter().cloned());
         seconds += length_s;
@@ -211,7 +223,8 @@ fn samples(record: &FlightRecord, signal: &Signal) -> Vec<(f64, f64)> {
 /// Share of equal consecutive samples in a channel while it moves, and the median time between changes \[s\]; none where
 /// the share is a half or less.
 fn sample_hold(records: impl Iterator<Item = Vec<(f64, f64)>>) -> Option<(f64, f64)> {
-    let (mut samples, mut steps) = (0, Vec::new());
+    let mut samples = 0;
+    let mut steps = Vec::new();
     for record in records {
         let runs: Vec<_> = record.chunk_by(|a, b| a.1 == b.1).collect();
         for pair in runs.windows(2) {
@@ -415,7 +428,8 @@ pub(super) fn output_cautions(
         let clipped = clipped.filter(|(_, clipping)| clipping.share > clipping.most);
         let count = clipped.clone().count();
         if let Some((record, clipping)) = clipped.max_by(|a, b| a.1.share.total_cmp(&b.1.share)) {
-            let (record, percent) = (record.name.clone(), 100.0 * clipping.share);
+            let record = record.name.clone();
+            let percent = 100.0 * clipping.share;
             cautions.push(RecordCaution::AtLimit {
                 record,
                 signal: signal.clone(),

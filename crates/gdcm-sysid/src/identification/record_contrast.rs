@@ -11,7 +11,24 @@
 //!
 //! What changes when a record is left out blames nobody: it says only that the record carries an axis alone.
 
-use super::*;
+use std::fmt;
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::condition::ChannelRemedy;
+use gdcm_model::executor::each;
+use gdcm_model::simulation::Signal;
+
+use super::blocks::BlockModel;
+use super::cautions::{IdentificationCaution, late_or_early};
+use super::diagnostics::Diagnostics;
+use super::identify::Options;
+use super::likelihood::{Likelihood, SegmentCost, SpectralLines, pseudo_inverse_root, whiten};
+use super::normal_system::{NormalSystem, gradient_along};
+use super::order::effective_parameters;
+use super::refinement::Fit;
+use super::spectrum::Spectrum;
 
 /// Share of a direction that a record knows at least, and at most, so that it can be compared.
 const KNOWN: (f64, f64) = (0.02, 0.98);
@@ -191,7 +208,8 @@ impl<'a> RecordContrasts<'a> {
     ) -> Option<IdentificationCaution> {
         let mut worst = self.contrasts.clone();
         worst.sort_by(|a, b| b.contrast.total_cmp(&a.contrast));
-        let (first, second) = (worst.first()?, worst.get(1)?);
+        let first = worst.first()?;
+        let second = worst.get(1)?;
         let limit = if in_gusts {
             CONTRADICTS_IN_GUSTS
         } else {
@@ -208,7 +226,8 @@ impl<'a> RecordContrasts<'a> {
             .collect();
         records.sort_unstable();
         let named = |record| {
-            let (name, fault) = (names.record_name(record), self.fault(record, names.options));
+            let name = names.record_name(record);
+            let fault = self.fault(record, names.options);
             ContradictingRecord {
                 record,
                 name,
@@ -271,7 +290,8 @@ impl<'a> RecordContrasts<'a> {
     /// `h` and `S` of a fault of a record.
     fn sums(&self, record: usize, fault: &RecordFault) -> Option<(f64, f64)> {
         let model = &self.fit.model;
-        let (mut with_residual, mut square) = (0.0, 0.0);
+        let mut with_residual = 0.0;
+        let mut square = 0.0;
         let mut with_parameters = DVector::zeros(model.parameters());
         for ((lines, part), spectrum) in self
             .likelihood

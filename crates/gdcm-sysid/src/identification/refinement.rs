@@ -9,7 +9,19 @@
 //!
 //! Marquardt, SIAM J. Appl. Math. 11, 1963. Scale freedoms of the blocks are left to lambda.
 
-use super::*;
+use std::collections::BTreeMap;
+
+use gdcm_model::progress::Shares;
+
+use super::blocks::BlockModel;
+use super::cautions::IdentificationCaution;
+use super::diagnostics::fits_of_records;
+use super::identify::{IdentificationError, Options};
+use super::likelihood::{Likelihood, SegmentCost, SpectralLines};
+use super::normal_system::{NormalSystem, normal_systems};
+use super::order::{LEAST_GAIN, OrderSearch};
+use super::prepared_data::PreparedData;
+use super::subspace::{Candidate, StabilisationPoint, stabilisation};
 
 /// Damping at the beginning.
 const FIRST_DAMPING: f64 = 1e-4;
@@ -203,7 +215,8 @@ pub(super) fn refine<'a>(
         .clone();
     progress.next(0.7, "refinement")?;
     let fit = chosen.refined(&data.likelihood, FURTHER_STEPS, LEAST_GAIN, progress)?;
-    let (likelihood, before_weighing) = (data.likelihood.clone(), None);
+    let likelihood = data.likelihood.clone();
+    let before_weighing = None;
     let unweighed = Refinement {
         search,
         fit,
@@ -274,7 +287,13 @@ fn reweighed<'a>(
 
 #[cfg(test)]
 mod tests {
+    use gdcm_model::dataset::state_space::StateSpace;
+    use gdcm_model::progress::Unobserved;
+
     use super::*;
+    use crate::identification::known_answers_tests::{
+        answers, known_records, matrix, number, numbers, response,
+    };
 
     #[test]
     fn exact_lines_lead_to_the_exact_response() {

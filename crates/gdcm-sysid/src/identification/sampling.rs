@@ -1,6 +1,15 @@
 //! The time stamps of a record.
 
-use super::*;
+use std::collections::BTreeMap;
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::response::curve_values::quantile;
+use gdcm_model::response::median;
+use gdcm_model::simulation::{FlightRecord, Signal};
+
+use super::gaps::{Cause, Gap, Treatment};
+use super::preparation::{ChannelPreparation, Hold, Preparation, PreparationError};
+use super::record_cautions::is_coarse;
 
 /// Stamps further off the multiples of the sample time than this share of it are uneven (M14, 1.1).
 const UNEVEN_PERCENT: f64 = 20.0;
@@ -38,7 +47,8 @@ impl Clock {
             // Counted from the first stamp: huge stamps may differ, and yet not when they are counted so.
             let step = times[place + 1] - times[place];
             if !(step > 0.0 && step.is_finite()) {
-                let (previous_s, time_s) = (record.time_s[pair[0]], record.time_s[pair[1]]);
+                let previous_s = record.time_s[pair[0]];
+                let time_s = record.time_s[pair[1]];
                 let record = record.name.clone();
                 return Err(PreparationError::TimeNotIncreasing {
                     record,
@@ -255,7 +265,8 @@ impl Reader<'_> {
             self.next += 1;
         }
         let before = self.next.checked_sub(1)?;
-        let (time, value) = (times[before], values[before]);
+        let time = times[before];
+        let value = values[before];
         let Some(&after) = times.get(self.next) else {
             return (t - time <= self.track.rounding_s).then_some(value);
         };
@@ -376,7 +387,8 @@ impl Column {
             .max(UNUSUAL * usual * clock.sample_time_s)
             .max(clock.longest_step_s);
         let frozen = |run: &&[usize]| {
-            let (first, last) = (run[0], run[run.len() - 1]);
+            let first = run[0];
+            let last = run[run.len() - 1];
             let stands =
                 clock.times[last] - clock.times[first] > longest_s && !is_limit(self.values[first]);
             (stands && others_move(first, last)).then_some((first + 1, last + 1))

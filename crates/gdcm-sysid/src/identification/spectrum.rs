@@ -1,8 +1,12 @@
 //! The lines of a segment's Fourier transform.
 
-use super::*;
-use gdcm_numerics::{FourierPlanner, FourierTransform};
 use std::f64::consts::TAU;
+
+use nalgebra::{Complex, DMatrix};
+
+use gdcm_model::executor::{Executor, each};
+use gdcm_model::simulation::{LowPass, Segment};
+use gdcm_numerics::{FourierPlanner, FourierTransform};
 
 /// The lines of one segment (M14, 2): one column a line, one row a channel.
 ///
@@ -123,7 +127,8 @@ impl CutOff {
         let outputs = segments
             .first()
             .map_or(0, |segment| segment.outputs.ncols());
-        let (mut all, mut above) = (vec![0.0; outputs], vec![0.0; outputs]);
+        let mut all = vec![0.0; outputs];
+        let mut above = vec![0.0; outputs];
         for spectrum in spectra(segments, f64::INFINITY, executor) {
             for (k, omega) in spectrum.omega.iter().enumerate() {
                 for (output, line) in spectrum.outputs.column(k).iter().enumerate().take(outputs) {

@@ -10,7 +10,23 @@
 //!
 //! Chiuso, "The role of vector autoregressive modeling in predictor-based subspace identification", Automatica 43, 2007.
 
-use super::*;
+use std::collections::BTreeMap;
+
+use nalgebra::{Complex, DMatrix, DMatrixView};
+
+use gdcm_model::dataset::StateSpace;
+use gdcm_model::executor::{Executor, each};
+use gdcm_model::progress::Shares;
+use gdcm_model::response::eigenvalues::poles;
+use gdcm_model::simulation::Segment;
+
+use super::blocks::BlockModel;
+use super::identify::IdentificationError;
+use super::laguerre::{Projections, TriangularFactor, continuous, least_squares, ridge_solution};
+use super::likelihood::Likelihood;
+use super::mode_removal::without_fast_modes;
+use super::order::SPACING;
+use super::refinement::Fit;
 
 /// The states of every order that one pole and one past window propose.
 #[derive(Clone, Debug)]
@@ -77,7 +93,8 @@ impl Subspace {
     /// The model of an order in continuous time; none where the data do not hold so many states.
     pub(super) fn model(&self, order: usize) -> Option<StateSpace> {
         let all = self.factor.ncols();
-        let (inputs, width) = (self.inputs, self.map.ncols());
+        let inputs = self.inputs;
+        let width = self.map.ncols();
         let channels = all - width;
         let outputs = channels - inputs;
         let roots = self
@@ -95,10 +112,8 @@ impl Subspace {
         let transposed = states.transpose();
         let before = self.factor.columns(0, width) * &transposed;
         let after = self.factor.columns(channels, width) * &transposed;
-        let (u, y) = (
-            self.factor.columns(width, inputs),
-            self.factor.columns(width + inputs, outputs),
-        );
+        let u = self.factor.columns(width, inputs);
+        let y = self.factor.columns(width + inputs, outputs);
         let regressors = side_by_side(&[before.as_view(), u.as_view()]);
         let outputs_of = least_squares(&regressors, &y.into_owned())?;
         let innovation = y - &regressors * &outputs_of;
@@ -107,11 +122,10 @@ impl Subspace {
             &after,
         )?;
         let part = |solution: &DMatrix<f64>, from, count| solution.rows(from, count).transpose();
-        let (a, b) = (part(&states_of, 0, order), part(&states_of, order, inputs));
-        let (c, d) = (
-            part(&outputs_of, 0, order),
-            part(&outputs_of, order, inputs),
-        );
+        let a = part(&states_of, 0, order);
+        let b = part(&states_of, order, inputs);
+        let c = part(&outputs_of, 0, order);
+        let d = part(&outputs_of, order, inputs);
         continuous(self.pole, &StateSpace::new(a, b, c, d).ok()?)
     }
 }
@@ -330,13 +344,18 @@ pub(super) fn stabilisation(poles: &[(usize, Vec<Complex<f64>>)]) -> Vec<Stabili
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identification::known_answers_tests::{
+        answers, matrix, number, numbers, response, response_at,
+    };
 
     #[test]
     fn a_system_without_noise_comes_back() {
         let known = &answers()["pbsid_noise_free"];
-        let (inputs, outputs) = (matrix(&known["u"]), matrix(&known["y"]));
+        let inputs = matrix(&known["u"]);
+        let outputs = matrix(&known["y"]);
         let channels = (inputs.ncols(), outputs.ncols());
-        let (dt, past) = (number(&known["dt"]), number(&known["p"]) as usize);
+        let dt = number(&known["dt"]);
+        let past = number(&known["p"]) as usize;
         let segment = Segment {
             record: 0,
             start_s: 0.0,

@@ -1,8 +1,9 @@
 //! Topics with clocks of their own, brought to one uniform clock (M14.11).
 
-use super::*;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
+
+use gdcm_model::response::median;
 
 /// Samples of one channel with stamps of their own.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,7 +138,8 @@ fn low_passed(time_s: &[f64], values: &[f64], t: f64, cutoff: f64) -> f64 {
     let from = time_s.partition_point(|time| *time <= t - half);
     let to = time_s.partition_point(|time| *time < t + half);
     let last = time_s.len() - 1;
-    let (mut sum, mut weights) = (0.0, 0.0);
+    let mut sum = 0.0;
+    let mut weights = 0.0;
     for k in from..to {
         let width = match k {
             _ if last == 0 => 1.0,
@@ -145,7 +147,8 @@ fn low_passed(time_s: &[f64], values: &[f64], t: f64, cutoff: f64) -> f64 {
             k if k == last => time_s[last] - time_s[last - 1],
             k => 0.5 * (time_s[k + 1] - time_s[k - 1]),
         };
-        let (x, y) = (cutoff * (t - time_s[k]), PI * (t - time_s[k]) / half);
+        let x = cutoff * (t - time_s[k]);
+        let y = PI * (t - time_s[k]) / half;
         let sinc = if x.abs() < 1e-8 { 1.0 } else { x.sin() / x };
         let weight = width * sinc * 0.5 * (1.0 + y.cos());
         sum += weight * values[k];
@@ -229,9 +232,11 @@ impl CommonClock {
                 samples: 0,
             });
         };
-        let (start_s, end_s) = (latest.span_s()[0], earliest.span_s()[1]);
+        let start_s = latest.span_s()[0];
+        let end_s = earliest.span_s()[1];
         if end_s <= start_s {
-            let (first, second) = (earliest.name.clone(), latest.name.clone());
+            let first = earliest.name.clone();
+            let second = latest.name.clone();
             return Err(TopicError::NoCommonTime {
                 first,
                 first_end_s: end_s,
@@ -333,6 +338,7 @@ pub enum TopicError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identification::known_answers_tests::{number, numbers};
 
     /// Stamps `step k` shaken by a linear congruence, as those of the known answer are.
     fn shaken(count: usize, step: f64, shake: f64) -> Vec<f64> {

@@ -10,8 +10,20 @@
 //!
 //! The factor 2 was measured: bands of 95 % then hold 95 % of the true curves.
 
-use super::*;
+use nalgebra::{Complex, DMatrix};
+
+use gdcm_model::dataset::model::ModelBands;
+use gdcm_model::dataset::{Pair, PairTable};
+use gdcm_model::executor::{Executor, each};
+use gdcm_model::response::pole_estimate::PoleEstimate;
 use gdcm_model::units::neper_to_db;
+
+use super::blocks::{Block, BlockModel};
+use super::feedback::Feedback;
+use super::likelihood::{Likelihood, SegmentCost, pseudo_inverse_root};
+use super::normal_system::{NormalSystem, normal_systems};
+use super::order::effective_parameters;
+use super::refinement::{Fit, damped};
 
 /// Standard deviations that hold 95 %.
 pub const TWO_SIDED_95: f64 = 1.96;
@@ -104,7 +116,8 @@ impl ParameterCovariance {
                         most
                     }
                 };
-                let (sd_re, sd_im) = (sd(re), sd(im));
+                let sd_re = sd(re);
+                let sd_im = sd(im);
                 let determined = pole.norm() >= lowest && sd_re.hypot(sd_im) <= 0.5 * pole.norm();
                 estimates.push(PoleEstimate {
                     pole,
@@ -120,7 +133,8 @@ impl ParameterCovariance {
 
     /// Variances of the real and the imaginary part of `sum_k gradient_k d theta_k` over the parameters `places`.
     fn variances(&self, places: &[usize], gradient: &[Complex<f64>]) -> (f64, f64) {
-        let (mut re, mut im) = (0.0, 0.0);
+        let mut re = 0.0;
+        let mut im = 0.0;
         for (p, x) in places.iter().zip(gradient) {
             for (q, y) in places.iter().zip(gradient) {
                 re += self.covariance[(*p, *q)] * x.re * y.re;
@@ -140,14 +154,16 @@ impl ParameterCovariance {
         omegas: &[f64],
         executor: &dyn Executor,
     ) -> Option<ModelBands> {
-        let (outputs, inputs) = (model.c.nrows(), model.b.ncols());
+        let outputs = model.c.nrows();
+        let inputs = model.b.ncols();
         let at: Vec<_> = omegas
             .iter()
             .map(|&omega| Gradients::new(model, neighbours, omega))
             .collect();
         // Of each pair over frequency: dB and degrees.
         let of_pair = |pair: usize| {
-            let (output, input) = (pair % outputs, pair / outputs);
+            let output = pair % outputs;
+            let input = pair / outputs;
             let fed_back = |omega: &f64| {
                 feedback.map_or(0.0, |of| 0.5 * of.ratio(*omega, (output, input)).powi(2))
             };
@@ -265,7 +281,8 @@ impl Gradients {
 
     /// The gradient of `ln H` of a pair: by the blocks, its column of `B`, its row of `C`, its entry of `D`.
     fn of_pair(&self, model: &BlockModel, output: usize, input: usize) -> Vec<Complex<f64>> {
-        let (cr, x) = (self.outputs.row(output), self.states.column(input));
+        let cr = self.outputs.row(output);
+        let x = self.states.column(input);
         let mut gradient = Vec::with_capacity(3 * model.order() + 1);
         for (first, block) in model.rows() {
             match block {
@@ -340,8 +357,22 @@ pub(super) fn without_each_record(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use nalgebra::dmatrix;
+
     use gdcm_model::executor::Sequential;
+    use gdcm_model::progress::{Shares, Unobserved};
+    use gdcm_model::response::frequency_response::log_spaced;
+    use gdcm_model::simulation::FlightRecord;
+
+    use super::*;
+    use crate::identification::identify::Options;
+    use crate::identification::known_answers_tests::{answers, matrix, number, numbers};
+    use crate::identification::likelihood::SpectralLines;
+    use crate::identification::local_polynomial::{NoiseCovariance, local_polynomial};
+    use crate::identification::preparation::Preparation;
+    use crate::identification::prepared_data::PreparedData;
+    use crate::identification::spectrum::{Spectrum, spectra};
+    use crate::identification::subspace::SubspaceSettings;
 
     /// Turns the second of two real modes of a block around, which a model does not show but the path of its refinement does.
     fn turned(model: &BlockModel) -> BlockModel {
@@ -372,7 +403,8 @@ mod tests {
             .unwrap()
             .iter()
             .map(|known| {
-                let (inputs, outputs) = (matrix(&known["u"]), matrix(&known["y"]));
+                let inputs = matrix(&known["u"]);
+                let outputs = matrix(&known["y"]);
                 let time_s = (0..inputs.nrows())
                     .map(|sample| sample as f64 * number(&known["dt"]))
                     .collect();
@@ -414,7 +446,9 @@ mod tests {
                 .map(|value| value as usize)
                 .collect::<Vec<_>>()
         };
-        let (poles, pasts, orders) = (numbers(&known["poles_a"]), whole("pasts"), whole("orders"));
+        let poles = numbers(&known["poles_a"]);
+        let pasts = whole("pasts");
+        let orders = whole("orders");
         let settings = SubspaceSettings {
             highest: band[1],
             poles,

@@ -1,9 +1,23 @@
 //! A record with the columns that are its channels, and what its name says about it.
 
-use super::*;
-use crate::identification::RecordUse;
-use gdcm_model::assembly::{NamePattern, Row};
-use gdcm_model::dataset::{ConditionId, RecordKind};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
+
+use gdcm_model::assembly::channel_match::folded_name;
+use gdcm_model::assembly::found_model::Row;
+use gdcm_model::assembly::rules::{NamePattern, standard_patterns};
+use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord, RecordKind};
+use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::simulation::FlightRecord;
+
+use super::layout_problem::{LayoutCaution, LayoutProblem};
+use super::layout_proposal::{LayoutProposal, TimeWish};
+use super::record_channels::RecordChannels;
+use super::record_layout::RecordLayout;
+use super::record_table::{RecordColumn, RecordTable, TimeBase};
+use crate::identification::preparation::RecordUse;
 
 /// What the names of folders and files say about a record.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -125,10 +139,8 @@ impl LaidOutRecord {
         guess: RecordGuess,
         channels: &RecordChannels,
     ) -> Self {
-        let (problems, cautions) = (
-            layout.problems(&table, channels),
-            layout.cautions(&table, channels),
-        );
+        let problems = layout.problems(&table, channels);
+        let cautions = layout.cautions(&table, channels);
         let flight = layout.flight_record(&table, channels).ok().map(Arc::new);
         Self {
             table,
@@ -191,7 +203,8 @@ impl LaidOutRecord {
             };
             let kept = ChannelRemedy { factor, ..*remedy };
             if kept != ChannelRemedy::NONE {
-                let (times, less_s) = (kept.factor, kept.delay_s);
+                let times = kept.factor;
+                let less_s = kept.delay_s;
                 notes.push(format!("{name}: times {times}, {less_s} s taken out, as the dataset says of this record"));
                 remedies.insert(name.clone(), kept);
             }
@@ -357,6 +370,8 @@ fn is_copy(a: &FlightRecord, b: &FlightRecord) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use gdcm_model::assembly::rules::ChannelRule;
+
     use super::*;
 
     #[test]

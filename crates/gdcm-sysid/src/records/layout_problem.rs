@@ -1,7 +1,9 @@
 //! What is wrong, or odd, in the columns chosen from a record.
 
-use super::*;
-use crate::identification::TopicError;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::units::{number, telling};
+
+use crate::identification::topics::TopicError;
 
 /// Why the columns chosen from a record cannot be used as they are.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -1,6 +1,16 @@
 //! Columns proposed for the time and the channels of a record.
 
-use super::*;
+use gdcm_model::assembly::ChannelRule;
+use gdcm_model::assembly::channel_match::{SignedName, folded_name, same_channel, sign_between};
+use gdcm_model::assembly::physical_unit::conversion_factor;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::units::number;
+
+use super::layout_problem::{LayoutCaution, LayoutProblem};
+use super::record_channels::{RecordChannels, SaidConversion};
+use super::record_layout::{ColumnUse, RecordLayout, possible_units};
+use super::record_table::{RecordColumn, RecordTable, TimeBase};
+use super::resampling::Resampling;
 
 /// What the engineer says about the time of records.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -128,7 +138,8 @@ impl Proposer<'_> {
             Some(name) => match table.find(name) {
                 Some(column) => Some(column),
                 None => {
-                    let (name, found) = (name.clone(), table.column_names());
+                    let name = name.clone();
+                    let found = table.column_names();
                     self.problems
                         .push(LayoutProblem::NoSuchColumn { name, found });
                     return None;
@@ -220,10 +231,8 @@ impl Proposer<'_> {
             self.channels.said.get(&rule.name),
             Some(SaidConversion::Factor(_))
         );
-        let (name, quoted) = (
-            self.table.columns[column].name.as_str(),
-            self.table.quoted(column),
-        );
+        let name = self.table.columns[column].name.as_str();
+        let quoted = self.table.quoted(column);
         let has_mark = |text: &&str| SignedName::of(text).name != text.trim();
         let of_alias = rule.aliases.iter().map(String::as_str).find(has_mark);
         let sign = match of_alias {
@@ -232,7 +241,9 @@ impl Proposer<'_> {
             None => sign_between(name, &rule.name),
         };
         let Some(sign) = sign else {
-            let (channel, column, plain) = (rule.name.clone(), name.to_owned(), plain(name));
+            let channel = rule.name.clone();
+            let column = name.to_owned();
+            let plain = plain(name);
             self.problems.push(LayoutProblem::Sign {
                 channel,
                 column,
@@ -284,7 +295,9 @@ impl Proposer<'_> {
             return Some(self.by_samples(rule, column));
         };
         let Some(factor) = conversion_factor(from, &rule.unit) else {
-            let (channel, from, to) = (rule.name.clone(), from.to_owned(), rule.unit.clone());
+            let channel = rule.name.clone();
+            let from = from.to_owned();
+            let to = rule.unit.clone();
             self.problems.push(LayoutProblem::Conversion {
                 channel,
                 column: quoted,
@@ -313,7 +326,8 @@ impl Proposer<'_> {
     fn by_samples(&mut self, rule: &ChannelRule, column: usize) -> ColumnUse {
         let table = self.table;
         let used = ColumnUse::by_unit(table, column, &rule.unit);
-        let (name, quoted) = (&rule.name, table.quoted(column));
+        let name = &rule.name;
+        let quoted = table.quoted(column);
         match possible_units(&table.columns[column], &rule.unit).as_slice() {
             _ if used.is_unit_open => {}
             [only] => self.notes.push(format!(
@@ -448,7 +462,8 @@ fn is_position(table: &RecordTable, column: usize, rule: &ChannelRule) -> bool {
         })
     };
     let own = &table.columns[column];
-    let (latitude, longitude) = (["lat"], ["lon", "long", "lng"]);
+    let latitude = ["lat"];
+    let longitude = ["lon", "long", "lng"];
     if !is_called(own, &latitude) && !is_called(own, &longitude) {
         return false;
     }

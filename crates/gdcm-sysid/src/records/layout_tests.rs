@@ -1,9 +1,15 @@
 //! What is proposed for a record, and what is said against it.
 
-use super::*;
-use gdcm_model::assembly::ChannelRule;
-use gdcm_model::dataset::ChannelRemedy;
 use std::collections::BTreeMap;
+
+use gdcm_model::assembly::ChannelRule;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::condition::ChannelRemedy;
+
+use super::*;
+use crate::records::laid_out_record::RecordGuess;
+use crate::records::layout_proposal::LayoutProposal;
+use crate::records::record_channels::SaidConversion;
 
 fn rule(name: &str, unit: &str) -> ChannelRule {
     ChannelRule {
@@ -65,7 +71,8 @@ fn told(problems: &[LayoutProblem]) -> String {
 
 #[test]
 fn channels_are_found_by_the_names_of_the_field_and_converted_in_words() {
-    let (table, channels) = (record(), channels());
+    let table = record();
+    let channels = channels();
     let proposal = proposed(&table);
     assert_eq!(
         (proposal.problems.len(), proposal.cautions.len()),
@@ -470,7 +477,8 @@ fn channels_without_a_unit_take_the_first_file_s_and_later_files_are_converted()
         outputs: vec![ChannelRule::named("P")],
         ..RecordChannels::default()
     };
-    let (first, mut second) = (record(), record());
+    let first = record();
+    let mut second = record();
     let layout = RecordLayout::proposed(&first, &channels, &TimeWish::default()).layout;
     channels.take_units(&layout, &first);
     assert_eq!(channels.outputs[0].unit, "rad/s");
@@ -513,7 +521,8 @@ fn a_column_that_the_engineer_names_is_taken_however_its_marks_are_typed() {
 
 #[test]
 fn a_layout_goes_over_to_a_record_with_the_same_columns_in_another_order() {
-    let (first, mut second) = (record(), record());
+    let first = record();
+    let mut second = record();
     second.columns.rotate_left(2);
     let layout = proposed(&first).layout;
     let carried = layout.carried_to(&second, &first).unwrap();
@@ -698,7 +707,8 @@ fn a_mark_before_the_name_of_a_column_turns_its_sign() {
 
 #[test]
 fn what_is_put_right_in_one_record_is_put_right_in_it_alone() {
-    let (table, channels) = (record(), channels());
+    let table = record();
+    let channels = channels();
     let as_logged = proposed(&table).layout;
     let mut layout = as_logged.clone();
     let remedies = BTreeMap::from([
@@ -752,7 +762,8 @@ fn a_line_is_drawn_over_no_gap_and_a_delay_is_short() {
     for sample in 30..60 {
         table.columns[1].values[sample] += 1.0;
     }
-    let (channels, mut layout) = (channels(), proposed(&table).layout);
+    let channels = channels();
+    let mut layout = proposed(&table).layout;
     let late = |delay_s: f64| {
         BTreeMap::from([(
             "LON".to_owned(),

@@ -9,32 +9,22 @@
 //! Samples are the file's, times a factor; nothing is filtered or taken off. Where the channels have clocks of their own, they are
 //! brought to one (M14.11), and that is said.
 
-mod laid_out_record;
-mod layout_problem;
-mod layout_proposal;
+pub mod laid_out_record;
+pub mod layout_problem;
+pub mod layout_proposal;
 #[cfg(test)]
 mod layout_tests;
-mod record_channels;
-mod record_layout;
-mod record_table;
-mod resampling;
-mod spectrogram;
-mod topic_tables;
+pub mod record_channels;
+pub mod record_layout;
+pub mod record_table;
+pub mod resampling;
+pub mod spectrogram;
+pub mod topic_tables;
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
-
-use nalgebra::DMatrix;
-
-use crate::identification::FlightRecord;
-use gdcm_model::assembly::{
-    ChannelRule, Dimension, PhysicalUnit, SignedName, conversion_factor, folded_name, same_channel,
-    sign_between, standard_patterns, time_name_rank,
-};
-use gdcm_model::dataset::{Channel, ChannelRemedy, ChannelSide, ConditionRecord, Dataset};
-use gdcm_model::units::{number, telling};
-
-pub use self::{
-    laid_out_record::*, layout_problem::*, layout_proposal::*, record_channels::*,
-    record_layout::*, record_table::*, resampling::*, spectrogram::*, topic_tables::*,
-};
+pub use laid_out_record::{LaidOutRecord, leave_out_copies};
+pub use layout_problem::LayoutProblem;
+pub use layout_proposal::TimeWish;
+pub use record_channels::RecordChannels;
+pub use record_layout::{ColumnUse, RecordLayout};
+pub use record_table::{ModeSpan, RecordColumn, RecordSource, RecordTable};
+pub use topic_tables::with_topics_joined;

@@ -1,13 +1,24 @@
 //! The channels that records are to give: those of a dataset, as an engineer writes them, and a dataset made of them.
 
-use super::*;
-use gdcm_model::assembly::standard_on_axis;
-use gdcm_model::dataset::{
-    Band, Condition, ConditionId, DatasetHeader, DraftFault, Dynamics, FlightState, Model, Origin,
-    PairTable, StateSpace,
-};
+use std::collections::BTreeMap;
 use std::fmt;
 use std::str::FromStr;
+
+use nalgebra::DMatrix;
+
+use gdcm_model::assembly::ChannelRule;
+use gdcm_model::assembly::found_model::standard_on_axis;
+use gdcm_model::dataset::condition::{ConditionRecord, FlightState};
+use gdcm_model::dataset::dataset::DatasetHeader;
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::unchecked_dataset::DraftFault;
+use gdcm_model::dataset::{
+    Band, Channel, Condition, ConditionId, Dataset, Dynamics, Model, PairTable, StateSpace,
+};
+
+use super::record_layout::RecordLayout;
+use super::record_table::RecordTable;
+use super::resampling::ResamplingWish;
 
 /// What the engineer says of the samples of a channel, whatever their file says.
 #[derive(Clone, Debug, PartialEq)]
@@ -233,7 +244,9 @@ pub fn dataset_of_records(
         channels.outputs.iter().map(channel).collect(),
     );
     let on_axis = on_axis(&inputs, &outputs);
-    let (rows, columns, zeros) = (outputs.len(), inputs.len(), DMatrix::zeros);
+    let rows = outputs.len();
+    let columns = inputs.len();
+    let zeros = DMatrix::zeros;
     let silent = StateSpace::new(
         -DMatrix::identity(1, 1),
         zeros(1, columns),
@@ -275,8 +288,9 @@ fn on_axis(inputs: &[Channel], outputs: &[Channel]) -> PairTable<bool> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use gdcm_model::dataset::{BundleKind, Pair};
+
+    use super::*;
 
     fn list(text: &str) -> Result<ChannelList, ChannelListError> {
         text.parse()

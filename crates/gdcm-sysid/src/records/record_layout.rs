@@ -1,6 +1,21 @@
 //! Which columns of a record are its time and its channels.
 
-use super::*;
+use std::collections::BTreeMap;
+
+use nalgebra::DMatrix;
+
+use gdcm_model::assembly::channel_match::sign_between;
+use gdcm_model::assembly::physical_unit::{Dimension, conversion_factor};
+use gdcm_model::assembly::{ChannelRule, PhysicalUnit};
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::condition::{ChannelRemedy, ConditionRecord};
+use gdcm_model::simulation::FlightRecord;
+
+use super::laid_out_record::RecordGuess;
+use super::layout_problem::{LayoutCaution, LayoutProblem};
+use super::record_channels::RecordChannels;
+use super::record_table::{LONGEST_STEP_S, RecordColumn, RecordTable, TimeBase, median_step};
+use super::resampling::{Resampling, has_holes};
 
 /// A column of a record that is a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,7 +102,8 @@ impl RecordLayout {
         let mut problems = self.time_problems(table);
         for (side, rule, used) in self.uses(channels) {
             let missing = || {
-                let (channel, found) = (rule.name.clone(), table.column_names());
+                let channel = rule.name.clone();
+                let found = table.column_names();
                 Some(LayoutProblem::NoColumn {
                     side,
                     channel,
@@ -122,13 +138,13 @@ impl RecordLayout {
             let Some(values) = table.columns.get(used.column).map(|column| &column.values) else {
                 continue;
             };
-            let (channel, column) = (rule.name.clone(), table.quoted(used.column));
-            let (samples, count) = (
-                values.len(),
-                values.iter().filter(|value| !value.is_finite()).count(),
-            );
+            let channel = rule.name.clone();
+            let column = table.quoted(used.column);
+            let samples = values.len();
+            let count = values.iter().filter(|value| !value.is_finite()).count();
             if count > 0 && count < samples && !(is_resampled && has_holes(values)) {
-                let (channel, column) = (channel.clone(), column.clone());
+                let channel = channel.clone();
+                let column = column.clone();
                 cautions.push(LayoutCaution::Missing {
                     channel,
                     column,
@@ -402,8 +418,9 @@ impl RecordLayout {
         let mut problems = Vec::new();
         for (rule, used) in self.chosen(channels) {
             if let Some((_, second)) = taken.iter().find(|(column, _)| *column == used.column) {
-                let (first, second, column) =
-                    (rule.name.clone(), second.clone(), table.quoted(used.column));
+                let first = rule.name.clone();
+                let second = second.clone();
+                let column = table.quoted(used.column);
                 problems.push(LayoutProblem::OneColumn {
                     first,
                     second,
@@ -435,7 +452,8 @@ fn channel_problem(
     rule: &ChannelRule,
     used: ColumnUse,
 ) -> Option<LayoutProblem> {
-    let (channel, column) = (rule.name.clone(), table.quoted(used.column));
+    let channel = rule.name.clone();
+    let column = table.quoted(used.column);
     if !used.gain().is_finite() || used.gain() == 0.0 {
         return Some(LayoutProblem::Factor {
             channel,
@@ -458,7 +476,8 @@ fn channel_problem(
 
 fn order_problem(times_s: &[f64], column: String) -> Option<LayoutProblem> {
     let mut last: Option<f64> = None;
-    let (mut count, mut first) = (0, None);
+    let mut count = 0;
+    let mut first = None;
     for (sample, &after) in times_s
         .iter()
         .enumerate()
@@ -638,7 +657,8 @@ pub(super) fn magnitude(
         .get(used.column)
         .filter(|column| column.meaning.is_none())?;
     let value = peak(column)? * used.gain().abs();
-    let (unit, most) = (PhysicalUnit::of(&rule.unit)?, most(&rule.unit)?);
+    let unit = PhysicalUnit::of(&rule.unit)?;
+    let most = most(&rule.unit)?;
     if value <= most {
         return None;
     }
@@ -737,7 +757,8 @@ mod tests {
 
     #[test]
     fn what_is_said_of_one_channel_follows_in_other_records_and_leaves_their_other_channels() {
-        let (from, other) = (table(&["t", "P", "Q"]), table(&["Q", "t", "P"]));
+        let from = table(&["t", "P", "Q"]);
+        let other = table(&["Q", "t", "P"]);
         let time = |column| {
             Some(TimeBase::Column {
                 column,

@@ -1,8 +1,17 @@
 //! A record as its file has it: columns of samples.
 
-use super::*;
-use gdcm_model::dataset::ConditionId;
 use std::ops::Range;
+use std::sync::Arc;
+
+use gdcm_model::assembly::PhysicalUnit;
+use gdcm_model::assembly::channel_match::{folded_name, time_name_rank};
+use gdcm_model::assembly::physical_unit::Dimension;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::dataset::{ConditionId, Dataset};
+use gdcm_model::units::{number, telling};
+
+use super::topic_tables::shown;
 
 /// A column of samples.
 #[derive(Clone, Debug, PartialEq)]
@@ -374,7 +383,9 @@ fn runs_of(numbers: &[f64]) -> Vec<Range<usize>> {
 
 /// Ranges of samples between restarts: falls of the stamps that are not made good within some samples, as a slip is.
 fn rising_parts(stamps: &[f64]) -> Vec<Range<usize>> {
-    let (mut parts, mut start, mut last) = (Vec::new(), 0, f64::NEG_INFINITY);
+    let mut parts = Vec::new();
+    let mut start = 0;
+    let mut last = f64::NEG_INFINITY;
     for (sample, stamp) in stamps
         .iter()
         .enumerate()

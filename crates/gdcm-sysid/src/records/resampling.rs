@@ -1,7 +1,19 @@
 //! Chosen columns with clocks of their own, brought to one (M14.11).
 
-use super::*;
-use crate::identification::{CommonClock, Topic, TopicError, is_held};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use nalgebra::DMatrix;
+
+use gdcm_model::assembly::ChannelRule;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::simulation::FlightRecord;
+use gdcm_model::units::telling;
+
+use super::record_channels::RecordChannels;
+use super::record_layout::{ColumnUse, RecordLayout};
+use super::record_table::{RecordColumn, RecordTable, TopicClock, median_step};
+use crate::identification::topics::{CommonClock, Topic, TopicError, is_held};
 
 /// What decides how topics with clocks of their own become one record.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -160,6 +172,7 @@ fn is_even(time_s: &[f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::records::layout_proposal::{LayoutProposal, TimeWish};
 
     fn signal(t: f64) -> f64 {
         (3.0 * t).sin()
@@ -242,7 +255,9 @@ mod tests {
 
     #[test]
     fn an_outer_join_with_holes_is_taken_apart_again() {
-        let (mut t, mut m, mut q) = (Vec::new(), Vec::new(), Vec::new());
+        let mut t = Vec::new();
+        let mut m = Vec::new();
+        let mut q = Vec::new();
         for k in 0..5000_u32 {
             let time = 0.004 * f64::from(k);
             t.push(time);

@@ -4,9 +4,11 @@ use std::f64::consts::TAU;
 
 use nalgebra::DMatrix;
 
-use crate::identification::{Segment, spectra};
 use gdcm_model::executor::Sequential;
 use gdcm_model::response::median;
+use gdcm_model::simulation::Segment;
+
+use crate::identification::spectra;
 
 /// Power of a channel over time and frequency.
 ///
@@ -65,7 +67,7 @@ impl Spectrogram {
         let lines = spectra(&segments, 1.1 * highest, &Sequential);
         let ratio = (highest / lowest).powf(1.0 / (Self::ROWS - 1) as f64);
         let row = |row: usize| lowest * ratio.powi(row as i32);
-        let power = |of: &crate::identification::Spectrum, omega: f64| {
+        let power = |of: &crate::identification::spectrum::Spectrum, omega: f64| {
             let nearest = of
                 .omega
                 .partition_point(|line| *line < omega)

@@ -3,7 +3,19 @@
 //! A table that has a column for every channel is a record. Tables that lack some may have them together: then they are the topics of
 //! one log, each with its own stamps. What a table is called names its columns.
 
-use super::*;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use gdcm_model::assembly::channel_match::time_name_rank;
+use gdcm_model::units::number;
+
+use super::layout_problem::LayoutProblem;
+use super::layout_proposal::TimeWish;
+use super::record_channels::RecordChannels;
+use super::record_layout::{RecordLayout, same_samples};
+use super::record_table::{
+    RecordColumn, RecordSource, RecordTable, Separation, TimeBase, TopicClock, median_step,
+};
 
 /// Names of the one column that a topic has beside its stamps, which say nothing.
 const PLAIN: [&str; 8] = [
@@ -74,7 +86,8 @@ impl RecordTable {
         let names = topic_names(tables);
         let prefix = common_prefix(&names);
         let seconds = seconds_by_name(tables);
-        let (mut taken, mut left_out) = (Vec::new(), Vec::new());
+        let mut taken = Vec::new();
+        let mut left_out = Vec::new();
         for (table, name) in tables.iter().zip(&names) {
             let name = name.get(prefix..).unwrap_or(name);
             match topic_columns(table, name, &seconds) {
@@ -476,6 +489,8 @@ pub(super) fn shown(names: &[&str]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use gdcm_model::assembly::rules::ChannelRule;
+
     use super::*;
 
     fn topic(file: &str, variable: Option<&str>, columns: &[&str], step: f64) -> RecordTable {

@@ -3,8 +3,10 @@ use std::collections::BTreeSet;
 use egui::vec2;
 
 use super::*;
-use crate::view::CurveCommand;
+use crate::view::curve_display::CurveCommand;
 use crate::view::palette::{self, Palette};
+use crate::view::plot::bode::BodeEvent;
+use crate::view::plot::curve_menu::CurveWish;
 
 pub(super) struct Model {
     pub(super) curves: Vec<BodeCurve>,
@@ -501,10 +503,8 @@ fn every_role_has_a_chip_that_is_a_switch_and_a_hidden_curve_is_neither_drawn_no
 fn a_box_drawn_with_shift_names_the_curves_it_touches_and_does_not_pan() {
     let mut harness = harness(three_curves());
     let before = harness.state().view.omega_range();
-    let (from, to) = (
-        point_on(&harness, 0, 60) + vec2(-20.0, 30.0),
-        point_on(&harness, 1, 60) + vec2(20.0, -20.0),
-    );
+    let from = point_on(&harness, 0, 60) + vec2(-20.0, 30.0);
+    let to = point_on(&harness, 1, 60) + vec2(20.0, -20.0);
     harness.event(Event::ModifiersChanged(Modifiers::SHIFT));
     drag(
         &mut harness,

@@ -6,6 +6,7 @@ use egui_plot::{PlotBounds, PlotMemory};
 use super::bode::wheel;
 use super::*;
 use crate::view::palette::{self, Palette};
+use crate::view::plot::chart::{Chart, ChartAxis, ChartLine, chart_ui};
 
 const TITLES: [&str; 2] = ["one", "other"];
 const SIZE: egui::Vec2 = vec2(600.0, 200.0);
@@ -80,7 +81,8 @@ fn the_wheel_zooms_the_time_of_every_chart_and_the_values_in_view_fill_each() {
         );
     }
     for pressed in [true, false, true, false] {
-        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        let button = PointerButton::Primary;
+        let modifiers = Modifiers::NONE;
         harness.event(Event::PointerButton {
             pos: at,
             button,

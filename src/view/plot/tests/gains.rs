@@ -1,8 +1,8 @@
 use egui::vec2;
-use gdcm_plot::figure::{
-    Axis, Bars, Color, Curve, Dot, DotShape, Dots, Figure, MarkId, Panel, Plot, Range,
-    Role as CurveRole,
-};
+
+use gdcm_plot::figure::axis::Axis;
+use gdcm_plot::figure::figure::{Bars, Curve, Dot, DotShape, Dots, Plot};
+use gdcm_plot::figure::{Color, Figure, MarkId, Panel, Range, Role as CurveRole};
 
 use super::*;
 use crate::view::palette::{self, Palette};
@@ -230,7 +230,8 @@ fn the_wheel_zooms_a_plot_and_a_double_click_beside_its_dots_shows_all() {
         "{zoomed:?}"
     );
     for pressed in [true, false, true, false] {
-        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        let button = PointerButton::Primary;
+        let modifiers = Modifiers::NONE;
         harness.event(Event::PointerButton {
             pos: at,
             button,

@@ -11,8 +11,9 @@ use std::sync::Arc;
 use egui::{Event, Modifiers, PointerButton, Pos2};
 use egui_kittest::Harness;
 
-use super::*;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
+
+use super::*;
 
 /// The curve of a physics model with this number for a name.
 pub(super) fn numbered(number: u64) -> CurveId {

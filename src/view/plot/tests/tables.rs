@@ -1,9 +1,13 @@
 use egui::vec2;
 use egui_kittest::kittest::Queryable;
 
+use gdcm_model::dataset::Pair;
+
 use super::*;
 use crate::view::palette::{self, Palette};
-use gdcm_model::dataset::Pair;
+use crate::view::plot::overview::{
+    OverviewCell, OverviewEvent, OverviewScene, OverviewView, overview_ui,
+};
 
 #[derive(Default)]
 struct Model {

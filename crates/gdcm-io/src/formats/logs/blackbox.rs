@@ -480,7 +480,8 @@ impl<'b> Bits<'b> {
     /// Four numbers of no, 4, 8 or 16 bits, half a byte after another, the highest first.
     fn four(&mut self) -> Option<[i32; 4]> {
         let tags = self.byte()?;
-        let (mut half, mut values) = (None, [0; 4]);
+        let mut half = None;
+        let mut values = [0; 4];
         for (index, value) in values.iter_mut().enumerate() {
             let halves = [0, 1, 2, 4][usize::from((tags >> (2 * index)) & 3)];
             let mut bits = 0_u32;
@@ -616,7 +617,8 @@ mod tests {
             H Field P encoding:9,0,6,6,0\nH gyro_scale:0x3f800000\n"
             .to_vec();
         let packed = |value: u32| {
-            let (mut rest, mut bytes) = (value, Vec::new());
+            let mut rest = value;
+            let mut bytes = Vec::new();
             while rest > 0x7f {
                 bytes.push((rest & 0x7f) as u8 | 0x80);
                 rest >>= 7;
@@ -641,14 +643,12 @@ mod tests {
                 bytes.extend(signed(frame as i32));
             } else {
                 let first = frame % 10 == 1;
-                let (last, earlier) = (
-                    frame as i32 - 1,
-                    if first {
-                        frame as i32 - 1
-                    } else {
-                        frame as i32 - 2
-                    },
-                );
+                let last = frame as i32 - 1;
+                let earlier = if first {
+                    frame as i32 - 1
+                } else {
+                    frame as i32 - 2
+                };
                 bytes.push(b'P');
                 // After a whole frame the time is predicted to stand still.
                 bytes.extend([signed(if first { 1000 } else { 0 }), vec![0]].concat());
@@ -766,7 +766,8 @@ mod frame_tests {
             least_motor: 158,
             ..Known::default()
         };
-        let (last, earlier) = (vec![200, -5, 8, 0, 0], vec![100, 0, 4, 0, 0]);
+        let last = vec![200, -5, 8, 0, 0];
+        let earlier = vec![100, 0, 4, 0, 0];
         let values = fields.values(vec![1, 1, 1, 2, 3], [Some(&last), Some(&earlier)], known);
         assert_eq!(values, [301, -4, 7, 160, 163]);
     }

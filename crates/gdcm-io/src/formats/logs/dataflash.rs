@@ -346,7 +346,8 @@ fn each_message(
     budget: &ReadingBudget<'_>,
     mut take: impl FnMut(u8, &[u8], &mut [usize; 256]) -> Result<(), VariableFault>,
 ) -> Result<usize, VariableFault> {
-    let (mut at, mut skipped) = (0, 0);
+    let mut at = 0;
+    let mut skipped = 0;
     while let Some([first, second, kind]) = array::<3>(bytes, at) {
         budget.work(1, "")?;
         let length = lengths[usize::from(kind)];
@@ -630,7 +631,8 @@ pub(super) mod tests {
             ["IMU.GyrX", "IMU[1].GyrX", "RATE.R", "RATE.ROut"],
             "two states are no signal"
         );
-        let (imu, rate) = (&columns.columns[0], &columns.columns[2]);
+        let imu = &columns.columns[0];
+        let rate = &columns.columns[2];
         assert_eq!(
             (imu.values[3], imu.unit.as_deref(), imu.meaning),
             (3.0, Some("rad/s"), None)

@@ -11,7 +11,8 @@ mod ulog;
 
 use std::sync::Arc;
 
-use gdcm_sysid::records::{ModeSpan, RecordColumn, TopicClock};
+use gdcm_sysid::records::record_table::TopicClock;
+use gdcm_sysid::records::{ModeSpan, RecordColumn};
 
 use crate::variables::{ReadingBudget, VariableFault};
 

@@ -60,7 +60,9 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
         return Err(VariableFault::cut_off("", bytes.len()));
     }
     let mut messages = Messages::default();
-    let (mut at, mut appended, mut is_cut) = (HEADER, Vec::new(), false);
+    let mut at = HEADER;
+    let mut appended = Vec::new();
+    let mut is_cut = false;
     while let Some([low, high, kind]) = array::<3>(bytes, at) {
         budget.work(1, "")?;
         let from = at + 3;

@@ -41,7 +41,8 @@ pub(super) fn read(
     budget: &ReadingBudget<'_>,
 ) -> Result<Vec<Variable>, VariableFault> {
     let mut file = Cursor::file(bytes, ByteOrder::Little);
-    let (mut variables, mut names) = (Vec::new(), HashSet::new());
+    let mut variables = Vec::new();
+    let mut names = HashSet::new();
     while !file.is_empty() {
         budget.take(1, 2 * size_of::<Variable>() as u64, "")?;
         let header = header(&mut file)?;

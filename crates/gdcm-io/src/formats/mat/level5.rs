@@ -48,7 +48,8 @@ pub(super) fn read(
     };
     let mut file = Cursor::file(bytes, order);
     file.pass(HEADER_BYTES)?;
-    let (mut variables, mut names) = (Vec::new(), HashSet::new());
+    let mut variables = Vec::new();
+    let mut names = HashSet::new();
     while !file.is_empty() {
         budget.take(1, 2 * size_of::<Variable>() as u64, "")?;
         // Arrays without a name are the machine's own notes, above all the objects.
@@ -245,7 +246,8 @@ impl<'b> Cursor<'b> {
 
     /// A whole number of 32 bits.
     pub(super) fn u32(&mut self) -> Result<u32, VariableFault> {
-        let (order, bytes) = (self.order, self.array()?);
+        let order = self.order;
+        let bytes = self.array()?;
         Ok(order.u32(bytes))
     }
 
@@ -394,7 +396,8 @@ impl<'b> Element<'b> {
     /// Whether an array begins here, or nothing follows.
     pub(super) fn begins_array(cursor: &Cursor<'_>) -> bool {
         let mut tag = *cursor;
-        let (kind, length) = (tag.u32().map(DataKind::of), tag.u32());
+        let kind = tag.u32().map(DataKind::of);
+        let length = tag.u32();
         let fits = length.is_ok_and(|length| length as usize <= tag.len());
         cursor.is_empty() || (fits && matches!(kind, Ok(Some(DataKind::Matrix | DataKind::Packed))))
     }
@@ -508,10 +511,9 @@ fn unpack_more(
 
 #[cfg(test)]
 mod level5_tests {
+    use super::*;
     use crate::formats::mat::sample_tests::{chars, doubles, element, file, matrix, record};
     use crate::variables::Value;
-
-    use super::*;
 
     /// The same array, whose tag counts four bytes too many.
     fn too_long(array: Vec<u8>) -> Vec<u8> {

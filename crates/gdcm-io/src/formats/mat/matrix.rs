@@ -336,10 +336,8 @@ pub(crate) fn rows(
     variable: &str,
     budget: &ReadingBudget<'_>,
 ) -> Result<TextArray, VariableFault> {
-    let (height, length) = (
-        shape.first().copied().unwrap_or(1),
-        shape.get(1).copied().unwrap_or(1),
-    );
+    let height = shape.first().copied().unwrap_or(1);
+    let length = shape.get(1).copied().unwrap_or(1);
     let pages = shape.get(2..).unwrap_or_default();
     if characters.is_empty() && height <= 1 {
         return Ok(TextArray::one(""));
@@ -609,9 +607,8 @@ mod matrix_tests {
 
 #[cfg(test)]
 mod numbers_tests {
-    use crate::formats::mat::level5::{ByteOrder, Cursor};
-
     use super::*;
+    use crate::formats::mat::level5::{ByteOrder, Cursor};
 
     fn read(kind: u8, data: &[u8], count: usize) -> Result<Vec<f64>, VariableFault> {
         let bytes = [&[kind, 0, 0, 0, data.len() as u8, 0, 0, 0], data].concat();
@@ -647,9 +644,8 @@ mod numbers_tests {
 
 #[cfg(test)]
 mod text_tests {
-    use crate::formats::mat::level5::{ByteOrder, Cursor};
-
     use super::*;
+    use crate::formats::mat::level5::{ByteOrder, Cursor};
 
     fn read(kind: u8, data: &[u8], shape: &[usize]) -> Result<TextArray, VariableFault> {
         let bytes = [&[kind, 0, 0, 0, data.len() as u8, 0, 0, 0], data].concat();

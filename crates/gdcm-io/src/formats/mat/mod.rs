@@ -151,10 +151,8 @@ fn within(array: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Subsystem, Va
 fn wrapped(wrapper: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Subsystem, VariableFault> {
     let mut wrapper = wrapper;
     let opaque = Header::read(&mut wrapper, budget)?.class == ArrayClass::Opaque;
-    let (system, class) = (
-        Element::read(&mut wrapper)?.name()?,
-        Element::read(&mut wrapper)?.name()?,
-    );
+    let system = Element::read(&mut wrapper)?.name()?;
+    let class = Element::read(&mut wrapper)?.name()?;
     if !opaque || system != SYSTEM || class != WRAPPER {
         return Err(wrapper.damaged("they do not lie in a FileWrapper__"));
     }
@@ -168,7 +166,8 @@ fn wrapped(wrapper: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Subsystem,
         budget,
         objects: Err("it lies in the objects of the file"),
     };
-    let (mut cells, mut words) = (Vec::new(), Vec::new());
+    let mut cells = Vec::new();
+    let mut words = Vec::new();
     for at in 0..header.count {
         let cell = contents;
         let value = arrays.inner(&mut contents, &trail.step(Step::Cell(at))?)?;
@@ -435,10 +434,9 @@ mod sample_tests;
 mod mat_tests {
     use proptest::prelude::*;
 
+    use super::*;
     use crate::formats::mat::sample_tests::{chars, doubles, element, file, matrix};
     use crate::variables::{Array, ElementKind, Value};
-
-    use super::*;
 
     const PLAIN: &[u8] = include_bytes!("../../../../../tests/data/mat/scipy-5.mat");
     const PACKED: &[u8] = include_bytes!("../../../../../tests/data/mat/scipy-5-packed.mat");
@@ -667,9 +665,8 @@ mod mat_tests {
 mod workspace_tests {
     use std::io::Write;
 
-    use crate::formats::mat::sample_tests::{Directory, doubles, file_with_objects};
-
     use super::*;
+    use crate::formats::mat::sample_tests::{Directory, doubles, file_with_objects};
 
     fn file() -> Vec<u8> {
         let directory = Directory {

@@ -279,12 +279,11 @@ fn records(records: &StructArray, name: &str) -> Vec<u8> {
 mod writer_tests {
     use proptest::prelude::*;
 
+    use super::*;
     use crate::formats::mat::read;
     use crate::variables::{
         Array, CellArray, ElementKind, Object, ReadingBudget, StructArray, TextArray, Value,
     };
-
-    use super::*;
 
     fn back(bytes: &[u8]) -> Vec<Variable> {
         read(bytes, &ReadingBudget::new(1 << 24)).unwrap()

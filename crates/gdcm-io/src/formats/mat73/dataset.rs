@@ -123,7 +123,8 @@ impl Elements {
             };
             self.places().map(decode).collect::<Vec<f64>>()
         };
-        let (re, im) = (part(numbers.re), numbers.im.map(part));
+        let re = part(numbers.re);
+        let im = numbers.im.map(part);
         Ok(Some(Array {
             shape: self.shape.clone(),
             kind: numbers.number.kind(),

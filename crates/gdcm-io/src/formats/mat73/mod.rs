@@ -25,8 +25,7 @@ use hdf5_pure::{
 use crate::formats::mat::is_hdf5;
 use crate::formats::mat73::dataset::{Elements, Order};
 use crate::formats::mat73::values::{Objects, empty, records, rows, sparse, strings};
-use crate::formats::octave;
-use crate::formats::{Contents, Importer};
+use crate::formats::{Contents, Importer, octave};
 use crate::variables::{
     self, Array, CellArray, ElementKind, ReadingBudget, StructArray, Value, Variable, VariableFault,
 };
@@ -534,9 +533,8 @@ fn within(path: &str, name: &str) -> String {
 mod mat73_tests {
     use std::path::Path;
 
-    use crate::variables::{Array, CellArray, ElementKind, TextArray, Value};
-
     use super::*;
+    use crate::variables::{Array, CellArray, ElementKind, TextArray, Value};
 
     /// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; objects of MATLAB's classes stay
     /// [`Value::Opaque`](crate::variables::Value::Opaque).

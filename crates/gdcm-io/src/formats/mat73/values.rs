@@ -193,7 +193,8 @@ fn value(
                     .decode(bytes.get(offset..).unwrap_or_default()),
             ]
         };
-        let (re, im) = (part(numbers.re), numbers.im.map(part));
+        let re = part(numbers.re);
+        let im = numbers.im.map(part);
         return Ok(Value::Array(Array {
             shape: vec![1, 1],
             kind: numbers.number.kind(),
@@ -344,7 +345,8 @@ pub(super) fn wrapper(
         budget,
         objects: &Objects::References,
     };
-    let (mut cells, mut long_words) = (Vec::new(), Vec::new());
+    let mut cells = Vec::new();
+    let mut long_words = Vec::new();
     for (index, object) in reader.referred(dataset, "")?.iter().enumerate() {
         if let Object::Dataset(dataset) = object
             && dataset.element_size().map_err(|error| fault(&error, ""))? == 8

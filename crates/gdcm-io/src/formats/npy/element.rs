@@ -116,7 +116,8 @@ impl Element {
 
     fn parse_record(list: &[Json]) -> Result<Self, VariableFault> {
         let too_large = || damaged("a record is too large");
-        let (mut fields, mut offset) = (Vec::with_capacity(list.len()), 0usize);
+        let mut fields = Vec::with_capacity(list.len());
+        let mut offset = 0usize;
         for entry in list {
             let field = Field::parse(entry, offset)?;
             let count = count(&field.shape).ok_or_else(too_large)?;

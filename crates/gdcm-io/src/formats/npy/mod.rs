@@ -102,7 +102,8 @@ impl StoredArray<'_> {
             Element::Complex(part) => {
                 budget.take(elements, 16, name)?;
                 let numbers = |offset| self.numbers(*part, offset, name, budget);
-                let (re, im) = (numbers(0)?, Some(numbers(part.size())?));
+                let re = numbers(0)?;
+                let im = Some(numbers(part.size())?);
                 Ok(Value::Array(Array {
                     shape: matrix_shape(self.shape),
                     kind: ElementKind::Float,
@@ -358,10 +359,9 @@ fn file(descr: &str, shape: &[usize], data: &[u8]) -> Vec<u8> {
 
 #[cfg(test)]
 mod archive_tests {
+    use super::*;
     use crate::formats::zip_files::{read_archive, read_npz};
     use crate::variables::Array;
-
-    use super::*;
 
     fn file(name: &str) -> Vec<u8> {
         std::fs::read(format!(
@@ -678,12 +678,11 @@ mod array_file_tests {
 
 #[cfg(test)]
 mod archive_writer_tests {
-    use crate::formats::zip_files::read_npz;
     use proptest::prelude::*;
 
-    use crate::variables::{CellArray, ReadingBudget};
-
     use super::*;
+    use crate::formats::zip_files::read_npz;
+    use crate::variables::{CellArray, ReadingBudget};
 
     fn read(bytes: &[u8]) -> Vec<Variable> {
         read_npz(bytes, &ReadingBudget::new(1 << 24)).unwrap()

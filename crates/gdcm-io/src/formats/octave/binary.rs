@@ -122,7 +122,8 @@ impl Parts for Bytes<'_> {
     }
 
     fn member(&mut self, variable: &str) -> Result<(String, String), VariableFault> {
-        let (name, _doc) = (self.string(variable)?, self.string(variable)?);
+        let name = self.string(variable)?;
+        let _doc = self.string(variable)?;
         // Whether the value is global.
         self.next(1, variable)?;
         if self.next(1, variable)? != [NAMED_TYPE] {

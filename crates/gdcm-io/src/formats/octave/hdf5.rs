@@ -241,18 +241,17 @@ fn sparse(
             .map(|side| side as usize)
             .ok_or_else(wrong)
     };
-    let (rows, columns) = (side("nr")?, side("nc")?);
+    let rows = side("nr")?;
+    let columns = side("nc")?;
     let whole = |name: &str| {
         numbers(parts, name)
             .iter()
             .map(|number| *number as usize)
             .collect::<Vec<usize>>()
     };
-    let (starts, indices, data) = (
-        whole("cidx"),
-        whole("ridx"),
-        numbers(parts, "data").to_vec(),
-    );
+    let starts = whole("cidx");
+    let indices = whole("ridx");
+    let data = numbers(parts, "data").to_vec();
     budget.take(
         (starts.len() + 2 * indices.len() + data.len()) as u64,
         8,

@@ -188,7 +188,8 @@ fn value(
         Form::Matrix(element) => Value::Array(matrix(parts, element, variable)?),
         Form::Diagonal(element) => {
             let shape = parts.sides(variable)?.shape;
-            let (rows, columns) = (shape[0], shape[1]);
+            let rows = shape[0];
+            let columns = shape[1];
             let (re, im) = element.parts(parts.numbers(element, rows.min(columns), variable)?);
             let places = || (0..rows.min(columns)).collect();
             let stored = Entries {

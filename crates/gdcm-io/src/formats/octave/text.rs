@@ -2,7 +2,7 @@
 
 use super::{Element, Form, Parts, Sides, texts_in_pages, value};
 use crate::file_error::FileError;
-use crate::formats::text::decode;
+use crate::formats::text::separator::decode;
 use crate::formats::{Contents, Importer};
 use crate::strides::Entries;
 use crate::variables::{ReadingBudget, TextArray, Value, Variable, VariableFault};
@@ -225,10 +225,14 @@ impl Parts for Lines<'_> {
             self.whole("rows", variable)?,
             self.whole("columns", variable)?,
         ];
-        let (mut rows, mut columns, mut numbers) = (Vec::new(), Vec::new(), Vec::new());
+        let mut rows = Vec::new();
+        let mut columns = Vec::new();
+        let mut numbers = Vec::new();
         for _ in 0..count {
-            let (row, column) = (self.index(variable)?, self.index(variable)?);
-            let (row, column) = (row.wrapping_sub(1), column.wrapping_sub(1));
+            let row = self.index(variable)?;
+            let column = self.index(variable)?;
+            let row = row.wrapping_sub(1);
+            let column = column.wrapping_sub(1);
             if row >= shape[0] || column >= shape[1] {
                 return Err(self.wrong(variable, "a number lies outside the matrix"));
             }

@@ -1,6 +1,7 @@
 //! What a column of a frequency response holds, from its name and unit.
 
-use gdcm_model::assembly::{KnownChannels, PhysicalUnit, ResponseName};
+use gdcm_model::assembly::PhysicalUnit;
+use gdcm_model::assembly::response_name::{KnownChannels, ResponseName};
 
 /// What a column of a frequency response holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

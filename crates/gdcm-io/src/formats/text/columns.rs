@@ -105,7 +105,8 @@ impl<'m> Reading<'m> {
     fn new(layout: Layout, budget: &'m ReadingBudget<'m>) -> Result<Self, VariableFault> {
         // A column takes its header here, and its unit and name later.
         budget.take(layout.columns as u64, 128, "")?;
-        let (columns, lines) = (vec![Vec::new(); layout.columns], Vec::new());
+        let columns = vec![Vec::new(); layout.columns];
+        let lines = Vec::new();
         Ok(Self {
             layout,
             budget,
@@ -199,7 +200,8 @@ impl<'m> Reading<'m> {
         }
         // Vectors grow by doubling: half of what they take may be free.
         self.budget.take(self.layout.columns as u64 + 1, 16, "")?;
-        let (mut cells, mut ends_empty) = (self.layout.cells(line), false);
+        let mut cells = self.layout.cells(line);
+        let mut ends_empty = false;
         for (index, column) in self.columns.iter_mut().enumerate() {
             let Some(cell) = cells.next() else {
                 return Err(self.ragged(number, line));
@@ -243,7 +245,8 @@ impl<'m> Reading<'m> {
         } else {
             ""
         };
-        let (cell, place) = (excerpt(cell), index + 1);
+        let cell = excerpt(cell);
+        let place = index + 1;
         format!(
             "column {place} holds \"{cell}\", which is no number{mark}; correct it, or empty the cell"
         )
@@ -414,7 +417,9 @@ impl Layout {
     /// Number of cells of a line if all are numbers or say that there is none, and at least one is a number; and whether the last
     /// is empty.
     pub(super) fn width(self, line: &str) -> Option<(usize, bool)> {
-        let (mut width, mut numbers, mut empty) = (0, 0, false);
+        let mut width = 0;
+        let mut numbers = 0;
+        let mut empty = false;
         for cell in self.cells(line) {
             let number = cell_number(&cell, self.decimal_comma)?;
             width += 1;

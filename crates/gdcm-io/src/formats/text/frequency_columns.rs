@@ -461,7 +461,8 @@ impl Recognition<'_> {
     fn compare(&mut self, rectangular: ResponseParts, polar: ResponseParts) {
         let table = self.table;
         let differs = |row: &usize| {
-            let ((a, b), (c, d)) = (rectangular.complex(table, *row), polar.complex(table, *row));
+            let (a, b) = rectangular.complex(table, *row);
+            let (c, d) = polar.complex(table, *row);
             (a - c).hypot(b - d) > 0.01 * a.hypot(b).max(c.hypot(d))
         };
         let (magnitude, phase) = polar.columns();
@@ -575,10 +576,9 @@ impl ResponseParts {
 
 #[cfg(test)]
 mod frequency_columns_tests {
+    use super::*;
     use crate::formats::text::columns::read_table;
     use crate::variables::ReadingBudget;
-
-    use super::*;
 
     fn recognise(text: &str) -> FrequencyColumns {
         let table = read_table(text, &ReadingBudget::new(1 << 20)).unwrap();
@@ -791,10 +791,9 @@ mod frequency_columns_tests {
 mod frequency_values_tests {
     use proptest::prelude::*;
 
+    use super::*;
     use crate::formats::text::columns::read_table;
     use crate::variables::ReadingBudget;
-
-    use super::*;
 
     fn values(text: &str) -> Result<Vec<ResponsePoints>, VariableFault> {
         let table = read_table(text, &ReadingBudget::new(1 << 20)).unwrap();

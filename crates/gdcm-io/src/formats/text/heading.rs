@@ -1,6 +1,6 @@
 //! Names and units of columns from the lines above them.
 
-use gdcm_model::assembly::direction_of;
+use gdcm_model::assembly::channel_match::direction_of;
 
 use crate::formats::text::columns::{Layout, comment, is_rule};
 use crate::formats::text::separator::{Separator, cell_number};

@@ -92,7 +92,8 @@ struct Reading<'t, 'm> {
 impl<'t> Reading<'t, '_> {
     fn statement(&mut self) -> Result<(), VariableFault> {
         self.scanner.pass_blanks()?;
-        let (begin, start) = (self.scanner.position(), self.scanner.at);
+        let begin = self.scanner.position();
+        let start = self.scanner.at;
         match self.scanner.peek() {
             None => return Ok(()),
             Some('\n' | '\r') => {
@@ -346,7 +347,10 @@ impl<'t> Reading<'t, '_> {
         mut element: impl FnMut(&mut Self) -> Result<T, ValueError>,
     ) -> Result<(usize, usize, Vec<T>), ValueError> {
         self.scanner.at += 1;
-        let (mut elements, mut columns, mut row, mut rows) = (Vec::new(), 0, 0, 0);
+        let mut elements = Vec::new();
+        let mut columns = 0;
+        let mut row = 0;
+        let mut rows = 0;
         loop {
             let spaced = self.scanner.pass_blanks()?;
             let place = self.scanner.position();
@@ -432,7 +436,9 @@ impl<'t> Reading<'t, '_> {
         } else {
             (rows, columns)
         };
-        let (mut re, mut im, mut texts) = (Vec::new(), Vec::new(), Vec::new());
+        let mut re = Vec::new();
+        let mut im = Vec::new();
+        let mut texts = Vec::new();
         for element in elements {
             match element {
                 Element::Number(real, imaginary) => {

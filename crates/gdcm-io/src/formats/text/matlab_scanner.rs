@@ -150,7 +150,8 @@ impl<'t> Scanner<'t> {
     }
 
     fn pass_block_comment(&mut self) -> Result<(), VariableFault> {
-        let (line, mut depth) = (self.line, 0_usize);
+        let line = self.line;
+        let mut depth = 0_usize;
         loop {
             depth =
                 depth + usize::from(self.is_block_mark('{')) - usize::from(self.is_block_mark('}'));
@@ -224,7 +225,8 @@ impl<'t> Scanner<'t> {
 
     /// A number without a sign, and whether it is imaginary, where one stands here.
     pub(super) fn number(&mut self) -> Result<Option<(f64, bool)>, ValueError> {
-        let (rest, place) = (self.rest(), self.position());
+        let rest = self.rest();
+        let place = self.position();
         let bytes = rest.as_bytes();
         let digits = |from: usize| {
             from + bytes[from..]

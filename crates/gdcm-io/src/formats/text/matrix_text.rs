@@ -144,7 +144,8 @@ impl Reading<'_> {
         rest: &str,
     ) -> Result<(), VariableFault> {
         self.budget.take(256 + name.len() as u64, 1, name)?;
-        let (name, parts) = (name.to_owned(), Vec::new());
+        let name = name.to_owned();
+        let parts = Vec::new();
         self.found.push(Begun {
             name,
             line: number,

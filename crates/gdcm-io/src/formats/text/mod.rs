@@ -1,16 +1,17 @@
 //! Texts that hold numbers: tables in columns, frequency responses, matrices and MATLAB literals.
 
 mod column_meaning;
-mod columns;
-mod frequency_columns;
+pub(crate) mod columns;
+pub mod frequency_columns;
 mod heading;
 mod literals;
 mod matlab_scanner;
-mod matrix_text;
-mod separator;
-mod word_columns;
+pub(crate) mod matrix_text;
+pub(crate) mod separator;
+pub(crate) mod word_columns;
 
 use crate::file_error::FileError;
+use crate::formats::text::separator::decode;
 use crate::formats::{Contents, Importer};
 
 pub(crate) use columns::{TextTable, read_table};
@@ -19,7 +20,7 @@ pub(crate) use frequency_columns::{
     FrequencyColumns, RecognisedResponse, ResponsePoints, Unrecognised,
 };
 pub(crate) use matrix_text::{read_matrices, read_matrix};
-pub(crate) use separator::{decode, sections};
+
 pub(crate) use word_columns::{NumberedText, numbered_words, split_complex};
 
 /// MATLAB's language.

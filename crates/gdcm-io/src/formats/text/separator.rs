@@ -251,7 +251,9 @@ pub(super) fn clock_s(text: &str) -> Option<f64> {
         None => (None, text),
     };
     let mut parts = time.split(':');
-    let (hours, minutes, seconds) = (parts.next()?, parts.next()?, parts.next());
+    let hours = parts.next()?;
+    let minutes = parts.next()?;
+    let seconds = parts.next();
     if parts.next().is_some() {
         return None;
     }
@@ -263,7 +265,8 @@ pub(super) fn clock_s(text: &str) -> Option<f64> {
             .filter(|value| is_digits && *value <= most)
             .map(f64::from)
     };
-    let (hours, minutes) = (whole(hours, 24)?, whole(minutes, 59)?);
+    let hours = whole(hours, 24)?;
+    let minutes = whole(minutes, 59)?;
     let seconds = match seconds {
         Some(text) if text.starts_with(|c: char| c.is_ascii_digit()) => {
             text.replace(',', ".").parse::<f64>().ok()?
@@ -283,7 +286,9 @@ pub(super) fn clock_s(text: &str) -> Option<f64> {
 /// Days from 1970-01-01 to a date written year first.
 fn days(date: &str) -> Option<f64> {
     let mut parts = date.split(['-', '/']).map(|part| part.parse::<i16>().ok());
-    let (year, month, day) = (parts.next()??, parts.next()??, parts.next()??);
+    let year = parts.next()??;
+    let month = parts.next()??;
+    let day = parts.next()??;
     let date = jiff::civil::Date::new(year, month.try_into().ok()?, day.try_into().ok()?).ok()?;
     let since = date.since(jiff::civil::date(1970, 1, 1)).ok()?;
     Some(f64::from(since.get_days()))

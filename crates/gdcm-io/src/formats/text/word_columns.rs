@@ -334,8 +334,8 @@ fn parts(cell: &str) -> Option<[String; 2]> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::columns::read_table;
     use super::*;
-    use crate::formats::text::read_table;
 
     fn numbered(text: &str) -> Option<NumberedText> {
         numbered_words(text, &ReadingBudget::new(1 << 20)).unwrap()

@@ -1,11 +1,12 @@
 //! Assessments on wish, evidence for the schedule, and delays scheduled on wish.
 
+use std::sync::Arc;
+
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::{SCHEDULE_KINDS, ScheduleKind};
-use gdcm_study::study::{
-    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentJob, AssessmentTable, Job,
-};
-use std::sync::Arc;
+use gdcm_study::study::assessment_table::{AssessedModel, AssessmentChoice, AssessmentJob};
+use gdcm_study::study::job::Job;
+use gdcm_study::study::{AssessedCorrection, AssessmentTable};
 
 use super::*;
 
@@ -72,10 +73,8 @@ fn the_mean_weighs_single_frequencies_that_the_median_leaves_out() {
             ..PAPER
         },
     );
-    let (condition, pair) = (
-        ConditionId(1),
-        analysis.study.dataset.find_pair("Q", "LON").unwrap(),
-    );
+    let condition = ConditionId(1);
+    let pair = analysis.study.dataset.find_pair("Q", "LON").unwrap();
     let found = mean.change(condition, pair).unwrap().uncorrected;
     let mismatch = analysis
         .condition(condition)
@@ -138,7 +137,8 @@ fn a_sentence_sums_an_assessment_up() {
 #[test]
 fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
     let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
-    let (evidence, scheduled) = (analysis.compare_forms().unwrap(), analysis.scheduled());
+    let evidence = analysis.compare_forms().unwrap();
+    let scheduled = analysis.scheduled();
     assert_eq!(
         (
             scheduled.len(),
@@ -150,13 +150,12 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
     let schedule = analysis.schedule.as_ref().unwrap();
     let of_kind = evidence.of(schedule.settings.kind).unwrap();
     for (place, id) in scheduled.iter().enumerate() {
-        let (own, at) = (
-            &analysis.condition(*id).unwrap().correction,
-            schedule.at(evidence.airspeeds_kt[place]),
-        );
+        let own = &analysis.condition(*id).unwrap().correction;
+        let at = schedule.at(evidence.airspeeds_kt[place]);
         for pair in analysis.study.dataset.on_axis().marked() {
             let residual = of_kind.pairs[pair].residuals[place].unwrap();
-            let (own, scheduled) = (own.net_gain(pair), at.net_gain(pair));
+            let own = own.net_gain(pair);
+            let scheduled = at.net_gain(pair);
             assert!((residual.ln - (own / scheduled).ln()).abs() < 1e-14);
             assert!((residual.percent - 100.0 * (own / scheduled - 1.0)).abs() < 1e-11);
         }
@@ -183,7 +182,8 @@ fn evidence_is_of_the_scheduled_conditions_and_agrees_with_the_schedule() {
 
 #[test]
 fn delays_are_scheduled_within_the_bounds_of_their_conditions_where_that_is_asked_for() {
-    let (mut study, mut engine) = (study_of_example(), Engine::default());
+    let mut study = study_of_example();
+    let mut engine = Engine::default();
     study.apply(&setting::POINTS.to(40)).unwrap();
     let off = analyze(&mut engine, &study);
     let kind = ScheduleKind::Polynomial { degree: 3 };

@@ -9,10 +9,12 @@
 
 use std::ops::RangeInclusive;
 
+use serde_json::{Value, json};
+
 use gdcm_method::uncertainty::{Bar, Scalar, student_quantile};
 use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
-use gdcm_study::study::{Analysis, Uncertainty, setting};
-use serde_json::{Value, json};
+use gdcm_study::study::uncertainty::Uncertainty;
+use gdcm_study::study::{Analysis, setting};
 
 use super::uncertainty::{normal, set, study_of, uncertainty_of};
 

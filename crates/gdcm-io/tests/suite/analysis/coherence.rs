@@ -2,13 +2,17 @@
 
 use std::sync::Arc;
 
-use gdcm_method::fidelity::{CostAverage, coherence_weight};
-use gdcm_model::dataset::{
-    Band, Channel, Condition, Dataset, DatasetHeader, FlightState, MeasuredResponse, Model, Origin,
-};
-use gdcm_study::study::{
-    Caution, ConditionAnalysis, DEFAULT_COHERENCE, RemarkKind, Settings, Undefined, remarks,
-};
+use gdcm_method::fidelity::CostAverage;
+use gdcm_method::fidelity::mismatch::coherence_weight;
+use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::dataset::dataset::DatasetHeader;
+use gdcm_model::dataset::measured_response::MeasuredResponse;
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model};
+use gdcm_study::study::ConditionAnalysis;
+use gdcm_study::study::caution::{Caution, Undefined};
+use gdcm_study::study::remark::{RemarkKind, remarks};
+use gdcm_study::study::settings::{DEFAULT_COHERENCE, Settings};
 
 use super::responses::model_of;
 use super::*;
@@ -58,7 +62,8 @@ fn dataset(coherence: Option<&dyn Fn(usize, f64) -> f64>, bands: Option<[f64; 2]
                 .collect::<Vec<f64>>()
         })
     });
-    let (re, im) = (part(|value| value.re), part(|value| value.im));
+    let re = part(|value| value.re);
+    let im = part(|value| value.im);
     let mut measured = MeasuredResponse::new(grid.omega().to_vec(), &re, &im, coherence).unwrap();
     if let Some(band) = bands {
         measured = measured
@@ -192,16 +197,15 @@ fn equal_coherence_gives_the_medians_of_no_coherence_to_the_last_digit() {
     let equal = dataset(Some(&|_, _| 0.8), None);
     for points in [200, 131] {
         let points = setting::POINTS.to(points);
-        let (on, off) = (
-            with(&equal, std::slice::from_ref(&points)),
-            with(&equal, &[points, setting::COHERENCE.to(None::<f64>)]),
-        );
+        let on = with(&equal, std::slice::from_ref(&points));
+        let off = with(&equal, &[points, setting::COHERENCE.to(None::<f64>)]);
         assert_eq!(
             on.study.settings.coherence_threshold,
             Some(DEFAULT_COHERENCE),
             "it is on by default"
         );
-        let (on, off) = (only(&on), only(&off));
+        let on = only(&on);
+        let off = only(&off);
         let [of_on, of_off] = [&on, &off].map(|of| &of.comparison.delta);
         assert_eq!(
             (&of_on.gain, &of_on.delay_s),
@@ -223,10 +227,8 @@ fn equal_coherence_gives_the_medians_of_no_coherence_to_the_last_digit() {
 fn a_dataset_without_coherence_gives_the_same_whether_it_is_on_or_off() {
     let plain = dataset(None, None);
     assert_eq!(Settings::of(&plain).coherence_threshold, None);
-    let (off, on) = (
-        with(&plain, &[]),
-        with(&plain, &[setting::COHERENCE.to(Some(0.9))]),
-    );
+    let off = with(&plain, &[]);
+    let on = with(&plain, &[setting::COHERENCE.to(Some(0.9))]);
     assert_eq!(
         (&off.conditions, &off.schedule),
         (&on.conditions, &on.schedule)

@@ -4,15 +4,16 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use serde_json::json;
+
 use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::{ScheduleCaution, ScheduleKind};
 use gdcm_model::dataset::{BundleKind, Dataset, ModelId};
-use gdcm_study::study::{
-    BundleModel, Caution, ConditionAnalysis, ConditionFailure, Execution, GainOutOfRange,
-    Undefined, cautions_of_models,
-};
-use serde_json::json;
+use gdcm_study::study::analysis::ConditionFailure;
+use gdcm_study::study::caution::{BundleModel, Caution, GainOutOfRange, Undefined};
+use gdcm_study::study::comparison::cautions_of_models;
+use gdcm_study::study::{ConditionAnalysis, Execution};
 
 use super::*;
 use crate::made_up::two_lags;
@@ -92,7 +93,8 @@ fn a_measurement_that_ends_just_short_of_the_band_changes_nothing_for_the_others
 fn a_model_set_aside_is_named_with_what_it_lacks_and_its_pin_does_not_count() {
     let short = ModelId::new(ONLY, BundleKind::Identified, "i4");
     let value = with_short_measurement(Some(4));
-    let (free, pinned) = (only(&value, &[]), only(&value, &[Edit::Pin(short)]));
+    let free = only(&value, &[]);
+    let pinned = only(&value, &[Edit::Pin(short)]);
     let found = pinned.condition(ONLY).unwrap();
     assert_eq!(
         found.comparison.delta,
@@ -427,13 +429,11 @@ fn a_model_set_aside_for_zeros_is_not_told_to_be_measured_too_short() {
         .unwrap()
         .push(whole);
     value["conditions"][0]["identified_models"][1]["name"] = json!("whole");
-    let (model, lacks) = (
-        BundleModel {
-            bundle: BundleKind::Identified,
-            name: "measured".to_owned(),
-        },
-        vec![Pair::new(1, 1)],
-    );
+    let model = BundleModel {
+        bundle: BundleKind::Identified,
+        name: "measured".to_owned(),
+    };
+    let lacks = vec![Pair::new(1, 1)];
     let expected = Caution::SetAside {
         model,
         zero: lacks.clone(),
@@ -470,10 +470,8 @@ fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
             .enumerate()
         {
             let all = own.iter().map(|gains| gains[channel]);
-            let (least, most) = (
-                all.clone().fold(f64::INFINITY, f64::min),
-                all.fold(0.0, f64::max),
-            );
+            let least = all.clone().fold(f64::INFINITY, f64::min);
+            let most = all.fold(0.0, f64::max);
             assert!(
                 (0.99 * least..=1.01 * most).contains(&gain),
                 "channel {channel}: {gain}"

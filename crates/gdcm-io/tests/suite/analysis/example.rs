@@ -68,7 +68,8 @@ fn assert_table_close<T>(
 
 /// Calls `check(name, result, reference)` for each of the eleven conditions.
 fn each_condition(mut check: impl FnMut(&str, &ConditionAnalysis, &Value)) {
-    let (analysis, reference) = (&*EXAMPLE_WITH_SUGGESTIONS_REJECTED, json(REFERENCE));
+    let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
+    let reference = json(REFERENCE);
     let conditions = analysis.study.dataset.conditions();
     assert_eq!(
         (conditions.len(), list(&reference["conditions"]).len()),
@@ -149,7 +150,8 @@ fn delta_gains_delta_delays_and_bounds_of_the_example_agree() {
             &expected["D"],
             scale::DELAY_S,
         );
-        let (lower, upper) = (found.gain_bounds().lower, found.gain_bounds().upper);
+        let lower = found.gain_bounds().lower;
+        let upper = found.gain_bounds().upper;
         assert_close(
             &format!("{at}, lower bound"),
             lower,
@@ -162,7 +164,8 @@ fn delta_gains_delta_delays_and_bounds_of_the_example_agree() {
             number(&expected["ub"]),
             scale::GAIN,
         );
-        let (delay, expected) = (found.delay_upper_s(), number(&expected["tau_ub"]));
+        let delay = found.delay_upper_s();
+        let expected = number(&expected["tau_ub"]);
         assert_close(
             &format!("{at}, delay bound"),
             delay,
@@ -175,7 +178,8 @@ fn delta_gains_delta_delays_and_bounds_of_the_example_agree() {
 #[test]
 fn channel_gains_of_the_example_agree() {
     each_condition(|at, found, expected| {
-        let (correction, gains) = (&found.correction, &found.gains);
+        let correction = &found.correction;
+        let gains = &found.gains;
         assert_all_close(
             &format!("{at}, k_in"),
             &correction.input_gains,
@@ -205,7 +209,8 @@ fn channel_gains_of_the_example_agree() {
 #[test]
 fn channel_delays_of_the_example_agree() {
     each_condition(|at, found, expected| {
-        let (correction, delays) = (&found.correction, &found.delays);
+        let correction = &found.correction;
+        let delays = &found.delays;
         assert_all_close(
             &format!("{at}, tau_in"),
             &correction.input_delays_s,
@@ -236,7 +241,8 @@ fn channel_delays_of_the_example_agree() {
 #[test]
 fn costs_of_the_example_agree_before_and_after_the_correction() {
     each_condition(|at, found, expected| {
-        let ([magnitude, phase], cost) = ([&expected["J_mag"], &expected["J_phase"]], &*found.cost);
+        let [magnitude, phase] = [&expected["J_mag"], &expected["J_phase"]];
+        let cost = &*found.cost;
         assert_table_close(
             at,
             cost,
@@ -277,10 +283,8 @@ fn the_schedule_of_the_example_agrees() {
         (&schedule["degree"], &schedule["of"]),
         (&2.into(), &"ln k".into())
     );
-    let (mean, half_range) = (
-        &expected["airspeed_mean_kt"],
-        &expected["airspeed_half_range_kt"],
-    );
+    let mean = &expected["airspeed_mean_kt"];
+    let half_range = &expected["airspeed_half_range_kt"];
     assert_close(
         "mean",
         number(&schedule["airspeed_mean_kt"]),
@@ -312,7 +316,8 @@ fn the_schedule_of_the_example_agrees() {
 
 #[test]
 fn the_assessment_of_the_example_agrees_and_leaves_condition_10_out() {
-    let (analysis, reference) = (&*EXAMPLE_WITH_SUGGESTIONS_REJECTED, json(REFERENCE));
+    let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
+    let reference = json(REFERENCE);
     let schedule = analysis.schedule.as_ref().unwrap();
     let expected = list(&reference["assessment"]);
     assert_eq!((analysis.assessment.len(), expected.len()), (11, 11));

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use gdcm_method::correction::GainBounds;
-use gdcm_model::dataset::{
-    Band, Channel, Condition, Dataset, DatasetHeader, FlightState, MeasuredResponse, Model,
-    ModelId, Origin,
-};
+use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::dataset::dataset::DatasetHeader;
+use gdcm_model::dataset::measured_response::MeasuredResponse;
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model, ModelId};
 
 use super::responses::model_of;
 use super::*;

@@ -2,18 +2,21 @@
 
 use std::sync::Arc;
 
-use gdcm_method::correction::{Channel as CorrectedChannel, LeadDesign, LeadSettings};
+use gdcm_method::correction::Channel as CorrectedChannel;
+use gdcm_method::correction::leads::{LeadDesign, LeadSettings};
 use gdcm_method::schedule::ScheduleCaution;
 use gdcm_method::uncertainty::Scalar;
-use gdcm_model::dataset::{
-    Band, Channel, Condition, Dataset, DatasetHeader, FlightState, MeasuredResponse, Model,
-    ModelId, Origin,
-};
+use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::dataset::dataset::DatasetHeader;
+use gdcm_model::dataset::measured_response::MeasuredResponse;
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::{Band, Channel, Condition, Dataset, Model, ModelId};
 use gdcm_model::response::LeadOrder;
-use gdcm_study::study::{
-    AssessedCorrection, AssessedModel, AssessmentChoice, AssessmentTable, DelayFrom,
-    PhaseCorrection, lead_words, remarks,
-};
+use gdcm_study::study::assessment_table::{AssessedModel, AssessmentChoice};
+use gdcm_study::study::lead_compensation::lead_words;
+use gdcm_study::study::remark::remarks;
+use gdcm_study::study::settings::DelayFrom;
+use gdcm_study::study::{AssessedCorrection, AssessmentTable, PhaseCorrection};
 
 use super::*;
 
@@ -53,10 +56,8 @@ fn signed_delays_filters_and_gains_of_the_example_agree() {
     let reference = json(REFERENCE);
     for expected in list(&reference["example"]["conditions"]) {
         let id = ConditionId(expected["id"].as_i64().unwrap());
-        let (at, found) = (
-            format!("condition {id}"),
-            EXAMPLE_WITH_LEADS.condition(id).unwrap(),
-        );
+        let at = format!("condition {id}");
+        let found = EXAMPLE_WITH_LEADS.condition(id).unwrap();
         for (pair, delay_s) in found.comparison.delta.band_delay_s.iter() {
             assert_close(
                 &at,
@@ -133,7 +134,8 @@ fn costs_of_the_example_with_leads_agree_for_each_condition_and_under_the_schedu
         let id = ConditionId(expected["id"].as_i64().unwrap());
         let own = &EXAMPLE_WITH_LEADS.condition(id).unwrap().cost;
         for (pair, change) in own.iter() {
-            let (at, change) = (format!("condition {id}, {pair:?}"), change.unwrap());
+            let at = format!("condition {id}, {pair:?}");
+            let change = change.unwrap();
             let of =
                 |name: &str, stage: usize| number(&expected[name][stage][pair.output][pair.input]);
             assert_close(&at, change.uncorrected.magnitude, of("J_mag", 0), 1.0);
@@ -150,10 +152,8 @@ fn costs_of_the_example_with_leads_agree_for_each_condition_and_under_the_schedu
 
 #[test]
 fn the_schedule_of_the_example_holds_the_mean_signed_delay_of_each_channel() {
-    let (reference, schedule) = (
-        json(REFERENCE),
-        EXAMPLE_WITH_LEADS.schedule.as_ref().unwrap(),
-    );
+    let reference = json(REFERENCE);
+    let schedule = EXAMPLE_WITH_LEADS.schedule.as_ref().unwrap();
     let at = schedule.at(77.0);
     let leads = at.leads.as_ref().unwrap();
     assert_all_close(
@@ -198,7 +198,8 @@ fn schedule_names() -> (Vec<String>, Vec<String>) {
 
 #[test]
 fn gains_alone_are_those_of_delays_and_every_delay_is_none() {
-    let (mut study, mut engine) = (study_of_example(), Engine::default());
+    let mut study = study_of_example();
+    let mut engine = Engine::default();
     let delay = analyze(&mut engine, &study);
     study
         .apply(&setting::PHASE.to(PhaseCorrection::None))
@@ -336,11 +337,9 @@ fn where_all_held_responses_want_lead_the_result_offers_it_with_what_it_buys() {
 fn known(entry: &Value, plant: &Value) -> Dataset {
     let number_at = |name: &str, pair: Pair| number(&plant[name][pair.output][pair.input]);
     let pairs: Vec<Pair> = PairTable::filled(3, 2, ()).pairs().collect();
-    let (mut a, mut b, mut c) = (
-        DMatrix::zeros(12, 12),
-        DMatrix::zeros(12, 2),
-        DMatrix::zeros(3, 12),
-    );
+    let mut a = DMatrix::zeros(12, 12);
+    let mut b = DMatrix::zeros(12, 2);
+    let mut c = DMatrix::zeros(3, 12);
     for (place, &pair) in pairs.iter().enumerate() {
         let [g, p, q] = ["g", "p", "q"].map(|name| number_at(name, pair));
         let at = 2 * place;
@@ -352,10 +351,8 @@ fn known(entry: &Value, plant: &Value) -> Dataset {
     let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 200);
     let design = LeadDesign::new(lead_settings(entry), grid.omega().into());
     let channel = |side: &str, at: usize, omega: f64| {
-        let (k, tau_s) = (
-            numbers(&entry[format!("k_{side}")])[at],
-            numbers(&entry[format!("tau_{side}_s")])[at],
-        );
+        let k = numbers(&entry[format!("k_{side}")])[at];
+        let tau_s = numbers(&entry[format!("tau_{side}_s")])[at];
         let factor = design
             .filter(tau_s)
             .map_or(Complex::from_polar(1.0, -omega * tau_s), |filter| {
@@ -502,7 +499,8 @@ fn what_a_response_wants_has_the_bar_of_whole_analyses_with_each_model_pinned() 
     let analysis = analyze(&mut engine, &with_leads());
     let sure = engine.uncertainty(&analysis, &Unobserved).unwrap();
     let id = ConditionId(1);
-    let (study, result) = (&analysis.study, analysis.condition(id).unwrap());
+    let study = &analysis.study;
+    let result = analysis.condition(id).unwrap();
     let words = lead_words(study, result, Some(&sure));
     let with_bar = |of: &String| {
         of.starts_with("P from LAT wants 65 ± ")

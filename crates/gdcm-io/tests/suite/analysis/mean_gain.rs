@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use gdcm_method::correction::GainSource;
+use gdcm_method::correction::delta::GainSource;
 use gdcm_model::dataset::{Dataset, ModelId};
 use gdcm_study::study::PhaseCorrection;
 
@@ -112,10 +112,8 @@ fn with_leads_g_from_the_mean_changes_nothing_and_the_settings_say_so() {
     set(&mut study, setting::GAIN_SOURCE.to(GainSource::MeanOfPairs));
     let of_mean = analyze(&mut Engine::default(), &study);
     for (id, result) in &of_mean.conditions {
-        let (with, without) = (
-            result.as_ref().unwrap(),
-            of_representatives.condition(*id).unwrap(),
-        );
+        let with = result.as_ref().unwrap();
+        let without = of_representatives.condition(*id).unwrap();
         assert_eq!(with.correction, without.correction, "condition {id}");
     }
     assert!(

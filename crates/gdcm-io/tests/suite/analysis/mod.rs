@@ -2,12 +2,14 @@
 
 use std::sync::LazyLock;
 
-use gdcm_io::corrections;
-use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Pair, PairTable, StateSpace};
-use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
-use gdcm_study::study::{Analysis, Edit, Engine, Study, Unobserved, setting};
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
+
+use gdcm_io::corrections_file::corrections;
+use gdcm_model::dataset::{BundleKind, ConditionId, Dynamics, Pair, PairTable, StateSpace};
+use gdcm_model::progress::Unobserved;
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse};
+use gdcm_study::study::{Analysis, Edit, Engine, Study, setting};
 
 mod across;
 mod adopted_models;
@@ -64,7 +66,8 @@ fn study_of_example() -> Study {
 
 /// The example analysed, its suggested outliers rejected, and analysed again.
 static EXAMPLE_WITH_SUGGESTIONS_REJECTED: LazyLock<Analysis> = LazyLock::new(|| {
-    let (mut study, mut engine) = (study_of_example(), Engine::default());
+    let mut study = study_of_example();
+    let mut engine = Engine::default();
     let first = analyze(&mut engine, &study);
     for (&condition, result) in &first.conditions {
         let models = result.as_ref().unwrap().suggested();

@@ -1,8 +1,9 @@
 //! Poles and zeros of published and made-up models, modes of the example, and what a pilot does not notice.
 
 use gdcm_method::fidelity::Muad;
-use gdcm_model::response::{evaluate, finite_zeros, modes, transmission_zeros};
-use gdcm_study::study::ConditionModes;
+use gdcm_model::response::zeros::{finite_zeros, transmission_zeros};
+use gdcm_model::response::{evaluate, modes};
+use gdcm_study::study::job::ConditionModes;
 
 use super::responses::model_of;
 use super::*;
@@ -52,7 +53,8 @@ fn the_poles_of_published_models_have_the_sums_of_powers_of_their_matrices() {
             .map(|mode| mode.pole)
             .collect();
         assert_eq!(poles.len(), model.order());
-        let (mut power, mut size) = (model.a().clone(), model.a().norm());
+        let mut power = model.a().clone();
+        let mut size = model.a().norm();
         for exponent in 1..=4 {
             let sum: Complex<f64> = poles.iter().map(|pole| pole.powi(exponent)).sum();
             // Similar matrices have equal traces; rounding is that of the entries of the power.

@@ -1,6 +1,6 @@
 //! What the result of a condition says.
 
-use gdcm_study::study::{Remark, RemarkKind, remarks};
+use gdcm_study::study::remark::{Remark, RemarkKind, remarks};
 
 use super::*;
 
@@ -14,7 +14,8 @@ fn said(analysis: &Analysis, condition: i64) -> Vec<Remark> {
 
 #[test]
 fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
-    let (mut study, mut engine) = (study_of_example(), Engine::default());
+    let mut study = study_of_example();
+    let mut engine = Engine::default();
     study.apply(&setting::POINTS.to(40)).unwrap();
     let held = [("NY", "LAT"), ("P", "PED"), ("R", "LAT")]
         .map(|(output, input)| study.dataset.find_pair(output, input));
@@ -45,7 +46,8 @@ fn a_held_response_that_goes_farther_from_flight_is_named_with_both_costs() {
 
 #[test]
 fn a_condition_that_is_left_out_of_the_schedule_says_so() {
-    let (mut study, mut engine) = (study_of_example(), Engine::default());
+    let mut study = study_of_example();
+    let mut engine = Engine::default();
     study.apply(&setting::POINTS.to(40)).unwrap();
     study
         .apply(&Edit::SetScheduled {
@@ -64,7 +66,8 @@ fn a_condition_that_is_left_out_of_the_schedule_says_so() {
 
 #[test]
 fn a_tolerance_decides_whether_a_loop_of_held_gains_agrees() {
-    let (mut study, mut engine) = (study_of_example(), Engine::default());
+    let mut study = study_of_example();
+    let mut engine = Engine::default();
     study.apply(&setting::POINTS.to(40)).unwrap();
     // LON and COL to Q and NZ: a loop.
     for (output, input) in [("Q", "LON"), ("Q", "COL"), ("NZ", "LON"), ("NZ", "COL")] {

@@ -1,12 +1,14 @@
 //! Frequency responses on the instruction set of this machine: against 50-digit arithmetic, against dense LU, and bit
 //! by bit.
 
-use super::responses::{GOLDEN, dynamics_of};
-use super::*;
-use gdcm_model::dataset::Band;
-use gdcm_model::response::evaluate_on;
 use proptest::prelude::*;
 use pulp::Arch;
+
+use gdcm_model::dataset::Band;
+use gdcm_model::response::elimination::evaluate_on;
+
+use super::responses::{GOLDEN, dynamics_of};
+use super::*;
 
 type Values = PairTable<Vec<Complex<f64>>>;
 
@@ -28,11 +30,9 @@ fn matrix(rows: usize, columns: usize, seed: f64) -> DMatrix<f64> {
 
 fn model(order: usize, outputs: usize, inputs: usize) -> StateSpace {
     let a = matrix(order, order, 0.3) - DMatrix::identity(order, order) * 2.0;
-    let (b, c, d) = (
-        matrix(order, inputs, 1.1),
-        matrix(outputs, order, 2.3),
-        matrix(outputs, inputs, 3.7),
-    );
+    let b = matrix(order, inputs, 1.1);
+    let c = matrix(outputs, order, 2.3);
+    let d = matrix(outputs, inputs, 3.7);
     StateSpace::new(a, b, c, d).unwrap()
 }
 
@@ -48,7 +48,8 @@ fn dense(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
 /// The largest difference from dense LU, relative to the largest value.
 fn difference_from_dense(model: &StateSpace, grid: &FrequencyGrid) -> f64 {
     let found = response(model, grid);
-    let (mut difference, mut largest) = (0.0_f64, 0.0_f64);
+    let mut difference = 0.0_f64;
+    let mut largest = 0.0_f64;
     for (k, omega) in grid.omega().iter().enumerate() {
         let expected = dense(model, *omega);
         for (pair, values) in found.iter() {
@@ -87,7 +88,8 @@ impl Golden {
             Complex::new(parts[0], parts[1])
         };
         let matrix = |value: &Value| {
-            let (rows, columns) = (list(value).len(), list(&value[0]).len());
+            let rows = list(value).len();
+            let columns = list(&value[0]).len();
             DMatrix::from_fn(rows, columns, |row, column| complex(&value[row][column]))
         };
         let values = list(&case["H_re_im"]).iter().map(matrix).collect();
@@ -128,7 +130,8 @@ fn every_instruction_set_agrees_with_50_digit_arithmetic_at_every_remainder_leng
             continue;
         };
         models += 1;
-        let (name, golden) = (&case["model"], Golden::of(case));
+        let name = &case["model"];
+        let golden = Golden::of(case);
         for arch in instruction_sets() {
             // Every remainder of a division by the eight of a group, and all frequencies of the case.
             for count in (0..=17).chain([golden.omega.len()]) {
@@ -191,7 +194,8 @@ prop_compose! {
     ) -> StateSpace {
         let all = DMatrix::from_vec(n + p, n + m, numbers);
         let a = DMatrix::from_fn(n, n, |row, column| {
-            let (entry, size) = (all[(row, column)], sizes[row * n + column]);
+            let entry = all[(row, column)];
+            let size = sizes[row * n + column];
             match structure {
                 _ if row == column => entry - 2.0,
                 Structure::Full => entry,
@@ -202,7 +206,9 @@ prop_compose! {
                 Structure::TwoParts => if (row < n / 2) == (column < n / 2) { entry } else { 0.0 },
             }
         });
-        let (b, c, d) = (all.view((0, n), (n, m)), all.view((n, 0), (p, n)), all.view((n, n), (p, m)));
+        let b = all.view((0, n), (n, m));
+        let c = all.view((n, 0), (p, n));
+        let d = all.view((n, n), (p, m));
         StateSpace::new(a, b.into_owned(), c.into_owned(), d.into_owned()).unwrap()
     }
 }
@@ -230,7 +236,8 @@ fn every_number_of_frequencies_agrees_with_dense_lu() {
 
 #[test]
 fn the_rest_of_the_grid_changes_a_value_by_rounding_only() {
-    let (model, whole) = (model(21, 6, 4), grid(0.01, 1000.0, 53));
+    let model = model(21, 6, 4);
+    let whole = grid(0.01, 1000.0, 53);
     let values = response(&model, &whole);
     let largest = values
         .iter()
@@ -251,7 +258,8 @@ fn the_rest_of_the_grid_changes_a_value_by_rounding_only() {
 
 #[test]
 fn runs_and_threads_give_the_same_bits() {
-    let (model, grid) = (model(30, 6, 4), grid(0.1, 100.0, 101));
+    let model = model(30, 6, 4);
+    let grid = grid(0.1, 100.0, 101);
     let expected = response(&model, &grid);
     std::thread::scope(|scope| {
         let threads: Vec<_> = (0..4)

@@ -81,7 +81,8 @@ fn responses_agree_with_50_digit_arithmetic_to_a_billionth_of_the_largest() {
     assert_eq!(list(&golden["cases"]).len(), 8);
     for case in list(&golden["cases"]) {
         let dynamics = dynamics_of(case);
-        let (mut largest, mut error) = (0.0_f64, 0.0_f64);
+        let mut largest = 0.0_f64;
+        let mut error = 0.0_f64;
         for (omega, expected) in numbers(&case["omega_rad_s"])
             .into_iter()
             .zip(list(&case["H_re_im"]))

@@ -4,8 +4,13 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use gdcm_method::correction::Channel;
-use gdcm_model::dataset::{Condition, Dataset, MeasuredResponse, Model};
-use gdcm_study::study::{Convention, Decisions, Execution, SignRole, doubts_of_models, remarks};
+use gdcm_model::dataset::measured_response::MeasuredResponse;
+use gdcm_model::dataset::{Condition, Dataset, Model};
+use gdcm_study::study::Execution;
+use gdcm_study::study::changed_models::SignRole;
+use gdcm_study::study::convention_doubt::{Convention, doubts_of_models};
+use gdcm_study::study::differences::Decisions;
+use gdcm_study::study::remark::remarks;
 
 use super::*;
 
@@ -28,7 +33,8 @@ fn changed(bundle: BundleKind, change: impl Fn(&Model) -> Model) -> Study {
                 })
                 .collect()
         };
-        let (physics, identified) = (models(BundleKind::Physics), models(BundleKind::Identified));
+        let physics = models(BundleKind::Physics);
+        let identified = models(BundleKind::Identified);
         Condition::new(condition.flight_state().clone(), physics, identified).unwrap()
     });
     Study::new(Arc::new(
@@ -40,7 +46,9 @@ fn changed(bundle: BundleKind, change: impl Fn(&Model) -> Model) -> Study {
 fn scaled(bundle: BundleKind, channel: Channel, factor: f64) -> Study {
     changed(bundle, |model| {
         let old = model.state_space().unwrap();
-        let (mut b, mut c, mut d) = (old.b().clone(), old.c().clone(), old.d().clone());
+        let mut b = old.b().clone();
+        let mut c = old.c().clone();
+        let mut d = old.d().clone();
         match channel {
             Channel::Output(output) => {
                 (0..c.ncols()).for_each(|state| c[(output, state)] *= factor);
@@ -71,7 +79,8 @@ fn results(analysis: &Analysis) -> Value {
 
 #[test]
 fn an_output_of_the_other_sign_is_found_and_turned_to_the_last_digit() {
-    let (mut study, mut engine) = (scaled(BundleKind::Identified, NZ, -1.0), Engine::default());
+    let mut study = scaled(BundleKind::Identified, NZ, -1.0);
+    let mut engine = Engine::default();
     let flipped = analyze(&mut engine, &study);
     let [doubt] = flipped.doubts.as_slice() else {
         panic!("one doubt: {:?}", flipped.doubts)
@@ -139,7 +148,8 @@ fn the_example_gives_rise_to_no_doubt() {
 
 #[test]
 fn an_input_of_the_other_sign_is_the_input_and_the_physics_can_be_turned_in_its_place() {
-    let (mut study, mut engine) = (scaled(BundleKind::Physics, COL, -1.0), Engine::default());
+    let mut study = scaled(BundleKind::Physics, COL, -1.0);
+    let mut engine = Engine::default();
     study.apply(&setting::POINTS.to(40)).unwrap();
     let found: Vec<Channel> = analyze(&mut engine, &study)
         .doubts
@@ -193,7 +203,8 @@ fn measured_responses_are_turned_with_their_coherence() {
             })
         };
         let coherence = PairTable::filled(6, 4, vec![0.9; grid.len()]);
-        let (re, im) = (part(|value| value.re), part(|value| value.im));
+        let re = part(|value| value.re);
+        let im = part(|value| value.im);
         let measured =
             MeasuredResponse::new(grid.omega().to_vec(), &re, &im, Some(coherence)).unwrap();
         Model {
@@ -210,7 +221,8 @@ fn measured_responses_are_turned_with_their_coherence() {
         Dynamics::Measured(response) => response.clone(),
         Dynamics::StateSpace(_) => panic!("it is measured"),
     };
-    let (plain, opposite) = (response(&study), response(&turned));
+    let plain = response(&study);
+    let opposite = response(&turned);
     assert_eq!(plain.coherence(), opposite.coherence());
     for (pair, values) in plain.values().iter() {
         let sign = if pair.output == 5 { -1.0 } else { 1.0 };

@@ -1,16 +1,18 @@
 //! Properties of whole studies.
 
 use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+
+use gdcm_model::dataset::{Condition, Dataset, Model, ModelId};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_study::study::ConditionAnalysis;
+use gdcm_study::study::analysis::ConditionFailure;
+use gdcm_study::study::condition_responses::{ConditionCurves, KnownModels};
+use gdcm_study::study::engine::WantedFirst;
 
 use super::*;
 use crate::EveryCore;
-use gdcm_model::dataset::{Condition, Dataset, Model, ModelId};
-use gdcm_study::study::{
-    Cancelled, ConditionAnalysis, ConditionCurves, ConditionFailure, KnownModels, Progress,
-    WantedFirst,
-};
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
 
 /// A study of the example on few frequencies: what these tests ask does not depend on how many.
 fn short_study() -> Study {
@@ -30,10 +32,8 @@ fn held_responses_have_their_delta_gain_as_net_gain_in_every_condition() {
     {
         assert!(result.gains.matched);
         for pair in result.held().marked() {
-            let (net, wanted) = (
-                result.correction.net_gain(pair),
-                result.comparison.delta.gain[pair].unwrap(),
-            );
+            let net = result.correction.net_gain(pair);
+            let wanted = result.comparison.delta.gain[pair].unwrap();
             // Matched means within 1e-8 of the logarithm.
             assert!(
                 (net / wanted - 1.0).abs() < 1e-8,
@@ -47,7 +47,8 @@ fn held_responses_have_their_delta_gain_as_net_gain_in_every_condition() {
 
 #[test]
 fn an_engine_that_has_seen_other_settings_gives_the_same_result_as_a_new_one() {
-    let (mut study, mut used) = (short_study(), Engine::default());
+    let mut study = short_study();
+    let mut used = Engine::default();
     analyze(&mut used, &study);
     for edit in [
         setting::ALPHA_GAIN.to(0.01),
@@ -66,7 +67,8 @@ fn an_engine_that_has_seen_other_settings_gives_the_same_result_as_a_new_one() {
 
 #[test]
 fn holding_another_response_changes_neither_representatives_nor_bounds() {
-    let (mut study, mut engine) = (short_study(), Engine::default());
+    let mut study = short_study();
+    let mut engine = Engine::default();
     let before = analyze(&mut engine, &study);
     let pair = study.dataset.find_pair("NX", "LON").unwrap();
     study.apply(&Edit::Hold(pair, true)).unwrap();
@@ -77,7 +79,8 @@ fn holding_another_response_changes_neither_representatives_nor_bounds() {
         after.condition(first).unwrap().correction
     );
     for &id in before.conditions.keys() {
-        let (before, after) = (before.condition(id).unwrap(), after.condition(id).unwrap());
+        let before = before.condition(id).unwrap();
+        let after = after.condition(id).unwrap();
         assert_eq!(before.comparison, after.comparison);
         assert_eq!(
             (before.gain_bounds(), before.delay_upper_s()),
@@ -88,7 +91,8 @@ fn holding_another_response_changes_neither_representatives_nor_bounds() {
 
 #[test]
 fn a_condition_left_out_of_the_schedule_is_not_counted_in_it_but_is_still_assessed() {
-    let (mut study, mut engine) = (short_study(), Engine::default());
+    let mut study = short_study();
+    let mut engine = Engine::default();
     for condition in [ConditionId(1), ConditionId(2)] {
         study
             .apply(&Edit::SetScheduled {
@@ -105,7 +109,8 @@ fn a_condition_left_out_of_the_schedule_is_not_counted_in_it_but_is_still_assess
 
 #[test]
 fn every_condition_out_of_the_schedule_leaves_corrections_without_one() {
-    let (mut study, mut engine) = (short_study(), Engine::default());
+    let mut study = short_study();
+    let mut engine = Engine::default();
     for condition in (1..=11).map(ConditionId) {
         study
             .apply(&Edit::SetScheduled {
@@ -215,7 +220,8 @@ fn results_have_the_same_bits_whatever_the_number_of_threads() {
 
 #[test]
 fn the_condition_wanted_first_is_told_first_and_as_the_whole_analysis_has_it() {
-    let (study, onlooker) = (short_study(), Onlooker::new(ConditionId(10), usize::MAX));
+    let study = short_study();
+    let onlooker = Onlooker::new(ConditionId(10), usize::MAX);
     let analysis = onlooker
         .analyze(&mut Engine::with_executor(Box::new(EveryCore)), &study)
         .unwrap();
@@ -232,7 +238,8 @@ fn the_condition_wanted_first_is_told_first_and_as_the_whole_analysis_has_it() {
 
 #[test]
 fn an_analysis_that_is_stopped_halfway_goes_on_from_there_with_the_same_result() {
-    let (study, mut engine) = (short_study(), Engine::default());
+    let study = short_study();
+    let mut engine = Engine::default();
     for steps in [1, 100, 400] {
         assert_eq!(
             Onlooker::new(ConditionId(1), steps).analyze(&mut engine, &study),
@@ -249,7 +256,8 @@ fn an_analysis_that_is_stopped_halfway_goes_on_from_there_with_the_same_result()
 fn reversed(dataset: &Dataset) -> Dataset {
     let conditions = dataset.conditions().iter().rev().map(|condition| {
         let bundle = |kind| condition.bundle(kind).iter().rev().cloned().collect();
-        let (physics, identified) = (bundle(BundleKind::Physics), bundle(BundleKind::Identified));
+        let physics = bundle(BundleKind::Physics);
+        let identified = bundle(BundleKind::Identified);
         Condition::new(condition.flight_state().clone(), physics, identified).unwrap()
     });
     Dataset::new(dataset.header(), conditions.collect()).unwrap()
@@ -257,7 +265,8 @@ fn reversed(dataset: &Dataset) -> Dataset {
 
 #[test]
 fn the_order_of_conditions_and_models_touches_no_decision_and_no_result() {
-    let (mut study, mut engine) = (short_study(), Engine::default());
+    let mut study = short_study();
+    let mut engine = Engine::default();
     let tenth = |kind, name: &str| ModelId::new(ConditionId(10), kind, name);
     for edit in [
         Edit::Reject(tenth(BundleKind::Physics, "nominal")),
@@ -275,9 +284,11 @@ fn the_order_of_conditions_and_models_touches_no_decision_and_no_result() {
         (&carried.choices, &carried.settings),
         (&study.choices, &study.settings)
     );
-    let (before, after) = (analyze(&mut engine, &study), analyze(&mut engine, &carried));
+    let before = analyze(&mut engine, &study);
+    let after = analyze(&mut engine, &carried);
     for (id, result) in &before.conditions {
-        let (before, after) = (result.as_ref().unwrap(), after.condition(*id).unwrap());
+        let before = result.as_ref().unwrap();
+        let after = after.condition(*id).unwrap();
         for kind in BundleKind::BOTH {
             assert_eq!(
                 before.representative_name(kind),
@@ -291,7 +302,8 @@ fn the_order_of_conditions_and_models_touches_no_decision_and_no_result() {
 
 #[test]
 fn engines_that_share_models_hold_one_response_of_each() {
-    let (study, known) = (short_study(), KnownModels::default());
+    let study = short_study();
+    let known = KnownModels::default();
     let curves = |mut engine: Engine| {
         let grid = (study.settings.band, 50);
         let curves = engine
@@ -322,8 +334,10 @@ fn engines_that_share_models_hold_one_response_of_each() {
 
 #[test]
 fn of_a_dataset_with_one_other_model_one_response_is_computed() {
-    let (study, mut engine) = (short_study(), Engine::default());
-    let (band, id) = (study.settings.band, ConditionId(3));
+    let study = short_study();
+    let mut engine = Engine::default();
+    let band = study.settings.band;
+    let id = ConditionId(3);
     let mut curves = |study: &Study| {
         engine
             .curves(&study.dataset, id, (band, 50), &Unobserved)
@@ -337,12 +351,10 @@ fn of_a_dataset_with_one_other_model_one_response_is_computed() {
         if condition.id() == id
             && let Dynamics::StateSpace(model) = &physics[4].dynamics
         {
-            let (a, b, c, d) = (
-                model.a().clone(),
-                1.5 * model.b(),
-                model.c().clone(),
-                model.d().clone(),
-            );
+            let a = model.a().clone();
+            let b = 1.5 * model.b();
+            let c = model.c().clone();
+            let d = model.d().clone();
             physics[4].dynamics = Dynamics::StateSpace(StateSpace::new(a, b, c, d).unwrap());
         }
         Condition::new(

@@ -3,11 +3,14 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gdcm_io::{DatasetOrigin, load_dataset_bytes};
-use gdcm_model::dataset::{Dataset, Timing};
-use gdcm_model::executor::Sequential;
-use gdcm_study::study::{ConditionAnalysis, Execution, cautions_of_models};
 use serde_json::json;
+
+use gdcm_io::{DatasetOrigin, load_dataset_bytes};
+use gdcm_model::dataset::Dataset;
+use gdcm_model::dataset::state_space::Timing;
+use gdcm_model::executor::Sequential;
+use gdcm_study::study::comparison::cautions_of_models;
+use gdcm_study::study::{ConditionAnalysis, Execution};
 
 use super::*;
 

@@ -11,10 +11,10 @@ use gdcm_method::uncertainty::{
     VarianceComponent, VarianceDecomposition, holm,
 };
 use gdcm_model::dataset::{Dataset, ModelId};
-use gdcm_study::study::{
-    AirspeedDifference, Cancelled, ExplainTarget, PairScatter, PhaseCorrection, Progress,
-    Uncertainty, derivation,
-};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_study::study::derivation::derivation;
+use gdcm_study::study::uncertainty::{AirspeedDifference, PairScatter, Uncertainty};
+use gdcm_study::study::{ExplainTarget, PhaseCorrection};
 
 use super::*;
 
@@ -224,10 +224,8 @@ fn assert_pairs(analysis: &Analysis, found: &Uncertainty, reference: &Value, tol
             &reference["about_schedule"],
             tolerance,
         );
-        let (schedule, bands) = (
-            analysis.schedule.as_ref().unwrap(),
-            found.bands.as_ref().unwrap(),
-        );
+        let schedule = analysis.schedule.as_ref().unwrap();
+        let bands = found.bands.as_ref().unwrap();
         for (place, airspeed_kt) in numbers(&reference["schedule"]["airspeed_kt"])
             .into_iter()
             .enumerate()
@@ -259,7 +257,8 @@ fn assert_pairs(analysis: &Analysis, found: &Uncertainty, reference: &Value, tol
                 .iter()
                 .find(|of| of.pair == pair && of.variable == variable)
                 .unwrap();
-            let (effect, reference) = (test.effect.unwrap(), &reference[name]);
+            let effect = test.effect.unwrap();
+            let reference = &reference[name];
             assert_near(name, effect.effect, &reference["effect"], 10.0 * tolerance);
             assert_near(
                 name,
@@ -350,10 +349,8 @@ fn what_coherence_tells_takes_the_place_of_a_smaller_spread() {
         set(&mut study, setting::POINTS.to(40));
         let (_, found) = uncertainty_of(&study);
         let bar = |scalar| *found.bar(ConditionId(1), scalar).unwrap();
-        let (gain, delay) = (
-            bar(Scalar::Gain(Pair::new(0, 0))),
-            bar(Scalar::Delay(Pair::new(0, 0))),
-        );
+        let gain = bar(Scalar::Gain(Pair::new(0, 0)));
+        let delay = bar(Scalar::Delay(Pair::new(0, 0)));
         assert_bar(
             &format!("{name}: ln G"),
             &gain,
@@ -476,10 +473,8 @@ fn a_table_of_numbers_is_split_as_the_reference_does() {
 
 #[test]
 fn the_example_has_the_bars_of_the_reference() {
-    let (case, analysis) = (
-        case("F_example_dataset"),
-        &*EXAMPLE_WITH_SUGGESTIONS_REJECTED,
-    );
+    let case = case("F_example_dataset");
+    let analysis = &*EXAMPLE_WITH_SUGGESTIONS_REJECTED;
     let found = Engine::default()
         .uncertainty(analysis, &Unobserved)
         .unwrap();
@@ -537,7 +532,10 @@ fn the_example_has_the_bars_of_the_reference() {
 
 /// Bars of every figure of every condition, by condition and in the order of the figures.
 fn all_bars(found: &Uncertainty) -> Vec<(ConditionId, Scalar, Option<Bar>)> {
-    let of_condition = |(id, of): (&ConditionId, &gdcm_study::study::ConditionUncertainty)| {
+    let of_condition = |(id, of): (
+        &ConditionId,
+        &gdcm_study::study::uncertainty::ConditionUncertainty,
+    )| {
         of.bars
             .iter()
             .map(|(scalar, bar)| (*id, scalar, *bar))
@@ -652,7 +650,8 @@ fn a_model_that_stands_twice_does_not_narrow_a_bar() {
                 .unwrap();
         }
     }
-    let (found, other) = (uncertainty_of(&study).1, uncertainty_of(&doubled).1);
+    let found = uncertainty_of(&study).1;
+    let other = uncertainty_of(&doubled).1;
     for ((id, scalar, bar), (_, _, other)) in all_bars(&found).into_iter().zip(all_bars(&other)) {
         let [bar, other] =
             [bar, other].map(|bar| bar.and_then(|bar| bar.half_width(0.9)).unwrap_or(0.0));
@@ -676,9 +675,13 @@ pub(super) fn normal(state: &mut u64) -> f64 {
 fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
     const DRAWS: usize = 200;
     const TRUTH: f64 = 0.2;
-    let (trim, identification, mut state) = (0.03, 0.02, 88_172_645_463_325_252);
+    let trim = 0.03;
+    let identification = 0.02;
+    let mut state = 88_172_645_463_325_252;
     let model = |name: String, factor: f64| {
-        let (a, b, d) = ([[-1.0]], [[1.0]], [[0.0]]);
+        let a = [[-1.0]];
+        let b = [[1.0]];
+        let d = [[0.0]];
         serde_json::json!({"name": name, "A": a, "B": b, "C": [[factor.exp()]], "D": d})
     };
     let conditions: Vec<Value> = (0..DRAWS)
@@ -709,7 +712,7 @@ fn bars_of_a_population_cover_the_truth_as_often_as_they_say() {
     let mut study = study_of(&dataset);
     set(&mut study, setting::POINTS.to(5));
     let (_, found) = uncertainty_of(&study);
-    let covers = |of: &gdcm_study::study::ConditionUncertainty| {
+    let covers = |of: &gdcm_study::study::uncertainty::ConditionUncertainty| {
         let [low, high] = of.bars[Scalar::NetGain(Pair::new(0, 0))]
             .unwrap()
             .interval(0.9)
@@ -730,7 +733,8 @@ fn dataset_with_band(sd_db: f64) -> Value {
         .unwrap()
         .truncate(1);
     let model = &mut dataset["conditions"][0]["identified_models"][0];
-    let (outputs, inputs) = (list(&model["D"]).len(), list(&model["D"][0]).len());
+    let outputs = list(&model["D"]).len();
+    let inputs = list(&model["D"][0]).len();
     let table = |deviation: f64| vec![vec![vec![deviation; 2]; inputs]; outputs];
     model["bands"] = serde_json::json!({"omega_rad_s": [1.0, 5.0], "sd_db": table(sd_db), "sd_deg": table(6.0 * sd_db)});
     dataset
@@ -762,8 +766,10 @@ fn the_bars_of_a_dataset_with_other_bands_are_made_anew() {
             .inner_half_width(0.9)
             .unwrap()
     };
-    let (wide, narrow) = (study(3.0), study(1.5));
-    let (of_wide, of_narrow) = (bars(&wide), bars(&narrow));
+    let wide = study(3.0);
+    let narrow = study(1.5);
+    let of_wide = bars(&wide);
+    let of_narrow = bars(&narrow);
     assert_eq!(
         of_narrow,
         uncertainty_of(&narrow).1,
@@ -782,7 +788,8 @@ fn the_bars_of_a_dataset_with_other_bands_are_made_anew() {
 #[test]
 fn a_bar_that_rests_on_the_spread_alone_says_so_beside_a_model_that_tells_its_error() {
     let mut study = study_of(&dataset_with_band(1.0));
-    let (held, free) = (Pair::new(0, 0), Pair::new(0, 1));
+    let held = Pair::new(0, 0);
+    let free = Pair::new(0, 1);
     set(&mut study, Edit::Hold(free, false));
     let (mut analysis, uncertainty) = uncertainty_of(&study);
     analysis.uncertainty = Some(Arc::new(uncertainty));
@@ -893,7 +900,8 @@ fn swaps_are_counted_one_by_one_and_stop_between_two_of_them() {
         engine.uncertainty(&analysis, &progress).err(),
         Some(Cancelled)
     );
-    let (told, total) = (progress.told.into_inner(), progress.total.into_inner());
+    let told = progress.told.into_inner();
+    let total = progress.total.into_inner();
     assert_eq!(total, 2 * 242);
     // Steps are told by hundredths of the whole; 22 responses of a condition come at once.
     assert!((100..=100 + 22 + 5).contains(&told), "{told}");

@@ -1,11 +1,12 @@
 //! Reasons of rejections, decisions kept under names, and what differs between them.
 
-use gdcm_model::dataset::Dataset;
-use gdcm_model::dataset::ModelId;
-use gdcm_study::study::{
-    Difference, History, Job, LONGEST_REASON, VariantJob, decision_differences,
-};
 use std::sync::Arc;
+
+use gdcm_model::dataset::{Dataset, ModelId};
+use gdcm_study::study::History;
+use gdcm_study::study::differences::{Difference, decision_differences};
+use gdcm_study::study::edit::LONGEST_REASON;
+use gdcm_study::study::job::{Job, VariantJob};
 
 use super::*;
 
@@ -121,7 +122,8 @@ fn a_refused_rejection_leaves_no_reason_and_undo_takes_both_back() {
 
 #[test]
 fn words_change_no_result_and_stand_in_the_results_beside_the_rejected() {
-    let (mut study, mut engine) = (study_of_example(), Engine::default());
+    let mut study = study_of_example();
+    let mut engine = Engine::default();
     apply(
         &mut study,
         &[setting::POINTS.to(40), Edit::Reject(nominal_of_10())],
@@ -135,18 +137,16 @@ fn words_change_no_result_and_stand_in_the_results_beside_the_rejected() {
         ],
     );
     let with = analyze(&mut engine, &study);
-    let (a, b) = (
-        without.condition(ConditionId(10)).unwrap(),
-        with.condition(ConditionId(10)).unwrap(),
-    );
+    let a = without.condition(ConditionId(10)).unwrap();
+    let b = with.condition(ConditionId(10)).unwrap();
     assert!(
         Arc::ptr_eq(&a.comparison, &b.comparison),
         "nothing is computed anew"
     );
     let folder = tempfile::tempdir().unwrap();
-    let outputs = gdcm_io::OutputSet::new(gdcm_io::Existing::Replace, Vec::new());
+    let outputs = gdcm_io::output_set::OutputSet::new(gdcm_io::Existing::Replace, Vec::new());
     let all = with.conditions.keys().copied().collect();
-    gdcm_io::write_results(&with, "", &all, folder.path(), outputs).unwrap();
+    gdcm_io::corrections_file::write_results(&with, "", &all, folder.path(), outputs).unwrap();
     let written = json(&std::fs::read_to_string(folder.path().join("corrections.json")).unwrap());
     let condition = list(&written["conditions"])
         .iter()

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use gdcm_io::{
-    DatasetOrigin, FileError, LARGEST_TEXT, embedded_example, load_any, load_dataset,
-    load_dataset_bytes,
-};
 use serde_json::{Value, json};
+
+use gdcm_io::{
+    DatasetOrigin, FileError, embedded_example, load_any, load_dataset, load_dataset_bytes,
+};
+use gdcm_model::dataset::limits::LARGEST_TEXT;
 
 mod properties;
 mod records;
@@ -112,7 +113,7 @@ fn timing_valid_bands_and_how_a_response_was_estimated_are_known_and_kept() {
     assert_eq!(loaded.cautions, Vec::<String>::new());
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("again.json");
-    gdcm_io::save_dataset(&loaded.dataset, &path).unwrap();
+    gdcm_io::dataset_file::save_dataset(&loaded.dataset, &path).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     for written in [
         "\"sample_time_s\":0.01",

@@ -2,14 +2,20 @@
 
 use std::collections::BTreeMap;
 
-use gdcm_io::{load_dataset, save_dataset};
-use gdcm_model::dataset::{
-    Band, Channel, Condition, Dataset, DatasetHeader, Dynamics, Estimate, FlightState,
-    MeasuredResponse, Model, Origin, Pair, PairTable, StateSpace, Timing,
-};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 use serde_json::{Value, json};
+
+use gdcm_io::dataset_file::save_dataset;
+use gdcm_io::load_dataset;
+use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::dataset::dataset::DatasetHeader;
+use gdcm_model::dataset::measured_response::{Estimate, MeasuredResponse};
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::state_space::Timing;
+use gdcm_model::dataset::{
+    Band, Channel, Condition, Dataset, Dynamics, Model, Pair, PairTable, StateSpace,
+};
 
 use super::{SMALL, gzip, load};
 

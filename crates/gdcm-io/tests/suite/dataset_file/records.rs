@@ -1,10 +1,13 @@
 //! Flight records of conditions, and the bands of models that were identified from them.
 
-use gdcm_io::save_dataset;
-use gdcm_model::dataset::{
-    BundleKind, ConditionRecord, ModelDraft, Origin, Pair, RecordKind, Timing,
-};
 use nalgebra::DMatrix;
+
+use gdcm_io::dataset_file::save_dataset;
+use gdcm_model::dataset::condition::{ConditionRecord, RecordKind};
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::state_space::Timing;
+use gdcm_model::dataset::unchecked_dataset::ModelDraft;
+use gdcm_model::dataset::{BundleKind, Pair};
 
 use super::*;
 

@@ -3,16 +3,20 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use proptest::prelude::*;
+use serde_json::{Value as Json, json};
+
+use gdcm_io::study_file::{open_study, open_study_of};
 use gdcm_io::{
-    FileError, LoadedDataset, Opened, embedded_example, load_any, load_dataset, open_study,
-    open_study_of, save_study,
+    FileError, LoadedDataset, Opened, embedded_example, load_any, load_dataset, save_study,
 };
 use gdcm_method::correction::Channel;
 use gdcm_method::schedule::DelayScheduling;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
-use gdcm_study::study::{Edit, Kind, SETTINGS, Setting, SignRole, Study, Value, setting};
-use proptest::prelude::*;
-use serde_json::{Value as Json, json};
+use gdcm_study::study::changed_models::SignRole;
+use gdcm_study::study::setting::SETTINGS;
+use gdcm_study::study::setting_row::{Kind, Setting, Value};
+use gdcm_study::study::{Edit, Study, setting};
 
 use super::SMALL;
 
@@ -253,7 +257,8 @@ fn a_study_of_an_older_program_has_neither_reasons_nor_variants_nor_a_tolerance_
 fn a_wrong_variant_is_refused_with_its_name() {
     let desk = Desk::new();
     let message = desk.refusal(|text| {
-        let (settings, conditions) = (text["settings"].clone(), text["conditions"].clone());
+        let settings = text["settings"].clone();
+        let conditions = text["conditions"].clone();
         text["variants"] =
             json!([{"name": "soft", "settings": settings, "conditions": conditions}]);
         text["variants"][0]["settings"]["alpha_gain"] = json!(-1);
@@ -484,7 +489,7 @@ fn a_model_keeps_the_file_it_was_made_from_through_saving_and_into_the_correctio
     let loaded = super::load(&serde_json::to_vec(&value).unwrap()).unwrap();
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("again.json");
-    gdcm_io::save_dataset(&loaded.dataset, &path).unwrap();
+    gdcm_io::dataset_file::save_dataset(&loaded.dataset, &path).unwrap();
     let again: Json = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
     assert_eq!(
         again["conditions"][0]["physics_models"][1]["source"],
@@ -496,9 +501,9 @@ fn a_model_keeps_the_file_it_was_made_from_through_saving_and_into_the_correctio
     );
     let study = Study::new(load_dataset(&path).unwrap().dataset);
     let analysis = gdcm_study::study::Engine::default()
-        .analyze(&study, &gdcm_study::study::Unobserved)
+        .analyze(&study, &gdcm_model::progress::Unobserved)
         .unwrap();
-    let written = gdcm_io::corrections(
+    let written = gdcm_io::corrections_file::corrections(
         &analysis,
         "",
         &analysis.conditions.keys().copied().collect(),

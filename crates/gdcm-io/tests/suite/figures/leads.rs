@@ -3,8 +3,10 @@
 use gdcm_io::embedded_example;
 use gdcm_method::correction::LeadPrice;
 use gdcm_model::dataset::ConditionId;
-use gdcm_plot::figure::{ConditionSource, Mark, leads_figure};
-use gdcm_study::study::{Engine, PhaseCorrection, Study, Unobserved, setting};
+use gdcm_model::progress::Unobserved;
+use gdcm_plot::figure::leads::leads_figure;
+use gdcm_plot::figure::{ConditionSource, Mark};
+use gdcm_study::study::{Engine, PhaseCorrection, Study, setting};
 
 #[test]
 fn leads_are_drawn_to_ten_times_the_band_with_the_limit_and_the_price() {
@@ -12,7 +14,8 @@ fn leads_are_drawn_to_ten_times_the_band_with_the_limit_and_the_price() {
     study
         .apply(&setting::PHASE.to(PhaseCorrection::Lead))
         .expect("the example takes it");
-    let (mut engine, id) = (Engine::default(), ConditionId(10));
+    let mut engine = Engine::default();
+    let id = ConditionId(10);
     let analysis = engine
         .analyze(&study, &Unobserved)
         .expect("nothing stops it");

@@ -2,17 +2,22 @@
 
 use std::sync::{Arc, LazyLock};
 
-use gdcm_io::write_as;
+use gdcm_io::figure_file::write_as;
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::{ConditionId, Pair};
+use gdcm_model::progress::Unobserved;
+use gdcm_plot::figure::axis::Axis;
+use gdcm_plot::figure::drawing::{Dash, Hue, Stroke};
+use gdcm_plot::figure::figure::{Bars, Curve, Plot};
 use gdcm_plot::figure::{
-    Axis, Bars, Color, ColumnWidth, ConditionSource, Curve, Dash, Figure, FigureFormat, FigureKind,
-    FigureRequest, Hue, Panel, Plot, Range, Stroke, all_channels,
+    Color, ColumnWidth, ConditionSource, Figure, FigureFormat, FigureKind, FigureRequest, Panel,
+    Range, all_channels,
 };
-use gdcm_study::study::{
-    Analysis, CURVE_POINTS, ConditionCurves, CouplingCorrection, CouplingsAssessment, Edit, Engine,
-    KnownPoles, Requirements, Study, Unobserved, curves_band,
-};
+use gdcm_study::study::condition_responses::{CURVE_POINTS, ConditionCurves, curves_band};
+use gdcm_study::study::couplings_assessment::CouplingsAssessment;
+use gdcm_study::study::required_modes::KnownPoles;
+use gdcm_study::study::requirements::Requirements;
+use gdcm_study::study::{Analysis, CouplingCorrection, Edit, Engine, Study};
 
 mod leads;
 mod numbers;
@@ -28,10 +33,8 @@ struct Example {
 }
 
 static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
-    let (mut study, mut engine) = (
-        Study::new(crate::EXAMPLE.dataset.clone()),
-        Engine::default(),
-    );
+    let mut study = Study::new(crate::EXAMPLE.dataset.clone());
+    let mut engine = Engine::default();
     let first = engine.analyze(&study, &Unobserved).unwrap();
     let models = first.condition(CONDITION).unwrap().suggested();
     study
@@ -97,10 +100,8 @@ impl Example {
     }
 
     fn figure(&self, kind: FigureKind, pairs: Vec<Pair>) -> Figure {
-        let (requirements, couplings) = (
-            Some(Arc::clone(&self.requirements)),
-            Some(Arc::clone(&self.couplings)),
-        );
+        let requirements = Some(Arc::clone(&self.requirements));
+        let couplings = Some(Arc::clone(&self.couplings));
         self.request(&FigureRequest {
             requirements,
             couplings,

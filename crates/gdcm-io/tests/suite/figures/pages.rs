@@ -94,11 +94,11 @@ fn nothing_of_an_svg_lies_outside_the_paper() {
         for width in ColumnWidth::BOTH {
             let drawing = figure.drawing(width);
             let texts = drawing.shapes.iter().filter_map(|shape| match shape {
-                gdcm_plot::figure::Shape::Text(text) if !text.upright => Some(text),
+                gdcm_plot::figure::drawing::Shape::Text(text) if !text.upright => Some(text),
                 _ => None,
             });
             for text in texts {
-                let length = gdcm_plot::figure::width(&text.words) * text.size_pt;
+                let length = gdcm_plot::figure::layout::width(&text.words) * text.size_pt;
                 let from = text.at[0] - text.anchor.before() * length;
                 let is_within = from >= -0.5 && from + length <= drawing.size[0] + 0.5;
                 assert!(
@@ -170,7 +170,8 @@ fn streams(pdf: &[u8]) -> Vec<Vec<u8>> {
             .position(|window| window == word)
             .map(|at| from + at)
     };
-    let (mut streams, mut from) = (Vec::new(), 0);
+    let mut streams = Vec::new();
+    let mut from = 0;
     while let Some(start) = find(from, b"stream\n") {
         let end = find(start, b"endstream").unwrap();
         let mut unpacked = Vec::new();

@@ -3,7 +3,11 @@
 use std::collections::BTreeSet;
 
 use gdcm_method::uncertainty::{Scalar, VarianceDecomposition};
-use gdcm_plot::figure::{Across, Area, BodeOptions, FrequencyUnit, Mark, Measure, Role, Shape};
+use gdcm_plot::figure::axis::FrequencyUnit;
+use gdcm_plot::figure::bode::BodeOptions;
+use gdcm_plot::figure::drawing::{Area, Shape};
+use gdcm_plot::figure::gains::{Across, Measure};
+use gdcm_plot::figure::{Mark, Role};
 
 use super::*;
 
@@ -304,7 +308,7 @@ fn without_error_bars_there_is_no_evidence() {
 fn labels_on_paper(figure: &Figure, width: ColumnWidth) -> Vec<(String, Area)> {
     let label = |shape: &Shape| match shape {
         Shape::Text(text) if text.color != Color::INK && text.words.len() <= 6 => {
-            let length = gdcm_plot::figure::width(&text.words) * text.size_pt;
+            let length = gdcm_plot::figure::layout::width(&text.words) * text.size_pt;
             // Figures have no descenders.
             let height = 0.74 * text.size_pt;
             Some((

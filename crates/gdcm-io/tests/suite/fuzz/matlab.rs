@@ -50,12 +50,10 @@ pub(super) fn file_of_objects(dice: &mut Dice) -> NamedBytes {
         0 => *dice.of_list(&HARD),
         _ => dice.below(count + 1) as u32,
     };
-    let (classes, lists, objects, values) = (
-        1 + dice.below(4),
-        1 + dice.below(4),
-        1 + dice.below(5),
-        1 + dice.below(6),
-    );
+    let classes = 1 + dice.below(4);
+    let lists = 1 + dice.below(4);
+    let objects = 1 + dice.below(5);
+    let values = 1 + dice.below(6);
     let list = |dice: &mut Dice| -> Vec<[u32; 3]> {
         let properties = 0..dice.below(6);
         properties
@@ -189,7 +187,8 @@ fn value(dice: &mut Dice, name: &str, deeper: usize) -> Vec<u8> {
                     .collect();
                 element(5, &data)
             };
-            let (stored, width) = (dice.below(5), sides[1].clamp(0, 8) as usize);
+            let stored = dice.below(5);
+            let width = sides[1].clamp(0, 8) as usize;
             let starts: Vec<u8> = (0..=width)
                 .flat_map(|at| ((stored * at / width.max(1)) as i32).to_le_bytes())
                 .collect();
@@ -258,7 +257,9 @@ fn value(dice: &mut Dice, name: &str, deeper: usize) -> Vec<u8> {
 
 /// A state-space model or a response whose sizes fit, unless something else stands in it.
 fn model(dice: &mut Dice, name: &str) -> Vec<u8> {
-    let (states, inputs, outputs) = (dice.below(4), 1 + dice.below(2), 1 + dice.below(2));
+    let states = dice.below(4);
+    let inputs = 1 + dice.below(2);
+    let outputs = 1 + dice.below(2);
     let array = |dice: &mut Dice, rows: usize, columns: usize| {
         if dice.once_in(15) {
             return value(dice, "", 1);

@@ -25,17 +25,21 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, LazyLock, Mutex};
 use std::time::{Duration, Instant};
 
+use gdcm_io::model_files::models_of_bytes;
+use gdcm_io::output_set::OutputSet;
+use gdcm_io::record_files::records_of_bytes;
+use gdcm_io::requirements_file::{add_tolerances, load_tolerances, read_levels};
+use gdcm_io::rules_file::{add_rules, load_rules};
+use gdcm_io::study_file::open_study_of;
+use gdcm_io::user_state::lost_studies;
 use gdcm_io::variables::ReadingBudget;
-use gdcm_io::{
-    DatasetOrigin, Existing, OutputSet, add_rules, add_tolerances, load_dataset,
-    load_dataset_bytes, load_rules, load_tolerances, lost_studies, models_of_bytes, open_study_of,
-    read_levels, records_of_bytes, save_study,
-};
+use gdcm_io::{DatasetOrigin, Existing, load_dataset, load_dataset_bytes, save_study};
 use gdcm_method::correction::Channel;
 use gdcm_method::requirements::ToleranceTable;
 use gdcm_model::assembly::{FoundModel, RowRule, Rules};
 use gdcm_model::dataset::{BundleKind, ModelId};
-use gdcm_study::study::{Edit, SignRole, Study};
+use gdcm_study::study::changed_models::SignRole;
+use gdcm_study::study::{Edit, Study};
 
 use crate::made_up::tries;
 
@@ -476,10 +480,8 @@ fn tried((name, bytes): &NamedBytes, tally: &Tally) -> Result<(), String> {
     let memory = allocation_counter::measure(|| {
         outcome = catch_unwind(AssertUnwindSafe(|| read(name, bytes)));
     });
-    let (time, limit) = (
-        begun.elapsed(),
-        2 * MOST_MEMORY + BESIDE + 4 * bytes.len() as u64,
-    );
+    let time = begun.elapsed();
+    let limit = 2 * MOST_MEMORY + BESIDE + 4 * bytes.len() as u64;
     tally
         .slowest_ms
         .fetch_max(time.as_millis() as u64, Ordering::Relaxed);
@@ -498,7 +500,8 @@ fn tried((name, bytes): &NamedBytes, tally: &Tally) -> Result<(), String> {
 
 /// Tries as many files, or for so long, on all cores.
 fn run(seed: u64, executions: u64, until: Option<Instant>) {
-    let (tally, next) = (Tally::default(), AtomicU64::new(0));
+    let tally = Tally::default();
+    let next = AtomicU64::new(0);
     let begun = Instant::now();
     rayon::scope(|scope| {
         for _ in 0..rayon::current_num_threads() {

@@ -34,7 +34,8 @@ pub(super) fn file(dice: &mut Dice) -> NamedBytes {
 
 fn text_value(dice: &mut Dice, text: &mut String, deeper: usize) {
     let kind = *dice.of_list(&TYPES);
-    let (rows, columns) = (dice.side(), dice.side());
+    let rows = dice.side();
+    let columns = dice.side();
     *text += &format!("# name: {}\n# type: {kind}\n", dice.of_list(&NAMES));
     let complex = kind.starts_with("complex");
     let number = |dice: &mut Dice| {
@@ -100,7 +101,8 @@ fn binary_value(dice: &mut Dice, bytes: &mut Vec<u8>, deeper: usize) {
     word(bytes, "");
     bytes.extend([0, 0xff]);
     word(bytes, kind);
-    let (rows, columns) = (dice.side(), dice.side());
+    let rows = dice.side();
+    let columns = dice.side();
     if !kind.contains("scalar") {
         if dice.once_in(2) {
             bytes.extend((-(dice.of_list(&[2_i32, 2, 3, i32::MAX, 0]))).to_le_bytes());

@@ -295,7 +295,8 @@ fn element(dice: &mut Dice, deeper: usize) -> (String, usize) {
         let (kind, size) = *dice.of_list(&plain);
         return (kind.to_owned(), size);
     }
-    let (mut fields, mut whole) = (String::new(), 0usize);
+    let mut fields = String::new();
+    let mut whole = 0usize;
     for at in 0..dice.below(3) {
         let (kind, size) = element(dice, deeper - 1);
         let count = if dice.once_in(3) { dice.side() } else { 1 };
@@ -307,7 +308,9 @@ fn element(dice: &mut Dice, deeper: usize) -> (String, usize) {
 
 /// Files in an archive, some of them several times at the same bytes.
 fn archive(dice: &mut Dice) -> Vec<u8> {
-    let (mut bytes, mut directory, mut entries) = (Vec::new(), Vec::new(), 0_u16);
+    let mut bytes = Vec::new();
+    let mut directory = Vec::new();
+    let mut entries = 0_u16;
     for at in 0..1 + dice.below(3) {
         let (name, contents) = match dice.below(5) {
             0 => ("a.npy".to_owned(), array(dice)),

@@ -1,11 +1,13 @@
 //! Bands that the records do not show: what is said, and the band that is offered.
 
+use gdcm_model::executor::Sequential;
+use gdcm_model::progress::Unobserved;
+use gdcm_sysid::identification::identify::identify;
+use gdcm_sysid::identification::{IdentificationCaution, IdentificationError, Options};
+
 use super::common::noisy_measured;
 use super::whole::quick;
 use crate::made_up::{Flight, Gusts, stable_aircraft};
-use gdcm_model::executor::Sequential;
-use gdcm_model::progress::Unobserved;
-use gdcm_sysid::identification::{IdentificationCaution, IdentificationError, Options, identify};
 
 #[test]
 fn a_band_beyond_the_sweeps_is_offered_up_to_their_end() {

@@ -1,14 +1,19 @@
 //! The known answers of M14 (source: independent numpy code), and small made-up systems.
 
+use std::sync::Mutex;
+
+use nalgebra::{Complex, DMatrix};
+use serde_json::Value;
+
 use gdcm_model::dataset::{Model, Pair, StateSpace};
 use gdcm_model::executor::{Executor, Sequential, Task};
 use gdcm_model::response::evaluate;
-use gdcm_sysid::identification::{
-    ResponseEstimate, Scales, Segment, Spectrum, local_polynomial, log_spaced, spectra,
-};
-use nalgebra::{Complex, DMatrix};
-use serde_json::Value;
-use std::sync::Mutex;
+use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::simulation::Segment;
+use gdcm_sysid::identification::local_polynomial::local_polynomial;
+use gdcm_sysid::identification::prepared_data::Scales;
+use gdcm_sysid::identification::spectrum::Spectrum;
+use gdcm_sysid::identification::{ResponseEstimate, spectra};
 
 /// So many threads, which take the last segment of work first.
 pub struct Threads(pub usize);

@@ -2,12 +2,12 @@
 
 use std::sync::LazyLock;
 
-use gdcm_io::records_of_bytes;
+use gdcm_io::record_files::records_of_bytes;
 use gdcm_io::variables::ReadingBudget;
 use gdcm_model::dataset::{BundleKind, ConditionId, Model, Pair};
 use gdcm_model::executor::Sequential;
 use gdcm_model::progress::Unobserved;
-use gdcm_study::study::IdentificationRequest;
+use gdcm_study::study::job::IdentificationRequest;
 use gdcm_sysid::identification::{Identification, Preparation};
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels, RecordTable, TimeWish};
 
@@ -68,18 +68,15 @@ fn deviation(found: &Model, recommended: &Model) -> f64 {
         .iter()
         .enumerate()
         .filter(|(_, omega)| (band.min()..=band.max()).contains(*omega));
-    let (mut sum, mut count) = (0.0, 0.0);
+    let mut sum = 0.0;
+    let mut count = 0.0;
     for (at, omega) in inside {
-        let (found, known) = (
-            response(space(found), *omega),
-            response(space(recommended), *omega),
-        );
+        let found = response(space(found), *omega);
+        let known = response(space(recommended), *omega);
         for (Pair { output, input }, sd_db) in bands.sd_db().iter() {
             let ratio = (found[(output, input)] / known[(output, input)]).ln();
-            let (db, degrees) = (
-                20.0 * std::f64::consts::LOG10_E * ratio.re,
-                ratio.im.to_degrees(),
-            );
+            let db = 20.0 * std::f64::consts::LOG10_E * ratio.re;
+            let degrees = ratio.im.to_degrees();
             sum += (db / sd_db[at]).powi(2)
                 + (degrees / bands.sd_deg()[Pair { output, input }][at]).powi(2);
             count += 2.0;

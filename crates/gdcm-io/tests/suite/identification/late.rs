@@ -1,13 +1,18 @@
 //! Channels that are logged late in all records alike, told against a physics model.
 
-use crate::made_up::{Flight, Gusts, stable_aircraft};
-use gdcm_model::dataset::{ChannelSide, Dynamics, StateSpace};
-use gdcm_model::executor::Sequential;
-use gdcm_study::study::ChannelTimeSkew;
-use gdcm_sysid::identification::{
-    FlightRecord, Preparation, ResponseEstimate, local_polynomial, log_spaced, prepare, spectra,
-};
 use nalgebra::{DMatrix, DVectorViewMut};
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::{Dynamics, StateSpace};
+use gdcm_model::executor::Sequential;
+use gdcm_model::response::frequency_response::log_spaced;
+use gdcm_model::simulation::FlightRecord;
+use gdcm_study::study::channel_time_skew::ChannelTimeSkew;
+use gdcm_sysid::identification::local_polynomial::local_polynomial;
+use gdcm_sysid::identification::preparation::prepare;
+use gdcm_sysid::identification::{Preparation, ResponseEstimate, spectra};
+
+use crate::made_up::{Flight, Gusts, stable_aircraft};
 
 const BAND: [f64; 2] = [0.6, 6.0];
 

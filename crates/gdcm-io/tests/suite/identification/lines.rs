@@ -1,14 +1,22 @@
 //! Scales, low-pass, lines and the measured response.
 
+use nalgebra::{Complex, DMatrix, DVector};
+use proptest::prelude::*;
+
+use gdcm_model::dataset::StateSpace;
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::executor::Sequential;
+use gdcm_sysid::identification::local_polynomial::{
+    LocalPolynomialError, NoiseCovariance, local_polynomial,
+};
+use gdcm_sysid::identification::prepared_data::{Scales, ScalingError};
+use gdcm_sysid::identification::spectrum::{CutOff, Spectrum};
+use gdcm_sysid::identification::*;
+
 use super::common::{
     Threads, complex, known, list, matrix, noise, noisy, noisy_spectra, response, slow_system,
 };
 use crate::made_up::tries;
-use gdcm_model::dataset::{ChannelSide, StateSpace};
-use gdcm_model::executor::Sequential;
-use gdcm_sysid::identification::*;
-use nalgebra::{Complex, DMatrix, DVector};
-use proptest::prelude::*;
 
 #[test]
 fn scales_are_those_of_the_known_answer() {
@@ -135,7 +143,9 @@ fn the_variance_of_the_response_is_the_spread_of_many_trials() {
         .points[0]
         .response
         .clone();
-    let (trials, mut predicted, mut spread) = (200, DMatrix::zeros(2, 2), DMatrix::zeros(2, 2));
+    let trials = 200;
+    let mut predicted = DMatrix::zeros(2, 2);
+    let mut spread = DMatrix::zeros(2, 2);
     for trial in 0..trials {
         let mut noisy = segments.clone();
         for (k, segment) in noisy.iter_mut().enumerate() {

@@ -1,11 +1,16 @@
 //! From records as logged to segments.
 
-use super::common::{known, list, matrix, noise};
-use crate::made_up::tries;
-use gdcm_model::executor::Sequential;
-use gdcm_sysid::identification::*;
 use nalgebra::DMatrix;
 use proptest::prelude::*;
+
+use gdcm_model::executor::Sequential;
+use gdcm_sysid::identification::gaps::{Cause, Treatment};
+use gdcm_sysid::identification::preparation::{PreparationError, Prepared, prepare};
+use gdcm_sysid::identification::record_cautions::RecordCaution;
+use gdcm_sysid::identification::*;
+
+use super::common::{known, list, matrix, noise};
+use crate::made_up::tries;
 
 /// A record of `samples` rows at 50 Hz: two inputs and two outputs that wander, each sample another value.
 fn wandering(samples: usize) -> FlightRecord {

@@ -1,12 +1,14 @@
 //! Models against records in time.
 
-use super::common::{known, list, noise, noisy, slow_system};
-use crate::made_up::tries;
+use nalgebra::{DMatrix, DVector};
+use proptest::prelude::*;
+
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::executor::Sequential;
 use gdcm_sysid::identification::*;
-use nalgebra::{DMatrix, DVector};
-use proptest::prelude::*;
+
+use super::common::{known, list, noise, noisy, slow_system};
+use crate::made_up::tries;
 
 /// A system with an eigenvalue at `+growth` rad/s put in the place of one of its slow ones.
 fn unstable(growth: f64) -> StateSpace {
@@ -339,7 +341,8 @@ proptest! {
         segment.outputs.column_mut(0).iter_mut().zip(noise(seed, 700)).for_each(|(y, v)| *y += 0.2 * v);
         let settings = ValidationSettings::unfiltered();
         let before = validate(&model, std::slice::from_ref(&segment), &settings, &Sequential).unwrap();
-        let (mut c, mut d) = (model.c().clone(), model.d().clone());
+        let mut c = model.c().clone();
+        let mut d = model.d().clone();
         c.row_mut(0).scale_mut(gain);
         d.row_mut(0).scale_mut(gain);
         let other = StateSpace::new(model.a().clone(), model.b().clone(), c, d).unwrap();

@@ -1,23 +1,31 @@
 //! Identification from flight records, from outside.
 
-use super::common::{Threads, known, list, matrix, response, space};
-use crate::made_up::{Flight, Gusts, stable_aircraft};
-use gdcm_model::dataset::{ChannelSide, ModelBands, Pair, StateSpace};
-use gdcm_model::executor::Sequential;
-use gdcm_model::progress::{Cancelled, Progress, Unobserved};
-use gdcm_sysid::identification::{
-    ContradictingRecord, FlightRecord, Identification, IdentificationCaution, IdentificationError,
-    Options, Preparation, RecordFault, identify,
-};
-use nalgebra::{Complex, DMatrix, dmatrix};
-use rayon::prelude::*;
-use serde_json::Value;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use nalgebra::{Complex, DMatrix, dmatrix};
+use rayon::prelude::*;
+use serde_json::Value;
+
+use gdcm_model::dataset::channel::ChannelSide;
+use gdcm_model::dataset::model::ModelBands;
+use gdcm_model::dataset::{Pair, StateSpace};
+use gdcm_model::executor::Sequential;
+use gdcm_model::progress::{Cancelled, Progress, Unobserved};
+use gdcm_model::simulation::FlightRecord;
+use gdcm_sysid::identification::identify::identify;
+use gdcm_sysid::identification::record_contrast::{ContradictingRecord, RecordFault};
+use gdcm_sysid::identification::{
+    Identification, IdentificationCaution, IdentificationError, Options, Preparation,
+};
+
+use super::common::{Threads, known, list, matrix, response, space};
+use crate::made_up::{Flight, Gusts, stable_aircraft};
+
 fn known_records(known: &Value) -> Vec<FlightRecord> {
     let record = |known: &Value| {
-        let (inputs, outputs) = (matrix(&known["u"]), matrix(&known["y"]));
+        let inputs = matrix(&known["u"]);
+        let outputs = matrix(&known["y"]);
         let dt = known["dt"].as_f64().unwrap();
         let time_s = (0..inputs.nrows())
             .map(|sample| sample as f64 * dt)
@@ -114,7 +122,8 @@ fn a_noisy_closed_loop_gives_what_independent_code_gives() {
     for (k, &omega) in omegas.iter().enumerate() {
         let model = response(space(&found.refined), omega);
         let of = |name: &str| part(name, "re")[k].zip_map(&part(name, "im")[k], Complex::new);
-        let (same, truth) = (of("H"), of("H_true_with_hold"));
+        let same = of("H");
+        let truth = of("H_true_with_hold");
         for at in 0..model.len() {
             assert!(
                 (model[at] - same[at]).norm() < 0.02 * same[at].norm(),
@@ -395,7 +404,8 @@ fn bands_hold_what_they_say() {
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
     let known = &known()["noisy"];
-    let (records, options) = (known_records(known), known_options(known));
+    let records = known_records(known);
+    let options = known_options(known);
     let on = |threads: usize| identify(&records, &options, &Threads(threads), &Unobserved).unwrap();
     let one = on(1);
     assert!(one == on(4));

@@ -4,15 +4,21 @@ use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use gdcm_method::correction::{
-    Bounds, Limit, Outcome, Problem, ProblemError, ProofBudget, solve, toggles,
-};
-use gdcm_model::dataset::{
-    Band, Channel, Condition, ConditionId, Dataset, DatasetHeader, Dynamics, FlightState, Model,
-    Origin, Pair, PairTable, StateSpace,
-};
-use gdcm_study::study::{Cancelled, Engine, Progress, Study};
 use nalgebra::DMatrix;
+
+use gdcm_method::correction::branch_and_bound::search::Limit;
+use gdcm_method::correction::problem::ProblemError;
+use gdcm_method::correction::sensitivity::toggles;
+use gdcm_method::correction::solve::solve;
+use gdcm_method::correction::{Bounds, Outcome, Problem, ProofBudget};
+use gdcm_model::dataset::condition::FlightState;
+use gdcm_model::dataset::dataset::DatasetHeader;
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::{
+    Band, Channel, Condition, ConditionId, Dataset, Dynamics, Model, Pair, PairTable, StateSpace,
+};
+use gdcm_model::progress::{Cancelled, Progress};
+use gdcm_study::study::{Engine, Study};
 
 use super::instances::gain_instances;
 use super::{solved, solved_within};
@@ -177,11 +183,9 @@ fn static_gains(conditions: usize) -> Dataset {
         let gain = DMatrix::from_fn(12, 8, |output, input| {
             (0.7 * noise(output, input, seed)).exp()
         });
-        let (a, b, c) = (
-            DMatrix::zeros(0, 0),
-            DMatrix::zeros(0, 8),
-            DMatrix::zeros(12, 0),
-        );
+        let a = DMatrix::zeros(0, 0);
+        let b = DMatrix::zeros(0, 8);
+        let c = DMatrix::zeros(12, 0);
         Model::new(
             name,
             origin,

@@ -1,9 +1,7 @@
 //! Sensitivities and toggles against solving the changed problem.
 
-use gdcm_method::correction::{
-    ActiveConstraint, Bounds, Channel, Problem, ProofBudget, Quantity, Sensitivity, sensitivities,
-    toggles,
-};
+use gdcm_method::correction::sensitivity::{ActiveConstraint, Sensitivity, sensitivities, toggles};
+use gdcm_method::correction::{Bounds, Channel, Problem, ProofBudget, Quantity};
 
 use super::instances::{delay_instances, gain_instances};
 use super::solved;
@@ -80,12 +78,11 @@ fn delay_sensitivities_are_slopes_of_the_least_objective() {
                 changed.delta[pair] = changed.delta[pair].map(|delay| delay + step_s);
                 solved(&changed).objective
             };
-            let (up, down) = (
-                (with(step_s) - with(0.0)) / (1e3 * step_s),
-                (with(0.0) - with(-step_s)) / (1e3 * step_s),
-            );
+            let up = (with(step_s) - with(0.0)) / (1e3 * step_s);
+            let down = (with(0.0) - with(-step_s)) / (1e3 * step_s);
             // Where a bound begins to act the slope differs to both sides; the multiplier is one of them or between.
-            let (low, high) = (up.min(down), up.max(down));
+            let low = up.min(down);
+            let high = up.max(down);
             // A microsecond's second order, against objectives of a hundredth of a square second.
             assert!(
                 (low - 1e-7..=high + 1e-7).contains(&sensitivity.per_unit),
@@ -101,10 +98,8 @@ fn sensitivities_are_put_into_words() {
     let instance = &gain_instances()[0];
     let solution = solved(&instance.problem);
     let names = |list: &[&str]| list.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
-    let (inputs, outputs) = (
-        names(&["LON", "LAT", "PED", "COL"]),
-        names(&["P", "Q", "R", "NX", "NY", "NZ"]),
-    );
+    let inputs = names(&["LON", "LAT", "PED", "COL"]);
+    let outputs = names(&["P", "Q", "R", "NX", "NY", "NZ"]);
     let all = sensitivities(&instance.problem, &solution);
     // The five entries of Table 2; the wide bounds of this instance do not act.
     assert_eq!(all.len(), 5);

@@ -1,15 +1,15 @@
 //! Every explanation is put to the test: what it says would help helps, and less does not.
 
-use crate::made_up::tries;
-use gdcm_method::correction::{
-    Bounds, Channel, Conflict, ConflictKind, GainObjective, Problem, ProofBudget, Quantity,
-};
-use gdcm_model::dataset::{Pair, PairTable};
 use proptest::prelude::*;
+
+use gdcm_method::correction::conflict::{Conflict, ConflictKind};
+use gdcm_method::correction::{Bounds, Channel, GainObjective, Problem, ProofBudget, Quantity};
+use gdcm_model::dataset::{Pair, PairTable};
 
 use super::instances::{delay_instances, gain_instances, on_axis};
 use super::random::{Pattern, delay_problems, gain_problems};
 use super::{solved, solved_within};
+use crate::made_up::tries;
 
 /// Reachability needs no proof.
 const BUDGET: ProofBudget = ProofBudget {
@@ -214,7 +214,8 @@ fn near_loop(mismatch_db: f64, agreement: f64) -> Problem {
 
 #[test]
 fn a_loop_that_disagrees_by_less_than_the_tolerance_counts_as_agreeing_and_is_said_to() {
-    let (inputs, outputs) = (names(&INPUTS), names(&OUTPUTS));
+    let inputs = names(&INPUTS);
+    let outputs = names(&OUTPUTS);
     let agreeing = solved_within(&near_loop(0.04, 0.05), BUDGET);
     assert!(
         agreeing.matched && agreeing.unmatched.is_empty() && agreeing.conflicts.is_empty(),
@@ -235,10 +236,8 @@ fn a_loop_that_disagrees_by_less_than_the_tolerance_counts_as_agreeing_and_is_sa
         .iter()
         .filter_map(|(pair, target)| Some((pair, (*target)?)))
     {
-        let (net, wanted) = (
-            agreeing.outputs[pair.output] * agreeing.inputs[pair.input],
-            near_loop(0.04, 0.05).delta[pair],
-        );
+        let net = agreeing.outputs[pair.output] * agreeing.inputs[pair.input];
+        let wanted = near_loop(0.04, 0.05).delta[pair];
         assert!((net / target).ln().abs() < 1e-8);
         assert!(
             (20.0 * (target / wanted.unwrap()).log10()).abs() < 0.0101,
@@ -256,7 +255,8 @@ fn a_loop_that_disagrees_by_less_than_the_tolerance_counts_as_agreeing_and_is_sa
 
 #[test]
 fn what_disagrees_by_little_is_told_to_the_digits_that_show_it() {
-    let (inputs, outputs) = (names(&INPUTS), names(&OUTPUTS));
+    let inputs = names(&INPUTS);
+    let outputs = names(&OUTPUTS);
     let solution = solved_within(&near_loop(0.002, 0.0), BUDGET);
     let words = solution.conflicts[0].words(&inputs, &outputs);
     assert!(words.contains("disagree by 0.0020 dB"), "{words}");
@@ -336,7 +336,8 @@ fn an_answer_is_put_into_words_from_its_proof_to_its_remedies() {
         },
     );
     let solution = solved(&problem);
-    let (inputs, outputs) = (names(&INPUTS), names(&OUTPUTS));
+    let inputs = names(&INPUTS);
+    let outputs = names(&OUTPUTS);
     assert_eq!(
         solution.proof.outcome.words(),
         "Proven: no gains within the bounds that hold the held responses are better."

@@ -1,8 +1,9 @@
 //! The reference instances under `tests/data`.
 
+use serde_json::Value;
+
 use gdcm_method::correction::{Bounds, Problem};
 use gdcm_model::dataset::{Pair, PairTable};
-use serde_json::Value;
 
 /// One instance of equation (7) with its certified minimum.
 pub struct GainInstance {

@@ -16,7 +16,8 @@ struct Point {
 
 /// Residual of the gains in logarithms, relative to the size of the terms of each channel.
 pub fn gain_residual(problem: &Problem, solution: &Solution) -> f64 {
-    let (inputs, outputs) = (problem.delta.inputs(), problem.delta.outputs());
+    let inputs = problem.delta.inputs();
+    let outputs = problem.delta.outputs();
     let mut gradient = vec![0.0; inputs + outputs];
     let mut sizes = vec![1e-300; inputs + outputs];
     let mut add = |channels: &[usize], delta: f64, gain: f64, weight: f64| {
@@ -66,7 +67,8 @@ pub fn gain_residual(problem: &Problem, solution: &Solution) -> f64 {
 
 /// Residual of the delays, relative to the size of the terms of each channel.
 pub fn delay_residual(problem: &Problem, solution: &Solution) -> f64 {
-    let (inputs, outputs) = (problem.delta.inputs(), problem.delta.outputs());
+    let inputs = problem.delta.inputs();
+    let outputs = problem.delta.outputs();
     let mut gradient = vec![0.0; inputs + outputs];
     let mut sizes = vec![1e-300; inputs + outputs];
     for (pair, delta) in problem.delta.iter() {
@@ -105,7 +107,8 @@ fn residual(point: &Point) -> f64 {
     let channels = point.gradient.len();
     let mut piece: Vec<usize> = (0..channels).collect();
     for pair in &point.held {
-        let (kept, merged) = (piece[pair.input], piece[point.inputs + pair.output]);
+        let kept = piece[pair.input];
+        let merged = piece[point.inputs + pair.output];
         piece
             .iter_mut()
             .filter(|piece| **piece == merged)
@@ -114,7 +117,10 @@ fn residual(point: &Point) -> f64 {
     let mut worst = 0.0_f64;
     for name in 0..channels {
         let members = (0..channels).filter(|&channel| piece[channel] == name);
-        let (mut slope, mut size, mut may_rise, mut may_fall) = (0.0, 1e-300, true, true);
+        let mut slope = 0.0;
+        let mut size = 1e-300;
+        let mut may_rise = true;
+        let mut may_fall = true;
         for channel in members {
             let (at_lower, at_upper) = point.bounds[channel];
             let is_input = channel < point.inputs;

@@ -1,8 +1,8 @@
 //! As many channels as a dataset may have.
 
-use gdcm_method::correction::{
-    ActiveConstraint, Bounds, Channel, ConflictKind, Outcome, Problem, ProofBudget, sensitivities,
-};
+use gdcm_method::correction::conflict::ConflictKind;
+use gdcm_method::correction::sensitivity::{ActiveConstraint, sensitivities};
+use gdcm_method::correction::{Bounds, Channel, Outcome, Problem, ProofBudget};
 use gdcm_model::dataset::limits::MOST_CHANNELS;
 use gdcm_model::dataset::{Pair, PairTable};
 

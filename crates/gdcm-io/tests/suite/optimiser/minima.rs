@@ -1,8 +1,8 @@
 //! Local minima, limits and budgets.
 
-use gdcm_method::correction::{
-    Bounds, GainObjective, Outcome, Problem, ProblemError, ProofBudget, Quantity, solve,
-};
+use gdcm_method::correction::problem::ProblemError;
+use gdcm_method::correction::solve::solve;
+use gdcm_method::correction::{Bounds, GainObjective, Outcome, Problem, ProofBudget, Quantity};
 use gdcm_model::dataset::{Pair, PairTable};
 
 use super::instances::{delay_instances, example_conditions, gain_instances};
@@ -105,7 +105,8 @@ fn a_sampled_grid_finds_nothing_below_the_better_of_two_minima() {
         }
         // A free output's own best gain.
         let free = |output| {
-            let (g, k) = ([delta(output, 0), delta(output, 1)], [first, second]);
+            let g = [delta(output, 0), delta(output, 1)];
+            let k = [first, second];
             ((g[0] * k[0] + g[1] * k[1]) / (k[0] * k[0] + k[1] * k[1])).clamp(0.1, 10.0)
         };
         let objective =

@@ -13,7 +13,8 @@ mod reference_delays;
 mod reference_gains;
 mod reference_leads;
 
-use gdcm_method::correction::{Problem, ProofBudget, Solution, solve};
+use gdcm_method::correction::solve::solve;
+use gdcm_method::correction::{Problem, ProofBudget, Solution};
 
 /// The answer within the budget that the program gives.
 fn solved(problem: &Problem) -> Solution {

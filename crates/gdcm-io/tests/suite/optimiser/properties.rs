@@ -1,15 +1,17 @@
 //! What must hold of every answer.
 
-use crate::made_up::tries;
+use proptest::prelude::*;
+
+use gdcm_method::correction::branch_and_bound::search::Limit;
 use gdcm_method::correction::{
-    Bounds, GainObjective, Limit, Outcome, Problem, ProofBudget, Quantity, Solution,
+    Bounds, GainObjective, Outcome, Problem, ProofBudget, Quantity, Solution,
 };
 use gdcm_model::dataset::{Pair, PairTable};
-use proptest::prelude::*;
 
 use super::kkt::{delay_residual, gain_residual};
 use super::random::{Pattern, delay_problems, gain_problems};
 use super::{solved, solved_within};
+use crate::made_up::tries;
 
 /// Bounds the time of one case; what is not proven by then must say so.
 const BUDGET: ProofBudget = ProofBudget {
@@ -84,7 +86,8 @@ proptest! {
         samples in prop::collection::vec(prop::collection::vec(0.0..1.0_f64, 6), 300),
     ) {
         let solution = solved_within(&problem, BUDGET);
-        let (low, high) = (problem.bounds.lower.ln(), problem.bounds.upper.ln());
+        let low = problem.bounds.lower.ln();
+        let high = problem.bounds.upper.ln();
         for sample in samples {
             let gain = |index: usize| (low + (high - low) * sample[index]).exp();
             let inputs: Vec<f64> = (0..problem.delta.inputs()).map(gain).collect();
@@ -106,7 +109,8 @@ proptest! {
         problem in gain_problems((5, 4), 0.8, Pattern::Any),
         seed in any::<u64>(),
     ) {
-        let (outputs, inputs) = (shuffled(problem.delta.outputs(), seed), shuffled(problem.delta.inputs(), seed / 7));
+        let outputs = shuffled(problem.delta.outputs(), seed);
+        let inputs = shuffled(problem.delta.inputs(), seed / 7);
         let moved = |pair: Pair| Pair::new(outputs[pair.output], inputs[pair.input]);
         let permuted = Problem {
             delta: problem.delta.map(|pair, _| problem.delta[moved(pair)]),
@@ -114,7 +118,8 @@ proptest! {
             fitted: problem.fitted.map(|pair, _| problem.fitted[moved(pair)]),
             ..problem.clone()
         };
-        let (first, second) = (solved_within(&problem, BUDGET), solved_within(&permuted, BUDGET));
+        let first = solved_within(&problem, BUDGET);
+        let second = solved_within(&permuted, BUDGET);
         prop_assert_eq!(first.matched, second.matched);
         // An unproven answer is a local one and may differ; with a second minimum within 1 % so may the gains.
         let proven = [&first, &second].iter().all(|solution| matches!(solution.proof.outcome, Outcome::Proven { .. }));
@@ -207,7 +212,8 @@ fn shuffled(count: usize, seed: u64) -> Vec<usize> {
 
 #[test]
 fn an_exact_product_of_gains_is_found_with_an_objective_of_zero() {
-    let (inputs, outputs) = ([0.9, 1.2, 1.1], [1.05, 0.8, 1.3, 1.0]);
+    let inputs = [0.9, 1.2, 1.1];
+    let outputs = [1.05, 0.8, 1.3, 1.0];
     let delta = PairTable::from_fn(4, 3, |pair| Some(inputs[pair.input] * outputs[pair.output]));
     let bounds = Bounds {
         lower: 0.5,

@@ -1,8 +1,9 @@
 //! Random problems of every shape that the optimiser must take.
 
+use proptest::prelude::*;
+
 use gdcm_method::correction::{Bounds, GainObjective, Problem, Quantity};
 use gdcm_model::dataset::{Pair, PairTable};
-use proptest::prelude::*;
 
 /// How the entries of a random problem are held.
 #[derive(Clone, Copy, Debug)]

@@ -89,7 +89,8 @@ fn products_equal_the_reference_where_the_minimum_is_unique() {
                 instance.id
             );
             if !instance.loose && instance.matched && instance.problem.alpha > 0.0 {
-                let (gain, reference) = (solution.outputs[output], instance.outputs[output]);
+                let gain = solution.outputs[output];
+                let reference = instance.outputs[output];
                 assert!(
                     (gain / reference - 1.0).abs() <= 2e-4,
                     "{}: k_o {gain} {reference}",

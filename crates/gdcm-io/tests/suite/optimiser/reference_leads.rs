@@ -1,12 +1,14 @@
 //! The minima of the program of signed delays (M15.4), and the filters of the negative ones (M15.3).
 
-use gdcm_method::correction::{
-    Bounds, LeadDesign, LeadSettings, Outcome, Problem, ProofBudget, kkt_residual, solve,
-};
-use gdcm_model::dataset::{Band, Pair, PairTable};
-use gdcm_model::response::{FrequencyGrid, LeadOrder};
 use proptest::prelude::*;
 use serde_json::Value;
+
+use gdcm_method::correction::leads::{LeadDesign, LeadSettings};
+use gdcm_method::correction::sensitivity::kkt_residual;
+use gdcm_method::correction::solve::solve;
+use gdcm_method::correction::{Bounds, Outcome, Problem, ProofBudget};
+use gdcm_model::dataset::{Band, Pair, PairTable};
+use gdcm_model::response::{FrequencyGrid, LeadOrder};
 
 use super::instances::{numbers, table};
 use super::solved;
@@ -77,7 +79,8 @@ fn program(entry: &Value) -> Problem {
 #[test]
 fn filters_have_the_reference_response_band_delay_and_gain_at_infinity() {
     for entry in list(&reference(), "filters") {
-        let (design, lead_s) = (design(entry), number(&entry["lead_s"]));
+        let design = design(entry);
+        let lead_s = number(&entry["lead_s"]);
         let filter = design.filter_of(lead_s);
         let [omega, re, im] = ["omega", "re", "im"].map(|name| numbers(&entry[name]));
         for (at, omega) in omega.iter().enumerate() {
@@ -122,7 +125,8 @@ fn a_servo_that_lags_wants_one_filter_that_takes_its_place() {
 #[test]
 fn every_program_of_signed_delays_has_the_reference_answer() {
     for entry in list(&reference(), "programs") {
-        let (name, solution) = (entry["name"].as_str().unwrap(), solved(&program(entry)));
+        let name = entry["name"].as_str().unwrap();
+        let solution = solved(&program(entry));
         assert_eq!(
             solution.matched,
             entry["matched"].as_bool().unwrap(),
@@ -197,7 +201,8 @@ fn a_bound_on_the_gain_of_the_filters_is_met_and_explained() {
             .map(|at| format!("{letter}{at}"))
             .collect::<Vec<_>>()
     };
-    let (inputs, outputs) = (names("u", 4), names("y", 6));
+    let inputs = names("u", 4);
+    let outputs = names("y", 6);
     let told = solution.unmatched[0].words(12.0, &inputs, &outputs)
         + &solution.conflicts[0].words(&inputs, &outputs);
     for part in [

@@ -26,19 +26,13 @@
 //! Hansen and Walster, *Global Optimization Using Interval Analysis* (2004): branching, monotonicity and convexity tests. Horst
 //! and Tuy, *Global Optimization* (1996): best-first branch and bound, convergence. McCormick (1976), *Mathematical Programming*
 //! 10: convex envelopes term by term. The tangent plane bounds the convex underestimator wherever Newton's method has come to, so
-//! the bound needs no convergence; its rounding is counted term by term ([`Rounded`]).
+//! the bound needs no convergence; its rounding is counted term by term (`Rounded`).
 
 mod node_exclusion;
-mod objective;
-mod search;
-mod term;
+pub(crate) mod objective;
+pub mod search;
+pub(crate) mod term;
 mod underestimator;
-
-use node_exclusion::*;
-pub(crate) use objective::*;
-pub use search::*;
-pub(crate) use term::*;
-use underestimator::*;
 
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,9 @@
 
 use nalgebra::DMatrix;
 
-use super::{DifferenceBounds, Expansion, Objective, Range, Term, quadratic_bound};
+use super::objective::{Expansion, Objective};
+use super::term::{Range, Term};
+use super::underestimator::{DifferenceBounds, quadratic_bound};
 
 /// The objective with what decides about its local minima.
 pub(super) struct NodeExclusion<'a> {
@@ -114,7 +116,8 @@ impl<'a> NodeExclusion<'a> {
             .map(|scale| self.push(minimum, at, scale))
             .collect();
         let anchors = self.anchors(at, &push)?;
-        let (lower, upper) = (&self.objective.lower, &self.objective.upper);
+        let lower = &self.objective.lower;
+        let upper = &self.objective.upper;
         let free: Vec<usize> = (0..self.objective.ground())
             .filter(|scale| lower[*scale] < upper[*scale] && !anchors.contains(scale))
             .collect();

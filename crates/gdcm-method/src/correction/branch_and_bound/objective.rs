@@ -1,7 +1,8 @@
 //! The objective after the constraints are eliminated, as a function of the scales, and Newton's method down to a local minimum over
 //! their box.
 
-use super::{Effort, Rounded, Term};
+use super::search::Effort;
+use super::term::{Rounded, Term};
 
 /// Value, gradient and Hessian (row-major) of a function of the scales, with bounds on the rounding of the first two.
 #[derive(Clone, Debug, Default)]
@@ -33,7 +34,9 @@ impl Expansion {
 
     /// Adds a function of `s_to - s_from` with this slope and curvature.
     pub(crate) fn add(&mut self, term: &Term, slope: Rounded, curvature: f64) {
-        let (scales, from, to) = (self.gradient.len(), term.from, term.to);
+        let scales = self.gradient.len();
+        let from = term.from;
+        let to = term.to;
         for (scale, slope) in [(to, slope), (from, -slope)] {
             let mut sum = Rounded {
                 value: self.gradient[scale],
@@ -63,7 +66,7 @@ pub(crate) trait Differentiable {
     /// Value, gradient and Hessian at `scales`.
     fn expand(&self, scales: &[f64], curvature: Curvature, into: &mut Expansion);
 
-    /// Work of one expansion ([`super::Effort`]).
+    /// Work of one expansion ([`super::search::Effort`]).
     fn work(&self) -> u64;
 }
 
@@ -152,7 +155,8 @@ impl Objective {
 pub(crate) fn pieces(count: usize, ties: impl Iterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
     let mut piece_of: Vec<usize> = (0..count).collect();
     for (one, other) in ties {
-        let (kept, merged) = (piece_of[one], piece_of[other]);
+        let kept = piece_of[one];
+        let merged = piece_of[other];
         piece_of
             .iter_mut()
             .filter(|piece| **piece == merged)
@@ -353,7 +357,8 @@ impl QuadraticModel {
     /// Returns the decrease, or `None` where the effort is stopped or `H` is not positive definite on a face that the method visits. Nodes with
     /// `low == high` stay.
     fn minimise(&mut self, at: &Expansion, effort: &Effort<'_>) -> Option<f64> {
-        let (gradient, hessian) = (&at.gradient, &at.hessian);
+        let gradient = &at.gradient;
+        let hessian = &at.hessian;
         self.step.fill(0.0);
         self.slope.copy_from_slice(gradient);
         for (scale, &slope) in gradient.iter().enumerate() {

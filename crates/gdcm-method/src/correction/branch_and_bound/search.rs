@@ -4,7 +4,9 @@ use std::cell::Cell;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::*;
+use super::node_exclusion::NodeExclusion;
+use super::objective::{Curvature, Differentiable, Expansion, Newton, Objective};
+use super::underestimator::{DifferenceBounds, Underestimator, tangent_bound};
 
 /// Minima within this factor of the best are listed.
 const NEAR: f64 = 1.01;
@@ -211,8 +213,10 @@ impl<'a> Search<'a> {
         for (index, scale) in start.iter_mut().enumerate() {
             *scale = scale.clamp(self.lower[index], self.upper[index]);
         }
-        let (cutoff, tolerance) = (self.cutoff(), 0.05 * AIM * self.denominator());
-        let (effort, most) = (self.effort, self.budget.work);
+        let cutoff = self.cutoff();
+        let tolerance = 0.05 * AIM * self.denominator();
+        let effort = self.effort;
+        let most = self.budget.work;
         let bounds = (self.lower.as_slice(), self.upper.as_slice());
         let exact = underestimator.is_exact();
         let mut best = f64::NEG_INFINITY;
@@ -263,13 +267,12 @@ impl<'a> Search<'a> {
     /// Whether two minima are one, found twice: nothing lies between them, as the curvature of the terms measures it.
     fn is_same(&self, known: &[f64], found: &[f64]) -> bool {
         let changes = self.objective.terms.iter().map(|term| {
-            let (here, there) = (
-                known[term.to] - known[term.from],
-                found[term.to] - found[term.from],
-            );
+            let here = known[term.to] - known[term.from];
+            let there = found[term.to] - found[term.from];
             (term, here, (there - here).abs())
         });
-        let (mut longest, mut rise) = (0.0_f64, 0.0);
+        let mut longest = 0.0_f64;
+        let mut rise = 0.0;
         for (term, here, change) in changes {
             longest = longest.max(change);
             rise += 0.5 * term.function.at(here).curvature.abs() * change * change;
@@ -368,7 +371,8 @@ impl<'a> Search<'a> {
         for &(from, to, at) in ends {
             let Some(region) = rest else { return };
             self.effort.spend((start.len() * start.len()) as u64 / 4);
-            let (below, above) = (region.below(from, to, at), region.above(from, to, at));
+            let below = region.below(from, to, at);
+            let above = region.above(from, to, at);
             let (inner, outer) = if start[to] - start[from] < at {
                 (below, above)
             } else {
@@ -392,7 +396,8 @@ impl<'a> Search<'a> {
 
     /// Line 10.
     fn found(mut self) -> Minima {
-        let (left, cutoff) = (self.open.least_bound(), self.cutoff());
+        let left = self.open.least_bound();
+        let cutoff = self.cutoff();
         // A sum of squares is never negative, and no bound can be above a value that was reached.
         let lower_bound = self.closed.min(left).max(0.0).min(self.best);
         let gap = (self.best - lower_bound) / self.denominator();

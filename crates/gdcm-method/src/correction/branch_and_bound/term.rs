@@ -107,7 +107,8 @@ impl Function {
     pub(crate) fn slopes(&self, (low, high): (f64, f64)) -> Range {
         match self {
             Function::Quadratic { .. } => {
-                let (down, up) = (self.at(low).slope, self.at(high).slope);
+                let down = self.at(low).slope;
+                let up = self.at(high).slope;
                 let size = down.value.abs().max(up.value.abs());
                 Range {
                     least: down.value - down.error,
@@ -146,10 +147,8 @@ impl Function {
             Function::Exponential {
                 forward, backward, ..
             } => {
-                let (ahead, behind) = (
-                    forward.curvatures((low, high)),
-                    backward.curvatures((-high, -low)),
-                );
+                let ahead = forward.curvatures((low, high));
+                let behind = backward.curvatures((-high, -low));
                 let least = ahead.least + behind.least;
                 let least = if self.is_convex_over((low, high)) {
                     least.max(0.0)
@@ -339,7 +338,8 @@ fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
 /// Where `is_convex` turns from true (far side) to false at `inside`: the true end of the bracket. `outside` is moved further
 /// away until it is true there.
 fn convex_end(is_convex: &impl Fn(f64) -> bool, outside: f64, inside: f64) -> f64 {
-    let (mut convex, mut other) = (outside, inside);
+    let mut convex = outside;
+    let mut other = inside;
     for _ in 0..40 {
         if is_convex(convex) {
             break;
@@ -482,7 +482,8 @@ impl Exponential {
 
     /// The curvature over `v` in `[low, high]`: a parabola in `e^v`, lowest at `centre / 4`. Only the least is sharp.
     pub(crate) fn curvatures(&self, (low, high): (f64, f64)) -> Range {
-        let (least, most) = (low.exp(), high.exp());
+        let least = low.exp();
+        let most = high.exp();
         let curvature = |z: f64| 2.0 * self.weight * z * (2.0 * z - self.centre);
         let size = 2.0 * self.weight * most * (2.0 * most + self.centre);
         let margin = 4.0 * self.relative(low.abs().max(high.abs())) * size;
@@ -495,14 +496,13 @@ impl Exponential {
 
     /// The slope over `v` in `[low, high]`: a parabola in `e^v`, lowest at `centre / 2`.
     pub(crate) fn slopes(&self, (low, high): (f64, f64)) -> Range {
-        let (least, most) = (low.exp(), high.exp());
+        let least = low.exp();
+        let most = high.exp();
         let slope = |z: f64| 2.0 * self.weight * z * (z - self.centre);
         let size = 2.0 * self.weight * most * (most + self.centre);
         let margin = 4.0 * self.relative(low.abs().max(high.abs())) * size;
-        let (lowest, highest) = (
-            slope((0.5 * self.centre).clamp(least, most)),
-            slope(least).max(slope(most)),
-        );
+        let lowest = slope((0.5 * self.centre).clamp(least, most));
+        let highest = slope(least).max(slope(most));
         Range {
             least: lowest - margin,
             most: highest + margin,

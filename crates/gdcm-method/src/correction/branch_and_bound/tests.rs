@@ -4,12 +4,17 @@ use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;
 use proptest::prelude::*;
 
-use super::*;
-use crate::correction::{Bounds, Problem};
-use crate::correction::{Components, Held};
-use crate::correction::{GainObjective, Quantity};
-use crate::correction::{floor, objective};
 use gdcm_model::dataset::{Pair, PairTable};
+
+use super::super::components::{Components, Held};
+use super::super::problem::{Bounds, GainObjective, Problem, Quantity, floor, objective};
+use super::objective::Differentiable;
+use crate::correction::branch_and_bound::node_exclusion::NodeExclusion;
+use crate::correction::branch_and_bound::objective::{Curvature, Expansion, Newton, Objective};
+use crate::correction::branch_and_bound::search::{Effort, ProofBudget, search};
+use crate::correction::branch_and_bound::underestimator::{
+    DifferenceBounds, Underestimator, tangent_bound,
+};
 
 type Exact = FBig<HalfEven, 2>;
 
@@ -44,12 +49,12 @@ impl Sample {
 
     /// The exact logarithms of the gains: an input's is its component's scale, a held output's what its entry leaves.
     fn logarithms(&self, scales: &[f64]) -> (Vec<Exact>, Vec<Exact>) {
-        let node = |placed: &crate::correction::Placement| {
+        let node = |placed: &super::super::components::Placement| {
             exact(placed.offset.value) + exact(scales[placed.component])
         };
         let (inputs, outputs) = self.components.sides();
         let inputs: Vec<Exact> = inputs.iter().map(node).collect();
-        let output = |(index, placed): (usize, &crate::correction::Placement)| {
+        let output = |(index, placed): (usize, &super::super::components::Placement)| {
             let held = self
                 .problem
                 .held_entries()
@@ -168,7 +173,8 @@ proptest! {
     ) {
         let inside = sample.at(&inside);
         let region = sample.region(&inside, 10f64.powf(-decades));
-        let (mut lower, mut upper) = (sample.objective.lower.clone(), sample.objective.upper.clone());
+        let mut lower = sample.objective.lower.clone();
+        let mut upper = sample.objective.upper.clone();
         region.write_box(&mut lower, &mut upper);
         let underestimator = Underestimator::new(&sample.objective, &region, 10.0);
         let effort = Effort::new(&|| false);

@@ -1,6 +1,7 @@
 //! A convex function below the objective over one node (part of the box of the scales), and the lower bounds that it gives.
 
-use super::*;
+use super::objective::{Curvature, Differentiable, Expansion, Objective};
+use super::term::{Derivatives, Exponential, Function, Rounded, Term, both};
 
 /// A term's underestimator with the range of its difference. Newton's method keeps to the box of the node only, so beyond the range
 /// the underestimator goes on along its tangent and bends up: anything convex is right there, and this keeps the minimum near.
@@ -97,10 +98,8 @@ impl<'a> Underestimator<'a> {
     pub(crate) fn widest_gap(&self, scales: &[f64]) -> Option<(&'a Term, f64)> {
         let gap = |(term, under): (&'a Term, &TermUnder)| {
             let u = under.difference(term, scales);
-            let (above, below) = (
-                term.function.at(u).value,
-                under.inside(&term.function, u).value,
-            );
+            let above = term.function.at(u).value;
+            let below = under.inside(&term.function, u).value;
             (term, above.value - below.value - above.error - below.error)
         };
         self.nonconvex().map(gap).max_by(|a, b| a.1.total_cmp(&b.1))
@@ -186,7 +185,8 @@ pub(super) fn tangent_bound(
 ) -> f64 {
     let mut bound = at.value.value - at.value.error;
     for scale in 0..scales.len() {
-        let (slope, error) = (at.gradient[scale], at.gradient_error[scale]);
+        let slope = at.gradient[scale];
+        let error = at.gradient_error[scale];
         let down = (slope + error).max(0.0) * (scales[scale] - lower[scale]).max(0.0);
         let up = (error - slope).max(0.0) * (upper[scale] - scales[scale]).max(0.0);
         bound -= down.max(up);
@@ -259,7 +259,8 @@ impl DifferenceBounds {
         let mut part = self.clone();
         for i in 0..count {
             for j in (0..count).filter(|&j| j != i) {
-                let (before, after) = (self.bounds[i * count + from], self.bounds[to * count + j]);
+                let before = self.bounds[i * count + from];
+                let after = self.bounds[to * count + j];
                 // Rounded outward, so that no point of the part is lost.
                 let implied = before
                     + most
@@ -362,7 +363,8 @@ pub(super) fn envelope(function: &Exponential, (low, high): (f64, f64)) -> Optio
     if high <= function.inflection() || overshoot(high, &end) >= 0.0 {
         return Some(chord((low, start.value), (high, end.value)));
     }
-    let (mut over, mut under) = (function.inflection().max(low), high);
+    let mut over = function.inflection().max(low);
+    let mut under = high;
     let mut tangent = end;
     // Newton's method from the bracket's right side, any point of which is valid: near the tangent is near enough.
     for _ in 0..14 {
@@ -420,6 +422,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::correction::branch_and_bound::term::ProductEntry;
 
     fn exponential(weight: f64, centre: f64) -> Exponential {
         Exponential::of(&[ProductEntry::new(weight, centre, Rounded::default())]).0
@@ -492,7 +495,8 @@ mod tests {
             let function = Function::exponential(exponential(forward.0, forward.1), exponential(backward.0, backward.1));
             let range = (low, low + width);
             let at = function.at(low + share * width);
-            let (slopes, curvatures) = (function.slopes(range), function.curvatures(range));
+            let slopes = function.slopes(range);
+            let curvatures = function.curvatures(range);
             prop_assert!(slopes.least <= at.slope.value + at.slope.error && at.slope.value - at.slope.error <= slopes.most);
             // The rounding of figures of up to 1e4.
             prop_assert!(curvatures.least <= at.curvature + 1e-9 && at.curvature - 1e-9 <= curvatures.most);

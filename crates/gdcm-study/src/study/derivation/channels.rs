@@ -1,15 +1,18 @@
 //! How channel gains and delays, net gains and delays, and objectives were computed (M8, M9, M11).
 
-use super::*;
+use gdcm_method::correction::{Channel, Problem, Quantity, Solution};
+use gdcm_model::dataset::Pair;
+use gdcm_model::units::{s_to_ms, six_digits};
+
+use super::{Context, Derivation, digits, gain_objective_equation};
+use crate::study::lead_compensation::servo_words;
 
 pub(super) fn net_gain(context: &Context<'_>, pair: Pair) -> Derivation {
     let correction = &context.result.correction;
     let [output, input] = Channel::of(pair);
     let [name_o, name_i] = [output, input].map(|channel| context.channel(channel));
-    let (gain_o, gain_i) = (
-        digits(correction.gain(output)),
-        digits(correction.gain(input)),
-    );
+    let gain_o = digits(correction.gain(output));
+    let gain_i = digits(correction.gain(input));
     let value = correction.net_gain(pair);
     Derivation {
         title: context.title(&format!("net gain of {}", context.pair(pair))),
@@ -86,7 +89,8 @@ pub(super) fn gain(context: &Context<'_>, channel: Channel) -> Option<Derivation
 
 pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivation> {
     let value = s_to_ms(*context.result.delays.channels().get(channel)?);
-    let (problem, solution) = (&context.result.delay_problem, &context.result.delays);
+    let problem = &context.result.delay_problem;
+    let solution = &context.result.delays;
     let name = format!("τ_{}", context.channel(channel));
     let (objective, section) = delay_equation(problem.quantity);
     let bounds = if problem.quantity == Quantity::SignedDelay {
@@ -151,14 +155,16 @@ fn steps(
         Some(format!("{sum} = {}{unit} (held)", digits(scale * target)))
     };
     let mut steps: Vec<String> = ties.filter_map(tie).collect();
-    let (lower, upper) = (problem.bounds.lower, problem.bounds.upper);
+    let lower = problem.bounds.lower;
+    let upper = problem.bounds.upper;
     let value = solution.channels()[channel];
     let place = match (value == lower, value == upper) {
         (true, _) => ", on the lower bound",
         (_, true) => ", on the upper bound",
         _ => "",
     };
-    let (lower, upper) = (digits(scale * lower), digits(scale * upper));
+    let lower = digits(scale * lower);
+    let upper = digits(scale * upper);
     steps.push(format!("{lower} ≤ {last} ≤ {upper}{unit}{place}"));
     steps
 }
@@ -192,7 +198,8 @@ pub(super) fn gain_objective(context: &Context<'_>) -> Derivation {
 }
 
 pub(super) fn delay_objective(context: &Context<'_>) -> Derivation {
-    let (problem, solution) = (&context.result.delay_problem, &context.result.delays);
+    let problem = &context.result.delay_problem;
+    let solution = &context.result.delays;
     let (equation, section) = delay_equation(problem.quantity);
     objective(
         context,

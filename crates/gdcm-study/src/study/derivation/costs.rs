@@ -1,9 +1,13 @@
 //! How scores and discontinuity ratios were computed (M5).
 
-use gdcm_method::fidelity::SUGGESTION_RATIO;
-use gdcm_model::dataset::Origin;
+use gdcm_method::correction::{Channel, ChannelCorrection};
+use gdcm_method::fidelity::{Cost, CostAverage, SUGGESTION_RATIO};
+use gdcm_model::dataset::model::Origin;
+use gdcm_model::dataset::{BundleKind, Dynamics, Model, ModelId, Pair};
+use gdcm_model::units::{s_to_ms, signed};
 
-use super::*;
+use super::{Context, Derivation, average_word, counted_words, digits, median_words};
+use crate::study::assessment_table::{AssessedModel, AssessmentChoice, assessed};
 
 /// Terms of a sum that are written out.
 const MOST_TERMS: usize = 8;
@@ -52,7 +56,8 @@ fn model_words(model: &Model) -> impl Iterator<Item = String> {
 }
 
 pub(super) fn score(context: &Context<'_>, model: &ModelId) -> Option<Derivation> {
-    let (result, kind) = (context.result, model.bundle);
+    let result = context.result;
+    let kind = model.bundle;
     let value = result.score(kind, &model.name)?;
     let place = result.condition.position(kind, &model.name)?;
     let scores = &result.representative(kind).scores;
@@ -153,13 +158,11 @@ fn equation(average: CostAverage) -> String {
 /// J of a mismatch under a correction, in two steps and their sum.
 fn steps(symbol: &str, cost: Cost, average: CostAverage) -> Vec<String> {
     let word = average_word(average);
-    let ([of_db, of_deg], [db_squared, deg_squared]) =
-        (Cost::factors(), cost.averages().map(digits));
-    let (magnitude, phase, total) = (
-        digits(cost.magnitude),
-        digits(cost.phase),
-        digits(cost.total()),
-    );
+    let [of_db, of_deg] = Cost::factors();
+    let [db_squared, deg_squared] = cost.averages().map(digits);
+    let magnitude = digits(cost.magnitude);
+    let phase = digits(cost.phase);
+    let total = digits(cost.total());
     vec![
         format!(
             "{symbol}_mag = {of_db} · {db_squared} dB² = {magnitude}   ({word} of the squares)"
@@ -171,10 +174,8 @@ fn steps(symbol: &str, cost: Cost, average: CostAverage) -> Vec<String> {
 
 fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorrection) -> String {
     let [output, input] = Channel::of(pair).map(|channel| context.channel(channel));
-    let (gain, delay_ms) = (
-        correction.net_gain(pair),
-        s_to_ms(correction.net_delay_s(pair)),
-    );
+    let gain = correction.net_gain(pair);
+    let delay_ms = s_to_ms(correction.net_delay_s(pair));
     format!(
         "k_{output} k_{input} = {}, τ_{output} + τ_{input} = {} ms",
         digits(gain),
@@ -184,7 +185,8 @@ fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorre
 
 /// J of a response before the correction, or after it.
 pub(super) fn cost(context: &Context<'_>, pair: Pair, is_corrected: bool) -> Option<Derivation> {
-    let (change, average) = (context.result.cost[pair]?, context.settings().cost_average);
+    let change = context.result.cost[pair]?;
+    let average = context.settings().cost_average;
     let (cost, when, of) = match is_corrected {
         false => (change.uncorrected, "before", ""),
         true => (
@@ -219,7 +221,8 @@ pub(super) fn change(
     let id = context.result.condition.id();
     let found = assessed(context.analysis, id, choice).ok()?;
     let change = found.changes.get(pair)?.as_ref()?;
-    let (average, which) = (choice.average, context.pair(pair));
+    let average = choice.average;
+    let which = context.pair(pair);
     let correction = choice
         .correction
         .of(context.analysis, context.result)
@@ -229,7 +232,8 @@ pub(super) fn change(
         AssessedModel::Nominal => "nominal model",
         AssessedModel::Representative => "physics representative",
     };
-    let (after, before) = (change.corrected.total(), change.uncorrected.total());
+    let after = change.corrected.total();
+    let before = change.uncorrected.total();
     let mut with_numbers = vec![format!(
         "{} ({from})",
         correction_words(context, pair, &correction)

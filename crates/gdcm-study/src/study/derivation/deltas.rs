@@ -1,10 +1,18 @@
 //! How G, D and the bounds were computed (M6, M7).
 
-use gdcm_method::schedule::Regression;
-use gdcm_method::uncertainty::{Bar, VarianceComponent};
-use gdcm_model::units::db_to_ratio;
+use gdcm_method::correction::Channel;
+use gdcm_method::correction::delta::GainSource;
+use gdcm_method::fidelity::Mismatch;
+use gdcm_method::schedule::{Regression, Schedule, ScheduledQuantity};
+use gdcm_method::uncertainty::{Bar, Scalar, VarianceComponent};
+use gdcm_model::dataset::{BundleKind, ConditionId, Pair};
+use gdcm_model::units::{db_to_ratio, number, s_to_ms};
 
-use super::*;
+use super::{Context, Derivation, ExplainTarget, digits, median_words, spread};
+use crate::study::analysis::Analysis;
+use crate::study::substitutions::{
+    ConditionSubstitutions, Swap, reports_error, takes_reported_error,
+};
 
 /// `|H_ref| / |H_sim|` at each frequency.
 fn ratios(mismatch: &Mismatch) -> Vec<f64> {
@@ -79,10 +87,8 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let mut rests_on = context.models_and_frequencies(mismatch);
     let (equation, step, section) = if context.result.asks_band_delays() {
         // The straight line of least squares through the missing phase.
-        let (omega, phase) = (
-            mismatch.omega(context.omega()),
-            mismatch.phase_difference(context.omega()),
-        );
+        let omega = mismatch.omega(context.omega());
+        let phase = mismatch.phase_difference(context.omega());
         let weight = |place: usize| mismatch.weights().map_or(1.0, |weights| weights[place]);
         let sum = |of: &[f64]| {
             (0..omega.len())
@@ -135,7 +141,8 @@ fn pool_rests_on(context: &Context<'_>) -> Vec<String> {
 
 pub(super) fn gain_bounds(context: &Context<'_>) -> Derivation {
     let bounds = context.result.gain_bounds();
-    let (lower, upper) = (digits(bounds.lower), digits(bounds.upper));
+    let lower = digits(bounds.lower);
+    let upper = digits(bounds.upper);
     let percent = |share: f64| number((1e6 * share).round() / 1e4);
     let quantile = context.settings().quantile;
     let (with_numbers, rests_on) = match context.settings().gain_bounds {
@@ -356,7 +363,8 @@ pub(super) fn scheduled_gain(
         ]
         .into_iter()
         .chain(schedule.second.as_ref().map(|term| {
-            let (middle, unit) = (number(term.middle()), term.variable.unit());
+            let middle = number(term.middle());
+            let unit = term.variable.unit();
             format!(
                 "with {}, here in the middle of its range, {middle} {unit}",
                 term.variable
@@ -398,7 +406,8 @@ fn fit_steps(
                 .zip(POWERS)
                 .map(|(coefficient, power)| format!("{}{power}", digits(*coefficient)));
             let inside = airspeed_kt.clamp(airspeeds.min_kt, airspeeds.max_kt);
-            let (mean_kt, half_kt) = (digits(airspeeds.mean_kt), digits(airspeeds.half_range_kt));
+            let mean_kt = digits(airspeeds.mean_kt);
+            let half_kt = digits(airspeeds.half_range_kt);
             vec![
                 format!(
                     "v = ({} − {mean_kt}) / {half_kt} = {}",

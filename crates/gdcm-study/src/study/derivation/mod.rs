@@ -4,8 +4,14 @@ mod channels;
 mod costs;
 mod deltas;
 
-use super::*;
+use gdcm_method::correction::{Channel, GainObjective};
+use gdcm_method::fidelity::{CostAverage, Mismatch};
+use gdcm_model::dataset::{BundleKind, ConditionId, ModelId, Pair};
 use gdcm_model::units::six_digits;
+
+use super::analysis::{Analysis, ConditionAnalysis};
+use super::assessment_table::AssessmentChoice;
+use super::settings::Settings;
 
 /// A figure of an analysis that is asked about.
 #[derive(Clone, Debug, PartialEq)]
@@ -234,10 +240,8 @@ fn counted_words(mismatch: &Mismatch) -> Option<String> {
 
 /// The band and its frequencies.
 fn band_words(settings: &Settings) -> String {
-    let (min, max) = (
-        six_digits(settings.band.min()),
-        six_digits(settings.band.max()),
-    );
+    let min = six_digits(settings.band.min());
+    let max = six_digits(settings.band.max());
     format!(
         "{} frequencies from {min} to {max} rad/s, logarithmically spaced",
         settings.points
@@ -291,7 +295,8 @@ fn median_words(values: &[f64]) -> String {
             digits(sorted[middle])
         ),
         _ => {
-            let (below, above) = (digits(sorted[middle - 1]), digits(sorted[middle]));
+            let below = digits(sorted[middle - 1]);
+            let above = digits(sorted[middle]);
             format!(
                 "the mean of the middle two of {}: ({below} + {above}) / 2",
                 spread(values)

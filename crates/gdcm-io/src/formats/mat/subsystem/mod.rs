@@ -167,7 +167,8 @@ impl Directory {
                 .map(|&word| order.u32(word))
                 .collect()
         };
-        let (little, big) = (words(ByteOrder::Little), words(ByteOrder::Big));
+        let little = words(ByteOrder::Little);
+        let big = words(ByteOrder::Big);
         // A version is a small number: read in the wrong order it is a large one.
         let is_little = little.first() <= big.first();
         let (order, head) = if is_little {
@@ -295,7 +296,8 @@ fn region(
 
 /// One list of properties after the other, each with its length before it and filled up to eight bytes.
 fn properties(region: &[u32]) -> Result<Vec<Vec<Property>>, VariableFault> {
-    let (mut lists, mut rest) = (Vec::new(), region);
+    let mut lists = Vec::new();
+    let mut rest = region;
     while let [count, after @ ..] = rest {
         let length = (*count as usize).saturating_mul(3);
         let (list, after) = after
@@ -494,9 +496,9 @@ fn numbers(records: &StructArray, field: &str) -> Option<Vec<u32>> {
 
 #[cfg(test)]
 mod subsystem_tests {
-    use super::*;
     use proptest::prelude::*;
 
+    use super::*;
     use crate::formats::mat::read;
     use crate::formats::mat::sample_tests::{
         Directory, chars, column, doubles, file_with_objects, long_words_of, opaque, record,
@@ -792,9 +794,8 @@ mod packed_text_tests {
 
 #[cfg(test)]
 mod reference_tests {
-    use crate::variables::Array;
-
     use super::*;
+    use crate::variables::Array;
 
     #[test]
     fn a_reference_names_its_objects_and_their_class() {

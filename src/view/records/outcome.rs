@@ -13,7 +13,7 @@ use gdcm_study::study::changed_models::OfferedModels;
 use gdcm_study::study::channel_time_skew::ChannelTimeSkew;
 use gdcm_sysid::identification::diagnostics::HELD_OUT;
 use gdcm_sysid::identification::record_cautions::RecordCaution;
-use gdcm_sysid::identification::record_contrast::{ContradictingRecord, RecordFault};
+use gdcm_sysid::identification::record_fault::{ContradictingRecord, RecordFault};
 use gdcm_sysid::identification::{
     ChannelPreparation, Hold, Identification, IdentificationCaution, IdentificationError,
 };

@@ -11,7 +11,7 @@ use gdcm_model::response::frequency_response::{ResponseShape, log_spaced};
 use gdcm_model::response::pole_estimate::PoleEstimate;
 use gdcm_model::units::neper_to_db;
 use gdcm_sysid::identification::diagnostics::NARROW_WINDOW;
-use gdcm_sysid::identification::local_polynomial::EstimatePoint;
+use gdcm_sysid::identification::response_estimate::EstimatePoint;
 use gdcm_sysid::identification::subspace::StabilisationPoint;
 use gdcm_sysid::identification::uncertainty::TWO_SIDED_95;
 use gdcm_sysid::identification::{

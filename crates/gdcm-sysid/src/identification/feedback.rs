@@ -1,16 +1,21 @@
-//! Whether the measured response is what the aircraft does, or what the feedback of gusts and noise into the inputs does (M14.14).
+//! The share of the measured response that is gusts and noise fed back into the inputs (M14.14).
 //!
 //! ```text
-//! y_k = sum_{i = 1..p} (A_i y_{k-i} + B_i u_{k-i}) + B_0 u_k + e_k     least squares over all records, every dec-th sample, no filter
+//! y_k = sum_{i = 1..p} (A_i y_{k-i} + B_i u_{k-i}) + B_0 u_k + e_k
+//!     least squares over all records, every dec-th sample, no filter
 //!
-//! 1  S(0, j) = sum_k z_k z_{k-j}', z = [u; y]; S(i+1, j+1) = S(i, j) + z_{p-1-i} z_{p-1-j}' - z_{N-1-i} z_{N-1-j}'
+//! 1  S(0, j) = sum_k z_k z_{k-j}', z = [u; y]
+//!    S(i+1, j+1) = S(i, j) + z_{p-1-i} z_{p-1-j}' - z_{N-1-i} z_{N-1-j}'
 //! 2  A, B from S with a ridge on columns of length one; e from the records
-//! 3  V = (I - sum A_i z^-i)^-1 E on the lines, z = e^(j omega dt dec): what noise and gusts do to y
+//! 3  V = (I - sum A_i z^-i)^-1 E on the lines, z = e^(j omega dt dec): the effect of noise and
+//!    gusts on y
 //! 4  G_b = local polynomial of V on U at 16 points of the band, beside G of the model
-//! 5  b = median |G_b / G|,  z = median |G_b|^2 / var  over the points with |G| > 3 % of the output's largest and sd G_b < 0.4 |G|
+//! 5  b = median |G_b / G|,  z = median |G_b|^2 / var
+//!    over the points with |G| > 3 % of the largest of the output and sd G_b < 0.4 |G|
 //! ```
 //!
-//! With feedback the inputs hold what gusts did to the outputs, and the cost stays at 1 however wrong the model is.
+//! With feedback the inputs hold the effect of gusts on the outputs, and the cost stays at 1 however
+//! wrong the model is.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -20,37 +25,55 @@ use gdcm_model::response::median;
 use gdcm_model::simulation::Segment;
 
 use super::blocks::BlockModel;
-use super::likelihood::scale_columns;
-use super::local_polynomial::{EstimatePoint, ResponseEstimate, local_polynomial};
-use super::prepared_data::PreparedData;
-use super::spectrum::Spectrum;
+use super::gram_matrix::scale_columns;
+use super::local_polynomial::local_polynomial;
+use super::response_estimate::ResponseEstimate;
+use super::spectrum::{LineRange, Spectrum};
 
-/// Samples of the predictor over the time in which the upper end of the band turns by one radian.
+/// Time between samples of the predictor times the upper end of the band \[rad\].
 const STEP: f64 = 0.25;
-/// Past samples of the predictor at most and at least, and samples for each of its unknowns.
-const PAST: (usize, usize) = (40, 6);
+/// Fewest past samples of the predictor.
+const LEAST_PAST: usize = 6;
+/// Most past samples of the predictor.
+const MOST_PAST: usize = 40;
+/// Samples for each unknown of the predictor.
 const SAMPLES_AN_UNKNOWN: usize = 8;
 /// Ridge over columns of length one.
 const RIDGE: f64 = 1e-6;
-/// Points of the band at which the responses are compared.
+/// Frequencies at which the responses are compared.
 const POINTS: usize = 16;
-/// Share of the largest response of an output below which a point does not count, and the spread of `G_b` over `|G|` above which it does not.
+/// Share of the largest response of an output below which a point does not count.
 const LARGE: f64 = 0.03;
+/// Standard deviation of `G_b` over `|G|` from which a point does not count.
 const SURE: f64 = 0.4;
-/// Share of the points that count at least; where they are fewer, all do.
+/// Least share of points that have to count; otherwise all of them do.
 const LEAST_SHARE: f64 = 0.05;
-/// `b` and `z` from which some of the response is fed back, and from which too much of it is.
-const SOME: (f64, f64) = (0.08, 1.6);
-const TOO_MUCH: (f64, f64) = (0.18, 3.0);
 /// Share fed back from which the bands are widened (M14.17).
 const WIDENED: f64 = 0.04;
+/// Share by which sample times may differ in one predictor.
+const ALIKE: f64 = 0.01;
 
-/// How much of the measured response is noise and gusts that were fed back.
+/// Values of `b` and `z` from which a level of feedback is reached.
+struct Threshold {
+    share: f64,
+    significance: f64,
+}
+
+const SOME: Threshold = Threshold {
+    share: 0.08,
+    significance: 1.6,
+};
+const TOO_MUCH: Threshold = Threshold {
+    share: 0.18,
+    significance: 3.0,
+};
+
+/// The share of the measured response that is noise and gusts fed back.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feedback {
     /// `b`: median share of the response.
     pub share: f64,
-    /// `z`: median square over the variance; 0.7 where nothing is fed back.
+    /// `z`: median square over the variance; 0.7 without feedback.
     pub significance: f64,
     /// \[rad/s\], ascending.
     omega: Vec<f64>,
@@ -58,44 +81,49 @@ pub struct Feedback {
     ratios: Vec<DMatrix<f64>>,
 }
 
-/// What the feedback makes of a model.
+/// The effect of the feedback on a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FeedbackLevel {
-    /// Nothing is seen.
+    /// No visible effect.
     None,
     /// The models are off by some tenths of a dB.
     Some,
-    /// The models are not to be used.
+    /// The models must not be used.
     TooMuch,
 }
 
+/// The records in which feedback is looked for.
+pub(super) struct FeedbackRecords<'a> {
+    /// Scaled segments without a filter.
+    pub(super) segments: &'a [Segment],
+    pub(super) lines: LineRange,
+    /// \[rad/s\].
+    pub(super) band: [f64; 2],
+}
+
 impl Feedback {
-    /// What it makes of a model.
+    /// Returns the effect on a model.
     #[must_use]
     pub fn level(&self) -> FeedbackLevel {
-        let beyond = |(share, significance): (f64, f64)| {
-            self.share >= share && self.significance >= significance
-        };
-        match () {
-            () if beyond(TOO_MUCH) => FeedbackLevel::TooMuch,
-            () if beyond(SOME) => FeedbackLevel::Some,
-            () => FeedbackLevel::None,
+        if self.reaches(&TOO_MUCH) {
+            FeedbackLevel::TooMuch
+        } else if self.reaches(&SOME) {
+            FeedbackLevel::Some
+        } else {
+            FeedbackLevel::None
         }
     }
 
-    /// `|G_b / G|` of a response at `omega`, root mean square over three points; 0 where so little is fed back that the bands are right as they
-    /// are.
+    fn reaches(&self, threshold: &Threshold) -> bool {
+        self.share >= threshold.share && self.significance >= threshold.significance
+    }
+
+    /// Returns `|G_b / G|` of a response at `omega` \[rad/s\], root mean square over three points; 0
+    /// if the bands need no widening.
     pub(super) fn ratio(&self, omega: f64, pair: (usize, usize)) -> f64 {
         if self.share < WIDENED {
             return 0.0;
         }
-        let smoothed = |k: usize| {
-            let near = self.ratios[k.saturating_sub(1)..(k + 2).min(self.ratios.len())]
-                .iter()
-                .map(|of| of[pair].powi(2));
-            let count = near.len();
-            (near.sum::<f64>() / count as f64).sqrt()
-        };
         let after = self
             .omega
             .partition_point(|at| *at <= omega)
@@ -103,115 +131,129 @@ impl Feedback {
         let place =
             (omega / self.omega[after - 1]).ln() / (self.omega[after] / self.omega[after - 1]).ln();
         let share = place.clamp(0.0, 1.0);
-        (1.0 - share) * smoothed(after - 1) + share * smoothed(after)
+        (1.0 - share) * self.smoothed_ratio(after - 1, pair)
+            + share * self.smoothed_ratio(after, pair)
     }
 
-    /// What is fed back in the records of the fit beside a model of them; none where they are too short for a predictor.
-    pub(super) fn of(
-        data: &PreparedData,
+    /// Returns the root mean square of `|G_b / G|` over a point and its neighbours.
+    fn smoothed_ratio(&self, k: usize, pair: (usize, usize)) -> f64 {
+        let near = &self.ratios[k.saturating_sub(1)..(k + 2).min(self.ratios.len())];
+        let squares: f64 = near.iter().map(|ratios| ratios[pair].powi(2)).sum();
+        (squares / near.len() as f64).sqrt()
+    }
+
+    /// Measures the feedback beside a model of the records; `None` if these are too short for a
+    /// predictor.
+    pub(super) fn measure(
+        records: &FeedbackRecords<'_>,
         model: &BlockModel,
-        band: [f64; 2],
         executor: &dyn Executor,
     ) -> Option<Self> {
-        /// Share by which sample times may differ in one predictor.
-        const ALIKE: f64 = 0.01;
-        let first = data.unfiltered.first()?;
-        let is_alike = |of: &&Segment| (of.sample_time_s / first.sample_time_s - 1.0).abs() < ALIKE;
-        let segments: Vec<Segment> = data.unfiltered.iter().filter(is_alike).cloned().collect();
-        let step = ((STEP / (band[1] * first.sample_time_s)).round() as usize).max(1);
-        let thinned = each(executor, &segments, |segment| thinned(segment, step));
-        let predictor = Predictor::of(&thinned, (first.inputs.ncols(), first.outputs.ncols()))?;
-        let noise = each(
+        let first = records.segments.first()?;
+        let segments: Vec<&Segment> = records
+            .segments
+            .iter()
+            .filter(|segment| (segment.sample_time_s / first.sample_time_s - 1.0).abs() < ALIKE)
+            .collect();
+        let step = ((STEP / (records.band[1] * first.sample_time_s)).round() as usize).max(1);
+        let thinned = each(executor, &segments, |segment| thin(segment, step));
+        let predictor = Predictor::fit(&thinned, first.inputs.ncols(), first.outputs.ncols())?;
+        let errors = each(
             executor,
             segments.iter().zip(&thinned),
-            |(segment, samples)| {
-                let mut outputs = DMatrix::zeros(segment.outputs.nrows(), segment.outputs.ncols());
-                for (k, error) in predictor.errors(samples) {
-                    outputs
-                        .row_mut(k * step)
-                        .tr_copy_from(&(error * step as f64));
-                }
-                Segment {
-                    outputs,
-                    ..segment.clone()
-                }
-            },
+            |(segment, samples)| predictor.error_segment(segment, samples, step),
         );
-        let mut fed = data.lines.of(&noise, executor);
-        for spectrum in &mut fed {
+        let mut disturbances = records.lines.spectra(&errors, executor);
+        for spectrum in &mut disturbances {
             predictor.add_memory(spectrum, step as f64 * first.sample_time_s)?;
         }
-        let omegas = log_spaced(band[0], band[1], POINTS);
-        Some(Self::beside(
-            model,
-            &local_polynomial(&fed, &omegas, executor).ok()?,
-        ))
+        let omegas = log_spaced(records.band[0], records.band[1], POINTS);
+        let fed_back = local_polynomial(&disturbances, &omegas, executor).ok()?;
+        Some(Self::compare(model, &fed_back))
     }
 
-    fn beside(model: &BlockModel, fed: &ResponseEstimate) -> Self {
-        let responses: Vec<DMatrix<f64>> = fed
+    /// Compares `G_b` with the response of the model (step 5).
+    fn compare(model: &BlockModel, fed_back: &ResponseEstimate) -> Self {
+        let moduli: Vec<DMatrix<f64>> = fed_back
             .points
             .iter()
             .map(|point| model.response(point.omega).map(|g| g.norm()))
             .collect();
-        let (outputs, inputs) = model.d.shape();
-        let mut sure = Vec::new();
-        let mut every = Vec::new();
-        for output in 0..outputs {
-            let largest = responses
-                .iter()
-                .map(|g| g.row(output).max())
-                .fold(0.0, f64::max);
-            for (g, point) in responses.iter().zip(&fed.points) {
-                for input in 0..inputs {
-                    let own = g[(output, input)];
-                    let of_noise = point.response[(output, input)].norm();
-                    let variance = point.variance[(output, input)];
-                    let both = (
-                        of_noise / own,
-                        of_noise * of_noise / variance.max(f64::MIN_POSITIVE),
-                    );
-                    every.push(both);
-                    if own > LARGE * largest && variance.sqrt() < SURE * own {
-                        sure.push(both);
-                    }
-                }
-            }
+        let counted = counted_points(&moduli, fed_back);
+        let mut shares: Vec<f64> = counted.iter().map(|point| point.share).collect();
+        let mut significances: Vec<f64> = counted.iter().map(|point| point.significance).collect();
+        let mut ratios = Vec::with_capacity(moduli.len());
+        for (g, point) in moduli.iter().zip(&fed_back.points) {
+            ratios.push(g.zip_map(&point.response, |g, fed_back| fed_back.norm() / g));
         }
-        let counted = if sure.len() as f64 >= LEAST_SHARE * every.len() as f64 {
-            sure
-        } else {
-            every
-        };
-        let of = |part: fn(&(f64, f64)) -> f64| {
-            median(&mut counted.iter().map(part).collect::<Vec<f64>>())
-        };
-        let ratio = |(g, point): (&DMatrix<f64>, &EstimatePoint)| {
-            g.zip_map(&point.response, |g, fed| fed.norm() / g)
-        };
         Self {
-            share: of(|both| both.0),
-            significance: of(|both| both.1),
-            omega: fed.points.iter().map(|point| point.omega).collect(),
-            ratios: responses.iter().zip(&fed.points).map(ratio).collect(),
+            share: median(&mut shares),
+            significance: median(&mut significances),
+            omega: fed_back.points.iter().map(|point| point.omega).collect(),
+            ratios,
         }
     }
 }
 
-/// Every `step`-th sample of a segment less the means, one column an instant: inputs, then outputs.
-fn thinned(segment: &Segment, step: usize) -> DMatrix<f64> {
+/// `G_b` of one response at one frequency.
+#[derive(Clone, Copy)]
+struct ComparedPoint {
+    /// `|G_b / G|`.
+    share: f64,
+    /// `|G_b|^2 / var`.
+    significance: f64,
+}
+
+/// Returns the points of all responses that are large and well enough known, or all of them if
+/// these are too few.
+fn counted_points(moduli: &[DMatrix<f64>], fed_back: &ResponseEstimate) -> Vec<ComparedPoint> {
+    let (outputs, inputs) = moduli.first().map_or((0, 0), DMatrix::shape);
+    let mut sure = Vec::new();
+    let mut every = Vec::new();
+    for output in 0..outputs {
+        let largest = moduli
+            .iter()
+            .map(|g| g.row(output).max())
+            .fold(0.0, f64::max);
+        for (g, point) in moduli.iter().zip(&fed_back.points) {
+            for input in 0..inputs {
+                let own = g[(output, input)];
+                let disturbed = point.response[(output, input)].norm();
+                let variance = point.variance[(output, input)];
+                let compared = ComparedPoint {
+                    share: disturbed / own,
+                    significance: disturbed * disturbed / variance.max(f64::MIN_POSITIVE),
+                };
+                every.push(compared);
+                if own > LARGE * largest && variance.sqrt() < SURE * own {
+                    sure.push(compared);
+                }
+            }
+        }
+    }
+    if sure.len() as f64 >= LEAST_SHARE * every.len() as f64 {
+        sure
+    } else {
+        every
+    }
+}
+
+/// Returns every `step`-th sample of a segment less the means, one column an instant: inputs, then
+/// outputs.
+fn thin(segment: &Segment, step: usize) -> DMatrix<f64> {
     let inputs = segment.inputs.ncols();
     let outputs = segment.outputs.ncols();
     let count = segment.inputs.nrows().div_ceil(step);
     let mut samples = DMatrix::zeros(inputs + outputs, count);
-    for (channel, column) in segment
+    let columns = segment
         .inputs
         .column_iter()
-        .chain(segment.outputs.column_iter())
-        .enumerate()
-    {
+        .chain(segment.outputs.column_iter());
+    for (channel, column) in columns.enumerate() {
         let mean = column.mean();
-        (0..count).for_each(|k| samples[(channel, k)] = column[k * step] - mean);
+        for k in 0..count {
+            samples[(channel, k)] = column[k * step] - mean;
+        }
     }
     samples
 }
@@ -225,67 +267,84 @@ struct Predictor {
 }
 
 impl Predictor {
-    fn of(records: &[DMatrix<f64>], (inputs, outputs): (usize, usize)) -> Option<Self> {
+    /// Fits the predictor to all records (steps 1 and 2); `None` if they do not determine it.
+    fn fit(records: &[DMatrix<f64>], inputs: usize, outputs: usize) -> Option<Self> {
         let channels = inputs + outputs;
         let samples: usize = records.iter().map(DMatrix::ncols).sum();
-        let past = (samples / (SAMPLES_AN_UNKNOWN * channels)).clamp(PAST.1, PAST.0);
+        let past = (samples / (SAMPLES_AN_UNKNOWN * channels)).clamp(LEAST_PAST, MOST_PAST);
         let mut gram = DMatrix::zeros((past + 1) * channels, (past + 1) * channels);
-        records
-            .iter()
-            .filter(|record| record.ncols() > 2 * past)
-            .for_each(|record| add_lagged(&mut gram, record, past));
-        // Regressors: all of the past, and the inputs of now; what is predicted: the outputs of now.
+        for record in records {
+            if record.ncols() > 2 * past {
+                add_lagged(&mut gram, record, past);
+            }
+        }
+        // Regressors: the present inputs and the past of all channels; targets: the present outputs.
         let regressors: Vec<usize> = (0..inputs).chain(channels..gram.ncols()).collect();
-        let outputs_now: Vec<usize> = (inputs..channels).collect();
+        let targets: Vec<usize> = (inputs..channels).collect();
         let mut normal = gram.select_rows(&regressors).select_columns(&regressors);
-        let right = gram.select_rows(&regressors).select_columns(&outputs_now);
+        let right = gram.select_rows(&regressors).select_columns(&targets);
         let scales = scale_columns(&mut normal);
         let size = scales.len();
-        (0..size).for_each(|k| normal[(k, k)] += if scales[k] > 0.0 { RIDGE } else { 1.0 });
+        for k in 0..size {
+            normal[(k, k)] += if scales[k] > 0.0 { RIDGE } else { 1.0 };
+        }
         let scaled = DMatrix::from_fn(size, outputs, |row, column| {
             right[(row, column)] * scales[row]
         });
         let mut coefficients = normal.cholesky()?.solve(&scaled);
-        coefficients
-            .row_iter_mut()
-            .zip(scales.iter())
-            .for_each(|(mut row, scale)| row *= *scale);
-        let finite = coefficients.iter().all(|value| value.is_finite());
-        finite.then_some(Self {
+        for (mut row, scale) in coefficients.row_iter_mut().zip(scales.iter()) {
+            row *= *scale;
+        }
+        if !coefficients.iter().all(|value| value.is_finite()) {
+            return None;
+        }
+        Some(Self {
             inputs,
             past,
             coefficients,
         })
     }
 
-    /// What it does not predict of a record, by instant.
-    fn errors<'r>(
-        &'r self,
-        record: &'r DMatrix<f64>,
-    ) -> impl Iterator<Item = (usize, DVector<f64>)> + 'r {
-        let channels = record.nrows();
-        (self.past..record.ncols()).map(move |k| {
-            let mut error = record
-                .column(k)
-                .rows(self.inputs, channels - self.inputs)
-                .into_owned();
-            error.gemv_tr(
-                -1.0,
-                &self.coefficients.rows(0, self.inputs),
-                &record.column(k).rows(0, self.inputs),
-                1.0,
-            );
-            for lag in 1..=self.past {
-                let rows = self
-                    .coefficients
-                    .rows(self.inputs + (lag - 1) * channels, channels);
-                error.gemv_tr(-1.0, &rows, &record.column(k - lag), 1.0);
-            }
-            (k, error)
-        })
+    /// Returns the segment with the prediction errors instead of the outputs. They stand at every
+    /// `step`-th sample, `step` times as large, with zeros between.
+    fn error_segment(&self, segment: &Segment, samples: &DMatrix<f64>, step: usize) -> Segment {
+        let mut outputs = DMatrix::zeros(segment.outputs.nrows(), segment.outputs.ncols());
+        for k in self.past..samples.ncols() {
+            let error = self.error(samples, k);
+            outputs
+                .row_mut(k * step)
+                .tr_copy_from(&(error * step as f64));
+        }
+        Segment {
+            outputs,
+            ..segment.clone()
+        }
     }
 
-    /// Turns the lines of the errors into those of what noise and gusts do to the outputs; none where that is not finite.
+    /// Computes the prediction error `e_k` of a record at instant `k`.
+    fn error(&self, record: &DMatrix<f64>, k: usize) -> DVector<f64> {
+        let channels = record.nrows();
+        let mut error = record
+            .column(k)
+            .rows(self.inputs, channels - self.inputs)
+            .into_owned();
+        error.gemv_tr(
+            -1.0,
+            &self.coefficients.rows(0, self.inputs),
+            &record.column(k).rows(0, self.inputs),
+            1.0,
+        );
+        for lag in 1..=self.past {
+            let rows = self
+                .coefficients
+                .rows(self.inputs + (lag - 1) * channels, channels);
+            error.gemv_tr(-1.0, &rows, &record.column(k - lag), 1.0);
+        }
+        error
+    }
+
+    /// Turns the lines of the errors into the effect of noise and gusts on the outputs (step 3);
+    /// `None` where that is singular.
     fn add_memory(&self, spectrum: &mut Spectrum, step_s: f64) -> Option<()> {
         let outputs = self.coefficients.ncols();
         let channels = self.inputs + outputs;
@@ -309,7 +368,7 @@ impl Predictor {
     }
 }
 
-/// Adds `sum_k z_{k-i} z_{k-j}'` of a record, k from `past` on, to the blocks (i, j).
+/// Adds `sum_k z_{k-i} z_{k-j}'` of a record, k from `past` on, to the blocks (i, j) (step 1).
 fn add_lagged(gram: &mut DMatrix<f64>, record: &DMatrix<f64>, past: usize) {
     let (channels, samples) = record.shape();
     for lag in 0..=past {
@@ -317,12 +376,11 @@ fn add_lagged(gram: &mut DMatrix<f64>, record: &DMatrix<f64>, past: usize) {
             * record.columns(past - lag, samples - past).transpose();
         for i in 0..=past - lag {
             let j = i + lag;
-            let mut to = gram.view_mut((i * channels, j * channels), (channels, channels));
-            to += &block;
+            let mut upper = gram.view_mut((i * channels, j * channels), (channels, channels));
+            upper += &block;
             if lag > 0 {
-                let mut mirrored =
-                    gram.view_mut((j * channels, i * channels), (channels, channels));
-                mirrored += block.transpose();
+                let mut lower = gram.view_mut((j * channels, i * channels), (channels, channels));
+                lower += block.transpose();
             }
             if j < past {
                 block.gemm(

@@ -1,4 +1,5 @@
-//! Fresh flights of one axis, good ones and such as have one thing wrong each: the right caution, and no other.
+//! Fresh synthetic flights of one axis, good ones and ones with a single fault: the right caution
+//! is raised, and no other.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -7,6 +8,7 @@ use nalgebra::DMatrix;
 
 use gdcm_model::dataset::{Band, Dynamics, Pair, StateSpace};
 use gdcm_model::executor::Sequential;
+use gdcm_model::progress::Unobserved;
 use gdcm_model::response::{FrequencyGrid, PreparedModel};
 
 use super::real_flight_tests::{Flown, Generator, codes, known, options};
@@ -14,18 +16,25 @@ use super::*;
 use crate::identification::identify::identify;
 use crate::identification::preparation::{RecordUse, prepare};
 
-/// What is said of records, each code once.
-fn said((records, options): &(Vec<FlightRecord>, Options)) -> BTreeSet<&'static str> {
-    codes(&identify(records, options, &Sequential, &Unobserved).unwrap())
-        .into_iter()
-        .collect()
+/// Records, and the options of their identification.
+struct Flights {
+    records: Vec<FlightRecord>,
+    options: Options,
+}
+
+impl Flights {
+    /// Identifies the flights and returns the codes of the cautions, each once.
+    fn raised_codes(&self) -> BTreeSet<&'static str> {
+        let found = identify(&self.records, &self.options, &Sequential, &Unobserved).unwrap();
+        codes(&found).into_iter().collect()
+    }
 }
 
 fn calm(seed: u64) -> Flown {
     Flown::calm(seed, 0)
 }
 
-/// So many flights of a minute of fresh seeds.
+/// Flies `count` times for a minute, with fresh seeds.
 fn flights(count: u64, seed: u64, flown: impl Fn(u64) -> Flown) -> Vec<FlightRecord> {
     let file = known();
     (0..count)
@@ -33,7 +42,7 @@ fn flights(count: u64, seed: u64, flown: impl Fn(u64) -> Flown) -> Vec<FlightRec
         .collect()
 }
 
-/// The last of so many flights is logged four samples late.
+/// Flies `count` times; the last flight is logged four samples late.
 fn last_late(count: u64, seed: u64) -> Vec<FlightRecord> {
     let mut records = flights(count, seed, calm);
     let last = Flown::calm(10_000 + 10 * seed + count - 1, 4)
@@ -48,26 +57,29 @@ fn deviation(record: &FlightRecord) -> f64 {
     (record.outputs.norm_squared() / record.outputs.len() as f64).sqrt()
 }
 
-/// Three calm flights with something done to the outputs of each.
+/// Flies calmly three times and changes the outputs of each flight.
 fn with_outputs(seed: u64, change: impl Fn(&mut FlightRecord)) -> Vec<FlightRecord> {
     let mut records = flights(3, seed, calm);
     records.iter_mut().for_each(change);
     records
 }
 
-/// What is wrong with flights: what it is called, the code that is to be said, what may be said besides because it follows, and they.
+/// Flights with a fault.
 struct Trap {
     name: &'static str,
+    /// The code that has to be raised.
     code: &'static str,
+    /// Further codes that may be raised as consequences.
     follows: &'static [&'static str],
-    flown: fn(u64) -> (Vec<FlightRecord>, Options),
+    /// Flies with a seed.
+    flown: fn(u64) -> Flights,
 }
 
 const TRAPS: [Trap; 11] = [
     Trap {
         name: "gusts fed back",
         code: "feedback",
-        // What gusts move is noise: the sweep stands out of it over a narrower band.
+        // Motion by gusts is noise: the sweep exceeds it over a narrower band.
         follows: &["not-identified", "unstable", "band-narrowed"],
         flown: |seed| {
             let gusty = |seed| Flown {
@@ -77,20 +89,29 @@ const TRAPS: [Trap; 11] = [
                 feedback: 0.15,
                 ..calm(seed)
             };
-            (flights(3, seed, gusty), options())
+            Flights {
+                records: flights(3, seed, gusty),
+                options: options(),
+            }
         },
     },
     Trap {
         name: "one late",
         code: "time-skew",
         follows: &[],
-        flown: |seed| (last_late(3, seed), options()),
+        flown: |seed| Flights {
+            records: last_late(3, seed),
+            options: options(),
+        },
     },
     Trap {
         name: "one of a pair late",
         code: "time-skew",
         follows: &[],
-        flown: |seed| (last_late(2, seed), options()),
+        flown: |seed| Flights {
+            records: last_late(2, seed),
+            options: options(),
+        },
     },
     Trap {
         name: "one turned",
@@ -99,20 +120,26 @@ const TRAPS: [Trap; 11] = [
         flown: |seed| {
             let mut records = flights(3, seed, calm);
             records[2].outputs.neg_mut();
-            (records, options())
+            Flights {
+                records,
+                options: options(),
+            }
         },
     },
     Trap {
         name: "clipped",
         code: "clipped",
-        // The response of what is clipped is bent, and no linear model is.
+        // The response of a clipped output is non-linear.
         follows: &["order-limit", "points", "unstable"],
         flown: |seed| {
             let clipped = |record: &mut FlightRecord| {
                 let limit = 1.5 * deviation(record);
                 record.outputs.apply(|y| *y = y.clamp(-limit, limit));
             };
-            (with_outputs(seed, clipped), options())
+            Flights {
+                records: with_outputs(seed, clipped),
+                options: options(),
+            }
         },
     },
     Trap {
@@ -124,13 +151,17 @@ const TRAPS: [Trap; 11] = [
             // From 20 s on for 3 s, at 50 Hz.
             let held = records[0].outputs[(1000, 0)];
             records[0].outputs.rows_mut(1000, 150).fill(held);
-            (records, options())
+            Flights {
+                records,
+                options: options(),
+            }
         },
     },
     Trap {
         name: "coarse",
         code: "coarse",
-        // What rounding to coarse steps adds goes with the signal, as what is fed back does, and hides the weak upper end of the band.
+        // The error of rounding to coarse steps follows the signal, as feedback does, and hides the
+        // weak upper end of the band.
         follows: &[
             "feedback",
             "feedback-some",
@@ -143,21 +174,22 @@ const TRAPS: [Trap; 11] = [
             let coarse = |record: &mut FlightRecord| {
                 record.outputs.apply(|y| *y = (*y / step).round() * step)
             };
-            (with_outputs(seed, coarse), options())
+            Flights {
+                records: with_outputs(seed, coarse),
+                options: options(),
+            }
         },
     },
     Trap {
-        name: "an order too low",
+        name: "order too low",
         code: "points",
         follows: &["inadequate"],
-        flown: |seed| {
-            (
-                flights(3, seed, calm),
-                Options {
-                    orders: Some(vec![1]),
-                    ..options()
-                },
-            )
+        flown: |seed| Flights {
+            records: flights(3, seed, calm),
+            options: Options {
+                orders: Some(vec![1]),
+                ..options()
+            },
         },
     },
     Trap {
@@ -165,7 +197,7 @@ const TRAPS: [Trap; 11] = [
         code: "collinear-inputs",
         follows: &["not-identified", "not-swept"],
         flown: |seed| {
-            let mut random = super::real_flight_tests::Generator::of(seed);
+            let mut random = super::real_flight_tests::Generator::new(seed);
             let together = |record: FlightRecord| {
                 let first = record.inputs.column(0).into_owned();
                 let second = first.map(|u| u + 0.02 * random.normal());
@@ -175,93 +207,100 @@ const TRAPS: [Trap; 11] = [
                 }
             };
             let records = flights(3, seed, calm).into_iter().map(together).collect();
-            (
+            Flights {
                 records,
-                Options::new([1.0, 12.0], Preparation::of(&["LON", "LAT"], &["Q"])),
-            )
+                options: Options::new([1.0, 12.0], Preparation::of(&["LON", "LAT"], &["Q"])),
+            }
         },
     },
     Trap {
         name: "short",
         code: "short",
-        // Of few lines a record is now and then unlike the others by chance: 4 of 30.
+        // With few lines a record is sometimes unlike the others by chance: 4 of 30.
         follows: &["reweighed"],
         // 25 s are four periods of 1 rad/s.
-        flown: |seed| {
-            (
-                flights(3, seed, |seed| Flown {
-                    seconds: 25.0,
-                    ..calm(seed)
-                }),
-                options(),
-            )
+        flown: |seed| Flights {
+            records: flights(3, seed, |seed| Flown {
+                seconds: 25.0,
+                ..calm(seed)
+            }),
+            options: options(),
         },
     },
     Trap {
-        name: "held out and flown otherwise",
+        name: "held out and flown differently",
         code: "held-out",
         follows: &[],
         flown: |seed| {
             let mut records = flights(3, seed, calm);
             records[2].outputs *= 1.6;
-            (
+            Flights {
                 records,
-                Options {
+                options: Options {
                     held_out: vec![2],
                     ..options()
                 },
-            )
+            }
         },
     },
 ];
 
-/// Calm flights are said nothing of, and each trap what it is and what follows from it: as often as M14.14 to M14.18 state.
+/// Asserts that calm flights raise no caution, and each trap its own and its consequences, as often
+/// as M14.14 to M14.18 state.
 fn assert_cautions_over(seeds: Range<u64>) {
     let count = seeds.clone().count();
     let good: Vec<BTreeSet<&str>> = seeds
         .clone()
-        .map(|seed| said(&(flights(3, seed, calm), options())))
+        .map(|seed| {
+            let calm = Flights {
+                records: flights(3, seed, calm),
+                options: options(),
+            };
+            calm.raised_codes()
+        })
         .collect();
     // False alarms: feedback 3 of 30, points 4 of 126, the others none.
-    let falsely = |code: &str| {
-        good.iter()
-            .filter(|said| said.iter().any(|of| of.starts_with(code)))
-            .count()
-    };
-    assert!(
-        falsely("feedback") <= count / 10 && falsely("points") <= count / 30,
-        "{good:?}"
-    );
+    assert!(count_raising(&good, "feedback") <= count / 10, "{good:?}");
+    assert!(count_raising(&good, "points") <= count / 30, "{good:?}");
     let others = good
         .iter()
         .flatten()
         .filter(|code| !code.starts_with("feedback") && **code != "points");
     assert_eq!(others.count(), 0, "{good:?}");
     let mut wrong = Vec::new();
-    for Trap {
-        name,
-        code,
-        follows,
-        flown,
-    } in &TRAPS
-    {
-        let all: Vec<BTreeSet<&str>> = seeds.clone().map(|seed| said(&flown(seed))).collect();
-        let missed = all
+    for trap in &TRAPS {
+        let raised: Vec<BTreeSet<&str>> = seeds
+            .clone()
+            .map(|seed| (trap.flown)(seed).raised_codes())
+            .collect();
+        let missed = count - count_raising(&raised, trap.code);
+        let others = raised
             .iter()
-            .filter(|said| !said.iter().any(|of| of.starts_with(code)))
-            .count();
-        let is_other = |of: &&&str| !of.starts_with(code) && !follows.contains(of);
-        let others = all
-            .iter()
-            .filter(|said| said.iter().any(|of| is_other(&of)))
+            .filter(|codes| codes.iter().any(|code| trap.is_other(code)))
             .count();
         if missed > count / 10 || others > count / 10 {
             wrong.push(format!(
-                "{name}: missed {missed}, others {others} of {count}: {all:?}"
+                "{}: missed {missed}, others {others} of {count}: {raised:?}",
+                trap.name
             ));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+impl Trap {
+    /// Whether a code is neither that of the trap nor a consequence.
+    fn is_other(&self, code: &str) -> bool {
+        !code.starts_with(self.code) && !self.follows.contains(&code)
+    }
+}
+
+/// Counts the flights that raise a code with this beginning.
+fn count_raising(flights: &[BTreeSet<&str>], start: &str) -> usize {
+    flights
+        .iter()
+        .filter(|codes| codes.iter().any(|code| code.starts_with(start)))
+        .count()
 }
 
 #[test]
@@ -277,7 +316,7 @@ fn an_input_at_its_limit_is_a_fact_and_no_caution() {
             .collect::<Vec<String>>()
     };
     assert_eq!(facts(&records), Vec::<String>::new());
-    // A sweep of amplitude 1 is beyond 0.9 for 29 % of the time; what is added to it makes that less.
+    // A sweep of amplitude 1 is beyond 0.9 for 29 % of the time; the remnant makes that less.
     records[0].inputs.apply(|u| *u = u.clamp(-0.9, 0.9));
     let facts = facts(&records);
     assert!(
@@ -297,7 +336,8 @@ fn good_flights_raise_no_caution_and_each_trap_its_own_over_many_seeds() {
     assert_cautions_over(100..130);
 }
 
-/// A stable aircraft of so many inputs and outputs: modes of 1.5, 3 and 6 rad/s and a lag of 2 rad/s, excited and seen at random.
+/// Returns a stable aircraft with modes of 1.5, 3 and 6 rad/s and a lag of 2 rad/s, and random input
+/// and output matrices.
 fn aircraft(inputs: usize, outputs: usize, random: &mut Generator) -> StateSpace {
     let mut a = DMatrix::zeros(7, 7);
     for (at, omega) in [1.5, 3.0, 6.0].into_iter().enumerate() {
@@ -310,7 +350,8 @@ fn aircraft(inputs: usize, outputs: usize, random: &mut Generator) -> StateSpace
     StateSpace::new(a, b, c, DMatrix::zeros(outputs, inputs)).unwrap()
 }
 
-/// A sweep of a minute in each input in turn, the others moving a little, with a fiftieth of noise on every output.
+/// Flies a sweep of a minute in each input in turn, the others moving a little, with a fiftieth of
+/// noise on every output.
 fn sweeps(model: &StateSpace, random: &mut Generator) -> Vec<FlightRecord> {
     const STEP_S: f64 = 0.02;
     let time_s: Vec<f64> = (0..3000).map(|k| STEP_S * f64::from(k)).collect();
@@ -319,7 +360,7 @@ fn sweeps(model: &StateSpace, random: &mut Generator) -> Vec<FlightRecord> {
         let mut slow = vec![0.0; model.inputs()];
         let inputs = DMatrix::from_fn(model.inputs(), time_s.len(), |input, k| {
             slow[input] = 0.95 * slow[input] + 0.02 * random.normal();
-            // 0.13 to 2.6 Hz, as often an octave as the next.
+            // A logarithmic sweep from 0.13 to 2.6 Hz.
             let rate = 20f64.ln();
             let turns = 0.13 * 60.0 / rate * ((rate * time_s[k] / 60.0).exp() - 1.0);
             slow[input]
@@ -345,9 +386,10 @@ fn sweeps(model: &StateSpace, random: &mut Generator) -> Vec<FlightRecord> {
     (0..model.inputs()).map(&mut sweep).collect()
 }
 
-/// Models of records of so many channels are the aircraft within half a decibel where a response is strong.
+/// Asserts that the model of flown records has the response of the aircraft within half a decibel
+/// where it is strong.
 fn assert_identified(inputs: usize, outputs: usize) {
-    let mut random = Generator::of(7 + 100 * inputs as u64 + outputs as u64);
+    let mut random = Generator::new(7 + 100 * inputs as u64 + outputs as u64);
     let truth = aircraft(inputs, outputs, &mut random);
     let records = sweeps(&truth, &mut random);
     let names = |letter: char, count: usize| {
@@ -373,7 +415,8 @@ fn assert_identified(inputs: usize, outputs: usize) {
         for input in 0..inputs {
             let pair = Pair::new(output, input);
             for (is, expected) in is.curve(pair).iter().zip(expected.curve(pair)) {
-                // Noise is a fiftieth of an output, whatever input moves it: what is weak is known less well.
+                // Noise is a fiftieth of an output, whichever input moves it: weak responses are
+                // known less well.
                 let error = (is - expected).norm() / expected.norm().max(0.3 * strongest);
                 assert!(
                     error < 0.06,

@@ -1,29 +1,25 @@
-//! Gaps of a flight record, and words for its channels.
+//! Gaps of a flight record: their causes and their treatment (M14.1).
 
 use std::fmt;
 
 use gdcm_model::simulation::Signal;
 
-/// The names of `signals` in a row: `P, Q and R`.
+/// Joins the names of `signals`: `P, Q and R`.
 pub(super) fn names(signals: &[Signal]) -> String {
-    listed(
-        &signals
-            .iter()
-            .map(|signal| signal.name.as_str())
-            .collect::<Vec<_>>(),
-    )
+    let names: Vec<&str> = signals.iter().map(|signal| signal.name.as_str()).collect();
+    listed(&names)
 }
 
-/// Words in a row: `P, Q and R`.
+/// Joins words: `P, Q and R`.
 pub(super) fn listed<S: AsRef<str> + std::borrow::Borrow<str>>(words: &[S]) -> String {
     match words {
         [] => String::new(),
-        [one] => one.as_ref().to_owned(),
+        [single] => single.as_ref().to_owned(),
         [most @ .., last] => format!("{} and {}", most.join(", "), last.as_ref()),
     }
 }
 
-/// Why something is missing.
+/// The cause of a gap.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cause {
     /// Rows have no time stamp.
@@ -34,36 +30,39 @@ pub enum Cause {
     SamplesMissing(Vec<Signal>),
     /// Outputs stood still while others moved.
     Frozen(Vec<Signal>),
-    /// What is left between two gaps is shorter than the least segment; its length \[s\].
+    /// The rest between two gaps is shorter than the least segment; its length \[s\].
     SegmentTooShort(f64),
 }
 
-/// What was done about a gap.
+/// How a gap is treated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[allow(missing_docs)]
 pub enum Treatment {
-    /// Straight lines were drawn across it.
+    /// By straight lines.
     Bridged,
-    /// It was left out.
     CutOut,
 }
 
 impl Treatment {
-    /// What is done about a gap that is short enough, or not.
-    pub(super) fn of(short: bool) -> Self {
-        if short { Self::Bridged } else { Self::CutOut }
+    /// Short gaps are bridged, others cut out.
+    pub(super) fn for_gap(is_short: bool) -> Self {
+        if is_short {
+            Self::Bridged
+        } else {
+            Self::CutOut
+        }
     }
 }
 
 /// A gap of a record: from the last good sample to the next.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
 pub struct Gap {
-    /// On the record's clock \[s\].
+    /// On the clock of the record \[s\].
     pub start_s: f64,
-    /// On the record's clock \[s\].
+    /// On the clock of the record \[s\].
     pub end_s: f64,
-    /// Why.
     pub cause: Cause,
-    /// What was done.
     pub treatment: Treatment,
 }
 
@@ -77,10 +76,9 @@ impl fmt::Display for Gap {
             Cause::Frozen(signals) => write!(f, "{} frozen", names(signals))?,
             Cause::SegmentTooShort(length_s) => write!(f, "only {length_s:.1} s between gaps")?,
         }
-        f.write_str(if self.treatment == Treatment::Bridged {
-            ", bridged"
-        } else {
-            ", left out"
+        f.write_str(match self.treatment {
+            Treatment::Bridged => ", bridged",
+            Treatment::CutOut => ", left out",
         })
     }
 }

@@ -1,39 +1,41 @@
-//! The response by way of a recorded reference that drove the loop from outside: feedback cannot bias it (M14.15).
+//! The response seen through a recorded reference that drove the loop from outside: feedback cannot
+//! bias it (M14.15).
 //!
 //! ```text
-//! 1  [Y; U] = (Gamma0 + Gamma1 x + Gamma2 x^2) R + transient + N: local polynomials at every line of the longest record,
-//!    h = max(0.45, 0.15 omega);  S = the block of (F'F)^-1 of R
+//! 1  [Y; U] = (Gamma0 + Gamma1 x + Gamma2 x^2) R + transient + N: local polynomials at every line
+//!    of the longest record, h = max(0.45, 0.15 omega);  S = the block of (F'F)^-1 of R
 //! 2  G = Gamma_y Gamma_u^+ (relative tolerance 1e-3),   Cv = Re([I, -G] Cov N [I, -G]')
-//! 3  the cost of M14.4 with U = Gamma_u R, Y = Gamma_y R, Gamma straight between points, on the lines of leverage R S R' < 0.5
-//! 4  bands: the standard deviations that the lines as logged give of this model, over sqrt(coherence of the input with R)
+//! 3  the cost of M14.4 with U = Gamma_u R, Y = Gamma_y R, Gamma linear between points, on the lines
+//!    of leverage R S R' < 0.5
+//! 4  bands: the standard deviations of this model from the lines as logged, over
+//!    sqrt(coherence of the input with R)
 //! 5  only where the coherence of an input with R is 0.6: elsewhere the reference did not excite
 //! ```
 //!
-//! The ends of a chirp's band, where its smooth spectrum and the transient look alike, are what the leverage leaves out. The cost per degree of freedom is
-//! far below 1 and says nothing.
+//! The leverage excludes the ends of the band of a chirp, where its smooth spectrum and the
+//! transient look alike. The cost per degree of freedom is far below 1 and meaningless.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector, DVectorView};
 
-use gdcm_model::dataset::PairTable;
 use gdcm_model::dataset::model::ModelBands;
+use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::executor::Executor;
 
-use super::local_polynomial::{
-    EstimatePoint, LocalFit, LocalPolynomialError, ResponseEstimate, between, condition, local_fits,
-};
-use super::spectrum::Spectrum;
+use super::interpolation::Neighbours;
+use super::local_polynomial::{LocalFit, LocalPolynomialError, condition, local_fits};
+use super::response_estimate::{EstimatePoint, ResponseEstimate};
+use super::spectrum::{LineRange, Spectrum};
 
 /// Half width of a window over its centre.
 const HALF_WIDTH: f64 = 0.15;
-/// Singular values of `Gamma_u` over the greatest that count.
+/// Singular values of `Gamma_u` that count, over the largest.
 const TOLERANCE: f64 = 1e-3;
-/// Leverage of a line from which it is left out.
+/// Leverage from which a line is left out.
 const LEVERAGE: f64 = 0.5;
-
-/// Below this coherence a band is not widened any more: nothing is known there as it is.
+/// Coherence below which a band is not widened further: nothing is known there anyway.
 const LEAST_COHERENCE: f64 = 0.01;
 
-/// What the reference shows of inputs and outputs at one frequency.
+/// Inputs and outputs as seen through the reference at one frequency.
 struct InstrumentPoint {
     /// `Gamma0`, outputs then inputs x references.
     gamma: DMatrix<Complex<f64>>,
@@ -42,19 +44,20 @@ struct InstrumentPoint {
     estimate: EstimatePoint,
 }
 
-/// The records as the reference shows them.
+/// The records as seen through the reference.
 pub(super) struct Instrument {
     /// `Gamma_u R` and `Gamma_y R`, on the lines that count.
     pub(super) spectra: Vec<Spectrum>,
-    /// `G`, with the coherence of each input with the reference in the place of the partial coherence.
+    /// `G`, with the coherence of each input with the reference instead of the partial coherence.
     pub(super) measured: ResponseEstimate,
 }
 
 impl Instrument {
-    /// From lines whose inputs are the references and whose outputs are the outputs, then the inputs of the model.
-    pub(super) fn of(
+    /// Measures the response from lines whose inputs are the references and whose outputs are the
+    /// outputs, then the inputs, of the model.
+    pub(super) fn new(
         lines: &[Spectrum],
-        narrow: [f64; 2],
+        used: LineRange,
         outputs: usize,
         executor: &dyn Executor,
     ) -> Result<Self, LocalPolynomialError> {
@@ -62,21 +65,22 @@ impl Instrument {
             .iter()
             .max_by(|a, b| a.duration_s.total_cmp(&b.duration_s))
             .ok_or(LocalPolynomialError::Nothing)?;
-        let within: Vec<f64> = longest
+        let omegas: Vec<f64> = longest
             .omega
             .iter()
             .copied()
-            .filter(|omega| (narrow[0]..=narrow[1]).contains(omega))
+            .filter(|omega| (used.lowest..=used.highest).contains(omega))
             .collect();
-        let fits = local_fits(lines, &within, HALF_WIDTH, executor)?;
+        let fits = local_fits(lines, &omegas, HALF_WIDTH, executor)?;
         let points: Vec<InstrumentPoint> = fits
             .iter()
-            .map(|fit| InstrumentPoint::of(fit, outputs))
+            .map(|fit| InstrumentPoint::new(fit, outputs))
             .collect();
-        let shown = |lines: &Spectrum| seen(&lines.between(narrow[0], narrow[1]), &points, outputs);
         let spectra = lines
             .iter()
-            .map(shown)
+            .map(|lines| {
+                through_reference(&lines.between(used.lowest, used.highest), &points, outputs)
+            })
             .filter(|lines| !lines.omega.is_empty())
             .collect();
         Ok(Self {
@@ -89,12 +93,14 @@ impl Instrument {
 }
 
 impl InstrumentPoint {
-    fn of(fit: &LocalFit, outputs: usize) -> Self {
+    /// Divides the outputs by the inputs as seen through the reference (step 2).
+    fn new(fit: &LocalFit, outputs: usize) -> Self {
         let gamma = fit.response();
         let inputs = gamma.nrows() - outputs;
-        let of_outputs = gamma.rows(0, outputs).into_owned();
-        let of_inputs = gamma.rows(outputs, inputs).into_owned();
-        let response = &of_outputs * pseudo_inverse(&of_inputs);
+        let gamma_y = gamma.rows(0, outputs).into_owned();
+        let gamma_u = gamma.rows(outputs, inputs).into_owned();
+        let inverse = pseudo_inverse(&gamma_u);
+        let response = &gamma_y * &inverse;
         // [I, -G] Cov N [I, -G]'.
         let mut left = DMatrix::zeros(outputs, outputs + inputs);
         left.columns_mut(0, outputs).fill_with_identity();
@@ -102,19 +108,18 @@ impl InstrumentPoint {
         let noise = (&left * fit.covariance() * left.adjoint()).map(|value| value.re);
         let spread = fit.spread();
         let coherence = fit.coherence();
-        // Of G: Cv times the spread of R as the inputs have it.
-        let inverse = pseudo_inverse(&of_inputs);
-        let through = inverse.adjoint() * &spread * &inverse;
+        // var G = Cv times the spread of R mapped to the inputs.
+        let input_spread = inverse.adjoint() * &spread * &inverse;
         let estimate = EstimatePoint {
             omega: fit.window.omega,
             variance: DMatrix::from_fn(outputs, inputs, |o, i| {
-                noise[(o, o)] * through[(i, i)].re.max(0.0)
+                noise[(o, o)] * input_spread[(i, i)].re.max(0.0)
             }),
             noise,
-            power: DVector::from_fn(outputs, |o, _| fit.power()[o]),
-            coherence: DVector::from_fn(outputs, |o, _| coherence[o]),
+            power: fit.power().rows(0, outputs).into_owned(),
+            coherence: DVector::from_column_slice(&coherence[..outputs]),
             partial_coherence: DMatrix::from_fn(outputs, inputs, |_, i| coherence[outputs + i]),
-            condition: condition(of_inputs),
+            condition: condition(gamma_u),
             half_width: fit.window.half_width,
             freedom: fit.freedom,
             response,
@@ -125,77 +130,95 @@ impl InstrumentPoint {
             estimate,
         }
     }
-}
 
-impl ResponseEstimate {
-    /// Bands of what was logged, over the root of the coherence of each input with the reference: what the reference does not show
-    /// is known the less (M14.15).
-    pub(super) fn widened(&self, bands: &ModelBands) -> Option<ModelBands> {
-        let omegas: Vec<f64> = self.points.iter().map(|point| point.omega).collect();
-        let widened = |table: &PairTable<Vec<f64>>| {
-            PairTable::from_fn(table.outputs(), table.inputs(), |pair| {
-                let coherence = |omega: f64| {
-                    let (before, after, share) = between(&omegas, omega);
-                    let at = |index: usize| {
-                        self.points[index].partial_coherence[(pair.output, pair.input)]
-                    };
-                    (1.0 - share) * at(before) + share * at(after)
-                };
-                let sds = table[pair].iter().zip(bands.omega());
-                sds.map(|(sd, omega)| sd / coherence(*omega).clamp(LEAST_COHERENCE, 1.0).sqrt())
-                    .collect()
-            })
-        };
-        ModelBands::new(
-            bands.omega().to_vec(),
-            widened(bands.sd_db()),
-            widened(bands.sd_deg()),
-        )
-        .ok()
+    /// Returns the leverage `R S R'` of a line.
+    fn leverage(&self, reference: DVectorView<'_, Complex<f64>>) -> f64 {
+        (reference.transpose() * &self.spread * reference.map(|r| r.conj()))[0].re
     }
 }
 
-/// The lines as the reference shows them, less those that it determines by themselves.
-fn seen(lines: &Spectrum, points: &[InstrumentPoint], outputs: usize) -> Spectrum {
-    let mut omega = Vec::new();
-    let mut all = Vec::new();
+impl ResponseEstimate {
+    /// Widens bands from the lines as logged where the reference shows little: the standard
+    /// deviations are divided by the root of the coherence of each input with the reference
+    /// (M14.15).
+    pub(super) fn widened(&self, bands: &ModelBands) -> Option<ModelBands> {
+        let omegas: Vec<f64> = self.points.iter().map(|point| point.omega).collect();
+        let neighbours: Vec<Neighbours> = bands
+            .omega()
+            .iter()
+            .map(|omega| Neighbours::find(&omegas, *omega))
+            .collect();
+        ModelBands::new(
+            bands.omega().to_vec(),
+            self.divided_by_coherence(bands.sd_db(), &neighbours),
+            self.divided_by_coherence(bands.sd_deg(), &neighbours),
+        )
+        .ok()
+    }
+
+    /// Divides standard deviations by the root of the coherence between its `neighbours`.
+    fn divided_by_coherence(
+        &self,
+        table: &PairTable<Vec<f64>>,
+        neighbours: &[Neighbours],
+    ) -> PairTable<Vec<f64>> {
+        PairTable::from_fn(table.outputs(), table.inputs(), |pair: Pair| {
+            let mut widened = Vec::with_capacity(neighbours.len());
+            for (sd, near) in table[pair].iter().zip(neighbours) {
+                let at = (pair.output, pair.input);
+                let coherence = (1.0 - near.share) * self.points[near.before].partial_coherence[at]
+                    + near.share * self.points[near.after].partial_coherence[at];
+                widened.push(sd / coherence.clamp(LEAST_COHERENCE, 1.0).sqrt());
+            }
+            widened
+        })
+    }
+}
+
+/// Returns the lines as seen through the reference, without those that determine themselves
+/// (step 3).
+fn through_reference(lines: &Spectrum, points: &[InstrumentPoint], outputs: usize) -> Spectrum {
     let omegas: Vec<f64> = points.iter().map(|point| point.estimate.omega).collect();
+    let mut omega = Vec::new();
+    let mut seen = Vec::new();
     for (k, &at) in lines.omega.iter().enumerate() {
-        let (before, after, share) = between(&omegas, at);
-        let one = &points[before];
-        let other = &points[after];
+        let Neighbours {
+            before,
+            after,
+            share,
+        } = Neighbours::find(&omegas, at);
+        let before = &points[before];
+        let after = &points[after];
         let reference = lines.inputs.column(k);
-        let leverage = |point: &InstrumentPoint| {
-            (reference.transpose() * &point.spread * reference.map(|r| r.conj()))[0].re
-        };
-        if (1.0 - share) * leverage(one) + share * leverage(other) >= LEVERAGE {
+        let leverage =
+            (1.0 - share) * before.leverage(reference) + share * after.leverage(reference);
+        if leverage >= LEVERAGE {
             continue;
         }
-        let gamma = &one.gamma * Complex::from(1.0 - share) + &other.gamma * Complex::from(share);
+        let gamma =
+            &before.gamma * Complex::from(1.0 - share) + &after.gamma * Complex::from(share);
         omega.push(at);
-        all.push(gamma * reference);
+        seen.push(gamma * reference);
     }
     let inputs = points
         .first()
         .map_or(0, |point| point.gamma.nrows() - outputs);
-    let rows = |first: usize, count: usize| {
-        DMatrix::from_fn(count, all.len(), |row, k| all[k][first + row])
-    };
     Spectrum {
-        inputs: rows(outputs, inputs),
-        outputs: rows(0, outputs),
+        inputs: DMatrix::from_fn(inputs, seen.len(), |i, k| seen[k][outputs + i]),
+        outputs: DMatrix::from_fn(outputs, seen.len(), |o, k| seen[k][o]),
         omega,
         ..lines.clone()
     }
 }
 
-/// The pseudo-inverse, singular values below a share of the greatest left out; zero where it cannot be found.
+/// Computes the pseudo-inverse without singular values below a share of the largest; zero if the
+/// decomposition fails.
 fn pseudo_inverse(matrix: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
-    let none = || DMatrix::zeros(matrix.ncols(), matrix.nrows());
+    let zero = DMatrix::zeros(matrix.ncols(), matrix.nrows());
     let Some(svd) = matrix.clone().try_svd(true, true, f64::EPSILON, 10_000) else {
-        return none();
+        return zero;
     };
     let least = TOLERANCE * svd.singular_values.max();
     svd.pseudo_inverse(least.max(f64::MIN_POSITIVE))
-        .unwrap_or_else(|_| none())
+        .unwrap_or(zero)
 }

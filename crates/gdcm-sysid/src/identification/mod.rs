@@ -1,50 +1,63 @@
 //! Identified models from flight records (M14).
 mod blocks;
+mod bundle;
+pub mod caution_note;
 pub mod cautions;
+mod channel_quality;
+mod clock;
+pub mod cut_off;
 pub mod diagnostics;
 pub mod feedback;
 #[cfg(test)]
 mod fresh_flight_tests;
 pub mod gaps;
+mod gram_matrix;
+pub mod identification_error;
 pub mod identify;
 mod instrument;
+mod interpolation;
 #[cfg(test)]
 mod known_answers_tests;
 mod laguerre;
 mod likelihood;
 pub mod local_polynomial;
 mod mode_removal;
+mod model_selection;
+pub mod noise_covariance;
 mod normal_system;
+pub mod options;
 mod order;
 pub mod preparation;
-pub mod prepared_data;
+pub mod preparation_settings;
+mod prepared_data;
 #[cfg(test)]
 mod real_flight_tests;
 pub mod record_cautions;
 pub mod record_contrast;
+pub mod record_fault;
+pub mod record_fits;
 mod refinement;
-mod sampling;
+pub mod response_estimate;
+pub mod scales;
+mod search_extent;
 pub mod spectrum;
 pub mod subspace;
 pub mod topics;
+mod track;
 pub mod uncertainty;
 
-pub use cautions::{CautionNote, IdentificationCaution};
-pub use identify::{Identification, IdentificationError, Options, SearchSpace};
-pub use local_polynomial::{ResponseEstimate, TRUSTED_COHERENCE};
-pub use preparation::{ChannelPreparation, Hold, Preparation};
+pub use caution_note::CautionNote;
+pub use cautions::IdentificationCaution;
+pub use identification_error::IdentificationError;
+pub use identify::Identification;
+pub use options::{Options, SearchSpace};
+pub use preparation_settings::{ChannelPreparation, Hold, Preparation};
+pub use response_estimate::{ResponseEstimate, TRUSTED_COHERENCE};
 pub use spectrum::spectra;
 
-#[cfg(test)]
-use gdcm_model::progress::Unobserved;
-pub use gdcm_model::response::frequency_response::log_spaced;
+pub use gdcm_model::response::log_spaced;
 pub use gdcm_model::response::pole_estimate::PoleEstimate;
 pub use gdcm_model::simulation::{
     FirstOrderHold, FlightRecord, LowPass, Segment, Signal, Validation, ValidationError,
     ValidationSettings, ValidationWindow, validate,
 };
-
-#[cfg(test)]
-use self::likelihood::{Likelihood, SpectralLines};
-#[cfg(test)]
-use self::refinement::{propose, refine};

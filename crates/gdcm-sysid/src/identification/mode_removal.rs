@@ -12,7 +12,7 @@ use gdcm_model::dataset::StateSpace;
 use gdcm_model::response::eigenvalues::SchurForm;
 
 use super::blocks::{Block, BlockModel};
-use super::local_polynomial::{EstimatePoint, ResponseEstimate};
+use super::response_estimate::{EstimatePoint, ResponseEstimate};
 
 impl BlockModel {
     /// The model without the complex pair (`size` 2) or the real pole (`size` 1) that `measured` misses least; none where it has no

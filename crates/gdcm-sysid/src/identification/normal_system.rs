@@ -17,9 +17,8 @@ use nalgebra::{Complex, DMatrix, DVector};
 use gdcm_model::executor::each;
 
 use super::blocks::{Block, BlockModel};
-use super::likelihood::{
-    DEPENDENT, Likelihood, SegmentCost, SpectralLines, pseudo_inverse_root, scale_columns, whiten,
-};
+use super::gram_matrix::{pseudo_inverse_root, scale_columns};
+use super::likelihood::{DEPENDENT, Likelihood, SegmentCost, SpectralLines, whiten};
 
 /// `G`, `g` and the cost: a step `d` changes the cost by `-2 g'd + d'G d`.
 #[derive(Clone, Debug)]
@@ -79,6 +78,22 @@ pub(super) fn normal_systems(
     })
     .into_iter()
     .collect()
+}
+
+/// Sums the normal systems of the segments of one record; `systems` are those of all segments.
+pub(super) fn system_of_record(
+    likelihood: &Likelihood,
+    record: usize,
+    systems: &[NormalSystem],
+) -> NormalSystem {
+    let parameters = systems.first().map_or(0, |system| system.gradient.len());
+    let own = likelihood
+        .segments
+        .iter()
+        .zip(systems)
+        .filter(|(segment, _)| segment.record == record)
+        .map(|(_, system)| system);
+    NormalSystem::sum(parameters, own)
 }
 
 /// `J'd` of one segment for the column `d` that stands in the place of the residual of `part`, its transient taken off.

@@ -1,6 +1,6 @@
-//! What models are made from and judged by, in scaled units.
+//! The data that models are fitted to and judged by, in scaled units.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use nalgebra::DMatrix;
 
@@ -13,24 +13,37 @@ use gdcm_model::simulation::{FlightRecord, Segment, centred};
 
 use super::blocks::BlockModel;
 use super::cautions::IdentificationCaution;
-use super::identify::{IdentificationError, Options};
+use super::cut_off::CutOff;
+use super::identification_error::IdentificationError;
 use super::instrument::Instrument;
 use super::likelihood::{Likelihood, SpectralLines};
-use super::local_polynomial::{NoiseCovariance, ResponseEstimate, local_polynomial};
-use super::order::{Extent, parameters_of_order};
+use super::local_polynomial::{LocalPolynomialError, local_polynomial};
+use super::noise_covariance::NoiseCovariance;
+use super::options::Options;
 use super::preparation::{RecordUse, prepare};
 use super::record_cautions::RecordCaution;
-use super::spectrum::{CutOff, Spectrum, spectra};
+use super::response_estimate::ResponseEstimate;
+use super::scales::{Scales, ScalingError};
+use super::search_extent::{Extent, FIGURES_AN_UNKNOWN, parameters_of_order};
+use super::spectrum::{LineRange, Spectrum};
 use super::subspace::SubspaceSettings;
 
-/// Points of the measured response.
+/// Number of frequencies of the measured response.
 const MEASURED_POINTS: usize = 40;
-/// Spectral lines for the measured response reach this factor above those used.
+/// Highest line for the measured response over the highest line used.
 const BEYOND: f64 = 1.3;
-/// Lines of a segment are used from its second one up: the first holds its drift (M14.12).
-const FIRST_LINE: f64 = 1.5;
-/// Condition number of the inputs' correlations above which one is a copy of the others.
+/// Condition number of the correlations of the inputs above which one is a copy of the others.
 const COPY: f64 = 1e9;
+/// Share of the largest entry of an eigenvector above which an input is involved in a dependence.
+const INVOLVED: f64 = 0.1;
+/// Upper end of the band over the highest line used.
+const BAND_END: f64 = 0.75;
+/// Periods of the lower end of the band that the longest record has to last (M14.12).
+const LEAST_PERIODS: f64 = 1.5;
+/// Periods that it should last (M14.12).
+const BETTER_PERIODS: f64 = 5.0;
+/// Periods that it should last for each of several inputs that are moved in a single record.
+const PERIODS_AN_INPUT: f64 = 3.0;
 
 /// Records, prepared, transformed and weighed.
 pub(super) struct PreparedData<'a> {
@@ -40,9 +53,9 @@ pub(super) struct PreparedData<'a> {
     pub(super) scales: Scales,
     /// Segments to fit, low-passed for the projections.
     pub(super) segments: Vec<Segment>,
-    /// The same as they are.
+    /// The same without the filter.
     pub(super) unfiltered: Vec<Segment>,
-    /// Which lines the measured response is made of.
+    /// The lines behind the measured response.
     pub(super) lines: LineRange,
     /// Held-out segments in the units of the records.
     pub(super) held_out_segments: Vec<Segment>,
@@ -52,146 +65,106 @@ pub(super) struct PreparedData<'a> {
     pub(super) measured: ResponseEstimate,
     /// The cost over the records of the fit.
     pub(super) likelihood: Likelihood<'a>,
-    /// The same of the lines as they were logged, where those of the fit are seen by way of a reference (M14.15).
+    /// The cost over the lines as logged, if the lines of the fit are those seen through a reference
+    /// (M14.15).
     pub(super) direct: Option<Likelihood<'a>>,
     /// The cost over the held-out records.
     pub(super) held_out: Likelihood<'a>,
     /// Highest line used \[rad/s\].
     pub(super) highest: f64,
-    /// What speaks against the records.
+    /// Doubts about the records.
     pub(super) cautions: Vec<IdentificationCaution>,
 }
 
 impl<'a> PreparedData<'a> {
-    /// Prepares the records, measures the response and the noise, and filters for the projections (M14, sections 1 and 2).
+    /// Prepares the records and measures response and noise (M14.1, M14.2).
+    ///
+    /// ```text
+    /// 1  segments on a uniform grid; held-out records apart, references apart
+    /// 2  scales; inputs that depend on each other are refused
+    /// 3  spectral lines, the measured response and the covariance of the noise
+    /// 4  weights of the lines, of the fit and of the held-out records
+    /// 5  low-pass for the projections
+    /// ```
     pub(super) fn new(
         records: &[FlightRecord],
         options: &Options,
         executor: &'a dyn Executor,
         progress: &Shares,
     ) -> Result<Self, IdentificationError> {
-        if let Some(&record) = options
-            .held_out
-            .iter()
-            .find(|record| **record >= records.len())
-        {
-            return Err(IdentificationError::HeldOutMissing {
-                record,
-                records: records.len(),
-            });
-        }
+        check_held_out(records, options)?;
         let prepared = prepare(records, &options.preparation, executor)?;
         check_sampling(&prepared.segments, options)?;
-        let (mut held_out_segments, mut segments): (Vec<Segment>, Vec<Segment>) = prepared
-            .segments
-            .into_iter()
-            .partition(|segment| options.held_out.contains(&segment.record));
-        held_out_segments
-            .iter_mut()
-            .for_each(|segment| drop(split_references(segment, options.references)));
-        let references: Vec<DMatrix<f64>> = segments
-            .iter_mut()
-            .map(|segment| split_references(segment, options.references))
-            .collect();
-        if segments.is_empty() {
+        let SplitSegments {
+            to_fit,
+            references,
+            held_out: held_out_segments,
+        } = SplitSegments::new(prepared.segments, options);
+        if to_fit.is_empty() {
             return Err(IdentificationError::NothingToFit);
         }
-        let scales = Scales::of(&segments)?;
-        let scaled = |segments: &[Segment]| {
-            segments
-                .iter()
-                .map(|segment| scales.scaled(segment))
-                .collect::<Vec<_>>()
-        };
-        let segments = scaled(&segments);
+        let scales = Scales::from_segments(&to_fit)?;
+        let segments = scale_all(&scales, &to_fit);
         check_inputs(&segments, options)?;
 
         progress.next(0.02, "measured response")?;
-        let lowest = options.lowest();
-        let highest = options.highest();
-        let lines = LineRange {
-            lowest,
-            highest: BEYOND * highest,
+        let used = LineRange {
+            lowest: options.lowest(),
+            highest: options.highest(),
         };
-        let wide = lines.of(&segments, executor);
+        let lines = LineRange {
+            highest: BEYOND * used.highest,
+            ..used
+        };
+        let wide = lines.spectra(&segments, executor);
         let narrow: Vec<Spectrum> = wide
             .iter()
-            .map(|lines| lines.between(lowest, highest))
+            .map(|spectrum| spectrum.between(used.lowest, used.highest))
             .collect();
-        let too_short = checked_length(&segments, &narrow, options)?;
-        let first = wide
-            .iter()
-            .filter_map(|lines| lines.omega.first().copied())
-            .fold(highest, f64::min);
-        let logged = || {
-            local_polynomial(
-                &wide,
-                &log_spaced(first, highest, MEASURED_POINTS),
-                executor,
-            )
-        };
-        let likelihood = |spectra: &[Spectrum], measured: &ResponseEstimate| {
-            let noise = NoiseCovariance::of(measured).ok_or(IdentificationError::OutputsDepend)?;
-            let segments: Option<_> = spectra
-                .iter()
-                .map(|lines| SpectralLines::new(lines, &noise))
-                .collect();
-            segments
-                .map(|segments| Likelihood { segments, executor })
-                .ok_or(IdentificationError::OutputsDepend)
-        };
-        let (measured, narrow, direct) = if options.references == 0 {
-            (logged()?, narrow, None)
+        let too_short = check_length(&segments, &narrow, options)?;
+        let Measurement {
+            measured,
+            spectra,
+            direct,
+        } = if options.references == 0 {
+            Measurement {
+                measured: measure_response(&wide, used.highest, executor)?,
+                spectra: narrow,
+                direct: None,
+            }
         } else {
-            let driven = segments
-                .iter()
-                .zip(references)
-                .map(|(segment, reference)| driven(segment, reference));
-            let driven: Vec<Segment> = driven.collect();
-            let scales = Scales::of(&driven)?;
-            let seen = lines.of(
-                &driven
-                    .iter()
-                    .map(|segment| scales.scaled(segment))
-                    .collect::<Vec<_>>(),
-                executor,
-            );
+            let driven = driven_segments(&segments, references)?;
+            let driven_lines = lines.spectra(&driven, executor);
             let outputs = options.preparation.outputs.len();
-            let instrument = Instrument::of(&seen, [lowest, highest], outputs, executor)?;
-            (
-                instrument.measured,
-                instrument.spectra,
-                Some(likelihood(&narrow, &logged()?)?),
-            )
+            let instrument = Instrument::new(&driven_lines, used, outputs, executor)?;
+            let logged = measure_response(&wide, used.highest, executor)?;
+            Measurement {
+                measured: instrument.measured,
+                spectra: instrument.spectra,
+                direct: Some(weigh(&narrow, &logged, executor)?),
+            }
         };
-        let fit = likelihood(&narrow, &measured)?;
-        let held_out = likelihood(
-            &LineRange { lowest, highest }.of(&scaled(&held_out_segments), executor),
-            &measured,
-        )?;
+        let likelihood = weigh(&spectra, &measured, executor)?;
+        let held_out_lines = used.spectra(&scale_all(&scales, &held_out_segments), executor);
+        let held_out = weigh(&held_out_lines, &measured, executor)?;
 
         progress.next(0.07, "low-pass")?;
-        let cut_off = CutOff::choose(&segments, highest, executor);
-        let is_of_model = |caution: &RecordCaution| match caution {
-            // A reference may well move as an input does.
-            RecordCaution::MovedTogether { signals, .. } => {
-                signals.iter().all(|signal| signal.index < options.inputs())
-            }
-            RecordCaution::Copy { of, .. } => {
-                of.role == ChannelSide::Output || of.index < options.inputs()
-            }
-            _ => true,
-        };
-        let of_records = prepared.cautions.into_iter().filter(is_of_model);
-        let mut cautions: Vec<_> = of_records.map(IdentificationCaution::Records).collect();
+        let cut_off = CutOff::choose(&segments, used.highest, executor);
+        let mut cautions: Vec<IdentificationCaution> = prepared
+            .cautions
+            .into_iter()
+            .filter(|caution| concerns_model(caution, options))
+            .map(IdentificationCaution::Records)
+            .collect();
         cautions.extend(too_short);
         cautions.extend(vibration_cautions(&cut_off, options));
         cautions.extend(excitation_cautions(&measured, options));
-        let shown = measured.shown_band(options.band);
-        cautions.extend(shown.map(|shown| IdentificationCaution::BandNotShown {
-            band: options.band,
-            shown,
-        }));
+        if let Some(shown) = measured.shown_band(options.band) {
+            cautions.push(IdentificationCaution::BandNotShown {
+                band: options.band,
+                shown,
+            });
+        }
         Ok(Self {
             record_uses: prepared.records,
             scales,
@@ -199,59 +172,49 @@ impl<'a> PreparedData<'a> {
             unfiltered: segments,
             lines,
             held_out_segments,
-            spectra: narrow,
+            spectra,
             measured,
-            likelihood: fit,
+            likelihood,
             direct,
             held_out,
-            highest,
+            highest: used.highest,
             cautions,
         })
     }
 
-    /// What CT-PBSID is run with: what the options say, and where they say nothing what the records can carry (M14.13).
+    /// Returns the settings of CT-PBSID: those of the options, completed by what the records can
+    /// carry (M14.13).
     pub(super) fn subspace_settings(&self, options: &Options) -> SubspaceSettings {
-        let inputs = self.scales.inputs.len();
         let outputs = self.scales.outputs.len();
-        let lines: usize = self
-            .spectra
-            .iter()
-            .map(|spectrum| spectrum.omega.len())
-            .sum();
-        let seconds: f64 = self
-            .spectra
-            .iter()
-            .map(|spectrum| spectrum.duration_s)
-            .sum();
-        let figures = 2 * outputs * lines.saturating_sub(self.spectra.len());
+        let highest = options.band[1];
         let extent = Extent {
-            inputs,
+            inputs: self.scales.inputs.len(),
             outputs,
-            figures,
-            radians: seconds * options.band[1],
+            figures: 2 * outputs * self.line_count().saturating_sub(self.spectra.len()),
+            radians: self.duration_s() * highest,
         };
-        let pasts = options.pasts.clone().unwrap_or_else(|| extent.pasts());
-        let longest = pasts.iter().copied().max().unwrap_or_default();
-        let mut orders = options
-            .orders
-            .clone()
-            .unwrap_or_else(|| extent.orders(longest));
+        let pasts = match &options.pasts {
+            Some(pasts) => pasts.clone(),
+            None => extent.pasts(),
+        };
+        let longest_past = pasts.iter().copied().max().unwrap_or_default();
+        let mut orders = match &options.orders {
+            Some(orders) => orders.clone(),
+            None => extent.orders(longest_past),
+        };
         orders.sort_unstable();
         orders.dedup();
         SubspaceSettings {
-            highest: options.band[1],
-            poles: options
-                .poles
-                .iter()
-                .map(|pole| pole * options.band[1])
-                .collect(),
+            highest,
+            poles: options.poles.iter().map(|pole| pole * highest).collect(),
             pasts,
             orders,
             longest_future: extent.longest_future(),
         }
     }
 
-    /// A model in the units of the records: the response of a pair is its scaled one times output over input.
+    /// Converts a model to the units of the records: each response is multiplied by the scale of the
+    /// output over that of the input. `None` if the model is not finite.
     pub(super) fn in_units(&self, model: &BlockModel) -> Option<StateSpace> {
         let mut scaled = model.clone();
         for (input, scale) in self.scales.inputs.iter().enumerate() {
@@ -265,25 +228,74 @@ impl<'a> PreparedData<'a> {
         scaled.state_space()
     }
 
-    /// That no model came of this.
+    /// The error that no model was found.
     pub(super) fn no_model(&self) -> IdentificationError {
         IdentificationError::NoModel {
-            lines: self
-                .spectra
-                .iter()
-                .map(|spectrum| spectrum.omega.len())
-                .sum(),
-            seconds: self
-                .spectra
-                .iter()
-                .map(|spectrum| spectrum.duration_s)
-                .sum(),
+            lines: self.line_count(),
+            seconds: self.duration_s(),
         }
+    }
+
+    /// Returns the number of lines to fit.
+    fn line_count(&self) -> usize {
+        self.spectra
+            .iter()
+            .map(|spectrum| spectrum.omega.len())
+            .sum()
+    }
+
+    /// Returns the total length of the segments to fit \[s\].
+    fn duration_s(&self) -> f64 {
+        self.spectra
+            .iter()
+            .map(|spectrum| spectrum.duration_s)
+            .sum()
     }
 }
 
-/// Takes the last `references` inputs off a segment, and gives them.
-fn split_references(segment: &mut Segment, references: usize) -> DMatrix<f64> {
+/// Refuses the numbers of held-out records that do not exist.
+fn check_held_out(records: &[FlightRecord], options: &Options) -> Result<(), IdentificationError> {
+    for &record in &options.held_out {
+        if record >= records.len() {
+            return Err(IdentificationError::HeldOutMissing {
+                record,
+                records: records.len(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Segments, those of held-out records apart, without the references among their inputs.
+struct SplitSegments {
+    to_fit: Vec<Segment>,
+    /// The references of each segment to fit, samples x references.
+    references: Vec<DMatrix<f64>>,
+    held_out: Vec<Segment>,
+}
+
+impl SplitSegments {
+    fn new(segments: Vec<Segment>, options: &Options) -> Self {
+        let mut split = Self {
+            to_fit: Vec::new(),
+            references: Vec::new(),
+            held_out: Vec::new(),
+        };
+        for mut segment in segments {
+            let references = take_references(&mut segment, options.references);
+            if options.held_out.contains(&segment.record) {
+                split.held_out.push(segment);
+            } else {
+                split.references.push(references);
+                split.to_fit.push(segment);
+            }
+        }
+        split
+    }
+}
+
+/// Removes the last `references` inputs from a segment and returns them.
+fn take_references(segment: &mut Segment, references: usize) -> DMatrix<f64> {
     let inputs = segment.inputs.ncols().saturating_sub(references);
     let taken = segment
         .inputs
@@ -293,101 +305,139 @@ fn split_references(segment: &mut Segment, references: usize) -> DMatrix<f64> {
     taken
 }
 
-/// A segment with the references as what drives it, and outputs and inputs as what comes of that.
-fn driven(segment: &Segment, reference: DMatrix<f64>) -> Segment {
-    let both: Vec<_> = segment
-        .outputs
-        .column_iter()
-        .chain(segment.inputs.column_iter())
-        .collect();
-    Segment {
-        inputs: reference,
-        outputs: DMatrix::from_columns(&both),
-        ..segment.clone()
+fn scale_all(scales: &Scales, segments: &[Segment]) -> Vec<Segment> {
+    segments
+        .iter()
+        .map(|segment| scales.scaled(segment))
+        .collect()
+}
+
+/// Returns scaled segments with the references as inputs, and outputs and inputs as outputs.
+fn driven_segments(
+    segments: &[Segment],
+    references: Vec<DMatrix<f64>>,
+) -> Result<Vec<Segment>, ScalingError> {
+    let mut driven = Vec::with_capacity(segments.len());
+    for (segment, reference) in segments.iter().zip(references) {
+        let responses: Vec<_> = segment
+            .outputs
+            .column_iter()
+            .chain(segment.inputs.column_iter())
+            .collect();
+        driven.push(Segment {
+            inputs: reference,
+            outputs: DMatrix::from_columns(&responses),
+            ..segment.clone()
+        });
     }
+    let scales = Scales::from_segments(&driven)?;
+    Ok(scale_all(&scales, &driven))
 }
 
-/// Which lines of the segments are used.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct LineRange {
-    /// \[rad/s\].
-    pub(super) lowest: f64,
-    /// \[rad/s\].
-    pub(super) highest: f64,
+/// The measured response and the lines to fit.
+struct Measurement<'a> {
+    measured: ResponseEstimate,
+    spectra: Vec<Spectrum>,
+    /// The cost over the lines as logged, if a reference is used.
+    direct: Option<Likelihood<'a>>,
 }
 
-impl LineRange {
-    /// The lines of the segments that have any here, from the second of each on.
-    pub(super) fn of(self, segments: &[Segment], executor: &dyn Executor) -> Vec<Spectrum> {
-        let used = |lines: Spectrum| {
-            lines.between(
-                self.lowest.max(FIRST_LINE * TAU / lines.duration_s),
-                self.highest,
-            )
-        };
-        let lines = spectra(segments, self.highest, executor)
-            .into_iter()
-            .map(used);
-        lines.filter(|lines| !lines.omega.is_empty()).collect()
+/// Measures the response from the lowest line up to `highest` \[rad/s\].
+fn measure_response(
+    lines: &[Spectrum],
+    highest: f64,
+    executor: &dyn Executor,
+) -> Result<ResponseEstimate, LocalPolynomialError> {
+    let first = lines
+        .iter()
+        .filter_map(|spectrum| spectrum.omega.first().copied())
+        .fold(highest, f64::min);
+    let omegas = log_spaced(first, highest, MEASURED_POINTS);
+    local_polynomial(lines, &omegas, executor)
+}
+
+/// Weighs lines by the noise of the measured response.
+fn weigh<'a>(
+    spectra: &[Spectrum],
+    measured: &ResponseEstimate,
+    executor: &'a dyn Executor,
+) -> Result<Likelihood<'a>, IdentificationError> {
+    let noise =
+        NoiseCovariance::from_measured(measured).ok_or(IdentificationError::OutputsDepend)?;
+    let mut segments = Vec::with_capacity(spectra.len());
+    for spectrum in spectra {
+        let lines =
+            SpectralLines::new(spectrum, &noise).ok_or(IdentificationError::OutputsDepend)?;
+        segments.push(lines);
     }
+    Ok(Likelihood { segments, executor })
 }
 
+/// Refuses a band whose highest line is above half the sampling frequency.
 fn check_sampling(segments: &[Segment], options: &Options) -> Result<(), IdentificationError> {
     let sample_time_s = segments
         .iter()
         .map(|segment| segment.sample_time_s)
         .fold(0.0, f64::max);
-    let seen = std::f64::consts::PI / sample_time_s;
-    if options.highest() <= seen {
+    let nyquist = PI / sample_time_s;
+    if options.highest() <= nyquist {
         return Ok(());
     }
     Err(IdentificationError::SampledTooSlowly {
         highest: options.band[1],
         sample_time_s,
-        limit: 0.75 * seen,
+        limit: BAND_END * nyquist,
     })
 }
 
-/// Periods of the lower end of the band that the longest record lasts at least, and that it should last (M14.12).
-const PERIODS: (f64, f64) = (1.5, 5.0);
-/// The same for each of several inputs that are moved in one record.
-const PERIODS_AN_INPUT: f64 = 3.0;
-/// Real figures that there are at least for each unknown of a model (M14.13).
-pub(super) const FIGURES_AN_UNKNOWN: usize = 5;
-
-/// Refuses records that show nothing of the lower end of the band, or too little for a model of the first order; says where they are
-/// shorter than they should be (M14.12).
-fn checked_length(
+/// Refuses records that are too short for the lower end of the band or for a model of the first
+/// order, and reports records that are shorter than they should be (M14.12).
+fn check_length(
     segments: &[Segment],
     lines: &[Spectrum],
     options: &Options,
 ) -> Result<Option<IdentificationCaution>, IdentificationError> {
     let lowest = options.band[0];
-    let period_s = TAU / options.band[0];
-    let length_s = |segment: &Segment| segment.sample_time_s * segment.inputs.nrows() as f64;
-    let longest_s = segments.iter().map(length_s).fold(0.0, f64::max);
-    let of_inputs = if segments.len() == 1 {
+    let period_s = TAU / lowest;
+    let longest_s = segments
+        .iter()
+        .map(|segment| segment.sample_time_s * segment.inputs.nrows() as f64)
+        .fold(0.0, f64::max);
+    let periods_of_inputs = if segments.len() == 1 {
         options.inputs() as f64 * PERIODS_AN_INPUT
     } else {
         0.0
     };
-    let better_s = PERIODS.1.max(of_inputs) * period_s;
-    let needed_s = PERIODS.0 * TAU / lowest;
+    let better_s = BETTER_PERIODS.max(periods_of_inputs) * period_s;
+    let needed_s = LEAST_PERIODS * TAU / lowest;
     if longest_s < needed_s {
-        let enough = PERIODS.0 * TAU / longest_s;
         return Err(IdentificationError::TooShort {
             longest_s,
             lowest,
             needed_s,
             better_s,
-            enough,
+            enough: LEAST_PERIODS * TAU / longest_s,
         });
     }
-    let (inputs, outputs) = lines
-        .first()
-        .map_or((0, 0), |of| (of.inputs.nrows(), of.outputs.nrows()));
-    let count: usize = lines.iter().map(|of| of.omega.len()).sum();
-    let figures = (2 * outputs * count).saturating_sub(2 * outputs * segments.len());
+    check_figures(segments.len(), lines)?;
+    let periods = longest_s * lowest / TAU;
+    if periods >= BETTER_PERIODS {
+        return Ok(None);
+    }
+    Ok(Some(IdentificationCaution::Short {
+        longest_s,
+        lowest,
+        periods,
+        better_s,
+    }))
+}
+
+/// Refuses lines with too few real values for a model of the first order (M14.13).
+fn check_figures(segments: usize, lines: &[Spectrum]) -> Result<(), IdentificationError> {
+    let inputs = lines.first().map_or(0, |lines| lines.inputs.nrows());
+    let outputs = lines.first().map_or(0, |lines| lines.outputs.nrows());
+    let count: usize = lines.iter().map(|lines| lines.omega.len()).sum();
+    let figures = (2 * outputs * count).saturating_sub(2 * outputs * segments);
     let unknowns = parameters_of_order(1, inputs, outputs);
     let needed = FIGURES_AN_UNKNOWN * unknowns;
     if figures < needed {
@@ -397,18 +447,10 @@ fn checked_length(
             unknowns,
         });
     }
-    let periods = longest_s * lowest / TAU;
-    Ok(
-        (periods < PERIODS.1).then_some(IdentificationCaution::Short {
-            longest_s,
-            lowest,
-            periods,
-            better_s,
-        }),
-    )
+    Ok(())
 }
 
-/// Refuses inputs of which one is a sum of others, by the condition of their correlations.
+/// Refuses inputs that depend on each other, by the condition number of their correlations.
 fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), IdentificationError> {
     let inputs = options.inputs();
     let mut gram = DMatrix::<f64>::zeros(inputs, inputs);
@@ -423,161 +465,56 @@ fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), Identific
     if eigen.eigenvalues[least] * COPY > eigen.eigenvalues.max() {
         return Ok(());
     }
-    let vector = eigen.eigenvectors.column(least);
-    let involved = (0..inputs).filter(|&input| vector[input].abs() > 0.1 * vector.amax());
-    let signals = involved
+    let dependence = eigen.eigenvectors.column(least);
+    let involved = (0..inputs)
+        .filter(|&input| dependence[input].abs() > INVOLVED * dependence.amax())
         .map(|input| options.signal(ChannelSide::Input, input))
         .collect();
-    Err(IdentificationError::InputsDepend(signals))
+    Err(IdentificationError::InputsDepend(involved))
+}
+
+/// Whether a caution is about channels of the model: a reference may well move as an input does.
+fn concerns_model(caution: &RecordCaution, options: &Options) -> bool {
+    match caution {
+        RecordCaution::MovedTogether { signals, .. } => {
+            signals.iter().all(|signal| signal.index < options.inputs())
+        }
+        RecordCaution::Copy { of, .. } => {
+            of.role == ChannelSide::Output || of.index < options.inputs()
+        }
+        _ => true,
+    }
 }
 
 fn vibration_cautions(cut_off: &CutOff, options: &Options) -> Vec<IdentificationCaution> {
-    let caution = |&(output, share): &(usize, f64)| IdentificationCaution::Vibration {
-        signal: options.signal(ChannelSide::Output, output),
-        percent: 100.0 * share,
-        cut_off: cut_off.omega,
-    };
-    cut_off.vibrating.iter().map(caution).collect()
+    let mut cautions = Vec::new();
+    for &(output, share) in &cut_off.vibrating {
+        cautions.push(IdentificationCaution::Vibration {
+            signal: options.signal(ChannelSide::Output, output),
+            percent: 100.0 * share,
+            cut_off: cut_off.omega,
+        });
+    }
+    cautions
 }
 
+/// Reports inputs that were not moved, or not by themselves.
 fn excitation_cautions(
     measured: &ResponseEstimate,
     options: &Options,
 ) -> Vec<IdentificationCaution> {
     let excitation = measured.excitation();
-    let not_swept = |input| IdentificationCaution::NotSwept {
-        signal: options.signal(ChannelSide::Input, input),
-        partial_coherence: excitation.partial_coherence[input],
-    };
-    let mut cautions: Vec<_> = excitation.not_identified().map(not_swept).collect();
+    let mut cautions = Vec::new();
+    for input in excitation.not_identified() {
+        cautions.push(IdentificationCaution::NotSwept {
+            signal: options.signal(ChannelSide::Input, input),
+            partial_coherence: excitation.partial_coherence[input],
+        });
+    }
     if excitation.moved_together() {
         cautions.push(IdentificationCaution::MovedTogether {
             condition: excitation.condition,
         });
     }
     cautions
-}
-
-// The scale of every channel: its rms about the mean.
-
-/// A channel whose rms about the mean is below this share of its greatest modulus is constant: what is left is rounding.
-const CONSTANT: f64 = 1e-12;
-
-/// The scale of every channel, in the units of the file: its rms about the mean of each segment, over all segments (M14, 1.6).
-///
-/// ```text
-/// s_c = sqrt( sum_r sum_n (x_c[n] - mean_r x_c)^2 / sum_r N_r )
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-pub struct Scales {
-    /// Scale of each input, greater than 0.
-    pub inputs: Vec<f64>,
-    /// Scale of each output, greater than 0.
-    pub outputs: Vec<f64>,
-}
-
-/// Why the segments have no scales.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum ScalingError {
-    /// There is nothing to scale.
-    #[error("there are no flight records")]
-    NoSegments,
-    /// A segment has other channels than the first; which, counted from 0.
-    #[error("piece {} of the flight records has another number of channels than the first", .0 + 1)]
-    ChannelsDiffer(usize),
-    /// A segment holds a sample that is not finite, or one whose square is not; which, counted from 0.
-    #[error("piece {} of the flight records holds values that are not finite or absurdly large", .0 + 1)]
-    NotFinite(usize),
-    /// A channel is constant in every segment.
-    #[error("{role} {} does not move in any record: leave it out", index + 1)]
-    Constant {
-        /// Input or output.
-        role: ChannelSide,
-        /// Which, counted from 0.
-        index: usize,
-    },
-}
-
-impl Scales {
-    /// The scales of the channels of `segments`.
-    ///
-    /// # Errors
-    /// No segments, differing numbers of channels, values that are not finite, a constant channel.
-    pub fn of(segments: &[Segment]) -> Result<Self, ScalingError> {
-        let first = segments.first().ok_or(ScalingError::NoSegments)?;
-        let channels = |segment: &Segment| (segment.inputs.ncols(), segment.outputs.ncols());
-        if let Some(segment) = segments.iter().position(|p| channels(p) != channels(first)) {
-            return Err(ScalingError::ChannelsDiffer(segment));
-        }
-        let scales = |role, side: fn(&Segment) -> &DMatrix<f64>| {
-            let scales = rms(segments, side)?.into_iter().enumerate();
-            let moved = |(index, scale): (usize, Option<f64>)| {
-                scale.ok_or(ScalingError::Constant { role, index })
-            };
-            scales.map(moved).collect::<Result<Vec<f64>, _>>()
-        };
-        Ok(Self {
-            inputs: scales(ChannelSide::Input, |segment| &segment.inputs)?,
-            outputs: scales(ChannelSide::Output, |segment| &segment.outputs)?,
-        })
-    }
-
-    /// `segment` in scaled units: every channel divided by its scale. Channels beyond those of the scales are not touched.
-    #[must_use]
-    pub fn scaled(&self, segment: &Segment) -> Segment {
-        let mut scaled = segment.clone();
-        for (samples, scales) in [
-            (&mut scaled.inputs, &self.inputs),
-            (&mut scaled.outputs, &self.outputs),
-        ] {
-            for (mut column, scale) in samples.column_iter_mut().zip(scales) {
-                column /= *scale;
-            }
-        }
-        scaled
-    }
-
-    /// What a response `[output, input]` in scaled units is multiplied with to be in the units of the file.
-    #[must_use]
-    pub fn of_response(&self) -> DMatrix<f64> {
-        DMatrix::from_fn(self.outputs.len(), self.inputs.len(), |o, i| {
-            self.outputs[o] / self.inputs[i]
-        })
-    }
-}
-
-/// The rms of each channel about its mean in each segment, over all segments; none for a constant channel.
-fn rms(
-    segments: &[Segment],
-    side: fn(&Segment) -> &DMatrix<f64>,
-) -> Result<Vec<Option<f64>>, ScalingError> {
-    let channels = segments.first().map_or(0, |segment| side(segment).ncols());
-    let mut squares = vec![0.0; channels];
-    let mut greatest = vec![0.0_f64; channels];
-    let mut samples = 0;
-    for (index, segment) in segments.iter().enumerate() {
-        let rows = side(segment).nrows();
-        samples += rows;
-        for (c, column) in side(segment).column_iter().enumerate() {
-            let mean = if rows == 0 {
-                0.0
-            } else {
-                column.sum() / rows as f64
-            };
-            squares[c] += column.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
-            if !squares[c].is_finite() {
-                return Err(ScalingError::NotFinite(index));
-            }
-            greatest[c] = greatest[c].max(column.amax());
-        }
-    }
-    let scale = |(square, greatest): (&f64, &f64)| {
-        let rms = if samples == 0 {
-            0.0
-        } else {
-            (square / samples as f64).sqrt()
-        };
-        (rms > 0.0 && rms > CONSTANT * greatest).then_some(rms)
-    };
-    Ok(squares.iter().zip(&greatest).map(scale).collect())
 }

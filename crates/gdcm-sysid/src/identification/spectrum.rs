@@ -1,23 +1,27 @@
-//! The lines of a segment's Fourier transform.
+//! The spectral lines of a segment: its Fourier transform without a window (M14.2).
 
 use std::f64::consts::TAU;
 
 use nalgebra::{Complex, DMatrix};
 
 use gdcm_model::executor::{Executor, each};
-use gdcm_model::simulation::{LowPass, Segment};
+use gdcm_model::simulation::Segment;
 use gdcm_numerics::{FourierPlanner, FourierTransform};
 
-/// The lines of one segment (M14, 2): one column a line, one row a channel.
+/// The lines of a segment are used from its second one up: the first holds its drift (M14.12).
+const FIRST_LINE: f64 = 1.5;
+
+/// The lines of one segment (M14.2): one column a line, one row a channel.
 ///
 /// ```text
-/// U(omega_k) = dt / sqrt(T) sum_n u[n] e^(-j omega_k n dt),   omega_k = 2 pi k / T,   T = N dt,   k >= 1
+/// U(omega_k) = dt / sqrt(T) sum_n u[n] e^(-j omega_k n dt)
+/// omega_k = 2 pi k / T,   T = N dt,   k >= 1
 /// ```
 ///
-/// No window, and no mean taken off but for arithmetic: lines from k = 1 do not hold it.
+/// There is no window. The mean is taken off for accuracy only: lines from k = 1 do not hold it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
-    /// Which of the records the segment is of, counted from 0.
+    /// Number of the record, counted from 0.
     pub record: usize,
     /// `T` \[s\].
     pub duration_s: f64,
@@ -30,7 +34,7 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// The lines with `lowest <= omega_k <= highest` \[rad/s\].
+    /// Returns the lines with `lowest <= omega_k <= highest` \[rad/s\].
     #[must_use]
     pub fn between(&self, lowest: f64, highest: f64) -> Self {
         let from = self.omega.partition_point(|&w| w < lowest);
@@ -45,7 +49,34 @@ impl Spectrum {
     }
 }
 
-/// The lines of every segment up to `highest` \[rad/s\] and below half the sampling frequency, in the order of the segments.
+/// The lines of segments that are used.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LineRange {
+    /// \[rad/s\].
+    pub(super) lowest: f64,
+    /// \[rad/s\].
+    pub(super) highest: f64,
+}
+
+impl LineRange {
+    /// Transforms the segments and keeps the lines in the range, from the second of each segment on.
+    ///
+    /// Segments without a line in the range are left out.
+    pub(super) fn spectra(self, segments: &[Segment], executor: &dyn Executor) -> Vec<Spectrum> {
+        let mut used = Vec::new();
+        for spectrum in spectra(segments, self.highest, executor) {
+            let second = FIRST_LINE * TAU / spectrum.duration_s;
+            let lines = spectrum.between(self.lowest.max(second), self.highest);
+            if !lines.omega.is_empty() {
+                used.push(lines);
+            }
+        }
+        used
+    }
+}
+
+/// Computes the lines of every segment up to `highest` \[rad/s\] and below half the sampling
+/// frequency, in the order of the segments.
 #[must_use]
 pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
     let mut planner = FourierPlanner::default();
@@ -58,7 +89,7 @@ pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> V
     })
 }
 
-/// The lines of one segment up to `highest`, by the transform `plan` of its length.
+/// Computes the lines of one segment up to `highest`; `plan` is a transform of its length.
 fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectrum {
     let duration_s = segment.sample_time_s * segment.inputs.nrows() as f64;
     let below_nyquist = segment.inputs.nrows().saturating_sub(1) / 2;
@@ -67,18 +98,16 @@ fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectru
         .take_while(|&w| w <= highest)
         .collect();
     let factor = segment.sample_time_s / duration_s.sqrt();
-    let inputs = transform(&segment.inputs, omega.len(), factor, plan);
-    let outputs = transform(&segment.outputs, omega.len(), factor, plan);
     Spectrum {
         record: segment.record,
         duration_s,
+        inputs: transform(&segment.inputs, omega.len(), factor, plan),
+        outputs: transform(&segment.outputs, omega.len(), factor, plan),
         omega,
-        inputs,
-        outputs,
     }
 }
 
-/// Spectral lines 1 to `lines` of each column of `samples`, times `factor`: one row a channel.
+/// Computes lines 1 to `lines` of each column of `samples`, times `factor`: one row a channel.
 fn transform(
     samples: &DMatrix<f64>,
     lines: usize,
@@ -93,75 +122,10 @@ fn transform(
         let mean = column.mean();
         let mut centred: Vec<f64> = column.iter().map(|sample| sample - mean).collect();
         let spectrum = plan.of(&mut centred).unwrap_or_default();
-        let row = transformed.row_mut(channel);
-        row.into_iter()
-            .zip(spectrum.iter().skip(1))
-            .for_each(|(y, line)| *y = line * factor);
+        let mut row = transformed.row_mut(channel);
+        for (y, line) in row.iter_mut().zip(spectrum.iter().skip(1)) {
+            *y = line * factor;
+        }
     }
     transformed
-}
-
-// The zero-phase low-pass before the Laguerre projections and the comparison in time.
-
-/// Cut-off over the highest line used, where there is no vibration (M14, 1.5).
-const USUAL: f64 = 5.0;
-/// Cut-off over the highest line used, where an output vibrates (M14, 1.5).
-const VIBRATING: f64 = 2.0;
-/// An output vibrates when more than this share of its variance lies above `VIBRATING` times the highest line used.
-const VIBRATION_SHARE: f64 = 0.3;
-
-/// Where the low-pass cuts off, and which outputs made it cut low.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CutOff {
-    /// Cut-off \[rad/s\].
-    pub omega: f64,
-    /// Outputs that vibrate: which, counted from 0, and the share of their variance above twice the highest line used.
-    pub vibrating: Vec<(usize, f64)>,
-}
-
-impl CutOff {
-    /// The cut-off for `segments` when lines up to `highest` \[rad/s\] are used: 5 `highest`, or 2 `highest` when more than 30 %
-    /// of the variance of an output lies above that (M14, 1.5).
-    #[must_use]
-    pub fn choose(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Self {
-        let outputs = segments
-            .first()
-            .map_or(0, |segment| segment.outputs.ncols());
-        let mut all = vec![0.0; outputs];
-        let mut above = vec![0.0; outputs];
-        for spectrum in spectra(segments, f64::INFINITY, executor) {
-            for (k, omega) in spectrum.omega.iter().enumerate() {
-                for (output, line) in spectrum.outputs.column(k).iter().enumerate().take(outputs) {
-                    all[output] += line.norm_sqr();
-                    above[output] += if *omega > VIBRATING * highest {
-                        line.norm_sqr()
-                    } else {
-                        0.0
-                    };
-                }
-            }
-        }
-        let shares = above.iter().zip(&all).map(|(above, all)| above / all);
-        let vibrating: Vec<_> = shares
-            .enumerate()
-            .filter(|(_, share)| *share > VIBRATION_SHARE)
-            .collect();
-        Self {
-            omega: highest
-                * if vibrating.is_empty() {
-                    USUAL
-                } else {
-                    VIBRATING
-                },
-            vibrating,
-        }
-    }
-
-    /// `segments`, every channel through the low-pass of this cut-off; as they are where there is nothing to take off.
-    #[must_use]
-    pub fn apply(&self, segments: &[Segment], executor: &dyn Executor) -> Vec<Segment> {
-        each(executor, segments, |segment| {
-            LowPass::applied(self.omega, segment)
-        })
-    }
 }

@@ -21,12 +21,12 @@ use gdcm_model::response::eigenvalues::poles;
 use gdcm_model::simulation::Segment;
 
 use super::blocks::BlockModel;
-use super::identify::IdentificationError;
+use super::identification_error::IdentificationError;
 use super::laguerre::{Projections, TriangularFactor, continuous, least_squares, ridge_solution};
 use super::likelihood::Likelihood;
 use super::mode_removal::without_fast_modes;
-use super::order::SPACING;
 use super::refinement::Fit;
+use super::search_extent::SPACING;
 
 /// The states of every order that one pole and one past window propose.
 #[derive(Clone, Debug)]

@@ -1,14 +1,16 @@
-//! How well a model is known (M14, section 5).
+//! The uncertainty of a model: parameters, poles and response (M14.5).
 //!
 //! ```text
-//! Cov theta = phi G^+,   phi = J / (N - k),   G = sum_r J_r'J_r; eigenvalues below 1e-9 of the greatest are freedoms of scale
+//! Cov theta = phi G^+,   phi = J / (N - k),   G = sum_r J_r'J_r
+//!     eigenvalues of G below 1e-9 of the largest are free scales of the states
 //! var Re(dH/H), Im(dH/H) = h' Cov h of the real and imaginary part of the gradient of H_oi over H_oi
-//! sd^2 = 2 (sd_GN^2 + sd_order^2) + |G_b/G|^2 / 2,   sd_order = rms over neighbouring orders of the real and imaginary part of ln(H_n'/H_n),
-//!        |G_b/G| the share of the response that is fed back (M14.17), where it is more than nothing
+//! sd^2 = 2 (sd_GN^2 + sd_order^2) + |G_b/G|^2 / 2
+//!     sd_order = rms over neighbouring orders of the real and imaginary part of ln(H_n'/H_n)
+//!     |G_b/G| the share of the response that is fed back (M14.17)
 //! pole: d lambda = -(d a0 + lambda d a1) / (2 lambda + a1)
 //! ```
 //!
-//! The factor 2 was measured: bands of 95 % then hold 95 % of the true curves.
+//! The factor 2 was measured: with it, bands of 95 % hold 95 % of the true curves.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -20,19 +22,22 @@ use gdcm_model::units::neper_to_db;
 
 use super::blocks::{Block, BlockModel};
 use super::feedback::Feedback;
-use super::likelihood::{Likelihood, SegmentCost, pseudo_inverse_root};
+use super::gram_matrix::pseudo_inverse_root;
+use super::likelihood::{Likelihood, SegmentCost};
 use super::normal_system::{NormalSystem, normal_systems};
-use super::order::effective_parameters;
-use super::refinement::{Fit, damped};
+use super::refinement::Fit;
 
-/// Standard deviations that hold 95 %.
+/// Number of standard deviations that hold 95 %.
 pub const TWO_SIDED_95: f64 = 1.96;
-/// Share of the greatest eigenvalue below which a direction is a freedom of scale.
-const FREEDOM_OF_SCALE: f64 = 1e-9;
-/// Factor of the variance that makes bands hold what they say.
+/// Share of the largest eigenvalue below which a direction is a free scale of the states.
+const FREE_SCALE: f64 = 1e-9;
+/// Measured factor of the variance (M14.5).
 const MEASURED_FACTOR: f64 = 2.0;
-/// No standard deviation is said to be more than this many times the modulus of the pole and the band: it is not known at all.
+/// Largest reported standard deviation: of a pole over its modulus and the band, of a response in
+/// neper and radians.
 const UNKNOWN: f64 = 1e3;
+/// Standard deviation of a pole over its modulus up to which it is determined.
+const DETERMINED: f64 = 0.5;
 
 /// The covariance of the parameters of a model.
 #[derive(Clone, Debug)]
@@ -43,46 +48,59 @@ pub(super) struct ParameterCovariance {
     information: DMatrix<f64>,
 }
 
+/// A model and the further causes of its uncertainty.
+pub(super) struct BandModels<'a> {
+    pub(super) model: &'a BlockModel,
+    /// The models of the neighbouring orders.
+    pub(super) neighbours: &'a [&'a BlockModel],
+    pub(super) feedback: Option<&'a Feedback>,
+}
+
+/// Variances of the real and the imaginary part of a complex number.
+struct ComplexVariance {
+    re: f64,
+    im: f64,
+}
+
+/// The standard deviations of one response over frequency.
+struct PairBands {
+    sd_db: Vec<f64>,
+    sd_deg: Vec<f64>,
+}
+
 impl ParameterCovariance {
-    /// `phi G^+`; none where an iteration does not end.
+    /// Computes `phi G^+` for the dispersion `phi`; `None` if an iteration does not converge.
     pub(super) fn new(system: &NormalSystem, dispersion: f64) -> Option<Self> {
-        let root = pseudo_inverse_root(system.matrix.clone(), FREEDOM_OF_SCALE)?;
+        let root = pseudo_inverse_root(system.matrix.clone(), FREE_SCALE)?;
         Some(Self {
             covariance: &root * root.transpose() * dispersion,
             information: &system.matrix / dispersion,
         })
     }
 
-    /// That of a fit with these normal systems and this cost, per degree of freedom that the parameters leave; none where they leave none.
-    pub(super) fn of(
+    /// Computes the covariance of a fit from its normal systems and its cost; `None` if the
+    /// parameters leave no degrees of freedom.
+    pub(super) fn from_systems(
         likelihood: &Likelihood,
         fit: &Fit,
         systems: &[NormalSystem],
         cost: f64,
     ) -> Option<Self> {
-        let freedom = likelihood.freedom(fit.model.order());
-        let spare = freedom
-            .checked_sub(effective_parameters(fit))
-            .filter(|spare| *spare > 0)?;
-        Self::new(
-            &NormalSystem::sum(fit.model.parameters(), systems),
-            cost / spare as f64,
-        )
+        let spare = fit.spare_freedom(likelihood)?;
+        let system = NormalSystem::sum(fit.model.parameters(), systems);
+        Self::new(&system, cost / spare as f64)
     }
 
-    /// What other lines than those of a fit tell of its model.
-    pub(super) fn of_lines(likelihood: &Likelihood, fit: &Fit) -> Option<Self> {
+    /// Computes the covariance of a model from other lines than those of its fit.
+    pub(super) fn from_lines(likelihood: &Likelihood, fit: &Fit) -> Option<Self> {
         let parts = likelihood.parts(&fit.model)?;
         let systems = normal_systems(likelihood, &fit.model, &parts)?;
-        Self::of(
-            likelihood,
-            fit,
-            &systems,
-            parts.iter().map(|part| part.cost).sum(),
-        )
+        let cost = parts.iter().map(|part| part.cost).sum();
+        Self::from_systems(likelihood, fit, &systems, cost)
     }
 
-    /// The cost over other records where the model may move within its uncertainty (M14.17): `r'r - r'J (G/phi + J'J)^-1 J'r`.
+    /// Computes the cost over other records with the model free to move within its uncertainty:
+    /// `r'r - r'J (G/phi + J'J)^-1 J'r` (M14.17).
     pub(super) fn moved_cost(
         &self,
         records: &Likelihood,
@@ -90,40 +108,28 @@ impl ParameterCovariance {
         parts: &[SegmentCost],
     ) -> Option<f64> {
         let system = NormalSystem::sum(model.parameters(), &normal_systems(records, model, parts)?);
-        let root = pseudo_inverse_root(&self.information + &system.matrix, FREEDOM_OF_SCALE)?;
+        let root = pseudo_inverse_root(&self.information + &system.matrix, FREE_SCALE)?;
         let cost: f64 = parts.iter().map(|part| part.cost).sum();
         Some(cost - root.tr_mul(&system.gradient).norm_squared())
     }
 
-    /// The poles of the model with their standard deviations; `lowest` is the lower end of the band \[rad/s\].
+    /// Returns the poles of the model with their standard deviations; `lowest` is the lower end of
+    /// the band \[rad/s\].
     pub(super) fn poles(&self, model: &BlockModel, lowest: f64) -> Vec<PoleEstimate> {
         let mut place = 0;
         let mut estimates = Vec::new();
         for block in &model.blocks {
             for pole in block.poles() {
-                let (re, im) = match block {
-                    Block::Single(_) => (self.covariance[(place, place)], 0.0),
-                    Block::Pair { a1, .. } => {
-                        let factor = -1.0 / (2.0 * pole + a1);
-                        self.variances(&[place, place + 1], &[factor, factor * pole])
-                    }
-                };
+                let variance = self.pole_variance(*block, pole, place);
                 let most = UNKNOWN * pole.norm().max(lowest);
-                let sd = |variance: f64| {
-                    if variance.is_finite() {
-                        variance.max(0.0).sqrt().min(most)
-                    } else {
-                        most
-                    }
-                };
-                let sd_re = sd(re);
-                let sd_im = sd(im);
-                let determined = pole.norm() >= lowest && sd_re.hypot(sd_im) <= 0.5 * pole.norm();
+                let sd_re = bounded_root(variance.re, most);
+                let sd_im = bounded_root(variance.im, most);
+                let is_sharp = sd_re.hypot(sd_im) <= DETERMINED * pole.norm();
                 estimates.push(PoleEstimate {
                     pole,
                     sd_re,
                     sd_im,
-                    determined,
+                    determined: pole.norm() >= lowest && is_sharp,
                 });
             }
             place += block.size();
@@ -131,163 +137,177 @@ impl ParameterCovariance {
         estimates
     }
 
-    /// Variances of the real and the imaginary part of `sum_k gradient_k d theta_k` over the parameters `places`.
-    fn variances(&self, places: &[usize], gradient: &[Complex<f64>]) -> (f64, f64) {
-        let mut re = 0.0;
-        let mut im = 0.0;
-        for (p, x) in places.iter().zip(gradient) {
-            for (q, y) in places.iter().zip(gradient) {
-                re += self.covariance[(*p, *q)] * x.re * y.re;
-                im += self.covariance[(*p, *q)] * x.im * y.im;
+    /// Computes the variance of a pole of a block whose parameters begin at `place`.
+    fn pole_variance(&self, block: Block, pole: Complex<f64>, place: usize) -> ComplexVariance {
+        match block {
+            Block::Single(_) => ComplexVariance {
+                re: self.covariance[(place, place)],
+                im: 0.0,
+            },
+            Block::Pair { a1, .. } => {
+                let factor = -1.0 / (2.0 * pole + a1);
+                self.variance(&[place, place + 1], &[factor, factor * pole])
             }
         }
-        (re, im)
     }
 
-    /// Standard deviations of the response of `model` at `omegas`, those of the neighbouring orders and what is fed back included;
-    /// none where there are fewer than two frequencies.
+    /// Computes the variance of `sum_k gradient_k d theta_k` over the parameters at `places`.
+    fn variance(&self, places: &[usize], gradient: &[Complex<f64>]) -> ComplexVariance {
+        let mut variance = ComplexVariance { re: 0.0, im: 0.0 };
+        for (p, x) in places.iter().zip(gradient) {
+            for (q, y) in places.iter().zip(gradient) {
+                variance.re += self.covariance[(*p, *q)] * x.re * y.re;
+                variance.im += self.covariance[(*p, *q)] * x.im * y.im;
+            }
+        }
+        variance
+    }
+
+    /// Computes the standard deviations of all responses at `omegas` \[rad/s\]; `None` for fewer
+    /// than two frequencies.
     pub(super) fn bands(
         &self,
-        model: &BlockModel,
-        neighbours: &[&BlockModel],
-        feedback: Option<&Feedback>,
+        models: &BandModels<'_>,
         omegas: &[f64],
         executor: &dyn Executor,
     ) -> Option<ModelBands> {
-        let outputs = model.c.nrows();
-        let inputs = model.b.ncols();
-        let at: Vec<_> = omegas
+        let outputs = models.model.c.nrows();
+        let inputs = models.model.b.ncols();
+        let points: Vec<ResponsePoint> = omegas
             .iter()
-            .map(|&omega| Gradients::new(model, neighbours, omega))
+            .map(|&omega| ResponsePoint::new(models, omega))
             .collect();
-        // Of each pair over frequency: dB and degrees.
-        let of_pair = |pair: usize| {
-            let output = pair % outputs;
-            let input = pair / outputs;
-            let fed_back = |omega: &f64| {
-                feedback.map_or(0.0, |of| 0.5 * of.ratio(*omega, (output, input)).powi(2))
-            };
-            self.pair_bands(
-                model,
-                &at,
-                &omegas.iter().map(fed_back).collect::<Vec<_>>(),
-                (output, input),
-            )
-        };
-        let all: Vec<Vec<(f64, f64)>> = each(executor, 0..outputs * inputs, of_pair);
-        let of = |part: fn(&(f64, f64)) -> f64| {
-            let curve = |pair: Pair| {
-                all[pair.input * outputs + pair.output]
-                    .iter()
-                    .map(part)
-                    .collect()
-            };
-            PairTable::from_fn(outputs, inputs, curve)
-        };
-        ModelBands::new(omegas.to_vec(), of(|sd| sd.0), of(|sd| sd.1)).ok()
+        // One response after the other, outputs first.
+        let bands: Vec<PairBands> = each(executor, 0..outputs * inputs, |number| {
+            let pair = Pair::new(number % outputs, number / outputs);
+            self.pair_bands(models, &points, pair)
+        });
+        let number = |pair: Pair| pair.input * outputs + pair.output;
+        let sd_db = PairTable::from_fn(outputs, inputs, |pair| bands[number(pair)].sd_db.clone());
+        let sd_deg = PairTable::from_fn(outputs, inputs, |pair| bands[number(pair)].sd_deg.clone());
+        ModelBands::new(omegas.to_vec(), sd_db, sd_deg).ok()
     }
 
+    /// Computes the standard deviations of one response.
     fn pair_bands(
         &self,
-        model: &BlockModel,
-        at: &[Gradients],
-        fed_back: &[f64],
-        (output, input): (usize, usize),
-    ) -> Vec<(f64, f64)> {
-        let order = model.order();
-        let places: Vec<usize> = (0..order)
-            .chain((0..order).map(|state| model.place_of_b(state, input)))
-            .chain((0..order).map(|state| model.place_of_c(output, state)))
-            .chain([model.place_of_d(output, input)])
-            .collect();
+        models: &BandModels<'_>,
+        points: &[ResponsePoint],
+        pair: Pair,
+    ) -> PairBands {
+        let places = pair_places(models.model, pair);
         let covariance = DMatrix::from_fn(places.len(), places.len(), |row, column| {
             self.covariance[(places[row], places[column])]
         });
         // Real parts, then imaginary parts, one column a frequency.
-        let mut gradients = DMatrix::zeros(places.len(), 2 * at.len());
-        for (k, gradient) in at.iter().enumerate() {
-            for (row, value) in gradient
-                .of_pair(model, output, input)
-                .into_iter()
-                .enumerate()
-            {
-                (gradients[(row, k)], gradients[(row, at.len() + k)]) = (value.re, value.im);
+        let count = points.len();
+        let mut gradients = DMatrix::zeros(places.len(), 2 * count);
+        for (k, point) in points.iter().enumerate() {
+            let gradient = point.log_gradient(models.model, pair);
+            for (row, value) in gradient.into_iter().enumerate() {
+                gradients[(row, k)] = value.re;
+                gradients[(row, count + k)] = value.im;
             }
         }
         let products = covariance * &gradients;
-        let variance = |column: usize| {
-            products
-                .column(column)
-                .dot(&gradients.column(column))
-                .max(0.0)
+        let mut bands = PairBands {
+            sd_db: Vec::with_capacity(count),
+            sd_deg: Vec::with_capacity(count),
         };
-        let sd = |column: usize, order: f64| {
-            (MEASURED_FACTOR * (variance(column) + order) + fed_back[column % at.len()])
-                .sqrt()
-                .min(UNKNOWN)
-        };
-        let bands = |(k, gradients): (usize, &Gradients)| {
-            let order = gradients.order_variance[(output, input)];
-            (
-                neper_to_db(sd(k, order.re)),
-                sd(at.len() + k, order.im).to_degrees(),
-            )
-        };
-        at.iter().enumerate().map(bands).collect()
+        for (k, point) in points.iter().enumerate() {
+            let order = point.order_variance[(pair.output, pair.input)];
+            let fed_back = match models.feedback {
+                Some(feedback) => {
+                    let ratio = feedback.ratio(point.omega, (pair.output, pair.input));
+                    0.5 * ratio.powi(2)
+                }
+                None => 0.0,
+            };
+            let variance_re = products.column(k).dot(&gradients.column(k)).max(0.0);
+            let variance_im = products
+                .column(count + k)
+                .dot(&gradients.column(count + k))
+                .max(0.0);
+            let sd_re = (MEASURED_FACTOR * (variance_re + order.re) + fed_back).sqrt();
+            let sd_im = (MEASURED_FACTOR * (variance_im + order.im) + fed_back).sqrt();
+            bands.sd_db.push(neper_to_db(sd_re.min(UNKNOWN)));
+            bands.sd_deg.push(sd_im.min(UNKNOWN).to_degrees());
+        }
+        bands
     }
 }
 
-/// What the gradients of all responses at one frequency are made of.
-struct Gradients {
+/// Returns the square root of a variance, at most `most`; `most` if the variance is not finite.
+fn bounded_root(variance: f64, most: f64) -> f64 {
+    if variance.is_finite() {
+        variance.max(0.0).sqrt().min(most)
+    } else {
+        most
+    }
+}
+
+/// Returns the places of the parameters that a response depends on: the blocks, a column of `B`, a
+/// row of `C`, an entry of `D`.
+fn pair_places(model: &BlockModel, pair: Pair) -> Vec<usize> {
+    let order = model.order();
+    let mut places: Vec<usize> = (0..order).collect();
+    places.extend((0..order).map(|state| model.place_of_b(state, pair.input)));
+    places.extend((0..order).map(|state| model.place_of_c(pair.output, state)));
+    places.push(model.place_of_d(pair.output, pair.input));
+    places
+}
+
+/// The responses of a model at one frequency, with the factors of their gradients.
+struct ResponsePoint {
+    /// \[rad/s\].
+    omega: f64,
+    /// `H`, outputs x inputs.
     response: DMatrix<Complex<f64>>,
     /// `C R`, outputs x n.
-    outputs: DMatrix<Complex<f64>>,
+    output_resolvent: DMatrix<Complex<f64>>,
     /// `R B`, n x inputs.
     states: DMatrix<Complex<f64>>,
     /// Mean squares of the real and imaginary parts of `ln(H_n'/H_n)`.
     order_variance: DMatrix<Complex<f64>>,
 }
 
-impl Gradients {
-    fn new(model: &BlockModel, neighbours: &[&BlockModel], omega: f64) -> Self {
+impl ResponsePoint {
+    fn new(models: &BandModels<'_>, omega: f64) -> Self {
+        let model = models.model;
         let response = model.response(omega);
-        let mut outputs = DMatrix::zeros(model.c.nrows(), model.order());
-        model.output_resolvent(omega, outputs.as_mut_slice());
+        let mut output_resolvent = DMatrix::zeros(model.c.nrows(), model.order());
+        model.output_resolvent(omega, output_resolvent.as_mut_slice());
         let mut states = model.b.map(Complex::from);
         for mut column in states.column_iter_mut() {
             model.resolve(omega, column.as_mut_slice());
         }
+        let count = models.neighbours.len() as f64;
         let mut order_variance = DMatrix::zeros(response.nrows(), response.ncols());
-        for neighbour in neighbours {
+        for neighbour in models.neighbours {
             order_variance += neighbour.response(omega).zip_map(&response, |other, own| {
                 let ratio = (other / own).ln();
-                let finite = |part: f64| {
-                    if part.is_finite() {
-                        part * part
-                    } else {
-                        UNKNOWN
-                    }
-                };
-                Complex::new(finite(ratio.re), finite(ratio.im)) / neighbours.len() as f64
+                Complex::new(finite_square(ratio.re), finite_square(ratio.im)) / count
             });
         }
         Self {
+            omega,
             response,
-            outputs,
+            output_resolvent,
             states,
             order_variance,
         }
     }
 
-    /// The gradient of `ln H` of a pair: by the blocks, its column of `B`, its row of `C`, its entry of `D`.
-    fn of_pair(&self, model: &BlockModel, output: usize, input: usize) -> Vec<Complex<f64>> {
-        let cr = self.outputs.row(output);
-        let x = self.states.column(input);
+    /// Returns the gradient of `ln H` of a response, in the order of [`pair_places`].
+    fn log_gradient(&self, model: &BlockModel, pair: Pair) -> Vec<Complex<f64>> {
+        let cr = self.output_resolvent.row(pair.output);
+        let x = self.states.column(pair.input);
         let mut gradient = Vec::with_capacity(3 * model.order() + 1);
         for (first, block) in model.rows() {
             match block {
                 Block::Pair { .. } => {
-                    gradient.extend([-cr[first + 1] * x[first], -cr[first + 1] * x[first + 1]])
+                    gradient.push(-cr[first + 1] * x[first]);
+                    gradient.push(-cr[first + 1] * x[first + 1]);
                 }
                 Block::Single(_) => gradient.push(cr[first] * x[first]),
             }
@@ -295,64 +315,30 @@ impl Gradients {
         gradient.extend(cr.iter());
         gradient.extend(x.iter());
         gradient.push(Complex::from(1.0));
-        let response = self.response[(output, input)];
-        let finite = |value: Complex<f64>| {
-            if value.re.is_finite() && value.im.is_finite() {
-                value
-            } else {
-                Complex::from(UNKNOWN)
-            }
-        };
+        let response = self.response[(pair.output, pair.input)];
+        for value in &mut gradient {
+            *value = finite_or_unknown(*value / response);
+        }
         gradient
-            .into_iter()
-            .map(|value| finite(value / response))
-            .collect()
     }
 }
 
-// The bundle of models: the chosen order, its neighbours, and one model without each record (M14, section 5).
-
-/// Damping at the beginning of a step that leaves a record out.
-const FIRST_DAMPING: f64 = 1e-4;
-
-/// The number of each record, counted from 0, and the model without it, by one damped step with the systems that are there already.
-///
-/// ```text
-/// (G - G_r + lambda diag) d = g - g_r;  lambda = 1e-4, times 8 until the cost over the other records falls
-/// ```
-///
-/// An undamped step runs away in weak directions. With one record there is none.
-pub(super) fn without_each_record(
-    likelihood: &Likelihood,
-    fit: &Fit,
-    systems: &[NormalSystem],
-) -> Vec<(usize, BlockModel)> {
-    let records = likelihood.records();
-    if records.len() < 2 {
-        return Vec::new();
+/// Returns the square of a number, or a large one if it is not finite.
+fn finite_square(part: f64) -> f64 {
+    if part.is_finite() {
+        part * part
+    } else {
+        UNKNOWN
     }
-    let all = NormalSystem::sum(fit.model.parameters(), systems);
-    let without = |&record: &usize| {
-        let system = all.without(&likelihood.system_of(record, systems));
-        let segments = likelihood.segments.iter().zip(&fit.parts);
-        let cost = segments
-            .filter(|(segment, _)| segment.record != record)
-            .map(|(_, part)| part.cost)
-            .sum();
-        // Where no step lowers the cost the full model is the best without the record as well.
-        let stepped = damped(
-            &likelihood.without(record),
-            &fit.model,
-            &system,
-            cost,
-            FIRST_DAMPING,
-        );
-        (
-            record,
-            stepped.map_or_else(|| fit.model.clone(), |(model, ..)| model),
-        )
-    };
-    each(likelihood.executor, &records, without)
+}
+
+/// Returns a number, or a large one if it is not finite.
+fn finite_or_unknown(value: Complex<f64>) -> Complex<f64> {
+    if value.re.is_finite() && value.im.is_finite() {
+        value
+    } else {
+        Complex::from(UNKNOWN)
+    }
 }
 
 #[cfg(test)]
@@ -365,16 +351,18 @@ mod tests {
     use gdcm_model::simulation::FlightRecord;
 
     use super::*;
-    use crate::identification::identify::Options;
     use crate::identification::known_answers_tests::{answers, matrix, number, numbers};
     use crate::identification::likelihood::SpectralLines;
-    use crate::identification::local_polynomial::{NoiseCovariance, local_polynomial};
-    use crate::identification::preparation::Preparation;
+    use crate::identification::local_polynomial::local_polynomial;
+    use crate::identification::noise_covariance::NoiseCovariance;
+    use crate::identification::options::Options;
+    use crate::identification::preparation_settings::Preparation;
     use crate::identification::prepared_data::PreparedData;
     use crate::identification::spectrum::{Spectrum, spectra};
     use crate::identification::subspace::SubspaceSettings;
 
-    /// Turns the second of two real modes of a block around, which a model does not show but the path of its refinement does.
+    /// Reverses the sign of the second of two real modes of a block, which changes the path of the
+    /// refinement but not the model.
     fn turned(model: &BlockModel) -> BlockModel {
         let Block::Pair { a0, a1 } = model.blocks[0] else {
             panic!("a pair")
@@ -424,7 +412,8 @@ mod tests {
         };
         let progress = Shares::new(&Unobserved);
         let data = PreparedData::new(&records, &options, &Sequential, &progress).unwrap();
-        // Those figures are of all lines around the band, the first of a record too (M14, 2), which does not count any more (M14.12).
+        // The known answers use all lines around the band, also the first of a record, which does
+        // not count here (M14.12).
         let [lowest, highest] = [0.5 * band[0], 4.0 / 3.0 * band[1]];
         let between = |lines: Spectrum| lines.between(lowest / 1.3, 1.3 * highest);
         let wide: Vec<Spectrum> = spectra(&data.unfiltered, 1.3 * highest, &Sequential)
@@ -433,7 +422,7 @@ mod tests {
             .collect();
         let measured =
             local_polynomial(&wide, &log_spaced(lowest, highest, 40), &Sequential).unwrap();
-        let noise = NoiseCovariance::of(&measured).unwrap();
+        let noise = NoiseCovariance::from_measured(&measured).unwrap();
         let whitened =
             |lines: &Spectrum| SpectralLines::new(&lines.between(lowest, highest), &noise).unwrap();
         let likelihood = &Likelihood {
@@ -470,24 +459,23 @@ mod tests {
         let above = refined(starts[&6].model.clone(), 3).unwrap();
 
         let system = NormalSystem::sum(fit.model.parameters(), &fit.systems(likelihood).unwrap());
-        let spare = likelihood.freedom(4) - effective_parameters(&fit);
+        let spare = likelihood.freedom(4) - fit.effective_parameters();
         let covariance = ParameterCovariance::new(&system, fit.cost / spare as f64).unwrap();
         let expected = &known["expected"];
+        let models = BandModels {
+            model: &fit.model,
+            neighbours: &[&below.model, &above.model],
+            feedback: None,
+        };
         let bands = covariance
-            .bands(
-                &fit.model,
-                &[&below.model, &above.model],
-                None,
-                &numbers(&expected["w"]),
-                &Sequential,
-            )
+            .bands(&models, &numbers(&expected["w"]), &Sequential)
             .unwrap();
         let tolerance = number(&expected["sd_tolerance_relative"]);
         for (found, name) in [(bands.sd_db(), "sd_db"), (bands.sd_deg(), "sd_deg")] {
             for (Pair { output, input }, found) in found.iter() {
                 for (k, found) in found.iter().enumerate() {
                     let expected = matrix(&expected[name][k])[(output, input)];
-                    // Independent numpy code; the tolerance stands in its file.
+                    // Independent numpy code; the tolerance is stated in its file.
                     assert!(
                         (found / expected - 1.0).abs() < tolerance,
                         "{name} {k}: {found}, not {expected}"

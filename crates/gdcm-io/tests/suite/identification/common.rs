@@ -11,7 +11,7 @@ use gdcm_model::response::evaluate;
 use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::simulation::Segment;
 use gdcm_sysid::identification::local_polynomial::local_polynomial;
-use gdcm_sysid::identification::prepared_data::Scales;
+use gdcm_sysid::identification::scales::Scales;
 use gdcm_sysid::identification::spectrum::Spectrum;
 use gdcm_sysid::identification::{ResponseEstimate, spectra};
 
@@ -90,7 +90,7 @@ pub fn noisy(known: &Value, count: usize) -> Vec<Segment> {
 /// The spectra of the case `noisy` in scaled units, to 1.3 whi.
 pub fn noisy_spectra() -> Vec<Spectrum> {
     let segments = noisy(&known(), 4);
-    let scales = Scales::of(&segments).expect("its channels move");
+    let scales = Scales::from_segments(&segments).expect("its channels move");
     let scaled: Vec<_> = segments
         .iter()
         .map(|segment| scales.scaled(segment))

@@ -6,11 +6,11 @@ use proptest::prelude::*;
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::executor::Sequential;
-use gdcm_sysid::identification::local_polynomial::{
-    LocalPolynomialError, NoiseCovariance, local_polynomial,
-};
-use gdcm_sysid::identification::prepared_data::{Scales, ScalingError};
-use gdcm_sysid::identification::spectrum::{CutOff, Spectrum};
+use gdcm_sysid::identification::cut_off::CutOff;
+use gdcm_sysid::identification::local_polynomial::{LocalPolynomialError, local_polynomial};
+use gdcm_sysid::identification::noise_covariance::NoiseCovariance;
+use gdcm_sysid::identification::scales::{Scales, ScalingError};
+use gdcm_sysid::identification::spectrum::Spectrum;
 use gdcm_sysid::identification::*;
 
 use super::common::{
@@ -21,7 +21,7 @@ use crate::made_up::tries;
 #[test]
 fn scales_are_those_of_the_known_answer() {
     let known = known();
-    let scales = Scales::of(&noisy(&known, 4)).unwrap();
+    let scales = Scales::from_segments(&noisy(&known, 4)).unwrap();
     let expected = &known["noisy"]["scales"];
     for (scale, expected) in scales
         .inputs
@@ -189,7 +189,7 @@ fn the_noise_covariance_is_that_of_the_noise_put_in() {
         &Sequential,
     )
     .unwrap();
-    let covariance = NoiseCovariance::of(&measured).unwrap();
+    let covariance = NoiseCovariance::from_measured(&measured).unwrap();
     // White noise of variance 100/3 has lines of power 100 dt / 3.
     let line = 4.0 / 3.0;
     let expected = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, 1.25]) * line;
@@ -214,7 +214,7 @@ fn the_covariance_is_smoothed_over_neighbours_and_straight_in_log_frequency_betw
         point.noise = DMatrix::identity(2, 2) * if k == 4 { 9.0 } else { 0.0 };
         point.power.fill(0.0);
     }
-    let covariance = NoiseCovariance::of(&measured).unwrap();
+    let covariance = NoiseCovariance::from_measured(&measured).unwrap();
     // Weights 1, 2, 3, 2, 1 over their sum 9, and a ten-thousandth added.
     for (k, expected) in [
         (1, 0.0),
@@ -251,7 +251,7 @@ fn exact_and_dependent_outputs_still_have_a_weight() {
         &Sequential,
     )
     .unwrap();
-    let covariance = NoiseCovariance::of(&measured).unwrap();
+    let covariance = NoiseCovariance::from_measured(&measured).unwrap();
     assert!(
         [0.5, 1.0, 3.3, 8.0]
             .iter()
@@ -504,20 +504,20 @@ fn hostile_pieces_have_no_scales_and_no_lines() {
         inputs: DMatrix::from_element(rows, 1, value),
         outputs: DMatrix::from_fn(rows, 1, |n, _| n as f64),
     };
-    assert_eq!(Scales::of(&[]), Err(ScalingError::NoSegments));
+    assert_eq!(Scales::from_segments(&[]), Err(ScalingError::NoSegments));
     assert_eq!(
-        Scales::of(&[segment(9, 0.1)]),
+        Scales::from_segments(&[segment(9, 0.1)]),
         Err(ScalingError::Constant {
             role: ChannelSide::Input,
             index: 0
         })
     );
     assert_eq!(
-        Scales::of(&[segment(9, f64::NAN)]),
+        Scales::from_segments(&[segment(9, f64::NAN)]),
         Err(ScalingError::NotFinite(0))
     );
     assert_eq!(
-        Scales::of(&[segment(0, 0.0)]),
+        Scales::from_segments(&[segment(0, 0.0)]),
         Err(ScalingError::Constant {
             role: ChannelSide::Input,
             index: 0
@@ -536,7 +536,7 @@ fn hostile_pieces_have_no_scales_and_no_lines() {
         ..segment(9, 1.0)
     };
     assert_eq!(
-        Scales::of(&[segment(9, 1.0), other]),
+        Scales::from_segments(&[segment(9, 1.0), other]),
         Err(ScalingError::ChannelsDiffer(1))
     );
 }
@@ -544,7 +544,7 @@ fn hostile_pieces_have_no_scales_and_no_lines() {
 #[test]
 fn results_are_the_same_to_the_last_bit_for_any_number_of_threads() {
     let segments = noisy(&known(), 4);
-    let scales = Scales::of(&segments).unwrap();
+    let scales = Scales::from_segments(&segments).unwrap();
     let scaled: Vec<_> = segments
         .iter()
         .map(|segment| scales.scaled(segment))
@@ -608,7 +608,7 @@ proptest! {
         let segments = noisy(&known(), 4);
         let omegas = log_spaced(0.5, 8.0, 5);
         let response = |segments: &[Segment]| {
-            let scales = Scales::of(segments).unwrap();
+            let scales = Scales::from_segments(segments).unwrap();
             let scaled: Vec<_> = segments.iter().map(|segment| scales.scaled(segment)).collect();
             local_polynomial(&spectra(&scaled, 10.4, &Sequential), &omegas, &Sequential).unwrap().in_units(&scales)
         };

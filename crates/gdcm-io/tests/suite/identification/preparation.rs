@@ -5,7 +5,8 @@ use proptest::prelude::*;
 
 use gdcm_model::executor::Sequential;
 use gdcm_sysid::identification::gaps::{Cause, Treatment};
-use gdcm_sysid::identification::preparation::{PreparationError, Prepared, prepare};
+use gdcm_sysid::identification::preparation::{Prepared, prepare};
+use gdcm_sysid::identification::preparation_settings::PreparationError;
 use gdcm_sysid::identification::record_cautions::RecordCaution;
 use gdcm_sysid::identification::*;
 

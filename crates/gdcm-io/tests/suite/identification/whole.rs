@@ -14,7 +14,7 @@ use gdcm_model::executor::Sequential;
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 use gdcm_model::simulation::FlightRecord;
 use gdcm_sysid::identification::identify::identify;
-use gdcm_sysid::identification::record_contrast::{ContradictingRecord, RecordFault};
+use gdcm_sysid::identification::record_fault::{ContradictingRecord, RecordFault};
 use gdcm_sysid::identification::{
     Identification, IdentificationCaution, IdentificationError, Options, Preparation,
 };

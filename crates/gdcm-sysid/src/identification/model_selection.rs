@@ -1,0 +1,163 @@
+//! From the models that CT-PBSID proposes to the recommended one (M14.7).
+
+use std::collections::BTreeMap;
+
+use gdcm_model::progress::Shares;
+
+use super::cautions::IdentificationCaution;
+use super::identification_error::IdentificationError;
+use super::likelihood::Likelihood;
+use super::options::Options;
+use super::order::OrderSearch;
+use super::prepared_data::PreparedData;
+use super::record_fits::fits_of_records;
+use super::refinement::{Fit, LEAST_GAIN};
+use super::subspace::{StabilisationPoint, stabilisation};
+
+/// Most further steps for the chosen order, after those of the comparison.
+const FURTHER_STEPS: usize = 15;
+/// Most steps after records were reweighed.
+const STEPS_AFTER_REWEIGHING: usize = 3;
+/// Greatest over least cost per degree of freedom up to which records keep their weights.
+const ALIKE: f64 = 1.5;
+
+/// The models that CT-PBSID proposes.
+pub(super) struct Proposal {
+    /// Best Laguerre pole \[rad/s\].
+    pub(super) laguerre_pole: f64,
+    /// Best past window.
+    pub(super) past: usize,
+    /// The cheapest model of each order.
+    pub(super) starts: BTreeMap<usize, Fit>,
+    /// Poles over orders at the best Laguerre pole and past window.
+    pub(super) stabilisation: Vec<StabilisationPoint>,
+}
+
+/// The chosen order, refined.
+pub(super) struct Refinement<'a> {
+    /// The orders that were compared.
+    pub(super) search: OrderSearch,
+    /// The recommended model.
+    pub(super) fit: Fit,
+    /// The model before records were reweighed, if they were: a minimum over the data as measured.
+    pub(super) before_reweighing: Option<Fit>,
+    /// The cost that `fit` minimises.
+    pub(super) likelihood: Likelihood<'a>,
+    /// Reports a change of the weights.
+    pub(super) caution: Option<IdentificationCaution>,
+}
+
+/// Runs CT-PBSID for every Laguerre pole and past window, and reports a first model to `progress`.
+pub(super) fn propose(
+    data: &PreparedData,
+    options: &Options,
+    progress: &Shares,
+) -> Result<Proposal, IdentificationError> {
+    let settings = data.subspace_settings(options);
+    progress.next(0.1, "projections")?;
+    let candidates = settings.candidates(&data.segments, &data.likelihood, progress)?;
+    progress.next(0.3, "models of all orders")?;
+    let best = candidates.first().ok_or_else(|| data.no_model())?;
+    let starts = settings.starts(&candidates, &data.likelihood);
+    let first = OrderSearch::first(&starts, &data.likelihood).ok_or_else(|| data.no_model())?;
+    if let Some(first) = data.in_units(&first.model) {
+        progress.progress().first_model(&first);
+    }
+    let poles_by_order = settings.poles_by_order(best, data.likelihood.executor);
+    Ok(Proposal {
+        laguerre_pole: best.pole,
+        past: best.past,
+        starts,
+        stabilisation: stabilisation(&poles_by_order),
+    })
+}
+
+/// Chooses the order, refines its model further, and reweighs records once if they differ in noise.
+pub(super) fn refine<'a>(
+    data: &PreparedData<'a>,
+    proposal: &Proposal,
+    progress: &Shares,
+) -> Result<Refinement<'a>, IdentificationError> {
+    progress.next(0.4, "order")?;
+    let search = data
+        .search_order(&proposal.starts, progress)?
+        .ok_or_else(|| data.no_model())?;
+    let chosen = search
+        .fits
+        .get(&search.order)
+        .ok_or_else(|| data.no_model())?
+        .clone();
+    progress.next(0.7, "refinement")?;
+    let fit = chosen.refined(&data.likelihood, FURTHER_STEPS, LEAST_GAIN, progress)?;
+    let Some(reweighing) = Reweighing::of_unlike_records(&data.likelihood, &fit) else {
+        return Ok(Refinement {
+            search,
+            fit,
+            before_reweighing: None,
+            likelihood: data.likelihood.clone(),
+            caution: None,
+        });
+    };
+    let Reweighing {
+        likelihood,
+        start,
+        ratio,
+    } = reweighing;
+    let refitted = start.refined(&likelihood, STEPS_AFTER_REWEIGHING, LEAST_GAIN, progress)?;
+    Ok(Refinement {
+        search,
+        fit: refitted,
+        before_reweighing: Some(fit),
+        likelihood,
+        caution: Some(IdentificationCaution::Reweighed(ratio)),
+    })
+}
+
+/// Records weighed by the cost that the model leaves of them.
+struct Reweighing<'a> {
+    likelihood: Likelihood<'a>,
+    /// The model at the new weights.
+    start: Fit,
+    /// Greatest over least cost per degree of freedom before.
+    ratio: f64,
+}
+
+impl<'a> Reweighing<'a> {
+    /// Weighs records of unlike turbulence; `None` if they are alike.
+    ///
+    /// ```text
+    /// Cv_r <- Cv_r (J_r/dof_r) / geometric mean of J/dof
+    /// ```
+    fn of_unlike_records(likelihood: &Likelihood<'a>, fit: &Fit) -> Option<Self> {
+        let fits = fits_of_records(likelihood, &fit.model, &fit.parts, false);
+        let costs: Vec<f64> = fits.iter().map(|record| record.cost).collect();
+        let least = costs.iter().copied().fold(f64::INFINITY, f64::min);
+        let greatest = costs.iter().copied().fold(0.0, f64::max);
+        let are_unlike = least > 0.0 && greatest > ALIKE * least;
+        if !are_unlike {
+            return None;
+        }
+        let log_mean = costs.iter().map(|cost| cost.ln()).sum::<f64>() / costs.len() as f64;
+        let mean = log_mean.exp();
+        let records = likelihood.records();
+        let mut segments = Vec::with_capacity(likelihood.segments.len());
+        for segment in &likelihood.segments {
+            let number = records.iter().position(|record| *record == segment.record);
+            let reweighed = match number.and_then(|number| costs.get(number)) {
+                Some(cost) => segment.with_noise(cost / mean),
+                None => segment.clone(),
+            };
+            segments.push(reweighed);
+        }
+        let likelihood = Likelihood {
+            segments,
+            executor: likelihood.executor,
+        };
+        let start = Fit::start(&likelihood, fit.model.clone())?;
+        Some(Self {
+            likelihood,
+            start,
+            ratio: greatest / least,
+        })
+    }
+}

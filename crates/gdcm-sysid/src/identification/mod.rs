@@ -7,6 +7,7 @@ mod channel_quality;
 mod clock;
 pub mod cut_off;
 pub mod diagnostics;
+mod fast_modes;
 pub mod feedback;
 #[cfg(test)]
 mod fresh_flight_tests;
@@ -44,6 +45,7 @@ pub mod spectrum;
 pub mod subspace;
 pub mod topics;
 mod track;
+mod triangular_factor;
 pub mod uncertainty;
 
 pub use caution_note::CautionNote;

@@ -189,7 +189,7 @@ mod tests {
         let [a, b, c, d] = ["A", "B", "C", "D"].map(|name| matrix(&known["start"][name]));
         let start = StateSpace::new(a, b, c, d).unwrap();
         let likelihood = known_records(known);
-        let fit = Fit::start(&likelihood, BlockModel::of(&start).unwrap()).unwrap();
+        let fit = Fit::start(&likelihood, BlockModel::from_state_space(&start).unwrap()).unwrap();
         // Independent numpy code; the tolerances are stated in its file.
         assert!(
             (fit.cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8,

@@ -1,14 +1,16 @@
-//! Models from the triangular factor of the data matrix (M14, section 3, steps 3 to 5).
+//! CT-PBSID: models of all orders from the triangular factor of the data matrix (M14.3).
 //!
 //! ```text
 //! Z0 = [z_0 ... z_{p-1}], Z1 = [z_1 ... z_p], U = u~_p, Y = y~_p, all of them columns of R
-//! 1  Theta = argmin |[Z0 U] Theta - Y|^2 + ridge |Theta|^2                             predictor with an exogenous input
-//! 2  Gamma K: block row i = the first (p - i) q columns of Theta', placed from column i q;   i = 0 ... f - 1, f = min(p, f_max)
-//! 3  Gamma K Z0' = W S V';   T = S_n^-1/2 W_n' Gamma K;   X0 = Z0 T', X1 = Z1 T'        states
+//! 1  Theta = argmin |[Z0 U] Theta - Y|^2 + ridge |Theta|^2     predictor with an exogenous input
+//! 2  Gamma K: block row i = the first (p - i) q columns of Theta', placed from column i q
+//!    i = 0 ... f - 1, f = min(p, f_max)
+//! 3  Gamma K Z0' = W S V';   T = S_n^-1/2 W_n' Gamma K;   states X0 = Z0 T', X1 = Z1 T'
 //! 4  [Co Do] from Y on [X0 U], residual E;   [Ao Bo Ko] from X1 on [X0 U E]
 //! ```
 //!
-//! Chiuso, "The role of vector autoregressive modeling in predictor-based subspace identification", Automatica 43, 2007.
+//! A. Chiuso, "The role of vector autoregressive modeling in predictor-based subspace
+//! identification", Automatica 43, 2007.
 
 use std::collections::BTreeMap;
 
@@ -21,14 +23,39 @@ use gdcm_model::response::eigenvalues::poles;
 use gdcm_model::simulation::Segment;
 
 use super::blocks::BlockModel;
+use super::fast_modes::without_fast_modes;
 use super::identification_error::IdentificationError;
-use super::laguerre::{Projections, TriangularFactor, continuous, least_squares, ridge_solution};
+use super::laguerre::{Projections, continuous};
 use super::likelihood::Likelihood;
-use super::mode_removal::without_fast_modes;
 use super::refinement::Fit;
 use super::search_extent::SPACING;
+use super::triangular_factor::{TriangularFactor, least_squares, ridge_solution};
 
-/// The states of every order that one pole and one past window propose.
+/// Highest order at which poles and past windows are compared.
+const RANKING_ORDER: usize = 18;
+/// Number of poles and past windows that propose models of all orders.
+const KEPT: usize = 2;
+/// Modes beyond this many times the upper end of the band are images of z near -1.
+const FASTEST: f64 = 8.0;
+/// Share of the whole work that the candidates take.
+const SHARE: f64 = 0.2;
+/// Ridge of the predictor over columns of length one.
+const RIDGE: f64 = 1e-8;
+/// Relative distance up to which a pole is stable from one order to the next.
+const STABLE: f64 = 0.05;
+
+/// The dimensions of a data matrix and of its map to the future.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SubspaceShape {
+    pub(super) inputs: usize,
+    pub(super) outputs: usize,
+    /// Past window p.
+    pub(super) past: usize,
+    /// Most block rows of the map to the future, `f_max`.
+    pub(super) longest_future: usize,
+}
+
+/// The states of every order that one Laguerre pole and one past window propose.
 #[derive(Clone, Debug)]
 pub(super) struct Subspace {
     pole: f64,
@@ -44,24 +71,29 @@ pub(super) struct Subspace {
 }
 
 impl Subspace {
-    /// What the triangular factor of the data matrix of a pole \[rad/s\] says for the past window `past`; none where the
-    /// regressors depend on each other or an iteration does not end. The map to the future has `longest_future` block rows at most, and
-    /// the predictor a `ridge` over columns of length one.
+    /// Computes the states (steps 1 to 3) from the triangular factor of a pole \[rad/s\]; `ridge` is
+    /// over columns of length one.
+    ///
+    /// Returns `None` if the regressors depend on each other or an iteration does not converge.
     pub(super) fn new(
         factor: &TriangularFactor,
         pole: f64,
-        (inputs, outputs): (usize, usize),
-        past: usize,
-        longest_future: usize,
+        shape: SubspaceShape,
         ridge: f64,
     ) -> Option<Self> {
+        let SubspaceShape {
+            inputs,
+            outputs,
+            past,
+            longest_future,
+        } = shape;
         let channels = inputs + outputs;
         let width = past * channels;
-        let all = width + channels;
-        if factor.matrix().ncols() < all {
+        let size = width + channels;
+        if factor.matrix().ncols() < size {
             return None;
         }
-        let factor = factor.matrix().view((0, 0), (all, all)).into_owned();
+        let factor = factor.matrix().view((0, 0), (size, size)).into_owned();
         let theta = ridge_solution(factor.as_view(), width + inputs, ridge)?.transpose();
         let future = past.min(longest_future);
         let mut map = DMatrix::zeros(future * outputs, width);
@@ -70,7 +102,7 @@ impl Subspace {
             map.view_mut((row * outputs, row * channels), (outputs, kept))
                 .copy_from(&theta.columns(0, kept));
         }
-        // The left factors of the transposed triangular factor of (Gamma K Z0')' are those of Gamma K Z0'.
+        // The transposed triangular factor of (Gamma K Z0')' has the left factors of Gamma K Z0'.
         let mut transposed = TriangularFactor::empty(future * outputs);
         transposed.append(&(factor.view((0, 0), (width, width)) * map.transpose()));
         let decomposition =
@@ -79,8 +111,10 @@ impl Subspace {
                 .transpose()
                 .try_svd(true, false, f64::EPSILON, 10_000)?;
         let singular_values: Vec<f64> = decomposition.singular_values.iter().copied().collect();
-        let finite = singular_values.iter().all(|value| value.is_finite());
-        finite.then_some(Self {
+        if !singular_values.iter().all(|value| value.is_finite()) {
+            return None;
+        }
+        Some(Self {
             pole,
             inputs,
             factor,
@@ -90,72 +124,53 @@ impl Subspace {
         })
     }
 
-    /// The model of an order in continuous time; none where the data do not hold so many states.
+    /// Computes the continuous-time model of an order (step 4); `None` if the data do not hold so
+    /// many states.
     pub(super) fn model(&self, order: usize) -> Option<StateSpace> {
-        let all = self.factor.ncols();
         let inputs = self.inputs;
         let width = self.map.ncols();
-        let channels = all - width;
+        let channels = self.factor.ncols() - width;
         let outputs = channels - inputs;
-        let roots = self
-            .singular_values
-            .get(..order)?
-            .iter()
-            .map(|value| value.sqrt());
-        let mut states = self.left.columns(0, order).transpose() * &self.map;
-        for (mut row, root) in states.row_iter_mut().zip(roots) {
+        let states = self.state_map(order)?.transpose();
+        let x0 = self.factor.columns(0, width) * &states;
+        let x1 = self.factor.columns(channels, width) * &states;
+        let u = self.factor.columns(width, inputs);
+        let y = self.factor.columns(width + inputs, outputs);
+        let regressors = side_by_side(&[x0.as_view(), u.as_view()]);
+        let output_solution = least_squares(&regressors, &y.into_owned())?;
+        let innovation = y - &regressors * &output_solution;
+        let regressors = side_by_side(&[regressors.as_view(), innovation.as_view()]);
+        let state_solution = least_squares(&regressors, &x1)?;
+        let a = state_solution.rows(0, order).transpose();
+        let b = state_solution.rows(order, inputs).transpose();
+        let c = output_solution.rows(0, order).transpose();
+        let d = output_solution.rows(order, inputs).transpose();
+        continuous(self.pole, &StateSpace::new(a, b, c, d).ok()?)
+    }
+
+    /// Computes `T = S_n^-1/2 W_n' Gamma K`.
+    fn state_map(&self, order: usize) -> Option<DMatrix<f64>> {
+        let singular_values = self.singular_values.get(..order)?;
+        let mut map = self.left.columns(0, order).transpose() * &self.map;
+        for (mut row, value) in map.row_iter_mut().zip(singular_values) {
+            let root = value.sqrt();
             if root == 0.0 {
                 return None;
             }
             row.unscale_mut(root);
         }
-        let transposed = states.transpose();
-        let before = self.factor.columns(0, width) * &transposed;
-        let after = self.factor.columns(channels, width) * &transposed;
-        let u = self.factor.columns(width, inputs);
-        let y = self.factor.columns(width + inputs, outputs);
-        let regressors = side_by_side(&[before.as_view(), u.as_view()]);
-        let outputs_of = least_squares(&regressors, &y.into_owned())?;
-        let innovation = y - &regressors * &outputs_of;
-        let states_of = least_squares(
-            &side_by_side(&[regressors.as_view(), innovation.as_view()]),
-            &after,
-        )?;
-        let part = |solution: &DMatrix<f64>, from, count| solution.rows(from, count).transpose();
-        let a = part(&states_of, 0, order);
-        let b = part(&states_of, order, inputs);
-        let c = part(&outputs_of, 0, order);
-        let d = part(&outputs_of, order, inputs);
-        continuous(self.pole, &StateSpace::new(a, b, c, d).ok()?)
+        Some(map)
     }
 }
 
+/// Joins matrices of equal height.
 fn side_by_side(parts: &[DMatrixView<'_, f64>]) -> DMatrix<f64> {
     let rows = parts.first().map_or(0, |part| part.nrows());
     let columns: Vec<_> = parts.iter().flat_map(|part| part.column_iter()).collect();
     DMatrix::from_fn(rows, columns.len(), |row, column| columns[column][row])
 }
 
-// Models that CT-PBSID proposes, and the cheapest of them for every order (M14, section 3).
-//
-// ```text
-// 1  R for each Laguerre pole a
-// 2  for each a and past window p: the model of order 18, its cost
-// 3  for the two cheapest (a, p): the models of all orders; of one order the cheaper is kept
-// ```
-
-/// Order at which poles and past windows are compared at most.
-const RANKING_ORDER: usize = 18;
-/// How many poles and past windows propose models of all orders.
-const KEPT: usize = 2;
-/// Modes beyond this many times the upper end of the band are images of z near -1.
-const FASTEST: f64 = 8.0;
-/// Share of the whole work that the candidates are.
-const SHARE: f64 = 0.2;
-/// Ridge of the predictor over columns of length one.
-const RIDGE: f64 = 1e-8;
-
-/// What CT-PBSID is run with.
+/// Settings of CT-PBSID.
 #[derive(Clone, Debug)]
 pub(super) struct SubspaceSettings {
     /// Upper end of the band \[rad/s\].
@@ -164,13 +179,13 @@ pub(super) struct SubspaceSettings {
     pub(super) poles: Vec<f64>,
     /// Past windows.
     pub(super) pasts: Vec<usize>,
-    /// Orders, ascending.
+    /// Ascending.
     pub(super) orders: Vec<usize>,
-    /// Block rows of the map to the future at most.
+    /// Most block rows of the map to the future.
     pub(super) longest_future: usize,
 }
 
-/// The states that one pole and past window propose.
+/// The states that one Laguerre pole and past window propose.
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
     /// Laguerre pole \[rad/s\].
@@ -182,107 +197,168 @@ pub(super) struct Candidate {
     subspace: Subspace,
 }
 
+/// The poles of the model of an order.
+pub(super) struct PolesOfOrder {
+    pub(super) order: usize,
+    /// \[rad/s\].
+    pub(super) poles: Vec<Complex<f64>>,
+}
+
 impl SubspaceSettings {
-    /// The two cheapest poles and past windows, the cheaper first.
+    /// Returns the two cheapest poles and past windows, the cheaper one first.
+    ///
+    /// ```text
+    /// 1  R for each Laguerre pole a
+    /// 2  for each a and past window p: the model of order 18, its cost
+    /// 3  the two cheapest (a, p)
+    /// ```
     pub(super) fn candidates(
         &self,
         segments: &[Segment],
         likelihood: &Likelihood,
         progress: &Shares,
     ) -> Result<Vec<Candidate>, IdentificationError> {
-        let pasts = &self.pasts;
-        let (Some(&longest), Some(order)) = (pasts.iter().max(), self.ranking_order(segments))
-        else {
+        let Some(ranking) = Ranking::new(self, segments, likelihood, progress) else {
             return Ok(Vec::new());
         };
-        let executor = likelihood.executor;
-        let share = SHARE / (self.poles.len() * (pasts.len() + 1)) as f64;
-        let of_pole = |(k, &pole): (usize, &f64)| {
-            let told = format!("pole {} of {}", k + 1, self.poles.len());
-            progress.advance(share, &format!("{told}, projections"))?;
-            let factor = self.projections(pole, longest).factor(segments, executor);
-            let of_past = |&past: &usize| {
-                progress.advance(share, &format!("{told}, past {past}"))?;
-                Ok(self.candidate(&factor, (pole, past), order, segments, likelihood))
-            };
-            each(executor, pasts, of_past)
-                .into_iter()
-                .collect::<Result<Vec<_>, IdentificationError>>()
-        };
-        let all = each(executor, self.poles.iter().enumerate(), of_pole)
-            .into_iter()
-            .collect::<Result<Vec<_>, _>>()?;
-        let mut found: Vec<Candidate> = all.into_iter().flatten().flatten().collect();
-        found.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        found.truncate(KEPT);
-        Ok(found)
+        let numbers = 0..self.poles.len();
+        let mut candidates = Vec::new();
+        for of_pole in each(likelihood.executor, numbers, |k| ranking.rank_pole(k)) {
+            candidates.extend(of_pole?);
+        }
+        candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        candidates.truncate(KEPT);
+        Ok(candidates)
     }
 
-    /// For each order the cheaper of the models of `candidates`, with its cost.
+    /// Returns the cheaper of the models of `candidates` for each order, with its cost.
     pub(super) fn starts(
         &self,
         candidates: &[Candidate],
         likelihood: &Likelihood,
     ) -> BTreeMap<usize, Fit> {
-        let cheapest = |&order: &usize| {
-            let models = candidates
+        let cheapest = each(likelihood.executor, &self.orders, |&order| {
+            candidates
                 .iter()
-                .filter_map(|candidate| self.model(&candidate.subspace, order));
-            let fits = models.filter_map(|model| Fit::start(likelihood, model));
-            fits.min_by(|a, b| a.cost.total_cmp(&b.cost))
-                .map(|fit| (order, fit))
-        };
-        each(likelihood.executor, &self.orders, cheapest)
-            .into_iter()
-            .flatten()
-            .collect()
+                .filter_map(|candidate| self.block_model(&candidate.subspace, order))
+                .filter_map(|model| Fit::start(likelihood, model))
+                .min_by(|a, b| a.cost.total_cmp(&b.cost))
+        });
+        let mut starts = BTreeMap::new();
+        for (order, fit) in self.orders.iter().zip(cheapest) {
+            if let Some(fit) = fit {
+                starts.insert(*order, fit);
+            }
+        }
+        starts
     }
 
-    /// The poles of the models of each order that a candidate proposes.
+    /// Returns the poles of the models of all orders that a candidate proposes.
     pub(super) fn poles_by_order(
         &self,
         candidate: &Candidate,
         executor: &dyn Executor,
-    ) -> Vec<(usize, Vec<nalgebra::Complex<f64>>)> {
-        let of_order =
-            |&order: &usize| Some((order, poles(&self.slow(&candidate.subspace, order)?)?));
-        each(executor, &self.orders, of_order)
-            .into_iter()
-            .flatten()
-            .collect()
+    ) -> Vec<PolesOfOrder> {
+        each(executor, &self.orders, |&order| {
+            let model = self.slow_model(&candidate.subspace, order)?;
+            let poles = poles(&model)?;
+            Some(PolesOfOrder { order, poles })
+        })
+        .into_iter()
+        .flatten()
+        .collect()
     }
 
-    fn projections(&self, pole: f64, past: usize) -> Projections {
-        Projections {
-            pole,
-            past,
-            spacing_s: SPACING / self.highest,
-        }
+    /// Returns the model of an order without modes far above the band.
+    fn slow_model(&self, subspace: &Subspace, order: usize) -> Option<StateSpace> {
+        without_fast_modes(&subspace.model(order)?, FASTEST * self.highest)
     }
 
-    /// The order at which poles and past windows are compared: one that the shortest past window has states for.
-    fn ranking_order(&self, segments: &[Segment]) -> Option<usize> {
-        let outputs = segments.first()?.outputs.ncols();
-        let future = self.pasts.iter().min()?.min(&self.longest_future);
-        Some(
-            RANKING_ORDER
-                .min(*self.orders.last()?)
-                .min(future * outputs),
-        )
+    /// Returns the same in blocks; `None` if all its modes are far above the band.
+    fn block_model(&self, subspace: &Subspace, order: usize) -> Option<BlockModel> {
+        BlockModel::from_state_space(&self.slow_model(subspace, order)?)
     }
+}
 
-    fn candidate(
-        &self,
-        factor: &TriangularFactor,
-        (pole, past): (f64, usize),
-        order: usize,
-        segments: &[Segment],
-        likelihood: &Likelihood,
-    ) -> Option<Candidate> {
+/// The comparison of Laguerre poles and past windows.
+struct Ranking<'r> {
+    settings: &'r SubspaceSettings,
+    segments: &'r [Segment],
+    likelihood: &'r Likelihood<'r>,
+    progress: &'r Shares<'r>,
+    inputs: usize,
+    outputs: usize,
+    longest_past: usize,
+    /// Order at which models are compared.
+    order: usize,
+    /// Share of the whole work that is reported for a step.
+    share: f64,
+}
+
+impl<'r> Ranking<'r> {
+    /// Chooses an order for which the shortest past window has states; `None` without orders, past
+    /// windows or segments.
+    fn new(
+        settings: &'r SubspaceSettings,
+        segments: &'r [Segment],
+        likelihood: &'r Likelihood<'r>,
+        progress: &'r Shares<'r>,
+    ) -> Option<Self> {
         let segment = segments.first()?;
-        let channels = (segment.inputs.ncols(), segment.outputs.ncols());
-        let subspace = Subspace::new(factor, pole, channels, past, self.longest_future, RIDGE)?;
-        let cost = likelihood.cost(&self.model(&subspace, order)?)?;
+        let outputs = segment.outputs.ncols();
+        let future = settings.pasts.iter().min()?.min(&settings.longest_future);
+        let steps = settings.poles.len() * (settings.pasts.len() + 1);
+        Some(Self {
+            settings,
+            segments,
+            likelihood,
+            progress,
+            inputs: segment.inputs.ncols(),
+            outputs,
+            longest_past: *settings.pasts.iter().max()?,
+            order: RANKING_ORDER
+                .min(*settings.orders.last()?)
+                .min(future * outputs),
+            share: SHARE / steps as f64,
+        })
+    }
+
+    /// Computes the candidates of the pole with this number.
+    fn rank_pole(&self, number: usize) -> Result<Vec<Candidate>, IdentificationError> {
+        let executor = self.likelihood.executor;
+        let poles = &self.settings.poles;
+        let step = format!("pole {} of {}", number + 1, poles.len());
+        self.progress
+            .advance(self.share, &format!("{step}, projections"))?;
+        let projections = Projections {
+            pole: poles[number],
+            past: self.longest_past,
+            spacing_s: SPACING / self.settings.highest,
+        };
+        let factor = projections.factor(self.segments, executor);
+        let mut candidates = Vec::new();
+        let of_pasts = each(executor, &self.settings.pasts, |&past| {
+            self.progress
+                .advance(self.share, &format!("{step}, past {past}"))?;
+            Ok::<_, IdentificationError>(self.candidate(&factor, poles[number], past))
+        });
+        for candidate in of_pasts {
+            candidates.extend(candidate?);
+        }
+        Ok(candidates)
+    }
+
+    /// Computes the candidate of a pole and a past window; `None` if it proposes no model.
+    fn candidate(&self, factor: &TriangularFactor, pole: f64, past: usize) -> Option<Candidate> {
+        let shape = SubspaceShape {
+            inputs: self.inputs,
+            outputs: self.outputs,
+            past,
+            longest_future: self.settings.longest_future,
+        };
+        let subspace = Subspace::new(factor, pole, shape, RIDGE)?;
+        let model = self.settings.block_model(&subspace, self.order)?;
+        let cost = self.likelihood.cost(&model)?;
         Some(Candidate {
             pole,
             past,
@@ -290,55 +366,38 @@ impl SubspaceSettings {
             subspace,
         })
     }
-
-    /// The model of an order without modes far above the band.
-    fn slow(&self, subspace: &Subspace, order: usize) -> Option<StateSpace> {
-        without_fast_modes(&subspace.model(order)?, FASTEST * self.highest)
-    }
-
-    /// The same in blocks; none where all its modes are far above the band.
-    fn model(&self, subspace: &Subspace, order: usize) -> Option<BlockModel> {
-        BlockModel::of(&self.slow(subspace, order)?)
-    }
 }
 
-// The stabilisation diagram: which poles stay where they are while the order rises (M14, section 3).
-
-/// Greatest relative distance of a stable pole from one of the order before.
-const STABLE: f64 = 0.05;
-
-/// A pole of the unrefined model of an order.
+/// A pole of the unrefined model of an order, for the stabilisation diagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilisationPoint {
     /// Order of the model.
     pub order: usize,
-    /// Pole \[rad/s\], imaginary part not negative: of a pair the upper one.
+    /// Pole \[rad/s\] with a non-negative imaginary part: the upper one of a pair.
     pub pole: Complex<f64>,
-    /// Whether a model of the order two less has a pole within 5 % of its modulus.
+    /// Whether the model with two states less has a pole within 5 % of its modulus.
     pub stable: bool,
 }
 
-/// The diagram from the poles of each order, ascending.
-pub(super) fn stabilisation(poles: &[(usize, Vec<Complex<f64>>)]) -> Vec<StabilisationPoint> {
-    let of_order = |(order, own): &(usize, Vec<Complex<f64>>)| {
-        let before = poles
+/// Finds the poles that stay in place while the order rises; `orders` are ascending.
+pub(super) fn stabilisation(orders: &[PolesOfOrder]) -> Vec<StabilisationPoint> {
+    let mut points = Vec::new();
+    for own in orders {
+        let before = orders
             .iter()
-            .find(|(other, _)| other + 2 == *order)
-            .map(|(_, poles)| poles);
-        let point = |pole: Complex<f64>| {
-            let near = |other: &Complex<f64>| (other - pole).norm() < STABLE * pole.norm();
-            StabilisationPoint {
-                order: *order,
+            .find(|other| other.order + 2 == own.order)
+            .map_or(&[][..], |other| other.poles.as_slice());
+        for &pole in own.poles.iter().filter(|pole| pole.im >= 0.0) {
+            points.push(StabilisationPoint {
+                order: own.order,
                 pole,
-                stable: before.is_some_and(|before| before.iter().any(near)),
-            }
-        };
-        own.iter()
-            .filter(|pole| pole.im >= 0.0)
-            .map(|pole| point(*pole))
-            .collect::<Vec<_>>()
-    };
-    poles.iter().flat_map(of_order).collect()
+                stable: before
+                    .iter()
+                    .any(|other| (other - pole).norm() < STABLE * pole.norm()),
+            });
+        }
+    }
+    points
 }
 
 #[cfg(test)]
@@ -353,9 +412,13 @@ mod tests {
         let known = &answers()["pbsid_noise_free"];
         let inputs = matrix(&known["u"]);
         let outputs = matrix(&known["y"]);
-        let channels = (inputs.ncols(), outputs.ncols());
         let dt = number(&known["dt"]);
-        let past = number(&known["p"]) as usize;
+        let shape = SubspaceShape {
+            inputs: inputs.ncols(),
+            outputs: outputs.ncols(),
+            past: number(&known["p"]) as usize,
+            longest_future: 2,
+        };
         let segment = Segment {
             record: 0,
             start_s: 0.0,
@@ -365,14 +428,14 @@ mod tests {
         };
         let projections = Projections {
             pole: number(&known["a"]),
-            past,
+            past: shape.past,
             spacing_s: dt,
         };
         let rows = projections.rows(&segment);
         let mut factor = TriangularFactor::empty(rows.ncols());
         factor.append(&rows);
-        let subspace = Subspace::new(&factor, projections.pole, channels, past, 2, 0.0).unwrap();
-        // Independent numpy code; the tolerances stand in its file.
+        let subspace = Subspace::new(&factor, projections.pole, shape, 0.0).unwrap();
+        // Independent numpy code; the tolerances are stated in its file.
         for (found, expected) in subspace
             .singular_values
             .iter()
@@ -388,18 +451,20 @@ mod tests {
 
     #[test]
     fn a_pole_is_stable_when_the_order_before_has_it() {
-        let pole = |re: f64, im: f64| Complex::new(re, im);
         let orders = [
-            (2, vec![pole(-1.0, 2.0), pole(-1.0, -2.0)]),
-            (
-                4,
-                vec![
-                    pole(-1.0, 2.05),
-                    pole(-1.0, -2.05),
-                    pole(-3.0, 0.0),
-                    pole(-8.0, 0.0),
+            PolesOfOrder {
+                order: 2,
+                poles: vec![Complex::new(-1.0, 2.0), Complex::new(-1.0, -2.0)],
+            },
+            PolesOfOrder {
+                order: 4,
+                poles: vec![
+                    Complex::new(-1.0, 2.05),
+                    Complex::new(-1.0, -2.05),
+                    Complex::new(-3.0, 0.0),
+                    Complex::new(-8.0, 0.0),
                 ],
-            ),
+            },
         ];
         let diagram = stabilisation(&orders);
         let stable: Vec<_> = diagram

@@ -1,16 +1,20 @@
-//! The normal equations of the cost, in Gram form (M14, sections 4 and 8).
+//! The normal equations of the cost, in Gram form (M14.4, M14.8).
 //!
 //! ```text
-//! Each column of the Jacobian of W G U is a vector v of one entry an output times a scalar s, at each line:
-//!    block      v = (W C R)_2      s = -X_1, -X_2 (a pair), X (a single pole)         R = (j omega - A)^-1
-//!    B_ij       v = (W C R)_i      s = U_j                                            X = R (B U + tau)
-//!    C_oi, D_oj v = W e_o          s = X_i, U_j
+//! At each line, every column of the Jacobian of W G U is a vector v of outputs times a scalar s:
+//!    block       v = (W C R)_2      s = -X_1, -X_2 (a pair), X (a single pole)
+//!    B_ij        v = (W C R)_i      s = U_j
+//!    C_oi, D_oj  v = W e_o          s = X_i, U_j
 //!    tau_i, c1_o, c0_o: v = (W C R)_i, W e_o, W e_o, s = 1, 1/(j omega), 1
-//! J'J[p, q] = sum_k Re(v_p^H v_q  s_p^* s_q): a product of two matrices, (pairs of v) x (lines) times (lines) x (pairs of s)
-//! transient eliminated: G = J'J - J'T (T'T)^+ T'J,   g = J'e, as e is orthogonal to T
+//!    R = (j omega - A)^-1,  X = R (B U + tau)
+//! 1  J'J[p, q] = sum_k Re(v_p^H v_q  s_p^* s_q): a product of two matrices,
+//!    (pairs of v) x (lines) times (lines) x (pairs of s)
+//! 2  transient eliminated: G = J'J - J'T (T'T)^+ T'J
+//! 3  g = J'e, as e is orthogonal to T
 //! ```
 //!
-//! With tau in X the gradient is exact: variable projection in the form of Kaufman, BIT 15, 1975.
+//! With tau in X the gradient is exact: variable projection in the form of L. Kaufman, "A variable
+//! projection method for solving separable nonlinear least squares problems", BIT 15, 1975.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -20,7 +24,7 @@ use super::blocks::{Block, BlockModel};
 use super::gram_matrix::{pseudo_inverse_root, scale_columns};
 use super::likelihood::{DEPENDENT, Likelihood, SegmentCost, SpectralLines, whiten};
 
-/// `G`, `g` and the cost: a step `d` changes the cost by `-2 g'd + d'G d`.
+/// `G` and `g`: a step `d` changes the cost by `-2 g'd + d'G d`.
 #[derive(Clone, Debug)]
 pub(super) struct NormalSystem {
     /// `G = J'J`, the transients eliminated.
@@ -30,7 +34,7 @@ pub(super) struct NormalSystem {
 }
 
 impl NormalSystem {
-    /// The sum of some; `parameters` says how large it is where there are none.
+    /// Sums systems of this number of parameters; zero without systems.
     pub(super) fn sum<'s>(parameters: usize, systems: impl IntoIterator<Item = &'s Self>) -> Self {
         let mut sum = Self {
             matrix: DMatrix::zeros(parameters, parameters),
@@ -43,7 +47,7 @@ impl NormalSystem {
         sum
     }
 
-    /// Takes another one off.
+    /// Subtracts another system.
     pub(super) fn without(&self, other: &Self) -> Self {
         Self {
             matrix: &self.matrix - &other.matrix,
@@ -51,7 +55,8 @@ impl NormalSystem {
         }
     }
 
-    /// The step of Levenberg and Marquardt, `(G + lambda diag G) d = g`; none where it is not finite.
+    /// Computes the Levenberg-Marquardt step, `(G + lambda diag G) d = g`; `None` if it is not
+    /// finite.
     pub(super) fn damped_step(&self, lambda: f64) -> Option<DVector<f64>> {
         let mut scaled = self.matrix.clone();
         let scales = scale_columns(&mut scaled);
@@ -62,11 +67,15 @@ impl NormalSystem {
             .cholesky()?
             .solve(&self.gradient.component_mul(&scales))
             .component_mul(&scales);
-        step.iter().all(|entry| entry.is_finite()).then_some(step)
+        if step.iter().all(|entry| entry.is_finite()) {
+            Some(step)
+        } else {
+            None
+        }
     }
 }
 
-/// The systems of all segments at a model, in the order of the segments; `parts` are the segments' costs at it.
+/// Computes the systems of all segments at a model; `parts` are the costs of the segments there.
 pub(super) fn normal_systems(
     likelihood: &Likelihood,
     model: &BlockModel,
@@ -96,7 +105,7 @@ pub(super) fn system_of_record(
     NormalSystem::sum(parameters, own)
 }
 
-/// `J'd` of one segment for the column `d` that stands in the place of the residual of `part`, its transient taken off.
+/// Computes `J'd` of one segment; the residual of `part` is the column `d`, its transient removed.
 pub(super) fn gradient_along(
     lines: &SpectralLines,
     model: &BlockModel,
@@ -107,7 +116,43 @@ pub(super) fn gradient_along(
     gram.gradient
 }
 
-/// The vectors and scalars of one segment, and the Gram matrix that comes of them.
+/// Numbers of two vectors, or of two scalars, whose product is needed.
+#[derive(Clone, Copy)]
+struct IndexPair {
+    left: usize,
+    right: usize,
+}
+
+/// Returns the pairs of `0..count` in which the second number is not less than the first.
+fn ordered_pairs(count: usize) -> Vec<IndexPair> {
+    let mut pairs = Vec::new();
+    for left in 0..count {
+        for right in left..count {
+            pairs.push(IndexPair { left, right });
+        }
+    }
+    pairs
+}
+
+/// Returns all pairs of a number below `lefts` and one below `rights`.
+fn all_pairs(lefts: usize, rights: usize) -> Vec<IndexPair> {
+    let mut pairs = Vec::new();
+    for left in 0..lefts {
+        for right in 0..rights {
+            pairs.push(IndexPair { left, right });
+        }
+    }
+    pairs
+}
+
+/// The column of a parameter of a block: `(W C R)_vector` times `sign X_scalar`.
+struct BlockColumn {
+    vector: usize,
+    scalar: usize,
+    sign: f64,
+}
+
+/// The vectors and scalars of one segment, and the Gram matrix built from them.
 ///
 /// Columns are numbered: the parameters, then tau, c1, c0.
 struct Gram<'a> {
@@ -155,8 +200,6 @@ impl<'a> Gram<'a> {
             weight_scalars[(order + inputs + 1, k)] = Complex::from(1.0);
         }
         let size = model.parameters() + order + 2 * outputs;
-        let matrix = DMatrix::zeros(size, size);
-        let gradient = DVector::zeros(model.parameters());
         Self {
             model,
             lines,
@@ -164,12 +207,12 @@ impl<'a> Gram<'a> {
             resolvent,
             resolvent_scalars,
             weight_scalars,
-            matrix,
-            gradient,
+            matrix: DMatrix::zeros(size, size),
+            gradient: DVector::zeros(model.parameters()),
         }
     }
 
-    /// The system with the transient eliminated; none where an iteration does not end.
+    /// Computes the system with the transient eliminated; `None` if an iteration does not converge.
     fn system(mut self) -> Option<NormalSystem> {
         self.add_resolvent();
         self.add_weight();
@@ -196,7 +239,7 @@ impl<'a> Gram<'a> {
         })
     }
 
-    /// Column of the vector `(W C R)_state` times the scalar of this number.
+    /// Returns the column of the vector `(W C R)_state` times a scalar of `B` and tau.
     fn resolvent_column(&self, state: usize, scalar: usize) -> usize {
         if scalar < self.model.b.ncols() {
             self.model.place_of_b(state, scalar)
@@ -205,7 +248,7 @@ impl<'a> Gram<'a> {
         }
     }
 
-    /// Column of the vector `W e_output` times the scalar of this number.
+    /// Returns the column of the vector `W e_output` times a scalar of `C`, `D`, c1 and c0.
     fn weight_column(&self, output: usize, scalar: usize) -> usize {
         let order = self.model.order();
         let inputs = self.model.b.ncols();
@@ -219,113 +262,24 @@ impl<'a> Gram<'a> {
         }
     }
 
+    /// Writes the product of two columns on both sides of the diagonal.
     fn put(&mut self, p: usize, q: usize, value: f64) {
         self.matrix[(p, q)] = value;
         self.matrix[(q, p)] = value;
     }
 
-    /// `(W C R)_i^H (W C R)_i'` at line `k`.
-    fn resolvent_product(&self, k: usize, i: usize, other: usize) -> Complex<f64> {
+    /// Computes `(W C R)_i^H (W C R)_j` at line `k`.
+    fn resolvent_product(&self, k: usize, i: usize, j: usize) -> Complex<f64> {
         let order = self.model.order();
         let left = self.resolvent.column(k * order + i);
-        let right = self.resolvent.column(k * order + other);
+        let right = self.resolvent.column(k * order + j);
         left.iter()
             .zip(right.iter())
             .map(|(a, b)| a.conj() * b)
             .sum()
     }
 
-    /// Real and imaginary part of a product of each row at each line: two columns a line.
-    fn line_products(
-        &self,
-        rows: usize,
-        product: impl Fn(usize, usize) -> Complex<f64>,
-    ) -> DMatrix<f64> {
-        let mut products = DMatrix::zeros(rows, 2 * self.lines.omega.len());
-        for k in 0..self.lines.omega.len() {
-            let (mut real, mut imaginary) = products.columns_range_pair_mut(2 * k, 2 * k + 1);
-            for row in 0..rows {
-                let product = product(k, row);
-                (real[row], imaginary[row]) = (product.re, product.im);
-            }
-        }
-        products
-    }
-
-    /// `B` and tau with themselves.
-    fn add_resolvent(&mut self) {
-        let order = self.model.order();
-        let scalars = self.resolvent_scalars.nrows();
-        let pairs: Vec<_> = (0..order)
-            .flat_map(|i| (i..order).map(move |other| (i, other)))
-            .collect();
-        let left = self.line_products(pairs.len(), |k, row| {
-            self.resolvent_product(k, pairs[row].0, pairs[row].1)
-        });
-        let scalar_pairs: Vec<_> = (0..scalars)
-            .flat_map(|s| (0..scalars).map(move |t| (s, t)))
-            .collect();
-        let products = left
-            * scalar_products(
-                &self.resolvent_scalars,
-                &self.resolvent_scalars,
-                &scalar_pairs,
-            );
-        for (row, &(i, other)) in pairs.iter().enumerate() {
-            for (column, &(s, t)) in scalar_pairs.iter().enumerate() {
-                self.put(
-                    self.resolvent_column(i, s),
-                    self.resolvent_column(other, t),
-                    products[(row, column)],
-                );
-            }
-        }
-    }
-
-    /// `C`, `D`, c1 and c0 with themselves: `W'W` is real.
-    fn add_weight(&mut self) {
-        let outputs = self.model.c.nrows();
-        let scalars = self.weight_scalars.nrows();
-        let count = self.lines.omega.len();
-        let pairs: Vec<_> = (0..outputs)
-            .flat_map(|o| (o..outputs).map(move |other| (o, other)))
-            .collect();
-        let mut left = DMatrix::<f64>::zeros(pairs.len(), count);
-        for (k, weight) in self.lines.weights.iter().enumerate() {
-            for (row, &(o, other)) in pairs.iter().enumerate() {
-                left[(row, k)] = (other..outputs)
-                    .map(|below| weight[(below, o)] * weight[(below, other)])
-                    .sum();
-            }
-        }
-        let scalar_pairs: Vec<_> = (0..scalars)
-            .flat_map(|s| (s..scalars).map(move |t| (s, t)))
-            .collect();
-        let mut right = DMatrix::<f64>::zeros(scalar_pairs.len(), count);
-        for (k, weight_scalars) in self.weight_scalars.column_iter().enumerate() {
-            for (to, &(s, t)) in right.column_mut(k).iter_mut().zip(&scalar_pairs) {
-                *to = weight_scalars[s].re * weight_scalars[t].re
-                    + weight_scalars[s].im * weight_scalars[t].im;
-            }
-        }
-        let products = left * right.transpose();
-        for (row, &(o, other)) in pairs.iter().enumerate() {
-            for (column, &(s, t)) in scalar_pairs.iter().enumerate() {
-                self.put(
-                    self.weight_column(o, s),
-                    self.weight_column(other, t),
-                    products[(row, column)],
-                );
-                self.put(
-                    self.weight_column(o, t),
-                    self.weight_column(other, s),
-                    products[(row, column)],
-                );
-            }
-        }
-    }
-
-    /// `(W e_o)^H (W C R)_i` at line `k`.
+    /// Computes `(W e_o)^H (W C R)_i` at line `k`.
     fn weight_product(&self, k: usize, o: usize, i: usize) -> Complex<f64> {
         let column = self.resolvent.column(k * self.model.order() + i);
         let weight = &self.lines.weights[k];
@@ -334,73 +288,172 @@ impl<'a> Gram<'a> {
             .sum()
     }
 
-    /// `B` and tau with `C`, `D`, c1 and c0.
-    fn add_resolvent_with_weight(&mut self) {
-        let order = self.model.order();
-        let outputs = self.model.c.nrows();
-        let product =
-            |k: usize, row: usize| self.weight_product(k, row % outputs, row / outputs).conj();
-        let left = self.line_products(order * outputs, product);
-        let resolvent_count = self.resolvent_scalars.nrows();
-        let weight_count = self.weight_scalars.nrows();
-        let scalar_pairs: Vec<_> = (0..resolvent_count)
-            .flat_map(|s| (0..weight_count).map(move |t| (s, t)))
-            .collect();
-        let products =
-            left * scalar_products(&self.resolvent_scalars, &self.weight_scalars, &scalar_pairs);
-        for row in 0..order * outputs {
-            for (column, &(s, t)) in scalar_pairs.iter().enumerate() {
-                let p = self.resolvent_column(row / outputs, s);
-                let q = self.weight_column(row % outputs, t);
-                self.put(p, q, products[(row, column)]);
+    /// Tabulates `product(k, row)` of each row at each line `k`: real and imaginary part in two
+    /// columns a line.
+    fn line_products(
+        &self,
+        rows: usize,
+        product: impl Fn(usize, usize) -> Complex<f64>,
+    ) -> DMatrix<f64> {
+        let mut products = DMatrix::zeros(rows, 2 * self.lines.omega.len());
+        for k in 0..self.lines.omega.len() {
+            for row in 0..rows {
+                let product = product(k, row);
+                products[(row, 2 * k)] = product.re;
+                products[(row, 2 * k + 1)] = product.im;
+            }
+        }
+        products
+    }
+
+    /// Adds the products of `B` and tau with themselves.
+    fn add_resolvent(&mut self) {
+        let scalars = self.resolvent_scalars.nrows();
+        let states = ordered_pairs(self.model.order());
+        let left = self.line_products(states.len(), |k, row| {
+            self.resolvent_product(k, states[row].left, states[row].right)
+        });
+        let scalar_pairs = all_pairs(scalars, scalars);
+        let right = scalar_products(
+            &self.resolvent_scalars,
+            &self.resolvent_scalars,
+            &scalar_pairs,
+        );
+        let products = left * right;
+        for (row, state) in states.iter().enumerate() {
+            for (column, scalar) in scalar_pairs.iter().enumerate() {
+                self.put(
+                    self.resolvent_column(state.left, scalar.left),
+                    self.resolvent_column(state.right, scalar.right),
+                    products[(row, column)],
+                );
             }
         }
     }
 
-    /// Of every parameter of the blocks: state of its vector, state of its scalar, sign.
-    fn block_columns(&self) -> Vec<(usize, usize, f64)> {
-        let columns = self.model.rows().flat_map(|(first, block)| match block {
-            Block::Pair { .. } => vec![(first + 1, first, -1.0), (first + 1, first + 1, -1.0)],
-            Block::Single(_) => vec![(first, first, 1.0)],
-        });
-        columns.collect()
+    /// Adds the products of `C`, `D`, c1 and c0 with themselves: `W'W` is real.
+    fn add_weight(&mut self) {
+        let count = self.lines.omega.len();
+        let output_count = self.model.c.nrows();
+        let outputs = ordered_pairs(output_count);
+        let mut left = DMatrix::<f64>::zeros(outputs.len(), count);
+        for (k, weight) in self.lines.weights.iter().enumerate() {
+            for (row, output) in outputs.iter().enumerate() {
+                left[(row, k)] = (output.right..output_count)
+                    .map(|below| weight[(below, output.left)] * weight[(below, output.right)])
+                    .sum();
+            }
+        }
+        let scalar_pairs = ordered_pairs(self.weight_scalars.nrows());
+        let mut right = DMatrix::<f64>::zeros(scalar_pairs.len(), count);
+        for (k, scalars) in self.weight_scalars.column_iter().enumerate() {
+            for (row, pair) in scalar_pairs.iter().enumerate() {
+                let s = scalars[pair.left];
+                let t = scalars[pair.right];
+                right[(row, k)] = s.re * t.re + s.im * t.im;
+            }
+        }
+        let products = left * right.transpose();
+        for (row, output) in outputs.iter().enumerate() {
+            for (column, scalar) in scalar_pairs.iter().enumerate() {
+                self.put(
+                    self.weight_column(output.left, scalar.left),
+                    self.weight_column(output.right, scalar.right),
+                    products[(row, column)],
+                );
+                self.put(
+                    self.weight_column(output.left, scalar.right),
+                    self.weight_column(output.right, scalar.left),
+                    products[(row, column)],
+                );
+            }
+        }
     }
 
-    /// The blocks with everything.
+    /// Adds the products of `B` and tau with `C`, `D`, c1 and c0.
+    fn add_resolvent_with_weight(&mut self) {
+        let outputs = self.model.c.nrows();
+        let vectors = all_pairs(self.model.order(), outputs);
+        let left = self.line_products(vectors.len(), |k, row| {
+            self.weight_product(k, vectors[row].right, vectors[row].left)
+                .conj()
+        });
+        let scalar_pairs = all_pairs(self.resolvent_scalars.nrows(), self.weight_scalars.nrows());
+        let products =
+            left * scalar_products(&self.resolvent_scalars, &self.weight_scalars, &scalar_pairs);
+        for (row, vector) in vectors.iter().enumerate() {
+            for (column, scalar) in scalar_pairs.iter().enumerate() {
+                self.put(
+                    self.resolvent_column(vector.left, scalar.left),
+                    self.weight_column(vector.right, scalar.right),
+                    products[(row, column)],
+                );
+            }
+        }
+    }
+
+    /// Returns the columns of all parameters of the blocks.
+    fn block_columns(&self) -> Vec<BlockColumn> {
+        let mut columns = Vec::new();
+        for (first, block) in self.model.rows() {
+            match block {
+                Block::Pair { .. } => {
+                    for scalar in [first, first + 1] {
+                        columns.push(BlockColumn {
+                            vector: first + 1,
+                            scalar,
+                            sign: -1.0,
+                        });
+                    }
+                }
+                Block::Single(_) => columns.push(BlockColumn {
+                    vector: first,
+                    scalar: first,
+                    sign: 1.0,
+                }),
+            }
+        }
+        columns
+    }
+
+    /// Adds the products of the blocks with all columns.
     fn add_blocks(&mut self) {
         let order = self.model.order();
         let outputs = self.model.c.nrows();
-        let resolvent_count = self.resolvent_scalars.nrows();
-        let weight_count = self.weight_scalars.nrows();
+        let resolvent_parts = parts(&self.resolvent_scalars);
+        let weight_parts = parts(&self.weight_scalars);
         let columns = self.block_columns();
-        let [resolvent_parts, weight_parts] =
-            [&self.resolvent_scalars, &self.weight_scalars].map(parts);
-        for (p, &(vector, scalar, sign)) in columns.iter().enumerate() {
+        for (p, own) in columns.iter().enumerate() {
             // conj(s_p) goes into the left factor.
-            let s = |k: usize| self.weight_scalars[(scalar, k)].conj() * sign;
-            let product = |k: usize, i: usize| (self.resolvent_product(k, vector, i) * s(k)).conj();
-            let with_resolvent = self.line_products(order, product);
+            let with_resolvent = self.line_products(order, |k, i| {
+                let s = self.weight_scalars[(own.scalar, k)].conj() * own.sign;
+                (self.resolvent_product(k, own.vector, i) * s).conj()
+            });
             let with_weight = self.line_products(outputs, |k, o| {
-                (self.weight_product(k, o, vector).conj() * s(k)).conj()
+                let s = self.weight_scalars[(own.scalar, k)].conj() * own.sign;
+                (self.weight_product(k, o, own.vector).conj() * s).conj()
             });
             let by_resolvent = &with_resolvent * &resolvent_parts;
             let by_weight = with_weight * &weight_parts;
             for i in 0..order {
-                (0..resolvent_count)
-                    .for_each(|s| self.put(p, self.resolvent_column(i, s), by_resolvent[(i, s)]));
+                for s in 0..self.resolvent_scalars.nrows() {
+                    self.put(p, self.resolvent_column(i, s), by_resolvent[(i, s)]);
+                }
             }
             for o in 0..outputs {
-                (0..weight_count)
-                    .for_each(|s| self.put(p, self.weight_column(o, s), by_weight[(o, s)]));
+                for s in 0..self.weight_scalars.nrows() {
+                    self.put(p, self.weight_column(o, s), by_weight[(o, s)]);
+                }
             }
             let by_states = with_resolvent * weight_parts.columns(0, order);
-            for (q, &(other, other_scalar, other_sign)) in columns.iter().enumerate() {
-                self.put(p, q, by_states[(other, other_scalar)] * other_sign);
+            for (q, other) in columns.iter().enumerate() {
+                let product = by_states[(other.vector, other.scalar)] * other.sign;
+                self.put(p, q, product);
             }
         }
     }
 
-    /// `J'e`.
+    /// Adds `J'e`.
     fn add_gradient(&mut self) {
         let order = self.model.order();
         let inputs = self.model.b.ncols();
@@ -409,14 +462,14 @@ impl<'a> Gram<'a> {
         for k in 0..self.lines.omega.len() {
             let e = self.residual.column(k);
             let weight = &self.lines.weights[k];
-            let of_state = |i: usize| -> Complex<f64> {
+            let mut state_gradients: Vec<Complex<f64>> = Vec::with_capacity(order);
+            for i in 0..order {
                 let column = self.resolvent.column(k * order + i);
-                column.iter().zip(e.iter()).map(|(v, e)| v.conj() * e).sum()
-            };
-            let state_gradients: Vec<_> = (0..order).map(of_state).collect();
-            for (p, &(vector, scalar, sign)) in columns.iter().enumerate() {
-                self.gradient[p] +=
-                    sign * (self.weight_scalars[(scalar, k)].conj() * state_gradients[vector]).re;
+                state_gradients.push(column.iter().zip(e.iter()).map(|(v, e)| v.conj() * e).sum());
+            }
+            for (p, column) in columns.iter().enumerate() {
+                let s = self.weight_scalars[(column.scalar, k)].conj();
+                self.gradient[p] += column.sign * (s * state_gradients[column.vector]).re;
             }
             for (i, own) in state_gradients.iter().enumerate() {
                 for j in 0..inputs {
@@ -438,23 +491,25 @@ impl<'a> Gram<'a> {
     }
 }
 
-/// `[Re z; -Im z]` of `z = conj(s) t`, two rows a line, one column a pair (s, t): times `[Re h, Im h]` the sum of `Re(h z)`.
+/// Returns `[Re z; -Im z]` of `z = conj(s) t`, two rows a line, one column a pair (s, t): multiplied
+/// by `[Re h, Im h]` they give the sum of `Re(h z)`.
 fn scalar_products(
     left: &DMatrix<Complex<f64>>,
     right: &DMatrix<Complex<f64>>,
-    pairs: &[(usize, usize)],
+    pairs: &[IndexPair],
 ) -> DMatrix<f64> {
     let mut products = DMatrix::zeros(2 * left.ncols(), pairs.len());
-    for (mut column, &(s, t)) in products.column_iter_mut().zip(pairs) {
-        for (k, (left, right)) in left.row(s).iter().zip(right.row(t).iter()).enumerate() {
-            let product = left.conj() * right;
-            (column[2 * k], column[2 * k + 1]) = (product.re, -product.im);
+    for (mut column, pair) in products.column_iter_mut().zip(pairs) {
+        for k in 0..left.ncols() {
+            let product = left[(pair.left, k)].conj() * right[(pair.right, k)];
+            column[2 * k] = product.re;
+            column[2 * k + 1] = -product.im;
         }
     }
     products
 }
 
-/// `[Re s; Im s]`, two rows a line, one column a scalar.
+/// Returns `[Re s; Im s]`, two rows a line, one column a scalar.
 fn parts(scalars: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
     DMatrix::from_fn(2 * scalars.ncols(), scalars.nrows(), |row, s| {
         let scalar = scalars[(s, row / 2)];
@@ -475,12 +530,12 @@ mod tests {
     fn known_start(known: &Value) -> BlockModel {
         let start = &known["blocks_at_start"];
         let a = matrix(&start["A"]);
-        let pair = |first: usize| Block::Pair {
+        let blocks = [0, 2].map(|first| Block::Pair {
             a0: -a[(first + 1, first)],
             a1: -a[(first + 1, first + 1)],
-        };
+        });
         BlockModel {
-            blocks: vec![pair(0), pair(2)],
+            blocks: blocks.to_vec(),
             b: matrix(&start["B"]),
             c: matrix(&start["C"]),
             d: matrix(&known["start"]["D"]),
@@ -497,10 +552,10 @@ mod tests {
     }
 
     #[test]
-    fn cost_gradient_and_diagonal_are_those_of_independent_code() {
+    fn cost_gradient_and_diagonal_match_independent_code() {
         let known = &answers()["likelihood_noise_free"];
         let (cost, system) = total(&known_records(known), &known_start(known));
-        // Independent numpy code; the tolerance stands in its file, the cost is as good.
+        // Independent numpy code; the tolerance is stated in its file, the cost is as good.
         assert!(
             (cost / number(&known["cost_at_start"]) - 1.0).abs() < 1e-8,
             "{cost}"
@@ -525,8 +580,15 @@ mod tests {
         }
     }
 
+    /// A step of one parameter.
+    fn single_step(model: &BlockModel, place: usize, size: f64) -> DVector<f64> {
+        let mut step = DVector::zeros(model.parameters());
+        step[place] = size;
+        step
+    }
+
     #[test]
-    fn the_gradient_is_that_of_finite_differences() {
+    fn the_gradient_matches_finite_differences() {
         let known = &answers()["likelihood_noise_free"];
         let mut likelihood = known_records(known);
         for segment in &mut likelihood.segments {
@@ -549,15 +611,11 @@ mod tests {
         let (_, system) = total(&likelihood, &model);
         let step = 1e-5;
         for place in 0..model.parameters() {
-            let at = |size: f64| {
-                let step =
-                    DVector::from_fn(
-                        model.parameters(),
-                        |k, _| if k == place { size } else { 0.0 },
-                    );
-                likelihood.cost(&model.stepped(&step)).unwrap()
-            };
-            let slope = (at(step) - at(-step)) / (2.0 * step);
+            let [above, below] = [step, -step].map(|size| {
+                let stepped = model.stepped(&single_step(&model, place, size));
+                likelihood.cost(&stepped).unwrap()
+            });
+            let slope = (above - below) / (2.0 * step);
             // Central differences: the third derivative times 1e-10, and rounding of the cost over 1e-5.
             let scale = system.gradient.amax();
             assert!(
@@ -569,7 +627,7 @@ mod tests {
     }
 
     #[test]
-    fn the_gram_form_is_the_dense_form() {
+    fn the_gram_form_matches_the_dense_form() {
         let known = &answers()["likelihood_noise_free"];
         let likelihood = known_records(known);
         let model = known_start(known);
@@ -584,25 +642,17 @@ mod tests {
             model.place_of_c(1, 2),
         ];
         let column = |place: usize| {
-            let step = DVector::from_fn(
-                model.parameters(),
-                |k, _| if k == place { 1.0 } else { 0.0 },
-            );
-            let stepped = model.stepped(&step);
+            let stepped = model.stepped(&single_step(&model, place, 1.0));
             let mut values = Vec::new();
             for (k, &omega) in segment.omega.iter().enumerate() {
-                let output = |model: &BlockModel| {
-                    let mut x = model.b.map(Complex::from) * segment.inputs.column(k)
-                        + part.transient.map(Complex::from);
+                let input = segment.inputs.column(k).into_owned();
+                let [after, before] = [&stepped, &model].map(|model| {
+                    let mut x =
+                        model.b.map(Complex::from) * &input + part.transient.map(Complex::from);
                     model.resolve(omega, x.as_mut_slice());
-                    model.c.map(Complex::from) * x
-                        + model.d.map(Complex::from) * segment.inputs.column(k)
-                };
-                values.extend(
-                    (output(&stepped) - output(&model))
-                        .iter()
-                        .flat_map(|y| [y.re, y.im]),
-                );
+                    model.c.map(Complex::from) * x + model.d.map(Complex::from) * &input
+                });
+                values.extend((after - before).iter().flat_map(|y| [y.re, y.im]));
             }
             DVector::from_vec(values)
         };
@@ -617,20 +667,15 @@ mod tests {
             nuisance.push(DVector::from_vec(values));
         }
         for o in 0..2 {
-            let of = |line: &dyn Fn(f64) -> [f64; 2]| {
-                let values = segment.omega.iter().flat_map(|&w| {
-                    (0..2).flat_map(move |other| {
-                        let [re, im] = [if other == o { 1.0 } else { 0.0 }; 2];
-                        [(re, w), (im, w)]
-                    })
-                });
-                let values = values
-                    .enumerate()
-                    .map(|(k, (unit, w))| unit * line(w)[k % 2]);
-                DVector::from_iterator(4 * segment.omega.len(), values)
-            };
-            nuisance.push(of(&|_| [1.0, 0.0]));
-            nuisance.push(of(&|w| [0.0, -1.0 / w]));
+            // Real and imaginary parts of both outputs at each line.
+            let mut constant = DVector::zeros(4 * segment.omega.len());
+            let mut drift = DVector::zeros(4 * segment.omega.len());
+            for (k, omega) in segment.omega.iter().enumerate() {
+                constant[4 * k + 2 * o] = 1.0;
+                drift[4 * k + 2 * o + 1] = -1.0 / omega;
+            }
+            nuisance.push(constant);
+            nuisance.push(drift);
         }
         let basis = DMatrix::from_columns(&nuisance).qr().q();
         let columns: Vec<_> = places
@@ -643,7 +688,7 @@ mod tests {
         for (i, &p) in places.iter().enumerate() {
             for (j, &q) in places.iter().enumerate() {
                 let expected = columns[i].dot(&columns[j]);
-                // Normal equations of columns of length 10: rounding of 1e2.
+                // Normal equations of columns of length 10: rounding errors of 1e2.
                 assert!((system.matrix[(p, q)] - expected).abs() < 1e-10, "{p} {q}");
             }
         }

@@ -5,42 +5,70 @@ use std::ops::Range;
 
 use gdcm_model::response::median;
 
+/// Steps longer than this many median steps are gaps: 3 missing samples are bridged (M14.1).
+const LONGEST_STEP: f64 = 4.5;
+/// Share of repeated samples above which a channel is held.
+const HELD: f64 = 0.5;
+/// Fewest samples of a topic.
+const LEAST_SAMPLES: usize = 3;
+/// Half length of the kernel, in half periods of its cut-off.
+const HALF_TAPS: f64 = 12.0;
+/// Tolerance for a time beyond the stamps of a run, over the time itself.
+const ROUNDING: f64 = 1e-9;
+/// Highest line used over the end of the band (M14.2).
+const HIGHEST_LINE: f64 = 4.0 / 3.0;
+/// Samples of the highest line that a topic must have at least.
+const NEEDED: f64 = 2.5;
+/// Samples of the highest line on the common clock at least, whatever the topics have.
+const LEAST_ON_CLOCK: f64 = 4.0;
+/// Samples of the highest line on the common clock at most.
+const MOST_ON_CLOCK: f64 = 20.0;
+/// Cut-off over the highest line.
+const CUT_OFF: f64 = 5.0;
+/// Cut-off over half the slowest rate at most.
+const CUT_OFF_OF_RATE: f64 = 0.8;
+/// Ten million samples are a day at 100 Hz; more samples come from a wrong stamp.
+const MOST_SAMPLES: f64 = 1e7;
+
 /// Samples of one channel with stamps of their own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Topic {
-    /// Its name, for people.
+    /// Name for display.
     pub name: String,
     /// Stamps \[s\], increasing and finite.
     time_s: Vec<f64>,
-    /// A value for each stamp, finite.
+    /// Value at each stamp, finite.
     values: Vec<f64>,
     /// The samples between two gaps; at least one run.
     runs: Vec<Range<usize>>,
-    /// Samples in a second, gaps left out.
+    /// Samples in a second, without gaps.
     pub rate_hz: f64,
 }
 
-/// A stamp that is further on than this many of the median step begins behind a gap: 3 missing samples are bridged (M14.1).
-const LONGEST_STEP: f64 = 4.5;
-/// A channel is held if more than this share of its samples are as the one before.
-const HELD: f64 = 0.5;
-
 impl Topic {
-    /// The samples that count: stamps that run backwards or stand twice are dropped, and so are missing values. A held command acts
-    /// until the next one comes: its stamps are moved half of that time later (M14.1).
+    /// Keeps the samples with increasing stamps and a finite value.
+    ///
+    /// A held command acts until the next one comes: its stamps are moved half of that time later
+    /// (M14.1).
     ///
     /// # Errors
-    /// [`TopicError::TooFew`] where fewer than three samples are left.
-    pub fn new(name: &str, time_s: &[f64], values: &[f64], held: bool) -> Result<Self, TopicError> {
-        let (mut times, mut kept): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    /// [`TopicError::TooFew`] for fewer than three samples.
+    pub fn new(
+        name: &str,
+        time_s: &[f64],
+        values: &[f64],
+        is_held: bool,
+    ) -> Result<Self, TopicError> {
+        let mut times: Vec<f64> = Vec::new();
+        let mut kept: Vec<f64> = Vec::new();
         for (&time, &value) in time_s.iter().zip(values) {
-            if time.is_finite() && value.is_finite() && times.last().is_none_or(|last| time > *last)
-            {
+            let increases = times.last().is_none_or(|last| time > *last);
+            if time.is_finite() && value.is_finite() && increases {
                 times.push(time);
                 kept.push(value);
             }
         }
-        if times.len() < 3 {
+        if times.len() < LEAST_SAMPLES {
             return Err(TopicError::TooFew {
                 topic: name.to_owned(),
                 samples: times.len(),
@@ -48,41 +76,20 @@ impl Topic {
         }
         let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let longest_s = LONGEST_STEP * median(&mut steps);
-        if held {
-            // In place, from the front: each stamp needs the next one as it was.
-            for k in 0..times.len() - 1 {
-                times[k] += 0.5 * (times[k + 1] - times[k]).min(longest_s);
-            }
-            if let [.., before, last] = &mut times[..] {
-                *last += (*last - *before).min(longest_s);
-            }
+        if is_held {
+            delay_by_half_a_hold(&mut times, longest_s);
         }
-        let ends = (1..times.len()).filter(|&k| times[k] - times[k - 1] > longest_s);
-        let mut runs: Vec<Range<usize>> = Vec::new();
-        for end in ends.chain([times.len()]) {
-            runs.push(runs.last().map_or(0, |run| run.end)..end);
-        }
-        let (steps, length_s) = runs.iter().fold((0, 0.0), |(steps, length_s), run| {
-            (
-                steps + run.len() - 1,
-                length_s + times[run.end - 1] - times[run.start],
-            )
-        });
-        let rate_hz = if length_s > 0.0 {
-            steps as f64 / length_s
-        } else {
-            0.0
-        };
+        let runs = runs(&times, longest_s);
         Ok(Self {
             name: name.to_owned(),
+            rate_hz: rate_hz(&times, &runs),
             time_s: times,
             values: kept,
             runs,
-            rate_hz,
         })
     }
 
-    /// First and last stamp \[s\].
+    /// Returns the first and the last stamp \[s\].
     pub fn span_s(&self) -> [f64; 2] {
         [
             self.time_s.first().copied().unwrap_or(0.0),
@@ -90,67 +97,102 @@ impl Topic {
         ]
     }
 
-    /// Its values at times that increase, below a cut-off \[rad/s\]; not a number in its gaps and beyond its ends.
+    /// Returns the low-passed values at increasing times; NaN in gaps and beyond the ends. `cutoff`
+    /// is in rad/s.
     pub fn at(&self, times_s: &[f64], cutoff: f64) -> Vec<f64> {
-        let mut runs = self.runs.iter();
-        let mut run = runs.next();
-        let value = |&t: &f64| {
-            while let Some(beyond) = run.filter(|run| self.time_s[run.end - 1] < t) {
-                // A hair beyond the last stamp is rounding.
-                if t - self.time_s[beyond.end - 1] <= 1e-9 * t.abs() {
-                    break;
-                }
-                run = runs.next();
+        let mut values = Vec::with_capacity(times_s.len());
+        let mut next_run = 0;
+        for &t in times_s {
+            while self
+                .runs
+                .get(next_run)
+                .is_some_and(|run| t - self.time_s[run.end - 1] > ROUNDING * t.abs())
+            {
+                next_run += 1;
             }
-            let inside = run.filter(|run| t >= self.time_s[run.start] - 1e-9 * t.abs());
-            inside.map_or(f64::NAN, |run| {
-                low_passed(
+            let value = match self.runs.get(next_run) {
+                Some(run) if t >= self.time_s[run.start] - ROUNDING * t.abs() => low_passed(
                     &self.time_s[run.clone()],
                     &self.values[run.clone()],
                     t,
                     cutoff,
-                )
-            })
-        };
-        times_s.iter().map(value).collect()
+                ),
+                _ => f64::NAN,
+            };
+            values.push(value);
+        }
+        values
     }
 }
 
-/// Whether samples are those of a held command: more than half of them are as the one before.
+/// Moves each stamp later by half the time to the next one, at most by half of `longest_s`.
+fn delay_by_half_a_hold(times: &mut [f64], longest_s: f64) {
+    // In place from the front: each stamp needs the next one unmoved.
+    for k in 0..times.len() - 1 {
+        times[k] += 0.5 * (times[k + 1] - times[k]).min(longest_s);
+    }
+    // The last hold lasts as long as the one before it.
+    if let [.., before, last] = times {
+        *last += (*last - *before).min(longest_s);
+    }
+}
+
+/// Returns the samples between gaps longer than `longest_s`.
+fn runs(times: &[f64], longest_s: f64) -> Vec<Range<usize>> {
+    let mut runs = Vec::new();
+    let mut start = 0;
+    for k in 1..times.len() {
+        if times[k] - times[k - 1] > longest_s {
+            runs.push(start..k);
+            start = k;
+        }
+    }
+    runs.push(start..times.len());
+    runs
+}
+
+/// Returns the number of samples in a second, without gaps; 0 if every run has a single sample.
+fn rate_hz(times: &[f64], runs: &[Range<usize>]) -> f64 {
+    let mut steps = 0;
+    let mut length_s = 0.0;
+    for run in runs {
+        steps += run.len() - 1;
+        length_s = length_s + times[run.end - 1] - times[run.start];
+    }
+    if length_s > 0.0 {
+        steps as f64 / length_s
+    } else {
+        0.0
+    }
+}
+
+/// Whether samples are those of a held command: more than half of them repeat the one before.
 pub fn is_held(values: &[f64]) -> bool {
     let same = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
     same as f64 > HELD * values.len() as f64
 }
 
-/// Half the taps of the kernel, in half periods of its cut-off.
-const HALF_TAPS: f64 = 12.0;
-
-/// Low-pass and interpolation in one, at time `t` \[s\] (M14.11):
+/// Filters and interpolates at time `t` \[s\] in one step (M14.11).
 ///
 /// ```text
-/// x(t) = Σ w_k v_k / Σ w_k,    w_k = Δ_k sinc(wc (t − t_k)/π) · ½ (1 + cos(π (t − t_k)/h)),    |t − t_k| < h = 12 π/wc
-/// Δ_k  = half the distance of the two neighbours of t_k; at an end, the distance of its one neighbour
+/// x(t) = Σ w_k v_k / Σ w_k
+/// w_k  = Δ_k sinc(wc (t − t_k)/π) · ½ (1 + cos(π (t − t_k)/h)),    |t − t_k| < h = 12 π/wc
+/// Δ_k  = half the distance of the two neighbours of t_k; at an end, the distance of its neighbour
 /// ```
 ///
-/// Constants stay as they are, and so does a sample where no other is near. Stamps increase; `cutoff` is wc \[rad/s\].
+/// Constants stay as they are, and so does a sample without another one near it. Stamps increase;
+/// `cutoff` is wc \[rad/s\].
 fn low_passed(time_s: &[f64], values: &[f64], t: f64, cutoff: f64) -> f64 {
     let half = HALF_TAPS * PI / cutoff;
     let from = time_s.partition_point(|time| *time <= t - half);
     let to = time_s.partition_point(|time| *time < t + half);
-    let last = time_s.len() - 1;
     let mut sum = 0.0;
     let mut weights = 0.0;
     for k in from..to {
-        let width = match k {
-            _ if last == 0 => 1.0,
-            0 => time_s[1] - time_s[0],
-            k if k == last => time_s[last] - time_s[last - 1],
-            k => 0.5 * (time_s[k + 1] - time_s[k - 1]),
-        };
         let x = cutoff * (t - time_s[k]);
         let y = PI * (t - time_s[k]) / half;
         let sinc = if x.abs() < 1e-8 { 1.0 } else { x.sin() / x };
-        let weight = width * sinc * 0.5 * (1.0 + y.cos());
+        let weight = sample_width(time_s, k) * sinc * 0.5 * (1.0 + y.cos());
         sum += weight * values[k];
         weights += weight;
     }
@@ -158,6 +200,20 @@ fn low_passed(time_s: &[f64], values: &[f64], t: f64, cutoff: f64) -> f64 {
         sum / weights
     } else {
         f64::NAN
+    }
+}
+
+/// Returns `Δ_k` \[s\], the time that sample `k` stands for; 1 for a single sample.
+fn sample_width(time_s: &[f64], k: usize) -> f64 {
+    let last = time_s.len() - 1;
+    if last == 0 {
+        1.0
+    } else if k == 0 {
+        time_s[1] - time_s[0]
+    } else if k == last {
+        time_s[last] - time_s[last - 1]
+    } else {
+        0.5 * (time_s[k + 1] - time_s[k - 1])
     }
 }
 
@@ -170,15 +226,15 @@ pub struct CommonClock {
     pub rate_hz: f64,
     /// Number of samples.
     pub samples: usize,
-    /// Cut-off of the low-pass that every channel goes through \[rad/s\].
+    /// Cut-off of the low-pass for every channel \[rad/s\].
     pub cutoff: f64,
 }
 
-/// The highest line used is at this many times the end of the band (M14.2).
-const HIGHEST_LINE: f64 = 4.0 / 3.0;
-
 impl CommonClock {
-    /// The clock of topics, for a band that ends at `band_end` \[rad/s\] (none: as far as they reach), at the rate asked for \[Hz\] or else by the rule (M14.11).
+    /// Chooses the clock of topics (M14.11).
+    ///
+    /// `band_end` is the end of the band \[rad/s\], by default as far as the topics reach; `rate_hz`
+    /// is a requested rate \[Hz\].
     ///
     /// ```text
     /// whi = 4/3 ω2
@@ -188,9 +244,10 @@ impl CommonClock {
     /// ```
     ///
     /// # Errors
-    /// [`TopicError::TooSlow`] where a topic, or the rate asked for, has fewer than 2.5 whi/2π samples in a second;
-    /// [`TopicError::NoCommonTime`] where the topics share no time; [`TopicError::TooMany`] where a million million samples came of it.
-    pub fn of(
+    /// [`TopicError::TooSlow`] for a topic or a requested rate with fewer than 2.5 whi/2π samples in
+    /// a second; [`TopicError::NoCommonTime`] for topics that share no time; [`TopicError::TooMany`]
+    /// for more than ten million samples; [`TopicError::TooFew`] without topics.
+    pub fn choose(
         topics: &[Topic],
         band_end: Option<f64>,
         rate_hz: Option<f64>,
@@ -199,56 +256,22 @@ impl CommonClock {
             .iter()
             .map(|topic| topic.rate_hz)
             .fold(f64::INFINITY, f64::min);
-        let band_end = band_end.unwrap_or(TAU * slowest / (HIGHEST_LINE * 20.0));
+        let band_end = band_end.unwrap_or(TAU * slowest / (HIGHEST_LINE * MOST_ON_CLOCK));
         let highest_hz = HIGHEST_LINE * band_end / TAU;
-        let needed_hz = 2.5 * highest_hz;
-        let slow = |topic: &str, rate_hz: f64| TopicError::TooSlow {
-            topic: topic.to_owned(),
-            rate_hz,
-            needed_hz,
-            band_end,
-            possible: band_end * rate_hz / needed_hz,
+        check_rates(topics, band_end)?;
+        let rate = match rate_hz {
+            Some(rate) => rate,
+            None => slowest
+                .min(MOST_ON_CLOCK * highest_hz)
+                .max(LEAST_ON_CLOCK * highest_hz),
         };
-        if let Some(topic) = topics
-            .iter()
-            .filter(|topic| topic.rate_hz < needed_hz)
-            .min_by(|a, b| a.rate_hz.total_cmp(&b.rate_hz))
-        {
-            return Err(slow(&topic.name, topic.rate_hz));
-        }
-        let rate = rate_hz.unwrap_or_else(|| slowest.min(20.0 * highest_hz).max(4.0 * highest_hz));
-        if rate < needed_hz {
-            return Err(slow("the resampled record", rate));
-        }
-        let latest = topics
-            .iter()
-            .max_by(|a, b| a.span_s()[0].total_cmp(&b.span_s()[0]));
-        let earliest = topics
-            .iter()
-            .min_by(|a, b| a.span_s()[1].total_cmp(&b.span_s()[1]));
-        let (Some(latest), Some(earliest)) = (latest, earliest) else {
-            return Err(TopicError::TooFew {
-                topic: "a record without channels".to_owned(),
-                samples: 0,
-            });
-        };
-        let start_s = latest.span_s()[0];
-        let end_s = earliest.span_s()[1];
-        if end_s <= start_s {
-            let first = earliest.name.clone();
-            let second = latest.name.clone();
-            return Err(TopicError::NoCommonTime {
-                first,
-                first_end_s: end_s,
-                second,
-                second_start_s: start_s,
-            });
-        }
+        check_rate("the resampled record", rate, band_end)?;
+        let [start_s, end_s] = common_span_s(topics)?;
         let samples = ((end_s - start_s) * rate + 1e-6).floor() + 1.0;
         if samples > MOST_SAMPLES {
             return Err(TopicError::TooMany(samples));
         }
-        let cutoff = (5.0 * TAU * highest_hz).min(0.8 * PI * slowest.min(rate));
+        let cutoff = (CUT_OFF * TAU * highest_hz).min(CUT_OFF_OF_RATE * PI * slowest.min(rate));
         Ok(Self {
             start_s,
             rate_hz: rate,
@@ -257,14 +280,14 @@ impl CommonClock {
         })
     }
 
-    /// Times of its samples \[s\].
+    /// Returns the times of its samples \[s\].
     pub fn times_s(&self) -> Vec<f64> {
         (0..self.samples)
             .map(|k| self.start_s + k as f64 / self.rate_hz)
             .collect()
     }
 
-    /// Its samples within a part of the time \[s\] alone.
+    /// Returns the clock with the samples from `from_s` to `to_s` \[s\] only.
     #[must_use]
     pub fn within(self, [from_s, to_s]: [f64; 2]) -> Self {
         let first = ((from_s - self.start_s) * self.rate_hz - 1e-6)
@@ -282,53 +305,94 @@ impl CommonClock {
     }
 }
 
-/// Ten million samples are a day at 100 Hz; beyond it a stamp is wrong.
-const MOST_SAMPLES: f64 = 1e7;
+/// Refuses topics that are too slow for the band; names the slowest.
+fn check_rates(topics: &[Topic], band_end: f64) -> Result<(), TopicError> {
+    let slowest = topics.iter().min_by(|a, b| a.rate_hz.total_cmp(&b.rate_hz));
+    match slowest {
+        Some(topic) => check_rate(&topic.name, topic.rate_hz, band_end),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a rate that is too low for the band.
+fn check_rate(topic: &str, rate_hz: f64, band_end: f64) -> Result<(), TopicError> {
+    let highest_hz = HIGHEST_LINE * band_end / TAU;
+    let needed_hz = NEEDED * highest_hz;
+    if rate_hz < needed_hz {
+        return Err(TopicError::TooSlow {
+            topic: topic.to_owned(),
+            rate_hz,
+            needed_hz,
+            band_end,
+            possible: band_end * rate_hz / needed_hz,
+        });
+    }
+    Ok(())
+}
+
+/// Returns the time that all topics share, from its start to its end \[s\].
+fn common_span_s(topics: &[Topic]) -> Result<[f64; 2], TopicError> {
+    let latest = topics
+        .iter()
+        .max_by(|a, b| a.span_s()[0].total_cmp(&b.span_s()[0]));
+    let earliest = topics
+        .iter()
+        .min_by(|a, b| a.span_s()[1].total_cmp(&b.span_s()[1]));
+    let (Some(latest), Some(earliest)) = (latest, earliest) else {
+        return Err(TopicError::TooFew {
+            topic: "a record without channels".to_owned(),
+            samples: 0,
+        });
+    };
+    let start_s = latest.span_s()[0];
+    let end_s = earliest.span_s()[1];
+    if end_s <= start_s {
+        return Err(TopicError::NoCommonTime {
+            first: earliest.name.clone(),
+            first_end_s: end_s,
+            second: latest.name.clone(),
+            second_start_s: start_s,
+        });
+    }
+    Ok([start_s, end_s])
+}
 
 /// Why topics cannot be brought to one clock.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[allow(missing_docs)]
 pub enum TopicError {
-    /// A topic has hardly any samples.
     #[error("{topic} has {samples} samples with a stamp: at least 3 are needed")]
-    TooFew {
-        /// Its name.
-        topic: String,
-        /// How many.
-        samples: usize,
-    },
-    /// A topic cannot show the band.
+    TooFew { topic: String, samples: usize },
+    /// A topic is too slow for the band.
     #[error(
         "{topic} has {rate_hz:.1} samples in a second, and a band to {band_end:.3} rad/s takes {needed_hz:.1}: log it faster, or end \
          the band at {possible:.2} rad/s"
     )]
     TooSlow {
-        /// Its name.
         topic: String,
-        /// Its samples in a second.
+        /// Samples in a second.
         rate_hz: f64,
-        /// As many as the band takes.
+        /// Samples in a second that the band needs.
         needed_hz: f64,
         /// End of the band \[rad/s\].
         band_end: f64,
-        /// End of the band that it can show \[rad/s\].
+        /// Greatest possible end of the band \[rad/s\].
         possible: f64,
     },
-    /// Topics are of different times.
+    /// Topics share no time.
     #[error(
         "{first} ends at {first_end_s:.1} s, before {second} begins at {second_start_s:.1} s: they are not of one flight, or their \
          clocks differ"
     )]
     NoCommonTime {
-        /// The one that ends first.
+        /// The topic that ends first.
         first: String,
-        /// When \[s\].
         first_end_s: f64,
-        /// The one that begins last.
+        /// The topic that begins last.
         second: String,
-        /// When \[s\].
         second_start_s: f64,
     },
-    /// A stamp is so far off that nothing could hold the record.
+    /// A stamp is so far off that the record would exceed the memory.
     #[error(
         "the topics would make a record of {0:.0} samples: a stamp is wrong, or the rate asked for is too high"
     )]
@@ -340,16 +404,16 @@ mod tests {
     use super::*;
     use crate::identification::known_answers_tests::{number, numbers};
 
-    /// Stamps `step k` shaken by a linear congruence, as those of the known answer are.
+    /// Stamps `step k` with jitter from a linear congruence, as in the known answer.
     fn shaken(count: usize, step: f64, shake: f64) -> Vec<f64> {
         let mut state = 5_u32;
-        let mut draw = || {
+        let mut stamps = Vec::with_capacity(count);
+        for k in 0..count {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state) / 2_f64.powi(32)
-        };
-        (0..count)
-            .map(|k| step * k as f64 + shake * (draw() - 0.5))
-            .collect()
+            let uniform = f64::from(state) / 2_f64.powi(32);
+            stamps.push(step * k as f64 + shake * (uniform - 0.5));
+        }
+        stamps
     }
 
     fn signal(t: f64) -> f64 {
@@ -411,16 +475,13 @@ mod tests {
             (vec![0.0, 0.1, 0.2, 0.3, 0.4], vec![0.0, 1.0, 2.0, 3.0, 4.0])
         );
         let error = Topic::new("v", &[0.0, 1.0], &[1.0, 2.0], false).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "v has 2 samples with a stamp: at least 3 are needed"
-        );
+        assert!(matches!(error, TopicError::TooFew { samples: 2, .. }));
     }
 
     #[test]
     fn a_held_command_acts_half_a_hold_later() {
         let stamps: Vec<f64> = (0..500).map(|k| 0.02 * f64::from(k)).collect();
-        // At each stamp the mean of what acts until the next one.
+        // Each value is the mean of the signal until the next stamp.
         let values: Vec<f64> = stamps.iter().map(|t| signal(t + 0.01)).collect();
         let topic = Topic::new("u", &stamps, &values, true).unwrap();
         let asked: Vec<f64> = (0..100).map(|k| 3.0 + 0.031 * f64::from(k)).collect();
@@ -434,20 +495,22 @@ mod tests {
         assert!(is_held(&[1.0, 1.0, 1.0, 2.0, 2.0, 2.0]) && !is_held(&[1.0, 2.0, 2.0, 3.0]));
     }
 
+    /// A constant topic from one time to another \[s\].
+    fn topic(name: &str, rate: f64, from: f64, to: f64) -> Topic {
+        let stamps: Vec<f64> = (0..((to - from) * rate) as usize)
+            .map(|k| from + k as f64 / rate)
+            .collect();
+        Topic::new(name, &stamps, &vec![1.0; stamps.len()], false).unwrap()
+    }
+
     #[test]
-    fn the_clock_is_that_of_the_slowest_topic_as_far_as_the_band_needs_it() {
-        let topic = |name: &str, rate: f64, from: f64, to: f64| {
-            let stamps: Vec<f64> = (0..((to - from) * rate) as usize)
-                .map(|k| from + k as f64 / rate)
-                .collect();
-            Topic::new(name, &stamps, &vec![1.0; stamps.len()], false).unwrap()
-        };
+    fn the_clock_follows_the_slowest_topic_as_far_as_the_band_needs_it() {
         let fast = [
             topic("M", 250.0, 0.0, 20.0),
             topic("q", 100.0, 1.0, 22.0),
             topic("v", 50.0, 0.5, 21.0),
         ];
-        let clock = CommonClock::of(&fast, Some(12.0), None).unwrap();
+        let clock = CommonClock::choose(&fast, Some(12.0), None).unwrap();
         assert!(
             (clock.rate_hz - 50.0).abs() < 1e-6 && (clock.cutoff - 80.0).abs() < 1e-9,
             "{clock:?}"
@@ -456,20 +519,29 @@ mod tests {
         let part = clock.within([5.0, 10.0]);
         assert_eq!((part.samples, part.start_s), (251, 5.0));
         // 20 · 4/3 · 3 rad/s are 12.7 Hz.
-        assert!((CommonClock::of(&fast, Some(3.0), None).unwrap().rate_hz - 12.73).abs() < 0.01);
-        let slow = [topic("M", 250.0, 0.0, 20.0), topic("gps", 5.0, 0.0, 20.0)];
-        let words = CommonClock::of(&slow, Some(12.0), None)
-            .unwrap_err()
-            .to_string();
-        let expected = "gps has 5.0 samples in a second, and a band to 12.000 rad/s takes 6.4: log it faster, or end the band at 9.42 rad/s";
-        assert_eq!(words, expected);
         assert!(
-            CommonClock::of(&fast, Some(12.0), Some(3.0)).is_err()
-                && CommonClock::of(&fast, Some(12.0), Some(80.0)).is_ok()
+            (CommonClock::choose(&fast, Some(3.0), None).unwrap().rate_hz - 12.73).abs() < 0.01
+        );
+        let slow = [topic("M", 250.0, 0.0, 20.0), topic("gps", 5.0, 0.0, 20.0)];
+        let Err(TopicError::TooSlow {
+            topic: slowest,
+            needed_hz,
+            possible,
+            ..
+        }) = CommonClock::choose(&slow, Some(12.0), None)
+        else {
+            panic!("the slow topic is refused");
+        };
+        // 2.5 · 4/3 · 12 rad/s are 6.366 Hz; 5 Hz are enough for 9.425 rad/s.
+        assert_eq!(slowest, "gps");
+        assert!((needed_hz - 6.366).abs() < 1e-3 && (possible - 9.425).abs() < 1e-3);
+        assert!(
+            CommonClock::choose(&fast, Some(12.0), Some(3.0)).is_err()
+                && CommonClock::choose(&fast, Some(12.0), Some(80.0)).is_ok()
         );
         let apart = [topic("M", 50.0, 0.0, 5.0), topic("q", 50.0, 9.0, 22.0)];
         assert!(matches!(
-            CommonClock::of(&apart, Some(12.0), None),
+            CommonClock::choose(&apart, Some(12.0), None),
             Err(TopicError::NoCommonTime { .. })
         ));
     }

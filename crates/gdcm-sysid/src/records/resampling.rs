@@ -95,7 +95,7 @@ impl Resampling {
         });
         let topics: Result<Vec<Topic>, TopicError> = topics.collect();
         Some(topics.and_then(|topics| {
-            let clock = CommonClock::of(&topics, wish.band_end, wish.rate_hz)?;
+            let clock = CommonClock::choose(&topics, wish.band_end, wish.rate_hz)?;
             let clock = table.part_s.map_or(clock, |part| clock.within(part));
             Ok(Self {
                 topics,

@@ -9,7 +9,7 @@ use super::refinement::{DampedStart, FIRST_DAMPING, Fit};
 
 /// A model fitted to all records but one.
 pub(super) struct ModelWithoutRecord {
-    /// Number of the record, counted from 0.
+    /// Record number, counted from 0.
     pub(super) record: usize,
     pub(super) model: BlockModel,
 }

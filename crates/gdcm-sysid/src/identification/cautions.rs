@@ -11,7 +11,7 @@ use super::record_cautions::RecordCaution;
 use super::record_fault::{ContradictingRecord, RecordFault};
 use super::response_estimate::TRUSTED_COHERENCE;
 
-/// Periods of the lower end of the band that a record should last (M14.12).
+/// Periods of the lower band end that a record should last (M14.12).
 const BETTER_PERIODS: f64 = 5.0;
 
 /// A doubt about the model or a part of it.
@@ -21,14 +21,14 @@ pub enum IdentificationCaution {
     /// A doubt about the records themselves.
     #[error(transparent)]
     Records(#[from] RecordCaution),
-    /// The records are shorter than they should be for the lower end of the band.
+    /// The records are shorter than they should be for the lower band end.
     #[error(
         "the longest record lasts {longest_s:.0} s, {periods:.1} periods of {lowest:.2} rad/s: {better_s:.0} s would be better, the \
          lower end of the band is known less well"
     )]
     Short {
         longest_s: f64,
-        /// Lower end of the band \[rad/s\].
+        /// Lower band end \[rad/s\].
         lowest: f64,
         /// Periods of the lower end in the longest record.
         periods: f64,
@@ -94,7 +94,7 @@ pub enum IdentificationCaution {
                  a gust: it can be left out"
     )]
     UnlikeRecord {
-        /// Number of the record, counted from 0.
+        /// Record number, counted from 0.
         record: usize,
         name: String,
         /// Cost per degree of freedom; 1 is adequate.

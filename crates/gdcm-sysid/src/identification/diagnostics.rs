@@ -22,7 +22,7 @@ const UNLIKE: f64 = 1.5;
 /// Cost per degree of freedom of held-out records, with the model free to move within its
 /// uncertainty, up to which they are predicted well, and above which they are not (M14.17).
 pub const HELD_OUT: [f64; 2] = [1.3, 2.0];
-/// Half width of a window over its centre up to which a point shows a single frequency.
+/// Window half width over its centre up to which a point shows a single frequency.
 pub const NARROW_WINDOW: f64 = 0.6;
 /// Points of a mean in the comparison with the measured points.
 const POINTS: usize = 5;

@@ -1,4 +1,4 @@
-//! The share of the measured response that is gusts and noise fed back into the inputs (M14.14).
+//! Gusts and noise that the feedback brings into the measured response (M14.14).
 //!
 //! ```text
 //! y_k = sum_{i = 1..p} (A_i y_{k-i} + B_i u_{k-i}) + B_0 u_k + e_k
@@ -6,15 +6,15 @@
 //!
 //! 1  S(0, j) = sum_k z_k z_{k-j}', z = [u; y]
 //!    S(i+1, j+1) = S(i, j) + z_{p-1-i} z_{p-1-j}' - z_{N-1-i} z_{N-1-j}'
-//! 2  A, B from S with a ridge on columns of length one; e from the records
-//! 3  V = (I - sum A_i z^-i)^-1 E on the lines, z = e^(j omega dt dec): the effect of noise and
-//!    gusts on y
-//! 4  G_b = local polynomial of V on U at 16 points of the band, beside G of the model
+//! 2  A, B from S with a ridge on unit columns; e from the records
+//! 3  V = (I - sum A_i z^-i)^-1 E on the lines, z = e^(j omega dt dec): the effect on y by noise and
+//!    gusts
+//! 4  G_b = local polynomial of V on U at 16 points in the band, beside the model's G
 //! 5  b = median |G_b / G|,  z = median |G_b|^2 / var
-//!    over the points with |G| > 3 % of the largest of the output and sd G_b < 0.4 |G|
+//!    over the points with |G| > 3 % of the output's largest and sd G_b < 0.4 |G|
 //! ```
 //!
-//! With feedback the inputs hold the effect of gusts on the outputs, and the cost stays at 1 however
+//! With feedback, gusts act on the inputs through the outputs, and the cost stays at 1 however
 //! wrong the model is.
 
 use nalgebra::{Complex, DMatrix, DVector};
@@ -30,30 +30,30 @@ use super::local_polynomial::local_polynomial;
 use super::response_estimate::ResponseEstimate;
 use super::spectrum::{LineRange, Spectrum};
 
-/// Time between samples of the predictor times the upper end of the band \[rad\].
+/// Predictor sample time, times the upper band end \[rad\].
 const STEP: f64 = 0.25;
-/// Fewest past samples of the predictor.
+/// Fewest past samples in the predictor.
 const LEAST_PAST: usize = 6;
-/// Most past samples of the predictor.
+/// Most past samples in the predictor.
 const MOST_PAST: usize = 40;
-/// Samples for each unknown of the predictor.
+/// Samples for each unknown in the predictor.
 const SAMPLES_AN_UNKNOWN: usize = 8;
-/// Ridge over columns of length one.
+/// Ridge over unit columns.
 const RIDGE: f64 = 1e-6;
 /// Frequencies at which the responses are compared.
 const POINTS: usize = 16;
-/// Share of the largest response of an output below which a point does not count.
+/// Modulus over an output's largest response, below which a point does not count.
 const LARGE: f64 = 0.03;
-/// Standard deviation of `G_b` over `|G|` from which a point does not count.
+/// `sd G_b` over `|G|` from which a point does not count.
 const SURE: f64 = 0.4;
-/// Least share of points that have to count; otherwise all of them do.
+/// Least share of points that have to count; otherwise all count.
 const LEAST_SHARE: f64 = 0.05;
 /// Share fed back from which the bands are widened (M14.17).
 const WIDENED: f64 = 0.04;
-/// Share by which sample times may differ in one predictor.
+/// Share by which sample times may differ in a predictor.
 const ALIKE: f64 = 0.01;
 
-/// Values of `b` and `z` from which a level of feedback is reached.
+/// Values of `b` and `z` from which a feedback level is reached.
 struct Threshold {
     share: f64,
     significance: f64,
@@ -68,20 +68,20 @@ const TOO_MUCH: Threshold = Threshold {
     significance: 3.0,
 };
 
-/// The share of the measured response that is noise and gusts fed back.
+/// Noise and gusts fed back into the measured response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feedback {
-    /// `b`: median share of the response.
+    /// `b`: median share in the response.
     pub share: f64,
     /// `z`: median square over the variance; 0.7 without feedback.
     pub significance: f64,
     /// \[rad/s\], ascending.
     omega: Vec<f64>,
-    /// `|G_b / G|` at each of them, outputs x inputs.
+    /// `|G_b / G|` at each frequency, outputs x inputs.
     ratios: Vec<DMatrix<f64>>,
 }
 
-/// The effect of the feedback on a model.
+/// The feedback's effect on a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FeedbackLevel {
     /// No visible effect.
@@ -118,7 +118,7 @@ impl Feedback {
         self.share >= threshold.share && self.significance >= threshold.significance
     }
 
-    /// Returns `|G_b / G|` of a response at `omega` \[rad/s\], root mean square over three points; 0
+    /// Returns a response's `|G_b / G|` at `omega` \[rad/s\], root mean square over three points; 0
     /// if the bands need no widening.
     pub(super) fn ratio(&self, omega: f64, pair: (usize, usize)) -> f64 {
         if self.share < WIDENED {
@@ -135,14 +135,14 @@ impl Feedback {
             + share * self.smoothed_ratio(after, pair)
     }
 
-    /// Returns the root mean square of `|G_b / G|` over a point and its neighbours.
+    /// Returns the root mean square `|G_b / G|` over a point and its neighbours.
     fn smoothed_ratio(&self, k: usize, pair: (usize, usize)) -> f64 {
         let near = &self.ratios[k.saturating_sub(1)..(k + 2).min(self.ratios.len())];
         let squares: f64 = near.iter().map(|ratios| ratios[pair].powi(2)).sum();
         (squares / near.len() as f64).sqrt()
     }
 
-    /// Measures the feedback beside a model of the records; `None` if these are too short for a
+    /// Measures the feedback beside a model; `None` if the records are too short for a
     /// predictor.
     pub(super) fn measure(
         records: &FeedbackRecords<'_>,
@@ -172,7 +172,7 @@ impl Feedback {
         Some(Self::compare(model, &fed_back))
     }
 
-    /// Compares `G_b` with the response of the model (step 5).
+    /// Compares `G_b` with the model's response (step 5).
     fn compare(model: &BlockModel, fed_back: &ResponseEstimate) -> Self {
         let moduli: Vec<DMatrix<f64>> = fed_back
             .points
@@ -195,7 +195,7 @@ impl Feedback {
     }
 }
 
-/// `G_b` of one response at one frequency.
+/// `G_b` for a response at a frequency.
 #[derive(Clone, Copy)]
 struct ComparedPoint {
     /// `|G_b / G|`.
@@ -204,7 +204,7 @@ struct ComparedPoint {
     significance: f64,
 }
 
-/// Returns the points of all responses that are large and well enough known, or all of them if
+/// Returns all responses' points that are large and well enough known, or all points if
 /// these are too few.
 fn counted_points(moduli: &[DMatrix<f64>], fed_back: &ResponseEstimate) -> Vec<ComparedPoint> {
     let (outputs, inputs) = moduli.first().map_or((0, 0), DMatrix::shape);
@@ -238,7 +238,7 @@ fn counted_points(moduli: &[DMatrix<f64>], fed_back: &ResponseEstimate) -> Vec<C
     }
 }
 
-/// Returns every `step`-th sample of a segment less the means, one column an instant: inputs, then
+/// Returns every `step`-th sample less the means; columns are instants, rows are inputs, then
 /// outputs.
 fn thin(segment: &Segment, step: usize) -> DMatrix<f64> {
     let inputs = segment.inputs.ncols();
@@ -258,11 +258,11 @@ fn thin(segment: &Segment, step: usize) -> DMatrix<f64> {
     samples
 }
 
-/// The predictor of the outputs from the past.
+/// Predicts the outputs from the past.
 struct Predictor {
     inputs: usize,
     past: usize,
-    /// One column an output; rows `[u_k | z_{k-1} | ... | z_{k-p}]`, `z = [u; y]`.
+    /// Columns are outputs; rows `[u_k | z_{k-1} | ... | z_{k-p}]`, `z = [u; y]`.
     coefficients: DMatrix<f64>,
 }
 
@@ -278,7 +278,7 @@ impl Predictor {
                 add_lagged(&mut gram, record, past);
             }
         }
-        // Regressors: the present inputs and the past of all channels; targets: the present outputs.
+        // Regressors: the present inputs and all channels' past; targets: the present outputs.
         let regressors: Vec<usize> = (0..inputs).chain(channels..gram.ncols()).collect();
         let targets: Vec<usize> = (inputs..channels).collect();
         let mut normal = gram.select_rows(&regressors).select_columns(&regressors);
@@ -305,7 +305,7 @@ impl Predictor {
         })
     }
 
-    /// Returns the segment with the prediction errors instead of the outputs. They stand at every
+    /// Returns the segment with the prediction errors as outputs. They stand at every
     /// `step`-th sample, `step` times as large, with zeros between.
     fn error_segment(&self, segment: &Segment, samples: &DMatrix<f64>, step: usize) -> Segment {
         let mut outputs = DMatrix::zeros(segment.outputs.nrows(), segment.outputs.ncols());
@@ -321,7 +321,7 @@ impl Predictor {
         }
     }
 
-    /// Computes the prediction error `e_k` of a record at instant `k`.
+    /// Computes a record's prediction error `e_k` at instant `k`.
     fn error(&self, record: &DMatrix<f64>, k: usize) -> DVector<f64> {
         let channels = record.nrows();
         let mut error = record
@@ -343,7 +343,7 @@ impl Predictor {
         error
     }
 
-    /// Turns the lines of the errors into the effect of noise and gusts on the outputs (step 3);
+    /// Turns the lines of the errors into the effect on y by noise and gusts on the outputs (step 3);
     /// `None` where that is singular.
     fn add_memory(&self, spectrum: &mut Spectrum, step_s: f64) -> Option<()> {
         let outputs = self.coefficients.ncols();
@@ -368,7 +368,7 @@ impl Predictor {
     }
 }
 
-/// Adds `sum_k z_{k-i} z_{k-j}'` of a record, k from `past` on, to the blocks (i, j) (step 1).
+/// Adds a record's `sum_k z_{k-i} z_{k-j}'`, k from `past` on, to the blocks (i, j) (step 1).
 fn add_lagged(gram: &mut DMatrix<f64>, record: &DMatrix<f64>, past: usize) {
     let (channels, samples) = record.shape();
     for lag in 0..=past {

@@ -161,7 +161,7 @@ const TRAPS: [Trap; 11] = [
         name: "coarse",
         code: "coarse",
         // The error of rounding to coarse steps follows the signal, as feedback does, and hides the
-        // weak upper end of the band.
+        // weak upper band end.
         follows: &[
             "feedback",
             "feedback-some",

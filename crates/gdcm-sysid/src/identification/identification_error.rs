@@ -26,20 +26,20 @@ pub enum IdentificationError {
     /// The response cannot be measured.
     #[error(transparent)]
     Measurement(#[from] LocalPolynomialError),
-    /// The records are too short for the lower end of the band.
+    /// The records are too short for the lower band end.
     #[error(
         "the longest record lasts {longest_s:.0} s: {lowest:.2} rad/s needs {needed_s:.1} s, better {better_s:.0} s. From \
          {enough:.2} rad/s on the records would do"
     )]
     TooShort {
         longest_s: f64,
-        /// Lower end of the band \[rad/s\].
+        /// Lower band end \[rad/s\].
         lowest: f64,
         /// 1.5 periods \[s\].
         needed_s: f64,
         /// 5 periods, or 3 an input if several are moved in one record \[s\].
         better_s: f64,
-        /// Lower end of the band for which the records are long enough \[rad/s\].
+        /// Lower band end for which the records are long enough \[rad/s\].
         enough: f64,
     },
     /// Fewer real values than a model of the first order needs.
@@ -65,7 +65,7 @@ pub enum IdentificationError {
          end the band below {limit:.1} rad/s, or log faster"
     )]
     SampledTooSlowly {
-        /// Upper end of the band \[rad/s\].
+        /// Upper band end \[rad/s\].
         highest: f64,
         /// The longest sample time \[s\].
         sample_time_s: f64,

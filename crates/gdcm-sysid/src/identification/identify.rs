@@ -36,12 +36,12 @@ const REFINED: &str = "CT-PBSID, refined";
 const UNREFINED: &str = "CT-PBSID";
 /// Number of frequencies of the bands.
 const BAND_POINTS: usize = 60;
-/// Upper end of the suggested narrower band over the present one, if the highest order is too low.
+/// Upper end of the suggested narrower band over the present end, if the highest order is too low.
 const NARROWER: f64 = 0.7;
 /// Standard deviation above which a response is not identified \[dB\].
 const NOT_IDENTIFIED_DB: f64 = 3.0;
 
-/// The identified models of a flight condition, in the units of the records, and their quality.
+/// The identified models of a flight condition, in record units, and their quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identification {
     /// The recommended model: CT-PBSID, refined, with the standard deviations of its response.
@@ -62,7 +62,7 @@ pub struct Identification {
     pub past: usize,
     /// BIC of every refined order, ascending by order.
     pub criteria: Vec<(usize, f64)>,
-    /// `J / (N - k)` over the records of the fit; 1 is adequate.
+    /// `J / (N - k)` over the fitted records; 1 is adequate.
     pub cost: f64,
     /// The same over the held-out records, if there are any.
     pub held_out_cost: Option<f64>,
@@ -71,11 +71,11 @@ pub struct Identification {
     pub held_out_normalised: Option<f64>,
     /// The share of the measured response that was fed back (M14.14).
     pub feedback: Option<Feedback>,
-    /// How far each record of the fit contradicts the others; empty for a single record (M14.16).
+    /// How far each fitted record contradicts the others; empty for a single record (M14.16).
     pub contrasts: Vec<RecordContrast>,
-    /// Fit of every used record, in the order of the records.
+    /// Fit of every used record, in record order.
     pub record_fits: Vec<RecordFit>,
-    /// Cost of every output per degree of freedom, over the records of the fit.
+    /// Cost of every output per degree of freedom, over the fitted records.
     pub output_costs: Vec<f64>,
     /// The recommended model against the held-out records in time.
     pub validation: Option<Validation>,
@@ -431,7 +431,7 @@ impl Models<'_> {
         bundle
     }
 
-    /// Converts a model to the units of the records; `None` if it is not finite.
+    /// Converts a model to record units; `None` if it is not finite.
     fn model(
         &self,
         name: String,

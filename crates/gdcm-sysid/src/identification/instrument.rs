@@ -26,7 +26,7 @@ use super::local_polynomial::{LocalFit, LocalPolynomialError, condition, local_f
 use super::response_estimate::{EstimatePoint, ResponseEstimate};
 use super::spectrum::{LineRange, Spectrum};
 
-/// Half width of a window over its centre.
+/// Window half width over its centre.
 const HALF_WIDTH: f64 = 0.15;
 /// Singular values of `Gamma_u` that count, over the largest.
 const TOLERANCE: f64 = 1e-3;

@@ -1,20 +1,20 @@
-//! The cost of a model over the spectral lines of the records, transients eliminated (M14.4).
+//! A model's cost over the records' spectral lines, transients eliminated (M14.4).
 //!
 //! ```text
 //! J = sum_r sum_k | W_k (Y_r - G U_r - C (j omega - A)^-1 tau_r - c1_r/(j omega) - c0_r) |^2
 //!
-//! 1  once a record: orthonormal bases of the columns W (real parts) and W/omega (imaginary parts),
+//! 1  once a record: orthonormal bases for the columns W (real parts) and W/omega (imaginary parts),
 //!    which eliminate c0 and c1
 //! 2  T = W C (j omega - A)^-1, e0 = W (Y - G U), both less their projections on these bases
-//! 3  tau = argmin |e0 - T tau|^2 from the Gram matrix of the scaled columns,
-//!    eigenvalues below 1e-12 of the largest dropped
+//! 3  tau = argmin |e0 - T tau|^2 from the scaled columns' Gram matrix,
+//!    eigenvalues below 1e-12 times the largest dropped
 //! 4  e = e0 - T tau,   J_r = |e|^2
 //! ```
 //!
 //! Nothing is simulated, so unstable models have a cost like any other. tau, c1 and c0 absorb the
-//! trim, the drift, the step at the end of the record, and its initial and final states. `J` per
+//! trim, the drift, the step at the record's end, and its initial and final states. `J` per
 //! degree of freedom is 1 for an adequate model, because W whitens the noise: its real and
-//! imaginary parts have variance one.
+//! imaginary parts have unit variance.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -28,10 +28,10 @@ use super::spectrum::Spectrum;
 /// Eigenvalues of a transient's Gram matrix below this share of the largest are dropped.
 pub(super) const DEPENDENT: f64 = 1e-12;
 
-/// The whitened spectral lines of one segment of a record.
+/// A segment's spectral lines, whitened.
 #[derive(Clone, Debug)]
 pub(super) struct SpectralLines {
-    /// Number of the record, counted from 0.
+    /// Record number, counted from 0.
     pub(super) record: usize,
     /// \[rad/s\].
     pub(super) omega: Vec<f64>,
@@ -41,13 +41,13 @@ pub(super) struct SpectralLines {
     pub(super) outputs: DMatrix<Complex<f64>>,
     /// `W` at each line, lower triangular.
     pub(super) weights: Vec<DMatrix<f64>>,
-    /// Orthonormal basis of the real parts of `W c0`, (outputs lines) x outputs.
+    /// Orthonormal basis for `W c0` in real parts, (outputs lines) x outputs.
     constant: DMatrix<f64>,
-    /// Orthonormal basis of the imaginary parts of `W c1 / (j omega)`, (outputs lines) x outputs.
+    /// Orthonormal basis for `W c1 / (j omega)` in imaginary parts, (outputs lines) x outputs.
     drift: DMatrix<f64>,
 }
 
-/// The share of one segment in the cost.
+/// A segment's share in the cost.
 #[derive(Clone, Debug)]
 pub(super) struct SegmentCost {
     /// `J_r`.
@@ -59,7 +59,7 @@ pub(super) struct SegmentCost {
 }
 
 impl SpectralLines {
-    /// Whitens a spectrum in scaled units with the covariance of the noise.
+    /// Whitens a spectrum in scaled units with the noise covariance.
     ///
     /// Returns `None` where the covariance is not positive definite at a line.
     pub(super) fn new(spectrum: &Spectrum, noise: &NoiseCovariance) -> Option<Self> {
@@ -97,7 +97,7 @@ impl SpectralLines {
         }
     }
 
-    /// Returns the same lines with the power of the noise multiplied by `factor`.
+    /// Returns the same lines with the noise power multiplied by `factor`.
     pub(super) fn with_noise(&self, factor: f64) -> Self {
         let share = 1.0 / factor.sqrt();
         let weights = self.weights.iter().map(|weight| weight * share).collect();
@@ -108,14 +108,14 @@ impl SpectralLines {
         }
     }
 
-    /// Returns the degrees of freedom for a model of this order: real values in the lines less the
-    /// unknowns of the transient.
+    /// Returns the degrees of freedom at this model order: real values in the lines less the
+    /// transient's unknowns.
     pub(super) fn freedom(&self, order: usize) -> usize {
         let outputs = self.outputs.nrows();
         (2 * outputs * self.omega.len()).saturating_sub(order + 2 * outputs)
     }
 
-    /// Computes the share of this segment in the cost; `None` if it is not finite.
+    /// Computes the segment's share in the cost; `None` if it is not finite.
     pub(super) fn cost(&self, model: &BlockModel) -> Option<SegmentCost> {
         let outputs = self.outputs.nrows();
         let mut state = vec![Complex::default(); model.order()];
@@ -135,7 +135,7 @@ impl SpectralLines {
         })
     }
 
-    /// Removes the transient of `model`, trim and drift from a whitened column, outputs x lines.
+    /// Removes the transient for `model`, trim and drift from a whitened column, outputs x lines.
     ///
     /// Returns `None` if the result is not finite.
     pub(super) fn without_transient(
@@ -149,10 +149,10 @@ impl SpectralLines {
         Some(left.residual)
     }
 
-    /// Eliminates trim, drift and the transient of `model` from `e0` (steps 2 to 4 of the file's box).
+    /// Eliminates trim, drift and the transient for `model` from `e0` (steps 2 to 4).
     ///
-    /// `fill(k, cr, e0)` receives the number of a line and `C (j omega - A)^-1` at it, and writes
-    /// `e0` of that line.
+    /// `fill(k, cr, e0)` receives a line number and `C (j omega - A)^-1` at it, and writes
+    /// `e0` at that line.
     fn eliminate(
         &self,
         model: &BlockModel,
@@ -160,7 +160,7 @@ impl SpectralLines {
     ) -> Option<SegmentCost> {
         let (outputs, lines) = self.outputs.shape();
         let order = model.order();
-        // Real and imaginary parts of [T e0], one row for each output of each line.
+        // Real and imaginary parts of [T e0]; rows are the outputs at each line.
         let mut real = DMatrix::zeros(outputs * lines, order + 1);
         let mut imaginary = DMatrix::zeros(outputs * lines, order + 1);
         let mut cr = vec![Complex::default(); outputs * order];
@@ -200,7 +200,7 @@ impl SpectralLines {
     }
 }
 
-/// Computes `tau = argmin |e0 - T tau|^2` from the real and imaginary parts of `[T e0]`.
+/// Computes `tau = argmin |e0 - T tau|^2` from `[T e0]` in real and imaginary parts.
 fn fit_transient(real: &DMatrix<f64>, imaginary: &DMatrix<f64>) -> Option<DVector<f64>> {
     let order = real.ncols() - 1;
     let mut gram = real.transpose() * real;
@@ -210,23 +210,23 @@ fn fit_transient(real: &DMatrix<f64>, imaginary: &DMatrix<f64>) -> Option<DVecto
     Some(DVector::from_column_slice(transient.as_slice()))
 }
 
-/// Returns `e0 - T tau` for one part, real or imaginary, of `[T e0]`.
+/// Returns `e0 - T tau` for the real or imaginary part of `[T e0]`.
 fn residual_of(part: &DMatrix<f64>, transient: &DVector<f64>) -> DVector<f64> {
     let order = transient.len();
     part.column(order) - part.columns(0, order) * transient
 }
 
-/// The segments of all records that a model is fitted to.
+/// The segments that a model is fitted to.
 #[derive(Clone)]
 pub(super) struct Likelihood<'a> {
-    /// In the order of the records and of time.
+    /// In record order and of time.
     pub(super) segments: Vec<SpectralLines>,
-    /// Runs the work of the segments.
+    /// Runs the segments' work.
     pub(super) executor: &'a dyn Executor,
 }
 
 impl Likelihood<'_> {
-    /// Returns `N`, the degrees of freedom for a model of this order.
+    /// Returns `N`, the degrees of freedom at this model order.
     pub(super) fn freedom(&self, order: usize) -> usize {
         self.segments
             .iter()
@@ -234,19 +234,19 @@ impl Likelihood<'_> {
             .sum()
     }
 
-    /// Computes the share of each segment in the cost; `None` if one is not finite.
+    /// Computes each segment's share in the cost; `None` if a share is not finite.
     pub(super) fn parts(&self, model: &BlockModel) -> Option<Vec<SegmentCost>> {
         each(self.executor, &self.segments, |segment| segment.cost(model))
             .into_iter()
             .collect()
     }
 
-    /// Computes `J`, summed in the order of the segments.
+    /// Computes `J`, summed in segment order.
     pub(super) fn cost(&self, model: &BlockModel) -> Option<f64> {
         Some(self.parts(model)?.iter().map(|part| part.cost).sum())
     }
 
-    /// Returns the numbers of the records that have segments, ascending.
+    /// Returns the record numbers that have segments, ascending.
     pub(super) fn records(&self) -> Vec<usize> {
         let mut records: Vec<usize> = self.segments.iter().map(|segment| segment.record).collect();
         records.sort_unstable();
@@ -254,7 +254,7 @@ impl Likelihood<'_> {
         records
     }
 
-    /// Returns the segments of all records but one.
+    /// Returns the segments without those of a record.
     pub(super) fn without(&self, record: usize) -> Self {
         let segments = self
             .segments
@@ -279,7 +279,7 @@ fn multiply(a: &DMatrix<f64>, x: &[Complex<f64>], y: &mut [Complex<f64>]) {
     }
 }
 
-/// Computes `W x` for a lower triangular `W` and passes its entries to `take` one by one.
+/// Computes `W x` for a lower triangular `W` and passes its entries to `take` in turn.
 pub(super) fn whiten(
     weight: &DMatrix<f64>,
     x: &[Complex<f64>],

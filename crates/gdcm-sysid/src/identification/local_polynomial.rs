@@ -11,19 +11,19 @@ use super::spectrum::Spectrum;
 
 /// Terms if all lines together are too few for three: 1, x.
 const FEWER_TERMS: usize = 2;
-/// Least half width of a window of lines \[rad/s\] (M14.2).
+/// Least half width for a window \[rad/s\] (M14.2).
 const LEAST_HALF_WIDTH: f64 = 0.45;
-/// Half width of a window over its centre (M14.2).
+/// Window half width over its centre (M14.2).
 const HALF_WIDTH_SHARE: f64 = 0.2;
 /// First factor by which a window with too few lines is widened (M14.12).
 const FIRST_WIDENING: f64 = 1.2;
-/// Factor of each further widening (M14.12).
+/// Factor for each further widening (M14.12).
 const FURTHER_WIDENING: f64 = 1.05;
-/// Least number of lines in a window beyond unknowns and outputs, with three terms (M14.12).
+/// Fewest lines in a window beyond unknowns and outputs, with three terms (M14.12).
 const SPARE_LINES: usize = 6;
 /// The same with two terms.
 const SPARE_LINES_FEWER_TERMS: usize = 4;
-/// Height of the ridge over the length of a column; it bounds the estimate if inputs are copies of
+/// Ridge height over column length; it bounds the estimate if inputs are copies of
 /// each other.
 const RIDGE: f64 = 1e-9;
 
@@ -34,13 +34,13 @@ pub enum LocalPolynomialError {
     /// No lines, inputs or outputs.
     #[error("there is nothing to estimate a frequency response from")]
     Nothing,
-    /// Number of the record, counted from 0.
+    /// Record number, counted from 0.
     #[error("record {} has another number of channels than the first", .0 + 1)]
     ChannelsDiffer(usize),
     /// A line or a frequency is not finite, or a frequency is not greater than 0.
     #[error("the spectra hold values that are not finite")]
     NotFinite,
-    /// Fewer lines than polynomials of the first degree need.
+    /// Fewer lines than first-degree polynomials need.
     #[error(
         "the records have {lines} spectral lines in the band where {needed} are needed: log longer, or leave out channels"
     )]
@@ -51,7 +51,7 @@ pub enum LocalPolynomialError {
     },
 }
 
-/// Estimates the response at each of `omegas` \[rad/s\] from the lines of all segments (M14.2).
+/// Estimates the response at each of `omegas` \[rad/s\] from all segments' lines (M14.2).
 ///
 /// After R. Pintelon, J. Schoukens, G. Vandersteen & K. Barbé, "Estimation of nonparametric noise
 /// and FRF models for multivariable systems", Mech. Syst. Signal Process. 24, 2010, with separate
@@ -132,13 +132,13 @@ pub(super) struct Window {
     pub(super) omega: f64,
     /// \[rad/s\].
     pub(super) half_width: f64,
-    /// Terms of the polynomials.
+    /// Polynomial terms.
     terms: usize,
-    /// Lines of each spectrum inside; empty for a spectrum with too few of them.
+    /// Each spectrum's lines inside; empty if too few.
     lines: Vec<Range<usize>>,
     /// Spectral lines inside, over all spectra that count.
     count: usize,
-    /// Columns of the transients of the records.
+    /// Columns that the records' transients take.
     transients: usize,
 }
 
@@ -219,7 +219,7 @@ fn farthest_line(spectra: &[Spectrum], omega: f64) -> f64 {
     farthest
 }
 
-/// Returns the lines of a spectrum within `half_width` of `omega`, or none if they are no more than
+/// Returns a spectrum's lines within `half_width` of `omega`, or none if they are no more than
 /// the terms.
 fn lines_inside(spectrum: &Spectrum, omega: f64, half_width: f64, terms: usize) -> Range<usize> {
     let from = spectrum.omega.partition_point(|&w| w < omega - half_width);
@@ -234,14 +234,14 @@ fn lines_inside(spectrum: &Spectrum, omega: f64, half_width: f64, terms: usize) 
     }
 }
 
-/// Local polynomials fitted to the lines of one window.
+/// Local polynomials fitted in a window.
 pub(super) struct LocalFit {
     pub(super) window: Window,
     /// The triangular factor of `[A B]`.
     r: DMatrix<Complex<f64>>,
     inputs: usize,
     outputs: usize,
-    /// Sum of the power of the lines of each output.
+    /// Summed line power, by output.
     power: DVector<f64>,
     /// Lines less unknowns.
     pub(super) freedom: usize,
@@ -267,12 +267,12 @@ impl LocalFit {
         self.window.terms * self.inputs
     }
 
-    /// Returns the mean power of the lines of each output.
+    /// Returns the mean line power, by output.
     pub(super) fn power(&self) -> DVector<f64> {
         &self.power / self.window.count as f64
     }
 
-    /// Returns `Cov V` of a line, outputs x outputs.
+    /// Returns a line's `Cov V`, outputs x outputs.
     pub(super) fn covariance(&self) -> DMatrix<Complex<f64>> {
         let residual = self.r.view(
             (self.unknowns(), self.unknowns()),
@@ -300,19 +300,19 @@ impl LocalFit {
         theta.rows(0, self.inputs).transpose()
     }
 
-    /// Returns the block of `(A'A)^-1` that belongs to `G0`, inputs x inputs.
+    /// Returns the block in `(A'A)^-1` that belongs to `G0`, inputs x inputs.
     pub(super) fn spread(&self) -> DMatrix<Complex<f64>> {
         let unknowns = self.unknowns();
         let inverse = self.solve(&DMatrix::identity(unknowns, unknowns));
         inverse.rows(0, self.inputs) * inverse.rows(0, self.inputs).adjoint()
     }
 
-    /// Returns the sum of squares of each output column of the factor from row `from` on.
+    /// Returns the squared norms of the factor's output columns from row `from` on.
     fn squares(&self, from: usize) -> Vec<f64> {
         squares_below(&self.r, self.unknowns(), self.outputs, from)
     }
 
-    /// Returns the multiple coherence of each output.
+    /// Returns the multiple coherence, by output.
     pub(super) fn coherence(&self) -> Vec<f64> {
         let residual = self.squares(self.unknowns());
         let total = self.squares(0);
@@ -323,8 +323,8 @@ impl LocalFit {
             .collect()
     }
 
-    /// Returns `|V|^2` of each output with input `i` left out: the triangular factor without the
-    /// columns of that input, made triangular again.
+    /// Returns each output's `|V|^2` with input `i` left out: the triangular factor without the
+    /// input's columns, made triangular again.
     fn residual_without(&self, i: usize) -> Vec<f64> {
         let unknowns = self.unknowns();
         let kept: Vec<usize> = (0..unknowns + self.outputs)
@@ -335,7 +335,7 @@ impl LocalFit {
         squares_below(&smaller, remaining, self.outputs, remaining)
     }
 
-    /// Returns the partial coherence of each response, outputs x inputs.
+    /// Returns the partial coherence, outputs x inputs.
     fn partial_coherence(&self) -> DMatrix<f64> {
         let residual = self.squares(self.unknowns());
         let mut coherence = DMatrix::zeros(self.outputs, self.inputs);
@@ -348,7 +348,7 @@ impl LocalFit {
         coherence
     }
 
-    /// Returns the estimate at the centre of the window; see [`local_polynomial`].
+    /// Returns the estimate at the window's centre; see [`local_polynomial`].
     fn estimate(&self) -> EstimatePoint {
         let inputs = self.inputs;
         let outputs = self.outputs;
@@ -369,7 +369,7 @@ impl LocalFit {
     }
 }
 
-/// Returns the sums of squares of `count` columns from column `first` on, below row `from`.
+/// Returns the squared norms below row `from` for `count` columns from `first` on.
 fn squares_below(
     factor: &DMatrix<Complex<f64>>,
     first: usize,
@@ -390,11 +390,11 @@ fn explained(residual: f64, total: f64) -> f64 {
     }
 }
 
-/// The linear regression of one window.
+/// The linear regression in a window.
 struct Regression {
-    /// The rows `[A B]` of all records, less the transients, with the ridge below them.
+    /// All records' rows `[A B]` less the transients, with the ridge below.
     rows: DMatrix<Complex<f64>>,
-    /// Sum of `|Y|^2` of each output.
+    /// Summed `|Y|^2`, by output.
     power: DVector<f64>,
 }
 
@@ -426,7 +426,7 @@ impl Regression {
         regression
     }
 
-    /// Writes `[U, x U, x^2 U | Y]` of one line.
+    /// Writes `[U, x U, x^2 U | Y]` for a line.
     fn fill_row(&mut self, row: usize, spectrum: &Spectrum, line: usize, x: f64, terms: usize) {
         let inputs = spectrum.inputs.nrows();
         for (i, u) in spectrum.inputs.column(line).iter().enumerate() {
@@ -442,7 +442,7 @@ impl Regression {
         }
     }
 
-    /// Subtracts the projection of the rows of one record on its polynomial transient.
+    /// Subtracts the projection of a record's rows on its polynomial transient.
     fn remove_transient(&mut self, top: usize, x: &[f64], terms: usize) {
         let powers = DMatrix::from_fn(x.len(), terms, |line, power| x[line].powi(power as i32));
         let transient = powers.qr().q().map(Complex::from);
@@ -451,7 +451,7 @@ impl Regression {
         record_rows -= explained;
     }
 
-    /// Adds a ridge in proportion to the length of each column of `A`.
+    /// Adds a ridge in proportion to the column lengths in `A`.
     fn add_ridge(&mut self, top: usize, unknowns: usize) {
         for column in 0..unknowns {
             let length = self.rows.column(column).norm();
@@ -461,7 +461,7 @@ impl Regression {
     }
 }
 
-/// Returns the square of the greatest singular value over the least.
+/// Returns the greatest over the least singular value, squared.
 pub(super) fn condition(matrix: DMatrix<Complex<f64>>) -> f64 {
     let singular = matrix.singular_values();
     let greatest = singular.max();

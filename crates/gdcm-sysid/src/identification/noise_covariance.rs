@@ -1,4 +1,4 @@
-//! The covariance of the noise over frequency, and the weights that follow from it (M14.2, M14.4).
+//! The noise covariance over frequency, and the weights that follow from it (M14.2, M14.4).
 
 use nalgebra::DMatrix;
 

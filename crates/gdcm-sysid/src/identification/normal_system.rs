@@ -1,13 +1,13 @@
-//! The normal equations of the cost, in Gram form (M14.4, M14.8).
+//! The cost's normal equations, in Gram form (M14.4, M14.8).
 //!
 //! ```text
-//! At each line, every column of the Jacobian of W G U is a vector v of outputs times a scalar s:
+//! At each line, every Jacobian column of W G U is a vector v (outputs) times a scalar s:
 //!    block       v = (W C R)_2      s = -X_1, -X_2 (a pair), X (a single pole)
 //!    B_ij        v = (W C R)_i      s = U_j
 //!    C_oi, D_oj  v = W e_o          s = X_i, U_j
 //!    tau_i, c1_o, c0_o: v = (W C R)_i, W e_o, W e_o, s = 1, 1/(j omega), 1
 //!    R = (j omega - A)^-1,  X = R (B U + tau)
-//! 1  J'J[p, q] = sum_k Re(v_p^H v_q  s_p^* s_q): a product of two matrices,
+//! 1  J'J[p, q] = sum_k Re(v_p^H v_q  s_p^* s_q): two matrices multiplied,
 //!    (pairs of v) x (lines) times (lines) x (pairs of s)
 //! 2  transient eliminated: G = J'J - J'T (T'T)^+ T'J
 //! 3  g = J'e, as e is orthogonal to T
@@ -34,7 +34,7 @@ pub(super) struct NormalSystem {
 }
 
 impl NormalSystem {
-    /// Sums systems of this number of parameters; zero without systems.
+    /// Sums systems with this many parameters; zero without systems.
     pub(super) fn sum<'s>(parameters: usize, systems: impl IntoIterator<Item = &'s Self>) -> Self {
         let mut sum = Self {
             matrix: DMatrix::zeros(parameters, parameters),
@@ -75,7 +75,7 @@ impl NormalSystem {
     }
 }
 
-/// Computes the systems of all segments at a model; `parts` are the costs of the segments there.
+/// Computes all segments' systems at a model; `parts` are the segment costs there.
 pub(super) fn normal_systems(
     likelihood: &Likelihood,
     model: &BlockModel,
@@ -89,7 +89,7 @@ pub(super) fn normal_systems(
     .collect()
 }
 
-/// Sums the normal systems of the segments of one record; `systems` are those of all segments.
+/// Sums the normal systems for a record; `systems` holds all segments'.
 pub(super) fn system_of_record(
     likelihood: &Likelihood,
     record: usize,
@@ -105,7 +105,7 @@ pub(super) fn system_of_record(
     NormalSystem::sum(parameters, own)
 }
 
-/// Computes `J'd` of one segment; the residual of `part` is the column `d`, its transient removed.
+/// Computes a segment's `J'd`; the residual in `part` is the column `d`, its transient removed.
 pub(super) fn gradient_along(
     lines: &SpectralLines,
     model: &BlockModel,
@@ -116,14 +116,14 @@ pub(super) fn gradient_along(
     gram.gradient
 }
 
-/// Numbers of two vectors, or of two scalars, whose product is needed.
+/// Two vectors' or two scalars' numbers; their product is needed.
 #[derive(Clone, Copy)]
 struct IndexPair {
     left: usize,
     right: usize,
 }
 
-/// Returns the pairs of `0..count` in which the second number is not less than the first.
+/// Returns the pairs from `0..count` with the second number not less than the first.
 fn ordered_pairs(count: usize) -> Vec<IndexPair> {
     let mut pairs = Vec::new();
     for left in 0..count {
@@ -134,7 +134,7 @@ fn ordered_pairs(count: usize) -> Vec<IndexPair> {
     pairs
 }
 
-/// Returns all pairs of a number below `lefts` and one below `rights`.
+/// Returns all pairs with the first number below `lefts` and the second below `rights`.
 fn all_pairs(lefts: usize, rights: usize) -> Vec<IndexPair> {
     let mut pairs = Vec::new();
     for left in 0..lefts {
@@ -145,14 +145,14 @@ fn all_pairs(lefts: usize, rights: usize) -> Vec<IndexPair> {
     pairs
 }
 
-/// The column of a parameter of a block: `(W C R)_vector` times `sign X_scalar`.
+/// A block parameter's column: `(W C R)_vector` times `sign X_scalar`.
 struct BlockColumn {
     vector: usize,
     scalar: usize,
     sign: f64,
 }
 
-/// The vectors and scalars of one segment, and the Gram matrix built from them.
+/// A segment's vectors and scalars, and the Gram matrix built from them.
 ///
 /// Columns are numbered: the parameters, then tau, c1, c0.
 struct Gram<'a> {
@@ -161,9 +161,9 @@ struct Gram<'a> {
     residual: &'a DMatrix<Complex<f64>>,
     /// `W C R`, outputs x (n lines): n columns a line.
     resolvent: DMatrix<Complex<f64>>,
-    /// `U` and 1, one column a line: the scalars of `B` and tau.
+    /// `U` and 1, columns are lines: the scalars of `B` and tau.
     resolvent_scalars: DMatrix<Complex<f64>>,
-    /// `X`, `U`, 1/(j omega) and 1, one column a line: the scalars of `C`, `D`, c1 and c0.
+    /// `X`, `U`, 1/(j omega) and 1, columns are lines: the scalars of `C`, `D`, c1 and c0.
     weight_scalars: DMatrix<Complex<f64>>,
     matrix: DMatrix<f64>,
     gradient: DVector<f64>,
@@ -239,7 +239,7 @@ impl<'a> Gram<'a> {
         })
     }
 
-    /// Returns the column of the vector `(W C R)_state` times a scalar of `B` and tau.
+    /// Returns the column number for `(W C R)_state` times a scalar of `B` and tau.
     fn resolvent_column(&self, state: usize, scalar: usize) -> usize {
         if scalar < self.model.b.ncols() {
             self.model.place_of_b(state, scalar)
@@ -248,7 +248,7 @@ impl<'a> Gram<'a> {
         }
     }
 
-    /// Returns the column of the vector `W e_output` times a scalar of `C`, `D`, c1 and c0.
+    /// Returns the column number for `W e_output` times a scalar of `C`, `D`, c1 and c0.
     fn weight_column(&self, output: usize, scalar: usize) -> usize {
         let order = self.model.order();
         let inputs = self.model.b.ncols();
@@ -262,7 +262,7 @@ impl<'a> Gram<'a> {
         }
     }
 
-    /// Writes the product of two columns on both sides of the diagonal.
+    /// Writes a product on both sides of the diagonal.
     fn put(&mut self, p: usize, q: usize, value: f64) {
         self.matrix[(p, q)] = value;
         self.matrix[(q, p)] = value;
@@ -288,7 +288,7 @@ impl<'a> Gram<'a> {
             .sum()
     }
 
-    /// Tabulates `product(k, row)` of each row at each line `k`: real and imaginary part in two
+    /// Tabulates `product(k, row)` for each row and line `k`: real and imaginary part in two
     /// columns a line.
     fn line_products(
         &self,
@@ -306,7 +306,7 @@ impl<'a> Gram<'a> {
         products
     }
 
-    /// Adds the products of `B` and tau with themselves.
+    /// Adds `B` and tau with themselves.
     fn add_resolvent(&mut self) {
         let scalars = self.resolvent_scalars.nrows();
         let states = ordered_pairs(self.model.order());
@@ -331,7 +331,7 @@ impl<'a> Gram<'a> {
         }
     }
 
-    /// Adds the products of `C`, `D`, c1 and c0 with themselves: `W'W` is real.
+    /// Adds `C`, `D`, c1 and c0 with themselves: `W'W` is real.
     fn add_weight(&mut self) {
         let count = self.lines.omega.len();
         let output_count = self.model.c.nrows();
@@ -370,7 +370,7 @@ impl<'a> Gram<'a> {
         }
     }
 
-    /// Adds the products of `B` and tau with `C`, `D`, c1 and c0.
+    /// Adds `B` and tau with `C`, `D`, c1 and c0.
     fn add_resolvent_with_weight(&mut self) {
         let outputs = self.model.c.nrows();
         let vectors = all_pairs(self.model.order(), outputs);
@@ -392,7 +392,7 @@ impl<'a> Gram<'a> {
         }
     }
 
-    /// Returns the columns of all parameters of the blocks.
+    /// Returns the columns for all block parameters.
     fn block_columns(&self) -> Vec<BlockColumn> {
         let mut columns = Vec::new();
         for (first, block) in self.model.rows() {
@@ -416,7 +416,7 @@ impl<'a> Gram<'a> {
         columns
     }
 
-    /// Adds the products of the blocks with all columns.
+    /// Adds the blocks with all columns.
     fn add_blocks(&mut self) {
         let order = self.model.order();
         let outputs = self.model.c.nrows();
@@ -491,8 +491,8 @@ impl<'a> Gram<'a> {
     }
 }
 
-/// Returns `[Re z; -Im z]` of `z = conj(s) t`, two rows a line, one column a pair (s, t): multiplied
-/// by `[Re h, Im h]` they give the sum of `Re(h z)`.
+/// Returns `[Re z; -Im z]` of `z = conj(s) t`, rows by line, columns by pair (s, t): multiplied
+/// by `[Re h, Im h]` they give the summed `Re(h z)`.
 fn scalar_products(
     left: &DMatrix<Complex<f64>>,
     right: &DMatrix<Complex<f64>>,
@@ -509,7 +509,7 @@ fn scalar_products(
     products
 }
 
-/// Returns `[Re s; Im s]`, two rows a line, one column a scalar.
+/// Returns `[Re s; Im s]`, rows by line, columns by scalar.
 fn parts(scalars: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
     DMatrix::from_fn(2 * scalars.ncols(), scalars.nrows(), |row, s| {
         let scalar = scalars[(s, row / 2)];

@@ -6,9 +6,9 @@ use gdcm_model::simulation::{FlightRecord, Signal};
 use super::identification_error::{HIGHEST_ORDER, IdentificationError, LONGEST_PAST};
 use super::preparation_settings::Preparation;
 
-/// Lowest line used over the lower end of the band.
+/// Lowest line used over the lower band end.
 const LOWEST_LINE: f64 = 0.5;
-/// Highest line used over the upper end of the band.
+/// Highest line used over the upper band end.
 const HIGHEST_LINE: f64 = 4.0 / 3.0;
 
 /// The band, the channels, the held-out records, and the orders, poles and windows to try.
@@ -17,7 +17,7 @@ const HIGHEST_LINE: f64 = 4.0 / 3.0;
 /// six, on fresh noise and on half of the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Lower and upper end of the band \[rad/s\].
+    /// Lower and upper band end \[rad/s\].
     pub band: [f64; 2],
     /// The channels and their preparation.
     pub preparation: Preparation,
@@ -28,7 +28,7 @@ pub struct Options {
     pub held_out: Vec<usize>,
     /// Orders to try; `None` for those that the records can carry (M14.13).
     pub orders: Option<Vec<usize>>,
-    /// Laguerre poles over the upper end of the band.
+    /// Laguerre poles over the upper band end.
     pub poles: Vec<f64>,
     /// Past windows, in Laguerre projections; `None` for those that the records can carry (M14.13).
     pub pasts: Option<Vec<usize>>,
@@ -104,12 +104,12 @@ impl Options {
         }
     }
 
-    /// Returns the lowest line used \[rad/s\]: half the lower end of the band.
+    /// Returns the lowest line used \[rad/s\]: half the lower band end.
     pub(super) fn lowest(&self) -> f64 {
         LOWEST_LINE * self.band[0]
     }
 
-    /// Returns the highest line used \[rad/s\]: 4/3 of the upper end of the band.
+    /// Returns the highest line used \[rad/s\]: 4/3 of the upper band end.
     pub(super) fn highest(&self) -> f64 {
         HIGHEST_LINE * self.band[1]
     }

@@ -72,7 +72,7 @@ impl RecordUse {
 pub struct Prepared {
     /// By record and time; at least one.
     pub segments: Vec<Segment>,
-    /// In the order of the records.
+    /// In record order.
     pub records: Vec<RecordUse>,
     pub cautions: Vec<RecordCaution>,
 }

@@ -71,9 +71,9 @@ impl ChannelPreparation {
 /// How flight records are prepared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preparation {
-    /// In the order of the columns.
+    /// In column order.
     pub inputs: Vec<ChannelPreparation>,
-    /// In the order of the columns.
+    /// In column order.
     pub outputs: Vec<ChannelPreparation>,
     /// Whether a record with uneven sample times may be interpolated.
     pub resample: bool,

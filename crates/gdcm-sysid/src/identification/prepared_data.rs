@@ -36,9 +36,9 @@ const BEYOND: f64 = 1.3;
 const COPY: f64 = 1e9;
 /// Share of the largest entry of an eigenvector above which an input is involved in a dependence.
 const INVOLVED: f64 = 0.1;
-/// Upper end of the band over the highest line used.
+/// Upper band end over the highest line used.
 const BAND_END: f64 = 0.75;
-/// Periods of the lower end of the band that the longest record has to last (M14.12).
+/// Periods of the lower band end that the longest record has to last (M14.12).
 const LEAST_PERIODS: f64 = 1.5;
 /// Periods that it should last (M14.12).
 const BETTER_PERIODS: f64 = 5.0;
@@ -57,13 +57,13 @@ pub(super) struct PreparedData<'a> {
     pub(super) unfiltered: Vec<Segment>,
     /// The lines behind the measured response.
     pub(super) lines: LineRange,
-    /// Held-out segments in the units of the records.
+    /// Held-out segments in record units.
     pub(super) held_out_segments: Vec<Segment>,
     /// Spectral lines to fit.
     pub(super) spectra: Vec<Spectrum>,
     /// The response without a model.
     pub(super) measured: ResponseEstimate,
-    /// The cost over the records of the fit.
+    /// The cost over the fitted records.
     pub(super) likelihood: Likelihood<'a>,
     /// The cost over the lines as logged, if the lines of the fit are those seen through a reference
     /// (M14.15).
@@ -82,7 +82,7 @@ impl<'a> PreparedData<'a> {
     /// ```text
     /// 1  segments on a uniform grid; held-out records apart, references apart
     /// 2  scales; inputs that depend on each other are refused
-    /// 3  spectral lines, the measured response and the covariance of the noise
+    /// 3  spectral lines, the measured response and the noise covariance
     /// 4  weights of the lines, of the fit and of the held-out records
     /// 5  low-pass for the projections
     /// ```
@@ -213,7 +213,7 @@ impl<'a> PreparedData<'a> {
         }
     }
 
-    /// Converts a model to the units of the records: each response is multiplied by the scale of the
+    /// Converts a model to record units: each response is multiplied by the scale of the
     /// output over that of the input. `None` if the model is not finite.
     pub(super) fn in_units(&self, model: &BlockModel) -> Option<StateSpace> {
         let mut scaled = model.clone();
@@ -390,7 +390,7 @@ fn check_sampling(segments: &[Segment], options: &Options) -> Result<(), Identif
     })
 }
 
-/// Refuses records that are too short for the lower end of the band or for a model of the first
+/// Refuses records that are too short for the lower band end or for a model of the first
 /// order, and reports records that are shorter than they should be (M14.12).
 fn check_length(
     segments: &[Segment],

@@ -51,7 +51,7 @@ const AS_GOOD: f64 = 0.98;
 /// How far a record contradicts the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordContrast {
-    /// Number of the record, counted from 0.
+    /// Record number, counted from 0.
     pub record: usize,
     /// `F`; 1 is agreement.
     pub contrast: f64,

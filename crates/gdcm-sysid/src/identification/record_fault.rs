@@ -93,7 +93,7 @@ fn delay_text(delay_s: f64) -> String {
 /// A record that contradicts others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContradictingRecord {
-    /// Number of the record, counted from 0.
+    /// Record number, counted from 0.
     pub record: usize,
     /// Its name.
     pub name: String,

@@ -11,7 +11,7 @@ use super::uncertainty::ParameterCovariance;
 /// How well the recommended model fits a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordFit {
-    /// Number of the record, counted from 0.
+    /// Record number, counted from 0.
     pub record: usize,
     /// `J` per degree of freedom; 1 is adequate.
     pub cost: f64,
@@ -31,12 +31,12 @@ pub(super) struct HeldOutCost {
 
 /// How well a model fits all records, each record and each output.
 pub(super) struct RecordFits {
-    /// Every record with degrees of freedom, in the order of the records. Fitted records are
+    /// Every record with degrees of freedom, in record order. Fitted records are
     /// corrected for the parameters: `J_r / dof_r  N / (N - k)` (M14.13).
     pub(super) records: Vec<RecordFit>,
-    /// `J` per degree of freedom of each output over the records of the fit.
+    /// `J` per degree of freedom of each output over the fitted records.
     pub(super) outputs: Vec<f64>,
-    /// `J` per degree of freedom over the records of the fit.
+    /// `J` per degree of freedom over the fitted records.
     pub(super) cost: f64,
     /// The same over the held-out records, if there are any.
     pub(super) held_out: Option<HeldOutCost>,

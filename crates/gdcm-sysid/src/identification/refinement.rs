@@ -26,7 +26,7 @@ pub(super) const FIRST_DAMPING: f64 = 1e-4;
 const DAMPING_FACTOR: f64 = 8.0;
 /// Failures after which a step is given up.
 const FAILURES: usize = 8;
-/// Share of the whole work that is reported for a step.
+/// Reported share for a step, over the whole work.
 const SHARE: f64 = 0.02;
 
 /// A model, its cost, and the state of its refinement.
@@ -168,7 +168,7 @@ impl DampedStart<'_> {
     }
 }
 
-/// Sums the cost in the order of the segments.
+/// Sums the cost in segment order.
 fn total(parts: &[SegmentCost]) -> f64 {
     parts.iter().map(|part| part.cost).sum()
 }

@@ -76,7 +76,7 @@ impl EstimatePoint {
         (0..self.response.ncols()).any(|input| self.greatest_coherence(input) >= TRUSTED_COHERENCE)
     }
 
-    /// Converts a point in scaled units to the units of the file.
+    /// Converts a point in scaled units to file units.
     fn in_units(&self, response_factors: &DMatrix<f64>, outputs: &DVector<f64>) -> Self {
         Self {
             response: self
@@ -209,7 +209,7 @@ impl ResponseEstimate {
         }
     }
 
-    /// Converts an estimate in the scaled units of `scales` to the units of the file.
+    /// Converts an estimate in the scaled units of `scales` to file units.
     #[must_use]
     pub fn in_units(&self, scales: &Scales) -> Self {
         let response_factors = scales.response_factors();

@@ -8,7 +8,7 @@ use gdcm_model::simulation::Segment;
 /// A channel with an rms below this share of its greatest modulus is constant but for rounding.
 const CONSTANT: f64 = 1e-12;
 
-/// The scale of every channel, in the units of the file: its rms about the mean of each segment,
+/// The scale of every channel, in file units: its rms about the mean of each segment,
 /// over all segments (M14.1).
 ///
 /// ```text
@@ -28,7 +28,7 @@ pub struct Scales {
 pub enum ScalingError {
     #[error("there are no flight records")]
     NoSegments,
-    /// Number of the segment, counted from 0.
+    /// Segment number, counted from 0.
     #[error("piece {} of the flight records has another number of channels than the first", .0 + 1)]
     ChannelsDiffer(usize),
     /// A sample or its square is not finite; number of the segment, counted from 0.
@@ -68,7 +68,7 @@ impl Scales {
         scaled
     }
 
-    /// Returns the factors, outputs x inputs, that bring a scaled response to the units of the file.
+    /// Returns the factors, outputs x inputs, that bring a scaled response to file units.
     #[must_use]
     pub fn response_factors(&self) -> DMatrix<f64> {
         DMatrix::from_fn(self.outputs.len(), self.inputs.len(), |o, i| {

@@ -20,7 +20,7 @@ const LEAST_PAST: usize = 3;
 const LEAST_ROWS: f64 = 2.0;
 /// The same if no past window has so many.
 const LEAST_ROWS_SHORT: f64 = 1.5;
-/// Time between instants times the upper end of the band \[rad\].
+/// Time between instants times the upper band end \[rad\].
 pub(super) const SPACING: f64 = 1.2;
 /// Least number of real values in the lines for each unknown of a model (M14.13).
 pub(super) const FIGURES_AN_UNKNOWN: usize = 5;
@@ -39,7 +39,7 @@ pub(super) struct Extent {
     pub(super) outputs: usize,
     /// Real values in all lines less the transients of the records.
     pub(super) figures: usize,
-    /// Length of the records times the upper end of the band \[rad\].
+    /// Length of the records times the upper band end \[rad\].
     pub(super) radians: f64,
 }
 

@@ -21,7 +21,7 @@ const FIRST_LINE: f64 = 1.5;
 /// There is no window. The mean is taken off for accuracy only: lines from k = 1 do not hold it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
-    /// Number of the record, counted from 0.
+    /// Record number, counted from 0.
     pub record: usize,
     /// `T` \[s\].
     pub duration_s: f64,
@@ -76,7 +76,7 @@ impl LineRange {
 }
 
 /// Computes the lines of every segment up to `highest` \[rad/s\] and below half the sampling
-/// frequency, in the order of the segments.
+/// frequency, in segment order.
 #[must_use]
 pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
     let mut planner = FourierPlanner::default();

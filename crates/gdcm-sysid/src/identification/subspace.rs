@@ -1,9 +1,9 @@
-//! CT-PBSID: models of all orders from the triangular factor of the data matrix (M14.3).
+//! CT-PBSID: models of all orders from the data matrix's triangular factor (M14.3).
 //!
 //! ```text
-//! Z0 = [z_0 ... z_{p-1}], Z1 = [z_1 ... z_p], U = u~_p, Y = y~_p, all of them columns of R
+//! Z0 = [z_0 ... z_{p-1}], Z1 = [z_1 ... z_p], U = u~_p, Y = y~_p, columns of R
 //! 1  Theta = argmin |[Z0 U] Theta - Y|^2 + ridge |Theta|^2     predictor with an exogenous input
-//! 2  Gamma K: block row i = the first (p - i) q columns of Theta', placed from column i q
+//! 2  Gamma K: block row i = Theta' columns 1 to (p - i) q, placed from column i q
 //!    i = 0 ... f - 1, f = min(p, f_max)
 //! 3  Gamma K Z0' = W S V';   T = S_n^-1/2 W_n' Gamma K;   states X0 = Z0 T', X1 = Z1 T'
 //! 4  [Co Do] from Y on [X0 U], residual E;   [Ao Bo Ko] from X1 on [X0 U E]
@@ -33,29 +33,29 @@ use super::triangular_factor::{TriangularFactor, least_squares, ridge_solution};
 
 /// Highest order at which poles and past windows are compared.
 const RANKING_ORDER: usize = 18;
-/// Number of poles and past windows that propose models of all orders.
+/// Poles and past windows that propose models for all orders.
 const KEPT: usize = 2;
-/// Modes beyond this many times the upper end of the band are images of z near -1.
+/// Modes beyond this many times the upper band end are images of z near -1.
 const FASTEST: f64 = 8.0;
-/// Share of the whole work that the candidates take.
+/// Share that the candidates take in the whole work.
 const SHARE: f64 = 0.2;
-/// Ridge of the predictor over columns of length one.
+/// Ridge of the predictor over unit columns.
 const RIDGE: f64 = 1e-8;
-/// Relative distance up to which a pole is stable from one order to the next.
+/// Relative distance up to which a pole is stable between orders.
 const STABLE: f64 = 0.05;
 
-/// The dimensions of a data matrix and of its map to the future.
+/// Dimensions for a data matrix and its map to the future.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SubspaceShape {
     pub(super) inputs: usize,
     pub(super) outputs: usize,
     /// Past window p.
     pub(super) past: usize,
-    /// Most block rows of the map to the future, `f_max`.
+    /// Most block rows in the map to the future, `f_max`.
     pub(super) longest_future: usize,
 }
 
-/// The states of every order that one Laguerre pole and one past window propose.
+/// The states that a Laguerre pole and a past window propose, for every order.
 #[derive(Clone, Debug)]
 pub(super) struct Subspace {
     pole: f64,
@@ -71,8 +71,8 @@ pub(super) struct Subspace {
 }
 
 impl Subspace {
-    /// Computes the states (steps 1 to 3) from the triangular factor of a pole \[rad/s\]; `ridge` is
-    /// over columns of length one.
+    /// Computes the states (steps 1 to 3) from a pole's triangular factor \[rad/s\]; `ridge` is
+    /// over unit columns.
     ///
     /// Returns `None` if the regressors depend on each other or an iteration does not converge.
     pub(super) fn new(
@@ -102,7 +102,7 @@ impl Subspace {
             map.view_mut((row * outputs, row * channels), (outputs, kept))
                 .copy_from(&theta.columns(0, kept));
         }
-        // The transposed triangular factor of (Gamma K Z0')' has the left factors of Gamma K Z0'.
+        // The transposed triangular factor of (Gamma K Z0')' shares its left factors with Gamma K Z0'.
         let mut transposed = TriangularFactor::empty(future * outputs);
         transposed.append(&(factor.view((0, 0), (width, width)) * map.transpose()));
         let decomposition =
@@ -124,7 +124,7 @@ impl Subspace {
         })
     }
 
-    /// Computes the continuous-time model of an order (step 4); `None` if the data do not hold so
+    /// Computes an order's continuous-time model (step 4); `None` if the data do not hold so
     /// many states.
     pub(super) fn model(&self, order: usize) -> Option<StateSpace> {
         let inputs = self.inputs;
@@ -163,17 +163,17 @@ impl Subspace {
     }
 }
 
-/// Joins matrices of equal height.
+/// Joins matrices side by side.
 fn side_by_side(parts: &[DMatrixView<'_, f64>]) -> DMatrix<f64> {
     let rows = parts.first().map_or(0, |part| part.nrows());
     let columns: Vec<_> = parts.iter().flat_map(|part| part.column_iter()).collect();
     DMatrix::from_fn(rows, columns.len(), |row, column| columns[column][row])
 }
 
-/// Settings of CT-PBSID.
+/// CT-PBSID settings.
 #[derive(Clone, Debug)]
 pub(super) struct SubspaceSettings {
-    /// Upper end of the band \[rad/s\].
+    /// Upper band end \[rad/s\].
     pub(super) highest: f64,
     /// Laguerre poles \[rad/s\].
     pub(super) poles: Vec<f64>,
@@ -181,23 +181,23 @@ pub(super) struct SubspaceSettings {
     pub(super) pasts: Vec<usize>,
     /// Ascending.
     pub(super) orders: Vec<usize>,
-    /// Most block rows of the map to the future.
+    /// Most block rows in the map to the future.
     pub(super) longest_future: usize,
 }
 
-/// The states that one Laguerre pole and past window propose.
+/// The states that a Laguerre pole and a past window propose.
 #[derive(Clone, Debug)]
 pub(super) struct Candidate {
     /// Laguerre pole \[rad/s\].
     pub(super) pole: f64,
     /// Past window.
     pub(super) past: usize,
-    /// Cost at the order of the comparison.
+    /// Cost at the compared order.
     cost: f64,
     subspace: Subspace,
 }
 
-/// The poles of the model of an order.
+/// An order's poles.
 pub(super) struct PolesOfOrder {
     pub(super) order: usize,
     /// \[rad/s\].
@@ -205,7 +205,7 @@ pub(super) struct PolesOfOrder {
 }
 
 impl SubspaceSettings {
-    /// Returns the two cheapest poles and past windows, the cheaper one first.
+    /// Returns the two cheapest poles and past windows, the cheaper first.
     ///
     /// ```text
     /// 1  R for each Laguerre pole a
@@ -231,7 +231,7 @@ impl SubspaceSettings {
         Ok(candidates)
     }
 
-    /// Returns the cheaper of the models of `candidates` for each order, with its cost.
+    /// Returns each order's cheapest model from `candidates`, with its cost.
     pub(super) fn starts(
         &self,
         candidates: &[Candidate],
@@ -253,7 +253,7 @@ impl SubspaceSettings {
         starts
     }
 
-    /// Returns the poles of the models of all orders that a candidate proposes.
+    /// Returns the poles that a candidate proposes, for all orders.
     pub(super) fn poles_by_order(
         &self,
         candidate: &Candidate,
@@ -269,7 +269,7 @@ impl SubspaceSettings {
         .collect()
     }
 
-    /// Returns the model of an order without modes far above the band.
+    /// Returns an order's model without modes far above the band.
     fn slow_model(&self, subspace: &Subspace, order: usize) -> Option<StateSpace> {
         without_fast_modes(&subspace.model(order)?, FASTEST * self.highest)
     }
@@ -280,7 +280,7 @@ impl SubspaceSettings {
     }
 }
 
-/// The comparison of Laguerre poles and past windows.
+/// Compares Laguerre poles and past windows.
 struct Ranking<'r> {
     settings: &'r SubspaceSettings,
     segments: &'r [Segment],
@@ -291,7 +291,7 @@ struct Ranking<'r> {
     longest_past: usize,
     /// Order at which models are compared.
     order: usize,
-    /// Share of the whole work that is reported for a step.
+    /// Reported share for a step, over the whole work.
     share: f64,
 }
 
@@ -323,7 +323,7 @@ impl<'r> Ranking<'r> {
         })
     }
 
-    /// Computes the candidates of the pole with this number.
+    /// Computes a pole's candidates, by its number.
     fn rank_pole(&self, number: usize) -> Result<Vec<Candidate>, IdentificationError> {
         let executor = self.likelihood.executor;
         let poles = &self.settings.poles;
@@ -348,7 +348,7 @@ impl<'r> Ranking<'r> {
         Ok(candidates)
     }
 
-    /// Computes the candidate of a pole and a past window; `None` if it proposes no model.
+    /// Computes the candidate for a pole and a past window; `None` if it proposes no model.
     fn candidate(&self, factor: &TriangularFactor, pole: f64, past: usize) -> Option<Candidate> {
         let shape = SubspaceShape {
             inputs: self.inputs,
@@ -368,14 +368,14 @@ impl<'r> Ranking<'r> {
     }
 }
 
-/// A pole of the unrefined model of an order, for the stabilisation diagram.
+/// An unrefined model's pole, for the stabilisation diagram.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilisationPoint {
-    /// Order of the model.
+    /// Model order.
     pub order: usize,
-    /// Pole \[rad/s\] with a non-negative imaginary part: the upper one of a pair.
+    /// Pole \[rad/s\] with a non-negative imaginary part: the upper pole in a pair.
     pub pole: Complex<f64>,
-    /// Whether the model with two states less has a pole within 5 % of its modulus.
+    /// Whether the model with two states less has a pole within 5 %, relative to its modulus.
     pub stable: bool,
 }
 

@@ -3,14 +3,14 @@
 //! ```text
 //! Cov theta = phi G^+,   phi = J / (N - k),   G = sum_r J_r'J_r
 //!     eigenvalues of G below 1e-9 of the largest are free scales of the states
-//! var Re(dH/H), Im(dH/H) = h' Cov h of the real and imaginary part of the gradient of H_oi over H_oi
+//! var Re(dH/H), Im(dH/H) = h' Cov h, h the real or imaginary part of the gradient of ln H_oi
 //! sd^2 = 2 (sd_GN^2 + sd_order^2) + |G_b/G|^2 / 2
-//!     sd_order = rms over neighbouring orders of the real and imaginary part of ln(H_n'/H_n)
+//!     sd_order = rms of Re and Im ln(H_n'/H_n) over neighbouring orders
 //!     |G_b/G| the share of the response that is fed back (M14.17)
 //! pole: d lambda = -(d a0 + lambda d a1) / (2 lambda + a1)
 //! ```
 //!
-//! The factor 2 was measured: with it, bands of 95 % hold 95 % of the true curves.
+//! The factor 2 was measured: with it, 95 % bands hold 95 % of the true curves.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -27,11 +27,11 @@ use super::likelihood::{Likelihood, SegmentCost};
 use super::normal_system::{NormalSystem, normal_systems};
 use super::refinement::Fit;
 
-/// Number of standard deviations that hold 95 %.
+/// Standard deviations that hold 95 %.
 pub const TWO_SIDED_95: f64 = 1.96;
 /// Share of the largest eigenvalue below which a direction is a free scale of the states.
 const FREE_SCALE: f64 = 1e-9;
-/// Measured factor of the variance (M14.5).
+/// Measured variance factor (M14.5).
 const MEASURED_FACTOR: f64 = 2.0;
 /// Largest reported standard deviation: of a pole over its modulus and the band, of a response in
 /// neper and radians.
@@ -39,7 +39,7 @@ const UNKNOWN: f64 = 1e3;
 /// Standard deviation of a pole over its modulus up to which it is determined.
 const DETERMINED: f64 = 0.5;
 
-/// The covariance of the parameters of a model.
+/// Parameter covariance.
 #[derive(Clone, Debug)]
 pub(super) struct ParameterCovariance {
     /// `phi G^+`.
@@ -48,21 +48,21 @@ pub(super) struct ParameterCovariance {
     information: DMatrix<f64>,
 }
 
-/// A model and the further causes of its uncertainty.
+/// A model, and the further causes for its uncertainty.
 pub(super) struct BandModels<'a> {
     pub(super) model: &'a BlockModel,
-    /// The models of the neighbouring orders.
+    /// Models with neighbouring orders.
     pub(super) neighbours: &'a [&'a BlockModel],
     pub(super) feedback: Option<&'a Feedback>,
 }
 
-/// Variances of the real and the imaginary part of a complex number.
+/// Variances of real and imaginary part.
 struct ComplexVariance {
     re: f64,
     im: f64,
 }
 
-/// The standard deviations of one response over frequency.
+/// Standard deviations over frequency, for a single response.
 struct PairBands {
     sd_db: Vec<f64>,
     sd_deg: Vec<f64>,
@@ -78,7 +78,7 @@ impl ParameterCovariance {
         })
     }
 
-    /// Computes the covariance of a fit from its normal systems and its cost; `None` if the
+    /// Computes a fit's covariance from its normal systems and its cost; `None` if the
     /// parameters leave no degrees of freedom.
     pub(super) fn from_systems(
         likelihood: &Likelihood,
@@ -91,7 +91,7 @@ impl ParameterCovariance {
         Self::new(&system, cost / spare as f64)
     }
 
-    /// Computes the covariance of a model from other lines than those of its fit.
+    /// Computes a model's covariance from other lines than the fitted ones.
     pub(super) fn from_lines(likelihood: &Likelihood, fit: &Fit) -> Option<Self> {
         let parts = likelihood.parts(&fit.model)?;
         let systems = normal_systems(likelihood, &fit.model, &parts)?;
@@ -113,7 +113,7 @@ impl ParameterCovariance {
         Some(cost - root.tr_mul(&system.gradient).norm_squared())
     }
 
-    /// Returns the poles of the model with their standard deviations; `lowest` is the lower end of
+    /// Returns the model's poles with their standard deviations; `lowest` is the lower end of
     /// the band \[rad/s\].
     pub(super) fn poles(&self, model: &BlockModel, lowest: f64) -> Vec<PoleEstimate> {
         let mut place = 0;
@@ -137,7 +137,7 @@ impl ParameterCovariance {
         estimates
     }
 
-    /// Computes the variance of a pole of a block whose parameters begin at `place`.
+    /// Computes a pole's variance; the parameters of its block begin at `place`.
     fn pole_variance(&self, block: Block, pole: Complex<f64>, place: usize) -> ComplexVariance {
         match block {
             Block::Single(_) => ComplexVariance {
@@ -151,7 +151,7 @@ impl ParameterCovariance {
         }
     }
 
-    /// Computes the variance of `sum_k gradient_k d theta_k` over the parameters at `places`.
+    /// Computes the variance for `sum_k gradient_k d theta_k` over the parameters at `places`.
     fn variance(&self, places: &[usize], gradient: &[Complex<f64>]) -> ComplexVariance {
         let mut variance = ComplexVariance { re: 0.0, im: 0.0 };
         for (p, x) in places.iter().zip(gradient) {
@@ -163,7 +163,7 @@ impl ParameterCovariance {
         variance
     }
 
-    /// Computes the standard deviations of all responses at `omegas` \[rad/s\]; `None` for fewer
+    /// Computes all responses' standard deviations at `omegas` \[rad/s\]; `None` for fewer
     /// than two frequencies.
     pub(super) fn bands(
         &self,
@@ -177,7 +177,7 @@ impl ParameterCovariance {
             .iter()
             .map(|&omega| ResponsePoint::new(models, omega))
             .collect();
-        // One response after the other, outputs first.
+        // Response by response, outputs first.
         let bands: Vec<PairBands> = each(executor, 0..outputs * inputs, |number| {
             let pair = Pair::new(number % outputs, number / outputs);
             self.pair_bands(models, &points, pair)
@@ -188,7 +188,7 @@ impl ParameterCovariance {
         ModelBands::new(omegas.to_vec(), sd_db, sd_deg).ok()
     }
 
-    /// Computes the standard deviations of one response.
+    /// Computes a single response's standard deviations.
     fn pair_bands(
         &self,
         models: &BandModels<'_>,
@@ -199,7 +199,7 @@ impl ParameterCovariance {
         let covariance = DMatrix::from_fn(places.len(), places.len(), |row, column| {
             self.covariance[(places[row], places[column])]
         });
-        // Real parts, then imaginary parts, one column a frequency.
+        // Real parts, then imaginary parts; columns are frequencies.
         let count = points.len();
         let mut gradients = DMatrix::zeros(places.len(), 2 * count);
         for (k, point) in points.iter().enumerate() {
@@ -237,7 +237,7 @@ impl ParameterCovariance {
     }
 }
 
-/// Returns the square root of a variance, at most `most`; `most` if the variance is not finite.
+/// Returns a variance's square root, at most `most`; `most` if the variance is not finite.
 fn bounded_root(variance: f64, most: f64) -> f64 {
     if variance.is_finite() {
         variance.max(0.0).sqrt().min(most)
@@ -246,8 +246,8 @@ fn bounded_root(variance: f64, most: f64) -> f64 {
     }
 }
 
-/// Returns the places of the parameters that a response depends on: the blocks, a column of `B`, a
-/// row of `C`, an entry of `D`.
+/// Returns the parameter places that a response depends on: the blocks, a `B` column, a
+/// `C` row, a `D` entry.
 fn pair_places(model: &BlockModel, pair: Pair) -> Vec<usize> {
     let order = model.order();
     let mut places: Vec<usize> = (0..order).collect();
@@ -257,7 +257,7 @@ fn pair_places(model: &BlockModel, pair: Pair) -> Vec<usize> {
     places
 }
 
-/// The responses of a model at one frequency, with the factors of their gradients.
+/// A model's responses at a frequency, with the factors of their gradients.
 struct ResponsePoint {
     /// \[rad/s\].
     omega: f64,
@@ -267,7 +267,7 @@ struct ResponsePoint {
     output_resolvent: DMatrix<Complex<f64>>,
     /// `R B`, n x inputs.
     states: DMatrix<Complex<f64>>,
-    /// Mean squares of the real and imaginary parts of `ln(H_n'/H_n)`.
+    /// Mean squares of `Re ln(H_n'/H_n)` and `Im ln(H_n'/H_n)`.
     order_variance: DMatrix<Complex<f64>>,
 }
 
@@ -298,7 +298,7 @@ impl ResponsePoint {
         }
     }
 
-    /// Returns the gradient of `ln H` of a response, in the order of [`pair_places`].
+    /// Returns the gradient of `ln H`, ordered as in [`pair_places`].
     fn log_gradient(&self, model: &BlockModel, pair: Pair) -> Vec<Complex<f64>> {
         let cr = self.output_resolvent.row(pair.output);
         let x = self.states.column(pair.input);
@@ -323,7 +323,7 @@ impl ResponsePoint {
     }
 }
 
-/// Returns the square of a number, or a large one if it is not finite.
+/// Returns a number squared, or a large value if it is not finite.
 fn finite_square(part: f64) -> f64 {
     if part.is_finite() {
         part * part
@@ -332,7 +332,7 @@ fn finite_square(part: f64) -> f64 {
     }
 }
 
-/// Returns a number, or a large one if it is not finite.
+/// Returns a number, or a large value if it is not finite.
 fn finite_or_unknown(value: Complex<f64>) -> Complex<f64> {
     if value.re.is_finite() && value.im.is_finite() {
         value

@@ -2,18 +2,41 @@
 //!
 //! **Question answered:** which linear model does the flight show, and how well is it known?
 //!
-//! | module | holds |
+//! | module | contents |
 //! |---|---|
 //! | [`records`] | from the columns of record files to flight records: time, channels, units |
-//! | [`identification`] | from flight records to models: spectra, CT-PBSID, refinement, validation, cautions |
+//! | [`identification`] | from flight records to models: spectra, CT-PBSID, refinement, cautions |
 //!
-//! Nothing here knows of files, windows or threads.
+//! Nothing here touches files, windows or threads.
 //!
 //! ```
-//! use gdcm_model::response::frequency_response::log_spaced;
+//! use gdcm_model::dataset::StateSpace;
+//! use gdcm_model::executor::Sequential;
+//! use gdcm_model::progress::Unobserved;
+//! use gdcm_sysid::identification::identify::identify;
+//! use gdcm_sysid::identification::{FirstOrderHold, FlightRecord, Options, Preparation};
+//! use nalgebra::{DMatrix, DVector, dmatrix};
 //!
-//! let omega = log_spaced(0.5, 12.0, 3);
-//! assert!((omega[1] - 6.0_f64.sqrt()).abs() < 1e-12);
+//! // A roll axis with a time constant of 0.5 s, swept from 0.5 to 16 rad/s within a minute.
+//! let aircraft = StateSpace::new(dmatrix![-2.0], dmatrix![1.0], dmatrix![8.0], dmatrix![0.0])?;
+//! let time_s: Vec<f64> = (0..3000).map(|k| 0.02 * f64::from(k)).collect();
+//! let growth = 32.0_f64.ln() / 60.0;
+//! let inputs = DMatrix::from_fn(3000, 1, |k, _| {
+//!     (0.5 / growth * ((growth * time_s[k]).exp() - 1.0)).sin()
+//! });
+//! let hold = FirstOrderHold::of(&aircraft, 0.02).expect("a finite model");
+//! let mut outputs = hold.simulate(&DVector::zeros(1), &inputs);
+//! for (k, rate) in outputs.iter_mut().enumerate() {
+//!     *rate += 0.05 * (1e4 * (k as f64 + 1.0).sin()).fract(); // noise of the sensor
+//! }
+//! let record = FlightRecord { name: "sweep".to_owned(), time_s, inputs, outputs };
+//!
+//! let options = Options::new([1.0, 12.0], Preparation::of(&["LAT"], &["P"]));
+//! let found = identify(&[record], &options, &Sequential, &Unobserved)?;
+//!
+//! let roll = &found.poles[0];
+//! assert!((roll.pole.re + 2.0).abs() < 4.0 * roll.sd_re);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 pub mod identification;

@@ -1,7 +1,7 @@
-//! A model with a block diagonal `A`: the parameters of the refinement (M14.4).
+//! A model with a block diagonal `A`: the refinement's parameters (M14.4).
 //!
 //! ```text
-//! A = diag(F_1, F_2, ...),   F = [0 1; -a0 -a1],   and one block [a] of one row if n is odd
+//! A = diag(F_1, F_2, ...),   F = [0 1; -a0 -a1],   and a block [a] with a single row if n is odd
 //! B, C, D full
 //! (s - F)^-1 = [s + a1, 1; -a0, s] / (s^2 + a1 s + a0)
 //! ```
@@ -13,17 +13,17 @@ use nalgebra::{Complex, DMatrix, DVector};
 use gdcm_model::dataset::StateSpace;
 use gdcm_model::response::eigenvalues::SchurForm;
 
-/// Imaginary part over modulus up to which an eigenvalue is real: the error of the Schur iteration.
+/// Imaginary part over modulus up to which an eigenvalue is real: the Schur iteration's error.
 const REAL: f64 = 1e-9;
 
-/// The free parameters of one block of `A`.
+/// A block's free parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Block {
     /// Two rows: `s^2 + a1 s + a0`.
     Pair {
-        /// Product of the poles \[rad^2/s^2\].
+        /// Pole product \[rad^2/s^2\].
         a0: f64,
-        /// Negative sum of the poles \[rad/s\].
+        /// Negative pole sum \[rad/s\].
         a1: f64,
     },
     /// One row: the pole \[rad/s\].
@@ -31,7 +31,7 @@ pub(super) enum Block {
 }
 
 impl Block {
-    /// Returns the number of rows.
+    /// Counts the rows.
     pub(super) fn size(self) -> usize {
         match self {
             Self::Pair { .. } => 2,
@@ -65,7 +65,7 @@ impl Block {
 /// A model with a block diagonal `A`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct BlockModel {
-    /// Blocks of two rows, then at most one of one row.
+    /// Blocks with two rows, then at most one with a single row.
     pub(super) blocks: Vec<Block>,
     /// `B`, n x inputs.
     pub(super) b: DMatrix<f64>,
@@ -76,12 +76,12 @@ pub(super) struct BlockModel {
 }
 
 impl BlockModel {
-    /// Returns the number of states n.
+    /// Counts the states n.
     pub(super) fn order(&self) -> usize {
         self.b.nrows()
     }
 
-    /// Returns the number of parameters: n + n inputs + n outputs + outputs x inputs.
+    /// Counts the parameters: n + n inputs + n outputs + outputs x inputs.
     pub(super) fn parameters(&self) -> usize {
         self.order() * (1 + self.b.ncols() + self.c.nrows()) + self.d.len()
     }
@@ -131,7 +131,7 @@ impl BlockModel {
         }
     }
 
-    /// Scales the states of each block so that `|B| = |C|`.
+    /// Scales each block's states so that `|B| = |C|`.
     fn balance(&mut self) {
         let rows: Vec<_> = self.rows().collect();
         for (first, block) in rows {
@@ -145,7 +145,7 @@ impl BlockModel {
         }
     }
 
-    /// Returns the four matrices of the model; `None` if they are not finite.
+    /// Returns the model's four matrices; `None` if they are not finite.
     pub(super) fn state_space(&self) -> Option<StateSpace> {
         let mut a = DMatrix::zeros(self.order(), self.order());
         for (first, block) in self.rows() {
@@ -161,8 +161,8 @@ impl BlockModel {
         StateSpace::new(a, self.b.clone(), self.c.clone(), self.d.clone()).ok()
     }
 
-    /// Returns the model after a step in its parameters: those of the blocks, then `B`, `C`, `D` row
-    /// by row.
+    /// Returns the model after a step in its parameters: those of the blocks, then `B`, `C`, `D`
+    /// row by row.
     pub(super) fn stepped(&self, step: &DVector<f64>) -> Self {
         let mut stepped = self.clone();
         let mut steps = step.iter();
@@ -180,17 +180,17 @@ impl BlockModel {
         stepped
     }
 
-    /// Returns the place of `B[state, input]` among the parameters.
+    /// Returns the parameter number for `B[state, input]`.
     pub(super) fn place_of_b(&self, state: usize, input: usize) -> usize {
         self.order() + state * self.b.ncols() + input
     }
 
-    /// Returns the place of `C[output, state]` among the parameters.
+    /// Returns the parameter number for `C[output, state]`.
     pub(super) fn place_of_c(&self, output: usize, state: usize) -> usize {
         self.order() * (1 + self.b.ncols()) + output * self.order() + state
     }
 
-    /// Returns the place of `D[output, input]` among the parameters.
+    /// Returns the parameter number for `D[output, input]`.
     pub(super) fn place_of_d(&self, output: usize, input: usize) -> usize {
         self.order() * (1 + self.b.ncols() + self.c.nrows()) + output * self.d.ncols() + input
     }
@@ -249,7 +249,7 @@ impl BlockModel {
     }
 }
 
-/// Adds the next of `steps` to each of `parameters`.
+/// Adds the next values in `steps` to `parameters`.
 fn add_steps<'p, 's>(
     parameters: impl IntoIterator<Item = &'p mut f64>,
     steps: &mut impl Iterator<Item = &'s f64>,
@@ -259,7 +259,7 @@ fn add_steps<'p, 's>(
     }
 }
 
-/// A block, and the columns of the basis in which `A` has it.
+/// A block, and the basis columns that bring `A` to it.
 struct ModalBlock {
     block: Block,
     columns: Vec<DVector<f64>>,
@@ -271,13 +271,13 @@ struct RealMode {
     vector: DVector<f64>,
 }
 
-/// The mode of a complex pair with the positive imaginary part.
+/// A complex pair's mode with the positive imaginary part.
 struct ComplexMode {
     pole: Complex<f64>,
     vector: DVector<Complex<f64>>,
 }
 
-/// The modes of a model, by ascending modulus.
+/// A model's modes, by ascending modulus.
 struct Modes {
     complex: Vec<ComplexMode>,
     real: Vec<RealMode>,
@@ -320,7 +320,7 @@ impl Modes {
         Some(modes)
     }
 
-    /// Gives the outputs of neighbouring real modes the same sign, so that their difference shows
+    /// Gives neighbouring real modes outputs with the same sign, so that their difference shows
     /// how they differ.
     fn align_real_modes(&mut self, c: &DMatrix<f64>) {
         for k in 1..self.real.len() {
@@ -333,9 +333,9 @@ impl Modes {
     }
 }
 
-/// Returns the blocks of a model, pairs before real poles and each by modulus.
+/// Returns a model's blocks, pairs before real poles and each by modulus.
 ///
-/// The columns of a block are `t2` of the invariant subspace and `t1 = A t2 + a1 t2`.
+/// A block's columns are `t2` in the invariant subspace and `t1 = A t2 + a1 t2`.
 fn modal_blocks(model: &StateSpace) -> Option<Vec<ModalBlock>> {
     let mut modes = Modes::of_model(model)?;
     modes.align_real_modes(model.c());

@@ -1,4 +1,4 @@
-//! Models without each record, by one damped step (M14.5).
+//! Models without each record, by a damped step (M14.5).
 
 use gdcm_model::executor::each;
 
@@ -14,7 +14,7 @@ pub(super) struct ModelWithoutRecord {
     pub(super) model: BlockModel,
 }
 
-/// Computes the model without each record, by one damped step with the given normal systems.
+/// Computes the model without each record, by a damped step with the given normal systems.
 ///
 /// ```text
 /// (G - G_r + lambda diag) d = g - g_r
@@ -47,7 +47,7 @@ pub(super) fn without_each_record(
             cost,
             damping: FIRST_DAMPING,
         };
-        // If no step lowers the cost, the full model is the best one without the record as well.
+        // If no step lowers the cost, the full model is best without the record as well.
         let model = match start.step(&likelihood.without(record)) {
             Some(step) => step.model,
             None => fit.model.clone(),

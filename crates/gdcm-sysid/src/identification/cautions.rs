@@ -11,10 +11,10 @@ use super::record_cautions::RecordCaution;
 use super::record_fault::{ContradictingRecord, RecordFault};
 use super::response_estimate::TRUSTED_COHERENCE;
 
-/// Periods of the lower band end that a record should last (M14.12).
+/// Periods at the lower band end that a record should last (M14.12).
 const BETTER_PERIODS: f64 = 5.0;
 
-/// A doubt about the model or a part of it.
+/// A doubt about the model or its parts.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs)]
 pub enum IdentificationCaution {
@@ -30,7 +30,7 @@ pub enum IdentificationCaution {
         longest_s: f64,
         /// Lower band end \[rad/s\].
         lowest: f64,
-        /// Periods of the lower end in the longest record.
+        /// Periods at the lower end in the longest record.
         periods: f64,
         better_s: f64,
     },
@@ -49,7 +49,7 @@ pub enum IdentificationCaution {
         "the inputs were not moved independently (condition number {condition:.0}): sweep them one after another"
     )]
     MovedTogether {
-        /// Median condition number of their spectral matrix.
+        /// Their spectral matrix's median condition number.
         condition: f64,
     },
     /// No input moves any output at an end of the band.
@@ -61,7 +61,7 @@ pub enum IdentificationCaution {
     BandNotShown {
         /// The requested band \[rad/s\].
         band: [f64; 2],
-        /// The part of it that the records show \[rad/s\].
+        /// The part that the records show \[rad/s\].
         shown: [f64; 2],
     },
     /// An output vibrates above the band, so that the projections were filtered lower.
@@ -75,7 +75,7 @@ pub enum IdentificationCaution {
         /// \[rad/s\].
         cut_off: f64,
     },
-    /// The residual of all records is larger than the noise.
+    /// The overall residual is larger than the noise.
     #[error(
         "the model leaves {cost:.1} times as much as the noise explains, most of it in {record} and in {signal}: non-linear, wrongly \
                  aligned in time, or a missing input"
@@ -88,7 +88,7 @@ pub enum IdentificationCaution {
         /// The output with the largest residual.
         signal: Signal,
     },
-    /// The residual of one record is larger than the noise.
+    /// A record's residual is larger than the noise.
     #[error(
         "{name} is unlike the others: the model leaves {cost:.1} times as much as the noise explains. Another trim, a large amplitude or \
                  a gust: it can be left out"
@@ -105,7 +105,7 @@ pub enum IdentificationCaution {
     Contradiction {
         /// The record, or both.
         records: Vec<ContradictingRecord>,
-        /// `F` of the worse; 1 is agreement.
+        /// The worse record's `F`; 1 is agreement.
         contrast: f64,
     },
     /// Gusts and noise went into the inputs through the feedback.
@@ -129,7 +129,7 @@ pub enum IdentificationCaution {
         input: Signal,
         /// \[rad/s\].
         band: [f64; 2],
-        /// Mean square distance over the variance of the points; 12 is the limit.
+        /// Mean square distance over the points' variance; 12 is the limit.
         strength: f64,
     },
     /// The criterion still falls at the highest order tried.
@@ -176,13 +176,13 @@ pub enum IdentificationCaution {
         /// Highest line used \[rad/s\].
         highest: f64,
     },
-    /// Outputs and inputs of the responses that are not identified.
+    /// Outputs and inputs whose responses are not identified.
     #[error("{} not identified: one standard deviation is over 3 dB", responses_are(.0))]
     PairsNotIdentified(Vec<[Signal; 2]>),
 }
 
 impl IdentificationCaution {
-    /// Whether the effects of some inputs cannot be told apart.
+    /// Whether some inputs' effects cannot be told apart.
     pub(super) fn is_of_collinear_inputs(&self) -> bool {
         matches!(
             self,
@@ -190,10 +190,10 @@ impl IdentificationCaution {
         )
     }
 
-    /// Whether another caution is a mere consequence of this one.
+    /// Whether another caution is a mere consequence of this caution.
     ///
     /// A record that contradicts the others is unlike them for another reason than its noise; and
-    /// if its sign is turned, no input seems to be swept in the mean of the records.
+    /// if its sign is turned, no input seems to be swept in the mean over records.
     pub(super) fn explains(&self, other: &Self) -> bool {
         let Self::Contradiction { records, .. } = self else {
             return false;
@@ -269,12 +269,12 @@ impl IdentificationCaution {
     }
 }
 
-/// Whether the fault of a record is a turned sign.
+/// Whether a record's fault is a turned sign.
 fn has_turned_sign(record: &ContradictingRecord) -> bool {
     matches!(record.fault, Some(RecordFault::Gain(_, factor)) if factor < 0.0)
 }
 
-/// Returns the code of the fault of a record.
+/// Returns the code for a record's fault.
 fn fault_code(record: &ContradictingRecord) -> &'static str {
     match &record.fault {
         Some(RecordFault::OutputsLate(_) | RecordFault::Late(..)) => "time-skew",
@@ -283,7 +283,7 @@ fn fault_code(record: &ContradictingRecord) -> &'static str {
     }
 }
 
-/// Returns the code of the fault if it is the same for whichever of the records is wrong.
+/// Returns the fault's code if it is the same whichever record is wrong.
 fn common_code(records: &[ContradictingRecord]) -> &'static str {
     let Some(code) = records.first().map(fault_code) else {
         return "record";
@@ -295,7 +295,7 @@ fn common_code(records: &[ContradictingRecord]) -> &'static str {
     }
 }
 
-/// Returns the faulty channel if it is the same for whichever of the records is wrong.
+/// Returns the faulty channel if it is the same whichever record is wrong.
 fn common_channel(records: &[ContradictingRecord]) -> Option<&Signal> {
     let channels: Vec<Option<&Signal>> = records
         .iter()
@@ -309,7 +309,7 @@ fn common_channel(records: &[ContradictingRecord]) -> Option<&Signal> {
     }
 }
 
-/// Lists the hidden ends of a band: `below 0.80 rad/s and above 8.0 rad/s`.
+/// Lists a band's hidden ends: `below 0.80 rad/s and above 8.0 rad/s`.
 fn hidden_ends(band: [f64; 2], shown: [f64; 2]) -> String {
     let mut ends = Vec::new();
     if shown[0] > band[0] {
@@ -362,7 +362,7 @@ fn contradiction_text(records: &[ContradictingRecord], contrast: f64) -> String 
     }
 }
 
-/// Writes the effect of the feedback, and the remedy.
+/// Writes the feedback's effect, and the remedy.
 fn feedback_text(level: FeedbackLevel, share: f64) -> String {
     let percent = 100.0 * share;
     let remedy =

@@ -1,10 +1,11 @@
 //! Channels at their limit, logged in coarse steps or as stairs (M14.1, M14.18).
 //!
 //! ```text
-//! flat: consecutive |dx| <= 1e-3 mean |dx|;  a run is a stretch of flat samples, or one sample
-//! at its limit: share of samples in runs of at least max(5, 3 q) whose mean lies in the outer 5 %
-//!     of the range, q the 90 % quantile of the flat runs elsewhere; a caution above 0.5 %, or 10 %
-//!     where flat runs elsewhere hold 20 % of the samples
+//! flat: consecutive |dx| <= 1e-3 mean |dx|
+//! run: a stretch of flat samples, or a single sample
+//! at its limit: sample share in runs from max(5, 3 q) up whose mean lies in the outer 5 % of
+//!     the range, q the 90 % quantile for the flat runs elsewhere; a caution above 0.5 %, or 10 %
+//!     where flat runs elsewhere hold 20 % of all samples
 //! coarse: the least step between two values is over half the standard deviation
 //! ```
 
@@ -18,33 +19,33 @@ const FLAT: f64 = 1e-3;
 const SHORTEST: f64 = 5.0;
 /// Shortest run at a limit over the usual run elsewhere.
 const OVER_USUAL: f64 = 3.0;
-/// Quantile of the runs elsewhere that is usual.
+/// Usual quantile for the runs elsewhere.
 const USUAL: f64 = 0.9;
 /// Share of the range at each end in which a limit lies.
 const OUTER: f64 = 0.05;
-/// Greatest acceptable share of samples at a limit, for a smooth channel.
+/// Greatest acceptable sample share at a limit for a smooth channel.
 const MOST_AT_LIMIT: f64 = 0.005;
-/// The same for a coarse channel or one held in stairs.
+/// The same for a coarse channel or stairs.
 const MOST_AT_LIMIT_HELD: f64 = 0.1;
-/// Share of samples in flat runs away from the limits above which a channel counts as held.
+/// Sample share in flat runs away from the limits above which a channel counts as held.
 const HELD_SHARE: f64 = 0.2;
 /// Least step between values over the standard deviation above which a channel is coarse.
 pub(super) const COARSE: f64 = 0.5;
-/// Share of equal consecutive samples above which a moving channel is a stair (M14.1).
+/// Share of equal consecutive samples, above which a moving channel is a stair (M14.1).
 const STAIR_SHARE: f64 = 0.5;
 /// Equal samples for longer than this are a channel at rest, and no stair \[s\].
 const REST_S: f64 = 1.0;
 /// Fewest moving samples from which stairs are recognised.
 const LEAST_MOVING: usize = 50;
 
-/// A value of a channel at a time with a stamp.
+/// A channel's value with its stamp.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     pub(super) time_s: f64,
     pub(super) value: f64,
 }
 
-/// Returns the samples of a channel whose stamp and value are finite.
+/// Returns a channel's samples with finite stamp and value.
 pub(super) fn finite_samples(record: &FlightRecord, signal: &Signal) -> Vec<Sample> {
     let values = record.channel(signal);
     let mut samples = Vec::new();
@@ -56,7 +57,7 @@ pub(super) fn finite_samples(record: &FlightRecord, signal: &Signal) -> Vec<Samp
     samples
 }
 
-/// Returns the values of a channel that are finite.
+/// Returns a channel's finite values.
 pub(super) fn finite_values(record: &FlightRecord, signal: &Signal) -> Vec<f64> {
     record
         .channel(signal)
@@ -76,7 +77,7 @@ pub(super) struct Clipping {
 }
 
 impl Clipping {
-    /// Measures how often the samples of a channel are at its limit.
+    /// Measures how often a channel is at its limit.
     pub(super) fn measure(samples: &[f64]) -> Self {
         let steps = samples.windows(2).map(|pair| (pair[1] - pair[0]).abs());
         let flat = FLAT * steps.sum::<f64>() / samples.len().saturating_sub(1).max(1) as f64;
@@ -115,7 +116,7 @@ impl Clipping {
     }
 }
 
-/// The usual length of flat runs; 1 if there are none.
+/// The usual flat run; 1 without any.
 fn usual_length(runs: &[usize]) -> f64 {
     if runs.is_empty() {
         return 1.0;
@@ -128,7 +129,7 @@ fn share_of(count: usize, samples: &[f64]) -> f64 {
     count as f64 / samples.len().max(1) as f64
 }
 
-/// Least and greatest of some values.
+/// Least and greatest value.
 pub(super) struct Range {
     pub(super) least: f64,
     pub(super) greatest: f64,
@@ -183,7 +184,7 @@ pub(super) struct Stairs {
 }
 
 impl Stairs {
-    /// Finds stairs in the samples of a channel, record by record; `None` if at most half of the
+    /// Finds stairs in a channel's samples, record by record; `None` if at most half the
     /// consecutive samples are equal.
     pub(super) fn find(records: impl Iterator<Item = Vec<Sample>>) -> Option<Self> {
         let mut samples = 0;

@@ -1,4 +1,4 @@
-//! The time stamps of a record, and the uniform grid behind them (M14.1).
+//! A record's time stamps, and the uniform grid behind them (M14.1).
 
 use gdcm_model::response::curve_values::quantile;
 use gdcm_model::simulation::FlightRecord;
@@ -8,16 +8,16 @@ use super::preparation_settings::PreparationError;
 
 /// Deviation from the multiples of the sample time above which stamps are uneven \[%\] (M14.1).
 const UNEVEN_PERCENT: f64 = 20.0;
-/// Quantile of the deviations that counts: a single late stamp is no jitter.
+/// Quantile that counts among the deviations: a single late stamp is no jitter.
 const COUNTED: f64 = 0.95;
 
-/// The stamps of a record.
+/// A record's stamps.
 pub(super) struct Clock {
     /// First stamp \[s\].
     pub start_s: f64,
-    /// Median difference of two stamps \[s\]; 0 for fewer than two.
+    /// Median stamp difference \[s\]; 0 for fewer than two.
     pub sample_time_s: f64,
-    /// 95th percentile of the deviations of differences from the multiples of the sample time \[%\].
+    /// 95th percentile for the differences' deviations from multiples of the sample time \[%\].
     pub jitter_percent: f64,
     /// Rows with a stamp.
     pub rows: Vec<usize>,
@@ -27,16 +27,16 @@ pub(super) struct Clock {
     pub longest_step_s: f64,
 }
 
-/// Points of the grid `k dt` between two gaps of the stamps.
+/// Grid points `k dt` between two gaps.
 pub(super) struct GridStretch {
     /// First `k`; whole.
     pub first: f64,
-    /// Number of points.
+    /// Point count.
     pub points: usize,
 }
 
 impl Clock {
-    /// Reads the clock of `record`; gaps of `longest_bridge` samples are bridged.
+    /// Reads the clock from `record`; gaps up to `longest_bridge` samples are bridged.
     pub fn new(record: &FlightRecord, longest_bridge: usize) -> Result<Self, PreparationError> {
         let rows: Vec<usize> = (0..record.time_s.len())
             .filter(|&row| record.time_s[row].is_finite())
@@ -75,7 +75,7 @@ impl Clock {
         self.times.last().copied().unwrap_or(0.0)
     }
 
-    /// Returns the stretches of the grid `k dt` between the gaps of the stamps.
+    /// Returns the stretches of the grid `k dt` between gaps.
     pub fn grid(&self) -> Vec<GridStretch> {
         let mut grid = Vec::new();
         let mut from = 0;
@@ -86,7 +86,7 @@ impl Clock {
                 continue;
             }
             if to > from {
-                // A millionth of a sample is rounding.
+                // Less than a millionth of a sample is rounding.
                 let last = (self.times[to] / self.sample_time_s + 1e-6).floor();
                 let first = (self.times[from] / self.sample_time_s).ceil();
                 grid.push(GridStretch {
@@ -144,7 +144,7 @@ fn check_increasing(
     Ok(())
 }
 
-/// Returns a quantile; 0 without values, as for the steps of a single stamp.
+/// Returns a quantile; 0 without values, as for a single stamp.
 fn quantile_or_zero(mut values: Vec<f64>, share: f64) -> f64 {
     if values.is_empty() {
         0.0

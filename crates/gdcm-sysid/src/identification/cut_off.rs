@@ -1,4 +1,4 @@
-//! The cut-off of the zero-phase low-pass before the Laguerre projections (M14.1).
+//! The cut-off for the zero-phase low-pass before the Laguerre projections (M14.1).
 
 use gdcm_model::executor::{Executor, each};
 use gdcm_model::simulation::{LowPass, Segment};
@@ -9,7 +9,7 @@ use super::spectrum::spectra;
 const USUAL: f64 = 5.0;
 /// Cut-off over the highest line used, if an output vibrates (M14.1).
 const VIBRATING: f64 = 2.0;
-/// Share of the variance above `VIBRATING` times the highest line used from which an output
+/// Share of its variance above `VIBRATING` times the highest line used, from which an output
 /// vibrates.
 const VIBRATION_SHARE: f64 = 0.3;
 
@@ -18,14 +18,14 @@ const VIBRATION_SHARE: f64 = 0.3;
 pub struct CutOff {
     /// \[rad/s\].
     pub omega: f64,
-    /// Vibrating outputs, counted from 0, with the share of their variance above twice the highest
+    /// Vibrating outputs, counted from 0, with their variance share above twice the highest
     /// line used.
     pub vibrating: Vec<(usize, f64)>,
 }
 
 impl CutOff {
     /// Chooses the cut-off for `segments` and lines up to `highest` \[rad/s\]: 5 `highest`, or 2
-    /// `highest` if more than 30 % of the variance of an output lies above that (M14.1).
+    /// `highest` if more than 30 % of an output's variance lies above that (M14.1).
     #[must_use]
     pub fn choose(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Self {
         let outputs = segments
@@ -62,7 +62,7 @@ impl CutOff {
         }
     }
 
-    /// Filters every channel of `segments`, unless the cut-off is above half the sampling frequency.
+    /// Filters every channel, unless the cut-off is above half the sampling frequency.
     #[must_use]
     pub fn apply(&self, segments: &[Segment], executor: &dyn Executor) -> Vec<Segment> {
         each(executor, segments, |segment| {

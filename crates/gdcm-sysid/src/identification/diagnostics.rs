@@ -17,14 +17,14 @@ use super::spectrum::Spectrum;
 
 /// Cost per degree of freedom above which a model is not adequate.
 const ADEQUATE: f64 = 1.5;
-/// Cost per degree of freedom of a record over that of all, above which it is unlike the others.
+/// A record's cost per degree of freedom over all records', above which it is unlike the others.
 const UNLIKE: f64 = 1.5;
-/// Cost per degree of freedom of held-out records, with the model free to move within its
-/// uncertainty, up to which they are predicted well, and above which they are not (M14.17).
+/// Held-out cost per degree of freedom, with the model free to move within its
+/// uncertainty, up to which records are predicted well, and above which they are not (M14.17).
 pub const HELD_OUT: [f64; 2] = [1.3, 2.0];
 /// Window half width over its centre up to which a point shows a single frequency.
 pub const NARROW_WINDOW: f64 = 0.6;
-/// Points of a mean in the comparison with the measured points.
+/// Points in a mean.
 const POINTS: usize = 5;
 /// `T` above which the model leaves the points (M14.17).
 const SIGNIFICANT: f64 = 12.0;
@@ -41,14 +41,14 @@ pub(super) struct Diagnostics<'a> {
 }
 
 impl Diagnostics<'_> {
-    /// Returns the name of a record; empty if it does not exist.
+    /// Returns a record's name; empty if it does not exist.
     pub(super) fn record_name(&self, record: usize) -> String {
         self.records
             .get(record)
             .map_or_else(String::new, |record| record.name.clone())
     }
 
-    /// Judges the costs of all records, of each record and of the held-out records.
+    /// Judges the costs for all records, for each record and for the held-out records.
     pub(super) fn adequacy(&self, fits: &RecordFits) -> Vec<IdentificationCaution> {
         let (held_out, fitted): (Vec<&RecordFit>, Vec<&RecordFit>) =
             fits.records.iter().partition(|fit| fit.held_out);
@@ -134,7 +134,7 @@ impl Diagnostics<'_> {
     }
 }
 
-/// Returns the place of the greatest value, the last of equal ones; 0 without values.
+/// Returns the last place with the greatest value; 0 without values.
 fn place_of_greatest(values: &[f64]) -> usize {
     let greatest = values.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
     greatest.map_or(0, |(place, _)| place)
@@ -142,8 +142,8 @@ fn place_of_greatest(values: &[f64]) -> usize {
 
 /// Predicts the measured points from a model.
 ///
-/// Without a reference the model passes through the same local polynomials as the records, so that a
-/// peak within a window is flattened alike.
+/// Without a reference the model passes through the same local polynomials as the records, so that
+/// a peak within a window is flattened alike.
 pub(super) fn predict_points(
     model: &BlockModel,
     data: &PreparedData<'_>,
@@ -175,7 +175,7 @@ pub(super) fn predict_points(
         .collect()
 }
 
-/// Returns the lines with the outputs of the model, `Y = G_model U`.
+/// Returns the lines with the model's outputs, `Y = G_model U`.
 fn predict_lines(model: &BlockModel, lines: &Spectrum) -> Spectrum {
     let mut outputs = lines.outputs.clone();
     for (k, omega) in lines.omega.iter().enumerate() {
@@ -188,16 +188,16 @@ fn predict_lines(model: &BlockModel, lines: &Spectrum) -> Spectrum {
     }
 }
 
-/// The distance of a model from its measured points (M14.17).
+/// A model's distance from its measured points (M14.17).
 ///
 /// ```text
 /// at the points inside the band whose window is no wider than 0.6 omega
-/// T = mean over five points of |G_model - G|^2 / var G
-/// D = mean over the same points of |G_model / G - 1|
+/// T = mean |G_model - G|^2 / var G over five points
+/// D = mean |G_model / G - 1| over the same points
 /// the model leaves the points where T > 12 and D > 0.12 (1 dB or 7 degrees)
 /// ```
 pub(super) struct Departure {
-    /// The greatest `T` of the response.
+    /// The greatest `T`.
     pub(super) greatest: f64,
     /// The band in which the model leaves the points.
     pub(super) band: Option<DepartureBand>,
@@ -212,7 +212,7 @@ pub(super) struct DepartureBand {
     pub(super) strength: f64,
 }
 
-/// The distance at one point.
+/// The distance at a point.
 struct PointDistance {
     omega: f64,
     /// `|G_model - G|^2 / var G`.
@@ -222,7 +222,7 @@ struct PointDistance {
 }
 
 impl Departure {
-    /// Measures the distance of one response; `predicted` is the model at each measured point.
+    /// Measures a response's distance; `predicted` is the model at each measured point.
     pub(super) fn measure(
         predicted: &[DMatrix<Complex<f64>>],
         measured: &ResponseEstimate,

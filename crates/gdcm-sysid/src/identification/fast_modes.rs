@@ -3,7 +3,7 @@
 //! ```text
 //! 1  A = Q T Q^H, T upper triangular; neighbours on its diagonal are exchanged until the slow ones
 //!    come first
-//! 2  Q1 an orthonormal real basis of the span of the first columns of Q, Q2 of its complement
+//! 2  Q1 an orthonormal real basis for the span of Q's first columns, Q2 for its complement
 //! 3  [Q1 Q2]' A [Q1 Q2] = [A1 A12; 0 A2];  A1 X - X A2 = -A12 (Sylvester)
 //! 4  slow: A1, B1 = Q1'B - X Q2'B, C1 = C Q1;   fast: A2, B2 = Q2'B, C2 = C (Q1 X + Q2)
 //! 5  D + C2 (-A2)^-1 B2
@@ -46,10 +46,10 @@ pub(super) fn without_fast_modes(model: &StateSpace, limit: f64) -> Option<State
 }
 
 /// Returns an orthonormal basis whose first `count` columns span the same space as the first
-/// `count` columns of `q`, which are conjugates of each other or real.
+/// `count` columns of `q`, which are conjugate or real.
 fn real_basis(q: &DMatrix<Complex<f64>>, count: usize) -> DMatrix<f64> {
     let order = q.nrows();
-    // The projector on the span is real, with the eigenvalues one and zero.
+    // The projector on the span is real, with the eigenvalues 1 and 0.
     let leading = q.columns(0, count);
     let projector = DMatrix::from_fn(order, order, |row, column| {
         leading

@@ -7,8 +7,8 @@
 //! 1  S(0, j) = sum_k z_k z_{k-j}', z = [u; y]
 //!    S(i+1, j+1) = S(i, j) + z_{p-1-i} z_{p-1-j}' - z_{N-1-i} z_{N-1-j}'
 //! 2  A, B from S with a ridge on unit columns; e from the records
-//! 3  V = (I - sum A_i z^-i)^-1 E on the lines, z = e^(j omega dt dec): the effect on y by noise and
-//!    gusts
+//! 3  V = (I - sum A_i z^-i)^-1 E on the lines, z = e^(j omega dt dec): the effect of noise
+//!    and gusts on y
 //! 4  G_b = local polynomial of V on U at 16 points in the band, beside the model's G
 //! 5  b = median |G_b / G|,  z = median |G_b|^2 / var
 //!    over the points with |G| > 3 % of the output's largest and sd G_b < 0.4 |G|
@@ -71,7 +71,7 @@ const TOO_MUCH: Threshold = Threshold {
 /// Noise and gusts fed back into the measured response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Feedback {
-    /// `b`: median share in the response.
+    /// `b`: median share of the response.
     pub share: f64,
     /// `z`: median square over the variance; 0.7 without feedback.
     pub significance: f64,
@@ -343,7 +343,7 @@ impl Predictor {
         error
     }
 
-    /// Turns the lines of the errors into the effect on y by noise and gusts on the outputs (step 3);
+    /// Turns the lines of the errors into the effect of noise and gusts on the outputs (step 3);
     /// `None` where that is singular.
     fn add_memory(&self, spectrum: &mut Spectrum, step_s: f64) -> Option<()> {
         let outputs = self.coefficients.ncols();

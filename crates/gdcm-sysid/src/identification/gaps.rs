@@ -1,4 +1,4 @@
-//! Gaps of a flight record: their causes and their treatment (M14.1).
+//! Gaps in a flight record: their causes and their treatment (M14.1).
 
 use std::fmt;
 
@@ -19,12 +19,12 @@ pub(super) fn listed<S: AsRef<str> + std::borrow::Borrow<str>>(words: &[S]) -> S
     }
 }
 
-/// The cause of a gap.
+/// A gap's cause.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cause {
     /// Rows have no time stamp.
     StampsMissing,
-    /// Time jumps from one row to the next.
+    /// Time jumps between rows.
     RowsMissing,
     /// Channels have no value.
     SamplesMissing(Vec<Signal>),
@@ -54,13 +54,13 @@ impl Treatment {
     }
 }
 
-/// A gap of a record: from the last good sample to the next.
+/// A gap in a record: from the last good sample to the next.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct Gap {
-    /// On the clock of the record \[s\].
+    /// On the record's clock \[s\].
     pub start_s: f64,
-    /// On the clock of the record \[s\].
+    /// On the record's clock \[s\].
     pub end_s: f64,
     pub cause: Cause,
     pub treatment: Treatment,

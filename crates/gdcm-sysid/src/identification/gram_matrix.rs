@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Scales the columns behind a Gram matrix to length one.
+/// Scales the columns behind a Gram matrix to unit length.
 ///
-/// Returns the factors; the factor of a zero column is 0.
+/// Returns the factors; a zero column's factor is 0.
 pub(super) fn scale_columns(gram: &mut DMatrix<f64>) -> DVector<f64> {
     let scales = gram.diagonal().map(inverse_root);
     let size = scales.len();
@@ -14,7 +14,7 @@ pub(super) fn scale_columns(gram: &mut DMatrix<f64>) -> DVector<f64> {
     scales
 }
 
-/// Returns `1 / sqrt(square)`, or 0 for a column of zeros.
+/// Returns `1 / sqrt(square)`, or 0 for a zero column.
 fn inverse_root(square: f64) -> f64 {
     if square > 0.0 {
         1.0 / square.sqrt()
@@ -23,7 +23,7 @@ fn inverse_root(square: f64) -> f64 {
     }
 }
 
-/// Computes `F` with `F F' = G^+` for a Gram matrix `G` from the eigenvectors of its scaled columns.
+/// Computes `F` with `F F' = G^+` for a Gram matrix `G` by its eigenvectors in scaled columns.
 ///
 /// Eigenvalues up to `dependent` times the largest are left out. Returns `None` where the matrix is
 /// not finite or the eigenvalue iteration does not converge.

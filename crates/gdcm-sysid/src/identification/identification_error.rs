@@ -37,12 +37,12 @@ pub enum IdentificationError {
         lowest: f64,
         /// 1.5 periods \[s\].
         needed_s: f64,
-        /// 5 periods, or 3 an input if several are moved in one record \[s\].
+        /// 5 periods, or 3 an input if several are moved in the same record \[s\].
         better_s: f64,
         /// Lower band end for which the records are long enough \[rad/s\].
         enough: f64,
     },
-    /// Fewer real values than a model of the first order needs.
+    /// Fewer real values than a first-order model needs.
     #[error(
         "the lines of the records in the band are {figures} real figures, and {needed} are needed, 5 for each of the {unknowns} \
          unknowns of a model of order 1: log longer or more records, widen the band, or leave out channels"
@@ -51,10 +51,10 @@ pub enum IdentificationError {
         /// Real values in the lines.
         figures: usize,
         needed: usize,
-        /// Unknowns of a model of order 1.
+        /// Unknowns in a first-order model.
         unknowns: usize,
     },
-    /// The ends of the band are out of range or out of order.
+    /// The band ends are invalid or interchanged.
     #[error(
         "a band from {lowest} to {highest} rad/s: its lower end must be greater than 0, and its upper end above it"
     )]
@@ -72,7 +72,7 @@ pub enum IdentificationError {
         /// Highest possible upper end \[rad/s\].
         limit: f64,
     },
-    /// Orders, past windows or poles are missing or out of range.
+    /// Orders, past windows or poles are missing or invalid.
     #[error(
         "orders and past windows must be given, from 1 to {HIGHEST_ORDER} and from 1 to {LONGEST_PAST}, \
          and Laguerre poles greater than 0"
@@ -84,13 +84,13 @@ pub enum IdentificationError {
     HeldOutMissing {
         /// Counted from 0.
         record: usize,
-        /// Number of records.
+        /// Record count.
         records: usize,
     },
     /// All records are held out or unusable.
     #[error("no record is left to fit a model to: hold out fewer")]
     NothingToFit,
-    /// Inputs that are copies of each other.
+    /// Inputs that copy each other.
     #[error("{} move as one in every record: leave out all but one, or fly them apart", names(.0))]
     InputsDepend(Vec<Signal>),
     /// The covariance of the noise of the outputs is singular.
@@ -103,9 +103,9 @@ pub enum IdentificationError {
          widen the band, or leave out channels"
     )]
     NoModel {
-        /// Of all records.
+        /// In all records.
         lines: usize,
-        /// Length of the records \[s\].
+        /// Total record length \[s\].
         seconds: f64,
     },
     #[error("the identification was stopped")]

@@ -1,4 +1,4 @@
-//! The identification of one flight condition from its records (M14.5 to M14.7).
+//! Identifies a flight condition from its records (M14.5 to M14.7).
 
 use std::sync::Arc;
 
@@ -30,37 +30,37 @@ use super::response_estimate::ResponseEstimate;
 use super::subspace::StabilisationPoint;
 use super::uncertainty::{BandModels, ParameterCovariance};
 
-/// Name of the method with refinement, in models and at the beginning of their names (M14).
+/// Method name with refinement, in models and at the beginning of their names (M14).
 const REFINED: &str = "CT-PBSID, refined";
 /// The same without refinement.
 const UNREFINED: &str = "CT-PBSID";
-/// Number of frequencies of the bands.
+/// Frequencies in the bands.
 const BAND_POINTS: usize = 60;
 /// Upper end of the suggested narrower band over the present end, if the highest order is too low.
 const NARROWER: f64 = 0.7;
 /// Standard deviation above which a response is not identified \[dB\].
 const NOT_IDENTIFIED_DB: f64 = 3.0;
 
-/// The identified models of a flight condition, in record units, and their quality.
+/// A flight condition's identified models, in record units, and their quality.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identification {
-    /// The recommended model: CT-PBSID, refined, with the standard deviations of its response.
+    /// The recommended model: CT-PBSID, refined, with its response's standard deviations.
     pub refined: Model,
-    /// CT-PBSID without refinement, of the same order.
+    /// CT-PBSID without refinement, with the same order.
     pub unrefined: Model,
     /// The bundle around the recommended model: the neighbouring orders, then without each record.
     pub bundle: Vec<Model>,
     /// The response measured without a model.
     pub measured: ResponseEstimate,
-    /// Poles of the recommended model.
+    /// The recommended model's poles.
     pub poles: Vec<PoleEstimate>,
-    /// Poles of the unrefined models of all orders at the best Laguerre pole and past window.
+    /// The unrefined models' poles for all orders at the best Laguerre pole and past window.
     pub stabilisation: Vec<StabilisationPoint>,
     /// Best Laguerre pole \[rad/s\].
     pub laguerre_pole: f64,
     /// Best past window.
     pub past: usize,
-    /// BIC of every refined order, ascending by order.
+    /// BIC by refined order, ascending.
     pub criteria: Vec<(usize, f64)>,
     /// `J / (N - k)` over the fitted records; 1 is adequate.
     pub cost: f64,
@@ -69,31 +69,31 @@ pub struct Identification {
     /// The same with the model free to move within its uncertainty: up to 1.3 good, above 2 not
     /// predicted (M14.17).
     pub held_out_normalised: Option<f64>,
-    /// The share of the measured response that was fed back (M14.14).
+    /// Noise and gusts fed back into the measured response (M14.14).
     pub feedback: Option<Feedback>,
     /// How far each fitted record contradicts the others; empty for a single record (M14.16).
     pub contrasts: Vec<RecordContrast>,
-    /// Fit of every used record, in record order.
+    /// Every used record's fit, in record order.
     pub record_fits: Vec<RecordFit>,
-    /// Cost of every output per degree of freedom, over the fitted records.
+    /// Every output's cost per degree of freedom, over the fitted records.
     pub output_costs: Vec<f64>,
     /// The recommended model against the held-out records in time.
     pub validation: Option<Validation>,
-    /// What was used of every record.
+    /// Used parts of every record.
     pub record_uses: Vec<RecordUse>,
-    /// Output and input of the responses with a standard deviation over 3 dB in the middle of the
+    /// Output and input whose response has a standard deviation over 3 dB in the middle of the
     /// band.
     pub not_identified: Vec<(usize, usize)>,
     /// Doubts about records and models, each with a code.
     pub cautions: Vec<IdentificationCaution>,
 }
 
-/// Identifies one flight condition from its records (M14.7).
+/// Identifies a flight condition from its records (M14.7).
 ///
 /// ```text
-/// 1  segments of the records, scales, spectra, measured response, covariance of the noise     10 %
+/// 1  record segments, scales, spectra, measured response, noise covariance                    10 %
 /// 2  CT-PBSID for each Laguerre pole and past window; models of all orders from the best two  40 %
-/// 3  order by BIC of refined models; the chosen one refined, records weighed by their noise   80 %
+/// 3  order by BIC of refined models; the chosen order refined, records weighed by noise  80 %
 /// 4  covariance, bands, bundle, validation                                                   100 %
 /// ```
 ///
@@ -101,7 +101,7 @@ pub struct Identification {
 /// after step 2.
 ///
 /// # Errors
-/// Records that cannot be prepared, a band that they do not show, options out of range, channels
+/// Records that cannot be prepared, a band that they do not show, invalid options, channels
 /// that depend on each other, records too short for a model; or `progress` is cancelled.
 pub fn identify(
     records: &[FlightRecord],
@@ -181,20 +181,20 @@ pub fn identify(
     })
 }
 
-/// The uncertainty of the recommended model.
+/// The recommended model's uncertainty.
 struct Uncertainty {
     covariance: ParameterCovariance,
     /// The covariance from the lines as logged, if the fit used a reference (M14.15).
     logged: Option<ParameterCovariance>,
     feedback: Option<Feedback>,
     bands: ModelBands,
-    /// Output and input of the responses that are not identified.
+    /// Output and input whose responses are not identified.
     not_identified: Vec<(usize, usize)>,
 }
 
 impl Uncertainty {
-    /// Returns the covariance from the lines as logged: with a reference the cost says nothing about
-    /// the uncertainty (M14.15).
+    /// Returns the covariance from the lines as logged: with a reference the cost says nothing
+    /// about the uncertainty (M14.15).
     fn as_logged(&self) -> &ParameterCovariance {
         self.logged.as_ref().unwrap_or(&self.covariance)
     }
@@ -209,8 +209,8 @@ struct Assessment<'a> {
 }
 
 impl Assessment<'_> {
-    /// Whether no reference was used. With a reference nothing is fed back, and every record is seen
-    /// through the same reference.
+    /// Whether no reference was used. With a reference nothing is fed back, and every record is
+    /// seen through the same reference.
     fn is_direct(&self) -> bool {
         self.options.references == 0
     }
@@ -279,7 +279,7 @@ impl Assessment<'_> {
         )
     }
 
-    /// Compares the records with one another; `None` with a reference.
+    /// Compares the records with each other; `None` with a reference.
     ///
     /// The fit before reweighing counts, for weights hide which record is wrong.
     fn contrasts(&self) -> Result<Option<RecordContrasts<'_>>, IdentificationError> {
@@ -385,7 +385,7 @@ fn feedback_caution(feedback: Option<&Feedback>) -> Option<IdentificationCaution
     })
 }
 
-/// Returns output and input of the responses that are known too badly in the middle of the band.
+/// Returns output and input whose responses are known too badly in mid-band.
 fn not_identified(bands: &ModelBands) -> Vec<(usize, usize)> {
     let sd_db = bands.sd_db();
     let middle = bands.omega().len() / 2;
@@ -400,7 +400,7 @@ fn not_identified(bands: &ModelBands) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// Converts block models to models of a dataset.
+/// Converts block models to dataset models.
 struct Models<'a> {
     records: &'a [FlightRecord],
     options: &'a Options,

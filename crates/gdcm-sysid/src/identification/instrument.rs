@@ -3,16 +3,16 @@
 //!
 //! ```text
 //! 1  [Y; U] = (Gamma0 + Gamma1 x + Gamma2 x^2) R + transient + N: local polynomials at every line
-//!    of the longest record, h = max(0.45, 0.15 omega);  S = the block of (F'F)^-1 of R
+//!    in the longest record, h = max(0.45, 0.15 omega);  S = the block for R in (F'F)^-1
 //! 2  G = Gamma_y Gamma_u^+ (relative tolerance 1e-3),   Cv = Re([I, -G] Cov N [I, -G]')
-//! 3  the cost of M14.4 with U = Gamma_u R, Y = Gamma_y R, Gamma linear between points, on the lines
-//!    of leverage R S R' < 0.5
-//! 4  bands: the standard deviations of this model from the lines as logged, over
-//!    sqrt(coherence of the input with R)
-//! 5  only where the coherence of an input with R is 0.6: elsewhere the reference did not excite
+//! 3  the cost (M14.4) with U = Gamma_u R, Y = Gamma_y R, Gamma linear between points, on the lines
+//!    with leverage R S R' < 0.5
+//! 4  bands: this model's standard deviations from the lines as logged, over
+//!    sqrt(coherence between input and R)
+//! 5  only where the coherence between an input and R is 0.6: elsewhere the reference did not excite
 //! ```
 //!
-//! The leverage excludes the ends of the band of a chirp, where its smooth spectrum and the
+//! The leverage excludes the ends of a chirp's band, where its smooth spectrum and the
 //! transient look alike. The cost per degree of freedom is far below 1 and meaningless.
 
 use nalgebra::{Complex, DMatrix, DVector, DVectorView};
@@ -28,14 +28,14 @@ use super::spectrum::{LineRange, Spectrum};
 
 /// Window half width over its centre.
 const HALF_WIDTH: f64 = 0.15;
-/// Singular values of `Gamma_u` that count, over the largest.
+/// Singular values that count in `Gamma_u`, over the largest.
 const TOLERANCE: f64 = 1e-3;
 /// Leverage from which a line is left out.
 const LEVERAGE: f64 = 0.5;
 /// Coherence below which a band is not widened further: nothing is known there anyway.
 const LEAST_COHERENCE: f64 = 0.01;
 
-/// Inputs and outputs as seen through the reference at one frequency.
+/// Inputs and outputs as seen through the reference at a frequency.
 struct InstrumentPoint {
     /// `Gamma0`, outputs then inputs x references.
     gamma: DMatrix<Complex<f64>>,
@@ -48,13 +48,13 @@ struct InstrumentPoint {
 pub(super) struct Instrument {
     /// `Gamma_u R` and `Gamma_y R`, on the lines that count.
     pub(super) spectra: Vec<Spectrum>,
-    /// `G`, with the coherence of each input with the reference instead of the partial coherence.
+    /// `G`, with the coherence between each input and the reference as partial coherence.
     pub(super) measured: ResponseEstimate,
 }
 
 impl Instrument {
     /// Measures the response from lines whose inputs are the references and whose outputs are the
-    /// outputs, then the inputs, of the model.
+    /// model's outputs, then its inputs.
     pub(super) fn new(
         lines: &[Spectrum],
         used: LineRange,
@@ -108,7 +108,7 @@ impl InstrumentPoint {
         let noise = (&left * fit.covariance() * left.adjoint()).map(|value| value.re);
         let spread = fit.spread();
         let coherence = fit.coherence();
-        // var G = Cv times the spread of R mapped to the inputs.
+        // var G = Cv times the spread mapped from R to the inputs.
         let input_spread = inverse.adjoint() * &spread * &inverse;
         let estimate = EstimatePoint {
             omega: fit.window.omega,
@@ -131,7 +131,7 @@ impl InstrumentPoint {
         }
     }
 
-    /// Returns the leverage `R S R'` of a line.
+    /// Returns a line's leverage `R S R'`.
     fn leverage(&self, reference: DVectorView<'_, Complex<f64>>) -> f64 {
         (reference.transpose() * &self.spread * reference.map(|r| r.conj()))[0].re
     }
@@ -139,7 +139,7 @@ impl InstrumentPoint {
 
 impl ResponseEstimate {
     /// Widens bands from the lines as logged where the reference shows little: the standard
-    /// deviations are divided by the root of the coherence of each input with the reference
+    /// deviations are divided by the root coherence between each input and the reference
     /// (M14.15).
     pub(super) fn widened(&self, bands: &ModelBands) -> Option<ModelBands> {
         let omegas: Vec<f64> = self.points.iter().map(|point| point.omega).collect();
@@ -156,7 +156,7 @@ impl ResponseEstimate {
         .ok()
     }
 
-    /// Divides standard deviations by the root of the coherence between its `neighbours`.
+    /// Divides standard deviations by the root coherence, interpolated at `neighbours`.
     fn divided_by_coherence(
         &self,
         table: &PairTable<Vec<f64>>,

@@ -1,6 +1,6 @@
 //! Linear interpolation between ascending numbers.
 
-/// Two neighbours of a number in an ascending list, and the share of the second one.
+/// A number's two neighbours in an ascending list, and the second's share.
 pub(super) struct Neighbours {
     pub(super) before: usize,
     pub(super) after: usize,
@@ -9,7 +9,7 @@ pub(super) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Finds the neighbours of `x` in `ascending`; beyond an end the end counts.
+    /// Finds the neighbours for `x` in `ascending`; beyond an end the end counts.
     pub(super) fn find(ascending: &[f64], x: f64) -> Self {
         let after = ascending
             .partition_point(|at| *at <= x)

@@ -22,18 +22,18 @@ use gdcm_model::simulation::Segment;
 
 use super::triangular_factor::TriangularFactor;
 
-/// Largest share of a segment that is lost to the unfinished projections at its end.
+/// Largest segment share that is lost to the unfinished projections at its end.
 const LARGEST_END: f64 = 0.3;
 /// Parts whose rows are factored side by side. Two keep two cores busy with three poles; merging a
-/// further part costs as much as a segment of 6 s.
+/// further part costs as much as a 6 s segment.
 const PARTS: usize = 2;
 
-/// The filters of one Laguerre pole at one sample time.
+/// The filters for a Laguerre pole at a sample time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LaguerreBank {
-    /// Gain of the first filter.
+    /// First filter's gain.
     gain: f64,
-    /// Negative pole of every filter, and zero of the all-pass filters.
+    /// Every filter's negative pole, and the all-pass filters' zero.
     alpha: f64,
 }
 
@@ -47,8 +47,8 @@ impl LaguerreBank {
         }
     }
 
-    /// Computes the projections at every sample of a signal that ends near 0 (steps 3 to 5), one
-    /// column for each of k = 0 ... `past`.
+    /// Computes the projections at every sample for a signal that ends near 0 (steps 3 to 5), a
+    /// column for each k = 0 ... `past`.
     pub(super) fn projections(self, signal: &[f64], past: usize) -> DMatrix<f64> {
         let samples = signal.len();
         let mut projections = DMatrix::zeros(samples, past + 1);
@@ -60,7 +60,7 @@ impl LaguerreBank {
         projections
     }
 
-    /// Runs the first filter from the end of `input` to its beginning.
+    /// Runs the first filter backwards over `input`.
     fn first_filter(self, input: &[f64], output: &mut [f64]) {
         let mut before = 0.0;
         let mut state = 0.0;
@@ -71,7 +71,7 @@ impl LaguerreBank {
         }
     }
 
-    /// Runs an all-pass filter from the end of `input` to its beginning.
+    /// Runs an all-pass filter backwards over `input`.
     fn all_pass(self, input: &[f64], output: &mut [f64]) {
         let mut before = 0.0;
         let mut state = 0.0;
@@ -83,23 +83,23 @@ impl LaguerreBank {
     }
 }
 
-/// Settings of the data matrix of CT-PBSID (M14.3).
+/// Settings for the data matrix in CT-PBSID (M14.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Projections {
     /// Laguerre pole `a` \[rad/s\].
     pub(super) pole: f64,
-    /// `p`: projections 0 to `past` of every channel.
+    /// `p`: every channel has the projections 0 to `past`.
     pub(super) past: usize,
     /// Time between two instants \[s\].
     pub(super) spacing_s: f64,
 }
 
 impl Projections {
-    /// Computes the rows of one segment, with its trim and drift.
+    /// Computes a segment's rows, with its trim and drift.
     ///
     /// ```text
     /// row t_i = [z_0(t_i) | z_1(t_i) | ... | z_p(t_i)]
-    /// z_k = [u~_k; y~_k] the projections of inputs and outputs
+    /// z_k = [u~_k; y~_k] the projected inputs and outputs
     /// instants t_i every `spacing_s`, except for the last min((2p + 4)/a, 0.3 T) s
     /// ```
     pub(super) fn rows(&self, segment: &Segment) -> DMatrix<f64> {
@@ -125,7 +125,7 @@ impl Projections {
         rows
     }
 
-    /// Returns the samples of a segment at which rows are taken.
+    /// Returns the samples at which a segment's rows are taken.
     fn instants(&self, segment: &Segment) -> Vec<usize> {
         let samples = segment.inputs.nrows();
         let duration = samples as f64 * segment.sample_time_s;
@@ -135,10 +135,10 @@ impl Projections {
         (0..last).step_by(step).collect()
     }
 
-    /// Computes the triangular factor of the data matrix of all segments.
+    /// Computes the data matrix's triangular factor for all segments.
     ///
     /// Trim and drift are projected out of each segment first. The result is the same to the last
-    /// bit for any number of threads: they do not decide which segments are factored together.
+    /// bit for any thread count: threads do not decide which segments are factored together.
     pub(super) fn factor(&self, segments: &[Segment], executor: &dyn Executor) -> TriangularFactor {
         let parts = segments.chunks(segments.len().div_ceil(PARTS).max(1));
         let factors = each(executor, parts, |part| self.factor_part(part));
@@ -152,7 +152,7 @@ impl Projections {
         factor
     }
 
-    /// Computes the triangular factor of the data matrix of some segments.
+    /// Computes the data matrix's triangular factor for some segments.
     fn factor_part(&self, segments: &[Segment]) -> TriangularFactor {
         let channels = segments.first().map_or(0, |segment| {
             segment.inputs.ncols() + segment.outputs.ncols()
@@ -183,7 +183,7 @@ fn remove_trend(rows: &mut DMatrix<f64>) {
     }
 }
 
-/// Returns the continuous-time model behind the law of Laguerre projections with the pole `pole`
+/// Returns the continuous-time model behind the law for Laguerre projections with the pole `pole`
 /// \[rad/s\]; `None` if `Ao` has the eigenvalue -1.
 ///
 /// ```text

@@ -3,7 +3,8 @@
 //! ```text
 //! J = sum_r sum_k | W_k (Y_r - G U_r - C (j omega - A)^-1 tau_r - c1_r/(j omega) - c0_r) |^2
 //!
-//! 1  once a record: orthonormal bases for the columns W (real parts) and W/omega (imaginary parts),
+//! 1  once a record: orthonormal bases for the columns W (real parts) and W/omega (imaginary
+//! parts),
 //!    which eliminate c0 and c1
 //! 2  T = W C (j omega - A)^-1, e0 = W (Y - G U), both less their projections on these bases
 //! 3  tau = argmin |e0 - T tau|^2 from the scaled columns' Gram matrix,
@@ -219,7 +220,7 @@ fn residual_of(part: &DMatrix<f64>, transient: &DVector<f64>) -> DVector<f64> {
 /// The segments that a model is fitted to.
 #[derive(Clone)]
 pub(super) struct Likelihood<'a> {
-    /// In record order and of time.
+    /// By record and time.
     pub(super) segments: Vec<SpectralLines>,
     /// Runs the segments' work.
     pub(super) executor: &'a dyn Executor,

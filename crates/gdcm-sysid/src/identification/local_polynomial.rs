@@ -55,8 +55,8 @@ pub enum LocalPolynomialError {
 ///
 /// After R. Pintelon, J. Schoukens, G. Vandersteen & K. Barbé, "Estimation of nonparametric noise
 /// and FRF models for multivariable systems", Mech. Syst. Signal Process. 24, 2010, with separate
-/// transients for the records. Around each frequency, with `x = (omega_k - omega) / h`, the lines of
-/// record `r` obey
+/// transients for the records. Around each frequency, with `x = (omega_k - omega) / h`, the lines
+/// of record `r` obey
 ///
 /// ```text
 /// Y = (G0 + G1 x + G2 x^2) U + (t0 + t1 x + t2 x^2)_r + V

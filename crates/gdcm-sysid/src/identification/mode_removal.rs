@@ -1,11 +1,11 @@
-//! A model of a lower order from one of a higher order, without the mode that the measured response
-//! misses least (M14.13).
+//! A model of a lower order from one of a higher order, without the mode that the measured
+//! response misses least (M14.13).
 //!
 //! ```text
 //! H = sum of modes dH + D: real poles, and complex pairs
-//! 1  for each mode of the wanted size: the sum of |dH - mean dH|^2 / var G over the points and
-//!    pairs of the measured response
-//! 2  the mode with the least sum is removed; the mean of its real part is kept in D
+//! 1  for each mode with the wanted size: sum |dH - mean dH|^2 / var G over the points and
+//!    pairs in the measured response
+//! 2  the mode with the least sum is removed; the mean Re dH is kept in D
 //! ```
 
 use nalgebra::{DMatrix, dmatrix};
@@ -13,16 +13,17 @@ use nalgebra::{DMatrix, dmatrix};
 use super::blocks::{Block, BlockModel};
 use super::response_estimate::ResponseEstimate;
 
-/// The effect of a removed mode.
+/// A removed mode's effect.
 struct Loss {
     /// `sum |dH - mean dH|^2 / var G`.
     cost: f64,
-    /// Mean of the real part of `dH` over frequency, which stays in `D`.
+    /// Mean `Re dH` over frequency, which stays in `D`.
     mean: DMatrix<f64>,
 }
 
 impl BlockModel {
-    /// Removes the complex pair (`size` 2) or the real pole (`size` 1) that `measured` misses least.
+    /// Removes the complex pair (`size` 2) or the real pole (`size` 1) that `measured` misses
+    /// least.
     ///
     /// Returns `None` if there is no such mode, or if the rest cannot be brought to blocks.
     pub(super) fn without_least_mode(
@@ -49,7 +50,7 @@ impl BlockModel {
         Self::from_state_space(&joined.state_space()?)
     }
 
-    /// Joins modes to one model with the given `D`.
+    /// Joins modes to a model with the given `D`.
     fn join(modes: &[Self], d: DMatrix<f64>) -> Self {
         let rows: Vec<_> = modes.iter().flat_map(|mode| mode.b.row_iter()).collect();
         let columns: Vec<_> = modes.iter().flat_map(|mode| mode.c.column_iter()).collect();
@@ -64,7 +65,7 @@ impl BlockModel {
         }
     }
 
-    /// Computes the effect of the removal of this mode.
+    /// Computes the effect if this mode is removed.
     fn loss(&self, measured: &ResponseEstimate) -> Loss {
         let responses: Vec<_> = measured
             .points
@@ -98,7 +99,7 @@ impl BlockModel {
             let c = self.c.columns(first, block.size()).into_owned();
             match (block, block.poles().as_slice()) {
                 (Block::Pair { .. }, [one, other]) if one.im == 0.0 && one.re != other.re => {
-                    // Columns (1, p) and (1, q) are the eigenvectors of [0 1; -a0 -a1].
+                    // Columns (1, p) and (1, q) are eigenvectors of [0 1; -a0 -a1].
                     let p = one.re;
                     let q = other.re;
                     let inverse = dmatrix![q, -1.0; -p, 1.0] / (q - p);
@@ -118,7 +119,7 @@ impl BlockModel {
         modes
     }
 
-    /// A model of one block without `D`.
+    /// A single block's model without `D`.
     fn mode(block: Block, b: DMatrix<f64>, c: DMatrix<f64>) -> Self {
         Self {
             blocks: vec![block],

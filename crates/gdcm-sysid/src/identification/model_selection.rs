@@ -1,4 +1,4 @@
-//! From the models that CT-PBSID proposes to the recommended one (M14.7).
+//! From the models that CT-PBSID proposes to the recommended model (M14.7).
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use super::record_fits::fits_of_records;
 use super::refinement::{Fit, LEAST_GAIN};
 use super::subspace::{StabilisationPoint, stabilisation};
 
-/// Most further steps for the chosen order, after those of the comparison.
+/// Most further steps for the chosen order, after the comparison.
 const FURTHER_STEPS: usize = 15;
 /// Most steps after records were reweighed.
 const STEPS_AFTER_REWEIGHING: usize = 3;
@@ -27,7 +27,7 @@ pub(super) struct Proposal {
     pub(super) laguerre_pole: f64,
     /// Best past window.
     pub(super) past: usize,
-    /// The cheapest model of each order.
+    /// Each order's cheapest model.
     pub(super) starts: BTreeMap<usize, Fit>,
     /// Poles over orders at the best Laguerre pole and past window.
     pub(super) stabilisation: Vec<StabilisationPoint>,
@@ -43,7 +43,7 @@ pub(super) struct Refinement<'a> {
     pub(super) before_reweighing: Option<Fit>,
     /// The cost that `fit` minimises.
     pub(super) likelihood: Likelihood<'a>,
-    /// Reports a change of the weights.
+    /// Reports changed weights.
     pub(super) caution: Option<IdentificationCaution>,
 }
 
@@ -113,7 +113,7 @@ pub(super) fn refine<'a>(
     })
 }
 
-/// Records weighed by the cost that the model leaves of them.
+/// Records weighed by their cost.
 struct Reweighing<'a> {
     likelihood: Likelihood<'a>,
     /// The model at the new weights.
@@ -123,7 +123,7 @@ struct Reweighing<'a> {
 }
 
 impl<'a> Reweighing<'a> {
-    /// Weighs records of unlike turbulence; `None` if they are alike.
+    /// Weighs records that differ in turbulence; `None` if they are alike.
     ///
     /// ```text
     /// Cv_r <- Cv_r (J_r/dof_r) / geometric mean of J/dof

@@ -5,16 +5,16 @@ use nalgebra::DMatrix;
 use super::interpolation::Neighbours;
 use super::response_estimate::{EstimatePoint, ResponseEstimate};
 
-/// Weights of a point and its neighbours in the smoothed covariance (M14.2).
+/// Weights for a point and its neighbours in the smoothed covariance (M14.2).
 const SMOOTHING: [f64; 5] = [1.0, 2.0, 3.0, 2.0, 1.0];
 /// Share added to the diagonal, so that dependent outputs leave the covariance regular (M14.2).
 const ADDED: f64 = 1e-4;
-/// Least variance of the noise over the power of the output: exact data still have rounding.
+/// Least noise variance over output power: exact data still have rounding.
 const FLOOR: f64 = 1e-16;
 
-/// `Cv(omega)`, covariance of the noise of a line, outputs x outputs.
+/// `Cv(omega)`, a line's noise covariance, outputs x outputs.
 ///
-/// The covariances of a measured response are smoothed over five neighbours, interpolated linearly
+/// A measured response's covariances are smoothed over five neighbours, interpolated linearly
 /// in log frequency and constant beyond the ends (M14.2).
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoiseCovariance {
@@ -23,7 +23,7 @@ pub struct NoiseCovariance {
 }
 
 impl NoiseCovariance {
-    /// Smooths the covariances of a measured response; `None` where it has no points.
+    /// Smooths a measured response's covariances; `None` where it has no points.
     #[must_use]
     pub fn from_measured(measured: &ResponseEstimate) -> Option<Self> {
         let points = &measured.points;
@@ -47,10 +47,10 @@ impl NoiseCovariance {
         self.covariances[before].scale(1.0 - share) + self.covariances[after].scale(share)
     }
 
-    /// Returns `W` at `omega` \[rad/s\]: the inverse of the lower Cholesky factor of `Cv / 2`,
+    /// Returns `W` at `omega` \[rad/s\]: the inverse lower Cholesky factor of `Cv / 2`,
     /// outputs x outputs, lower triangular.
     ///
-    /// `W e` has real and imaginary parts of variance one each if `e` is noise (M14.4). `None` where
+    /// `W e` has real and imaginary parts with unit variance if `e` is noise (M14.4). `None` where
     /// the covariance is not positive definite: the noise is 1e8 times stronger in one combination
     /// of outputs than in another.
     #[must_use]
@@ -66,7 +66,7 @@ impl NoiseCovariance {
     }
 }
 
-/// Returns the weighted mean of the covariances around point `k`, its diagonal raised.
+/// Returns the weighted mean covariance around point `k`, its diagonal raised.
 fn smoothed(points: &[EstimatePoint], k: usize) -> DMatrix<f64> {
     let reach = SMOOTHING.len() / 2;
     let mut sum = points[k].noise.scale(0.0);

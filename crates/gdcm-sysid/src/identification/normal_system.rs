@@ -7,7 +7,7 @@
 //!    C_oi, D_oj  v = W e_o          s = X_i, U_j
 //!    tau_i, c1_o, c0_o: v = (W C R)_i, W e_o, W e_o, s = 1, 1/(j omega), 1
 //!    R = (j omega - A)^-1,  X = R (B U + tau)
-//! 1  J'J[p, q] = sum_k Re(v_p^H v_q  s_p^* s_q): two matrices multiplied,
+//! 1  J'J[p, q] = sum_k Re(v_p^H v_q  s_p^* s_q): a product of two matrices,
 //!    (pairs of v) x (lines) times (lines) x (pairs of s)
 //! 2  transient eliminated: G = J'J - J'T (T'T)^+ T'J
 //! 3  g = J'e, as e is orthogonal to T
@@ -116,7 +116,7 @@ pub(super) fn gradient_along(
     gram.gradient
 }
 
-/// Two vectors' or two scalars' numbers; their product is needed.
+/// The numbers of two vectors, or of two scalars, to be multiplied.
 #[derive(Clone, Copy)]
 struct IndexPair {
     left: usize,
@@ -306,7 +306,7 @@ impl<'a> Gram<'a> {
         products
     }
 
-    /// Adds `B` and tau with themselves.
+    /// Adds the products of `B` and tau with themselves.
     fn add_resolvent(&mut self) {
         let scalars = self.resolvent_scalars.nrows();
         let states = ordered_pairs(self.model.order());
@@ -331,7 +331,7 @@ impl<'a> Gram<'a> {
         }
     }
 
-    /// Adds `C`, `D`, c1 and c0 with themselves: `W'W` is real.
+    /// Adds the products of `C`, `D`, c1 and c0 with themselves: `W'W` is real.
     fn add_weight(&mut self) {
         let count = self.lines.omega.len();
         let output_count = self.model.c.nrows();
@@ -370,7 +370,7 @@ impl<'a> Gram<'a> {
         }
     }
 
-    /// Adds `B` and tau with `C`, `D`, c1 and c0.
+    /// Adds the products of `B` and tau with `C`, `D`, c1 and c0.
     fn add_resolvent_with_weight(&mut self) {
         let outputs = self.model.c.nrows();
         let vectors = all_pairs(self.model.order(), outputs);
@@ -416,7 +416,7 @@ impl<'a> Gram<'a> {
         columns
     }
 
-    /// Adds the blocks with all columns.
+    /// Adds the products of the blocks with all columns.
     fn add_blocks(&mut self) {
         let order = self.model.order();
         let outputs = self.model.c.nrows();
@@ -491,8 +491,8 @@ impl<'a> Gram<'a> {
     }
 }
 
-/// Returns `[Re z; -Im z]` of `z = conj(s) t`, rows by line, columns by pair (s, t): multiplied
-/// by `[Re h, Im h]` they give the summed `Re(h z)`.
+/// Returns `[Re z; -Im z]` of `z = conj(s) t`, two rows for each line, a column for each pair (s,
+/// t): multiplied by `[Re h, Im h]` they give the summed `Re(h z)`.
 fn scalar_products(
     left: &DMatrix<Complex<f64>>,
     right: &DMatrix<Complex<f64>>,
@@ -509,7 +509,7 @@ fn scalar_products(
     products
 }
 
-/// Returns `[Re s; Im s]`, rows by line, columns by scalar.
+/// Returns `[Re s; Im s]`, two rows for each line, a column for each scalar.
 fn parts(scalars: &DMatrix<Complex<f64>>) -> DMatrix<f64> {
     DMatrix::from_fn(2 * scalars.ncols(), scalars.nrows(), |row, s| {
         let scalar = scalars[(s, row / 2)];
@@ -616,7 +616,8 @@ mod tests {
                 likelihood.cost(&stepped).unwrap()
             });
             let slope = (above - below) / (2.0 * step);
-            // Central differences: the third derivative times 1e-10, and rounding of the cost over 1e-5.
+            // Central differences: the third derivative times 1e-10, and rounding of the cost over
+            // 1e-5.
             let scale = system.gradient.amax();
             assert!(
                 (slope + 2.0 * system.gradient[place]).abs() < 1e-6 * scale,
@@ -634,7 +635,8 @@ mod tests {
         let segment = &likelihood.segments[0];
         let part = segment.cost(&model).unwrap();
         let system = Gram::new(segment, &model, &part).system().unwrap();
-        // Columns of the dense Jacobian by differences of W (G U + C R tau), exact up to rounding in B and D.
+        // Columns of the dense Jacobian by differences of W (G U + C R tau), exact up to rounding
+        // in B and D.
         let places = [
             model.place_of_b(1, 1),
             model.place_of_b(2, 0),

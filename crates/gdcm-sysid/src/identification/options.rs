@@ -1,4 +1,4 @@
-//! Options of an identification (M14.9).
+//! Identification options (M14.9).
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::{FlightRecord, Signal};
@@ -13,15 +13,15 @@ const HIGHEST_LINE: f64 = 4.0 / 3.0;
 
 /// The band, the channels, the held-out records, and the orders, poles and windows to try.
 ///
-/// The defaults are those of M14.9: fixed on five conditions of the example, and right on the other
-/// six, on fresh noise and on half of the data.
+/// M14.9 states the defaults: fixed on five conditions in the example, and right on the other
+/// six, on fresh noise and on half the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Lower and upper band end \[rad/s\].
     pub band: [f64; 2],
     /// The channels and their preparation.
     pub preparation: Preparation,
-    /// Number of inputs, the last ones, that are no inputs of the model but recorded references that
+    /// Number of references at the end of the inputs: recorded signals, no model inputs, that
     /// drove the loop from outside (M14.15).
     pub references: usize,
     /// Records that no model is fitted to, counted from 0: they judge the model.
@@ -49,7 +49,7 @@ impl Options {
         }
     }
 
-    /// Refuses options out of range.
+    /// Refuses invalid options.
     pub(super) fn check(&self) -> Result<(), IdentificationError> {
         let [lowest, highest] = self.band;
         if !(lowest.is_finite() && highest.is_finite() && 0.0 < lowest && lowest < highest) {
@@ -73,7 +73,7 @@ impl Options {
         }
     }
 
-    /// Returns the number of inputs of the model.
+    /// Counts the model's inputs.
     pub(super) fn inputs(&self) -> usize {
         self.preparation
             .inputs
@@ -81,7 +81,7 @@ impl Options {
             .saturating_sub(self.references)
     }
 
-    /// Returns the names of the records that models are fitted to, but for the record `without`.
+    /// Returns the record names that models are fitted to, but for the record `without`.
     pub(super) fn fitted(&self, records: &[FlightRecord], without: Option<usize>) -> Vec<String> {
         let mut names = Vec::new();
         for (number, record) in records.iter().enumerate() {
@@ -109,7 +109,7 @@ impl Options {
         LOWEST_LINE * self.band[0]
     }
 
-    /// Returns the highest line used \[rad/s\]: 4/3 of the upper band end.
+    /// Returns the highest line used \[rad/s\]: 4/3 times the upper band end.
     pub(super) fn highest(&self) -> f64 {
         HIGHEST_LINE * self.band[1]
     }

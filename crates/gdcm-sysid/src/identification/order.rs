@@ -1,10 +1,10 @@
-//! The order of the model, by the Bayesian information criterion with estimated dispersion (M14.4,
+//! The model order, by the Bayesian information criterion with estimated dispersion (M14.4,
 //! M14.13).
 //!
 //! ```text
 //! BIC(n) = J (1 + k ln N / (N - k)),   k = n (m + l) + m l parameters that matter,
 //!                                      N degrees of freedom
-//! 1  n0 = min(16, the order of the least BIC before any refinement)
+//! 1  n0 = min(16, the order with the least BIC before any refinement)
 //! 2  small, k(n0) <= 80:  all orders from two above n0 downwards, refined as long as each step
 //!                         gains; each from a second start as well: order n + 1 or n + 2 less the
 //!                         mode that the measured response misses least
@@ -30,7 +30,7 @@ use super::refinement::{Fit, LEAST_GAIN};
 
 /// The highest order at which the search begins.
 const FIRST: usize = 16;
-/// Most parameters of a small model.
+/// Most parameters in a small model.
 const SMALL: usize = 80;
 /// Orders with a criterion up to this much above the least, relatively, are decided by the held-out
 /// record.
@@ -38,16 +38,16 @@ const NEAR: f64 = 0.01;
 /// An order without a fast unstable pole is preferred if its criterion is worse by at most this,
 /// relatively.
 const NEAR_UNSTABLE: f64 = 0.03;
-/// Cost of a neighbouring order over that of the chosen one, beyond which it does not count in the
-/// uncertainty of the order.
+/// A neighbouring order's cost over the chosen order's, beyond which it does not count in the
+/// uncertainty.
 const STARVED: f64 = 1.5;
 
 /// How thoroughly orders are compared.
 #[derive(Clone, Copy)]
 struct Thoroughness {
-    /// Orders on each side of the best that are known in the end.
+    /// Orders that are known in the end on each side of the best.
     bracket: usize,
-    /// Most steps of the refinement.
+    /// Most refinement steps.
     steps: usize,
     /// Relative gain below which the refinement ends.
     least_gain: f64,
@@ -69,7 +69,7 @@ const FOR_LARGE_MODELS: Thoroughness = Thoroughness {
 #[derive(Clone, Debug)]
 pub(super) struct OrderSearch {
     pub(super) fits: BTreeMap<usize, Fit>,
-    /// BIC of each order.
+    /// BIC by order.
     pub(super) criteria: BTreeMap<usize, f64>,
     /// The chosen order.
     pub(super) order: usize,
@@ -86,7 +86,7 @@ impl OrderSearch {
         starts.get(&first_order(starts, likelihood)?)
     }
 
-    /// Returns the models of the next lower and the next higher order, unless they are starved.
+    /// Returns the next lower and the next higher order's model, unless they are starved.
     pub(super) fn neighbours(&self) -> Vec<&BlockModel> {
         let below = self.fits.range(..self.order).next_back();
         let above = self.fits.range(self.order + 1..).next();
@@ -113,7 +113,7 @@ fn first_order(starts: &BTreeMap<usize, Fit>, likelihood: &Likelihood) -> Option
         .min_by_key(|order| order.abs_diff(best.min(FIRST)))
 }
 
-/// Computes the criterion of each fit that has fewer parameters than degrees of freedom.
+/// Computes the criterion for each fit that has fewer parameters than degrees of freedom.
 fn criteria(fits: &BTreeMap<usize, Fit>, likelihood: &Likelihood) -> BTreeMap<usize, f64> {
     let mut criteria = BTreeMap::new();
     for (order, fit) in fits {
@@ -124,7 +124,7 @@ fn criteria(fits: &BTreeMap<usize, Fit>, likelihood: &Likelihood) -> BTreeMap<us
     criteria
 }
 
-/// Computes `BIC` of a fit; `None` if it has no more degrees of freedom than parameters.
+/// Computes a fit's `BIC`; `None` if it has no more degrees of freedom than parameters.
 fn criterion(fit: &Fit, likelihood: &Likelihood) -> Option<f64> {
     let k = fit.effective_parameters() as f64;
     let n = likelihood.freedom(fit.model.order()) as f64;
@@ -135,7 +135,7 @@ fn criterion(fit: &Fit, likelihood: &Likelihood) -> Option<f64> {
     }
 }
 
-/// Returns the order with the least value, the lowest of equal ones.
+/// Returns the lowest order with the least value.
 fn order_of_least(values: &BTreeMap<usize, f64>) -> Option<usize> {
     values
         .iter()
@@ -196,7 +196,7 @@ impl PreparedData<'_> {
     }
 }
 
-/// A comparison of orders in progress.
+/// A running comparison between orders.
 struct Comparison<'s> {
     data: &'s PreparedData<'s>,
     /// The unrefined models.
@@ -208,14 +208,14 @@ struct Comparison<'s> {
 }
 
 impl Comparison<'_> {
-    /// Returns the places in `orders` of an order and its neighbours.
+    /// Returns the places in `orders` for an order and its neighbours.
     fn bracket(&self, orders: &[usize], order: usize) -> Range<usize> {
         let at = orders.partition_point(|other| *other < order);
         let reach = self.thoroughness.bracket;
         at.saturating_sub(reach)..(at + reach + 1).min(orders.len())
     }
 
-    /// Refines the models of those `orders` that are not refined yet.
+    /// Refines the models in `orders` that are not refined yet.
     fn refine(&mut self, orders: &[usize]) -> Result<(), IdentificationError> {
         let likelihood = &self.data.likelihood;
         let new: Vec<usize> = orders
@@ -257,7 +257,7 @@ impl Comparison<'_> {
         Ok(())
     }
 
-    /// Removes a real pole from the model of the next order, or a pair from the one after it, and
+    /// Removes a real pole from the next order's model, or a pair from the order after it, and
     /// returns the cheaper result.
     fn cheapest_from_above(&self, order: usize) -> Option<Fit> {
         let mut starts = Vec::new();
@@ -273,7 +273,7 @@ impl Comparison<'_> {
         starts.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost))
     }
 
-    /// Decides between orders with nearly the same criterion as `best` (step 4 of the file's box).
+    /// Decides between orders with nearly the same criterion as `best` (step 4).
     fn decide(&self, criteria: &BTreeMap<usize, f64>, best: usize) -> usize {
         let near = within(criteria, best, NEAR_UNSTABLE);
         let sound: BTreeMap<usize, f64> = near
@@ -296,14 +296,14 @@ impl Comparison<'_> {
         order_of_least(&held_out_costs).unwrap_or(best)
     }
 
-    /// Whether the model of an order has no fast unstable pole.
+    /// Whether an order's model has no fast unstable pole.
     fn is_sound(&self, order: usize) -> bool {
         self.fits
             .get(&order)
             .is_some_and(|fit| fast_unstable_pole(&fit.model, self.data.highest).is_none())
     }
 
-    /// Computes the cost of an order on the held-out records per degree of freedom.
+    /// Computes an order's held-out cost per degree of freedom.
     fn held_out_cost(&self, order: usize) -> Option<f64> {
         let model = &self.fits.get(&order)?.model;
         let held_out = &self.data.held_out;
@@ -311,7 +311,7 @@ impl Comparison<'_> {
     }
 }
 
-/// Returns the criteria that exceed that of `best` by at most `share`, relatively.
+/// Returns the criteria that exceed the criterion at `best` by at most `share`, relatively.
 fn within(criteria: &BTreeMap<usize, f64>, best: usize, share: f64) -> BTreeMap<usize, f64> {
     let Some(value) = criteria.get(&best) else {
         return BTreeMap::new();

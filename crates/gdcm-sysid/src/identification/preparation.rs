@@ -12,20 +12,20 @@ use super::preparation_settings::{Preparation, PreparationError};
 use super::record_cautions::{RecordCaution, channel_cautions, inputs_at_limit, stuck_caution};
 use super::track::{Track, Tracks, read_row};
 
-/// What was used of a record, and what was not.
+/// The used parts of a record, and its gaps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordUse {
-    /// Name of the record.
+    /// Record name.
     pub record: String,
     /// Median sample time \[s\], 0 for fewer than two stamps.
     pub sample_time_s: f64,
     /// Time from the first stamp to the last \[s\].
     pub logged_s: f64,
-    /// Total length of its segments \[s\].
+    /// Total segment length \[s\].
     pub used_s: f64,
     /// By starting time.
     pub gaps: Vec<Gap>,
-    /// Inputs at their limit, with the share of the record \[%\]. No caution: the position of a
+    /// Inputs at their limit, with the share in the record \[%\]. No caution: the position of a
     /// saturated actuator is the signal.
     pub inputs_at_limit: Vec<(Signal, f64)>,
 }
@@ -41,7 +41,7 @@ impl RecordUse {
         })
     }
 
-    /// Returns first and last time \[s\] of each part of the record between the parts cut out.
+    /// Returns first and last time \[s\] for each part between the parts cut out.
     pub fn spans(&self, record: &FlightRecord) -> Vec<[f64; 2]> {
         let mut stamps = record
             .time_s
@@ -70,7 +70,7 @@ impl RecordUse {
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct Prepared {
-    /// By record and time; at least one.
+    /// By record and time; not empty.
     pub segments: Vec<Segment>,
     /// In record order.
     pub records: Vec<RecordUse>,
@@ -81,18 +81,18 @@ pub struct Prepared {
 ///
 /// ```text
 /// for each record
-/// 1  dt = median difference of the stamps; stamps more than 20 % off the multiples of dt are
+/// 1  dt = median stamp difference; stamps more than 20 % off the multiples of dt are
 ///    refused unless allowed
-/// 2  for each channel the samples that count: finite, not frozen; of a slow sensor the fresh ones
-/// 3  its value at t: the straight line at t + shift between two of them that are no further apart
+/// 2  for each channel the samples that count: finite, not frozen; fresh if the sensor is slow
+/// 3  its value at t: the straight line at t + shift between two samples that are no further apart
 ///    than (bridge + 1.5) dt
-/// 4  segments = runs of the grid t_0 + k dt where every channel has a value, of at least 10 s
+/// 4  segments = runs of the grid t_0 + k dt where every channel has a value, for at least 10 s
 /// ```
 ///
 /// No mean or trend is taken off, and nothing is filtered.
 ///
 /// # Errors
-/// Settings out of range, records that do not fit them, time that does not increase or is uneven,
+/// Invalid settings, records that do not fit them, time that does not increase or is uneven,
 /// no segment left, a constant channel.
 pub fn prepare(
     records: &[FlightRecord],
@@ -142,12 +142,12 @@ pub fn prepare(
     })
 }
 
-/// Cuts one record into segments for a comparison with a model in time, as [`prepare`] does.
+/// Cuts a record into segments for a comparison with a model in time, as [`prepare`] does.
 ///
 /// Unlike there, a channel may be constant.
 ///
 /// # Errors
-/// Settings out of range, a record that does not fit them, time that does not increase or is
+/// Invalid settings, a record that does not fit them, time that does not increase or is
 /// uneven, no segment left.
 pub fn segments_of(
     record: &FlightRecord,
@@ -168,7 +168,7 @@ pub fn segments_of(
     Ok(segments)
 }
 
-/// Whether a channel has one value within each segment, but for rounding.
+/// Whether a channel is constant within each segment, but for rounding.
 fn is_constant(segments: &[Segment], signal: &Signal) -> bool {
     segments.iter().all(|segment| {
         let samples = segment.channel(signal);
@@ -181,7 +181,7 @@ struct PreparedRecord {
     segments: Vec<Segment>,
     used: RecordUse,
     cautions: Vec<RecordCaution>,
-    /// Length of its longest run without a gap \[s\], long enough or not.
+    /// Longest run without a gap \[s\], long enough or not.
     longest_s: f64,
 }
 
@@ -204,7 +204,7 @@ fn prepare_record(
         let samples = run.rows.len() / tracks.len();
         let length_s = clock.sample_time_s * samples as f64;
         longest_s = longest_s.max(length_s);
-        // A small tolerance, so that 500 samples of 0.02 s are 10 s.
+        // A small tolerance, so that 500 times 0.02 s are 10 s.
         if length_s >= preparation.least_segment_s * (1.0 - 1e-9) {
             segments.push(run.into_segment(number, start_s, clock.sample_time_s, preparation));
         } else {
@@ -296,9 +296,9 @@ fn check_shape(record: &FlightRecord, preparation: &Preparation) -> Result<(), P
     Ok(())
 }
 
-/// Consecutive points of the grid at which every channel has a value.
+/// Consecutive grid points at which every channel has a value.
 struct Run {
-    /// Index of its first point on the grid; whole.
+    /// First grid index; whole.
     first: f64,
     /// Samples, row after row: inputs, then outputs.
     rows: Vec<f64>,
@@ -326,7 +326,7 @@ impl Run {
     }
 }
 
-/// Finds the runs on the grid `k dt` of a record, counted from its first stamp.
+/// Finds a record's runs on the grid `k dt`, counted from its first stamp.
 fn runs(clock: &Clock, tracks: &[Track]) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     let mut readers: Vec<_> = tracks.iter().map(Track::reader).collect();

@@ -1,23 +1,23 @@
-//! Settings for the preparation of flight records: the channels, their delays, gaps (M14.1).
+//! Settings for preparing flight records: the channels, their delays, gaps (M14.1).
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::simulation::Signal;
 
 use super::gaps::names;
 
-/// Longest plausible delay or hold of a channel \[s\].
+/// Longest plausible channel delay or hold \[s\].
 const LONGEST_SHIFT_S: f64 = 10.0;
 /// Longest gap that may be bridged, in samples.
 const LONGEST_BRIDGE: usize = 1000;
 
-/// The meaning of stairs in a channel that is logged more often than it changes (M14.1).
+/// The meaning behind stairs in a channel that is logged more often than it changes (M14.1).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
 pub enum Hold {
-    /// Samples of a continuous signal; stairs raise a caution.
+    /// A continuous signal; stairs raise a caution.
     #[default]
     None,
-    /// The stairs act on the aircraft, or are the resolution of the sensor: the samples are right.
+    /// The stairs act on the aircraft, or are the sensor's resolution: the samples are right.
     Acts,
     /// A command held for `hold_s` \[s\] and logged when it begins: it acts `hold_s / 2` later.
     Command { hold_s: f64 },
@@ -28,12 +28,12 @@ pub enum Hold {
     FreshSamples,
 }
 
-/// How one channel is prepared.
+/// How a channel is prepared.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[allow(missing_docs)]
 pub struct ChannelPreparation {
     pub name: String,
-    /// Known delay of sensor or bus \[s\], to be taken out.
+    /// Known sensor or bus delay \[s\], to be taken out.
     pub delay_s: f64,
     pub hold: Hold,
     /// Greatest plausible modulus in its unit; above it the unit is in doubt.
@@ -59,7 +59,7 @@ impl ChannelPreparation {
         }
     }
 
-    /// Returns the hold \[s\]; 0 without one.
+    /// Returns the hold \[s\]; 0 without hold.
     fn hold_s(&self) -> f64 {
         match self.hold {
             Hold::Command { hold_s } | Hold::SlowSensor { hold_s } => hold_s,
@@ -79,14 +79,14 @@ pub struct Preparation {
     pub resample: bool,
     /// Whether an output that stands still while others move is kept, and no gap.
     pub keep_frozen: bool,
-    /// Longest gap, in samples, that is bridged by a straight line; a longer one splits the record.
+    /// Longest gap, in samples, that is bridged by a straight line; longer gaps split the record.
     pub longest_bridge: usize,
-    /// Least length of a segment \[s\].
+    /// Least segment length \[s\].
     pub least_segment_s: f64,
 }
 
 impl Preparation {
-    /// The defaults: every channel as it is, gaps of 3 samples bridged, segments of at least 10 s.
+    /// The defaults: every channel as it is, gaps up to 3 samples bridged, segments from 10 s up.
     #[must_use]
     pub fn of(inputs: &[&str], outputs: &[&str]) -> Self {
         Self {
@@ -121,7 +121,7 @@ impl Preparation {
         })
     }
 
-    /// Returns the settings of a channel.
+    /// Returns a channel's settings.
     pub fn channel(&self, signal: &Signal) -> Option<&ChannelPreparation> {
         signal
             .role
@@ -129,7 +129,7 @@ impl Preparation {
             .get(signal.index)
     }
 
-    /// Returns the settings of a channel for a change.
+    /// Returns a channel's settings for a change.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
         signal
             .role
@@ -137,7 +137,7 @@ impl Preparation {
             .get_mut(signal.index)
     }
 
-    /// Refuses settings out of range.
+    /// Refuses invalid settings.
     pub(super) fn check(&self) -> Result<(), PreparationError> {
         for role in [ChannelSide::Input, ChannelSide::Output] {
             if role.of(&self.inputs, &self.outputs).is_empty() {
@@ -184,7 +184,7 @@ pub enum PreparationError {
         found: usize,
         named: usize,
     },
-    /// The columns of a record differ in length.
+    /// A record's columns differ in length.
     #[error(
         "record {record} has {stamps} time stamps, {inputs} samples of the inputs and {outputs} of the outputs"
     )]
@@ -209,7 +209,7 @@ pub enum PreparationError {
     )]
     TimeNotIncreasing {
         record: String,
-        /// Row of the later stamp, counted from 0.
+        /// Later stamp's row, counted from 0.
         row: usize,
         previous_s: f64,
         time_s: f64,
@@ -219,7 +219,7 @@ pub enum PreparationError {
     )]
     UnevenSampling {
         record: String,
-        /// 95th percentile of the deviation from whole multiples of the median sample time \[%\].
+        /// 95th percentile for the deviation from whole multiples of the median sample time \[%\].
         percent: f64,
     },
     /// No segment is long enough.

@@ -28,28 +28,28 @@ use super::search_extent::{Extent, FIGURES_AN_UNKNOWN, parameters_of_order};
 use super::spectrum::{LineRange, Spectrum};
 use super::subspace::SubspaceSettings;
 
-/// Number of frequencies of the measured response.
+/// Frequencies in the measured response.
 const MEASURED_POINTS: usize = 40;
 /// Highest line for the measured response over the highest line used.
 const BEYOND: f64 = 1.3;
-/// Condition number of the correlations of the inputs above which one is a copy of the others.
+/// Condition number of the inputs' correlations above which they depend on each other.
 const COPY: f64 = 1e9;
-/// Share of the largest entry of an eigenvector above which an input is involved in a dependence.
+/// Entry over an eigenvector's largest, above which an input is involved in a dependence.
 const INVOLVED: f64 = 0.1;
 /// Upper band end over the highest line used.
 const BAND_END: f64 = 0.75;
-/// Periods of the lower band end that the longest record has to last (M14.12).
+/// Periods at the lower band end that the longest record has to last (M14.12).
 const LEAST_PERIODS: f64 = 1.5;
 /// Periods that it should last (M14.12).
 const BETTER_PERIODS: f64 = 5.0;
-/// Periods that it should last for each of several inputs that are moved in a single record.
+/// Periods that it should last for each input if several are moved in a single record.
 const PERIODS_AN_INPUT: f64 = 3.0;
 
 /// Records, prepared, transformed and weighed.
 pub(super) struct PreparedData<'a> {
-    /// What was used of every record.
+    /// Used parts of every record.
     pub(super) record_uses: Vec<RecordUse>,
-    /// Units of the records over scaled units.
+    /// Record units over scaled units.
     pub(super) scales: Scales,
     /// Segments to fit, low-passed for the projections.
     pub(super) segments: Vec<Segment>,
@@ -65,7 +65,7 @@ pub(super) struct PreparedData<'a> {
     pub(super) measured: ResponseEstimate,
     /// The cost over the fitted records.
     pub(super) likelihood: Likelihood<'a>,
-    /// The cost over the lines as logged, if the lines of the fit are those seen through a reference
+    /// The cost over the lines as logged, if the fit uses the lines seen through a reference
     /// (M14.15).
     pub(super) direct: Option<Likelihood<'a>>,
     /// The cost over the held-out records.
@@ -83,7 +83,7 @@ impl<'a> PreparedData<'a> {
     /// 1  segments on a uniform grid; held-out records apart, references apart
     /// 2  scales; inputs that depend on each other are refused
     /// 3  spectral lines, the measured response and the noise covariance
-    /// 4  weights of the lines, of the fit and of the held-out records
+    /// 4  line weights, for the fit and for the held-out records
     /// 5  low-pass for the projections
     /// ```
     pub(super) fn new(
@@ -182,7 +182,7 @@ impl<'a> PreparedData<'a> {
         })
     }
 
-    /// Returns the settings of CT-PBSID: those of the options, completed by what the records can
+    /// Returns the settings of CT-PBSID: the options, completed by what the records can
     /// carry (M14.13).
     pub(super) fn subspace_settings(&self, options: &Options) -> SubspaceSettings {
         let outputs = self.scales.outputs.len();
@@ -213,8 +213,8 @@ impl<'a> PreparedData<'a> {
         }
     }
 
-    /// Converts a model to record units: each response is multiplied by the scale of the
-    /// output over that of the input. `None` if the model is not finite.
+    /// Converts a model to record units: each response is multiplied by the output's
+    /// scale over the input's. `None` if the model is not finite.
     pub(super) fn in_units(&self, model: &BlockModel) -> Option<StateSpace> {
         let mut scaled = model.clone();
         for (input, scale) in self.scales.inputs.iter().enumerate() {
@@ -236,7 +236,7 @@ impl<'a> PreparedData<'a> {
         }
     }
 
-    /// Returns the number of lines to fit.
+    /// Counts the lines to fit.
     fn line_count(&self) -> usize {
         self.spectra
             .iter()
@@ -244,7 +244,7 @@ impl<'a> PreparedData<'a> {
             .sum()
     }
 
-    /// Returns the total length of the segments to fit \[s\].
+    /// Returns the total segment length to fit \[s\].
     fn duration_s(&self) -> f64 {
         self.spectra
             .iter()
@@ -253,7 +253,7 @@ impl<'a> PreparedData<'a> {
     }
 }
 
-/// Refuses the numbers of held-out records that do not exist.
+/// Refuses held-out records that do not exist.
 fn check_held_out(records: &[FlightRecord], options: &Options) -> Result<(), IdentificationError> {
     for &record in &options.held_out {
         if record >= records.len() {
@@ -266,10 +266,10 @@ fn check_held_out(records: &[FlightRecord], options: &Options) -> Result<(), Ide
     Ok(())
 }
 
-/// Segments, those of held-out records apart, without the references among their inputs.
+/// Segments to fit and held-out segments, without the references among their inputs.
 struct SplitSegments {
     to_fit: Vec<Segment>,
-    /// The references of each segment to fit, samples x references.
+    /// Each fitted segment's references, samples x references.
     references: Vec<DMatrix<f64>>,
     held_out: Vec<Segment>,
 }
@@ -356,7 +356,7 @@ fn measure_response(
     local_polynomial(lines, &omegas, executor)
 }
 
-/// Weighs lines by the noise of the measured response.
+/// Weighs lines by the measured noise.
 fn weigh<'a>(
     spectra: &[Spectrum],
     measured: &ResponseEstimate,
@@ -390,8 +390,8 @@ fn check_sampling(segments: &[Segment], options: &Options) -> Result<(), Identif
     })
 }
 
-/// Refuses records that are too short for the lower band end or for a model of the first
-/// order, and reports records that are shorter than they should be (M14.12).
+/// Refuses records that are too short for the lower band end or for a first-order
+/// model, and reports records that are shorter than they should be (M14.12).
 fn check_length(
     segments: &[Segment],
     lines: &[Spectrum],
@@ -432,7 +432,7 @@ fn check_length(
     }))
 }
 
-/// Refuses lines with too few real values for a model of the first order (M14.13).
+/// Refuses lines with too few real values for a first-order model (M14.13).
 fn check_figures(segments: usize, lines: &[Spectrum]) -> Result<(), IdentificationError> {
     let inputs = lines.first().map_or(0, |lines| lines.inputs.nrows());
     let outputs = lines.first().map_or(0, |lines| lines.outputs.nrows());
@@ -450,7 +450,7 @@ fn check_figures(segments: usize, lines: &[Spectrum]) -> Result<(), Identificati
     Ok(())
 }
 
-/// Refuses inputs that depend on each other, by the condition number of their correlations.
+/// Refuses inputs that depend on each other, by their correlations' condition number.
 fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), IdentificationError> {
     let inputs = options.inputs();
     let mut gram = DMatrix::<f64>::zeros(inputs, inputs);
@@ -473,7 +473,7 @@ fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), Identific
     Err(IdentificationError::InputsDepend(involved))
 }
 
-/// Whether a caution is about channels of the model: a reference may well move as an input does.
+/// Whether a caution is about model channels: a reference may well move as an input does.
 fn concerns_model(caution: &RecordCaution, options: &Options) -> bool {
     match caution {
         RecordCaution::MovedTogether { signals, .. } => {

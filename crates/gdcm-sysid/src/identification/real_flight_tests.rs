@@ -575,7 +575,8 @@ fn a_reference_frees_the_response_from_feedback() {
         };
         for (omega, expected) in numbers(&points["w"]).into_iter().zip(line(&points["G"])) {
             let point = nearest(omega);
-            // The nearest line of 60 s is within 0.05 rad/s, over which the response turns by as much.
+            // The nearest line of 60 s is within 0.05 rad/s, over which the response turns by as
+            // much.
             let error = (point.response[(0, 0)] / expected - 1.0).norm();
             assert!(
                 error < tolerance + 0.06 / omega * 2.0,

@@ -16,7 +16,7 @@ use super::preparation_settings::{ChannelPreparation, Hold, Preparation};
 
 /// Correlation beyond which two inputs are moved together.
 const TOGETHER: f64 = 0.99;
-/// Correlation beyond which an output is a copy of an input or of another output.
+/// Correlation beyond which an output copies an input or another output.
 const COPY: f64 = 0.9999;
 
 /// A doubt about the flight records, or a change made to them.
@@ -29,7 +29,7 @@ pub enum RecordCaution {
     )]
     Resampled {
         record: String,
-        /// 95th percentile of the deviation from multiples of the sample time \[%\].
+        /// 95th percentile for the deviation from multiples of the sample time \[%\].
         percent: f64,
     },
     /// The rest between two gaps is too short.
@@ -41,7 +41,7 @@ pub enum RecordCaution {
     },
     #[error("{0}: nothing of it could be used")]
     RecordUnused(String),
-    /// Most consecutive samples of a moving channel are equal.
+    /// Most consecutive samples are equal while the channel moves.
     #[error(
         "{signal}: {percent:.0} % of consecutive samples are equal, it changes every {:.0} ms. Say which it is: {}or stairs that \
                  are right as they are (nothing done, as now)",
@@ -54,7 +54,7 @@ pub enum RecordCaution {
         /// Median time between changes \[s\].
         hold_s: f64,
     },
-    /// A value that is implausible in the unit of the channel.
+    /// A value that is implausible in the channel's unit.
     #[error("{signal} reaches {greatest:.3}, beyond {limit}: check its unit")]
     UnlikelyUnit {
         signal: Signal,
@@ -79,12 +79,12 @@ pub enum RecordCaution {
         if *records > 1 { "these records" } else { "the record" }
     )]
     AtLimit {
-        /// Name of the worst record.
+        /// Worst record's name.
         record: String,
         signal: Signal,
         /// Share of the samples \[%\].
         percent: f64,
-        /// Number of affected records.
+        /// Affected records.
         records: usize,
     },
     /// Outputs stood still while others moved.
@@ -107,7 +107,7 @@ pub enum RecordCaution {
         /// Step over the standard deviation.
         steps: f64,
     },
-    /// An output is a copy of another channel.
+    /// An output copies another channel.
     #[error(
         "{copy} is a copy of the {} {of}: leave it out", of.role
     )]
@@ -118,7 +118,7 @@ pub enum RecordCaution {
     },
 }
 
-/// Lists the possible causes of stairs in an input or an output.
+/// Lists the possible causes for stairs.
 fn hold_choices(role: ChannelSide, hold_ms: f64) -> String {
     let half = 0.5 * hold_ms;
     let command = match role {
@@ -130,7 +130,7 @@ fn hold_choices(role: ChannelSide, hold_ms: f64) -> String {
     format!("{command}a slow sensor (only fresh samples kept, or moved {half:.0} ms earlier), ")
 }
 
-/// Examines the channels of the records as logged, and of the segments made of them.
+/// Examines the channels in the records as logged, and in the segments made from them.
 pub(super) fn channel_cautions(
     records: &[FlightRecord],
     segments: &[Segment],
@@ -149,7 +149,7 @@ pub(super) fn channel_cautions(
     cautions
 }
 
-/// Doubts the unit of a channel that exceeds its plausible limit.
+/// Doubts a channel's unit if it exceeds its plausible limit.
 fn unit_caution(
     signal: &Signal,
     channel: &ChannelPreparation,
@@ -180,7 +180,7 @@ fn stairs_caution(
     if channel.hold != Hold::None {
         return None;
     }
-    // The stairs of a coarse output are its steps.
+    // A coarse output's stairs are its steps.
     if signal.role == ChannelSide::Output && is_coarse(&values_of_all(records, signal)) {
         return None;
     }
@@ -223,7 +223,7 @@ fn coarse_caution(signal: &Signal, records: &[FlightRecord]) -> Option<RecordCau
     }
 }
 
-/// Returns the finite values of a channel in all records, one after the other.
+/// Returns a channel's finite values in all records.
 fn values_of_all(records: &[FlightRecord], signal: &Signal) -> Vec<f64> {
     records
         .iter()
@@ -288,7 +288,7 @@ pub(super) fn stuck_caution(record: &str, gaps: &[Gap]) -> Option<RecordCaution>
     })
 }
 
-/// Returns the inputs of a record that are at their limit, with the share of it \[%\].
+/// Returns a record's inputs at their limit, with the sample share \[%\].
 pub(super) fn inputs_at_limit(
     record: &FlightRecord,
     preparation: &Preparation,

@@ -1,20 +1,20 @@
-//! Comparison of the records with one another: contradictions and their causes (M14.16).
+//! Records compared with each other: contradictions and their causes (M14.16).
 //!
 //! ```text
-//! G = sum G_r, V'GV = I, at the optimum before records are reweighed, which hides the wrong one
+//! G = sum G_r, V'GV = I, at the optimum before records are reweighed, which hides the wrong record
 //! 1  a = V'G_r V = Q diag(eps) Q';  the nu directions with 0.02 < eps < 0.98 are known to the record
 //!    and to the others
 //! 2  c = Q'(V'g_r - a V'g);   F_r = sum c^2 / (eps (1 - eps)) / (nu phi): 1 if the record agrees with
-//!    the model of the others
-//! 3  for the record with the greatest F, columns of the residual d with transient and theta
+//!    the others' model
+//! 3  for the record with the greatest F, residual columns d with transient and theta
 //!    projected out:
 //!      all outputs late W jw Y,  an output late W e_o jw Y_o,
 //!      an input late -W G_j jw U_j,  a gain W e_o Y_o
 //!      h = d'e - d'J G^+ g,  S = d'd - d'J G^+ J'd
-//!    the fault with the greatest h^2/S, of the size -h/S
+//!    the fault with the greatest h^2/S; its size is -h/S
 //! ```
 //!
-//! The change of the model without a record is no evidence against it: that only says that the
+//! A changed model without a record is no evidence against that record: it only says that the
 //! record carries an axis alone.
 
 use nalgebra::{Complex, DMatrix, DVector};
@@ -43,9 +43,10 @@ const FREE_SCALE: f64 = 1e-9;
 const CONTRADICTS: f64 = 4.0;
 /// The same with gusts fed back, which differ from flight to flight.
 const CONTRADICTS_IN_GUSTS: f64 = 12.0;
-/// `F` of the worst record over that of the second, from which the worst is wrong alone.
+/// The worst record's `F` over the second's, from which the worst is wrong alone.
 const ALONE: f64 = 1.5;
-/// Share of the greatest gain from which a delay of all outputs is preferred to another fault.
+/// Gain over the greatest gain from which a common delay of all outputs is preferred to another
+/// fault.
 const AS_GOOD: f64 = 0.98;
 
 /// How far a record contradicts the others.
@@ -57,20 +58,20 @@ pub struct RecordContrast {
     pub contrast: f64,
 }
 
-/// The records of a fit that minimises its likelihood.
+/// The records behind a fit that minimises its likelihood.
 pub(super) struct RecordContrasts<'a> {
     likelihood: &'a Likelihood<'a>,
-    /// The lines of each segment in scaled units, not whitened.
+    /// Each segment's lines in scaled units, not whitened.
     spectra: &'a [Spectrum],
     fit: &'a Fit,
     whole: NormalSystem,
     /// `V`.
     root: DMatrix<f64>,
-    /// Of each record, ascending by number; empty for a single record.
+    /// By record, ascending; empty for a single record.
     pub(super) contrasts: Vec<RecordContrast>,
 }
 
-/// `h` and `S` of a fault.
+/// `h` and `S` for a fault.
 #[derive(Clone, Copy)]
 struct FaultSums {
     h: f64,
@@ -78,7 +79,7 @@ struct FaultSums {
 }
 
 impl FaultSums {
-    /// Returns `h^2/S`, the part of the cost that the fault explains.
+    /// Returns `h^2/S`, the cost that the fault explains.
     fn gain(self) -> f64 {
         if self.s > 0.0 {
             self.h * self.h / self.s
@@ -122,7 +123,7 @@ impl<'a> RecordContrasts<'a> {
         })
     }
 
-    /// Names the record that contradicts the others, or two that contradict one another, each with
+    /// Names the record that contradicts the others, or two that contradict each other, each with
     /// its most likely fault.
     pub(super) fn caution(
         &self,
@@ -161,7 +162,7 @@ impl<'a> RecordContrasts<'a> {
         })
     }
 
-    /// Finds the fault that explains most of the residual of a record (step 3).
+    /// Finds the fault that explains most in a record's residual (step 3).
     pub(super) fn fault(&self, record: usize, options: &Options) -> Option<RecordFault> {
         let faults = self.possible_faults(options);
         let sums = each(self.likelihood.executor, &faults, |fault| {
@@ -191,7 +192,7 @@ impl<'a> RecordContrasts<'a> {
         })
     }
 
-    /// Lists the faults that a record may have, of size zero.
+    /// Lists the faults that a record may have, with size zero.
     fn possible_faults(&self, options: &Options) -> Vec<RecordFault> {
         let (outputs, inputs) = self.fit.model.d.shape();
         let mut faults = vec![RecordFault::OutputsLate(0.0)];
@@ -219,7 +220,7 @@ impl<'a> RecordContrasts<'a> {
         faults
     }
 
-    /// Computes `h` and `S` of a fault of a record; `None` if they are not finite.
+    /// Computes `h` and `S` for a fault of a record; `None` if they are not finite.
     fn sums(&self, record: usize, fault: &RecordFault) -> Option<FaultSums> {
         let model = &self.fit.model;
         let mut with_residual = 0.0;
@@ -249,7 +250,7 @@ impl<'a> RecordContrasts<'a> {
     }
 }
 
-/// Computes `F` of a record with the normal system `own`; `root` is `V`, `gradient` is `V'g` and
+/// Computes `F` for a record with the normal system `own`; `root` is `V`, `gradient` is `V'g` and
 /// `dispersion` is `phi`.
 fn contrast(
     own: &NormalSystem,
@@ -271,7 +272,7 @@ fn contrast(
     Some(compared.iter().sum::<f64>() / (count * dispersion))
 }
 
-/// Returns the effect of a fault of size one on the whitened residual, outputs x lines.
+/// Returns a unit fault's effect on the whitened residual, outputs x lines.
 fn residual_effect(
     fault: &RecordFault,
     lines: &SpectralLines,

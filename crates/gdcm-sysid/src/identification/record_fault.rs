@@ -1,4 +1,4 @@
-//! Faults of a whole record, found by comparing it with the others (M14.16).
+//! Record faults, found by a comparison with the other records (M14.16).
 
 use std::fmt;
 
@@ -8,19 +8,19 @@ use gdcm_model::simulation::Signal;
 /// A gain this close to -1 is taken for a turned sign: a turned output was found as -0.98 (M14.16).
 const NEAR_A_SIGN: f64 = 0.3;
 
-/// A fault of a record.
+/// A record's fault.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecordFault {
-    /// Delay of all outputs \[s\]; negative if they are early.
+    /// All outputs' delay \[s\]; negative if they are early.
     OutputsLate(f64),
-    /// Delay of one channel \[s\]; negative if it is early.
+    /// A channel's delay \[s\]; negative if it is early.
     Late(Signal, f64),
     /// Factor by which an output has to be multiplied.
     Gain(Signal, f64),
 }
 
 impl RecordFault {
-    /// Returns the faulty channel, if it is a single one.
+    /// Returns the faulty channel, if it is a single channel.
     #[must_use]
     pub fn signal(&self) -> Option<&Signal> {
         match self {
@@ -29,7 +29,7 @@ impl RecordFault {
         }
     }
 
-    /// Returns the correction of each channel; a factor near -1 becomes a mere change of sign.
+    /// Returns each channel's correction; a factor near -1 becomes a mere sign change.
     #[must_use]
     pub fn remedies(&self, outputs: &[Signal]) -> Vec<(Signal, ChannelRemedy)> {
         match self {
@@ -49,7 +49,7 @@ impl RecordFault {
         }
     }
 
-    /// Returns the delay \[s\] of a fault in time.
+    /// Returns a timing fault's delay \[s\].
     #[must_use]
     pub fn delay_s(&self) -> Option<f64> {
         match self {
@@ -59,7 +59,7 @@ impl RecordFault {
     }
 }
 
-/// The correction of a delay \[s\].
+/// The correction for a delay \[s\].
 fn delay_remedy(delay_s: f64) -> ChannelRemedy {
     ChannelRemedy {
         delay_s,
@@ -97,6 +97,6 @@ pub struct ContradictingRecord {
     pub record: usize,
     /// Its name.
     pub name: String,
-    /// Its most likely fault, if it is the wrong one.
+    /// Its most likely fault, if it is the wrong record.
     pub fault: Option<RecordFault>,
 }

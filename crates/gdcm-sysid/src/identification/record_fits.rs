@@ -15,13 +15,13 @@ pub struct RecordFit {
     pub record: usize,
     /// `J` per degree of freedom; 1 is adequate.
     pub cost: f64,
-    /// Real values in the lines less the unknowns of the transients.
+    /// Real values in the lines less the transients' unknowns.
     pub freedom: usize,
     /// Whether the record was held out.
     pub held_out: bool,
 }
 
-/// Cost of the held-out records per degree of freedom.
+/// Held-out cost per degree of freedom.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeldOutCost {
     pub(super) raw: f64,
@@ -34,7 +34,7 @@ pub(super) struct RecordFits {
     /// Every record with degrees of freedom, in record order. Fitted records are
     /// corrected for the parameters: `J_r / dof_r  N / (N - k)` (M14.13).
     pub(super) records: Vec<RecordFit>,
-    /// `J` per degree of freedom of each output over the fitted records.
+    /// Each output's `J` per degree of freedom over the fitted records.
     pub(super) outputs: Vec<f64>,
     /// `J` per degree of freedom over the fitted records.
     pub(super) cost: f64,
@@ -43,7 +43,7 @@ pub(super) struct RecordFits {
 }
 
 impl RecordFits {
-    /// Computes the fits of a model; `None` if a cost is not finite or nothing has degrees of
+    /// Computes a model's fits; `None` if a cost is not finite or nothing has degrees of
     /// freedom.
     pub(super) fn new(
         data: &PreparedData,
@@ -82,7 +82,7 @@ impl RecordFits {
     }
 }
 
-/// Relates the costs of held-out records to their degrees of freedom; `moved` is the total cost with
+/// Relates held-out costs to their degrees of freedom; `moved` is the total cost with
 /// the model moved within its uncertainty.
 fn held_out_cost(held_out: &[RecordFit], moved: Option<f64>) -> Option<HeldOutCost> {
     let raw = mean_cost(held_out)?;
@@ -94,7 +94,7 @@ fn held_out_cost(held_out: &[RecordFit], moved: Option<f64>) -> Option<HeldOutCo
     Some(HeldOutCost { raw, normalised })
 }
 
-/// Computes the fit of each record that has degrees of freedom, by record.
+/// Computes the fit for each record that has degrees of freedom, by record.
 pub(super) fn fits_of_records(
     likelihood: &Likelihood,
     model: &BlockModel,
@@ -134,7 +134,7 @@ fn mean_cost(fits: &[RecordFit]) -> Option<f64> {
     }
 }
 
-/// Computes `J` per degree of freedom of each output by itself: `sum |E_o|^2 / (Cv_oo / 2)` over its
+/// Computes each output's own `J` per degree of freedom: `sum |E_o|^2 / (Cv_oo / 2)` over its
 /// share of the degrees of freedom.
 fn output_costs(likelihood: &Likelihood, model: &BlockModel, parts: &[SegmentCost]) -> Vec<f64> {
     let outputs = model.c.nrows();
@@ -142,7 +142,7 @@ fn output_costs(likelihood: &Likelihood, model: &BlockModel, parts: &[SegmentCos
     let mut sums = vec![0.0; outputs];
     for (segment, part) in likelihood.segments.iter().zip(parts) {
         for (weight, residual) in segment.weights.iter().zip(part.residual.column_iter()) {
-            // The Cholesky factor of Cv / 2 turns the whitened residual into that of the outputs.
+            // The Cholesky factor of Cv / 2 turns the whitened residual back into output units.
             let identity = DMatrix::identity(outputs, outputs);
             let Some(factor) = weight.solve_lower_triangular(&identity) else {
                 continue;

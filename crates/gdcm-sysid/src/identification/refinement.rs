@@ -1,4 +1,4 @@
-//! The refinement of a model: Levenberg-Marquardt iteration on the cost (M14.4).
+//! Model refinement: Levenberg-Marquardt iteration on the cost (M14.4).
 //!
 //! ```text
 //! lambda = 1e-4;  for each step:
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! D. W. Marquardt, "An algorithm for least-squares estimation of nonlinear parameters", SIAM J.
-//! Appl. Math. 11, 1963. lambda also takes care of the free scales of the blocks.
+//! Appl. Math. 11, 1963. lambda also controls the blocks' free scales.
 
 use gdcm_model::progress::Shares;
 
@@ -18,22 +18,22 @@ use super::likelihood::{Likelihood, SegmentCost};
 use super::normal_system::{NormalSystem, normal_systems};
 use super::search_extent::parameters_of_order;
 
-/// Relative gain below which the refinement ends, unless orders of large models are compared.
+/// Relative gain below which the refinement ends, unless large models' orders are compared.
 pub(super) const LEAST_GAIN: f64 = 1e-4;
-/// Damping of the first step.
+/// First step's damping.
 pub(super) const FIRST_DAMPING: f64 = 1e-4;
-/// Factor of the damping after a failure, and its inverse after a success.
+/// Damping factor after a failure, and its inverse after a success.
 const DAMPING_FACTOR: f64 = 8.0;
 /// Failures after which a step is given up.
 const FAILURES: usize = 8;
-/// Reported share for a step, over the whole work.
+/// Share of the whole work that is reported for a step.
 const SHARE: f64 = 0.02;
 
-/// A model, its cost, and the state of its refinement.
+/// A model, its cost, and its refinement state.
 #[derive(Clone, Debug)]
 pub(super) struct Fit {
     pub(super) model: BlockModel,
-    /// Share of each segment in the cost.
+    /// Each segment's share in the cost.
     pub(super) parts: Vec<SegmentCost>,
     /// `J`.
     pub(super) cost: f64,
@@ -59,7 +59,7 @@ impl Fit {
         })
     }
 
-    /// Takes at most `count` further steps, as long as each gains `least_gain` of the cost.
+    /// Takes at most `count` further steps, as long as each gains the cost share `least_gain`.
     pub(super) fn refined(
         mut self,
         likelihood: &Likelihood,
@@ -80,12 +80,12 @@ impl Fit {
         Ok(self)
     }
 
-    /// Computes the normal systems of the segments at the model.
+    /// Computes the segments' normal systems at the model.
     pub(super) fn systems(&self, likelihood: &Likelihood) -> Option<Vec<NormalSystem>> {
         normal_systems(likelihood, &self.model, &self.parts)
     }
 
-    /// Returns the number of parameters that matter.
+    /// Counts the parameters that matter.
     pub(super) fn effective_parameters(&self) -> usize {
         parameters_of_order(
             self.model.order(),
@@ -94,7 +94,8 @@ impl Fit {
         )
     }
 
-    /// Returns `N - k`, the degrees of freedom that the parameters leave; `None` if they leave none.
+    /// Returns `N - k`, the degrees of freedom that the parameters leave; `None` if they leave
+    /// none.
     pub(super) fn spare_freedom(&self, likelihood: &Likelihood) -> Option<usize> {
         let freedom = likelihood.freedom(self.model.order());
         match freedom.checked_sub(self.effective_parameters()) {
@@ -127,7 +128,7 @@ impl Fit {
     }
 }
 
-/// The starting point of a damped step.
+/// A damped step's starting point.
 pub(super) struct DampedStart<'s> {
     pub(super) model: &'s BlockModel,
     /// `G` and `g` at the model.
@@ -137,7 +138,7 @@ pub(super) struct DampedStart<'s> {
     pub(super) damping: f64,
 }
 
-/// The result of a damped step.
+/// A damped step's result.
 pub(super) struct DampedStep {
     pub(super) model: BlockModel,
     parts: Vec<SegmentCost>,
@@ -146,7 +147,7 @@ pub(super) struct DampedStep {
 }
 
 impl DampedStart<'_> {
-    /// Takes one step that lowers the cost; `None` after eight failures.
+    /// Takes a step that lowers the cost; `None` after eight failures.
     pub(super) fn step(&self, likelihood: &Likelihood) -> Option<DampedStep> {
         let mut damping = self.damping;
         for _ in 0..=FAILURES {

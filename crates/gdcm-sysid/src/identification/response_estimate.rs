@@ -8,7 +8,7 @@ use gdcm_model::response::median;
 
 use super::scales::Scales;
 
-/// Terms of a local polynomial: 1, x, x^2.
+/// Local polynomial terms: 1, x, x^2.
 pub(super) const TERMS: usize = 3;
 /// An input with a median partial coherence below this was not swept, or only together with another
 /// (M14.2).
@@ -17,49 +17,49 @@ const LEAST_PARTIAL_COHERENCE: f64 = 0.3;
 const GREATEST_CONDITION: f64 = 1e3;
 /// Partial coherence from which a point is trusted (M14.2).
 pub const TRUSTED_COHERENCE: f64 = 0.6;
-/// Share of the band, in logarithm, that shows nothing at an end of a band that is too wide
+/// Share of the band, in logarithm, that shows nothing at an end if the band is too wide there
 /// (M14.10).
 const END: f64 = 0.2;
 
-/// The measured response at one frequency.
+/// The measured response at a frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimatePoint {
     /// \[rad/s\].
     pub omega: f64,
     /// `G0`, outputs x inputs.
     pub response: DMatrix<Complex<f64>>,
-    /// `E |error of G0|^2` of each entry, outputs x inputs. Real and imaginary part have one half
-    /// each, so `sqrt(variance / 2) / |G0|` is the standard deviation of the log modulus \[Np\] and
-    /// of the phase \[rad\].
+    /// `E |error of G0|^2`, outputs x inputs. Real and imaginary part have a half
+    /// each, so `sqrt(variance / 2) / |G0|` is the standard deviation in log modulus \[Np\] and
+    /// phase \[rad\].
     pub variance: DMatrix<f64>,
-    /// `Cv`, covariance of the noise of a line, real part, outputs x outputs.
+    /// `Cv`, noise covariance of a line, real part, outputs x outputs.
     pub noise: DMatrix<f64>,
-    /// Mean power of the lines of each output around this frequency.
+    /// Mean line power around this frequency, by output.
     pub power: DVector<f64>,
-    /// Multiple coherence of each output: the share of its power that all inputs explain, 0 to 1.
+    /// Multiple coherence, by output: the power share that all inputs explain, 0 to 1.
     pub coherence: DVector<f64>,
-    /// Partial coherence, outputs x inputs: the share, 0 to 1, of the power left by the other inputs
-    /// that this input explains.
+    /// Partial coherence, outputs x inputs: the share, 0 to 1, of the power left by the other
+    /// inputs that this input explains.
     pub partial_coherence: DMatrix<f64>,
-    /// Condition number of the spectral matrix `S_uu` of the inputs, in scaled units.
+    /// Condition number of the inputs' spectral matrix `S_uu`, in scaled units.
     pub condition: f64,
-    /// `h`, half width of the window of lines \[rad/s\].
+    /// `h`, window half width \[rad/s\].
     pub half_width: f64,
-    /// Spectral lines less unknowns: the degrees of freedom of `noise`.
+    /// Spectral lines less unknowns: degrees of freedom in `noise`.
     pub freedom: usize,
 }
 
 impl EstimatePoint {
-    /// Returns the standard deviation of `ln G0` of an entry: of the log modulus \[Np\] and of the
-    /// phase \[rad\] alike.
+    /// Returns the standard deviation in `ln G0`: in log modulus \[Np\] and
+    /// in phase \[rad\] alike.
     pub fn sd(&self, pair: (usize, usize)) -> f64 {
         (0.5 * self.variance[pair]).sqrt() / self.response[pair].norm()
     }
 
-    /// Returns the partial coherence of an input with the output that it moves most, less the share
-    /// that as many columns of noise would explain: `1 - (1 - c) (freedom + 3) / freedom`.
+    /// Returns the partial coherence between an input and the output that it moves most, less the
+    /// share that as many noise columns would explain: `1 - (1 - c) (freedom + 3) / freedom`.
     ///
-    /// Without the correction the greatest of many outputs is never small by chance.
+    /// Without the correction the greatest among many outputs is never small by chance.
     fn greatest_coherence(&self, input: usize) -> f64 {
         let columns = TERMS as f64;
         let freedom = self.freedom.max(1) as f64;
@@ -95,10 +95,10 @@ impl EstimatePoint {
 /// How well each input was moved by itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Excitation {
-    /// For each input, the median over frequency of its partial coherence with the output that it
+    /// For each input, the median partial coherence over frequency with the output that it
     /// moves most, 0 to 1.
     pub partial_coherence: Vec<f64>,
-    /// Median over frequency of the condition number of the spectral matrix of the inputs.
+    /// Median condition number over frequency of the inputs' spectral matrix.
     pub condition: f64,
 }
 
@@ -120,7 +120,7 @@ impl Excitation {
 /// The measured response `G[output, input]` over frequency, by the local polynomial method (M14.2).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseEstimate {
-    /// By ascending frequency, at least one.
+    /// By ascending frequency, not empty.
     pub points: Vec<EstimatePoint>,
 }
 
@@ -172,7 +172,7 @@ impl ResponseEstimate {
         .ok()
     }
 
-    /// Tabulates a value of every response over frequency. There is at least one point.
+    /// Tabulates every response's value over frequency. `points` is not empty.
     fn table(&self, value: fn(&EstimatePoint, (usize, usize)) -> f64) -> PairTable<Vec<f64>> {
         let (outputs, inputs) = self.points[0].response.shape();
         PairTable::from_fn(outputs, inputs, |pair: Pair| {
@@ -209,7 +209,7 @@ impl ResponseEstimate {
         }
     }
 
-    /// Converts an estimate in the scaled units of `scales` to file units.
+    /// Converts an estimate from the units in `scales` to file units.
     #[must_use]
     pub fn in_units(&self, scales: &Scales) -> Self {
         let response_factors = scales.response_factors();

@@ -1,4 +1,4 @@
-//! The scale of every channel: its rms about the mean (M14.1).
+//! Channel scales: the rms about the mean (M14.1).
 
 use nalgebra::DMatrix;
 
@@ -8,7 +8,7 @@ use gdcm_model::simulation::Segment;
 /// A channel with an rms below this share of its greatest modulus is constant but for rounding.
 const CONSTANT: f64 = 1e-12;
 
-/// The scale of every channel, in file units: its rms about the mean of each segment,
+/// Every channel's scale, in file units: its rms about each segment's mean,
 /// over all segments (M14.1).
 ///
 /// ```text
@@ -40,10 +40,10 @@ pub enum ScalingError {
 }
 
 impl Scales {
-    /// Computes the scales of the channels of `segments`.
+    /// Computes the channel scales for `segments`.
     ///
     /// # Errors
-    /// No segments, differing numbers of channels, values that are not finite, a constant channel.
+    /// No segments, differing channel counts, values that are not finite, a constant channel.
     pub fn from_segments(segments: &[Segment]) -> Result<Self, ScalingError> {
         let first = segments.first().ok_or(ScalingError::NoSegments)?;
         for (number, segment) in segments.iter().enumerate() {
@@ -59,7 +59,7 @@ impl Scales {
         })
     }
 
-    /// Divides every channel by its scale. Channels beyond those of the scales stay as they are.
+    /// Divides every channel by its scale. Channels without a scale stay as they are.
     #[must_use]
     pub fn scaled(&self, segment: &Segment) -> Segment {
         let mut scaled = segment.clone();
@@ -83,12 +83,12 @@ fn divide_columns(samples: &mut DMatrix<f64>, scales: &[f64]) {
     }
 }
 
-/// The samples of all inputs or all outputs of a segment.
+/// A segment's inputs or outputs.
 fn samples_of_side(segment: &Segment, role: ChannelSide) -> &DMatrix<f64> {
     role.of(&segment.inputs, &segment.outputs)
 }
 
-/// Computes the rms of each channel about its mean in each segment, over all segments.
+/// Computes each channel's rms about its mean in each segment, over all segments.
 fn rms_of_side(segments: &[Segment], role: ChannelSide) -> Result<Vec<f64>, ScalingError> {
     let channels = segments
         .first()

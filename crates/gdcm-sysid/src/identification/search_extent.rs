@@ -2,13 +2,13 @@
 
 use std::ops::RangeInclusive;
 
-/// Orders that are tried one by one.
+/// Orders that are all tried.
 const LOW_ORDERS: RangeInclusive<usize> = 1..=8;
 /// Even orders that are tried beyond.
 const HIGH_ORDERS: RangeInclusive<usize> = 10..=24;
 /// Channels up to which odd orders above 3 are tried.
 const ODD_ORDERS: usize = 6;
-/// Past windows for any number of channels.
+/// Past windows for any channel count.
 const PASTS: [usize; 4] = [8, 10, 12, 16];
 /// Further past window for few channels.
 const LONG_PAST: usize = 24;
@@ -16,30 +16,30 @@ const LONG_PAST: usize = 24;
 const LONG_PAST_CHANNELS: usize = 4;
 /// Shortest past window.
 const LEAST_PAST: usize = 3;
-/// Least number of rows over columns of a data matrix.
+/// Least ratio between rows and columns in a data matrix.
 const LEAST_ROWS: f64 = 2.0;
 /// The same if no past window has so many.
 const LEAST_ROWS_SHORT: f64 = 1.5;
 /// Time between instants times the upper band end \[rad\].
 pub(super) const SPACING: f64 = 1.2;
-/// Least number of real values in the lines for each unknown of a model (M14.13).
+/// Fewest real values in the lines for each unknown in a model (M14.13).
 pub(super) const FIGURES_AN_UNKNOWN: usize = 5;
 
-/// Returns the number of parameters that matter in a model of an order: `n (m + l) + m l`.
+/// Counts the parameters that matter in a model with this order: `n (m + l) + m l`.
 ///
-/// Changes of the state basis do not count.
+/// Changes in the state basis do not count.
 pub(super) fn parameters_of_order(order: usize, inputs: usize, outputs: usize) -> usize {
     order * (inputs + outputs) + inputs * outputs
 }
 
-/// The number of channels and the amount of data.
+/// The channel counts and the amount of data.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extent {
     pub(super) inputs: usize,
     pub(super) outputs: usize,
-    /// Real values in all lines less the transients of the records.
+    /// Real values in all lines less the records' transients.
     pub(super) figures: usize,
-    /// Length of the records times the upper band end \[rad\].
+    /// Record length times the upper band end \[rad\].
     pub(super) radians: f64,
 }
 
@@ -48,7 +48,7 @@ impl Extent {
         self.inputs + self.outputs
     }
 
-    /// Returns the most block rows of the map to the future: enough for 30 states.
+    /// Returns the most block rows in the map to the future: enough for 30 states.
     pub(super) fn longest_future(self) -> usize {
         30_usize.div_ceil(self.outputs.max(1)).max(12)
     }
@@ -82,7 +82,7 @@ impl Extent {
             .collect()
     }
 
-    /// Whether there are enough real values for the parameters of an order.
+    /// Whether there are enough real values for an order's parameters.
     fn carries(self, order: usize) -> bool {
         let parameters = parameters_of_order(order, self.inputs, self.outputs);
         FIGURES_AN_UNKNOWN * parameters <= self.figures
@@ -95,7 +95,8 @@ mod tests {
 
     #[test]
     fn one_axis_of_thirty_seconds_carries_orders_to_14_and_all_past_windows() {
-        // 74 lines of one output: known answer of independent code (identification-real.json, short_siso).
+        // 74 lines of one output: known answer of independent code (identification-real.json,
+        // short_siso).
         let extent = Extent {
             inputs: 1,
             outputs: 1,
@@ -125,7 +126,8 @@ mod tests {
             ..extent
         };
         assert_eq!(short.pasts(), [5]);
-        // 340 rows: two for each column would take 360 of p = 8, and one and a half are there up to p = 10.
+        // 340 rows: two for each column would take 360 of p = 8, and one and a half are there up
+        // to p = 10.
         let between = Extent {
             radians: 34.0 * 12.0,
             ..extent

@@ -1,4 +1,4 @@
-//! The spectral lines of a segment: its Fourier transform without a window (M14.2).
+//! A segment's spectral lines: its Fourier transform without a window (M14.2).
 
 use std::f64::consts::TAU;
 
@@ -8,10 +8,10 @@ use gdcm_model::executor::{Executor, each};
 use gdcm_model::simulation::Segment;
 use gdcm_numerics::{FourierPlanner, FourierTransform};
 
-/// The lines of a segment are used from its second one up: the first holds its drift (M14.12).
+/// A segment's lines are used from its second up: the first holds its drift (M14.12).
 const FIRST_LINE: f64 = 1.5;
 
-/// The lines of one segment (M14.2): one column a line, one row a channel.
+/// A segment's lines (M14.2): columns are lines, rows are channels.
 ///
 /// ```text
 /// U(omega_k) = dt / sqrt(T) sum_n u[n] e^(-j omega_k n dt)
@@ -49,7 +49,7 @@ impl Spectrum {
     }
 }
 
-/// The lines of segments that are used.
+/// The range in which lines are used.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LineRange {
     /// \[rad/s\].
@@ -59,7 +59,7 @@ pub(super) struct LineRange {
 }
 
 impl LineRange {
-    /// Transforms the segments and keeps the lines in the range, from the second of each segment on.
+    /// Transforms the segments and keeps the lines in the range, from each segment's second on.
     ///
     /// Segments without a line in the range are left out.
     pub(super) fn spectra(self, segments: &[Segment], executor: &dyn Executor) -> Vec<Spectrum> {
@@ -75,7 +75,7 @@ impl LineRange {
     }
 }
 
-/// Computes the lines of every segment up to `highest` \[rad/s\] and below half the sampling
+/// Computes every segment's lines up to `highest` \[rad/s\] and below half the sampling
 /// frequency, in segment order.
 #[must_use]
 pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> Vec<Spectrum> {
@@ -89,7 +89,7 @@ pub fn spectra(segments: &[Segment], highest: f64, executor: &dyn Executor) -> V
     })
 }
 
-/// Computes the lines of one segment up to `highest`; `plan` is a transform of its length.
+/// Computes a segment's lines up to `highest`; `plan` is a transform for its length.
 fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectrum {
     let duration_s = segment.sample_time_s * segment.inputs.nrows() as f64;
     let below_nyquist = segment.inputs.nrows().saturating_sub(1) / 2;
@@ -107,7 +107,7 @@ fn spectrum(segment: &Segment, highest: f64, plan: &FourierTransform) -> Spectru
     }
 }
 
-/// Computes lines 1 to `lines` of each column of `samples`, times `factor`: one row a channel.
+/// Computes lines 1 to `lines` for each column in `samples`, times `factor`; rows are channels.
 fn transform(
     samples: &DMatrix<f64>,
     lines: usize,

@@ -37,7 +37,7 @@ const RANKING_ORDER: usize = 18;
 const KEPT: usize = 2;
 /// Modes beyond this many times the upper band end are images of z near -1.
 const FASTEST: f64 = 8.0;
-/// Share that the candidates take in the whole work.
+/// Share of the whole work that the candidates take.
 const SHARE: f64 = 0.2;
 /// Ridge of the predictor over unit columns.
 const RIDGE: f64 = 1e-8;
@@ -71,8 +71,8 @@ pub(super) struct Subspace {
 }
 
 impl Subspace {
-    /// Computes the states (steps 1 to 3) from a pole's triangular factor \[rad/s\]; `ridge` is
-    /// over unit columns.
+    /// Computes the states (steps 1 to 3) from the triangular factor at a Laguerre pole \[rad/s\];
+    /// `ridge` is over unit columns.
     ///
     /// Returns `None` if the regressors depend on each other or an iteration does not converge.
     pub(super) fn new(
@@ -102,7 +102,8 @@ impl Subspace {
             map.view_mut((row * outputs, row * channels), (outputs, kept))
                 .copy_from(&theta.columns(0, kept));
         }
-        // The transposed triangular factor of (Gamma K Z0')' shares its left factors with Gamma K Z0'.
+        // The transposed triangular factor of (Gamma K Z0')' shares its left factors with Gamma K
+        // Z0'.
         let mut transposed = TriangularFactor::empty(future * outputs);
         transposed.append(&(factor.view((0, 0), (width, width)) * map.transpose()));
         let decomposition =
@@ -197,7 +198,7 @@ pub(super) struct Candidate {
     subspace: Subspace,
 }
 
-/// An order's poles.
+/// The poles of an order's model.
 pub(super) struct PolesOfOrder {
     pub(super) order: usize,
     /// \[rad/s\].
@@ -291,7 +292,7 @@ struct Ranking<'r> {
     longest_past: usize,
     /// Order at which models are compared.
     order: usize,
-    /// Reported share for a step, over the whole work.
+    /// Share of the whole work that is reported for a step.
     share: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Topics with clocks of their own, brought to one uniform clock (M14.11).
+//! Topics with their own clocks, brought to a common uniform clock (M14.11).
 
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
@@ -9,28 +9,28 @@ use gdcm_model::response::median;
 const LONGEST_STEP: f64 = 4.5;
 /// Share of repeated samples above which a channel is held.
 const HELD: f64 = 0.5;
-/// Fewest samples of a topic.
+/// Fewest samples in a topic.
 const LEAST_SAMPLES: usize = 3;
-/// Half length of the kernel, in half periods of its cut-off.
+/// Kernel half length, in half periods at its cut-off.
 const HALF_TAPS: f64 = 12.0;
-/// Tolerance for a time beyond the stamps of a run, over the time itself.
+/// Tolerance for a time beyond a run's stamps, over the time itself.
 const ROUNDING: f64 = 1e-9;
-/// Highest line used over the end of the band (M14.2).
+/// Highest line used over the band end (M14.2).
 const HIGHEST_LINE: f64 = 4.0 / 3.0;
-/// Samples of the highest line that a topic must have at least.
+/// Fewest samples in a period of the highest line, for a topic.
 const NEEDED: f64 = 2.5;
-/// Samples of the highest line on the common clock at least, whatever the topics have.
+/// The same for the common clock.
 const LEAST_ON_CLOCK: f64 = 4.0;
-/// Samples of the highest line on the common clock at most.
+/// Most samples in a period of the highest line, for the common clock.
 const MOST_ON_CLOCK: f64 = 20.0;
 /// Cut-off over the highest line.
 const CUT_OFF: f64 = 5.0;
-/// Cut-off over half the slowest rate at most.
+/// Highest cut-off over half the slowest rate.
 const CUT_OFF_OF_RATE: f64 = 0.8;
 /// Ten million samples are a day at 100 Hz; more samples come from a wrong stamp.
 const MOST_SAMPLES: f64 = 1e7;
 
-/// Samples of one channel with stamps of their own.
+/// A channel's samples with their own stamps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Topic {
     /// Name for display.
@@ -39,7 +39,7 @@ pub struct Topic {
     time_s: Vec<f64>,
     /// Value at each stamp, finite.
     values: Vec<f64>,
-    /// The samples between two gaps; at least one run.
+    /// The samples between two gaps; not empty.
     runs: Vec<Range<usize>>,
     /// Samples in a second, without gaps.
     pub rate_hz: f64,
@@ -48,7 +48,7 @@ pub struct Topic {
 impl Topic {
     /// Keeps the samples with increasing stamps and a finite value.
     ///
-    /// A held command acts until the next one comes: its stamps are moved half of that time later
+    /// A held command acts until the next comes: its stamps are moved half that time later
     /// (M14.1).
     ///
     /// # Errors
@@ -125,13 +125,13 @@ impl Topic {
     }
 }
 
-/// Moves each stamp later by half the time to the next one, at most by half of `longest_s`.
+/// Moves each stamp later by half the time to the next, at most by half `longest_s`.
 fn delay_by_half_a_hold(times: &mut [f64], longest_s: f64) {
-    // In place from the front: each stamp needs the next one unmoved.
+    // In place from the front: each stamp needs the next unmoved.
     for k in 0..times.len() - 1 {
         times[k] += 0.5 * (times[k + 1] - times[k]).min(longest_s);
     }
-    // The last hold lasts as long as the one before it.
+    // The last hold lasts as long as the hold before.
     if let [.., before, last] = times {
         *last += (*last - *before).min(longest_s);
     }
@@ -151,7 +151,7 @@ fn runs(times: &[f64], longest_s: f64) -> Vec<Range<usize>> {
     runs
 }
 
-/// Returns the number of samples in a second, without gaps; 0 if every run has a single sample.
+/// Counts the samples in a second, without gaps; 0 if every run has a single sample.
 fn rate_hz(times: &[f64], runs: &[Range<usize>]) -> f64 {
     let mut steps = 0;
     let mut length_s = 0.0;
@@ -166,21 +166,21 @@ fn rate_hz(times: &[f64], runs: &[Range<usize>]) -> f64 {
     }
 }
 
-/// Whether samples are those of a held command: more than half of them repeat the one before.
+/// Whether a command is held: more than half its samples repeat the sample before.
 pub fn is_held(values: &[f64]) -> bool {
     let same = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
     same as f64 > HELD * values.len() as f64
 }
 
-/// Filters and interpolates at time `t` \[s\] in one step (M14.11).
+/// Filters and interpolates at time `t` \[s\] in a single step (M14.11).
 ///
 /// ```text
 /// x(t) = Σ w_k v_k / Σ w_k
 /// w_k  = Δ_k sinc(wc (t − t_k)/π) · ½ (1 + cos(π (t − t_k)/h)),    |t − t_k| < h = 12 π/wc
-/// Δ_k  = half the distance of the two neighbours of t_k; at an end, the distance of its neighbour
+/// Δ_k  = half the distance between the neighbours of t_k; at an end, the distance to its neighbour
 /// ```
 ///
-/// Constants stay as they are, and so does a sample without another one near it. Stamps increase;
+/// Constants stay as they are, and so does a sample without another near it. Stamps increase;
 /// `cutoff` is wc \[rad/s\].
 fn low_passed(time_s: &[f64], values: &[f64], t: f64, cutoff: f64) -> f64 {
     let half = HALF_TAPS * PI / cutoff;
@@ -224,29 +224,30 @@ pub struct CommonClock {
     pub start_s: f64,
     /// Samples in a second.
     pub rate_hz: f64,
-    /// Number of samples.
+    /// Sample count.
     pub samples: usize,
-    /// Cut-off of the low-pass for every channel \[rad/s\].
+    /// Low-pass cut-off for every channel \[rad/s\].
     pub cutoff: f64,
 }
 
 impl CommonClock {
-    /// Chooses the clock of topics (M14.11).
+    /// Chooses the common clock (M14.11).
     ///
-    /// `band_end` is the end of the band \[rad/s\], by default as far as the topics reach; `rate_hz`
+    /// `band_end` is the upper band end \[rad/s\], by default as far as the topics reach; `rate_hz`
     /// is a requested rate \[Hz\].
     ///
     /// ```text
     /// whi = 4/3 ω2
     /// fs  = min(slowest rate, 20 whi/2π), at least 4 whi/2π
     /// wc  = min(5 whi, 0.8 π · slowest rate)
-    /// from the latest first stamp to the earliest last one
+    /// from the latest first stamp to the earliest last stamp
     /// ```
     ///
     /// # Errors
-    /// [`TopicError::TooSlow`] for a topic or a requested rate with fewer than 2.5 whi/2π samples in
-    /// a second; [`TopicError::NoCommonTime`] for topics that share no time; [`TopicError::TooMany`]
-    /// for more than ten million samples; [`TopicError::TooFew`] without topics.
+    /// [`TopicError::TooSlow`] for a topic or a requested rate with fewer than 2.5 whi/2π samples
+    /// in a second; [`TopicError::NoCommonTime`] for topics that share no time;
+    /// [`TopicError::TooMany`] for more than ten million samples; [`TopicError::TooFew`] without
+    /// topics.
     pub fn choose(
         topics: &[Topic],
         band_end: Option<f64>,
@@ -280,7 +281,7 @@ impl CommonClock {
         })
     }
 
-    /// Returns the times of its samples \[s\].
+    /// Returns its sample times \[s\].
     pub fn times_s(&self) -> Vec<f64> {
         (0..self.samples)
             .map(|k| self.start_s + k as f64 / self.rate_hz)
@@ -357,7 +358,7 @@ fn common_span_s(topics: &[Topic]) -> Result<[f64; 2], TopicError> {
     Ok([start_s, end_s])
 }
 
-/// Why topics cannot be brought to one clock.
+/// Why topics cannot be brought to a common clock.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs)]
 pub enum TopicError {
@@ -374,9 +375,9 @@ pub enum TopicError {
         rate_hz: f64,
         /// Samples in a second that the band needs.
         needed_hz: f64,
-        /// End of the band \[rad/s\].
+        /// Upper band end \[rad/s\].
         band_end: f64,
-        /// Greatest possible end of the band \[rad/s\].
+        /// Greatest possible band end \[rad/s\].
         possible: f64,
     },
     /// Topics share no time.

@@ -1,4 +1,4 @@
-//! The valid samples of each channel, and the straight lines between them (M14.1).
+//! Each channel's valid samples, and the straight lines between them (M14.1).
 
 use std::collections::BTreeMap;
 
@@ -16,16 +16,16 @@ use super::preparation_settings::{ChannelPreparation, Hold, Preparation};
 const FROZEN_S: f64 = 1.0;
 /// An output is frozen if it is constant for this many times as long as usual.
 const UNUSUAL: f64 = 5.0;
-/// Quantile of the runs of equal samples that is usual.
+/// Usual quantile for runs with equal samples.
 const USUAL: f64 = 0.95;
-/// Fewest runs of equal samples in an output that moves.
+/// Fewest runs with equal samples in an output that moves.
 const RUNS_OF_A_MOVING: usize = 10;
 /// Fewest equal samples at the least or the greatest value that are a run at a limit.
 const RUN_AT_A_LIMIT: usize = 5;
 /// Tolerance for a time beyond the last sample, over the sample time.
 const ROUNDING: f64 = 1e-6;
 
-/// Consecutive places `from..to` among the stamps of a clock.
+/// Consecutive places `from..to` among a clock's stamps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Places {
     from: usize,
@@ -48,7 +48,7 @@ struct Interval {
     end_s: f64,
 }
 
-/// A gap in one channel. The order of the fields is the order in which gaps are listed.
+/// A gap in a channel. Gaps are listed in the order of these fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct ChannelGap {
     places: Places,
@@ -56,7 +56,7 @@ struct ChannelGap {
     treatment: Treatment,
 }
 
-/// The valid samples of all channels of a record.
+/// All channels' valid samples in a record.
 pub(super) struct Tracks {
     /// Inputs first.
     pub tracks: Vec<Track>,
@@ -65,7 +65,7 @@ pub(super) struct Tracks {
 }
 
 impl Tracks {
-    /// Finds the valid samples of each channel of `record`.
+    /// Finds each channel's valid samples in `record`.
     pub fn new(record: &FlightRecord, clock: &Clock, preparation: &Preparation) -> Self {
         let columns: Vec<Column> = preparation
             .channels()
@@ -109,11 +109,11 @@ impl Tracks {
     }
 }
 
-/// The valid samples of one channel, on the clock of the record counted from its first stamp.
+/// A channel's valid samples, on the record's clock counted from its first stamp.
 pub(super) struct Track {
     times: Vec<f64>,
     values: Vec<f64>,
-    /// Delay of the stamps \[s\].
+    /// Stamp delay \[s\].
     shift_s: f64,
     /// Samples further apart than this \[s\] have a gap between them that is not bridged.
     longest_step_s: f64,
@@ -142,7 +142,7 @@ impl Track {
         }
     }
 
-    /// Decides whether a gap is bridged; a gap at an end of the record is not.
+    /// Decides whether a gap is bridged; a gap at a record's end is not.
     fn treatment(&self, clock: &Clock, places: Places) -> Treatment {
         let interval = places.surrounding(clock);
         let is_inside = places.from > 0 && places.to < clock.times.len();
@@ -161,7 +161,7 @@ impl Track {
 /// Reads a track at ascending times.
 pub(super) struct Reader<'a> {
     track: &'a Track,
-    /// First sample after the time of the last reading.
+    /// First sample after the last reading.
     next: usize,
 }
 
@@ -191,7 +191,7 @@ impl Reader<'_> {
     }
 }
 
-/// Reads all channels at `t` \[s\] into `row`. Returns whether each of them has a value.
+/// Reads all channels at `t` \[s\] into `row`. Returns whether each has a value.
 pub(super) fn read_row(readers: &mut [Reader<'_>], t: f64, row: &mut [f64]) -> bool {
     let mut is_complete = true;
     for (reader, value) in readers.iter_mut().zip(row) {
@@ -206,10 +206,11 @@ pub(super) fn read_row(readers: &mut [Reader<'_>], t: f64, row: &mut [f64]) -> b
     is_complete
 }
 
-/// Keeps in `places` the fresh samples of a slow sensor, and returns its sample time \[s\].
+/// Keeps in `places` a slow sensor's fresh samples, and returns its sample time \[s\].
 ///
-/// A sample is fresh if it differs from the one before it, or if the sample time of the sensor (the
-/// median time between changes) has passed since the last fresh one: equal readings are readings.
+/// A sample is fresh if it differs from the sample before, or if the sensor's sample time (the
+/// median time between changes) has passed since the last fresh sample: equal readings are
+/// readings.
 fn keep_fresh_samples(column: &Column, clock: &Clock, places: &mut Vec<usize>) -> f64 {
     let mut changes = Vec::new();
     for pair in places.windows(2) {
@@ -218,7 +219,7 @@ fn keep_fresh_samples(column: &Column, clock: &Clock, places: &mut Vec<usize>) -
         }
     }
     let mut holds: Vec<f64> = changes.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    // The median of no holds is NaN, which `max` ignores.
+    // Without holds the median is NaN, which `max` ignores.
     let held_s = median(&mut holds).max(clock.sample_time_s);
     let mut previous: Option<usize> = None;
     let mut last_fresh_s = f64::NEG_INFINITY;
@@ -235,7 +236,7 @@ fn keep_fresh_samples(column: &Column, clock: &Clock, places: &mut Vec<usize>) -
     held_s
 }
 
-/// One channel at the stamps of the clock.
+/// A channel at the clock's stamps.
 struct Column {
     signal: Signal,
     values: Vec<f64>,
@@ -259,7 +260,7 @@ impl Column {
         is_valid
     }
 
-    /// Whether it changes at half or more of the steps between two places, both included.
+    /// Whether it changes at half the steps or more between two places, both included.
     fn moves_between(&self, first: usize, last: usize) -> bool {
         let samples: Vec<f64> = self.values[first..=last]
             .iter()
@@ -279,11 +280,11 @@ impl Column {
 
     /// Finds the places at which the channel is frozen: it repeats the value before them.
     ///
-    /// A run of exactly equal samples is frozen if it lasts more than 1 s, and more than five times
-    /// the run that 95 % of the runs do not reach (which spares slow sensors), in a channel that
+    /// A run with exactly equal samples is frozen if it lasts more than 1 s, and more than five
+    /// times the run that 95 % do not reach (which spares slow sensors), in a channel that
     /// moves at other times and while another channel changes at every second sample or more often.
     /// Only outputs freeze: a constant input is held. A coarse output stands still by itself, and
-    /// one that returns to its least or greatest value is at its limit.
+    /// an output that returns to its least or greatest value is at its limit.
     fn frozen_runs(&self, clock: &Clock, columns: &[Column]) -> Vec<Places> {
         let places: Vec<usize> = (0..self.values.len())
             .filter(|&k| self.values[k].is_finite())
@@ -332,14 +333,14 @@ impl Column {
     }
 }
 
-/// A run of places without a valid sample.
+/// A run without valid samples.
 struct InvalidRun {
     places: Places,
-    /// Whether part of it is frozen.
+    /// Whether it is partly frozen.
     is_frozen: bool,
 }
 
-/// Finds the runs of places without a valid sample.
+/// Finds the runs without valid samples.
 fn invalid_runs(is_valid: &[bool], frozen: &[Places]) -> Vec<InvalidRun> {
     let mut runs = Vec::new();
     let mut from = 0;

@@ -1,34 +1,34 @@
-//! The triangular factor of a tall matrix that arrives in blocks of rows.
+//! The triangular factor of a tall matrix that arrives in row blocks.
 //!
 //! ```text
-//! R <- qr([R; rows]), R upper triangular, for each panel of columns J of the width w:
-//! 1  for each column j of J: beta = -sign(R_jj) hypot(R_jj, |b_j|), v_j = b_j / (R_jj - beta),
+//! R <- qr([R; rows]), R upper triangular, for each column panel J with the width w:
+//! 1  for each column j in J: beta = -sign(R_jj) hypot(R_jj, |b_j|), v_j = b_j / (R_jj - beta),
 //!       tau_j = (beta - R_jj) / beta
-//!       the reflector is I - tau_j [e_j; v_j] [e_j; v_j]', applied to the columns of J that follow
+//!       the reflector is I - tau_j [e_j; v_j] [e_j; v_j]', applied to the later columns in J
 //! 2  T upper triangular: T_jj = tau_j, T_:j = -tau_j T (V' v_j)            (I - [E; V] T [E; V]')
 //! 3  columns right of J: W = T' (R_J + V' rows), R_J -= W, rows -= V W     (two matrix products)
 //! ```
 //!
 //! Nothing is squared. Householder QR in the compact form of R. Schreiber & C. Van Loan, "A
 //! storage-efficient WY representation for products of Householder transformations", SIAM J. Sci.
-//! Stat. Comput. 10, 1989. The upper part of each reflector is a single entry because R is already
+//! Stat. Comput. 10, 1989. Each reflector's upper part is a single entry because R is already
 //! triangular (J. Demmel, L. Grigori, M. Hoemmen & J. Langou, "Communication-optimal parallel and
 //! sequential QR and LU factorizations", SIAM J. Sci. Comput. 34, 2012).
 
 use nalgebra::{DMatrix, DMatrixView, DVector};
 
-/// Columns of a panel.
+/// Columns in a panel.
 const PANEL: usize = 16;
-/// Rows that are added at once: a block of them and the panel fit the second cache of a processor.
+/// Rows that are added at once: a row block and the panel fit a processor's second cache.
 const ROWS: usize = 256;
 
-/// `R` of `A = Q R` for the rows of `A` seen so far: square and upper triangular, signs of its rows
+/// `R` of `A = Q R` for the rows of `A` seen so far: square and upper triangular, row signs
 /// arbitrary.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct TriangularFactor(DMatrix<f64>);
 
 impl TriangularFactor {
-    /// The factor of no rows.
+    /// The factor without rows.
     pub(super) fn empty(columns: usize) -> Self {
         Self(DMatrix::zeros(columns, columns))
     }
@@ -154,8 +154,8 @@ pub(super) fn ridge_solution(
     }
 }
 
-/// Computes `X = argmin |A X - Y|^2` by a triangular factor of the scaled columns; `None` if the
-/// columns of `A` depend on each other.
+/// Computes `X = argmin |A X - Y|^2` by a triangular factor with scaled columns; `None` if the
+/// columns in `A` depend on each other.
 pub(super) fn least_squares(a: &DMatrix<f64>, y: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let mut both = DMatrix::zeros(a.nrows(), a.ncols() + y.ncols());
     both.columns_mut(0, a.ncols()).copy_from(a);
@@ -189,7 +189,8 @@ mod tests {
             } else {
                 1.0
             };
-            // Orthogonal transformations: the error is a few roundings of the norm of the matrix, 100.
+            // Orthogonal transformations: the error is a few roundings of the norm of the matrix,
+            // 100.
             assert!((found * sign - expected).norm() < 1e-11, "row {row}");
         }
     }

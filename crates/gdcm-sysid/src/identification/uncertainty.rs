@@ -6,7 +6,7 @@
 //! var Re(dH/H), Im(dH/H) = h' Cov h, h the real or imaginary part of the gradient of ln H_oi
 //! sd^2 = 2 (sd_GN^2 + sd_order^2) + |G_b/G|^2 / 2
 //!     sd_order = rms of Re and Im ln(H_n'/H_n) over neighbouring orders
-//!     |G_b/G| the share of the response that is fed back (M14.17)
+//!     |G_b/G| the fed-back share of the response (M14.17)
 //! pole: d lambda = -(d a0 + lambda d a1) / (2 lambda + a1)
 //! ```
 //!

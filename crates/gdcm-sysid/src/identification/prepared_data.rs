@@ -108,41 +108,20 @@ impl<'a> PreparedData<'a> {
         check_inputs(&segments, options)?;
 
         progress.next(0.02, "measured response")?;
-        let used = LineRange {
-            lowest: options.lowest(),
-            highest: options.highest(),
-        };
-        let lines = LineRange {
-            highest: BEYOND * used.highest,
-            ..used
-        };
-        let wide = lines.spectra(&segments, executor);
-        let narrow: Vec<Spectrum> = wide
-            .iter()
-            .map(|spectrum| spectrum.between(used.lowest, used.highest))
-            .collect();
-        let too_short = check_length(&segments, &narrow, options)?;
+        let lines = Lines::new(&segments, options, executor);
+        let too_short = check_length(&segments, &lines.narrow, options)?;
+        let used = lines.used;
+        let reach = lines.reach;
         let Measurement {
             measured,
             spectra,
             direct,
         } = if options.references == 0 {
-            Measurement {
-                measured: measure_response(&wide, used.highest, executor)?,
-                spectra: narrow,
-                direct: None,
-            }
+            lines.measure(executor)?
         } else {
             let driven = driven_segments(&segments, references)?;
-            let driven_lines = lines.spectra(&driven, executor);
             let outputs = options.preparation.outputs.len();
-            let instrument = Instrument::new(&driven_lines, used, outputs, executor)?;
-            let logged = measure_response(&wide, used.highest, executor)?;
-            Measurement {
-                measured: instrument.measured,
-                spectra: instrument.spectra,
-                direct: Some(weigh(&narrow, &logged, executor)?),
-            }
+            lines.measure_through_reference(&driven, outputs, executor)?
         };
         let likelihood = weigh(&spectra, &measured, executor)?;
         let held_out_lines = used.spectra(&scale_all(&scales, &held_out_segments), executor);
@@ -150,27 +129,17 @@ impl<'a> PreparedData<'a> {
 
         progress.next(0.07, "low-pass")?;
         let cut_off = CutOff::choose(&segments, used.highest, executor);
-        let mut cautions: Vec<IdentificationCaution> = prepared
-            .cautions
-            .into_iter()
-            .filter(|caution| concerns_model(caution, options))
-            .map(IdentificationCaution::Records)
-            .collect();
+        let mut cautions = model_cautions(prepared.cautions, options);
         cautions.extend(too_short);
         cautions.extend(vibration_cautions(&cut_off, options));
         cautions.extend(excitation_cautions(&measured, options));
-        if let Some(shown) = measured.shown_band(options.band) {
-            cautions.push(IdentificationCaution::BandNotShown {
-                band: options.band,
-                shown,
-            });
-        }
+        cautions.extend(band_caution(&measured, options));
         Ok(Self {
             record_uses: prepared.records,
             scales,
             segments: cut_off.apply(&segments, executor),
             unfiltered: segments,
-            lines,
+            lines: reach,
             held_out_segments,
             spectra,
             measured,
@@ -342,18 +311,80 @@ struct Measurement<'a> {
     direct: Option<Likelihood<'a>>,
 }
 
-/// Measures the response from the lowest line up to `highest` \[rad/s\].
-fn measure_response(
-    lines: &[Spectrum],
-    highest: f64,
-    executor: &dyn Executor,
-) -> Result<ResponseEstimate, LocalPolynomialError> {
-    let first = lines
-        .iter()
-        .filter_map(|spectrum| spectrum.omega.first().copied())
-        .fold(highest, f64::min);
-    let omegas = log_spaced(first, highest, MEASURED_POINTS);
-    local_polynomial(lines, &omegas, executor)
+/// The spectral lines of all fitted segments.
+struct Lines {
+    /// The lines to fit.
+    used: LineRange,
+    /// The lines behind the measured response.
+    reach: LineRange,
+    wide: Vec<Spectrum>,
+    /// Those of the wide spectra to fit.
+    narrow: Vec<Spectrum>,
+}
+
+impl Lines {
+    fn new(segments: &[Segment], options: &Options, executor: &dyn Executor) -> Self {
+        let used = LineRange {
+            lowest: options.lowest(),
+            highest: options.highest(),
+        };
+        let reach = LineRange {
+            highest: BEYOND * used.highest,
+            ..used
+        };
+        let wide = reach.spectra(segments, executor);
+        let narrow = wide
+            .iter()
+            .map(|spectrum| spectrum.between(used.lowest, used.highest))
+            .collect();
+        Self {
+            used,
+            reach,
+            wide,
+            narrow,
+        }
+    }
+
+    /// Measures the response of the outputs to the inputs.
+    fn measure<'a>(self, executor: &dyn Executor) -> Result<Measurement<'a>, LocalPolynomialError> {
+        Ok(Measurement {
+            measured: self.measure_response(executor)?,
+            spectra: self.narrow,
+            direct: None,
+        })
+    }
+
+    /// Measures the response through the references of `driven` segments; see [`Instrument`].
+    fn measure_through_reference<'a>(
+        self,
+        driven: &[Segment],
+        outputs: usize,
+        executor: &'a dyn Executor,
+    ) -> Result<Measurement<'a>, IdentificationError> {
+        let driven_lines = self.reach.spectra(driven, executor);
+        let instrument = Instrument::new(&driven_lines, self.used, outputs, executor)?;
+        let logged = self.measure_response(executor)?;
+        Ok(Measurement {
+            measured: instrument.measured,
+            spectra: instrument.spectra,
+            direct: Some(weigh(&self.narrow, &logged, executor)?),
+        })
+    }
+
+    /// Measures the response from the first line up to the highest line used.
+    fn measure_response(
+        &self,
+        executor: &dyn Executor,
+    ) -> Result<ResponseEstimate, LocalPolynomialError> {
+        let highest = self.used.highest;
+        let first = self
+            .wide
+            .iter()
+            .filter_map(|spectrum| spectrum.omega.first().copied())
+            .fold(highest, f64::min);
+        let omegas = log_spaced(first, highest, MEASURED_POINTS);
+        local_polynomial(&self.wide, &omegas, executor)
+    }
 }
 
 /// Weighs lines by the measured noise.
@@ -473,17 +504,33 @@ fn check_inputs(segments: &[Segment], options: &Options) -> Result<(), Identific
     Err(IdentificationError::InputsDepend(involved))
 }
 
-/// Whether a caution is about model channels: a reference may well move as an input does.
-fn concerns_model(caution: &RecordCaution, options: &Options) -> bool {
-    match caution {
-        RecordCaution::MovedTogether { signals, .. } => {
-            signals.iter().all(|signal| signal.index < options.inputs())
+/// Keeps the cautions about model channels: a reference may well move as an input does.
+fn model_cautions(cautions: Vec<RecordCaution>, options: &Options) -> Vec<IdentificationCaution> {
+    let mut kept = Vec::new();
+    for caution in cautions {
+        let is_about_model = match &caution {
+            RecordCaution::MovedTogether { signals, .. } => {
+                signals.iter().all(|signal| signal.index < options.inputs())
+            }
+            RecordCaution::Copy { of, .. } => {
+                of.role == ChannelSide::Output || of.index < options.inputs()
+            }
+            _ => true,
+        };
+        if is_about_model {
+            kept.push(IdentificationCaution::Records(caution));
         }
-        RecordCaution::Copy { of, .. } => {
-            of.role == ChannelSide::Output || of.index < options.inputs()
-        }
-        _ => true,
     }
+    kept
+}
+
+/// Reports an end of the band that the records do not show.
+fn band_caution(measured: &ResponseEstimate, options: &Options) -> Option<IdentificationCaution> {
+    let shown = measured.shown_band(options.band)?;
+    Some(IdentificationCaution::BandNotShown {
+        band: options.band,
+        shown,
+    })
 }
 
 fn vibration_cautions(cut_off: &CutOff, options: &Options) -> Vec<IdentificationCaution> {

@@ -344,6 +344,7 @@ fn finite_or_unknown(value: Complex<f64>) -> Complex<f64> {
 #[cfg(test)]
 mod tests {
     use nalgebra::dmatrix;
+    use serde_json::Value;
 
     use gdcm_model::executor::Sequential;
     use gdcm_model::progress::{Shares, Unobserved};
@@ -383,27 +384,35 @@ mod tests {
         turned
     }
 
+    /// Reads the sampled records of a case.
+    fn flight_records(known: &Value) -> Vec<FlightRecord> {
+        let mut records = Vec::new();
+        for record in known["records"].as_array().unwrap() {
+            let inputs = matrix(&record["u"]);
+            let step_s = number(&known["dt"]);
+            records.push(FlightRecord {
+                name: String::new(),
+                time_s: (0..inputs.nrows())
+                    .map(|sample| sample as f64 * step_s)
+                    .collect(),
+                inputs,
+                outputs: matrix(&record["y"]),
+            });
+        }
+        records
+    }
+
+    fn whole_numbers(value: &Value) -> Vec<usize> {
+        numbers(value)
+            .into_iter()
+            .map(|value| value as usize)
+            .collect()
+    }
+
     #[test]
-    fn bands_are_those_of_independent_code() {
+    fn bands_match_independent_code() {
         let known = &answers()["noisy"];
-        let records: Vec<FlightRecord> = known["records"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|known| {
-                let inputs = matrix(&known["u"]);
-                let outputs = matrix(&known["y"]);
-                let time_s = (0..inputs.nrows())
-                    .map(|sample| sample as f64 * number(&known["dt"]))
-                    .collect();
-                FlightRecord {
-                    name: String::new(),
-                    time_s,
-                    inputs,
-                    outputs,
-                }
-            })
-            .collect();
+        let records = flight_records(known);
         let band = numbers(&known["band"]);
         let preparation = Preparation::of(&["U1", "U2"], &["Y1", "Y2"]);
         let options = Options {
@@ -429,15 +438,9 @@ mod tests {
             segments: wide.iter().map(whitened).collect(),
             executor: &Sequential,
         };
-        let whole = |name: &str| {
-            numbers(&known[name])
-                .into_iter()
-                .map(|value| value as usize)
-                .collect::<Vec<_>>()
-        };
         let poles = numbers(&known["poles_a"]);
-        let pasts = whole("pasts");
-        let orders = whole("orders");
+        let pasts = whole_numbers(&known["pasts"]);
+        let orders = whole_numbers(&known["orders"]);
         let settings = SubspaceSettings {
             highest: band[1],
             poles,

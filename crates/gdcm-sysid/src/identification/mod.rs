@@ -1,4 +1,19 @@
 //! Identified models from flight records (M14).
+//!
+//! [`identify::identify`] runs the stages in this order:
+//!
+//! | stage | files |
+//! |---|---|
+//! | records to segments (M14.1) | [`preparation`], `clock`, `track`, [`gaps`], `channel_quality` |
+//! | spectra and measured response (M14.2) | [`spectrum`], [`local_polynomial`], `instrument` |
+//! | models of all orders (M14.3) | `laguerre`, `triangular_factor`, [`subspace`], `fast_modes` |
+//! | cost and refinement (M14.4) | `blocks`, `likelihood`, `normal_system`, `refinement` |
+//! | choice of the order (M14.13) | `search_extent`, `order`, `mode_removal`, `model_selection` |
+//! | uncertainty and bundle (M14.5) | [`uncertainty`], [`feedback`], `bundle` |
+//! | doubts (M14.10 to M14.18) | [`diagnostics`], [`record_contrast`], [`cautions`] |
+//!
+//! [`topics`] brings channels with clocks of their own to a common clock beforehand (M14.11).
+
 mod blocks;
 mod bundle;
 pub mod caution_note;

@@ -389,7 +389,7 @@ mod tests {
         let mut records = Vec::new();
         for record in known["records"].as_array().unwrap() {
             let inputs = matrix(&record["u"]);
-            let step_s = number(&known["dt"]);
+            let step_s = number(&record["dt"]);
             records.push(FlightRecord {
                 name: String::new(),
                 time_s: (0..inputs.nrows())

@@ -54,7 +54,7 @@ pub enum IdentificationCaution {
     },
     /// No input moves any output at an end of the band.
     #[error(
-        "{} no input moves any output enough to be seen (partial coherence below {TRUSTED_COHERENCE}): the models are guesses \
+        "{} no input moves any output enough to be seen (partial coherence below {TRUSTED_COHERENCE}): the models are unreliable \
                  there. Narrow the band",
         hidden_ends(*band, *shown)
     )]
@@ -119,7 +119,7 @@ pub enum IdentificationCaution {
     },
     /// The model departs from the measured points.
     #[error(
-        "the model leaves the measured points of {output}/{input} between {:.1} and {:.1} rad/s: believe the points there, and try another \
+        "the model leaves the measured points of {output}/{input} between {:.1} and {:.1} rad/s: trust the points there, and try another \
          order or band",
         band[0],
         band[1]
@@ -134,7 +134,7 @@ pub enum IdentificationCaution {
     },
     /// The criterion still falls at the highest order tried.
     #[error(
-        "a higher order than {order} would fit still better: there is more in the band than that many states. Narrow the band, \
+        "a higher order than {order} would fit still better: the band holds more than that many states. Narrow the band, \
                  say to {:.1} rad/s",
         narrower[1]
     )]
@@ -339,7 +339,7 @@ fn contradiction_text(records: &[ContradictingRecord], contrast: f64) -> String 
         [record] => {
             let name = &record.name;
             let fault = match &record.fault {
-                Some(fault) => format!(" It looks as if in it {fault}."),
+                Some(fault) => format!(" It seems that there {fault}."),
                 None => String::new(),
             };
             format!(
@@ -350,11 +350,11 @@ fn contradiction_text(records: &[ContradictingRecord], contrast: f64) -> String 
             let names: Vec<&str> = records.iter().map(|record| record.name.as_str()).collect();
             let names = listed(&names);
             let mut text = format!(
-                "{names} contradict one another {agreement}; a third record would tell which is wrong."
+                "{names} contradict one another {agreement}; a third record would show which is wrong."
             );
             for record in records {
                 if let Some(fault) = &record.fault {
-                    text += &format!(" If it is {}, it looks as if there {fault}.", record.name);
+                    text += &format!(" If {} is wrong, it seems that there {fault}.", record.name);
                 }
             }
             text

@@ -29,7 +29,7 @@ pub enum IdentificationError {
     /// The records are too short for the lower band end.
     #[error(
         "the longest record lasts {longest_s:.0} s: {lowest:.2} rad/s needs {needed_s:.1} s, better {better_s:.0} s. From \
-         {enough:.2} rad/s on the records would do"
+         {enough:.2} rad/s on the records are long enough"
     )]
     TooShort {
         longest_s: f64,
@@ -44,7 +44,7 @@ pub enum IdentificationError {
     },
     /// Fewer real values than a first-order model needs.
     #[error(
-        "the lines of the records in the band are {figures} real figures, and {needed} are needed, 5 for each of the {unknowns} \
+        "the lines of the records in the band hold {figures} real values, and {needed} are needed, 5 for each of the {unknowns} \
          unknowns of a model of order 1: log longer or more records, widen the band, or leave out channels"
     )]
     TooFewFigures {
@@ -91,7 +91,7 @@ pub enum IdentificationError {
     #[error("no record is left to fit a model to: hold out fewer")]
     NothingToFit,
     /// Inputs that copy each other.
-    #[error("{} move as one in every record: leave out all but one, or fly them apart", names(.0))]
+    #[error("{} move as one in every record: leave out all but one, or move them independently", names(.0))]
     InputsDepend(Vec<Signal>),
     /// The covariance of the noise of the outputs is singular.
     #[error(

@@ -32,7 +32,7 @@ const RIDGE: f64 = 1e-9;
 #[allow(missing_docs)]
 pub enum LocalPolynomialError {
     /// No lines, inputs or outputs.
-    #[error("there is nothing to estimate a frequency response from")]
+    #[error("there are no lines to estimate a frequency response from")]
     Nothing,
     /// Record number, counted from 0.
     #[error("record {} has another number of channels than the first", .0 + 1)]

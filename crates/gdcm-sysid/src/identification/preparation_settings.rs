@@ -215,7 +215,7 @@ pub enum PreparationError {
         time_s: f64,
     },
     #[error(
-        "record {record}: the sample time varies by {percent:.0} %, more than 20 %. Where the stamps can be trusted, say a rate to interpolate to (--resample)"
+        "record {record}: the sample time varies by {percent:.0} %, more than 20 %. Where the stamps can be trusted, give a rate to interpolate to (--resample)"
     )]
     UnevenSampling {
         record: String,
@@ -225,7 +225,7 @@ pub enum PreparationError {
     /// No segment is long enough.
     #[error(
         "nothing is left: the longest piece without a gap lasts {longest_s:.1} s, and {least_s:.1} s are the least. \
-         Log longer records, mend the gaps, or leave out the channel that has them"
+         Log longer records, fill the gaps, or leave out the channel that has them"
     )]
     NothingLeft { longest_s: f64, least_s: f64 },
     /// Channels that never move.

@@ -43,7 +43,7 @@ pub enum RecordCaution {
     RecordUnused(String),
     /// Most consecutive samples are equal while the channel moves.
     #[error(
-        "{signal}: {percent:.0} % of consecutive samples are equal, it changes every {:.0} ms. Say which it is: {}or stairs that \
+        "{signal}: {percent:.0} % of consecutive samples are equal, it changes every {:.0} ms. State the cause: {}or stairs that \
                  are right as they are (nothing done, as now)",
         1e3 * hold_s, hold_choices(signal.role, 1e3 * hold_s)
     )]

@@ -395,7 +395,7 @@ pub enum TopicError {
     },
     /// A stamp is so far off that the record would exceed the memory.
     #[error(
-        "the topics would make a record of {0:.0} samples: a stamp is wrong, or the rate asked for is too high"
+        "the joined record would have {0:.0} samples: a stamp is wrong, or the rate asked for is too high"
     )]
     TooMany(f64),
 }

@@ -8,7 +8,7 @@ use gdcm_model::dataset::model::{ModelBands, Origin, Provenance};
 use gdcm_model::dataset::{Dynamics, Model, Pair};
 use gdcm_model::executor::Executor;
 use gdcm_model::progress::{Progress, Shares};
-use gdcm_model::response::log_spaced;
+use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::response::pole_estimate::PoleEstimate;
 use gdcm_model::simulation::{FlightRecord, Validation, ValidationSettings, validate};
 

@@ -72,7 +72,7 @@ pub use preparation_settings::{ChannelPreparation, Hold, Preparation};
 pub use response_estimate::{ResponseEstimate, TRUSTED_COHERENCE};
 pub use spectrum::spectra;
 
-pub use gdcm_model::response::log_spaced;
+pub use gdcm_model::response::frequency_response::log_spaced;
 pub use gdcm_model::response::pole_estimate::PoleEstimate;
 pub use gdcm_model::simulation::{
     FirstOrderHold, FlightRecord, LowPass, Segment, Signal, Validation, ValidationError,

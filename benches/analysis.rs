@@ -3,11 +3,6 @@
 //! Figures to reach: a drag of alpha <= 4 ms, a drag of alpha, n or R_max under lead <= 6 ms, a rejected model <= 10 ms, a moved band
 //! edge <= 40 ms for all 11 conditions.
 
-#![expect(
-    missing_docs,
-    reason = "criterion's macros make undocumented functions"
-)]
-
 use std::hint::black_box;
 use std::path::Path;
 use std::sync::Arc;

@@ -3,11 +3,6 @@
 //! Figures to reach, two cores, 6 x 4 responses at 200 frequencies in 11 conditions: a fit of five solves <= 60 ms, what depends on it
 //! <= 5 ms more, a drag of alpha as without couplings.
 
-#![expect(
-    missing_docs,
-    reason = "criterion's macros make undocumented functions"
-)]
-
 use std::hint::black_box;
 use std::path::Path;
 use std::sync::Arc;

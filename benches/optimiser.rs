@@ -3,7 +3,6 @@
 //! `cargo bench --bench optimiser`.
 
 // `criterion_group!` makes a public function, which cannot be documented.
-#![allow(missing_docs)]
 
 use std::hint::black_box;
 use std::time::Duration;

@@ -11,6 +11,7 @@ mod commands;
 mod couplings;
 mod documents;
 mod exports;
+mod file_cycles;
 #[path = "../../crates/gdcm-io/tests/suite/made_up.rs"]
 mod made_up;
 mod messages;

@@ -91,7 +91,7 @@ const MAY_NOT_NAME: &[(&str, &[&str])] = &[
     ("executor", &["crate::"]),
 ];
 
-fn sources(folder: &Path) -> Vec<PathBuf> {
+pub(super) fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -131,7 +131,7 @@ fn modules(package: &str) -> Vec<(String, PathBuf, String)> {
         .collect()
 }
 
-fn code_of(text: &str) -> String {
+pub(super) fn code_of(text: &str) -> String {
     let before_tests = text
         .split("#[cfg(test)]\nmod tests {")
         .next()
@@ -246,4 +246,87 @@ fn the_front_page_of_a_crate_names_every_module() {
             );
         }
     }
+}
+
+/// Every line of the code of the workspace, with its place.
+fn lines_of_code() -> Vec<(String, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut lines = Vec::new();
+    for folder in ["crates", "src"] {
+        for path in sources(&root.join(folder)) {
+            let inside = path.strip_prefix(root).unwrap().to_owned();
+            let is_test = inside
+                .file_stem()
+                .is_some_and(|name| name.to_string_lossy().ends_with("tests"));
+            if is_test || inside.components().any(|part| part.as_os_str() == "tests") {
+                continue;
+            }
+            for line in code_of(&fs::read_to_string(&path).unwrap()).lines() {
+                lines.push((inside.display().to_string(), line.to_owned()));
+            }
+        }
+    }
+    lines
+}
+
+#[test]
+fn imports_are_explicit() {
+    let mut wrong = Vec::new();
+    for (path, line) in lines_of_code() {
+        let code = line.trim_start();
+        let is_import =
+            code.starts_with("use ") || (code.starts_with("pub") && code.contains(" use "));
+        let is_own =
+            code.contains("super::*") || code.contains("crate::") || code.starts_with("pub");
+        if is_import && is_own && code.ends_with("::*;") {
+            wrong.push(format!("{path}: {code}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn public_functions_and_types_of_the_library_crates_are_documented() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates");
+    let mut wrong = Vec::new();
+    let mut seen = 0;
+    for path in sources(&root) {
+        if path.components().any(|part| part.as_os_str() == "tests") {
+            continue;
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        let mut is_documented = false;
+        for line in text
+            .split("#[cfg(test)]\nmod tests {")
+            .next()
+            .unwrap_or_default()
+            .lines()
+        {
+            let code = line.trim_start();
+            if code.starts_with("///") || code.starts_with("#[doc") {
+                is_documented = true;
+                continue;
+            }
+            if code.starts_with("#[") || code.starts_with("//") || code.ends_with(")]") {
+                continue;
+            }
+            let item = [
+                "pub fn ",
+                "pub const fn ",
+                "pub struct ",
+                "pub enum ",
+                "pub trait ",
+                "pub type ",
+            ];
+            if item.iter().any(|start| code.starts_with(start)) {
+                seen += 1;
+                if !is_documented {
+                    wrong.push(format!("{}: {code}", path.display()));
+                }
+            }
+            is_documented = false;
+        }
+    }
+    assert!(seen > 500, "the items were found: {seen}");
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }

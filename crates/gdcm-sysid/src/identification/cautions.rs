@@ -16,7 +16,6 @@ const BETTER_PERIODS: f64 = 5.0;
 
 /// A doubt about the model or its parts.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs)]
 pub enum IdentificationCaution {
     /// A doubt about the records themselves.
     #[error(transparent)]

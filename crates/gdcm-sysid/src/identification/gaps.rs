@@ -36,7 +36,6 @@ pub enum Cause {
 
 /// How a gap is treated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-#[allow(missing_docs)]
 pub enum Treatment {
     /// By straight lines.
     Bridged,
@@ -56,7 +55,6 @@ impl Treatment {
 
 /// A gap in a record: from the last good sample to the next.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct Gap {
     /// On the record's clock \[s\].
     pub start_s: f64,

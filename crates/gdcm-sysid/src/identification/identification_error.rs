@@ -15,7 +15,6 @@ pub const LONGEST_PAST: usize = 60;
 
 /// Why a flight condition cannot be identified.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs)]
 pub enum IdentificationError {
     /// The records cannot be prepared.
     #[error(transparent)]

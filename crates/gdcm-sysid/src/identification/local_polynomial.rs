@@ -29,7 +29,6 @@ const RIDGE: f64 = 1e-9;
 
 /// Why the frequency response cannot be measured.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs)]
 pub enum LocalPolynomialError {
     /// No lines, inputs or outputs.
     #[error("there are no lines to estimate a frequency response from")]

@@ -125,7 +125,6 @@ fn is_within(list: &Option<Vec<usize>>, most: usize) -> bool {
 
 /// Replacements for the defaults to try; an empty list keeps them.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct SearchSpace {
     pub orders: Vec<usize>,
     /// Past windows, in Laguerre projections.

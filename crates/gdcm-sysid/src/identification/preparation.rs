@@ -68,7 +68,6 @@ impl RecordUse {
 
 /// Prepared flight records.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct Prepared {
     /// By record and time; not empty.
     pub segments: Vec<Segment>,

@@ -12,7 +12,6 @@ const LONGEST_BRIDGE: usize = 1000;
 
 /// The meaning behind stairs in a channel that is logged more often than it changes (M14.1).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub enum Hold {
     /// A continuous signal; stairs raise a caution.
     #[default]
@@ -30,7 +29,6 @@ pub enum Hold {
 
 /// How a channel is prepared.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[allow(missing_docs)]
 pub struct ChannelPreparation {
     pub name: String,
     /// Known sensor or bus delay \[s\], to be taken out.
@@ -170,7 +168,6 @@ fn named_channels(names: &[&str]) -> Vec<ChannelPreparation> {
 
 /// Why flight records cannot be prepared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs)]
 pub enum PreparationError {
     #[error("there are no flight records")]
     NoRecords,

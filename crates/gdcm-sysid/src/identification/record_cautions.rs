@@ -21,7 +21,6 @@ const COPY: f64 = 0.9999;
 
 /// A doubt about the flight records, or a change made to them.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs)]
 pub enum RecordCaution {
     /// A record with uneven sample times was interpolated, as allowed.
     #[error(

@@ -24,7 +24,6 @@ pub struct Scales {
 
 /// Why channels cannot be scaled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[allow(missing_docs)]
 pub enum ScalingError {
     #[error("there are no flight records")]
     NoSegments,

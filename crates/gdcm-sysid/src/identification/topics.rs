@@ -360,7 +360,6 @@ fn common_span_s(topics: &[Topic]) -> Result<[f64; 2], TopicError> {
 
 /// Why topics cannot be brought to a common clock.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[allow(missing_docs)]
 pub enum TopicError {
     #[error("{topic} has {samples} samples with a stamp: at least 3 are needed")]
     TooFew { topic: String, samples: usize },

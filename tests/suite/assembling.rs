@@ -16,6 +16,7 @@ use gdcm_model::assembly::problem::ProblemKind;
 use gdcm_model::assembly::{
     Assembly, ChannelRule, FoundModel, Headings, RowRole, UnitRule, proposed_rules,
 };
+use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::condition::ConditionRecord;
 use gdcm_model::dataset::{BundleKind, Condition, Dataset, Dynamics, Model, StateSpace};
 
@@ -404,13 +405,13 @@ fn a_folder_of_matrices_without_names_is_made_a_dataset_by_rules_from_the_shell(
     );
     let analysed = folder.path().join("analysed");
     let analysis = run(&[
-        "--json",
         "analyze",
         made,
+        "--json",
         "--out",
         analysed.to_str().unwrap(),
     ]);
-    assert_eq!(analysis.status, 0, "{}", analysis.error);
+    assert_eq!(analysis.status, 0, "{}{}", analysis.out, analysis.error);
     let said: serde_json::Value = serde_json::from_str(&analysis.out).unwrap();
     let by_position = |caution: &&serde_json::Value| {
         caution["text"]
@@ -522,8 +523,15 @@ fn channels_are_matched_and_units_converted_as_declared_and_never_in_silence() {
         "the response has no units: {:?}",
         assembly.told()
     );
-    (rules.inputs[0].name, rules.inputs[0].unit) = ("LON".into(), "%".into());
-    (rules.outputs[0].name, rules.outputs[0].unit) = ("Q".into(), "deg/s".into());
+    rules.rename(ChannelSide::Input, 0, "LON".into());
+    rules.rename(ChannelSide::Output, 0, "Q".into());
+    assert_eq!(
+        rules.on_axis,
+        [("Q".to_owned(), "LON".to_owned())],
+        "under its new name"
+    );
+    rules.inputs[0].unit = "%".into();
+    rules.outputs[0].unit = "deg/s".into();
     rules.inputs[0].unit_in_files = Some("%".into());
     rules.outputs[0].unit_in_files = Some("deg/s".into());
     let assembly = assembly.with_rules(rules.clone());

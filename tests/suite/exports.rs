@@ -10,7 +10,7 @@ use gdcm_io::exports::{EXPORTERS, ExportFormat};
 use gdcm_io::{FolderProgress, load_dataset, read_models};
 use gdcm_model::assembly::{FoundModel, Headings};
 use gdcm_model::dataset::{Pair, StateSpace};
-use gdcm_model::response::evaluate;
+use gdcm_model::response::{FrequencyGrid, FrequencyResponse, evaluate};
 
 use crate::commands::Desk;
 use crate::{entries, members};
@@ -151,19 +151,31 @@ fn the_options_of_a_study_come_first() {
         !text.contains("delays are not scheduled")
             && !ended.out.contains("delays are not scheduled")
     );
-    let ended = desk.gdcm(&["export", "small.json", "--as", "py", "--out", "b.py"]);
-    assert!(
-        ended
-            .out
-            .contains("delays are not scheduled in this study: they are zero here"),
-        "{}",
-        ended.out
-    );
-    assert!(
-        fs::read_to_string(desk.path("b.py"))
-            .unwrap()
-            .contains("# Note: delays are not scheduled")
-    );
+    // Held responses of this dataset have net delays: they are scheduled unasked, and left out where that is said.
+    let unscheduled = "delays are not scheduled in this study: they are zero here";
+    let unasked = desk.gdcm(&["export", "small.json", "--as", "py", "--out", "b.py"]);
+    unasked.assert_done();
+    let text = fs::read_to_string(desk.path("b.py")).unwrap();
+    for said in [&unasked.out, &text] {
+        assert!(
+            said.contains("ontains: gains scheduled, delays scheduled, leads none, couplings none")
+                && !said.contains(unscheduled),
+            "{said}"
+        );
+    }
+    let more = ["--schedule-delays", "never", "--as", "py", "--out", "c.py"];
+    let never = desk.gdcm(&[&["export", "small.json"][..], &more].concat());
+    never.assert_done();
+    let text = fs::read_to_string(desk.path("c.py")).unwrap();
+    assert!(text.contains(&format!("# Note: {unscheduled}")), "{text}");
+    for said in [&never.out, &text] {
+        assert!(
+            said.contains("ontains: gains scheduled, delays none, leads none, couplings none")
+                && said.contains("eft out: delay of input LAT: up to ")
+                && said.contains(unscheduled),
+            "{said}"
+        );
+    }
 }
 
 /// The small dataset, flown with the nominal physics model behind delays of the inputs \[s\], which differ from condition to condition.
@@ -232,10 +244,8 @@ fn delays_of_held_responses_are_exported_unless_that_is_not_wanted() {
             assert_eq!(contains[place]["delays"], "scheduled");
             assert_eq!(contains[place]["left_out"], json!([]));
             let flown = &condition.bundle(gdcm_model::dataset::BundleKind::Identified)[0];
-            let gdcm_model::dataset::Dynamics::StateSpace(flown) = &flown.dynamics else {
-                panic!("no matrices")
-            };
-            let flown = evaluate(flown, &omega);
+            // With its delays, which `evaluate` leaves to the caller.
+            let flown = FrequencyResponse::of(&flown.dynamics, &FrequencyGrid::at(omega.to_vec()));
             let found = evaluate(&state_space(&found[place]), &omega);
             for pair in [Pair::new(0, 1), Pair::new(1, 0)] {
                 for (found, flown) in found.curve(pair).iter().zip(flown.curve(pair)) {
@@ -785,7 +795,22 @@ fn delays_of_discrete_time_are_exact_or_refused() {
     assert!(
         ended
             .out
-            .contains("nominal, scheduled correction: gains and delays exact"),
+            .contains("nominal, scheduled correction: gains and the model's own delays exact"),
+        "{}",
+        ended.out
+    );
+    // Condition 7 and condition 10; the correction has none, and neither is said to be without.
+    assert_eq!(
+        ended.out.matches("the model's own delays exact\n").count(),
+        2,
+        "{}",
+        ended.out
+    );
+    assert!(
+        ended
+            .out
+            .contains("\ncontains: gains scheduled, delays none,")
+            && !ended.out.contains("without delays"),
         "{}",
         ended.out
     );
@@ -972,5 +997,10 @@ fn every_export_of_leads_says_what_they_cost_and_so_does_the_command() {
         assert!(!text.contains("<U+2212>"), "{format}");
     }
     let without = desk.gdcm(&["export", "few.json", "--as", "py", "--out", "delays.py"]);
-    assert!(!without.out.contains("leads"), "{}", without.out);
+    assert_eq!((without.status, without.error.as_str()), (0, ""));
+    assert!(
+        without.out.contains(", leads none,") && without.out.matches("lead").count() == 1,
+        "{}",
+        without.out
+    );
 }

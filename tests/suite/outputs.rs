@@ -340,7 +340,11 @@ fn a_named_pipe_as_input_is_refused_at_once_by_every_command() {
             "--force",
         ],
         &[&identify[..], &[pipe]].concat(),
-        &[&identify[..], &["small.json", "--into", pipe]].concat(),
+        &[
+            &identify[..],
+            &["small.json", "--into", pipe, "--every-condition"],
+        ]
+        .concat(),
     ];
     for command in commands {
         let ended = ends(&desk, command);

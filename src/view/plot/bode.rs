@@ -424,7 +424,11 @@ impl Pointing {
     }
 }
 
-/// The curve that the pointer means: the nearest one, unless a line that curves are read against, which is drawn over them, is as near.
+/// So near to a line that curves are read against, the pointer is on it, whatever runs below \[pt\].
+const ON_RULE: f32 = 1.0;
+
+/// The curve that the pointer means: the nearest one, unless a line that curves are read against, which is drawn over them, is as near
+/// or has the pointer on it.
 fn meant(
     scene: &BodeScene<'_>,
     pane: Pane,
@@ -433,7 +437,7 @@ fn meant(
 ) -> Option<Hit> {
     let hit = nearest(scene.curves, pane, pointer, transform)?;
     let is_on_rule = distance_to_rules(scene.rules, pane, pointer, transform)
-        .is_some_and(|rule| rule <= hit.distance);
+        .is_some_and(|rule| rule <= hit.distance.max(ON_RULE));
     if is_on_rule { None } else { Some(hit) }
 }
 

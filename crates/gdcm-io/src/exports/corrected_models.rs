@@ -399,10 +399,11 @@ impl ExportedModel {
             return "gains and lead filters exact".to_owned();
         }
         if self.pade_order == 0 || self.delay_states == 0 {
-            return if has_delays {
-                "gains and delays exact"
-            } else {
-                "gains exact, without delays"
+            return match (has_delays, self.delay_states) {
+                (true, _) => "gains and delays exact",
+                (false, 0) => "gains exact, without delays",
+                // Of discrete time: whole samples.
+                (false, _) => "gains and the model's own delays exact",
             }
             .to_owned();
         }

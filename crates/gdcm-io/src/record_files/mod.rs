@@ -385,7 +385,6 @@ fn of_table(table: TextTable) -> Columns {
     } = table;
     let named = names.is_some();
     let names = names.unwrap_or_default();
-    let columns = columns;
     let mut notes = notes;
     let columns = if named {
         columns

@@ -115,16 +115,13 @@ impl FoundModel {
             if named.labels.iter().all(|labels| labels[0].name.is_some()) {
                 break;
             }
-            let of_name = ResponseName::find(text, known).and_then(|found| {
-                // A channel of the field that the dataset does not have is no other one.
-                let of_field = ResponseName::find(text, KnownChannels::Field).unwrap_or_default();
-                Ok(ResponseName {
-                    output: found.output.or(of_field.output),
-                    input: found.input.or(of_field.input),
-                })
-            });
-            match of_name {
-                Ok(ResponseName { output, input }) => {
+            match ResponseName::find(text, known) {
+                Ok(found) => {
+                    // A channel of the field that the dataset does not have is not replaced by another.
+                    let of_field =
+                        ResponseName::find(text, KnownChannels::Field).unwrap_or_default();
+                    let input = found.input.or(of_field.input);
+                    let output = found.output.or(of_field.output);
                     for (labels, name) in named.labels.iter_mut().zip([input, output]) {
                         labels[0].name = labels[0].name.take().or(name);
                     }

@@ -70,7 +70,7 @@ pub enum ConditionError {
         /// What stands there.
         value: f64,
     },
-    /// The physics bundle holds no model.
+    /// The physics bundle holds no model, or no identified models are to stand in the place of others.
     #[error("the {0} bundle: expected at least one model, found none")]
     EmptyBundle(BundleKind),
     /// Two models of a bundle share a name.

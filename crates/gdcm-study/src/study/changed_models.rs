@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_method::correction::Channel;
 use gdcm_model::dataset::channel::ChannelSide;
-use gdcm_model::dataset::condition::ConditionRecord;
+use gdcm_model::dataset::condition::{ConditionError, ConditionRecord};
 use gdcm_model::dataset::measured_response::MeasuredResponse;
 use gdcm_model::dataset::model::Origin;
 use gdcm_model::dataset::{
@@ -103,6 +103,11 @@ impl AdoptedModels {
             .condition(id)
             .ok_or(EditRefusal::NoCondition { condition: id })?;
         let refused = |why: String| EditRefusal::Models { condition: id, why };
+        // A condition without identified models is valid, but models that are not there take the place of none.
+        if self.models.is_empty() {
+            let error = ConditionError::EmptyBundle(BundleKind::Identified);
+            return Err(refused(error.to_string()));
+        }
         let condition = before.with_identified(self.models.clone(), self.records.clone());
         let condition = condition.map_err(|error| refused(error.to_string()))?;
         dataset

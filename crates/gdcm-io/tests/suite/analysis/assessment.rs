@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use gdcm_method::fidelity::CostAverage;
-use gdcm_method::schedule::{SCHEDULE_KINDS, ScheduleKind};
+use gdcm_method::schedule::{DelayScheduling, SCHEDULE_KINDS, ScheduleKind};
 use gdcm_study::study::assessment_table::{AssessedModel, AssessmentChoice, AssessmentJob};
 use gdcm_study::study::job::Job;
 use gdcm_study::study::{AssessedCorrection, AssessmentTable};
@@ -188,7 +188,8 @@ fn delays_are_scheduled_within_the_bounds_of_their_conditions_where_that_is_aske
     let off = analyze(&mut engine, &study);
     let kind = ScheduleKind::Polynomial { degree: 3 };
     study.apply(&setting::SCHEDULE.to(kind)).unwrap();
-    study.apply(&setting::SCHEDULE_DELAYS.to(true)).unwrap();
+    let always = DelayScheduling::Always;
+    study.apply(&setting::SCHEDULE_DELAYS.to(always)).unwrap();
     let on = analyze(&mut engine, &study);
     let schedule = on.schedule.as_ref().unwrap();
     let mut delayed = 0;

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use gdcm_io::{DatasetOrigin, load_dataset_bytes};
 use gdcm_method::correction::Channel;
-use gdcm_method::schedule::{ScheduleCaution, ScheduleKind};
+use gdcm_method::schedule::{DelayScheduling, ScheduleCaution, ScheduleKind};
 use gdcm_model::dataset::{BundleKind, Dataset, ModelId};
 use gdcm_study::study::analysis::ConditionFailure;
 use gdcm_study::study::caution::{BundleModel, Caution, GainOutOfRange, Undefined};
@@ -407,10 +407,13 @@ fn a_response_of_zeros_is_missing_and_the_measured_frequencies_are_not_blamed() 
     let value = with_zeros_measured(&[[0, 1], [1, 1]], [0.5, 12.0]);
     let analysis = only(&value, &[]);
     let found = analysis.condition(ONLY).unwrap();
-    assert_eq!(
-        found.comparison.undefined[Pair::new(1, 1)],
-        Some(Undefined::Zero(BundleKind::Identified))
-    );
+    // A measured response without any number but zero is one that no file gives.
+    for pair in responses {
+        assert_eq!(
+            found.comparison.undefined[pair],
+            Some(Undefined::NotMeasured)
+        );
+    }
     assert!(found.comparison.delta.gain[Pair::new(0, 0)].is_some());
     let said = words(&analysis, found).concat();
     assert!(
@@ -449,13 +452,38 @@ fn airspeeds_a_hair_apart_are_one_point_of_the_schedule() {
     let analysis = only(&json(NEAR), &[]);
     let schedule = analysis.schedule.as_ref().unwrap();
     assert_eq!(schedule.airspeeds.clusters, [vec![0, 1], vec![2]]);
+    let lowered = ScheduleCaution::DegreeLowered {
+        asked: 2,
+        clusters: 2,
+    };
+    // Of the conditions that are one point the second alone has delays, and the point has the mean: the first pays for them.
+    let [first, ScheduleCaution::CostsMore(cost)] = &schedule.cautions[..] else {
+        panic!("{:?}", schedule.cautions)
+    };
+    assert_eq!(*first, lowered);
     assert_eq!(
-        schedule.cautions,
-        [ScheduleCaution::DegreeLowered {
-            asked: 2,
-            clusters: 2
-        }]
+        (cost.condition, cost.model.as_str()),
+        (ConditionId(1), "nominal")
     );
+    assert!(cost.scheduled > 2.0 * cost.own, "{cost:?}");
+    let net_delays_s = analysis.conditions.values().map(|result| {
+        let correction = &result.as_ref().unwrap().correction;
+        [0, 1].map(|place| correction.net_delay_s(Pair::new(place, place)))
+    });
+    let net_delays_s: Vec<[f64; 2]> = net_delays_s.collect();
+    let at = schedule.at(60.0);
+    for place in [0, 1] {
+        let [first_s, second_s, third_s] = [0, 1, 2].map(|id| net_delays_s[id][place]);
+        assert!(first_s.max(third_s) < 1e-9 && second_s > 0.05);
+        let scheduled_s = at.net_delay_s(Pair::new(place, place));
+        assert!(
+            (scheduled_s - 0.5 * second_s).abs() < 1e-6,
+            "{scheduled_s} of {second_s}"
+        );
+    }
+    let never = setting::SCHEDULE_DELAYS.to(DelayScheduling::Never);
+    let without = only(&json(NEAR), &[never]).schedule.unwrap();
+    assert!(!without.has_delays() && without.cautions[0] == lowered);
     let gains = |of: &gdcm_method::correction::ChannelCorrection| {
         [of.input_gains.clone(), of.output_gains.clone()].concat()
     };

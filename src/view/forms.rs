@@ -239,7 +239,7 @@ fn contents_ui(
     form.explain(&format!("Contains: {}.", contents.words()));
     for words in contents.left_out_words(&analysis.study.dataset) {
         form.ui
-            .add(Label::new(form.palette.small_warning(&format!("Left out: {words}"))).wrap());
+            .add(Label::new(form.palette.small_warning(format!("Left out: {words}"))).wrap());
     }
 }
 

@@ -4,9 +4,12 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// Modules of a crate, each with the modules of the same crate that it may name.
+type ModuleTable = &'static [(&'static str, &'static [&'static str])];
+
 /// The crates from the bottom up, each with its modules and, for each module, the modules of the same crate that it may name.
 /// Cargo forbids imports of crates above; none of these knows files or windows.
-const CRATES: &[(&str, &[(&str, &[&str])])] = &[
+const CRATES: &[(&str, ModuleTable)] = &[
     (
         "gdcm-model",
         &[

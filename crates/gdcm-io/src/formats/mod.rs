@@ -6,7 +6,7 @@
 //!       -> models or records                                (recognise)
 //! ```
 //!
-//! A new format is an [`Importer`] in a file of its own in this folder, and an entry in [`FORMATS`].
+//! A new format is an `Importer` in a file of its own in this folder, and an entry in `FORMATS`.
 
 pub(crate) mod json_values;
 pub(crate) mod logs;

@@ -1,6 +1,6 @@
 //! Figures: what plots show, apart from any screen, laid out on paper to be printed.
 //!
-//! A [`Figure`] has plots side by side, a title, a legend and a caption; a [`Plot`] has panels above one another; a [`Panel`] has
+//! A [`Figure`] has plots side by side, a title, a legend and a caption; a [`Plot`](figure::Plot) has panels above one another; a [`Panel`] has
 //! two axes and marks. [`Figure::drawing`] lays it out at the width of a journal's column, in sizes that can be read in print, and
 //! in lines that differ without their colours; [`Figure::tables`] are its numbers. Every view of the window has a function here that
 //! makes its figure, and the command `gdcm figure` calls the same.

@@ -197,7 +197,7 @@ impl RecordTable {
     }
 
     /// Whether both hold the same record: the same part of the same record of one file, or of the same samples under one name. The same
-    /// samples in a file of another name are a copy ([`leave_out_copies`]).
+    /// samples in a file of another name are a copy (`leave_out_copies`).
     pub fn is_same_record(&self, other: &Self) -> bool {
         let is_same_file = self.source.sha256 == other.source.sha256
             && !self.source.sha256.is_empty()

@@ -1,7 +1,7 @@
 //! Files of MATLAB (".mat"), of level 4 and of levels 5 to 7, as GNU Octave and SciPy write them too.
 //!
 //! Source: "MAT-File Format", The MathWorks. Files of version 7.3 are HDF5 files, which are read elsewhere; the objects in them are
-//! laid out as in [`Subsystem`].
+//! laid out as in `Subsystem`.
 
 mod level4;
 mod level5;

@@ -1,16 +1,16 @@
-//! All processor cores as an executor: what the window and the commands compute with.
+//! All processor cores as an executor for the window and the commands.
 
 use std::sync::OnceLock;
 
 use gdcm_model::executor::{Executor, Task};
 
-/// The threads of the global pool: one for each core.
+/// Threads of the global pool, one for each core.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pool;
 
 impl Executor for Pool {
     fn carry_out(&self, tasks: Vec<Task<'_>>) {
-        // First come, first served: what was asked for first is done first.
+        // First in, first out: earlier requests are computed first.
         rayon::scope_fifo(|scope| {
             tasks
                 .into_iter()
@@ -19,7 +19,10 @@ impl Executor for Pool {
     }
 }
 
-/// Starts the threads of the pool, once a process; where none is to be had, says why.
+/// Starts the threads of the pool, once per process.
+///
+/// # Errors
+/// The reason, if no thread can be started.
 pub fn start_threads() -> Result<(), String> {
     static STARTED: OnceLock<Result<(), String>> = OnceLock::new();
     let start = || {

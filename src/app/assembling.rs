@@ -1,4 +1,5 @@
-//! Putting models of files together: reading them in a thread, and what becomes of them.
+//! Importing models from files: reads them in a thread and applies the commands of the assembling
+//! view.
 
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
@@ -20,10 +21,10 @@ use super::threads::ReplySender;
 use crate::view::FormKind;
 use crate::view::assembling::{AssemblingCommand, AssemblyState, Reading};
 
-/// Bytes of values between two words about how far a file is read.
+/// Bytes of values between two progress reports while a file is read.
 const TOLD_EVERY: u64 = 16 << 20;
 
-/// What is read: more, or all there is once more, by other headings.
+/// Files to read: additional ones, or all of them again with other headings.
 #[derive(Clone, Debug)]
 enum Sources {
     More(Vec<PathBuf>),
@@ -37,12 +38,12 @@ impl Sources {
     }
 }
 
-/// Tells the window which file is read.
+/// Reports to the window which file is being read.
 struct Teller {
     number: u64,
     replies: ReplySender,
     stop: Arc<AtomicBool>,
-    /// Bytes of values of the file, when that was told last.
+    /// Bytes of the file's values at the last progress report.
     told: Cell<u64>,
 }
 
@@ -125,7 +126,7 @@ impl GdcmApp {
         }
     }
 
-    /// Reads models in a thread, tables by the headings said of them.
+    /// Reads models in a thread; tables are read with the headings given for them.
     fn read_models(&mut self, sources: Sources) {
         let headings = self.said().map(|rules| rules.headings).unwrap_or_default();
         let (number, stop) = self.models.begin();
@@ -226,7 +227,7 @@ impl GdcmApp {
             .map(|bench| bench.assembly().rules().clone())
     }
 
-    /// Writes the rules; asks before it overwrites a file.
+    /// Writes the rules; asks before overwriting a file.
     fn save_rules(&mut self, path: PathBuf) {
         let Some(rules) = self.said() else { return };
         let path = self.at_home(path);
@@ -239,7 +240,7 @@ impl GdcmApp {
         );
     }
 
-    /// Writes the dataset and its rules, and opens it; asks before it overwrites a file.
+    /// Writes the dataset and its rules, and opens the dataset; asks before overwriting a file.
     fn make_dataset(&mut self, path: PathBuf) {
         let Some(bench) = &self.state.assembling else {
             return;

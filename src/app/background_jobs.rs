@@ -1,5 +1,5 @@
-//! The live answer, and what the window has done beside it: every kind of job stands in one table, [`BackgroundJobs::start`], with what it
-//! works with, when it is asked for and where its output goes.
+//! The live answer and the window's other jobs. One table, [`BackgroundJobs::start`], lists every
+//! kind of job with its tools, its trigger and the destination of its output.
 
 use std::io;
 use std::rc::Rc;
@@ -24,23 +24,26 @@ use crate::view::state::{Background, FirstResult};
 use crate::view::views::{are_couplings_judged, couplings_job, overlay_job};
 use crate::view::{Need, State, View};
 
-/// Makes an engine, at the start and anew after a panic, which may leave its caches half made.
+/// Creates an engine, at the start and after a panic, which may leave its caches inconsistent.
 pub type EngineMaker = Arc<dyn Fn() -> Engine + Send + Sync>;
 
 /// One kind of job.
 struct JobKind<J: Job> {
-    /// The jobs that what is shown needs now, the most urgent first; one that is not needed any more is given up.
+    /// Jobs needed by the current display, the most urgent first; jobs no longer needed are
+    /// cancelled.
     wanted: fn(&mut GdcmApp) -> Vec<J>,
-    /// Takes what a job has made.
+    /// Stores the output of a job.
     take: fn(&mut GdcmApp, J, J::Output),
-    /// Tells what is under way.
+    /// Reports running work.
     tell: fn(&JobQueue<J>, &mut Background),
-    /// What a stop or a fault does to what something of its own asked for: that, not "Compute", begins it again.
+    /// Withdraws the request of a job with its own trigger after a stop or a fault; that trigger,
+    /// not "Compute", starts it again.
     withdraw: Option<fn(&mut GdcmApp)>,
 }
 
 impl<J: Job> JobKind<J> {
-    /// A kind that "Compute" begins again after a stop, and of which the number of jobs is told, as of all that views wait for.
+    /// Creates a kind that "Compute" restarts after a stop, and whose jobs count among those that
+    /// views wait for.
     fn new(wanted: fn(&mut GdcmApp) -> Vec<J>, take: fn(&mut GdcmApp, J, J::Output)) -> Self {
         let tell = |queue: &JobQueue<J>, background: &mut Background| {
             background.views += queue.unfinished().len()
@@ -54,13 +57,13 @@ impl<J: Job> JobKind<J> {
     }
 }
 
-/// A kind with its queue.
+/// A kind of job with its queue.
 struct Registered<J: Job> {
     kind: JobKind<J>,
     queue: JobQueue<J>,
 }
 
-/// The same, whatever the job.
+/// Common interface of all kinds of jobs.
 trait AnyKind {
     fn want(&self, app: &mut GdcmApp);
     fn stop(&self, app: &mut GdcmApp);
@@ -88,7 +91,7 @@ impl<J: Job> AnyKind for Registered<J> {
     }
 }
 
-/// All kinds, each with a thread of its own. Dropping it ends them, and waits for none.
+/// All kinds of jobs, each with its own thread. Dropping it ends the threads without waiting.
 pub(super) struct BackgroundJobs {
     kinds: Rc<Vec<Box<dyn AnyKind>>>,
 }
@@ -96,7 +99,8 @@ pub(super) struct BackgroundJobs {
 impl BackgroundJobs {
     /// Starts the threads.
     pub(super) fn start(make_engine: &EngineMaker, replies: &ReplySender) -> io::Result<Self> {
-        // Those that work on the study as it is hold one response of each model together; a variant may have another band.
+        // Kinds that work on the current study share one response of each model; a variant may use
+        // another band.
         let known = KnownModels::default();
         let engine = || {
             let make = Arc::clone(make_engine);
@@ -310,12 +314,12 @@ impl BackgroundJobs {
         })
     }
 
-    /// Lets the jobs that were stopped be begun again.
+    /// Allows stopped jobs to start again.
     pub(super) fn resume(&self) {
         self.kinds.iter().for_each(|kind| kind.resume());
     }
 
-    /// What is under way.
+    /// Returns the running work.
     pub(super) fn told(&self) -> Background {
         let mut background = Background::default();
         self.kinds
@@ -326,7 +330,7 @@ impl BackgroundJobs {
 }
 
 impl GdcmApp {
-    /// Asks for the jobs that what is shown needs, and for no others.
+    /// Requests exactly the jobs that the current display needs.
     pub(super) fn want_jobs(&mut self) {
         let state = &self.state;
         let shown = View::ALL
@@ -342,14 +346,14 @@ impl GdcmApp {
         kinds.iter().for_each(|kind| kind.want(self));
     }
 
-    /// Gives up every job.
+    /// Stops every job.
     pub(super) fn stop_jobs(&mut self) {
         let kinds = Rc::clone(&self.jobs.kinds);
         kinds.iter().for_each(|kind| kind.stop(self));
     }
 }
 
-/// A kind with its queue, whose thread is started. `tools` makes what its jobs work with.
+/// Starts a thread and a queue for a kind of job. `tools` creates the tools of its jobs.
 fn started<J: Job>(
     name: &str,
     tools: impl Fn() -> J::Tools + Send + 'static,
@@ -372,17 +376,17 @@ fn started<J: Job>(
     Ok(Box::new(Registered { kind, queue }))
 }
 
-/// The processor's cores as the tool of a job.
+/// Returns the processor's cores as the tool of a job.
 fn pool() -> Box<dyn Executor> {
     Box::new(Pool)
 }
 
-/// The jobs of one kind among what the views shown need.
+/// Returns the jobs of one kind needed by the visible views.
 fn needed<J: Clone>(app: &GdcmApp, of: fn(&Need) -> Option<&J>) -> Vec<J> {
     app.needs.iter().filter_map(of).cloned().collect()
 }
 
-/// Keeps the outputs of these jobs only, which are asked for.
+/// Drops the kept outputs of jobs that are not in `jobs`; returns `jobs`.
 fn keep<J: Job>(kept: &mut Vec<(J, J::Output)>, jobs: Vec<J>) -> Vec<J> {
     kept.retain(|(known, _)| jobs.contains(known));
     jobs
@@ -398,13 +402,14 @@ fn curves_job(state: &State) -> CurvesJob {
     }
 }
 
-/// The costs of holding and freeing, of the condition shown.
+/// Returns the job that computes the costs of constraining and releasing entries, for the displayed
+/// condition.
 fn toggles_job(state: &State) -> Option<TogglesJob> {
     let condition = state.analysis()?.condition(state.condition().id())?.clone();
     Some(TogglesJob { condition })
 }
 
-/// What is not proven, the condition shown first.
+/// Returns the unproven problems, those of the displayed condition first.
 fn proof_jobs(state: &State) -> Vec<ProofJob> {
     let Some(analysis) = state.analysis() else {
         return Vec::new();
@@ -425,7 +430,8 @@ fn proof_jobs(state: &State) -> Vec<ProofJob> {
     jobs
 }
 
-/// The error bars of what is shown; while that is computed anew, the answer has all cores, and so has the first picture of it.
+/// Returns the job for the error bars of the displayed results. While these are recomputed, or
+/// drawn for the first time, the live answer has all cores.
 fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
     let results = &state.results;
     state.analysis().filter(|_| {
@@ -436,23 +442,22 @@ fn uncertainty_job(state: &State) -> Option<UncertaintyJob> {
     })
 }
 
-/// A problem and the gains that another job has proven to be its best.
+/// A problem with its gains, proven optimal by another job.
 pub(super) type Proof = (Arc<Problem>, Arc<Solution>);
 
-/// The live answer: what the study and the condition shown need. All of it is shared, so that a request costs next to nothing.
+/// Live answer to the current study and condition. All parts are shared, so a request is cheap.
 #[derive(Clone)]
 pub(super) struct AnalysisJob {
-    /// Counts the jobs: a proof that comes later makes another one of the same request.
+    /// Number of the job: a proof that arrives later creates another job for the same request.
     pub(super) number: u64,
-    /// Number of the request; the newest has the greatest.
+    /// Number of the request; the newest is the greatest.
     pub(super) generation: u64,
-    /// The study to analyse.
     pub(super) study: Study,
-    /// The condition shown, whose result and curves are wanted first.
+    /// The displayed condition, whose result and curves come first.
     pub(super) condition: ConditionId,
-    /// What was proven since the last answer.
+    /// Problems proven since the last answer.
     pub(super) proofs: Vec<Proof>,
-    /// Where the result of the condition shown goes, ahead of the others.
+    /// Receives the result of the displayed condition, ahead of the others.
     pub(super) replies: ReplySender,
 }
 
@@ -464,7 +469,7 @@ impl PartialEq for AnalysisJob {
 
 impl Job for AnalysisJob {
     type Tools = Engine;
-    /// The analysis, and the time that it took \[ms\].
+    /// The analysis and its computing time \[ms\].
     type Output = (Arc<Analysis>, f64);
 
     fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
@@ -492,10 +497,12 @@ impl Job for AnalysisJob {
         Ok((Arc::new(analysis), 1e3 * started.elapsed().as_secs_f64()))
     }
 
-    /// During a steady drag every answer is worth having: without that only the condition shown would keep up with the hand. So is one
-    /// whose responses and distances are being computed, where the newer job needs the same.
+    /// Returns whether this job should continue although a newer one waits. A job with the same
+    /// request number does. So does a job whose responses and distances are still being computed if
+    /// the newer job needs the same; otherwise only the displayed condition would keep up with a
+    /// steady drag.
     fn serves(&self, newer: &Self, done: usize, total: usize) -> bool {
-        // The last step of each condition is its optimum, which depends on more.
+        // The last step of each condition is its optimum, which depends on other settings too.
         let is_compared = total > 0 && done + self.study.dataset.conditions().len() >= total;
         let compared = |job: &Self| {
             (

@@ -1,5 +1,5 @@
-//! Opening and saving; the desktop's file dialogs, and the list of recent files. What may take long is done in threads, so that the
-//! window never waits.
+//! Opening and saving, the desktop's file dialogs, and the list of recent files. Slow operations
+//! run in threads, so the window never blocks.
 
 use std::path::{Path, PathBuf};
 
@@ -19,56 +19,49 @@ use crate::view::assembling::AssemblingCommand;
 use crate::view::records::RecordsCommand;
 use crate::view::{Bar, Command, FormKind, Preferences, RecentFile, RequirementTable, State};
 
-/// The study as it was saved last.
+/// The study as last saved.
 #[derive(Clone, Debug)]
 pub(super) struct SavedStudy {
-    /// Where; nowhere yet for a new study.
+    /// Path of the file; `None` for a new study.
     pub(super) path: Option<PathBuf>,
-    /// What was saved, or what a new study starts from; none of decisions that were restored.
+    /// The saved study, or the initial state of a new one; `None` for restored decisions.
     pub(super) study: Option<Study>,
 }
 
-/// What a file is read for.
+/// Purpose of reading a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ReadFor {
-    /// To be shown in place of what is open.
+    /// Shown instead of the open study.
     Opening,
-    /// To take the place of the dataset that is open, which was read from it before.
+    /// Replaces the open dataset, which was read from the same file earlier.
     Reloading,
-    /// To go on with decisions that were not saved, by the number of the offer.
+    /// Continues unsaved decisions; holds the number of the offer.
     Restoring(usize),
 }
 
-/// What a dialog was opened for.
+/// Purpose of a file dialog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DialogPurpose {
-    /// A dataset or a study to open.
     Open,
-    /// A file to save the study to.
     SaveStudy,
-    /// A folder to export to.
     ExportFolder,
-    /// A folder of model files.
     ModelFolder,
-    /// A folder of flight records.
     RecordFolder,
-    /// A file of a table that requirements are asked with.
     RequirementTable(RequirementTable),
 }
 
-/// What waits for the answer whether the decisions that are not saved may be lost.
+/// Action postponed until the engineer confirms that unsaved decisions may be lost.
 #[derive(Debug)]
 pub(super) enum PendingAction {
-    /// To show what was read, which is good.
+    /// Shows a file that was read successfully.
     Show(ReadFor, Box<Opened>),
-    /// To go back to the start page with nothing of what is open.
+    /// Returns to the start page and closes everything that is open.
     Close,
-    /// To close the window.
     Quit,
 }
 
 impl GdcmApp {
-    /// What the window starts with when `opened` is shown.
+    /// Returns the initial state, dataset and saved study with which the window shows `opened`.
     pub(super) fn parts_of(opened: Opened) -> (State, LoadedDataset, SavedStudy) {
         let path = match &opened {
             Opened::Dataset(_) => None,
@@ -80,7 +73,7 @@ impl GdcmApp {
             study_name(path.as_deref()),
             loaded.cautions.clone(),
         );
-        // Saved now, the file would lose what does not apply.
+        // Saving now would drop the decisions that do not apply.
         state.unsaved = differences
             .iter()
             .any(|difference| matches!(difference, Difference::NotApplied { .. }));
@@ -94,19 +87,19 @@ impl GdcmApp {
         (state, loaded, saved)
     }
 
-    /// Shows what was opened in place of what is open.
+    /// Replaces the open study with `opened`.
     pub(super) fn show(&mut self, opened: Opened) {
         let (mut state, loaded, saved) = Self::parts_of(opened);
         let requested = self.state.results.requested;
         let name = loaded.origin.to_string();
         state.recent = std::mem::take(&mut self.state.recent);
         Preferences::of(&self.state.display).apply(&mut state.display);
-        // What was lost is offered still; the other bars are about what was open.
+        // Offers to restore lost decisions stay; the other bars concern the previous study.
         state.bars = std::mem::take(&mut self.state.bars);
         state.bars.retain(|bar| matches!(bar, Bar::Recovery { .. }));
         self.state = state;
         self.record_reader.give_up();
-        // Request numbers go on, so that late answers about the old dataset are told apart.
+        // Request numbers continue, so that late answers about the old dataset can be recognised.
         self.state.results.requested = requested;
         self.state.results.received = requested;
         self.loaded = loaded;
@@ -116,14 +109,14 @@ impl GdcmApp {
         self.done(format!("opened {name}"));
     }
 
-    /// Puts what is open in front of the recent files: the study, or else the dataset.
+    /// Puts the open study, or else the open dataset, first in the list of recent files.
     pub(super) fn look_for_recent(&self) {
         let dataset = || self.loaded.path().map(Path::to_owned);
         self.read_recent(self.saved.path.clone().or_else(dataset));
     }
 
-    /// Reads the list of recent files and looks which of them are there, in a thread of its own, for a network drive may keep it
-    /// waiting; puts `newest` in front first.
+    /// Reads the list of recent files and checks which of them exist; puts `newest` first. Runs in
+    /// its own thread, because a network drive may be slow.
     pub(super) fn read_recent(&self, newest: Option<PathBuf>) {
         let Some(directory) = self.directory.clone() else {
             return;
@@ -142,7 +135,8 @@ impl GdcmApp {
         });
     }
 
-    /// Opens a dataset or a study; what is open stays until it is read. The dataset of a study may have moved.
+    /// Opens a dataset or a study; the open study stays until the file is read. `moved` is the new
+    /// path of a study's dataset.
     pub(super) fn open(&mut self, path: PathBuf, moved: Option<PathBuf>) {
         let path = self.at_home(path);
         let moved = moved.map(|dataset| self.at_home(dataset));
@@ -166,7 +160,7 @@ impl GdcmApp {
         self.read(purpose, name, read);
     }
 
-    /// Reads in a thread of its own, within the budget of a file, in place of what was being opened.
+    /// Reads a file in its own thread, within the budget of a file; replaces a reading under way.
     pub(super) fn read(
         &mut self,
         purpose: ReadFor,
@@ -191,7 +185,7 @@ impl GdcmApp {
         self.answer_opened(ReadFor::Opening, embedded_example().map(Opened::Dataset));
     }
 
-    /// Puts the example in the place of what is open, behind the start page.
+    /// Replaces the open study with the example, behind the start page.
     pub(super) fn close_study(&mut self) {
         let Some(example) = self.unless_error(embedded_example()) else {
             return;
@@ -223,21 +217,21 @@ impl GdcmApp {
         }
     }
 
-    /// Asks whether the decisions that are not saved may be lost to what is to be done.
+    /// Asks whether unsaved decisions may be lost to the postponed action.
     pub(super) fn ask_to_lose(&mut self, postponed: PendingAction) {
         self.postponed = Some(postponed);
         self.goes_on_once_saved = false;
         self.state.forms.shown = Some(FormKind::Unsaved);
     }
 
-    /// Saves the study, and does what waits for it once it is saved.
+    /// Saves the study, then carries out the action postponed until it is saved.
     pub(super) fn save_and_go_on(&mut self) {
         self.state.forms.shown = None;
         self.goes_on_once_saved = true;
         self.save();
     }
 
-    /// Does what the decisions that are not saved kept waiting.
+    /// Carries out the action postponed because of unsaved decisions.
     pub(super) fn go_on(&mut self) {
         self.goes_on_once_saved = false;
         match self.postponed.take() {
@@ -248,7 +242,7 @@ impl GdcmApp {
         }
     }
 
-    /// Says why nothing was opened, or asks where a study's dataset is; what is open stays.
+    /// Reports why nothing was opened, or asks for a study's dataset; the open study stays.
     fn open_failed(&mut self, error: FileError) {
         self.read_recent(None);
         match error {
@@ -260,13 +254,13 @@ impl GdcmApp {
         }
     }
 
-    /// Opens a dialog of the desktop, unless one is open; it starts with `file_name` where it saves.
+    /// Opens a file dialog of the desktop unless one is open; a save dialog proposes `file_name`.
     pub(super) fn ask_path(&mut self, purpose: DialogPurpose, file_name: String) {
         if self.dialog_open {
             return;
         }
         self.dialog_open = true;
-        // A desktop without dialogs is none that was left without a choice.
+        // A desktop without dialogs counts as a dialog closed without a choice.
         let ask = move || caught(|| dialog(purpose, &file_name)).ok().flatten();
         self.in_thread("the dialog", ask, move |app, chosen| {
             app.dialog_open = false;
@@ -281,7 +275,7 @@ impl GdcmApp {
         match purpose {
             DialogPurpose::Open => self.open(path, None),
             DialogPurpose::SaveStudy => {
-                // The dialog has asked about the name as it was chosen.
+                // The dialog has asked only about the name as it was chosen.
                 let is_asked = with_study_extension(path.clone()) == path;
                 self.save_as(
                     path,
@@ -301,7 +295,8 @@ impl GdcmApp {
         }
     }
 
-    /// Nothing was chosen, or there is no dialog on this desktop: both look alike, and the path is offered as text.
+    /// Handles a dialog without a choice. A cancelled dialog and a desktop without dialogs look
+    /// alike, so the path can be typed instead.
     fn nothing_chosen(&mut self, purpose: DialogPurpose) {
         match purpose {
             DialogPurpose::Open => self.state.forms.shown = Some(FormKind::Open),
@@ -318,7 +313,7 @@ impl GdcmApp {
         }
     }
 
-    /// Saves the study where it was saved last, or asks where.
+    /// Saves the study to its own file, or asks for a path.
     pub(super) fn save(&mut self) {
         match self.saved.path.clone() {
             Some(path) => self.save_as(path, Existing::Replace),
@@ -326,7 +321,8 @@ impl GdcmApp {
         }
     }
 
-    /// Saves the study to a file; asks before it overwrites one that is not the study's own, unless that was asked already.
+    /// Saves the study to a file. Asks before overwriting a file other than the study's own, unless
+    /// the engineer has already agreed.
     pub(super) fn save_as(&mut self, path: PathBuf, existing: Existing) {
         let path = with_study_extension(self.at_home(path));
         let is_own = self.saved.path.as_ref() == Some(&path);
@@ -365,12 +361,12 @@ impl GdcmApp {
         }
     }
 
-    /// A path as it is typed, with the home directory in the place of `~`.
+    /// Expands `~` in a typed path to the home directory.
     pub(super) fn at_home(&self, typed: PathBuf) -> PathBuf {
         at_home(&typed, self.home.as_deref())
     }
 
-    /// A name for the study's file.
+    /// Returns a proposed file name for the study.
     pub(super) fn proposed_name(&self) -> String {
         if let Some(path) = &self.saved.path {
             return path.display().to_string();
@@ -378,7 +374,7 @@ impl GdcmApp {
         format!("{}.{STUDY_EXTENSION}", self.stem())
     }
 
-    /// What files about the dataset are called, without their ends.
+    /// Returns the stem of the names of files about the dataset.
     pub(super) fn stem(&self) -> String {
         let stem = self
             .loaded

@@ -1,5 +1,5 @@
-//! A thread beside the live answer that does the jobs of one kind, one after the other. Two equal jobs are one: what is under way,
-//! done or stopped is known by the job itself.
+//! Runs the jobs of one kind one after the other, in a thread beside the live answer. Equal jobs
+//! are identical: running, finished and stopped jobs are recognised by equality.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -10,13 +10,13 @@ use gdcm_study::study::job::Job;
 
 use super::threads::{Fault, Mailbox, caught};
 
-/// What a job has made, or the fault that ended it; nothing is told of a job that was given up.
+/// Output of a job, or the fault that ended it; a cancelled job has no ending.
 pub(super) type Ending<J> = Result<<J as Job>::Output, Fault>;
 
-/// How long a job that is not asked for any more may go on: while something is dragged, every output is worth having.
+/// How long an unwanted job may continue: during a drag, every output is worth showing.
 const CANCEL_GRACE: Duration = Duration::from_millis(60);
 
-/// How far a job is, and whether it is still wanted.
+/// Progress of a job, and whether it is still wanted.
 #[derive(Debug)]
 struct Run {
     started: Instant,
@@ -38,7 +38,7 @@ impl Run {
         })
     }
 
-    /// Steps done, of how many.
+    /// Returns the number of completed steps and the total.
     fn steps(&self) -> (usize, usize) {
         (
             self.done.load(Ordering::Relaxed),
@@ -61,12 +61,12 @@ impl Progress for Run {
 }
 
 struct Orders<J> {
-    /// The jobs asked for, the most urgent first.
+    /// Requested jobs, the most urgent first.
     wanted: Vec<J>,
     running: Option<(J, Arc<Run>)>,
-    /// Those asked for that are done.
+    /// Requested jobs that are complete.
     done: Vec<J>,
-    /// Those asked for that were stopped, by hand or by a fault.
+    /// Requested jobs that were stopped, by hand or by a fault.
     stopped: Vec<J>,
     closed: bool,
 }
@@ -85,7 +85,7 @@ impl<J: Job> Orders<J> {
     }
 }
 
-/// Waits for a job that is to be begun; none once the queue is dropped.
+/// Waits for a job to start; returns `None` once the queue is dropped.
 fn take<J: Job>(orders: &Mailbox<Orders<J>>) -> Option<(J, Arc<Run>)> {
     orders.wait(|orders| {
         if orders.closed {
@@ -98,14 +98,14 @@ fn take<J: Job>(orders: &Mailbox<Orders<J>>) -> Option<(J, Arc<Run>)> {
     })
 }
 
-/// The jobs of one kind. Dropping it gives up the job under way and waits for nothing.
+/// Queue for the jobs of one kind. Dropping it cancels the running job without waiting.
 pub(super) struct JobQueue<J: Job> {
     orders: Arc<Mailbox<Orders<J>>>,
 }
 
 impl<J: Job> JobQueue<J> {
-    /// Starts the thread; each job's ending goes to `deliver`. The tools are made anew after a fault, which may leave them
-    /// half made.
+    /// Starts the thread; each job's ending goes to `deliver`. The tools are made anew after a
+    /// fault, which may leave them in an inconsistent state.
     pub(super) fn start(
         name: &str,
         tools: impl Fn() -> J::Tools + Send + 'static,
@@ -126,8 +126,8 @@ impl<J: Job> JobQueue<J> {
         Ok(Self { orders })
     }
 
-    /// Asks for these jobs, the most urgent first, and for no others: one under way goes on if it is among them, and one that
-    /// is done or was stopped is not begun again as long as it is.
+    /// Requests exactly these jobs, the most urgent first. A running job continues if it is among
+    /// them; a job that is complete or stopped does not start again while it stays requested.
     pub(super) fn want(&self, jobs: Vec<J>) {
         self.orders.change(|orders| {
             orders.done.retain(|job| jobs.contains(job));
@@ -143,12 +143,12 @@ impl<J: Job> JobQueue<J> {
         });
     }
 
-    /// The jobs that are asked for and neither done nor stopped.
+    /// Returns the requested jobs that are neither complete nor stopped.
     pub(super) fn unfinished(&self) -> Vec<J> {
         self.orders.lock().unfinished().cloned().collect()
     }
 
-    /// Gives up what is under way and what waits.
+    /// Cancels the running job and the waiting ones.
     pub(super) fn stop(&self) {
         self.orders.change(|orders| {
             let left: Vec<J> = orders.unfinished().cloned().collect();
@@ -157,17 +157,17 @@ impl<J: Job> JobQueue<J> {
         });
     }
 
-    /// Lets what was stopped be begun again.
+    /// Allows stopped jobs to start again.
     pub(super) fn resume(&self) {
         self.orders.change(|orders| orders.stopped.clear());
     }
 
-    /// Whether something that is asked for was stopped, by hand or by a fault.
+    /// Returns whether a requested job was stopped, by hand or by a fault.
     pub(super) fn is_stopped(&self) -> bool {
         !self.orders.lock().stopped.is_empty()
     }
 
-    /// Steps done, of how many, where something is asked for that is not done.
+    /// Returns completed and total steps while a requested job is incomplete.
     pub(super) fn progress(&self) -> Option<(usize, usize)> {
         let orders = self.orders.lock();
         orders.unfinished().next()?;
@@ -227,10 +227,10 @@ mod tests {
 
     use super::*;
 
-    /// Far above what the slowest machine needs: only a hang gets here.
+    /// Far above the time that the slowest machine needs: only a hang reaches it.
     const LIMIT: Duration = Duration::from_secs(60);
 
-    /// Says that it has begun; ends at once, or only when it is given up, or with a panic.
+    /// Test job that reports its start, then ends at once, ends only when cancelled, or panics.
     #[derive(Clone)]
     struct Spoken(&'static str, Sender<String>);
 

@@ -1,4 +1,5 @@
-//! Keys: those of the table of commands, and what is typed, which goes to the field that is meant however slow the frames are.
+//! Keys: the shortcuts of the command table, and typed text, which reaches the intended field
+//! however slow the frames are.
 
 use std::cmp::Reverse;
 
@@ -8,7 +9,7 @@ use crate::view::command_table::{Entry, Reach, command_table};
 use crate::view::focus::was_focused;
 use crate::view::{Command, State};
 
-/// The commands of the keys pressed since the last frame.
+/// Returns the commands of the keys pressed since the last frame.
 pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
     let focused = ctx.memory(|memory| memory.focused().is_some());
     let is_key = |event: &Event| matches!(event, Event::Key { pressed: true, .. });
@@ -17,7 +18,7 @@ pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
     }
     let has_no_focus = !focused && !ctx.egui_wants_keyboard_input();
     let is_free = has_no_focus && state.forms.shown.is_none() && !Popup::is_any_open(ctx);
-    // Escape has taken the focus away by now: where there was one, the key was the field's.
+    // Escape has already removed the focus here: if a field had it, the key belonged to the field.
     let is_left_to_field =
         |keys: &KeyboardShortcut| was_focused(ctx) && keys.logical_key == Key::Escape;
     let is_given = |entry: &Entry| {
@@ -33,7 +34,8 @@ pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
                 .map(move |shortcut| (shortcut, entry.command.clone()))
         })
         .collect();
-    // The keys of a shortcut without Shift or Alt are also those of one with them: the one that asks for more goes first.
+    // A shortcut without Shift or Alt also matches the keys of one with them, so shortcuts with
+    // more modifiers come first.
     keys.sort_by_key(|(shortcut, _)| {
         Reverse(u8::from(shortcut.modifiers.shift) + u8::from(shortcut.modifiers.alt))
     });
@@ -45,26 +47,28 @@ pub fn pressed(ctx: &Context, state: &State) -> Vec<Command> {
         .collect()
 }
 
-/// Hands on what was typed and clicked in the order in which it was.
+/// Forwards keyboard and pointer events in their original order.
 ///
-/// Where a frame takes long, "3", Tab and "4" arrive with one frame, in which only one field has the focus. Whatever moves the
-/// focus therefore comes in a frame of its own, and what was typed after it in a later one. After Tab one frame more goes by: what
-/// gets the focus backwards knows of it in the next frame only, and chooses its text, to be replaced, at the end of that.
+/// If a frame takes long, "3", Tab and "4" arrive in one frame, in which only one field has the
+/// focus. Events that move the focus therefore get a frame of their own, and text typed after them
+/// goes to a later frame. After Tab another frame passes: a widget that receives the focus
+/// backwards learns of it only in the next frame, and selects its text, to be replaced, at the end
+/// of that frame.
 #[derive(Default)]
 pub(super) struct KeyOrder {
-    /// What comes with later frames.
+    /// Events for later frames.
     later: Vec<Event>,
-    /// Whether the frame before moved the focus by Tab.
+    /// Whether Tab moved the focus in the previous frame.
     has_moved: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// Text, and keys that leave the focus where it is.
+    /// Text, and keys that do not move the focus.
     Typing,
     /// A key that may move the focus.
     Moving,
-    /// A button of the pointer, which may move the focus too.
+    /// A pointer button, which may also move the focus.
     Button,
 }
 
@@ -82,13 +86,15 @@ impl Kind {
         }
     }
 
-    /// Whether `next` may come with the same frame. Clicks may: two of them are a double click by their times.
+    /// Returns whether `next` may share the frame. Clicks may, since a double click is recognised
+    /// by its times.
     fn goes_with(self, next: Self) -> bool {
         self == next && self != Self::Moving
     }
 }
 
-/// Not the arrows, though they go from one cell to the next: one that is held comes more often than slow frames do.
+/// Returns whether a key may move the focus. The arrow keys move between cells but are excluded: a
+/// pressed arrow key repeats faster than slow frames.
 fn moves_focus(key: Key) -> bool {
     matches!(key, Key::Tab | Key::F6 | Key::Enter | Key::Escape)
 }
@@ -104,7 +110,7 @@ fn is_tab(event: &Event) -> bool {
     )
 }
 
-/// How many of the events come with one frame.
+/// Returns how many of the events belong to one frame.
 fn of_one_frame(events: &[Event]) -> usize {
     let mut before = None;
     for (count, event) in events.iter().enumerate() {
@@ -165,7 +171,7 @@ mod tests {
         }
     }
 
-    /// How many events each frame gets.
+    /// Returns the number of events in each frame.
     fn frames(mut events: Vec<Event>) -> Vec<usize> {
         let mut counts = Vec::new();
         while !events.is_empty() {

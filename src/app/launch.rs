@@ -1,4 +1,4 @@
-//! From the command line to a window on the screen.
+//! Starts the program: from the command line to a window on the screen.
 
 use std::error::Error;
 use std::ops::RangeInclusive;
@@ -29,31 +29,29 @@ use crate::view::assembling::AssemblingCommand;
 use crate::view::start_page::OpensWith;
 use crate::view::{Command, Preferences};
 
-/// What the desktop knows the program by; also the name of the directory for its data.
+/// Application id on the desktop, and name of the data directory.
 pub(super) const APP_ID: &str = "gdcm";
-/// Exit status where the window could not be opened, or panicked.
+/// Exit status if the window could not be opened or panicked.
 const NO_WINDOW: u8 = 1;
-/// Exit status where the file is wrong.
+/// Exit status for a wrong file.
 const WRONG_FILE: u8 = 2;
 
-/// What a window is given besides what it shows; a test gives other things than the program does.
+/// Setup of a window; tests use other values than the program.
 #[derive(Clone)]
 pub struct Setup {
-    /// Makes the engines.
     pub engine: EngineMaker,
-    /// Where recovery files and the list of recent files are kept; nowhere without it.
+    /// Directory of the recovery files and of the list of recent files; `None` keeps neither.
     pub directory: Option<PathBuf>,
-    /// What `~` stands for in a path that is typed; itself without it.
+    /// Expansion of `~` in typed paths; without it, `~` stays.
     pub home: Option<PathBuf>,
-    /// Whether the first start shows the guided tour.
+    /// Whether the first start offers the guided tour.
     pub offers_tour: bool,
-    /// How long after a change the decisions are kept in the recovery file at the latest.
+    /// Maximum delay between a change and its copy in the recovery file.
     pub keep_after: Duration,
-    /// How often the dataset's file is looked at.
+    /// Interval between checks of the dataset's file.
     pub look_every: Duration,
-    /// How the engineer likes the window.
     pub preferences: Preferences,
-    /// What went wrong before it was opened: it says so at first.
+    /// Problem found before the window was opened; shown first.
     pub trouble: Option<String>,
 }
 
@@ -75,7 +73,7 @@ impl Default for Setup {
 }
 
 impl Setup {
-    /// That of the program: with the directories that the platform gives it.
+    /// Returns the setup of the program, with the directories given by the platform.
     pub(super) fn of_program() -> Self {
         Self {
             directory: eframe::storage_dir(APP_ID),
@@ -86,11 +84,13 @@ impl Setup {
     }
 }
 
-/// Opens the window on a dataset or a study, or on the embedded example, and returns when it is closed.
+/// Opens the window on a dataset or a study, or on the embedded example, and returns once it is
+/// closed.
 ///
-/// Where there is no display, or the window cannot be made, one line on standard error says so and names the headless command.
+/// Without a display, or if the window cannot be created, one line on standard error reports it and
+/// names the headless command.
 ///
-/// A folder, or a file of another program, is opened to put its models together.
+/// A folder, or a file of another program, is opened to import its models.
 pub fn open(path: Option<PathBuf>) -> ExitCode {
     let models = path.clone().filter(|path| holds_models(path));
     let command = headless(path.as_deref(), models.is_some());
@@ -102,7 +102,7 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
         eprintln!("error: {}", no_window(&reason, &command));
         return ExitCode::from(NO_WINDOW);
     }
-    // The file is read while the window is made.
+    // The file is read while the window is created.
     let reading = std::thread::Builder::new()
         .name("file".to_owned())
         .spawn(|| told(load(dataset)));
@@ -139,8 +139,8 @@ pub fn open(path: Option<PathBuf>) -> ExitCode {
     }
 }
 
-/// Why the window ended, in words, unless it was closed. `kept` is what keeps its decisions, once it has drawn a frame; `command` does
-/// without a window.
+/// Returns the reason why the window ended, unless it was closed. `kept` is the autosave, once a
+/// frame is drawn; `command` is the headless alternative.
 fn ending(
     run: Result<eframe::Result, Fault>,
     kept: Option<&Autosave>,
@@ -148,7 +148,8 @@ fn ending(
 ) -> Result<(), String> {
     match (run, kept) {
         (Ok(Ok(())), _) => Ok(()),
-        // A missing system library is a panic inside the window library's start-up, not an error.
+        // A missing system library causes a panic during the window library's start-up, not an
+        // error.
         (Ok(Err(error)), None) => Err(no_window(&error.to_string(), command)),
         (Err(fault), None) => Err(no_window(&fault.message, command)),
         (Ok(Err(error)), Some(autosave)) => {
@@ -158,7 +159,8 @@ fn ending(
     }
 }
 
-/// What the window opens on, and what is wrong with the file that was asked for: then it opens on the example.
+/// The study to open, and the fault in the requested file, in which case the window opens the
+/// example.
 type Loaded = (Result<Opened, String>, Option<String>);
 
 fn load(path: Option<PathBuf>) -> Loaded {
@@ -171,7 +173,7 @@ fn load(path: Option<PathBuf>) -> Loaded {
     }
 }
 
-/// Tells what is wrong with the file on the terminal too: where no window comes, that is all there is.
+/// Reports a faulty file on the terminal too: without a window that is the only report.
 fn told(loaded: Loaded) -> Loaded {
     loaded
         .1
@@ -190,7 +192,8 @@ fn run(
         .with_app_id(APP_ID)
         .with_inner_size([1440.0, 900.0])
         .with_min_inner_size([900.0, 560.0]);
-    // There are no gradients to smooth, and without a graphics processor every pixel's noise is computed.
+    // There are no gradients to smooth, and without a graphics processor dithering would cost time
+    // for every pixel.
     let options = NativeOptions {
         viewport,
         dithering: false,
@@ -219,7 +222,7 @@ fn run(
     eframe::run_native(APP_ID, options, Box::new(build))
 }
 
-/// What was open last, where the engineer wants to begin with that and it is there.
+/// Returns the file that was open last, if the engineer prefers to start with it and it exists.
 fn last_opened(setup: &Setup) -> Option<PathBuf> {
     let directory = setup
         .directory
@@ -230,10 +233,10 @@ fn last_opened(setup: &Setup) -> Option<PathBuf> {
         .find(|path| file_exists(path))
 }
 
-/// Zoom factors with which a window can be used.
+/// Usable zoom factors of a window.
 const ZOOM: RangeInclusive<f64> = 0.2..=5.0;
 
-/// Puts 1 in the place of a zoom factor among the preferences with which no window opens; says so.
+/// Replaces an unusable zoom factor in the preferences with 1; returns a message about it.
 fn mend_zoom(preferences: &Path) -> Option<String> {
     const KEY: &str = "zoom_factor:";
     let text = std::fs::read_to_string(preferences).ok()?;
@@ -265,7 +268,7 @@ fn mend_zoom(preferences: &Path) -> Option<String> {
     )
 }
 
-/// Why no window can be had, where that can be told beforehand: on Linux, neither Wayland nor X11.
+/// Returns why no window can be opened, if known beforehand: on Linux, neither Wayland nor X11.
 fn missing_display() -> Option<String> {
     if !cfg!(target_os = "linux") {
         return None;
@@ -281,7 +284,8 @@ fn no_window(reason: &str, command: &str) -> String {
         .next()
         .unwrap_or(reason)
         .trim_end_matches('.');
-    // winit says first where in its source the system refused: "os error at src/linux.rs:788: no connection".
+    // winit begins with the location in its own source: "os error at src/linux.rs:788: no
+    // connection".
     let at = reason
         .split_once("os error at ")
         .and_then(|(_, at)| at.split_once(": "));
@@ -289,7 +293,8 @@ fn no_window(reason: &str, command: &str) -> String {
     format!("the window could not be opened: {reason}. Without a window: {command}")
 }
 
-/// The command that does without a window what one would be opened for: on the embedded example where no file is given.
+/// Returns the headless command that replaces the window; without a file it uses the embedded
+/// example.
 fn headless(path: Option<&Path>, holds_models: bool) -> String {
     match path.map(sanitized_path) {
         Some(path) if holds_models => format!("gdcm assemble \"{path}\" --out dataset.json.gz"),

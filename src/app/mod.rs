@@ -1,4 +1,4 @@
-//! The window: the only place that knows eframe, file dialogs and threads.
+//! The window: the only module that uses eframe, file dialogs and threads.
 
 mod assembling;
 mod background_jobs;

@@ -1,5 +1,6 @@
-//! What the window writes to files: corrections, exports for other tools, figures and tables, the report, and the tables that requirements
-//! are asked with, which are read here too. A file that is there is written over only where the engineer said so in a form.
+//! Files written by the window: corrections, exports for other tools, figures, tables, the report,
+//! and the requirement tables, which are also read here. An existing file is overwritten only after
+//! the engineer agrees in a form.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -27,7 +28,7 @@ use crate::view::views::{all_records, known_poles};
 use crate::view::{Command, FormKind, RequirementTable, View};
 
 impl GdcmApp {
-    /// Writes the corrections of the conditions chosen in the form.
+    /// Writes the corrections of the conditions selected in the form.
     pub(super) fn export(&mut self) {
         let Some(analysis) = self.complete_results() else {
             return;
@@ -53,7 +54,7 @@ impl GdcmApp {
         self.written(written.map(words), FormKind::Export, Command::Export);
     }
 
-    /// Proposes a name for an export for other tools, where none was typed.
+    /// Proposes a name for an export to other tools if none was typed.
     pub(super) fn propose_export_name(&mut self) {
         let stem = self.stem();
         let extension = self.state.forms.export_format.extension;
@@ -63,7 +64,7 @@ impl GdcmApp {
         }
     }
 
-    /// Writes all corrections in a format for other tools; asks before it overwrites a file.
+    /// Writes all corrections in a format for other tools; asks before overwriting a file.
     pub(super) fn export_as(&mut self, format: ExportFormat, path: PathBuf) {
         let Some(analysis) = self.complete_results() else {
             return;
@@ -104,10 +105,10 @@ impl GdcmApp {
         );
     }
 
-    /// The analysis of what is shown, proven; where it is not there yet, that is said.
+    /// Returns the proven analysis of the current study; reports an error if it is incomplete.
     fn complete_results(&mut self) -> Option<Arc<Analysis>> {
         let analysis = self.unless_error(self.analysis_to_write("export"))?;
-        // With how sure its figures are, as far as that is computed.
+        // Includes the error bars as far as they are computed.
         let of_this = |bars: &Analysis| bars.study == analysis.study;
         Some(
             self.state
@@ -117,10 +118,10 @@ impl GdcmApp {
         )
     }
 
-    /// What is said of a file that lacks the error bars it could have; nothing of one that has them.
+    /// Returns a suffix explaining missing error bars; empty if they are present.
     fn absent_bars(&self, are_there: bool) -> &'static str {
         let background = &self.state.results.background;
-        // Something else may have been stopped while they go on.
+        // Other work may have been stopped while the error bars continue.
         let were_stopped = background.stopped && background.bars.is_none();
         match (are_there, were_stopped) {
             (true, _) => "",
@@ -129,15 +130,16 @@ impl GdcmApp {
         }
     }
 
-    /// The same of what a view shows: some have error bars as soon as they are computed.
+    /// Returns the suffix of `absent_bars` for a view; figures show error bars as soon as they are
+    /// computed.
     fn absent_bars_of(&self, view: View) -> &'static str {
         let shows_bars =
             view.figure().is_some_and(FigureKind::takes_bars) && !self.state.display.hide_bars;
         self.absent_bars(!shows_bars || self.state.uncertainty().is_some())
     }
 
-    /// The analysis, where it is complete and of what is decided now; otherwise a sentence that says why not. `what` could be done
-    /// again once it is.
+    /// Returns the complete analysis of the current decisions, or a sentence that explains why
+    /// there is none. `what` names the action to repeat later.
     pub(super) fn analysis_to_write(&self, what: &str) -> Result<Arc<Analysis>, String> {
         let results = &self.state.results;
         if results.stopped {
@@ -157,7 +159,7 @@ impl GdcmApp {
         })
     }
 
-    /// Puts the numbers of a view on the clipboard.
+    /// Copies the numbers of a view to the clipboard.
     pub(super) fn copy_figure(&mut self, view: View) {
         let tables = tables_in_place(&self.state, view);
         if let Some(tables) = tables.or_else(|| Some(self.figure_of(view)?.tables())) {
@@ -170,9 +172,9 @@ impl GdcmApp {
         }
     }
 
-    /// Asks where to save a view; the folder of the last figure is proposed.
+    /// Asks where to save a view; proposes the folder of the last figure.
     pub(super) fn ask_save_figure(&mut self, view: View, format: FigureFormat) {
-        // Tables are numbers, whatever a figure in their place would be saved as.
+        // Tables are saved as numbers, whatever the figure format.
         let format = if tables_in_place(&self.state, view).is_some() {
             FigureFormat::Csv
         } else {
@@ -188,7 +190,7 @@ impl GdcmApp {
         self.state.forms.shown = Some(FormKind::SaveFigure);
     }
 
-    /// Saves a view; asks before it overwrites a file.
+    /// Saves a view; asks before overwriting a file.
     pub(super) fn save_figure(&mut self, view: View, width: ColumnWidth, path: PathBuf) {
         let path = self.at_home(path);
         let written = match tables_in_place(&self.state, view) {
@@ -222,7 +224,7 @@ impl GdcmApp {
         self.written(written.map(words), FormKind::SaveFigure, again);
     }
 
-    /// The figure of a view; where there is none yet, that is said.
+    /// Returns the figure of a view; reports an error if there is none yet.
     fn figure_of(&mut self, view: View) -> Option<Figure> {
         let figure = figure_of(&self.state, view);
         if figure.is_none() {
@@ -235,7 +237,7 @@ impl GdcmApp {
         figure
     }
 
-    /// Asks where to save a table as it is now.
+    /// Asks where to save a table in its current state.
     pub(super) fn ask_save_table(&mut self, name: &str, table: Arc<Table>) {
         let name: String = name
             .chars()
@@ -246,7 +248,7 @@ impl GdcmApp {
         self.state.forms.shown = Some(FormKind::SaveTable);
     }
 
-    /// Saves a table of the window as CSV; asks before it overwrites a file.
+    /// Saves a table of the window as CSV; asks before overwriting a file.
     pub(super) fn save_table(&mut self, table: Arc<Table>, path: PathBuf) {
         let path = self.at_home(path);
         let written = save_tables(std::slice::from_ref(&*table), &path, self.outputs());
@@ -258,12 +260,13 @@ impl GdcmApp {
         );
     }
 
-    /// Where results go: never over what the program reads from, and over other files only where that was agreed to.
+    /// Creates an output set that never overwrites input files, and other files only after
+    /// confirmation.
     pub(super) fn outputs(&self) -> OutputSet {
         OutputSet::new(self.existing, self.inputs())
     }
 
-    /// Writes what `add` adds, all of it or nothing, once `paths` were found to be free.
+    /// Writes the files added by `add`, all or none, once `paths` are confirmed to be free.
     pub(super) fn write_all(
         &self,
         paths: &[&Path],
@@ -275,7 +278,8 @@ impl GdcmApp {
         outputs.persist()
     }
 
-    /// Says what was written, asks in a form whether `again` may write over files, or says why nothing was written.
+    /// Reports the written files, asks whether `again` may overwrite files, or reports why nothing
+    /// was written.
     pub(super) fn written(
         &mut self,
         written: Result<String, FileError>,
@@ -292,7 +296,7 @@ impl GdcmApp {
         }
     }
 
-    /// The same of one file.
+    /// Does the same for a single file.
     pub(super) fn saved_to(
         &mut self,
         saved: Result<(), FileError>,
@@ -307,14 +311,14 @@ impl GdcmApp {
         );
     }
 
-    /// Asks in a form whether to overwrite files, which `command` would do.
+    /// Asks in a form whether `command` may overwrite files.
     pub(super) fn ask_to_overwrite(&mut self, paths: &[PathBuf], form: FormKind, command: Command) {
         self.state.forms.existing = paths.iter().map(|path| sanitized_path(path)).collect();
         self.state.forms.shown = Some(form);
         self.overwriting = Some(command);
     }
 
-    /// What the program reads from, which is never overwritten by results.
+    /// Returns the input files, which results never overwrite.
     pub(super) fn inputs(&self) -> Vec<PathBuf> {
         self.saved
             .path
@@ -324,7 +328,7 @@ impl GdcmApp {
             .collect()
     }
 
-    /// Asks where to write the report, unless there is nothing to report on yet.
+    /// Asks where to write the report, unless there are no results yet.
     pub(super) fn ask_report(&mut self) {
         if self
             .unless_error(self.analysis_to_write("write the report"))
@@ -340,7 +344,7 @@ impl GdcmApp {
         }
     }
 
-    /// Has the report written; asks before it overwrites a file.
+    /// Starts writing the report; asks before overwriting a file.
     pub(super) fn write_report(&mut self, path: PathBuf) {
         let Some(analysis) = self.unless_error(self.analysis_to_write("write the report")) else {
             return;
@@ -352,7 +356,7 @@ impl GdcmApp {
             Ok(()) => {
                 let source = ReportSource::of(&self.loaded, self.saved.path.as_deref());
                 self.state.forms.shown = None;
-                // What requirements are asked with has no part in the live answer, which may be older.
+                // The live answer does not depend on the requirements and may have older ones.
                 let analysis = Arc::new(analysis.asked_with(&self.state.study.requirements));
                 let records = all_records(&self.state);
                 let known = known_poles(&self.state);
@@ -370,7 +374,7 @@ impl GdcmApp {
         }
     }
 
-    /// Says what came of a report.
+    /// Reports the outcome of writing a report.
     pub(super) fn report_written(&mut self, job: ReportJob, outcome: Result<(), FileError>) {
         self.reporting = None;
         match outcome {
@@ -381,7 +385,7 @@ impl GdcmApp {
         }
     }
 
-    /// Says that a report under way was given up, by hand or by a fault.
+    /// Reports that a running report was stopped, by hand or by a fault.
     pub(super) fn give_up_report(&mut self) {
         if let Some(job) = self.reporting.take() {
             self.notify_error(format!(
@@ -391,7 +395,7 @@ impl GdcmApp {
         }
     }
 
-    /// Takes a table into the study.
+    /// Reads a requirement table into the study.
     pub(super) fn read_requirement_table(&mut self, table: RequirementTable, path: PathBuf) {
         let path = self.at_home(path);
         let mut settings = RequirementSettings::clone(&self.state.study.requirements);
@@ -433,7 +437,7 @@ impl GdcmApp {
         self.state.forms.shown = Some(FormKind::WriteTolerances);
     }
 
-    /// Writes the tolerances of the study; asks before it overwrites a file.
+    /// Writes the study's tolerances; asks before overwriting a file.
     pub(super) fn write_tolerances(&mut self, path: PathBuf) {
         let path = self.at_home(path);
         let tolerances = &self.state.study.requirements.tolerances;
@@ -447,22 +451,18 @@ impl GdcmApp {
     }
 }
 
-/// Making a report and writing it: seconds, for it has every plot.
+/// Job that builds and writes a report; takes seconds, because it draws every plot.
 #[derive(Clone, Debug)]
 pub struct ReportJob {
-    /// What it is about.
     pub analysis: Arc<Analysis>,
-    /// The flight records that are open, which its models answer to.
+    /// Open flight records for the time-history comparison.
     pub records: Vec<HistoryRecords>,
-    /// The poles that were identified.
     pub known: KnownPoles,
-    /// The files of the study.
     pub source: ReportSource,
-    /// Where it goes.
     pub path: PathBuf,
-    /// What becomes of a file that is there.
+    /// Treatment of an existing file.
     pub existing: Existing,
-    /// What the program reads from, which is never replaced.
+    /// Input files, which are never replaced.
     pub inputs: Vec<PathBuf>,
 }
 
@@ -477,7 +477,7 @@ impl PartialEq for ReportJob {
 }
 
 impl Job for ReportJob {
-    /// The engine that has the responses that are drawn.
+    /// The engine that caches the responses to draw.
     type Tools = Engine;
     type Output = Result<(), FileError>;
 
@@ -492,7 +492,7 @@ impl Job for ReportJob {
             known: &self.known,
         };
         let report = report(subject, &self.source, engine, progress)?;
-        // Whoever stopped it does not want a file any more.
+        // After a stop the file is no longer wanted.
         if progress.cancelled() {
             return Err(Cancelled);
         }
@@ -504,7 +504,7 @@ impl Job for ReportJob {
     }
 }
 
-/// A name for the report of a study, or of a dataset: `flight-7-report.html`.
+/// Returns a report name for a study or a dataset: `flight-7-report.html`.
 fn report_name(file: Option<&Path>) -> String {
     let name = file.map_or_else(|| "example".to_owned(), |file| study_name(Some(file)));
     let stem = name.split(".gdcm-study").next().unwrap_or(&name);

@@ -1,4 +1,5 @@
-//! Flight records in the window: reading them in a thread, and what becomes of the wishes about them.
+//! Flight records in the window: reads them in a thread and carries out the commands of the Records
+//! view.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -32,19 +33,19 @@ use crate::view::records::{
 use crate::view::views::RequirementsPage;
 use crate::view::{Command, FormKind, View};
 
-/// Records that were read, by condition, and what could not be.
+/// Records read, by condition, and the faults found.
 #[derive(Default)]
 struct ReadRecords {
-    /// Those that belong to conditions which had not been looked at before.
+    /// Records that belong to conditions without loaded records.
     own: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
-    /// Those of the files that are added.
+    /// Records from the added files.
     added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
     faults: Vec<String>,
-    /// Where the files lie, by their SHA-256.
+    /// Paths of the files, by SHA-256.
     read_from: BTreeMap<String, PathBuf>,
 }
 
-/// Where records that belong to conditions come from, for a thread that reads them.
+/// Source of the records that belong to conditions, for a reading thread.
 #[derive(Clone)]
 struct OwnRecords {
     dataset: Arc<Dataset>,
@@ -52,7 +53,7 @@ struct OwnRecords {
 }
 
 impl GdcmApp {
-    /// Carries out a wish about flight records.
+    /// Carries out a command about flight records.
     pub(super) fn records(&mut self, command: RecordsCommand) {
         let condition = self.state.condition().id();
         match command {
@@ -100,7 +101,7 @@ impl GdcmApp {
         }
     }
 
-    /// Carries out an edit of the records of a condition as a step that can be undone.
+    /// Applies an edit to the records of a condition as one undoable step.
     fn edit_records(&mut self, condition: ConditionId, command: RecordsCommand) {
         let channels = self.record_channels(condition);
         let before = self.state.records.before([condition]);
@@ -119,15 +120,16 @@ impl GdcmApp {
         }
     }
 
-    /// Keeps an edit of records in the history.
+    /// Adds an edit of records to the history.
     fn record_edited(&mut self, label: String, before: RecordsBefore) {
         let study = self.state.study.clone();
         self.state.history.record_beside(study, label, before);
         self.state.notice = None;
     }
 
-    /// What is said of the columns of one record: of every record that has columns of these names. A record that the dataset names is
-    /// read as that says, so what is said of one that it does not name is not said of it, and the other way round.
+    /// Applies a layout to one record, and to every record whose columns have the same names.
+    /// Records named in the dataset follow its layout, so a change spreads only among named records
+    /// or only among unnamed ones.
     fn set_layout(&mut self, condition: ConditionId, index: usize, layout: &RecordLayout) {
         let dataset = Arc::clone(&self.state.study.dataset);
         let of_condition = self.state.records.conditions.get(&condition);
@@ -150,13 +152,13 @@ impl GdcmApp {
         });
     }
 
-    /// Takes every unit that no file says to be that of the dataset's channel.
+    /// Assumes the dataset channel's unit wherever a file states none.
     fn take_dataset_units(&mut self) {
         let label = "units of the dataset's channels".to_owned();
         self.edit_layouts(label, |_, of| Some(of.layout.in_units_of_channels()));
     }
 
-    /// Lays records of all conditions out anew, as one step that can be undone.
+    /// Changes the layouts of records in all conditions as one undoable step.
     fn edit_layouts(
         &mut self,
         label: String,
@@ -193,7 +195,7 @@ impl GdcmApp {
         }
     }
 
-    /// Shows the first record whose units are still to be said, and its columns.
+    /// Shows the first record with missing units, on the Columns page.
     fn show_unclear(&mut self) {
         let Some(id) = self.state.records.open_units().and_then(|open| open.first) else {
             return;
@@ -211,7 +213,7 @@ impl GdcmApp {
         self.dispatch(Command::SelectCondition(id));
     }
 
-    /// The band that a condition is identified over: its own, or the study's.
+    /// Returns the identification band of a condition: its own, or the study's.
     fn identified_band(&self, condition: ConditionId) -> [f64; 2] {
         let of_study = self.state.study.settings.band;
         let own = self
@@ -223,7 +225,8 @@ impl GdcmApp {
         own.unwrap_or([of_study.min(), of_study.max()])
     }
 
-    /// Brings the topics of a condition to the clock that its band takes, where that has changed.
+    /// Resamples the topics of a condition to the clock that its band requires, if that has
+    /// changed.
     fn follow_band(&mut self, condition: ConditionId) {
         let [_, end] = self.identified_band(condition);
         let known = self
@@ -241,8 +244,9 @@ impl GdcmApp {
         }
     }
 
-    /// The channels that the records of a condition are to give: those of the dataset, found where it was said when the dataset was made
-    /// of records; topics are brought to a clock for the band that is identified over.
+    /// Returns the channels expected from the records of a condition: the dataset's, located as
+    /// specified when the dataset was made from records. Topics are resampled for the
+    /// identification band.
     fn record_channels(&self, condition: ConditionId) -> RecordChannels {
         let mut channels = RecordChannels::of_dataset(&self.state.study.dataset);
         let [_, end] = self.identified_band(condition);
@@ -264,14 +268,14 @@ impl GdcmApp {
         channels
     }
 
-    /// How the dataset shown was made of records, where it was.
+    /// Returns how the displayed dataset was made from records, if it was.
     fn made_of_records(&self) -> Option<&DatasetOfRecords> {
         self.made_of_records
             .as_ref()
             .filter(|made| self.loaded.path() == Some(&made.path))
     }
 
-    /// Asks of which channels a dataset is to be made, with what is proposed for the record shown.
+    /// Asks for the channels of a new dataset, with a proposal based on the displayed record.
     fn ask_record_dataset(&mut self) {
         let condition = self.state.condition().id();
         let Some(records) = self.state.records.conditions.get(&condition) else {
@@ -289,7 +293,8 @@ impl GdcmApp {
         self.state.forms.shown = Some(FormKind::RecordDataset);
     }
 
-    /// Makes a dataset of the channels asked for, from the files added, in a thread; it is written and opened.
+    /// Makes a dataset with the requested channels from the added files, in a thread; writes and
+    /// opens it.
     fn make_record_dataset(&mut self) {
         let records = &mut self.state.records;
         records.wanted.problems.clear();
@@ -333,7 +338,8 @@ impl GdcmApp {
         }
     }
 
-    /// Reads the records that belong to the condition shown, once a view that needs them is shown.
+    /// Reads the records that belong to the displayed condition, once a view that needs them is
+    /// shown.
     pub(super) fn look_for_records(&mut self) {
         let id = self.state.condition().id();
         self.follow_band(id);
@@ -360,7 +366,7 @@ impl GdcmApp {
         });
     }
 
-    /// Where the records that belong to conditions come from.
+    /// Returns the source of the records that belong to conditions.
     fn own_records(&self) -> OwnRecords {
         OwnRecords {
             dataset: Arc::clone(&self.state.study.dataset),
@@ -383,7 +389,7 @@ impl GdcmApp {
         });
     }
 
-    /// Reads records in a thread; `sources` are the files that were added before.
+    /// Reads records in a thread; `sources` are the files added earlier.
     fn read_in_thread(
         &mut self,
         name: String,
@@ -408,12 +414,12 @@ impl GdcmApp {
             if let Some(found) = found.and_then(|found| app.unless_error(found)) {
                 app.take_records(found, clock_band_end, sources);
             }
-            // What was looked for is not looked for again, found or not.
+            // An entry, even an empty one, prevents a repeated search.
             app.records_of(app.state.condition().id());
         });
     }
 
-    /// The records of a condition, none at first.
+    /// Returns the records of a condition, initially empty.
     pub(super) fn records_of(&mut self, id: ConditionId) -> &mut ConditionRecords {
         let nothing = || ConditionRecords::new(Vec::new(), &self.state.study.dataset);
         self.state
@@ -461,7 +467,7 @@ impl GdcmApp {
         self.add_read_records(added, clock_band_end, sources);
     }
 
-    /// Adds records that were read to those of their conditions, as one step that can be undone.
+    /// Adds the records read to their conditions as one undoable step.
     fn add_read_records(
         &mut self,
         added: BTreeMap<ConditionId, Vec<LaidOutRecord>>,
@@ -500,7 +506,7 @@ impl GdcmApp {
         self.done(counts.words());
     }
 
-    /// Gives up what is under way and what waits; it can be begun again.
+    /// Stops running and waiting identification jobs; they can be started again.
     pub(super) fn stop_identifying(&mut self) {
         let left = std::mem::take(&mut self.state.records.running).len();
         let asked = self.state.records.asked;
@@ -549,14 +555,14 @@ impl GdcmApp {
         }
     }
 
-    /// Takes what was identified.
+    /// Stores the outcome of an identification.
     pub(super) fn identified(
         &mut self,
         job: IdentifyJob,
         found: Result<Arc<Identification>, IdentificationError>,
     ) {
         if !self.state.records.running.contains(&job) {
-            // It was given up meanwhile.
+            // Stopped in the meantime.
             return;
         }
         self.state.records.running.retain(|other| *other != job);
@@ -601,14 +607,14 @@ impl GdcmApp {
     }
 }
 
-/// Changes something, where it is there.
+/// Applies `change` to a value if it exists.
 fn set<T>(of: Option<&mut T>, change: impl FnOnce(&mut T)) {
     if let Some(of) = of {
         change(of);
     }
 }
 
-/// How many records became what, and of how many conditions there are new ones.
+/// Counts of added records by outcome, and of conditions with new records.
 #[derive(Default)]
 struct AddedCounts {
     new: usize,
@@ -660,7 +666,7 @@ fn counted_records(count: usize) -> String {
     }
 }
 
-/// An edit of the records of a condition in a few words, for the undo list.
+/// Returns the undo label of an edit of records.
 fn edit_words(records: &ConditionRecords, command: &RecordsCommand) -> String {
     let name = |index: &usize| {
         records
@@ -686,10 +692,10 @@ fn edit_words(records: &ConditionRecords, command: &RecordsCommand) -> String {
     }
 }
 
-/// What the engineer says of the records of a condition; whether it changes anything.
+/// Applies an edit to the records of a condition; returns whether the command is such an edit.
 ///
 /// # Errors
-/// In words: it cannot be.
+/// A message, if the edit is impossible.
 fn say(
     records: &mut ConditionRecords,
     command: RecordsCommand,
@@ -728,7 +734,7 @@ fn say(
     Ok(true)
 }
 
-/// Puts channels right in one record alone.
+/// Sets the remedies of channels in a single record.
 fn set_remedies(
     records: &mut ConditionRecords,
     index: usize,
@@ -747,7 +753,7 @@ fn set_remedies(
     *row = row.laid_out(layout, channels);
 }
 
-/// A record with its channels, as a dataset says of it where there is one that names it.
+/// Lays out a record, following the dataset's entry for it if there is one.
 fn row_of(
     table: RecordTable,
     channels: &RecordChannels,
@@ -765,7 +771,7 @@ fn row_of(
 }
 
 impl OwnRecords {
-    /// Whether a condition may have records of its own.
+    /// Returns whether a condition may have records of its own.
     fn has_some(&self, id: ConditionId) -> bool {
         match &self.origin {
             DatasetOrigin::EmbeddedExample => true,
@@ -779,7 +785,8 @@ impl OwnRecords {
             .map_or(&[], |condition| condition.records())
     }
 
-    /// Reads the records of conditions: those that the dataset names, or of the example those that are inside the program.
+    /// Reads the records of conditions: those named by the dataset, or the embedded ones of the
+    /// example.
     fn read(
         &self,
         ids: &[ConditionId],
@@ -805,7 +812,7 @@ impl OwnRecords {
         Ok(())
     }
 
-    /// Reads the records that the dataset names; a file that holds many of them is read once.
+    /// Reads the records named by the dataset; a file with several records is read once.
     fn read_entries(
         &self,
         ids: &[ConditionId],
@@ -855,12 +862,13 @@ impl OwnRecords {
     }
 }
 
-/// A path that is the same however the file was named; as it is where the file system does not say.
+/// Returns the canonical path, or the path as given if the file system cannot resolve it.
 fn real_path(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
-/// The file of a record among those that were asked for: one of them, or below one that is a folder.
+/// Finds the file of a record among the requested paths: a path itself, or a file inside a
+/// requested folder.
 fn place_of(file: &str, asked: &[PathBuf]) -> Option<PathBuf> {
     asked.iter().find_map(|path| {
         let is_it = path
@@ -877,8 +885,8 @@ fn place_of(file: &str, asked: &[PathBuf]) -> Option<PathBuf> {
     })
 }
 
-/// The records of files: each of the condition that its name says, or else of the one shown; and with them those that belong to these
-/// conditions, where they are not known yet.
+/// Reads the records of files and assigns each to the condition in its name, or else to the
+/// displayed one. Also reads the own records of these conditions if they are not loaded yet.
 fn of_files(
     (own, channels): (&OwnRecords, &RecordChannels),
     shown: ConditionId,
@@ -914,20 +922,20 @@ fn of_files(
     Ok(found)
 }
 
-/// A dataset that was made of records.
+/// A dataset made from records.
 pub(super) struct DatasetOfRecords {
-    /// Its file.
     path: PathBuf,
-    /// Where its channels are found in the records, and their units.
+    /// Location of its channels in the records, and their units.
     channels: RecordChannels,
-    /// The records that are not in it, and why.
+    /// Omitted records, with reasons.
     left_out: Vec<String>,
 }
 
-/// Most problems that are told.
+/// Maximum number of reported problems.
 const MOST_PROBLEMS: usize = 6;
 
-/// A dataset of the records in these files that give the channels asked for, to be written to `path`; the channels have units then.
+/// Builds a dataset, to be written to `path`, from the records in these files that contain the
+/// requested channels; fills in the units of the channels.
 fn dataset_of_files(
     sources: &[PathBuf],
     mut channels: RecordChannels,

@@ -1,5 +1,5 @@
-//! Decisions that are not saved: a thread keeps them in a recovery file, and what a window lost that ended without saving is offered
-//! at the next start.
+//! Unsaved decisions: a thread keeps them in a recovery file, and the next start offers the
+//! decisions of a window that ended without saving.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -22,39 +22,37 @@ use crate::view::Bar;
 
 /// Folder of the recovery files in the program's directory.
 const FOLDER: &str = "recovery";
-/// How long after a failure (a full disk) it is tried again.
+/// Delay before a retry after a failure, such as a full disk.
 const AGAIN_AFTER: Duration = Duration::from_secs(10);
-/// How long it waits where nothing is due.
+/// Waiting time if nothing is due.
 const NEVER: Duration = Duration::from_secs(3600);
 
-/// What is to be kept. All of it is shared, so that it costs next to nothing.
+/// State to keep. All parts are shared, so a copy is cheap.
 #[derive(Clone, Debug)]
 pub(super) struct Unsaved {
     pub(super) study: Study,
     pub(super) loaded: LoadedDataset,
-    /// The study's own file.
     pub(super) saved_as: Option<PathBuf>,
 }
 
-/// What is kept on the disk.
+/// Decisions kept on the disk.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Kept {
-    /// The recovery file.
     pub path: PathBuf,
-    /// When the decisions in it were taken.
+    /// Time of the decisions in the file.
     pub at: SystemTime,
 }
 
-/// What becomes of the decisions that were not saved, where the window ends.
+/// Fate of the unsaved decisions when the window ends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Remains {
-    /// There are none.
+    /// There are no unsaved decisions.
     Saved,
-    /// All of them are in the recovery file.
+    /// All unsaved decisions are in the recovery file.
     Kept(Kept),
-    /// Those taken later than these could not be kept, and why.
+    /// Later decisions than these could not be kept; holds the reason.
     KeptInPart(Kept, String),
-    /// None of them could be kept, and why.
+    /// No decisions could be kept; holds the reason.
     Lost(String),
 }
 
@@ -69,34 +67,34 @@ impl Remains {
     }
 }
 
-/// What the thread is to do.
+/// Task of the recovery thread.
 enum Task {
-    /// These decisions, taken then, are to be kept.
+    /// Keep these decisions, taken at this time.
     Keep(Box<Unsaved>, SystemTime),
-    /// Every decision is saved, or not wanted: there is nothing to recover.
+    /// Every decision is saved or discarded: nothing to recover.
     Clear,
-    /// The lost decisions are open again: their file goes as soon as they are kept anew, or saved.
+    /// The lost decisions are open again: delete their file once they are kept anew or saved.
     Restored(LostStudy),
-    /// The lost decisions are not wanted.
+    /// Discard the lost decisions.
     Discard(LostStudy),
-    /// Whatever waits is done now; says what becomes of it.
+    /// Finish pending work now and report what remains.
     Flush(Sender<Remains>),
-    /// What is kept now stays for the next start.
+    /// Leave the kept decisions for the next start.
     Close,
 }
 
-/// Keeps decisions that are not saved. Without a directory it has nowhere to.
+/// Keeps unsaved decisions; without a directory, keeps none.
 #[derive(Clone)]
 pub struct Autosave {
     tasks: Sender<Task>,
-    /// What the thread kept last; it is gone where that was saved since.
+    /// Decisions last kept; `None` once they are saved.
     kept: Arc<Mutex<Option<Kept>>>,
-    /// What became of the decisions when the window ended: the thread ends with it.
+    /// State of the decisions when the window, and with it the thread, ended.
     at_end: Arc<OnceLock<Remains>>,
 }
 
 impl Autosave {
-    /// Starts the thread, which first offers what was lost.
+    /// Starts the thread, which first offers lost decisions.
     pub(super) fn start(
         directory: Option<&Path>,
         keep_after: Duration,
@@ -139,17 +137,18 @@ impl Autosave {
         let _ = self.tasks.send(task);
     }
 
-    /// These decisions are not saved: the newest are in the recovery file soon after the first.
+    /// Keeps unsaved decisions; the newest reach the recovery file soon after the first change.
     pub(super) fn keep(&self, unsaved: Unsaved) {
         self.send(Task::Keep(Box::new(unsaved), SystemTime::now()));
     }
 
-    /// Every decision is saved, or not wanted.
+    /// Clears the kept decisions: every decision is saved or discarded.
     pub(super) fn clear(&self) {
         self.send(Task::Clear);
     }
 
-    /// Does what waits now, and says what becomes of it; gives up waiting after `limit`. Where the window ended, what became of it then.
+    /// Finishes pending work and reports what remains; waits at most `limit`. After the window has
+    /// ended, returns the state at its end.
     pub(super) fn flush(&self, limit: Duration) -> Remains {
         if let Some(remains) = self.at_end.get() {
             return remains.clone();
@@ -165,25 +164,25 @@ impl Autosave {
         }
     }
 
-    /// Does what waits, then ends the thread.
+    /// Finishes pending work, then ends the thread.
     pub(super) fn close(&self, limit: Duration) {
         self.at_end.get_or_init(|| self.flush(limit));
         self.send(Task::Close);
     }
 }
 
-/// A panic while the lock was held leaves a content that is still whole.
+/// Locks a mutex; the content is consistent even after a panic under the lock.
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What the thread works with.
+/// State of the recovery thread.
 struct Keeper {
     folder: Option<PathBuf>,
     keep_after: Duration,
     replies: ReplySender,
     file: Option<RecoveryFile>,
-    /// What is to be kept, when it was decided, and when it is due.
+    /// Pending state, with the time of the decisions and the time at which it is due.
     waits: Option<(Box<Unsaved>, SystemTime, Instant)>,
     kept: Arc<Mutex<Option<Kept>>>,
     restored: Vec<LostStudy>,
@@ -224,7 +223,7 @@ impl Keeper {
                         (Some(_), None) => Some("there is no directory for them".to_owned()),
                         (Some(_), Some(_)) => kept.err().map(|error| error.to_string()),
                     };
-                    // Who gave up waiting does not listen.
+                    // After a timeout nobody listens.
                     let _ = answer.send(Remains::new(locked(&self.kept).clone(), trouble));
                 }
                 Err(RecvTimeoutError::Timeout) => {
@@ -236,7 +235,7 @@ impl Keeper {
         }
     }
 
-    /// Keeps what waits; what cannot be kept waits to be tried again.
+    /// Keeps the pending decisions; those that cannot be kept stay pending for a retry.
     fn keep(&mut self) -> Result<(), FileError> {
         let Some(folder) = &self.folder else {
             return Ok(());
@@ -281,11 +280,11 @@ fn keep(
     Ok(file.path().to_owned())
 }
 
-/// How long a window that ends waits for the disk to take what was decided last.
+/// How long a closing window waits for the disk to store the latest decisions.
 pub(super) const LAST_WAIT: Duration = Duration::from_secs(2);
 
 impl GdcmApp {
-    /// Offers what was lost.
+    /// Offers to restore lost decisions.
     fn offer(&mut self, lost: Vec<LostStudy>) {
         for lost in lost {
             let sentence = offer_words(&lost, &TimeZone::system());
@@ -297,7 +296,7 @@ impl GdcmApp {
         }
     }
 
-    /// Keeps what is not saved, or forgets what is.
+    /// Keeps unsaved decisions, or clears the kept ones once saved.
     pub(super) fn keep_unsaved(&self) {
         if self.state.unsaved {
             let study = self.state.study.clone();
@@ -312,7 +311,7 @@ impl GdcmApp {
         }
     }
 
-    /// Opens what was lost; the bar goes once it is open.
+    /// Opens lost decisions; the bar disappears once they are open.
     pub(super) fn restore(&mut self, offer: usize) {
         if let Some(Some(lost)) = self.offers.get(offer) {
             let path = lost.path().to_owned();
@@ -325,7 +324,7 @@ impl GdcmApp {
         }
     }
 
-    /// Shows what was lost, not saved still.
+    /// Shows restored decisions, which are still unsaved.
     pub(super) fn show_restored(&mut self, offer: usize, opened: Opened) {
         let Some(lost) = self.offers.get_mut(offer).and_then(Option::take) else {
             return;
@@ -360,7 +359,8 @@ impl GdcmApp {
     }
 }
 
-/// "Decisions of 14:32 on 21 Nov 2026 for data.json.gz (study mine.gdcm-study.json) were not saved."
+/// "Decisions of 14:32 on 21 Nov 2026 for data.json.gz (study mine.gdcm-study.json) were not
+/// saved."
 fn offer_words(lost: &LostStudy, zone: &TimeZone) -> String {
     let study = lost.saved_as.as_ref().and_then(|path| path.file_name());
     let study = study.map_or(String::new(), |name| {
@@ -381,7 +381,7 @@ fn when(at: SystemTime, zone: &TimeZone) -> String {
         .to_string()
 }
 
-/// What is said on standard error when the window itself fails.
+/// Returns the message for standard error if the window itself fails.
 pub(super) fn end_words(fault: &str, remains: &Remains) -> String {
     let fault = format!("stopped by a fault in its window: {fault}");
     let kept_words = |kept: &Kept| {
@@ -433,7 +433,7 @@ mod tests {
         .unwrap()
     }
 
-    /// Far above what the slowest disk needs.
+    /// Far above the time that the slowest disk needs.
     const LONG: Duration = Duration::from_secs(600);
 
     #[test]
@@ -441,7 +441,8 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let autosave = autosave(Some(directory.path()));
         autosave.keep(unsaved());
-        // The window goes with the display, and its thread with it; then the program says what became of the decisions.
+        // The window and its thread end with the display; the program then reports what remains of
+        // the decisions.
         autosave.clone().close(LONG);
         let Remains::Kept(kept) = autosave.flush(LONG) else {
             panic!("{:?}", autosave.flush(LONG))
@@ -474,7 +475,7 @@ mod tests {
         let Remains::Kept(first) = autosave.flush(LONG) else {
             panic!("the disk takes it")
         };
-        // A folder in the place of the file: no file can be put there.
+        // A folder at the file's path: no file can be written there.
         std::fs::remove_file(&first.path).unwrap();
         std::fs::create_dir(&first.path).unwrap();
         std::fs::write(first.path.join("in the way"), "").unwrap();

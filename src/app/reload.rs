@@ -1,4 +1,5 @@
-//! A dataset whose file changes on the disk while it is open: the thread that looks whether it has, and reading it again.
+//! A dataset whose file changes on the disk while open: the thread that detects changes, and the
+//! reload.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -15,12 +16,12 @@ use super::threads::ReplySender;
 use crate::view::Bar;
 
 impl GdcmApp {
-    /// Looks at the file of the dataset that is open.
+    /// Watches the file of the open dataset.
     pub(super) fn watch_disk(&mut self) {
         self.disk.watch(self.loaded.path());
     }
 
-    /// Says whether the dataset's file has changed.
+    /// Reports whether the dataset's file has changed.
     fn file_seen(&mut self, seen: &Seen) {
         if self.loaded.path() != Some(&seen.path) {
             return;
@@ -33,14 +34,14 @@ impl GdcmApp {
         }
     }
 
-    /// Stays with what is open until the file changes again.
+    /// Keeps the open dataset until the file changes again.
     pub(super) fn keep_open(&mut self) {
         self.state
             .bars
             .retain(|bar| !matches!(bar, Bar::Changed { .. }));
     }
 
-    /// Reads the dataset's file again; what is open stays until it is read.
+    /// Reads the dataset's file again; the open dataset stays until it is read.
     pub(super) fn reload(&mut self) {
         if let Some(path) = self.loaded.path().map(ToOwned::to_owned) {
             let name = path.display().to_string();
@@ -50,10 +51,10 @@ impl GdcmApp {
         }
     }
 
-    /// Shows the dataset as it is now, with every decision that still applies: a step that can be undone.
+    /// Shows the reloaded dataset with every decision that still applies, as one undoable step.
     pub(super) fn show_reloaded(&mut self, loaded: LoadedDataset) {
         if loaded.path() != self.loaded.path() {
-            // Something else was opened in between.
+            // Another file was opened in the meantime.
             return;
         }
         self.keep_open();
@@ -76,7 +77,7 @@ impl GdcmApp {
         }
     }
 
-    /// Takes up the file of the dataset that the study is about, after a reload or a step back or forth across one.
+    /// Selects the file of the study's dataset, after a reload or an undo or redo across one.
     pub(super) fn follow_dataset(&mut self) {
         let dataset = self.state.study.file_dataset();
         if let Some(index) = self
@@ -91,15 +92,15 @@ impl GdcmApp {
     }
 }
 
-/// What a file holds now, told when that is new.
+/// New content of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Seen {
     path: PathBuf,
     sha256: String,
 }
 
-/// Looks at one file every second or two: its time and its length, and where these are new, its bytes. Polling, because
-/// network drives send no events.
+/// Checks one file every second or two: its time and length, and its bytes if these have changed.
+/// It polls, because network drives send no events.
 pub(super) struct DiskWatch {
     paths: Sender<Option<PathBuf>>,
     watched: Option<PathBuf>,
@@ -119,7 +120,7 @@ impl DiskWatch {
         })
     }
 
-    /// Looks at this file from now on, or at none.
+    /// Watches this file from now on, or none.
     pub(super) fn watch(&mut self, path: Option<&Path>) {
         if self.watched.as_deref() != path {
             self.watched = path.map(Path::to_owned);
@@ -129,19 +130,20 @@ impl DiskWatch {
     }
 }
 
-/// What is known of the file looked at.
+/// Known state of the watched file.
 #[derive(Default)]
 struct Known {
     path: PathBuf,
-    /// At the last look.
+    /// Stamp at the last check.
     stamp: Option<FileStamp>,
-    /// When its bytes were read last.
+    /// Stamp at the last read of its bytes.
     read: Option<FileStamp>,
     sha256: Option<String>,
 }
 
 impl Known {
-    /// Looks once; what the file holds, where that is new. A file that is being written is read once it rests.
+    /// Checks the file once; returns its content if new. A file being written is read once its
+    /// stamp stays the same.
     fn look(&mut self, path: &Path) -> Option<Seen> {
         if self.path != path {
             *self = Known {
@@ -149,7 +151,7 @@ impl Known {
                 ..Known::default()
             };
         }
-        // A file that is not there is about to be, or what is open stays.
+        // A missing file may be about to appear; until then the open dataset stays.
         let stamp = FileStamp::of(path)?;
         let rests = self.stamp == Some(stamp);
         self.stamp = Some(stamp);
@@ -157,7 +159,7 @@ impl Known {
             return None;
         }
         let sha256 = file_sha256(path).ok()?;
-        // Written again in between: at the next look.
+        // Written again in the meantime: wait for the next check.
         if FileStamp::of(path) != Some(stamp) {
             return None;
         }
@@ -204,7 +206,7 @@ mod tests {
         std::fs::write(&path, "one, and more").unwrap();
         assert_eq!(known.look(&path), None);
         assert_ne!(known.look(&path).expect("it rests").sha256, first.sha256);
-        // Written anew with the same bytes: another time, the same hash.
+        // Rewritten with the same bytes: another time, the same hash.
         std::fs::remove_file(&path).unwrap();
         std::thread::sleep(Duration::from_millis(20));
         std::fs::write(&path, "one, and more").unwrap();

@@ -1,5 +1,6 @@
-//! What the window and its threads share: mailboxes, replies, panics, kept and put into words in place of a raw trace; and the threads
-//! that read for the window, of which only the newest of one purpose count, and which can be stopped.
+//! Tools shared by the window and its threads: mailboxes, replies, and panics, which are caught and
+//! reported as sentences instead of raw traces; also the reading threads, which can be stopped, and
+//! of which only the newest for each purpose counts.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
@@ -13,7 +14,7 @@ use gdcm_io::FolderProgress;
 
 use super::GdcmApp;
 
-/// What a thread waits for: whoever changes it wakes the thread.
+/// A value that threads wait for; every change wakes them.
 #[derive(Default)]
 pub(super) struct Mailbox<T> {
     content: Mutex<T>,
@@ -28,20 +29,20 @@ impl<T> Mailbox<T> {
         }
     }
 
-    /// To look at it.
+    /// Locks the content for reading.
     pub(super) fn lock(&self) -> MutexGuard<'_, T> {
-        // A panic while the lock was held leaves a content that is still whole.
+        // The content is consistent even after a panic under the lock.
         self.content.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// To change it: every thread that waits looks at it once more.
+    /// Changes the content; every waiting thread checks it again.
     pub(super) fn change<R>(&self, change: impl FnOnce(&mut T) -> R) -> R {
         let changed = change(&mut self.lock());
         self.changed.notify_all();
         changed
     }
 
-    /// Waits until `take` makes something of it.
+    /// Waits until `take` returns a value.
     pub(super) fn wait<R>(&self, mut take: impl FnMut(&mut T) -> Option<R>) -> R {
         let mut content = self.lock();
         loop {
@@ -56,10 +57,10 @@ impl<T> Mailbox<T> {
     }
 }
 
-/// What a thread has the window do with what it made.
+/// A thread's reply, applied to the window.
 pub(super) type Reply = Box<dyn FnOnce(&mut GdcmApp) + Send>;
 
-/// Where threads send their replies; the window wakes for each.
+/// Sender for the replies of threads; each reply wakes the window.
 #[derive(Clone)]
 pub(super) struct ReplySender {
     sender: Sender<Reply>,
@@ -79,15 +80,15 @@ impl ReplySender {
     }
 
     pub(super) fn send(&self, reply: impl FnOnce(&mut GdcmApp) + Send + 'static) {
-        // The window is gone when nobody listens; the threads end soon after.
+        // Sending fails only after the window is gone; the threads end soon after.
         let _ = self.sender.send(Box::new(reply));
         self.ctx.request_repaint();
     }
 }
 
 impl GdcmApp {
-    /// Does `work`, called `what`, in a thread of its own, and has the window take what comes of it: nothing where that was a fault, or
-    /// no thread was to be had, which is told before.
+    /// Runs `work`, described by `what`, in its own thread, and lets the window take the result:
+    /// `None` after a fault, or if no thread could be started, both of which are reported first.
     pub(super) fn in_thread<T: Send + 'static, Work, Take>(
         &self,
         what: &'static str,
@@ -97,7 +98,7 @@ impl GdcmApp {
         Work: FnOnce() -> T + Send + 'static,
         Take: FnOnce(&mut Self, Option<T>) + Send + 'static,
     {
-        // What the thread is to do follows once there is one.
+        // The work is sent once the thread exists.
         let (order, ordered) = channel::<(Work, Take)>();
         let replies = self.replies.clone();
         let thread = move || {
@@ -125,7 +126,7 @@ impl GdcmApp {
         }
     }
 
-    /// Stops what is told of beside it: the reading of files, or else what is being computed.
+    /// Stops the work shown next to the Stop button: the reading of files, or else the computation.
     pub(super) fn stop_work(&mut self) {
         let opening = self.state.opening.take();
         let records = self.state.records.reading.take();
@@ -135,14 +136,14 @@ impl GdcmApp {
         self.opener.give_up();
         self.record_reader.give_up();
         if records.is_some() {
-            // What was looked for is not looked for again by itself.
+            // An existing entry prevents another automatic search.
             self.records_of(self.state.condition().id());
         }
         self.done(format!("stopped reading {name}; what was open stays"));
     }
 }
 
-/// The newest thread that reads for one purpose, or several beside one another.
+/// The newest reading thread for one purpose, or several in parallel.
 #[derive(Default)]
 pub(super) struct Reader {
     newest: u64,
@@ -150,14 +151,14 @@ pub(super) struct Reader {
 }
 
 impl Reader {
-    /// Begins to read in place of what was being read: the number of the thread, and what ends it.
+    /// Starts a reading that replaces the current one; returns its number and its stop flag.
     pub(super) fn begin(&mut self) -> (u64, Arc<AtomicBool>) {
         self.give_up();
         self.stop = Arc::default();
         (self.newest, Arc::clone(&self.stop))
     }
 
-    /// Begins to read beside what is being read: the number of these threads, and what ends them all.
+    /// Starts a reading beside the current one; returns the common number and stop flag.
     pub(super) fn join(&mut self) -> (u64, Arc<AtomicBool>) {
         if self.is_stopped() {
             return self.begin();
@@ -165,22 +166,22 @@ impl Reader {
         (self.newest, Arc::clone(&self.stop))
     }
 
-    /// Whether the answer of this thread still counts.
+    /// Returns whether the answer of this thread still counts.
     pub(super) fn is_newest(&self, number: u64) -> bool {
         self.newest == number
     }
 
-    /// Ends the reading; what was read until then counts.
+    /// Stops the reading; the content read so far counts.
     pub(super) fn stop(&self) {
         self.stop.store(true, Ordering::Release);
     }
 
-    /// Whether the reading was ended by hand.
+    /// Returns whether the reading was stopped.
     pub(super) fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Acquire)
     }
 
-    /// Ends the reading, whose answer counts no more, however long a drive keeps the thread waiting.
+    /// Stops the reading and discards its answer, however long a drive blocks the thread.
     pub(super) fn give_up(&mut self) {
         self.stop();
         self.newest += 1;
@@ -193,7 +194,7 @@ impl Drop for Reader {
     }
 }
 
-/// Reads without telling how far it is, until it is stopped.
+/// Progress of a reading that can be stopped but reports nothing.
 pub(super) struct Untold(pub(super) Arc<AtomicBool>);
 
 impl FolderProgress for Untold {
@@ -204,12 +205,12 @@ impl FolderProgress for Untold {
     }
 }
 
-/// A panic: what it said, and where in the program's source.
+/// A panic: its message and its source location.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// Its message, on one line.
+    /// The message, on one line.
     pub message: String,
-    /// "src/study/engine.rs:49"; none where nobody noted it.
+    /// "src/study/engine.rs:49"; `None` if the location was not recorded.
     pub place: Option<String>,
 }
 
@@ -223,12 +224,13 @@ impl Fault {
     }
 }
 
-/// Faults noted and not told yet; a panic's place is known to the hook alone, and the thread that catches it may be another.
+/// Recorded faults not reported yet. Only the hook knows a panic's location, and another thread may
+/// catch the panic.
 static NOTED: Mutex<Vec<Fault>> = Mutex::new(Vec::new());
-/// Panics that nobody catches are few; more than this are not kept.
+/// Maximum number of recorded faults; uncaught panics are rare.
 const MOST_NOTED: usize = 50;
 
-/// To be called by the process's panic hook: keeps what was said, and where.
+/// Records the message and the location of a panic; called by the process's panic hook.
 pub fn note(panic: &PanicHookInfo<'_>) {
     let place = panic
         .location()
@@ -243,9 +245,9 @@ pub fn note(panic: &PanicHookInfo<'_>) {
     });
 }
 
-/// What `work` makes, or the fault that ended it.
+/// Returns the result of `work`, or the fault that ended it.
 pub(super) fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
-    // What a panic leaves half made is thrown away by whoever calls this.
+    // The caller discards values that a panic left inconsistent.
     catch_unwind(AssertUnwindSafe(work)).map_err(|payload| {
         let message = message_of(payload.as_ref());
         let mut noted = NOTED.lock().unwrap_or_else(PoisonError::into_inner);

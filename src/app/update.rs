@@ -1,4 +1,4 @@
-//! Carrying out commands: the only code that changes what the window shows.
+//! Carries out commands; no other code changes the displayed state.
 
 use std::fmt::Display as InWords;
 
@@ -22,22 +22,22 @@ use crate::view::tables::table_of;
 use crate::view::views::PairSet;
 use crate::view::{Arrangement, Command, FormKind, View};
 
-/// What the focus is to go to.
+/// Target of the focus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NextFocus {
-    /// The field of this name.
+    /// The field with this name.
     Field(&'static str),
-    /// The next part of the window, or the one before.
+    /// The next or the previous region of the window.
     Region { forward: bool },
 }
 
 impl GdcmApp {
-    /// Saves the study to a file, as the form does once a path is typed.
+    /// Saves the study to a file, like the form once a path is typed.
     pub fn save_study_as(&mut self, path: std::path::PathBuf) {
         self.save_as(path, Existing::Keep);
     }
 
-    /// Carries out one command, as a click or a key would.
+    /// Carries out one command, like a click or a key.
     pub fn dispatch(&mut self, command: Command) {
         self.carry_out_one(command);
         self.ctx.request_repaint();
@@ -168,7 +168,7 @@ impl GdcmApp {
             Command::AskReport => self.ask_report(),
             Command::WriteReport(path) => self.write_report(path),
             Command::FocusField(name) => {
-                // A field that is folded away has to be there before it can have the focus.
+                // A collapsed field must be open before it can receive the focus.
                 (display.settings_open, display.advanced_open) = (true, true);
                 self.focus_next(NextFocus::Field(name));
             }
@@ -248,7 +248,8 @@ impl GdcmApp {
         }
     }
 
-    /// Takes up another state of the study, and of the records beside it, out of its history, where there is one.
+    /// Restores another state of the study, and of the records beside it, from its history, if
+    /// there is one.
     fn take_study(
         &mut self,
         find: impl FnOnce(&mut History<RecordsBefore>, &Study, &mut RecordsState) -> Option<Study>,
@@ -265,7 +266,7 @@ impl GdcmApp {
         }
     }
 
-    /// Says what is true of the study now: saved or not.
+    /// Updates whether the study is saved.
     pub(super) fn study_changed(&mut self) {
         self.state.notice = None;
         self.state
@@ -277,13 +278,14 @@ impl GdcmApp {
         self.keep_unsaved();
     }
 
-    /// Moves the focus before the next frame is drawn: what gets it then knows that it is new.
+    /// Moves the focus before the next frame is drawn, so that the widget knows it is newly
+    /// focused.
     fn focus_next(&mut self, next: NextFocus) {
         self.next_focus = Some(next);
         self.ctx.request_repaint();
     }
 
-    /// Gives the focus to what was asked for, once no form is in front of it.
+    /// Gives the focus to the requested target once no form is open in front of it.
     pub(super) fn move_focus(&mut self) {
         if self.state.forms.shown.is_some()
             || self.ctx.memory(|memory| memory.top_modal_layer().is_some())
@@ -312,7 +314,7 @@ impl GdcmApp {
             Some(FormKind::ExportAs) => self.propose_export_name(),
             _ => {}
         }
-        // A form that asks where to save goes on with what waits for that.
+        // A form that asks for a save path continues with the action that waits for it.
         if !(self.goes_on_once_saved && form == Some(FormKind::Save)) {
             self.postponed = None;
             self.goes_on_once_saved = false;
@@ -322,7 +324,7 @@ impl GdcmApp {
         self.state.forms.shown = form;
     }
 
-    /// Does what was asked whether to overwrite files.
+    /// Carries out the command whose overwriting was confirmed.
     fn overwrite(&mut self) {
         self.state.forms.existing.clear();
         if let Some(command) = self.overwriting.take() {
@@ -334,12 +336,12 @@ impl GdcmApp {
 
     pub(super) fn quit(&mut self) {
         self.closing = true;
-        // Saved, or agreed to be lost.
+        // The decisions are saved, or the engineer has agreed to lose them.
         self.autosave.clear();
         self.ctx.send_viewport_cmd(ViewportCommand::Close);
     }
 
-    /// Tells the engineer that something was done.
+    /// Notifies the engineer of a completed action.
     pub(super) fn done(&mut self, text: String) {
         self.state.notice = Some(Notice {
             kind: NoticeKind::Done,
@@ -347,13 +349,13 @@ impl GdcmApp {
         });
     }
 
-    /// What came of something, where it went well; an error is told.
+    /// Returns the value of a success; reports an error to the engineer.
     pub(super) fn unless_error<T, E: InWords>(&mut self, made: Result<T, E>) -> Option<T> {
         made.map_err(|error| self.notify_error(error.to_string()))
             .ok()
     }
 
-    /// Tells the engineer that something could not be done.
+    /// Notifies the engineer of a failed action.
     pub(super) fn notify_error(&mut self, text: String) {
         self.state.notice = Some(Notice {
             kind: NoticeKind::Trouble,
@@ -372,7 +374,7 @@ fn select_condition(display: &mut Display, condition: ConditionId) {
     }
 }
 
-/// Carries out a wish about curves. Values in another unit are fitted anew.
+/// Applies a command about curves. A change of unit refits the value axis.
 fn show_curves(display: &mut Display, command: CurveCommand) {
     match command {
         CurveCommand::DrawPhaseErrors(_) => display.error.release_values(Pane::Phase),

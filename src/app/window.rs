@@ -1,4 +1,4 @@
-//! The window: state, the thread that computes, the dialogs.
+//! The window: its state, the compute threads, and the dialogs.
 
 use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
@@ -46,64 +46,66 @@ pub struct GdcmApp {
     pub(super) state: State,
     pub(super) loaded: LoadedDataset,
     pub(super) saved: SavedStudy,
-    /// The live answer asked for last.
+    /// Last requested live answer.
     pub(super) asked: Option<AnalysisJob>,
     pub(super) jobs: BackgroundJobs,
-    /// Proofs that the results do not have yet.
+    /// Proofs that the results do not contain yet.
     proven: Vec<Proof>,
-    /// What the views shown need beside the live answer.
+    /// Jobs needed by the visible views, beside the live answer.
     pub(super) needs: Vec<Need>,
     pub(super) replies: ReplySender,
-    /// What threads have sent.
+    /// Replies from threads.
     received: Receiver<Reply>,
-    /// Whether a dialog of the desktop is open.
     pub(super) dialog_open: bool,
-    /// Reads the models that are imported.
+    /// Reads imported models.
     pub(super) models: Reader,
-    /// Reads what is opened.
+    /// Reads opened files.
     pub(super) opener: Reader,
-    /// Reads flight records.
     pub(super) record_reader: Reader,
-    /// The dataset that was last made of records.
+    /// Dataset most recently made from records.
     pub(super) made_of_records: Option<DatasetOfRecords>,
-    /// What waits for the answer whether to lose decisions that are not saved.
+    /// Action waiting for the answer whether unsaved decisions may be lost.
     pub(super) postponed: Option<PendingAction>,
-    /// Whether that is done once they are saved.
+    /// Whether the postponed action is carried out after saving.
     pub(super) goes_on_once_saved: bool,
-    /// What waits for the answer whether to write over files.
+    /// Command waiting for the answer whether to overwrite files.
     pub(super) overwriting: Option<Command>,
-    /// What becomes of files that are there: they are replaced only while what was asked about is done.
+    /// Treatment of existing files: they are replaced only during the command that the engineer
+    /// confirmed.
     pub(super) existing: Existing,
     pub(super) closing: bool,
-    /// The report that is being written.
+    /// Report being written.
     pub(super) reporting: Option<ReportJob>,
-    /// Datasets that were open before a reload, or after one that was undone.
+    /// Datasets open before a reload, or after a reload that was undone.
     pub(super) earlier: Vec<LoadedDataset>,
     pub(super) autosave: Autosave,
-    /// Where whoever opened the window finds what keeps its decisions, once it has drawn a frame.
+    /// Set once the window has drawn a frame; gives the caller that opened the window access to the
+    /// autosave.
     pub(super) drawn: Arc<OnceLock<Autosave>>,
-    /// What was lost, by the number of the offer, until it is restored or discarded.
+    /// Lost studies by the number of the offer, until restored or discarded.
     pub(super) offers: Vec<Option<LostStudy>>,
     pub(super) disk: DiskWatch,
-    /// Where the list of recent files is kept; nowhere without it.
+    /// Directory of the list of recent files; without it the list is not kept.
     pub(super) directory: Option<PathBuf>,
-    /// What `~` stands for in a path that is typed.
+    /// Expansion of `~` in typed paths.
     pub(super) home: Option<PathBuf>,
-    /// What the focus goes to in the next frame.
+    /// Target of the focus in the next frame.
     pub(super) next_focus: Option<NextFocus>,
-    /// The window's title as it was set last.
+    /// Last window title set.
     title: String,
-    /// What the newest request was made from.
+    /// Study and condition of the newest request.
     requested: Option<(Study, ConditionId)>,
 }
 
 impl GdcmApp {
-    /// The window on a dataset or a study, that keeps nothing on the disk unasked.
+    /// Creates the window on a dataset or a study. Nothing is written to disk unless the engineer
+    /// asks for it.
     pub fn new(ctx: &Context, opened: Opened) -> std::io::Result<Self> {
         Self::with(ctx, opened, Setup::default())
     }
 
-    /// The window on a dataset or a study. Starts the threads that compute, and those that look at the disk.
+    /// Creates the window on a dataset or a study; starts the compute threads and the threads that
+    /// watch the disk.
     pub fn with(ctx: &Context, opened: Opened, setup: Setup) -> std::io::Result<Self> {
         palette::apply(ctx);
         ctx.add_plugin(KeyOrder::default());
@@ -163,17 +165,17 @@ impl GdcmApp {
         Ok(app)
     }
 
-    /// What the window shows.
+    /// Returns the state shown by the window.
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// The time \[s\] of the window's clock.
+    /// Returns the time \[s\] on the window's clock.
     fn now(&self) -> f64 {
         self.ctx.input(|input| input.time)
     }
 
-    /// Asks for what the study and the condition shown need, unless it was asked for already.
+    /// Requests the results for the current study and condition, unless already requested.
     fn request(&mut self) {
         let now = self.now();
         let study = &self.state.study;
@@ -193,7 +195,7 @@ impl GdcmApp {
         self.ask();
     }
 
-    /// Has the newest request answered, with all proofs that there are.
+    /// Sends the newest request with all available proofs.
     fn ask(&mut self) {
         let Some((study, condition)) = self.requested.clone() else {
             return;
@@ -212,7 +214,7 @@ impl GdcmApp {
         });
     }
 
-    /// Says that the live answer was given up, by hand or by a fault; what is shown stays.
+    /// Records that the live answer was stopped, by hand or by a fault; the displayed results stay.
     pub(super) fn answer_stopped(&mut self) {
         self.proven.clear();
         let results = &mut self.state.results;
@@ -220,7 +222,7 @@ impl GdcmApp {
         results.waiting_since = None;
     }
 
-    /// Asks again for what was given up.
+    /// Requests the stopped computation again.
     pub(super) fn compute_again(&mut self) {
         self.requested = None;
         self.state
@@ -229,7 +231,7 @@ impl GdcmApp {
         self.jobs.resume();
     }
 
-    /// Has the threads' replies carried out.
+    /// Applies the replies of the threads.
     fn receive(&mut self) {
         while let Ok(reply) = self.received.try_recv() {
             reply(self);
@@ -247,7 +249,7 @@ impl GdcmApp {
             .then(|| results.background_since.unwrap_or(now));
     }
 
-    /// Shows an analysis, and asks for the jobs that it leaves.
+    /// Shows an analysis and requests the jobs that it leaves open.
     pub(super) fn answered(
         &mut self,
         job: AnalysisJob,
@@ -255,7 +257,7 @@ impl GdcmApp {
     ) {
         let now = self.now();
         let results = &mut self.state.results;
-        // One with a proof added has the number of the one without it, and took no time.
+        // A job repeated with a proof has the request number of the original job and took no time.
         if results.received != job.generation {
             results.elapsed_ms = elapsed_ms;
         }
@@ -269,7 +271,8 @@ impl GdcmApp {
         self.want_jobs();
     }
 
-    /// Has the newest request answered once more, with a proof; a problem without an answer has been told by the live answer.
+    /// Repeats the newest request with a proof. The live answer has already reported a problem
+    /// without a solution.
     pub(super) fn take_proof(&mut self, job: ProofJob, proof: Result<Arc<Solution>, ProblemError>) {
         if let Ok(solution) = proof {
             self.proven.push((job.problem, solution));
@@ -277,7 +280,7 @@ impl GdcmApp {
         }
     }
 
-    /// Shows the curves of a condition, where they are of what is shown.
+    /// Stores the curves of a condition if they belong to the displayed condition and dataset.
     pub(super) fn take_curves(&mut self, job: CurvesJob, curves: Option<Arc<ConditionCurves>>) {
         let Some(curves) = curves else { return };
         let study = &self.state.study;
@@ -287,7 +290,7 @@ impl GdcmApp {
         }
     }
 
-    /// Says that the program panicked, what is kept, and what to send.
+    /// Reports a panic: its effect, the decisions kept, and the details to send.
     pub(super) fn tell_fault(&mut self, ended: &str, fault: &Fault) {
         let sentence = format!(
             "A fault in the program ended {ended}; your decisions are kept and can be saved: please send this message, the \
@@ -308,13 +311,14 @@ impl GdcmApp {
             .iter()
             .map(|file| file.path().to_path_buf())
             .collect();
-        // A dataset or a study is opened; several files, a folder, and files of other programs are models.
+        // A single dataset or study is opened; several files, a folder, and files of other programs
+        // are imported as models.
         match paths.as_slice() {
             [] => {}
             [path] if self.state.assembling.is_none() && !holds_models(path) => {
                 commands.push(Command::Open(path.clone()))
             }
-            // Beside the records of a condition, files are more of them.
+            // While the records of a condition are shown, dropped files are added to them.
             _ if self.state.assembling.is_none()
                 && self.state.display.arrangement.is_shown(View::Records) =>
             {
@@ -334,7 +338,7 @@ impl GdcmApp {
         }
     }
 
-    /// Sets the window's title where it changed.
+    /// Updates the window's title if it has changed.
     fn name_window(&mut self) {
         let title = self.state.window_title();
         if title != self.title {
@@ -371,7 +375,7 @@ impl GdcmApp {
         }
         let is_wide = state.display.is_wide;
         left_ui(ui, state, palette, commands);
-        // The name of a panel says for which windows its width was dragged.
+        // The panel's name distinguishes the window widths for which its width was dragged.
         let (name, width) = if is_wide {
             ("answer", 352.0)
         } else {
@@ -397,10 +401,10 @@ impl GdcmApp {
     }
 }
 
-/// A window of this width has room for names and for the left panel in full \[pt\].
+/// Window width \[pt\] from which names and the full left panel fit.
 const WIDE: f32 = 1400.0;
 
-/// Conditions and models, in full or as a rail.
+/// Draws conditions and models, in full or as a rail.
 fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let side = Frame::new().fill(palette.panel);
     if !state.display.left_open.unwrap_or(state.display.is_wide) {
@@ -452,7 +456,8 @@ fn left_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
     });
 }
 
-/// Content that takes the room it is given and asks for no more: a panel is as wide as it was dragged, whatever its content is.
+/// Draws content that fills the available space without growing it, so that a panel keeps its
+/// dragged width.
 fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     let room = ui.available_rect_before_wrap();
     let mut content = ui.new_child(UiBuilder::new().max_rect(room).layout(*ui.layout()));
@@ -461,7 +466,7 @@ fn steady_ui(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ui.advance_cursor_after_rect(room);
 }
 
-/// What lies over the middle of the window.
+/// Draws the sheets over the middle of the window.
 fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let asked = state.display.asked.as_ref().map(|_| Sheet::Derivation);
     let Some(sheet) = asked.or(state.display.sheet) else {
@@ -477,7 +482,7 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
             models_panel::bundle_sheet_ui(ui, state, BundleKind::Identified, palette, commands)
         }
     });
-    // A click beside it may ask about another value: that is shown then.
+    // A click outside may ask about another value, which is then shown.
     let asks = commands
         .iter()
         .any(|command| matches!(command, Command::Explain(_)));
@@ -491,19 +496,20 @@ fn sheets_ui(ui: &Ui, centre: Rect, state: &State, palette: &Palette, commands: 
 }
 
 impl Drop for GdcmApp {
-    /// Also where the window panics: what was decided last is kept.
+    /// Keeps the latest decisions, even if the window panics.
     fn drop(&mut self) {
         self.autosave.close(LAST_WAIT);
     }
 }
 
-/// Whether two studies ask for the same results of the very same dataset. Its numbers are not compared: that would cost a part of
-/// every frame, and results of another dataset belong to that one even where it is equal.
+/// Returns whether two studies need the same results for the identical dataset. Datasets are
+/// compared by pointer: comparing values would take time in every frame, and results belong to one
+/// dataset even if another is equal.
 fn asks_the_same(a: &Study, b: &Study) -> bool {
     Arc::ptr_eq(&a.dataset, &b.dataset) && a.settings == b.settings && a.choices == b.choices
 }
 
-/// The name that the preferences are kept by.
+/// Storage key of the preferences.
 pub(super) const PREFERENCES: &str = "preferences";
 
 impl eframe::App for GdcmApp {
@@ -537,13 +543,15 @@ impl eframe::App for GdcmApp {
         self.name_window();
         self.request();
         self.want_jobs();
-        // What waits for the first picture is asked for in the next frame, when this one is on the screen.
+        // Jobs that wait for the first picture start in the next frame, once this frame is on the
+        // screen.
         if !self.state.results.is_painted && self.state.results.analysis.is_some() {
             self.state.results.is_painted = true;
             ctx.request_repaint();
         }
         if self.state.results.is_waiting() || self.state.results.background_since.is_some() {
-            // The mark of stale results appears by the clock, not by an event, and so does that of work under way.
+            // The markers for stale results and for work under way appear by the clock, not by an
+            // event.
             ctx.request_repaint_after(std::time::Duration::from_millis(160));
         }
     }

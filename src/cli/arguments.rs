@@ -167,10 +167,10 @@ pub struct OpeningArguments {
     pub strict: bool,
 }
 
-/// An option for each row of the table of settings.
+/// Options for the rows of the settings table.
 #[derive(Clone, Debug)]
 pub struct SettingOptions {
-    /// The settings said, with their words, in the order of the table.
+    /// The given settings, with their values, in the order of the table.
     pub said: Vec<(&'static Setting, Vec<String>)>,
 }
 
@@ -276,19 +276,19 @@ pub struct StudyArguments {
     pub reject: Vec<Rejection>,
 }
 
-/// What an option says of a channel.
+/// A declaration about a channel in an option.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OfChannel<T> {
-    /// The channel's name.
     pub channel: String,
-    /// What is said of it.
+    /// The declared value.
     pub said: T,
 }
 
-/// Whose models are turned in a channel; none where they are to be as the file has them.
+/// Role whose models are inverted in a channel; `None` restores the file's sign.
 pub type ChannelSign = OfChannel<Option<SignRole>>;
 
-/// The parts of "NZ=-1:physics": the channel, its sign, and whose it is, that of the identified models where nothing is said.
+/// Splits "NZ=-1:physics" into the channel, its sign, and the scope, by default that of the
+/// identified models.
 fn sign_parts(text: &str) -> Option<(&str, f64, &str)> {
     let (channel, rest) = text.rsplit_once('=')?;
     let (sign, of) = rest
@@ -305,7 +305,7 @@ fn sign_of(text: &str) -> Option<f64> {
     }
 }
 
-/// The sign of a channel: "NZ=-1", "NZ=-1:physics", "NZ=1".
+/// Parses the sign of a channel: "NZ=-1", "NZ=-1:physics", "NZ=1".
 fn channel_sign(text: &str) -> Result<ChannelSign, String> {
     let expected = || {
         format!(
@@ -431,7 +431,7 @@ pub struct RequirementsArguments {
     pub force: bool,
 }
 
-/// One of some values by its name.
+/// Returns a parser for the name of one of these values.
 fn one_of<T, const N: usize>(
     all: [T; N],
     name: fn(T) -> &'static str,
@@ -447,16 +447,12 @@ where
     PossibleValuesParser::new(all.map(name)).try_map(find)
 }
 
-/// Which responses a figure is of.
+/// Choice of responses for a figure.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PairChoice {
-    /// Those that matter.
     OnAxis,
-    /// The others.
     OffAxis,
-    /// All.
     All,
-    /// These.
     These(PairList),
 }
 
@@ -486,7 +482,7 @@ pub(super) fn whole_number<const LEAST: usize, const MOST: usize>(
     number.ok_or_else(|| format!("expected a whole number from {LEAST} to {MOST}, found {text}"))
 }
 
-/// Responses by the names of their channels, output and input of each.
+/// Responses by the names of their output and input channels.
 pub type PairList = Vec<(String, String)>;
 
 fn pair_list(text: &str) -> Result<PairList, String> {
@@ -505,12 +501,11 @@ fn pair_list(text: &str) -> Result<PairList, String> {
     }
 }
 
-/// A model to be rejected.
+/// A rejected model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rejection {
     /// Id of its condition.
     pub condition: i64,
-    /// Its name.
     pub model: String,
 }
 
@@ -523,19 +518,19 @@ fn rejection(text: &str) -> Result<Rejection, String> {
     })
 }
 
-/// What an option says of a channel in files that are assembled.
+/// A declaration about a channel in assembled files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OfFiles<T> {
-    /// The channel.
     pub channel: String,
-    /// What is said of it.
+    /// The declared value.
     pub said: T,
-    /// The files: those of the identified models where nothing else is said.
+    /// Scope; by default the files of the identified models.
     pub of: FileScope,
 }
 
 impl<T> OfFiles<T> {
-    /// Reads `CHANNEL=VALUE`, or `CHANNEL=VALUE:OF`; none where a part is empty or `value` does not take it.
+    /// Parses `CHANNEL=VALUE` or `CHANNEL=VALUE:OF`; `None` if a part is empty or `value` rejects
+    /// it.
     fn read(text: &str, value: impl FnOnce(&str) -> Option<T>) -> Option<Self> {
         let (channel, rest) = text.split_once('=')?;
         let (said, of) = rest.split_once(':').unwrap_or((rest, "identified"));
@@ -551,7 +546,7 @@ impl<T> OfFiles<T> {
     }
 }
 
-/// Whose channel an option speaks of, for its error.
+/// Hint about the scope of an option, for its error message.
 const OF_FILES: &str = ":identified, :physics, :all or : and the file of a model or a pattern of folders may stand behind it";
 
 fn file_sign(text: &str) -> Result<OfFiles<f64>, String> {

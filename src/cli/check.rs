@@ -24,14 +24,14 @@ use super::study_options::turn;
 use super::summary::doubt_words;
 use super::terminal::{Failure, by_words, error, indented, line, of_conditions, say};
 
-/// Says what a dataset or a study holds.
+/// Prints the contents of a dataset or a study.
 pub(super) fn check(
     file: &Path,
     arguments: &OpeningArguments,
     signs: &[ChannelSign],
 ) -> Result<(), Failure> {
     if file.is_file() && !holds_models(file) {
-        // A wrong structure is found before a large file is read to its end.
+        // A wrong structure is found before a large file is read completely.
         check_beginning(file)?;
     }
     let opened = match open(file, arguments) {
@@ -50,12 +50,14 @@ pub(super) fn check(
     say(&(decided + &contents(&loaded) + &model_cautions(&study)?))
 }
 
-/// Whether an error is one of the content of a dataset, beside which there may be others; one of the text is the only one.
+/// Returns whether an error concerns the content of a dataset, which may have further faults; a
+/// syntax error is the only one reported.
 fn has_several_faults(error: &FileError) -> bool {
     matches!(error, FileError::Content { fault, .. } if matches!(**fault, ContentFault::Dataset(_)))
 }
 
-/// Tells every fault of a dataset, and gives what the command ends with: the only one itself, else their number.
+/// Reports every fault of a dataset; returns the single fault itself, or a failure with their
+/// number.
 fn all_faults(file: &Path, first: FileError) -> Failure {
     match dataset_faults(file) {
         Ok(faults) if faults.len() > 1 => {
@@ -65,7 +67,7 @@ fn all_faults(file: &Path, first: FileError) -> Failure {
                 count: faults.len(),
             }
         }
-        // One, or a study: what was said first is all there is.
+        // A single fault, or a study: the first message is complete.
         _ => Failure::File(first),
     }
 }
@@ -112,10 +114,10 @@ fn contents(loaded: &LoadedDataset) -> String {
     text + &condition_table(dataset) + &timings(dataset) + &records(dataset) + &cautions
 }
 
-/// What an analysis would say of the models by themselves.
+/// Returns the cautions of an analysis that concern the models alone.
 fn model_cautions(study: &Study) -> Result<String, Failure> {
     let execution = Execution::new(&crate::executor::Pool, &Unobserved, 0);
-    // Signs and units first: what follows may come of them.
+    // Signs and units come first, because other cautions may follow from them.
     let doubts = doubts_of_models(study, &execution)?;
     let doubts = doubts
         .iter()
@@ -189,7 +191,7 @@ fn condition_table(dataset: &Dataset) -> String {
     indented(&table, 2)
 }
 
-/// Sample times and delays, for each bundle the models that share them (M2a).
+/// Returns the sample times and delays, for each bundle with the models that share them (M2a).
 fn timings(dataset: &Dataset) -> String {
     let mut text = String::new();
     for condition in dataset.conditions() {
@@ -219,7 +221,7 @@ fn timings(dataset: &Dataset) -> String {
     text
 }
 
-/// The flight records of each condition that has some: how many, of which manoeuvre, and what is done with them.
+/// Returns the flight records of each condition: their number, manoeuvres and use.
 fn records(dataset: &Dataset) -> String {
     let mut text = String::new();
     for condition in dataset
@@ -251,7 +253,7 @@ fn records(dataset: &Dataset) -> String {
     text
 }
 
-/// The models' numbers of states: "39", "11-14", "measured", "12, measured".
+/// Returns the numbers of states of the models: "39", "11-14", "measured", "12, measured".
 fn order_words(models: &[Model]) -> String {
     let orders = models.iter().filter_map(|model| match &model.dynamics {
         Dynamics::StateSpace(matrices) => Some(matrices.order()),
@@ -274,7 +276,7 @@ fn order_words(models: &[Model]) -> String {
         .join(", ")
 }
 
-/// What a study has decided.
+/// Returns the decisions in a study.
 fn decisions(file: &Path, study: &Study) -> String {
     let mut text = line("Study", &sanitized_path(file));
     for condition in study.dataset.conditions() {

@@ -1,4 +1,4 @@
-//! `gdcm identify`: models out of flight records, and the dataset that they go into.
+//! `gdcm identify`: models from flight records, optionally put into a dataset.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -39,10 +39,11 @@ use super::terminal::{
 };
 use crate::executor::Pool;
 
-/// The file of what was found.
+/// File of the identified models.
 const IDENTIFIED: &str = "identified.json";
 
-/// Identifies models from flight records and writes them, beside a dataset with them in it where one is given.
+/// Identifies models from flight records and writes them, with a copy of a dataset that contains
+/// them if one is given.
 pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     let inputs = arguments
         .records
@@ -52,7 +53,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
         .collect();
     let mut outputs = OutputSet::new(existing(arguments.force), inputs);
     let mut destination = Destination::asked(arguments)?;
-    // Before the records are read, as far as the names of the files are known.
+    // Checked before the records are read, as far as the file names are known.
     let known = (!arguments.every_condition).then(|| arguments.out.join(IDENTIFIED));
     let known = known.iter().chain(destination.iter().map(|of| &of.path));
     outputs.check(&known.collect::<Vec<_>>())?;
@@ -183,7 +184,7 @@ pub(super) fn identify(arguments: &IdentifyArguments) -> Result<(), Failure> {
     }
 }
 
-/// The channels of the models: references are none.
+/// Returns the channels of the models, without the references.
 fn without_references(channels: &RecordChannels, arguments: &IdentifyArguments) -> RecordChannels {
     let mut of_model = channels.clone();
     of_model
@@ -192,7 +193,8 @@ fn without_references(channels: &RecordChannels, arguments: &IdentifyArguments) 
     of_model
 }
 
-/// Whether the records say anything of an input: the others do not explain it, and a response to it is known (M14).
+/// Returns whether the records identify an input: the other inputs do not explain it, and a
+/// response to it is known (M14).
 fn is_identified(found: &Identification, input: usize, outputs: usize) -> bool {
     let is_swept = found
         .measured
@@ -202,16 +204,16 @@ fn is_identified(found: &Identification, input: usize, outputs: usize) -> bool {
     is_swept && (0..outputs).any(|output| !found.not_identified.contains(&(output, input)))
 }
 
-/// Models are to be identified from the records of a condition.
+/// An identification of models from the records of a condition.
 struct IdentificationTask {
-    /// The condition of the dataset; none without one.
+    /// The condition in the dataset; `None` without a dataset.
     condition: Option<ConditionId>,
     records: Vec<LaidOutRecord>,
     request: IdentificationRequest,
 }
 
 impl IdentificationTask {
-    /// The task of a group of records.
+    /// Creates the task for a group of records.
     fn new(
         (condition, records): Group,
         preparation: &Preparation,
@@ -234,7 +236,7 @@ impl IdentificationTask {
         })
     }
 
-    /// Identification proper, with a word about how far it is on a terminal.
+    /// Runs the identification, with progress on a terminal.
     fn run(&self) -> Result<Identification, IdentificationError> {
         let doing = self.condition.map_or_else(
             || "identifying".to_owned(),
@@ -243,8 +245,8 @@ impl IdentificationTask {
         self.request.identify(&Pool, &TerminalProgress::new(&doing))
     }
 
-    /// A channel that is late in all records by what the nominal physics model of the condition says, and the option that takes its
-    /// delay out.
+    /// Returns a caution for a channel that lags in all records compared with the nominal physics
+    /// model of the condition, with the option that removes its delay.
     fn late_channel(&self, found: &Identification, dataset: &Dataset) -> Option<CautionNote> {
         let condition = dataset.condition(self.condition?)?;
         let options = &self.request.options;
@@ -271,7 +273,7 @@ impl IdentificationTask {
         })
     }
 
-    /// A caution with the options that put right what it speaks of.
+    /// Returns a caution with the options that remedy it.
     fn note(&self, caution: &IdentificationCaution) -> CautionNote {
         let mut note = caution.note();
         let IdentificationCaution::Contradiction { records, .. } = caution else {
@@ -305,7 +307,7 @@ impl IdentificationTask {
         note
     }
 
-    /// A line a record, below the condition where there is one.
+    /// Returns a table with one line for each record, below the condition if there is one.
     fn table(&self) -> String {
         match self.condition {
             Some(id) => format!("condition {id}\n{}", record_table(&self.records, 2)),
@@ -314,23 +316,23 @@ impl IdentificationTask {
     }
 }
 
-/// What stands before words about a condition.
+/// Returns the prefix of messages about a condition.
 fn label(condition: Option<ConditionId>) -> String {
     condition.map_or_else(String::new, |id| format!("condition {id}: "))
 }
 
-/// What is to be identified.
+/// The identifications to run.
 struct Tasks {
     tasks: Vec<IdentificationTask>,
-    /// The files of which no record came.
+    /// Files without records.
     unread: Vec<PathBuf>,
-    /// What was chosen and done while the records were read.
+    /// Notes about choices made while the records were read.
     reading: Vec<String>,
-    /// Records that are others under second names: the name of the other, and what was said.
+    /// Duplicates of records: the name of the other record, and the caution.
     copies: Vec<(String, CautionNote)>,
 }
 
-/// What is to be identified: all records together, or those of each condition.
+/// Creates the identification tasks: one for all records, or one for each condition.
 fn tasks(
     arguments: &IdentifyArguments,
     destination: Option<&Destination>,
@@ -375,7 +377,7 @@ fn tasks(
     })
 }
 
-/// Where what was found is written: a file for each condition where there are many.
+/// Returns the path of the identified models: one file for each condition if there are several.
 fn identified_path(arguments: &IdentifyArguments, task: &IdentificationTask) -> PathBuf {
     let of_many = task.condition.filter(|_| arguments.every_condition);
     arguments.out.join(of_many.map_or_else(
@@ -384,7 +386,7 @@ fn identified_path(arguments: &IdentifyArguments, task: &IdentificationTask) -> 
     ))
 }
 
-/// One line of what was found and where it is.
+/// Returns one line about the result and its file.
 fn outcome(task: &IdentificationTask, file: &Path, found: &Identification) -> String {
     let held_out = found.held_out_cost.map_or_else(String::new, |cost| {
         format!(", of what is held out {cost:.2}")
@@ -399,7 +401,8 @@ fn outcome(task: &IdentificationTask, file: &Path, found: &Identification) -> St
     )
 }
 
-/// What the inputs that are held are prepared as, in records that were not brought to another clock: those moved their stamps.
+/// Sets the preparation of the inputs with sample and hold, from a record that was not resampled:
+/// resampling already shifts the time stamps.
 fn hold(preparation: &mut Preparation, records: &[LaidOutRecord], channels: &RecordChannels) {
     let as_logged = |record: &&LaidOutRecord| !record.layout.is_resampled(&record.table, channels);
     let Some(flight) = records
@@ -413,7 +416,8 @@ fn hold(preparation: &mut Preparation, records: &[LaidOutRecord], channels: &Rec
         if !channels.resampling.held.contains(&input.name) {
             continue;
         }
-        // A stair that is seen acts as it is; a command logged once a hold acts half a hold later (M14.1).
+        // A visible staircase acts as logged; a command logged once per hold acts half a hold later
+        // (M14.1).
         let values: Vec<f64> = flight.inputs.column(index).iter().copied().collect();
         input.hold = match median_step(&flight.time_s) {
             Some(hold_s) if !is_held(&values) => Hold::Command { hold_s },
@@ -422,7 +426,7 @@ fn hold(preparation: &mut Preparation, records: &[LaidOutRecord], channels: &Rec
     }
 }
 
-/// Puts channels right in single records, as asked.
+/// Applies the requested delays and factors to channels of single records.
 fn put_right(
     arguments: &IdentifyArguments,
     records: &mut [LaidOutRecord],
@@ -486,20 +490,20 @@ fn put_right(
     Ok(())
 }
 
-/// Records that models are identified from together, and the condition that they are of; none without a dataset.
+/// Records for a joint identification, with their condition; `None` without a dataset.
 type Group = (Option<ConditionId>, Vec<LaidOutRecord>);
 
-/// A dataset that models are put into.
+/// A dataset that receives models.
 struct Destination {
     dataset: Arc<Dataset>,
-    /// Where it is written.
+    /// Output path.
     path: PathBuf,
-    /// The condition; none where each record goes to the one that its name says.
+    /// The condition; `None` if each record goes to the condition in its name.
     condition: Option<ConditionId>,
 }
 
 impl Destination {
-    /// The dataset that the command line names, if any.
+    /// Opens the dataset named on the command line, if any.
     fn asked(arguments: &IdentifyArguments) -> Result<Option<Self>, Failure> {
         let Some(path) = arguments.into.as_deref() else {
             return Ok(None);
@@ -527,7 +531,8 @@ impl Destination {
         }))
     }
 
-    /// The records of each condition, in the order of the dataset; what is left out is told on standard error.
+    /// Groups the records by condition, in the order of the dataset; reports omitted records on
+    /// standard error.
     fn groups(&self, records: Vec<LaidOutRecord>) -> Result<Vec<Group>, Failure> {
         if let Some(wanted) = self.condition {
             let is_of = |record: &LaidOutRecord| {
@@ -609,7 +614,7 @@ impl Destination {
     }
 }
 
-/// The conditions that names of records say, as "3, 7".
+/// Returns the conditions in the names of records, as "3, 7".
 fn said_conditions(records: &[LaidOutRecord]) -> String {
     let said: BTreeSet<i64> = records
         .iter()
@@ -621,7 +626,8 @@ fn said_conditions(records: &[LaidOutRecord]) -> String {
         .join(", ")
 }
 
-/// The dataset as it is written elsewhere: its records are found by way of `folder` from there, and it is described as asked.
+/// Returns the dataset for another folder: its records are referenced through `folder`, and its
+/// description is replaced if one is given.
 fn moved(dataset: &Dataset, folder: &str, description: Option<&str>) -> Result<Dataset, Failure> {
     let mut header = dataset.header();
     header.description = description.map_or(header.description, ToOwned::to_owned);

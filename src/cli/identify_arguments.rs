@@ -1,4 +1,4 @@
-//! The command line of `gdcm identify`, and the channels that it asks for.
+//! The command line of `gdcm identify`, and the channels that it requests.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -117,12 +117,12 @@ pub struct IdentifyArguments {
 }
 
 impl IdentifyArguments {
-    /// The references, each with its column where one is said.
+    /// Returns the references, each with its column if one is given.
     pub fn references(&self) -> &[SaidChannel] {
         self.reference.as_ref().map_or(&[], |list| &list.channels)
     }
 
-    /// What is tried in place of the defaults.
+    /// Returns the search settings that replace the defaults.
     pub fn search(&self) -> SearchSpace {
         SearchSpace {
             orders: self.order.clone(),
@@ -131,7 +131,7 @@ impl IdentifyArguments {
         }
     }
 
-    /// The band to identify, which is that of the dataset where none is said.
+    /// Returns the identification band; by default that of the dataset.
     pub(super) fn band(&self, dataset: Option<&Dataset>) -> Result<Band, Failure> {
         match (self.band.as_deref(), dataset) {
             (Some(&[min, max]), _) => {
@@ -142,7 +142,7 @@ impl IdentifyArguments {
         }
     }
 
-    /// The channels asked for, with what is said of their samples.
+    /// Returns the requested channels, with the declarations about their samples.
     pub(super) fn channels(
         &self,
         dataset: Option<&Dataset>,
@@ -157,7 +157,7 @@ impl IdentifyArguments {
                 );
                 return Err(Failure::option("--reference", reason));
             }
-            // Read as an input, after those of the model.
+            // References are read like inputs, after those of the model.
             channels.inputs.push(reference.rule());
         }
         if let Some(channel) = said_twice(&self.topic) {
@@ -198,7 +198,8 @@ impl IdentifyArguments {
         Ok(channels)
     }
 
-    /// The channels asked for: the dataset's, in its units, or those of the command line, in the units of the first record.
+    /// Returns the requested channels: the dataset's, in its units, or those of the command line,
+    /// in the units of the first record.
     fn named_channels(&self, dataset: Option<&Dataset>) -> Result<RecordChannels, Failure> {
         fn said(list: &Option<ChannelList>) -> impl Iterator<Item = &SaidChannel> {
             list.iter().flat_map(|list| &list.channels)
@@ -240,7 +241,7 @@ impl IdentifyArguments {
         Ok(channels)
     }
 
-    /// How the channels are prepared: their known delays are taken out.
+    /// Returns the preparation of the channels, which removes their known delays.
     pub(super) fn preparation(&self, channels: &RecordChannels) -> Result<Preparation, Failure> {
         let delays: Vec<_> = self
             .delay
@@ -274,7 +275,7 @@ impl IdentifyArguments {
     }
 }
 
-/// Whether there is a channel of this name.
+/// Returns whether a channel with this name exists.
 pub(super) fn has_channel(channels: &RecordChannels, name: &str) -> bool {
     channels
         .inputs
@@ -283,12 +284,12 @@ pub(super) fn has_channel(channels: &RecordChannels, name: &str) -> bool {
         .any(|rule| rule.name == name)
 }
 
-/// An option is about a channel that there is not.
+/// Returns the failure for an option about an unknown channel.
 pub(super) fn unknown(option: &'static str, channel: &str) -> Failure {
     Failure::option(option, format!("{channel} is none of the channels"))
 }
 
-/// The first channel of which an option says something once more.
+/// Returns the first channel with a duplicate declaration.
 pub(super) fn said_twice<'a, T: 'a>(
     said: impl IntoIterator<Item = &'a OfChannel<T>>,
 ) -> Option<&'a str> {
@@ -312,7 +313,7 @@ pub enum OfferedChoice {
 }
 
 impl OfferedChoice {
-    /// The models.
+    /// Returns the models that the choice offers.
     pub fn offered(self) -> OfferedModels {
         match self {
             Self::Refined => OfferedModels::REFINED,
@@ -322,7 +323,7 @@ impl OfferedChoice {
     }
 }
 
-/// Takes what an option says of the samples of channels, once of each.
+/// Applies the declarations of an option to the channels; rejects duplicates.
 pub(super) fn say_conversions<'a, T: Clone + 'a>(
     option: &'static str,
     said: impl IntoIterator<Item = &'a OfChannel<T>>,
@@ -347,7 +348,8 @@ pub(super) fn say_conversions<'a, T: Clone + 'a>(
     Ok(())
 }
 
-/// A channel, and what `read` makes of the text behind it; none where there is no channel, or that is nothing.
+/// Splits a channel from its value, parsed by `read`; `None` if the channel is empty or `read`
+/// rejects the value.
 fn of_channel<T>(text: &str, read: impl FnOnce(&str) -> Option<T>) -> Option<OfChannel<T>> {
     let (channel, said) = text.split_once('=')?;
     let channel = Some(channel.trim())
@@ -363,7 +365,7 @@ fn any_text(text: &str) -> Option<String> {
     Some(text.to_owned()).filter(|text| !text.is_empty())
 }
 
-/// A channel with the unit of its samples: "P=rad/s".
+/// Parses a channel with the unit of its samples: "P=rad/s".
 pub(super) fn channel_unit(text: &str) -> Result<OfChannel<String>, String> {
     of_channel(text, any_text)
         .ok_or_else(|| format!("expected CHANNEL=UNIT, as P=rad/s, found \"{text}\""))
@@ -383,7 +385,7 @@ fn channel_factor(text: &str) -> Result<OfChannel<f64>, String> {
     })
 }
 
-/// Where a channel is found: the topic and its field, or a column.
+/// Parses the location of a channel: topic and field, or a column.
 fn channel_topic(text: &str) -> Result<OfChannel<String>, String> {
     of_channel(text, |column| any_text(column.trim_matches('"'))).ok_or_else(|| {
         format!(
@@ -392,9 +394,9 @@ fn channel_topic(text: &str) -> Result<OfChannel<String>, String> {
     })
 }
 
-/// A known delay of a channel \[s\], positive where the channel is logged late.
+/// Parses the known delay of a channel \[s\], positive if the channel is logged late.
 fn channel_delay(text: &str) -> Result<OfChannel<f64>, String> {
-    /// Beyond this a delay is no delay of a sensor or a bus \[s\].
+    /// Maximum plausible delay of a sensor or a bus \[s\].
     const MOST_S: f64 = 2.0;
     let expected = || format!("expected CHANNEL=SECONDS, as P=0.02, found \"{text}\"");
     let delay = of_channel(text, |seconds| seconds.parse().ok()).ok_or_else(expected)?;
@@ -420,16 +422,16 @@ fn positive_rate(text: &str) -> Result<f64, String> {
 /// A part of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordPart {
-    /// The record; none for all that hold some of that time.
+    /// Name of the record; `None` for all records with samples at that time.
     pub record: Option<String>,
     /// First and last time \[s\].
     pub part_s: [f64; 2],
-    /// Whether the times count from the first sample of the record, not on its own clock.
+    /// Whether the times count from the record's first sample instead of its own clock.
     pub is_from_start: bool,
 }
 
 impl RecordPart {
-    /// First and last time \[s\] on the clock of a record that starts at `start_s`.
+    /// Returns the first and last time \[s\] on the clock of a record that starts at `start_s`.
     pub(super) fn on_clock_s(&self, start_s: f64) -> [f64; 2] {
         if self.is_from_start {
             self.part_s.map(|time_s| start_s + time_s)
@@ -438,7 +440,7 @@ impl RecordPart {
         }
     }
 
-    /// The times as they were given: `5:34`, `+5:+34`.
+    /// Returns the times as given: `5:34`, `+5:+34`.
     pub(super) fn words(&self) -> String {
         let sign = if self.is_from_start { "+" } else { "" };
         let [from, to] = self.part_s.map(number);
@@ -473,7 +475,7 @@ pub(super) fn record_part(text: &str) -> Result<RecordPart, String> {
     }
 }
 
-/// A channel with what stands before it, where that is a record: "sweep.csv:P".
+/// Splits a channel from a preceding record name: "sweep.csv:P"; `None` without one.
 pub fn of_one_record(said: &str) -> Option<(&str, &str)> {
     said.rsplit_once(':')
         .filter(|(record, channel)| !record.is_empty() && !channel.is_empty())

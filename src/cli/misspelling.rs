@@ -1,4 +1,4 @@
-//! A command that is written wrongly, told from a file.
+//! Recognises misspelt commands on the command line.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -10,8 +10,9 @@ use gdcm_model::message_text::{sanitized, shortened};
 use super::arguments::Arguments;
 use super::terminal::Failure;
 
-/// The failure of a command line whose first word is neither a command nor a file, and differs from a command by a letter or two; none
-/// of any other. The first of `arguments` is the program.
+/// Returns the failure for a command line whose first word is neither a command nor a file but
+/// differs from a command by a letter or two; `None` for any other. The first element of
+/// `arguments` is the program.
 pub(super) fn misspelt_command(arguments: &[OsString]) -> Option<Failure> {
     let word = arguments
         .iter()
@@ -35,7 +36,7 @@ pub(super) fn misspelt_command(arguments: &[OsString]) -> Option<Failure> {
         .into_iter()
         .map(|name| (edit_distance(word, name), name));
     let (distance, suggestion) = distances.min_by_key(|(distance, _)| *distance)?;
-    // Of a short word two letters are half of it: that is another word.
+    // In a short word two letters are half of it: that is another word.
     let most = if word.chars().count() < 5 { 1 } else { 2 };
     if distance > most {
         return None;
@@ -46,11 +47,12 @@ pub(super) fn misspelt_command(arguments: &[OsString]) -> Option<Failure> {
     })
 }
 
-/// The least number of letters to insert, delete or replace that makes one word the other: V. I. Levenshtein, "Binary codes capable of
-/// correcting deletions, insertions, and reversals", 1966.
+/// Returns the Levenshtein distance: the least number of letters to insert, delete or replace to
+/// turn one word into the other (V. I. Levenshtein, "Binary codes capable of correcting deletions,
+/// insertions, and reversals", 1966).
 fn edit_distance(from: &str, to: &str) -> usize {
     let to: Vec<char> = to.chars().collect();
-    // The distances of the letters of `from` so far to each beginning of `to`.
+    // Distances from the processed letters of `from` to each prefix of `to`.
     let mut distances: Vec<usize> = (0..=to.len()).collect();
     for (row, letter) in from.chars().enumerate() {
         let mut diagonal = distances[0];

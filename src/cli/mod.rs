@@ -1,6 +1,7 @@
 //! The commands that need no window.
 //!
-//! Exit status: 0 done, 1 the analysis could not be done, 2 the command line or a file is wrong; the reason on standard error.
+//! Exit status: 0 done, 1 the analysis could not be done, 2 the command line or a file is wrong;
+//! the reason on standard error.
 
 mod arguments;
 mod check;
@@ -35,14 +36,14 @@ use crate::executor::start_threads;
 use arguments::{Arguments, Command, OpeningArguments};
 use terminal::{Failure, Manner, WRONG_INPUT, caution, coded_error, error, say};
 
-/// Carries out a command line. Without a command it opens a window, on a file or on the embedded example; help, version and errors are
-/// printed here.
+/// Carries out a command line. Without a command it opens a window, on a file or on the embedded
+/// example; it prints help, version and errors itself.
 pub fn run(
     arguments: impl IntoIterator<Item = OsString>,
     open_window: impl FnOnce(Option<PathBuf>) -> ExitCode,
 ) -> ExitCode {
     let arguments = joined(arguments);
-    // A command line that is not understood is told of in the manner that it asks for.
+    // A command line that cannot be parsed is still reported in the requested format.
     let asks = |option: &str| arguments.iter().any(|argument| argument == option);
     terminal::speak(Manner {
         quiet: asks("--quiet"),
@@ -78,8 +79,8 @@ pub fn run(
     }
 }
 
-/// The arguments, a word joined to its option where that may do with less: `--gain-bounds auto FILE` does not take the file for its
-/// second number, nor `--schedule-delays FILE` for its word.
+/// Joins a value to its option if the option takes a variable number of values: `--gain-bounds auto
+/// FILE` must not take the file for its second number, nor `--schedule-delays FILE` for its value.
 fn joined(arguments: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut joined: Vec<OsString> = Vec::new();
     for argument in arguments {
@@ -126,7 +127,8 @@ fn carry_out(command: &Command) -> Result<(), Failure> {
     }
 }
 
-/// Opens a dataset or a study; what is different in a study's dataset is told on standard error, a line each.
+/// Opens a dataset or a study; reports the differences in a study's dataset on standard error, one
+/// per line.
 fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
     if file.is_file() && file.extension().is_some() && holds_models(file) {
         return Err(Failure::Models {
@@ -151,7 +153,7 @@ fn open(file: &Path, arguments: &OpeningArguments) -> Result<Opened, Failure> {
     Ok(opened)
 }
 
-/// Writes the embedded example into a directory and says where.
+/// Writes the embedded example into a directory and reports the path.
 fn example(directory: &Path, existing: Existing) -> Result<(), Failure> {
     let path = write_example(directory, existing)?;
     say(&format!(
@@ -177,7 +179,8 @@ fn finish(result: Result<(), Failure>) -> ExitCode {
     ExitCode::from(terminal::end(status))
 }
 
-/// clap's complaint on one line, without the usage that it repeats below; of a value, the option and what is wrong with it.
+/// Returns clap's message on one line, without the usage, which is printed below; for a wrong
+/// value, the option and the reason.
 fn usage_words(error: &clap::Error) -> String {
     if let (Some(ContextValue::String(option)), Some(reason)) =
         (error.get(ContextKind::InvalidArg), error.source())

@@ -1,4 +1,4 @@
-//! `gdcm assemble` and `gdcm convert`: models out of files of whatever format.
+//! `gdcm assemble` and `gdcm convert`: models from files of any supported format.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ use super::terminal::{
     Failure, caution, coded_caution, error, indented, note, progress_target, say,
 };
 
-/// Which file is read, on a terminal only.
+/// Progress of reading, shown on a terminal only.
 pub(super) struct ReadingProgress {
     bar: ProgressBar,
 }
@@ -55,7 +55,7 @@ impl Drop for ReadingProgress {
     }
 }
 
-/// Writes every model of some files as JSON.
+/// Writes all models in the given files as JSON.
 pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
     let mut outputs = OutputSet::new(existing(arguments.force), arguments.files.clone());
     outputs.check(&[&arguments.out])?;
@@ -81,7 +81,7 @@ pub(super) fn convert(arguments: &ConvertArguments) -> Result<(), Failure> {
     ))
 }
 
-/// Makes a dataset of the models in a folder.
+/// Makes a dataset from the models in a folder.
 pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     check_declared_once(arguments)?;
     let rules_path = arguments
@@ -152,7 +152,7 @@ pub(super) fn assemble(arguments: &AssembleArguments) -> Result<(), Failure> {
     }
 }
 
-/// The rules of a file; what is to be known of them is told on standard error.
+/// Loads the rules from a file; prints their cautions on standard error.
 fn said_rules(path: &Path) -> Result<Rules, Failure> {
     let (rules, cautions) = load_rules(path)?;
     cautions
@@ -161,7 +161,7 @@ fn said_rules(path: &Path) -> Result<Rules, Failure> {
     Ok(rules)
 }
 
-/// Refuses what is said twice of one channel of the same models.
+/// Rejects duplicate declarations for a channel of the same models.
 fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
     let mut signs = BTreeSet::new();
     for OfFiles { channel, of, .. } in &arguments.sign {
@@ -192,7 +192,7 @@ fn check_declared_once(arguments: &AssembleArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Puts the units, factors and signs of the command line into the rules.
+/// Adds the units, factors and signs of the command line to the rules.
 fn declare(
     arguments: &AssembleArguments,
     models: &[FoundModel],
@@ -228,7 +228,7 @@ fn declare(
     Ok(())
 }
 
-/// Declares something of one model beside what the rules say of that model, or of more models by their scope.
+/// Adds a declaration to the rules of a single model, or to the rules of a scope.
 fn declare_of(
     of: &FileScope,
     declared: &ChannelDeclarations,
@@ -243,7 +243,7 @@ fn declare_of(
     }
 }
 
-/// Refuses an option for a channel that the dataset does not have, or for files that are not among those read.
+/// Rejects an option for a channel missing from the dataset, or for files that were not read.
 fn check_declared(
     option: &'static str,
     channel: &str,
@@ -276,7 +276,7 @@ fn check_declared(
     Ok(())
 }
 
-/// The models of files and folders; what could not be taken is told on standard error.
+/// Reads the models from files and folders; reports skipped content on standard error.
 fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<FoundModels, Failure> {
     let found = read_models(paths, headings, &ReadingProgress::new())?;
     found
@@ -293,7 +293,7 @@ fn found_models(paths: &[PathBuf], headings: &Headings) -> Result<FoundModels, F
     Ok(found)
 }
 
-/// What is said of every table of as many columns.
+/// Applies the headings to every table with the same number of columns.
 fn said_headings(headings: &[String]) -> Headings {
     let said: Vec<String> = headings
         .iter()
@@ -311,7 +311,7 @@ fn name_of(folders: &[PathBuf]) -> String {
     name.map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
-/// A line a model: what it is to be.
+/// Returns a table with one line for each model and its role in the dataset.
 fn table(assembly: &Assembly) -> String {
     let mut table = Table::new(
         "",

@@ -1,4 +1,5 @@
-//! Flight records: those that models are identified from, and those that they are compared with in time (M17.2).
+//! Flight records: those used for identification, and those compared with models in the time domain
+//! (M17.2).
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -28,21 +29,21 @@ use super::models::ReadingProgress;
 use super::terminal::{Failure, TerminalProgress, caution, error, indented, note};
 use crate::executor::Pool;
 
-/// The records that were read.
+/// Records read from files.
 pub(super) struct ReadRecords {
-    /// Every record with its columns.
+    /// The records with their columns.
     pub(super) records: Vec<LaidOutRecord>,
-    /// The files named that could not be read, or not all that is in them.
+    /// Named files that could not be read, or not completely.
     pub(super) unread: Vec<PathBuf>,
-    /// What was chosen and done while they were read.
+    /// Notes about choices made while reading.
     pub(super) reading: Vec<String>,
-    /// Records that are others under second names: the name of the other, and what is said.
+    /// Duplicates of records: the name of the other record, and the caution.
     pub(super) copies: Vec<(String, CautionNote)>,
-    /// The records that parts were asked of, with their spans.
+    /// Records split into parts, with their spans.
     pub(super) wholes: Vec<WholeRecord>,
 }
 
-/// A record of which a part was asked for.
+/// A record of which a part was requested.
 pub(super) struct WholeRecord {
     name: String,
     source: RecordSource,
@@ -58,7 +59,7 @@ impl WholeRecord {
     }
 }
 
-/// Reads the records; what was chosen, and what is wrong, is told on standard error.
+/// Reads and lays out the records; reports choices and faults on standard error.
 pub(super) fn laid_out(
     arguments: &IdentifyArguments,
     channels: &mut RecordChannels,
@@ -87,7 +88,7 @@ pub(super) fn laid_out(
     };
     for table in tables {
         let (record, notes) = as_dataset_says(table, channels, dataset, &wish);
-        // A part is of those records that have samples then.
+        // A part applies only to records with samples at that time.
         if record.table.part_s.is_some()
             && record
                 .flight
@@ -98,7 +99,7 @@ pub(super) fn laid_out(
             continue;
         }
         let name = &record.table.name;
-        // What a log is, and the signs of its system, no other file tells.
+        // The kind of a log and the sign convention of its system are stated in no other file.
         let is_log = record
             .table
             .columns
@@ -106,7 +107,7 @@ pub(super) fn laid_out(
             .any(|column| column.topic.is_some() || column.meaning.is_some());
         let of_log = record.table.notes.iter().filter(|_| is_log).cloned();
         let notes: Vec<String> = of_log.chain(notes).collect();
-        // Records of one flight are alike: what is chosen is said once.
+        // Records of one flight are alike: equal choices are reported once.
         if notes != told {
             let words = notes.iter().map(|words| format!("{name}: {words}"));
             reading.extend(words.inspect(|words| note(words)));
@@ -116,7 +117,7 @@ pub(super) fn laid_out(
             .cautions
             .iter()
             .for_each(|words| caution(&format!("{name}: {words}")));
-        // What is wrong with all of them is told of the first.
+        // Problems common to all records are reported for the first.
         let problems: Vec<String> = record.problems.iter().map(ToString::to_string).collect();
         if problems != wrong {
             problems
@@ -135,7 +136,8 @@ pub(super) fn laid_out(
     if let Some(part) = arguments.part.iter().find(|part| !has_samples(part)) {
         return Err(Failure::option("--part", no_samples(part, &wholes)));
     }
-    // By the units that the channels have by now: a record before the first that says them may say none.
+    // Records are laid out again with the final units: a record read before the first one that
+    // states them may state none.
     let by_units = |record: LaidOutRecord| {
         if units_are_known || !record.problems.is_empty() {
             return record;
@@ -186,7 +188,8 @@ pub(super) fn laid_out(
     }
 }
 
-/// A record with its channels, which is as the dataset says of it where there is one that names it; used, for it was asked for.
+/// Lays out a record, following the dataset's entry for it if there is one. It is always used,
+/// because it was requested.
 fn as_dataset_says(
     table: RecordTable,
     channels: &RecordChannels,
@@ -208,8 +211,8 @@ fn as_dataset_says(
     }
 }
 
-/// The parts asked for, in place of the records that they are of, which are added to `wholes`. A record whose columns are not clear
-/// stands for its parts, for its problems to be told.
+/// Returns the requested parts instead of the whole records, which are added to `wholes`. A record
+/// with unclear columns replaces its parts, so that its problems are reported.
 fn parts(
     tables: Vec<RecordTable>,
     asked: &[RecordPart],
@@ -260,7 +263,8 @@ fn parts(
     Ok(found)
 }
 
-/// Whether a record is a part that was asked for, of any record that is called so; one whose columns are not clear is every part.
+/// Returns whether a record is a requested part of a record with the requested name; a record with
+/// unclear columns counts as every part.
 fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRecord]) -> bool {
     if !part
         .record
@@ -275,7 +279,8 @@ fn is_part(table: &RecordTable, part: &RecordPart, wholes: &[WholeRecord]) -> bo
     }
 }
 
-/// Whether a part is one of the record called so: its name is that of the record with the times behind it.
+/// Returns whether a part belongs to the named record: a part's name is the record's name followed
+/// by the times.
 fn is_called_before_part(table: &RecordTable, wanted: &str) -> bool {
     table.part_s.is_some()
         && table
@@ -284,9 +289,9 @@ fn is_called_before_part(table: &RecordTable, wanted: &str) -> bool {
             .is_some_and(|rest| rest.starts_with(", "))
 }
 
-/// Why a part is none: where the records are that it was asked of.
+/// Returns why a requested part has no samples: the spans of the records.
 fn no_samples(part: &RecordPart, wholes: &[WholeRecord]) -> String {
-    /// Most records whose spans are told.
+    /// Maximum number of records whose spans are listed.
     const MOST: usize = 4;
     let is_asked = |whole: &&WholeRecord| {
         let table = RecordTable {
@@ -325,7 +330,7 @@ fn no_samples(part: &RecordPart, wholes: &[WholeRecord]) -> String {
     words
 }
 
-/// Whether a record is called so: by its file, its name, or its name in its file.
+/// Returns whether a record has this name: its file, its name, or its name within its file.
 pub(super) fn is_called(table: &RecordTable, wanted: &str) -> bool {
     let source = &table.source;
     let file = Path::new(wanted)
@@ -337,7 +342,7 @@ pub(super) fn is_called(table: &RecordTable, wanted: &str) -> bool {
         || source.variable.as_deref() == Some(wanted)
 }
 
-/// The records of files and folders; what could not be taken is told on standard error.
+/// Reads the records from files and folders; reports skipped content on standard error.
 pub(super) fn found_records(paths: &[PathBuf]) -> Result<FoundRecords, Failure> {
     let found = read_records(paths, &ReadingProgress::new())?;
     found
@@ -355,7 +360,8 @@ pub(super) fn found_records(paths: &[PathBuf]) -> Result<FoundRecords, Failure> 
     }
 }
 
-/// Holds out the records asked for, or parts of `wholes`; without a word those whose names say so stay held out.
+/// Holds out the requested records, or parts of `wholes`; without a request, records whose names
+/// say so stay held out.
 pub(super) fn hold_out(
     wanted: &[String],
     records: &mut [LaidOutRecord],
@@ -387,7 +393,7 @@ pub(super) fn hold_out(
     Ok(())
 }
 
-/// A line a record, each behind `indent` spaces.
+/// Returns a table with one line for each record, indented by `indent` spaces.
 pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
     let mut table = Table::new("", ["record", "kind", "samples", "step", "length", ""]);
     for LaidOutRecord {
@@ -398,7 +404,7 @@ pub(super) fn record_table(records: &[LaidOutRecord], indent: usize) -> String {
         ..
     } in records
     {
-        // As it is used: topics are brought to one clock, parts are cut.
+        // Describes the record as used: with topics resampled to one clock and parts cut.
         let clock = flight
             .as_ref()
             .map(|flight| (flight.time_s.len(), median_step(&flight.time_s)));
@@ -438,14 +444,13 @@ pub struct HistoryArguments {
 /// The records of each condition.
 #[derive(Default)]
 pub(super) struct ReadHistories {
-    /// They.
     pub(super) conditions: Vec<HistoryRecords>,
-    /// What was asked for and could not be read, or not all of it.
+    /// Requested records that could not be read, or not completely.
     unread: Vec<String>,
 }
 
 impl ReadHistories {
-    /// How the command ends whose work was done with them.
+    /// Returns the outcome of a command that used these records: a failure if some were not read.
     pub(super) fn ended(&self) -> Result<(), Failure> {
         let paths = self.unread.join(", ");
         if paths.is_empty() {
@@ -457,7 +462,8 @@ impl ReadHistories {
 }
 
 impl HistoryArguments {
-    /// The records of each condition, topics brought to a clock for this band; what is not taken is told on standard error.
+    /// Reads the records of each condition, with topics resampled to a clock for this band; reports
+    /// omitted records on standard error.
     pub(super) fn read(&self, dataset: &Dataset, band: Band) -> Result<ReadHistories, Failure> {
         if self.records.is_empty() {
             return Ok(ReadHistories::default());
@@ -490,7 +496,7 @@ impl HistoryArguments {
     }
 }
 
-/// The answers of the models to records, with a word about how far it is on a terminal.
+/// Computes the responses of the models to the records, with progress on a terminal.
 pub(super) fn time_histories(
     analysis: &Analysis,
     records: &ReadHistories,
@@ -506,8 +512,8 @@ pub(super) fn time_histories(
     )?)
 }
 
-/// A record and its condition, as the dataset says of it where it does; none where it has no condition, or its columns are not clear:
-/// one whose units are not said is among what was not read.
+/// Returns a record and its condition, following the dataset's entry if there is one; `None` if no
+/// condition is known or its columns are unclear. A record with unknown units is added to `unread`.
 fn record_of(
     table: RecordTable,
     dataset: &Dataset,
@@ -550,7 +556,7 @@ fn record_of(
     Some((condition, record))
 }
 
-/// Tells of which record this is another under a second name, and gives that with the words.
+/// Reports duplicates of other records; returns each other record's name with the message.
 fn tell_copies(record: &LaidOutRecord) -> Vec<(&String, String)> {
     let copies = record.cautions.iter().filter_map(|why| match why {
         LayoutCaution::Copy { first } => Some((first, format!("{}: {why}", record.table.name))),
@@ -559,7 +565,7 @@ fn tell_copies(record: &LaidOutRecord) -> Vec<(&String, String)> {
     copies.inspect(|(_, words)| caution(words)).collect()
 }
 
-/// Every channel as it is.
+/// Returns the preparation that leaves every channel unchanged.
 fn preparation(dataset: &Dataset) -> Preparation {
     let (inputs, outputs) = dataset.names_of_channels();
     let [inputs, outputs]: [Vec<&str>; 2] =

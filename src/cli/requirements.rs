@@ -1,4 +1,5 @@
-//! `gdcm requirements`: what a qualification asks of the models of every condition, written as files, with a short table.
+//! `gdcm requirements`: the quantities required for a qualification, computed for the models of
+//! every condition; written as files, with a short table.
 
 use std::collections::BTreeSet;
 
@@ -25,7 +26,8 @@ use super::terminal::{
     Failure, TerminalProgress, by_words, caution_of, indented, line, note, of_conditions, say,
 };
 
-/// Writes the table of tolerances where that is asked for; analyses, writes the requirements, and prints a short table.
+/// Writes the table of tolerances if requested; analyses, writes the requirements, and prints a
+/// short table.
 pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Failure> {
     let histories = &arguments.histories;
     let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
@@ -71,7 +73,7 @@ pub(super) fn requirements(arguments: &RequirementsArguments) -> Result<(), Fail
     records.ended()
 }
 
-/// What has to be known, and what is missing; that there are no records at all is no surprise to who gave none.
+/// Reports cautions and missing results; missing records are not reported if none were given.
 fn tell_cautions(requirements: &Requirements, histories: &TimeHistories) {
     for (conditions, words) in by_words(
         requirements
@@ -85,7 +87,7 @@ fn tell_cautions(requirements: &Requirements, histories: &TimeHistories) {
         .missing
         .iter()
         .filter(|_| !histories.records.is_empty());
-    // Conditions without a result have been told already.
+    // Conditions without a result have already been reported.
     let missing = requirements
         .missing
         .iter()
@@ -102,12 +104,13 @@ fn tell_cautions(requirements: &Requirements, histories: &TimeHistories) {
     }
 }
 
-/// A number, or a dash.
+/// Formats a number, or a dash.
 fn cell(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
 }
 
-/// "2.13 / 112*": bandwidth \[rad/s\] and phase delay \[ms\] of a response, each marked where it rests on the response above the band.
+/// Formats "2.13 / 112*": bandwidth \[rad/s\] and phase delay \[ms\] of a response, each marked if
+/// it depends on the response above the band.
 fn both_numbers(finding: &BandwidthFinding) -> String {
     let mark = |name: &str| if finding.rests_above(name) { "*" } else { "" };
     format!(
@@ -119,7 +122,8 @@ fn both_numbers(finding: &BandwidthFinding) -> String {
     )
 }
 
-/// Bandwidth and phase delay of every response that has one of them, role by role; of the others the reason, once.
+/// Returns bandwidth and phase delay of every response that has one of them, by role; for the
+/// others the reason, once.
 fn bandwidth_section(analysis: &Analysis, requirements: &Requirements) -> String {
     let same_response =
         |a: &BandwidthFinding, b: &BandwidthFinding| (a.condition, a.pair) == (b.condition, b.pair);
@@ -147,7 +151,7 @@ fn bandwidth_section(analysis: &Analysis, requirements: &Requirements) -> String
         ("No delay", "phase_delay_s"),
     ] {
         let absent = responses().flat_map(|of| absent_words(&name(of), of, quantity));
-        // Of a response without any number, one reason does for both.
+        // A response without any number needs only one reason.
         let absent = absent.filter(|(of, _)| quantity == "omega_bw_rad_s" || has_number(of));
         for (conditions, words) in by_words(absent.map(|(of, words)| (of.condition, words))) {
             text += &line(label, &sanitized(&of_conditions(&conditions, &words)));
@@ -156,7 +160,8 @@ fn bandwidth_section(analysis: &Analysis, requirements: &Requirements) -> String
     text
 }
 
-/// Why a response lacks a number, once for each reason, with the roles that it is of where it is not of all: "LON → Q (physics, corrected): …".
+/// Returns the reasons for missing numbers of a response, each once, with its roles unless it
+/// applies to all: "LON → Q (physics, corrected): …".
 fn absent_words<'a>(
     name: &str,
     findings: &'a [BandwidthFinding],
@@ -186,7 +191,7 @@ fn absent_words<'a>(
     reasons.into_iter().map(told).collect()
 }
 
-/// A row for each response, with its name and the numbers of each role.
+/// Returns a table with a row for each response: its name and the numbers of each role.
 fn bandwidth_table<'a>(responses: impl Iterator<Item = (String, &'a [BandwidthFinding])>) -> Table {
     let headings = ["condition", "response"]
         .into_iter()
@@ -205,7 +210,7 @@ fn bandwidth_table<'a>(responses: impl Iterator<Item = (String, &'a [BandwidthFi
     table
 }
 
-/// Mean J and share of the band inside the envelopes, on-axis, role by role.
+/// Returns mean J and the share of the band inside the envelopes, on-axis, by role.
 fn summary_section(requirements: &Requirements) -> String {
     let roles = [
         RequirementRole::Physics,
@@ -237,7 +242,8 @@ fn summary_section(requirements: &Requirements) -> String {
     ) + &indented(&table, 2)
 }
 
-/// How many modes of the physics models, and of the corrected ones where couplings move them, are within their tolerances.
+/// Returns how many modes are within their tolerances, for the physics models and, where couplings
+/// change the modes, for the corrected models.
 fn mode_section(requirements: &Requirements) -> String {
     let counted = |model: &str, verdicts: &[ModeVerdict]| {
         let count = |verdict: ModeVerdict| verdicts.iter().filter(|of| **of == verdict).count();
@@ -264,7 +270,8 @@ fn mode_section(requirements: &Requirements) -> String {
     text
 }
 
-/// Share of time inside the tolerances where a model is outside, condition by condition; and the rms errors.
+/// Returns the share of time inside the tolerances for models that leave them, by condition, and
+/// the rms errors.
 fn history_section(histories: &TimeHistories) -> String {
     const HEADING: &str = "Time history";
     if histories.records.is_empty() {

@@ -1,5 +1,5 @@
-//! `gdcm analyze`, `gdcm report`, `gdcm export` and `gdcm figure`: the same analysis, written as files of results, as one page, for other
-//! tools, or as a figure.
+//! `gdcm analyze`, `gdcm report`, `gdcm export` and `gdcm figure`: the same analysis, written as
+//! result files, as a report, for other tools, or as a figure.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -54,7 +54,7 @@ pub(super) fn analyze(arguments: &AnalyzeArguments) -> Result<(), Failure> {
     }
 }
 
-/// Analyses, and writes all that was found and done as one page.
+/// Analyses, and writes the full report.
 pub(super) fn report(arguments: &ReportArguments) -> Result<(), Failure> {
     let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
     let outputs = outputs.also_reading(arguments.histories.records.iter().cloned());
@@ -170,7 +170,7 @@ fn corrections() -> impl TypedValueParser<Value = AssessedCorrection> {
     })
 }
 
-/// Analyses, writes what is asked for, and says what is to be known of it.
+/// Analyses, writes the requested export, and prints its notes and cautions.
 pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     let (study, loaded, outputs) = study_of(&arguments.study, arguments.force)?;
     let request = export_request(&study, arguments)?;
@@ -195,7 +195,7 @@ pub(super) fn export(arguments: &ExportArguments) -> Result<(), Failure> {
     ))
 }
 
-/// What an export is called: the file of the study or of the dataset.
+/// Returns the name of an export: the file of the study or of the dataset.
 fn name(arguments: &StudyArguments) -> String {
     let file = arguments.file.as_ref().and_then(|file| file.file_name());
     file.map_or_else(
@@ -204,7 +204,7 @@ fn name(arguments: &StudyArguments) -> String {
     )
 }
 
-/// The request of a command line; an option that its format knows nothing of is refused.
+/// Builds the request from the command line; rejects options that do not apply to the format.
 fn export_request(study: &Study, arguments: &ExportArguments) -> Result<ExportRequest, Failure> {
     let format = arguments.format;
     let given = [
@@ -245,7 +245,7 @@ fn export_request(study: &Study, arguments: &ExportArguments) -> Result<ExportRe
     })
 }
 
-/// Makes one figure as a file, and says so.
+/// Writes one figure to a file and reports it.
 pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     let (study, _, outputs) = study_of(&arguments.study, arguments.force)?;
     figure_format(&arguments.out)?;
@@ -279,7 +279,7 @@ pub(super) fn figure(arguments: &FigureArguments) -> Result<(), Failure> {
     ))
 }
 
-/// What couplings do to a study: those that it asks for, or else mixing and feedback.
+/// Assesses the couplings requested by the study, or else mixing and feedback.
 fn assessed_couplings(
     study: &Study,
     engine: &mut Engine,
@@ -299,7 +299,7 @@ fn assessed_couplings(
     })
 }
 
-/// The figure of one condition, of the curves that the window draws.
+/// Draws the figure of one condition from the curves that the window shows.
 fn figure_of_condition(
     request: &FigureRequest,
     analysis: &Analysis,
@@ -337,7 +337,7 @@ fn figure_of_condition(
     Ok(request.figure(Some(analysis), Some(&source)))
 }
 
-/// The request of a command line.
+/// Builds the figure request from the command line.
 fn figure_request(study: &Study, arguments: &FigureArguments) -> Result<FigureRequest, Failure> {
     let dataset = &study.dataset;
     let pairs = match &arguments.pair {
@@ -363,7 +363,7 @@ fn figure_request(study: &Study, arguments: &FigureArguments) -> Result<FigureRe
     } else {
         FrequencyUnit::RadPerSecond
     };
-    // Couplings alone are drawn on wish, which is the window's.
+    // Showing couplings alone is an option of the window only.
     let hidden = arguments
         .hide
         .iter()
@@ -426,9 +426,9 @@ fn chosen_channels(dataset: &Dataset, choice: Option<&str>) -> Result<Vec<Channe
     }
 }
 
-/// The condition that a figure of one is of.
+/// Returns the condition of a figure that shows a single one.
 fn condition(study: &Study, arguments: &FigureArguments) -> Result<Option<ConditionId>, Failure> {
-    // Couplings are of all conditions; the poles beside them are of one.
+    // Couplings concern all conditions; the poles beside them belong to one.
     let is_asked_for = arguments.view == FigureKind::Couplings && arguments.condition.is_some();
     if !arguments.view.is_of_condition() && !is_asked_for {
         return Ok(None);

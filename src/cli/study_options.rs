@@ -1,4 +1,4 @@
-//! The study that a command is about, with what the command line says on top of it.
+//! The study of a command, with the options of the command line applied.
 
 use std::sync::Arc;
 
@@ -20,8 +20,8 @@ use super::terminal::{
 use super::{existing, open};
 use crate::executor::Pool;
 
-/// The study, the dataset that it is about, and the files that a command about it writes: none of those that it reads is overwritten.
-/// Cautions of the file are told on standard error.
+/// Opens the study and its dataset, and prepares the output files, which never overwrite the
+/// inputs. Reports the file's cautions on standard error.
 pub(super) fn study_of(
     arguments: &StudyArguments,
     force: bool,
@@ -49,8 +49,9 @@ pub(super) fn study_of(
     Ok((study, loaded, OutputSet::new(existing(force), inputs)))
 }
 
-/// The analysis of a study, after what it suggests has been rejected where that is asked for, and the engine that made it; `with_bars`
-/// says whether it has error bars. Which conditions have no result is told on standard error.
+/// Analyses a study, after rejecting the suggested outliers if requested; returns the analysis and
+/// its engine. `with_bars` requests error bars. Reports conditions without a result on standard
+/// error.
 ///
 /// # Errors
 /// No condition has a result.
@@ -100,7 +101,7 @@ pub(super) fn analysis_of(
     Ok((analysis, engine))
 }
 
-/// The condition that an option gave by its id.
+/// Returns the condition with the id given by an option.
 pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Failure> {
     let found = dataset
         .condition(ConditionId(id))
@@ -111,7 +112,7 @@ pub(super) fn condition_of(dataset: &Dataset, id: i64) -> Result<ConditionId, Fa
     })
 }
 
-/// The ids of the conditions, with commas.
+/// Joins the ids of the conditions with commas.
 pub(super) fn ids(dataset: &Dataset) -> String {
     let ids: Vec<String> = dataset
         .conditions()
@@ -121,14 +122,14 @@ pub(super) fn ids(dataset: &Dataset) -> String {
     ids.join(", ")
 }
 
-/// Takes a decision that an option asks for.
+/// Applies a decision requested by an option.
 fn apply(study: &mut Study, option: &'static str, edit: &Edit) -> Result<(), Failure> {
     study
         .apply(edit)
         .map_err(|refusal| Failure::option(option, refusal))
 }
 
-/// Puts the options into the study, over what it says itself.
+/// Applies the options to the study; they override the study's own settings.
 fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
     for (setting, words) in &arguments.settings.said {
         let option = setting.option;
@@ -160,7 +161,7 @@ fn take_options(study: &mut Study, arguments: &StudyArguments) -> Result<(), Fai
         .try_for_each(|rejection| reject(study, rejection))
 }
 
-/// Asks requirements with what the options say, over what the study says itself.
+/// Applies the options about requirements, which override the study's own.
 fn require(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure> {
     let mut settings = RequirementSettings::clone(&study.requirements);
     let (_, outputs) = study.dataset.names_of_channels();
@@ -202,7 +203,8 @@ fn require(study: &mut Study, arguments: &StudyArguments) -> Result<(), Failure>
     Ok(())
 }
 
-/// Refuses a second variable that a scheduled condition does not say: the schedule would be missing after all the work.
+/// Rejects a second variable that a scheduled condition lacks: the schedule would be missing after
+/// all the work.
 fn check_second_variable(study: &Study) -> Result<(), Failure> {
     let Some(variable) = study.settings.schedule.second else {
         return Ok(());
@@ -229,7 +231,7 @@ fn check_second_variable(study: &Study) -> Result<(), Failure> {
     Err(Failure::option("--second-variable", reason))
 }
 
-/// Turns the channels whose signs an option says, or puts them back.
+/// Inverts the channels whose signs an option declares, or restores them.
 pub(super) fn turn(study: &mut Study, signs: &[ChannelSign]) -> Result<(), Failure> {
     const OPTION: &str = "--sign";
     if let Some(channel) = said_twice(signs) {
@@ -261,7 +263,7 @@ pub(super) fn turn(study: &mut Study, signs: &[ChannelSign]) -> Result<(), Failu
     Ok(())
 }
 
-/// The responses of a list, which an option gave.
+/// Returns the responses listed in an option.
 pub(super) fn pairs_of(
     dataset: &Dataset,
     list: &[(String, String)],
@@ -280,7 +282,7 @@ pub(super) fn pairs_of(
     list.iter().map(find).collect()
 }
 
-/// The names of channels, with commas.
+/// Joins the names of channels with commas.
 pub(super) fn names(channels: &[Channel]) -> String {
     channels
         .iter()
@@ -325,7 +327,7 @@ fn reject(study: &mut Study, rejection: &Rejection) -> Result<(), Failure> {
     apply(study, "--reject", &Edit::Reject(model))
 }
 
-/// Rejects what the analysis suggests; says whether anything changed.
+/// Rejects the suggested outliers; returns whether anything changed.
 fn reject_suggested(study: &mut Study, analysis: &Analysis) -> Result<bool, Failure> {
     let before = study.clone();
     for (&condition, result) in &analysis.conditions {

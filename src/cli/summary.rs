@@ -1,4 +1,4 @@
-//! What `gdcm analyze` prints: the results for a person to read.
+//! The printed summary of `gdcm analyze`.
 
 use std::path::Path;
 
@@ -26,7 +26,7 @@ use super::terminal::{
     by_words, detail, detail_list, indented, keep_caution, keep_coded_caution, line, of_conditions,
 };
 
-/// The results for a person to read: the settings, each condition, the schedule, the assessment, and where the files are.
+/// Returns the readable results: settings, each condition, schedule, assessment, and output files.
 pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -> String {
     let doubts = analysis.doubts.iter().map(|doubt| {
         let words = doubt_words(doubt, &analysis.study.dataset);
@@ -57,7 +57,7 @@ pub(super) fn summary(analysis: &Analysis, loaded: &LoadedDataset, out: &Path) -
         )
 }
 
-/// A doubt of a channel's sign or unit, with the option that turns the sign.
+/// Describes a doubtful sign or unit of a channel, with the option that inverts the sign.
 pub(super) fn doubt_words(doubt: &ConventionDoubt, dataset: &Dataset) -> String {
     let (inputs, outputs) = dataset.names_of_channels();
     let option = doubt
@@ -113,7 +113,7 @@ fn heading(analysis: &Analysis, loaded: &LoadedDataset) -> String {
     text + &line("Phase", &phase) + &line("Held", &held)
 }
 
-/// What the couplings mean, are worth and cost; nothing without couplings.
+/// Returns the meaning, benefit and cost of the couplings; empty without couplings.
 fn couplings_section(analysis: &Analysis) -> String {
     let said = analysis.coupling_remarks();
     if said.is_empty() {
@@ -144,7 +144,8 @@ fn couplings_section(analysis: &Analysis) -> String {
     text
 }
 
-/// How far the scheduled correction brings the nominal models, and which conditions it is not judged in.
+/// Returns how far the scheduled correction improves the nominal models, and which conditions it is
+/// not judged in.
 fn assessment_lines(analysis: &Analysis) -> String {
     let mut text = line("Assessment", &sanitized(&assessment_sentence(analysis)));
     for left_out in
@@ -160,7 +161,8 @@ fn assessment_lines(analysis: &Analysis) -> String {
     text
 }
 
-/// One condition: representatives, rejections, the on-axis and held responses, and what could not be matched.
+/// Returns the section of one condition: representatives, rejections, the on-axis and constrained
+/// responses, and unmatched entries.
 fn condition_section(analysis: &Analysis, condition: &Condition) -> String {
     let state = condition.flight_state();
     let title = format!(
@@ -211,7 +213,7 @@ fn model_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     text
 }
 
-/// The responses that tables show: those that measure a model (the on-axis ones), and those to be held.
+/// Returns the responses in tables: the on-axis ones, which rate a model, and the constrained ones.
 fn shown_pairs(study: &Study) -> impl Iterator<Item = Pair> {
     let measuring = study.dataset.measuring_pairs();
     let shown = measuring.map(|pair, measures| *measures || study.settings.constrained[pair]);
@@ -276,7 +278,7 @@ fn response_table(analysis: &Analysis, result: &ConditionAnalysis) -> Table {
     table
 }
 
-/// What the leads add above the band, as the heading of a column.
+/// Returns the column heading for the amplification by leads above the band.
 fn price_heading(price: &LeadPrice) -> String {
     format!("dB at {} rad/s", number(price.above_rad_s()))
 }
@@ -323,7 +325,8 @@ fn channel_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     detail_list("gains", &gains) + &detail_list("delays", &delays.collect::<Vec<_>>())
 }
 
-/// Gain, delay or lead of each channel, and the servos that its filter stands for: as if the one were replaced by the other (M15).
+/// Returns a table of the gain and the delay or lead of each channel, with the servos that its
+/// filter is equivalent to: as if the first were replaced by the second (M15).
 fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &ChannelLeads) -> Table {
     let columns = [
         "channel",
@@ -358,7 +361,8 @@ fn lead_table(dataset: &Dataset, correction: &ChannelCorrection, leads: &Channel
     table
 }
 
-/// What most conditions have in one table with one sentence, and each other caution once with the conditions that it is of.
+/// Returns the cautions common to most conditions as one table with one sentence each, and every
+/// other caution once with its conditions.
 fn cautions_section(analysis: &Analysis) -> String {
     let mut rows = Vec::new();
     let mut others = Vec::new();
@@ -371,7 +375,7 @@ fn cautions_section(analysis: &Analysis) -> String {
     {
         let id = result.condition.id();
         let said = remarks(&analysis.study, result, None);
-        // What is said of signs and units stands above all conditions.
+        // Doubts about signs and units are printed above all conditions.
         let cautions = said
             .into_iter()
             .skip(result.doubts.len())
@@ -388,7 +392,7 @@ fn cautions_section(analysis: &Analysis) -> String {
     }
     let text = match &rows[..] {
         [] => String::new(),
-        // Of one condition a sentence says as much.
+        // For a single condition a sentence suffices.
         [(id, alone)] if alone.len() == 1 => {
             others.insert(0, (*id, alone[0].text.clone()));
             String::new()
@@ -403,7 +407,8 @@ fn cautions_section(analysis: &Analysis) -> String {
         })
 }
 
-/// A row for each condition; a column for each response that needs lead or is farther from flight, and for what else is said.
+/// Returns a table with a row for each condition, a column for each response that needs lead or
+/// moves away from flight, and columns for other repeated remarks.
 fn repeated_table(analysis: &Analysis, rows: &[(ConditionId, Vec<Remark>)]) -> String {
     let dataset = &analysis.study.dataset;
     let all = || {
@@ -467,10 +472,10 @@ fn repeated_table(analysis: &Analysis, rows: &[(ConditionId, Vec<Remark>)]) -> S
     line("Cautions", &format!("{sentence}:")) + &indented(&table, 2)
 }
 
-/// What a repeated remark has for a column.
+/// Returns the cell of a repeated remark, if it belongs in the column.
 type CellOf = fn(&Repeated, &Dataset) -> Option<String>;
 
-/// Columns for what conditions have in common: heading, sentence, cell.
+/// Columns for repeated remarks: heading, sentence, cell.
 const REPEATED: [(&str, &str, CellOf); 3] = [
     (
         "all",
@@ -504,15 +509,16 @@ const REPEATED: [(&str, &str, CellOf); 3] = [
     ),
 ];
 
-/// What could not be matched and why, entry by entry, and what is not proven.
+/// Lists the unmatched entries with reasons, and the unproven results.
 fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     let said = remarks(&analysis.study, result, None);
-    // What is said of signs and units stands above all conditions; cautions of all conditions stand together.
+    // Doubts about signs and units are printed above all conditions; cautions are collected in
+    // their own section.
     let troubles = said
         .iter()
         .skip(result.doubts.len())
         .filter(|remark| remark.kind == RemarkKind::Trouble);
-    // What is missed comes first, then the reasons and the ways out.
+    // The unmatched entries come first, then the reasons and remedies.
     let labels = std::iter::once("not matched").chain(std::iter::repeat("why"));
     let lines = labels
         .zip(troubles)
@@ -527,7 +533,7 @@ fn trouble_lines(analysis: &Analysis, result: &ConditionAnalysis) -> String {
     text
 }
 
-/// The scheduled net gains of the on-axis and held responses over airspeed.
+/// Returns the scheduled net gains of the on-axis and constrained responses over airspeed.
 fn schedule_section(analysis: &Analysis) -> String {
     let schedule = match &analysis.schedule {
         Ok(schedule) => schedule,
@@ -586,7 +592,7 @@ fn schedule_table(
     schedule: &Schedule,
     entry: impl Fn(&ChannelCorrection, Pair) -> String,
 ) -> String {
-    /// Airspeeds shown: the ends, the middle, and the quarters.
+    /// Displayed airspeeds as fractions of the range: the ends, the middle, and the quarters.
     const SHOWN: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
     let dataset = &analysis.study.dataset;
     let min = schedule.airspeeds.min_kt;
@@ -602,7 +608,8 @@ fn schedule_table(
     indented(&table, 2)
 }
 
-/// What the scatter is made of, the differences at equal airspeed, and the second variables; nothing where bars were not computed.
+/// Returns the sources of the scatter, the differences at equal airspeed, and the second variables;
+/// empty if the error bars were not computed.
 fn evidence_section(analysis: &Analysis) -> String {
     let Some(uncertainty) = &analysis.uncertainty else {
         return String::new();
@@ -657,13 +664,14 @@ fn evidence_section(analysis: &Analysis) -> String {
     text
 }
 
-/// How the schedule fares on the conditions that are held out.
+/// Returns the results of the schedule for the held-out conditions.
 fn held_out_lines(analysis: &Analysis) -> String {
     let verdict = held_out_verdict(analysis, usual(analysis, AssessedCorrection::Scheduled));
     verdict.map_or_else(String::new, |words| line("Held out", &words))
 }
 
-/// The change of J of each condition's nominal model under the schedule of the others.
+/// Returns the change of J of each condition's nominal model under the schedule made from the other
+/// conditions.
 pub(super) fn leave_one_out_section(analysis: &Analysis) -> String {
     let [seen, unseen] = [
         AssessedCorrection::Scheduled,

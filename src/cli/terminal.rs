@@ -1,5 +1,6 @@
-//! What a command says: results on standard output, notes, cautions and errors on standard error, or all of it as one JSON object; why
-//! it was not carried out, with the exit status that says so; tables and words behind labels.
+//! Output of the commands: results on standard output; notes, cautions and errors on standard
+//! error, or everything as one JSON object. Also failures with their exit status, tables, and
+//! labelled text.
 
 use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
@@ -21,16 +22,16 @@ use gdcm_model::message_text::{sanitized, sanitized_path, shortened, shortened_m
 use gdcm_model::progress::{Cancelled, Progress};
 use gdcm_study::study::Table;
 
-/// How a command says what it says.
+/// Output format of a command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Manner {
-    /// Without notes.
+    /// Omits notes.
     pub(super) quiet: bool,
-    /// As one JSON object, once it has ended.
+    /// Prints one JSON object at the end.
     pub(super) json: bool,
 }
 
-/// What a command has said, for its JSON object.
+/// Output collected for the JSON object.
 #[derive(Debug, Serialize)]
 struct Said {
     #[serde(skip)]
@@ -38,26 +39,26 @@ struct Said {
     format: &'static str,
     version: u32,
     status: u8,
-    /// What stands on standard output otherwise.
+    /// Text otherwise printed on standard output.
     text: String,
     notes: Vec<String>,
     cautions: Vec<SaidCaution>,
     errors: Vec<String>,
-    /// The stable code of each error; null of one that has none.
+    /// Stable code of each error; null if it has none.
     error_codes: Vec<Option<&'static str>>,
 }
 
-/// A caution, and the conditions that it is of; none where it is of the whole.
+/// A caution with its conditions; no conditions if it concerns the whole.
 #[derive(Debug, Serialize)]
 struct SaidCaution {
-    /// Stable name of what it is about, where it has one.
+    /// Stable code of its subject, if it has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     code: Option<&'static str>,
     text: String,
     conditions: Vec<i64>,
 }
 
-/// A process carries out one command.
+/// Global, because a process carries out one command.
 static SAID: Mutex<Said> = Mutex::new(Said {
     manner: Manner {
         quiet: false,
@@ -77,14 +78,15 @@ fn said() -> MutexGuard<'static, Said> {
     SAID.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// From now on the command speaks so.
+/// Sets the output format of the command.
 pub(super) fn speak(manner: Manner) {
     said().manner = manner;
 }
 
-/// Prints a text that ends with its own line end. A reader that has seen enough (`gdcm … | head`) is no failure.
+/// Prints a text, which includes its line end. A reader that closes the pipe early (`gdcm …
+/// head`) is no failure.
 pub(super) fn say(text: &str) -> Result<(), Failure> {
-    // Whatever a file holds, control codes never reach a terminal.
+    // Control codes from a file never reach the terminal.
     let text: String = text
         .split_inclusive('\n')
         .map(|line| plain(line.trim_end_matches('\n'), line))
@@ -115,7 +117,7 @@ fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Says what was taken or chosen, and need not be acted upon.
+/// Reports a choice or an assumption that needs no action.
 pub(super) fn note(words: &str) {
     let mut said = said();
     if said.manner.json {
@@ -125,17 +127,17 @@ pub(super) fn note(words: &str) {
     }
 }
 
-/// Says what has to be known, or acted upon, though the command goes on.
+/// Reports a problem that may need action although the command continues.
 pub(super) fn caution(words: &str) {
     caution_of(&[], words);
 }
 
-/// The same caution of some conditions, said once with the conditions named.
+/// Reports the same caution for several conditions once, with the conditions listed.
 pub(super) fn caution_of(conditions: &[ConditionId], words: &str) {
     coded_caution(None, conditions, words);
 }
 
-/// A caution with the stable name of what it is about.
+/// Reports a caution with a stable code.
 pub(super) fn coded_caution(code: Option<&'static str>, conditions: &[ConditionId], words: &str) {
     if said().manner.json {
         return keep_coded_caution(code, conditions, words);
@@ -143,7 +145,7 @@ pub(super) fn coded_caution(code: Option<&'static str>, conditions: &[ConditionI
     complain("caution", &of_conditions(conditions, words));
 }
 
-/// Keeps a caution for the JSON object, where it stands apart; the text says it at its own place.
+/// Adds a caution to the JSON object only; the text output includes it elsewhere.
 pub(super) fn keep_caution(conditions: &[ConditionId], words: &str) {
     keep_coded_caution(None, conditions, words);
 }
@@ -161,12 +163,12 @@ pub(super) fn keep_coded_caution(
     });
 }
 
-/// Says what is wrong.
+/// Reports an error.
 pub(super) fn error(words: &str) {
     coded_error(None, words);
 }
 
-/// Says what is wrong; programs that read the JSON object tell it by its code.
+/// Reports an error with a stable code for programs that read the JSON object.
 pub(super) fn coded_error(code: Option<&'static str>, words: &str) {
     let mut said = said();
     if said.manner.json {
@@ -177,19 +179,19 @@ pub(super) fn coded_error(code: Option<&'static str>, words: &str) {
     }
 }
 
-/// Prints one line on standard error; there is nowhere to complain of a failure to do so.
+/// Prints one line on standard error; a failure to do so cannot be reported.
 fn complain(kind: &str, words: &str) {
     let _ = writeln!(std::io::stderr(), "{kind}: {}", plain(words, ""));
 }
 
-/// Ends the command with this status: the JSON object is printed where one is asked for.
+/// Ends the command with this status; prints the JSON object if requested.
 pub(super) fn end(status: u8) -> u8 {
     let mut said = said();
     said.status = status;
     if !said.manner.json {
         return status;
     }
-    // Texts, numbers and lists are JSON whatever they hold.
+    // Texts, numbers and lists always serialise.
     let mut object = Vec::new();
     let written = write_pretty(&*said, &mut object);
     debug_assert!(written.is_ok(), "there is memory to write to");
@@ -202,7 +204,8 @@ pub(super) fn end(status: u8) -> u8 {
     }
 }
 
-/// Where progress is drawn: nowhere where standard error is no terminal, or nothing but results is asked for.
+/// Returns the target of progress bars: hidden if standard error is no terminal or only results are
+/// requested.
 pub(super) fn progress_target() -> ProgressDrawTarget {
     if said().manner == Manner::default() {
         ProgressDrawTarget::stderr()
@@ -211,11 +214,12 @@ pub(super) fn progress_target() -> ProgressDrawTarget {
     }
 }
 
-/// An analysis that is done sooner needs no progress.
+/// Shorter analyses show no progress.
 const QUICK: Duration = Duration::from_millis(500);
 
-/// A bar on standard error, where that is a terminal, once the analysis takes longer than half a second. While there is one, Ctrl+C
-/// ends the work at its next step, with a message and the status of work that was not done.
+/// Progress bar on standard error, if that is a terminal, once the analysis takes longer than half
+/// a second. While it exists, Ctrl+C ends the work at its next step, with a message and the exit
+/// status of incomplete work.
 pub(super) struct TerminalProgress {
     bar: ProgressBar,
     started: Instant,
@@ -224,10 +228,10 @@ pub(super) struct TerminalProgress {
 }
 
 impl TerminalProgress {
-    /// `doing` says what takes the time.
+    /// Creates the bar; `doing` names the work.
     pub(super) fn new(doing: &str) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
-        // A template that is not understood leaves the bar its own looks.
+        // An invalid template leaves the default style.
         if let Ok(style) = ProgressStyle::with_template(&format!(
             "{doing} {{bar:40}} {{percent}} % (Ctrl+C stops)"
         )) {
@@ -254,7 +258,7 @@ impl Progress for TerminalProgress {
         Interruptible::is_asked()
     }
 
-    /// Elsewhere Ctrl+C ends the process at once, which leaves no half of a file either.
+    /// On other systems Ctrl+C ends the process at once, which leaves no partial file either.
     #[cfg(not(unix))]
     fn cancelled(&self) -> bool {
         false
@@ -269,16 +273,17 @@ impl Progress for TerminalProgress {
     }
 }
 
-/// Work that asks whether it was interrupted (SIGINT, Ctrl+C). Without one, and from the second interruption on, a process ends at once.
+/// Work that checks for interruptions (SIGINT, Ctrl+C). Without such work, and from the second
+/// interruption on, the process ends at once.
 #[cfg(unix)]
 struct Interruptible;
 
-/// What an interruption does, for as long as the process lives.
+/// State of interruptions for the lifetime of the process.
 #[cfg(unix)]
 struct Interruption {
-    /// Whether there was one.
+    /// Whether an interruption occurred.
     is_asked: Arc<AtomicBool>,
-    /// Whether the next one ends the process.
+    /// Whether the next interruption ends the process.
     ends_process: Arc<AtomicBool>,
 }
 
@@ -290,7 +295,8 @@ static INTERRUPTION: LazyLock<Interruption> = LazyLock::new(|| {
         is_asked: Arc::default(),
         ends_process: Arc::new(AtomicBool::new(true)),
     };
-    // In this order: the first interruption of work only arms what the second does. Where the system refuses, Ctrl+C ends the process.
+    // The order matters: the first interruption of work only arms the second. If the system
+    // refuses, Ctrl+C ends the process.
     let _ = flag::register_conditional_default(SIGINT, Arc::clone(&interruption.ends_process));
     let _ = flag::register(SIGINT, Arc::clone(&interruption.ends_process));
     let _ = flag::register(SIGINT, Arc::clone(&interruption.is_asked));
@@ -316,74 +322,67 @@ impl Drop for Interruptible {
     }
 }
 
-/// Exit status where the analysis could not be done.
+/// Exit status if the analysis could not be done.
 pub(super) const NOT_DONE: u8 = 1;
-/// Exit status where the command line or a file is wrong.
+/// Exit status if the command line or a file is wrong.
 pub(super) const WRONG_INPUT: u8 = 2;
 
-/// Why a command was not carried out.
+/// Reason why a command was not carried out.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Failure {
-    /// A file cannot be read or written.
     #[error("{0}{remedy}", remedy = if matches!(.0, FileError::Exists { .. }) { "; --force overwrites" } else { "" })]
     File(#[from] FileError),
-    /// An option's value is wrong for this dataset.
     #[error("{option}: {reason}")]
     Option {
         option: &'static str,
         reason: String,
     },
-    /// A word stands in place of a command or a file, and is neither.
+    /// The first word is neither a command nor a file, but resembles a command.
     #[error("{found}: there is no such command and no such file; did you mean gdcm {suggestion}?")]
     UnknownCommand { found: String, suggestion: String },
-    /// The dataset of a study is not the one that it was made with.
+    /// The study's dataset differs from the dataset that the study was made with.
     #[error(
         "{path}: {count} differences from what the study was made with, and --strict asks for none"
     )]
     Different { path: String, count: usize },
-    /// A dataset has several faults, which were told.
+    /// Several faults in a dataset, each already reported.
     #[error("{path}: {count} faults; once they are mended, check the file again")]
     Faulty { path: String, count: usize },
-    /// A file of models, where a dataset or a study is asked for.
+    /// A model file instead of a dataset or a study.
     #[error(
         "{path}: this is neither a dataset nor a study; a dataset is made of model files by gdcm assemble {path} --out \
          dataset.json.gz, or in the window by Import models"
     )]
     Models { path: String },
-    /// Something is still to be said before files are a dataset.
+    /// The rules are incomplete, so the files do not form a dataset yet.
     #[error("no dataset was made: {count} {} to complete; do so in {rules} and give it with --rules", if *count == 1 { "item" } else { "items" })]
     Incomplete { count: usize, rules: String },
-    /// Records whose columns are not clear, or cannot be what they are taken for; each was told.
+    /// Records with unclear or impossible columns, each already reported.
     #[error("{wrong} of {of} {} cannot be taken as they are: say which column is which (--inputs P=COLUMN, --time) and in which unit (--unit P=deg/s), or leave them out", if *of == 1 { "record" } else { "records" })]
     Records { wrong: usize, of: usize },
-    /// Files of which nothing could be taken.
+    /// No usable content in the files.
     #[error("{paths}: no {what} that could be taken")]
     Nothing { paths: String, what: &'static str },
-    /// Records that were asked for by name could not be read, or not all that is in them; what could was used.
+    /// Named records that could not be read, or not completely; the rest was used.
     #[error("{paths}: not read, or not all of it; what was made is without that")]
     Unread { paths: String },
-    /// What was asked for was identified, and nothing of it is of use.
+    /// Identification ran but identified no input.
     #[error("no input is identified in these records: the models say nothing of {inputs}")]
     NotIdentified { inputs: String },
-    /// No thread is to be had.
     #[error("no thread is to be had to compute with: {reason}")]
     NoThreads { reason: String },
-    /// No model was identified.
     #[error("no model was identified: {reason}")]
     NoModels { reason: String },
-    /// No condition has a result.
     #[error("the analysis has no result: {reason}")]
     NoResult { reason: String },
-    /// The analysis was stopped.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Standard output cannot be written.
     #[error("standard output cannot be written: {reason}")]
     StandardOutput { reason: String },
 }
 
 impl Failure {
-    /// Nothing could be taken of files.
+    /// Returns the failure for files without usable content.
     pub(super) fn nothing_in(paths: &[PathBuf], what: &'static str) -> Self {
         Failure::Nothing {
             paths: listed_paths(paths),
@@ -391,7 +390,7 @@ impl Failure {
         }
     }
 
-    /// What an option says is refused.
+    /// Returns the failure for a wrong option value.
     pub(super) fn option(option: &'static str, reason: impl ToString) -> Self {
         Failure::Option {
             option,
@@ -399,7 +398,7 @@ impl Failure {
         }
     }
 
-    /// The stable code by which scripts tell it from others; none where there is none yet.
+    /// Returns the stable code for scripts; `None` if there is none yet.
     pub(super) fn code(&self) -> Option<&'static str> {
         match self {
             Failure::File(error) => error.code(),
@@ -409,7 +408,7 @@ impl Failure {
         }
     }
 
-    /// The exit status.
+    /// Returns the exit status.
     pub(super) fn status(&self) -> u8 {
         match self {
             Failure::File(FileError::Unwritable { .. })
@@ -434,7 +433,7 @@ impl Failure {
     }
 }
 
-/// Paths with commas.
+/// Joins paths with commas.
 pub(super) fn listed_paths(paths: &[PathBuf]) -> String {
     paths
         .iter()
@@ -443,7 +442,7 @@ pub(super) fn listed_paths(paths: &[PathBuf]) -> String {
         .join(", ")
 }
 
-/// A table as lines, each behind so many spaces; long names are cut.
+/// Formats a table as lines indented by `indent` spaces; shortens long names.
 pub(super) fn indented(table: &Table, indent: usize) -> String {
     let mut table = table.clone();
     table
@@ -458,28 +457,28 @@ pub(super) fn indented(table: &Table, indent: usize) -> String {
         .collect()
 }
 
-/// Most columns of a page.
+/// Maximum width of a page in columns.
 const PAGE: usize = 110;
 
-/// Width of the labels at the left of a section.
+/// Width of the labels at the left of a section, in columns.
 const LABEL: usize = 14;
 
-/// A line of a text: words behind a label at its left.
+/// Returns a line of text behind a label.
 pub(super) fn line(label: &str, words: &str) -> String {
     labelled(0, label, LABEL, words)
 }
 
-/// A line of a section, which is set in.
+/// Returns an indented line of a section.
 pub(super) fn detail(label: &str, words: &str) -> String {
     labelled(2, label, LABEL - 2, words)
 }
 
-/// Words behind a label, broken between words into lines of at most [`PAGE`] columns that stand under one another.
+/// Returns words behind a label, wrapped at [`PAGE`] columns with the lines aligned.
 fn labelled(indent: usize, label: &str, width: usize, words: &str) -> String {
     hanging(indent, label, width, shortened_message(words).split(' '))
 }
 
-/// A list in a section, with commas, broken between its entries; says so where it is empty.
+/// Returns a comma-separated list in a section, wrapped between entries; reports an empty list.
 pub(super) fn detail_list(label: &str, entries: &[String]) -> String {
     if entries.is_empty() {
         return detail(label, "none");
@@ -524,7 +523,8 @@ fn hanging<'w>(
     text
 }
 
-/// "condition 3", "conditions 3, 4, 7", "conditions 1 to 3, 7": three in a row or more by their ends.
+/// Returns "condition 3", "conditions 3, 4, 7", "conditions 1 to 3, 7": three or more in a row by
+/// their ends.
 pub(super) fn listed_conditions(conditions: &[ConditionId]) -> String {
     let runs = conditions.chunk_by(|one, next| one.0.checked_add(1) == Some(next.0));
     let words = runs.flat_map(|run| match run {
@@ -538,7 +538,7 @@ pub(super) fn listed_conditions(conditions: &[ConditionId]) -> String {
     )
 }
 
-/// Words with the conditions that they are about before them; none where they are about the whole.
+/// Prefixes words with their conditions; no prefix if they concern the whole.
 pub(super) fn of_conditions(conditions: &[ConditionId], words: &str) -> String {
     if conditions.is_empty() {
         words.to_owned()
@@ -547,7 +547,7 @@ pub(super) fn of_conditions(conditions: &[ConditionId], words: &str) -> String {
     }
 }
 
-/// Words about conditions, each once with all conditions that it is said of, in the order in which they were said first.
+/// Groups equal messages: each with all its conditions, in the order of first occurrence.
 pub(super) fn by_words<C: Into<Option<ConditionId>>>(
     said: impl IntoIterator<Item = (C, String)>,
 ) -> Vec<(Vec<ConditionId>, String)> {

@@ -1,4 +1,5 @@
-//! The right side of the window: verdict, result, matrix, the response in focus, settings in one line, and the way to export.
+//! Right side of the window: verdict, result, matrix, the response in focus, a line of settings,
+//! and the export.
 
 use egui::{
     Align, Button, CornerRadius, Frame, Layout, Margin, Panel, Rect, RichText, Role, ScrollArea,
@@ -24,12 +25,12 @@ const PADDING: f32 = 12.0;
 const LINE: f32 = 36.0;
 /// Height of the row of the export \[pt\].
 const FOOT: f32 = 48.0;
-/// The card of the response in focus needs a window of this height \[pt\].
+/// Least window height that shows the card of the response in focus \[pt\].
 const LEAST_WITH_CARD: f32 = 860.0;
-/// In a lower window the result is one line \[pt\].
+/// Least window height that shows the full result; below it the result takes a single line \[pt\].
 const LEAST_WITH_RESULT: f32 = 600.0;
 
-/// All of it, from top to bottom.
+/// Draws the whole panel from top to bottom.
 pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let verdict = Verdict::of(state);
     let foot = Frame::new().inner_margin(Margin::ZERO);
@@ -51,7 +52,7 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
     });
     frame.show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        // Whatever is written in one part, the next one is no wider.
+        // The width is fixed here, so that the content of a part cannot widen the next.
         let width = ui.available_width();
         region_ui(ui, Region::Verdict, |ui| {
             verdict_ui(ui, &verdict, palette, commands)
@@ -85,7 +86,7 @@ pub fn answer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
     });
 }
 
-/// Two rows and one step.
+/// Draws the two rows of the verdict and its first step.
 fn verdict_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
     let (ground, mark) = match verdict.is_met() {
         true => (palette.good_ground, palette.good),
@@ -128,7 +129,7 @@ fn verdict_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut 
     );
 }
 
-/// Where the counts and the words of the rows begin \[pt from their left edge\].
+/// Left edges of the counts and of the words in the rows \[pt from the row's left edge\].
 const COLUMNS: [f32; 2] = [46.0, 106.0];
 
 fn heads_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette) {
@@ -159,7 +160,7 @@ fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
     let everywhere = VerdictRow::count(row.everywhere);
     let all = painted_text(ui, rect, -0.01, &everywhere, body(), palette.dim_text);
     let room = all.left() - rect.left() - COLUMNS[1] - 6.0;
-    // Where there is no room for the band, the word alone: "matched".
+    // Without room for the band only the word is shown: "matched".
     let fits = text_width(ui, &row.words, body()) <= room;
     let words = if fits {
         row.words.as_str()
@@ -172,7 +173,7 @@ fn row_ui(ui: &mut Ui, row: &VerdictRow, is_all_met: bool, palette: &Palette) {
 }
 
 fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Vec<Command>) {
-    // What exports is the primary button at the foot.
+    // The export is the primary button at the foot already.
     let is_at_foot = |step: &&Step| step.command == export();
     let primary = verdict.steps.first().filter(|step| !is_at_foot(step));
     let links: Vec<Step> = verdict
@@ -183,7 +184,7 @@ fn steps_ui(ui: &mut Ui, verdict: &Verdict, palette: &Palette, commands: &mut Ve
         .chain(notes_step(verdict))
         .collect();
     match (&verdict.caution, primary) {
-        // A price and something to decide: each has a line of its own.
+        // A caution and a decision to take: each gets its own line.
         (Some(caution), Some(_)) => {
             let (notes, links): (Vec<Step>, Vec<Step>) = links.into_iter().partition(is_of_reasons);
             line_ui(ui, (Some(caution), None, &notes, ""), palette, commands);
@@ -209,7 +210,7 @@ fn is_of_reasons(step: &Step) -> bool {
     step.command == Command::ShowSheet(Some(Sheet::Reasons))
 }
 
-/// The way to the list of reasons, where no other step leads there.
+/// Returns the link to the list of reasons if no other step leads there.
 fn notes_step(verdict: &Verdict) -> Option<Step> {
     let is_offered = verdict.steps.iter().any(is_of_reasons);
     let notes = Step {
@@ -219,7 +220,8 @@ fn notes_step(verdict: &Verdict) -> Option<Step> {
     (!is_offered && verdict.reasons > 0).then_some(notes)
 }
 
-/// A caution, a primary button, links, and words in the room that is left; `⚠ +21 dB above 12 rad/s` where the caution has no more.
+/// Draws a caution, a primary button, links, and the note in the remaining width; `⚠ +21 dB above
+/// 12 rad/s` if the caution has no note.
 fn line_ui(
     ui: &mut Ui,
     (caution, primary, links, note): (Option<&str>, Option<&Step>, &[Step], &str),
@@ -266,7 +268,7 @@ fn line_ui(
             }
             if !note.is_empty() {
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                    // Where there is no room for all of it: "of 19 models".
+                    // Without room for all of it: "of 19 models".
                     let fits = text_width(ui, note, small()) <= ui.available_width();
                     let shown = if fits {
                         note
@@ -281,7 +283,7 @@ fn line_ui(
     });
 }
 
-/// A step as a link, or as the one primary button of the window; Enter on it does it.
+/// Draws a step as a link or as the only primary button of the window; Enter on it carries it out.
 fn step_ui(
     ui: &mut Ui,
     step: &Step,
@@ -299,7 +301,7 @@ fn step_ui(
         .asks(step.command.clone(), commands);
 }
 
-/// The settings in one line; a click opens them in place, over matrix and card.
+/// Draws the settings in one line; a click unfolds them over matrix and card.
 fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let is_open = state.display.settings_open;
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), LINE), Sense::click());
@@ -340,7 +342,7 @@ fn settings_line_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mu
     ));
 }
 
-/// A small arrow: to the right where what it stands beside is folded, down where it is open.
+/// Paints a small arrow: to the right if its section is folded, down if it is open.
 pub(super) fn chevron(ui: &Ui, center: egui::Pos2, is_open: bool, palette: &Palette) {
     let turn = |x: f32, y: f32| {
         if is_open {
@@ -376,7 +378,7 @@ fn settings_words(state: &State) -> String {
     words
 }
 
-/// The way to the export form, always in sight; primary where nothing else is to be done.
+/// Draws the export button, which is always visible; primary if nothing else is left to do.
 fn export_ui(
     ui: &mut Ui,
     state: &State,

@@ -1,4 +1,5 @@
-//! The bars of the window: menus on top, messages below them, and the state of the computation at the foot.
+//! Bars of the window: menus at the top, messages below them, and the computation status at the
+//! foot.
 
 use egui::{
     Align, Button, CollapsingHeader, Frame, Key, KeyboardShortcut, Label, Layout, Margin, MenuBar,
@@ -14,7 +15,7 @@ use super::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
 use super::records::RecordsState;
 use super::state::{Background, NoticeKind, RecentFile, State, bar_words};
 
-/// Menus, the last step, the state of the document, and the way to every command.
+/// Draws the menus, the last step, the state of the document, and the search field for commands.
 pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let bar = ui.available_rect_before_wrap();
     let left = in_line_ui(ui, bar, false, |ui| {
@@ -46,7 +47,7 @@ pub fn menu_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
     ui.advance_cursor_after_rect(bar);
 }
 
-/// The field that opens the palette of commands; gives where it begins.
+/// Draws the field that opens the command palette; returns its left edge.
 fn search_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) -> f32 {
     let (rect, response) = ui.allocate_exact_size(vec2(168.0, 24.0), Sense::click());
     let line = if response.hovered() {
@@ -71,7 +72,7 @@ fn search_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) -> f32
     rect.left()
 }
 
-/// The entries of one menu, in groups parted by lines.
+/// Draws the entries of a menu, in groups separated by lines.
 fn menu_ui(ui: &mut Ui, state: &State, menu: Menu, commands: &mut Vec<Command>) {
     let entries = command_table(state).into_iter().filter_map(|entry| {
         let (within, group) = entry.menu?;
@@ -91,7 +92,7 @@ fn menu_ui(ui: &mut Ui, state: &State, menu: Menu, commands: &mut Vec<Command>) 
             .first()
             .map(|shortcut| ui.ctx().format_shortcut(shortcut));
         let button = Button::new(entry.name.as_str());
-        // An empty text would end the button's name in a space.
+        // Empty text would add a trailing space to the button's name.
         let button = if let Some(keys) = keys {
             button.shortcut_text(keys)
         } else {
@@ -109,7 +110,7 @@ fn menu_ui(ui: &mut Ui, state: &State, menu: Menu, commands: &mut Vec<Command>) 
     }
 }
 
-/// The newest first; what is not there any more cannot be chosen.
+/// Draws the recent files, newest first; missing files are disabled.
 fn recent_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     for RecentFile {
         path,
@@ -153,7 +154,7 @@ fn history_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
-/// The other theme, as a half-filled disc.
+/// Draws the theme switch, a half-filled disc.
 fn theme_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     let (name, other) = match ui.visuals().dark_mode {
         true => ("Change to the light theme", ThemePreference::Light),
@@ -165,7 +166,7 @@ fn theme_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
         .asks(Command::SetTheme(other), commands);
 }
 
-/// Dataset and study, in the middle of the bar where there is room for that.
+/// Draws dataset and study in the middle of the bar if there is room.
 fn title_ui(ui: &mut Ui, bar: Rect, room: Rect, state: &State, palette: &Palette) {
     let study = format!(
         "{}{}",
@@ -203,36 +204,31 @@ fn title_ui(ui: &mut Ui, bar: Rect, room: Rect, state: &State, palette: &Palette
     response.on_hover_text(format!("{}\n{is_saved}", state.dataset().description()));
 }
 
-/// Something that has happened to the program or to its files.
+/// Event that concerns the program or its files.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Bar {
-    /// Computing panicked.
+    /// A computation panicked.
     Fault {
-        /// What happened, what is kept, and what to send to whom.
+        /// What happened, what was preserved, and what to send to whom.
         sentence: String,
     },
-    /// Decisions of a window that ended without saving them.
+    /// Decisions of an earlier window that ended without saving them.
     Recovery {
-        /// Number of the offer.
         offer: usize,
-        /// Whose, and of when.
+        /// Study and date.
         sentence: String,
     },
-    /// The dataset's file is not what it was when it was opened.
-    Changed {
-        /// Name of the file.
-        name: String,
-    },
-    /// The dataset was read again, and is not what it was.
+    /// The dataset's file has changed since it was opened.
+    Changed { name: String },
+    /// The dataset was read again and has changed.
     Differences {
-        /// Name of the file.
         name: String,
-        /// What is different, and which decisions no longer apply.
+        /// Changes, and decisions that no longer apply.
         sentences: Vec<String>,
     },
 }
 
-/// Every bar, the oldest first.
+/// Draws every bar, oldest first.
 pub fn bars_ui(ui: &mut Ui, bars: &[Bar], palette: &Palette, commands: &mut Vec<Command>) {
     for bar in bars {
         let frame = Frame::new()
@@ -290,7 +286,7 @@ fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
-/// A sentence that wraps, beside its buttons.
+/// Draws a wrapping sentence with its buttons beside it.
 fn row_ui(
     ui: &mut Ui,
     sentence: &str,
@@ -309,7 +305,7 @@ fn row_ui(
     });
 }
 
-/// A few are shown, more are folded: the plots keep their room.
+/// Draws the first few sentences and folds the others, which leaves the plots their space.
 fn list_ui(ui: &mut Ui, sentences: &[String]) {
     const SHOWN: usize = 4;
     let (first, rest) = sentences.split_at(sentences.len().min(SHOWN));
@@ -334,7 +330,7 @@ fn list_ui(ui: &mut Ui, sentences: &[String]) {
     }
 }
 
-/// State of the computation on the left, message or standing remark on the right.
+/// Draws the computation status on the left and the message or standing remark on the right.
 pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.horizontal_centered(|ui| {
         computation_ui(ui, state, palette, commands);
@@ -370,7 +366,7 @@ pub fn status_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
 
 fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let now = ui.input(|input| input.time);
-    // Green is the dot alone: in words it says that gains and phase are met.
+    // Only the dot is green: the text reports that gains and phase are met.
     let (text, color) = match (
         &state.opening,
         state.results.is_stale(now),
@@ -452,7 +448,7 @@ fn computation_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut 
     }
 }
 
-/// What is under way beside the live answer, the longest first.
+/// Describes the work in progress besides the live answer, longest first.
 fn background_words(background: &Background, records: &RecordsState) -> String {
     if let Some((done, total)) = background.report {
         return format!("writing the report, {} % …", 100 * done / total.max(1));
@@ -499,7 +495,8 @@ fn background_words(background: &Background, records: &RecordsState) -> String {
     }
 }
 
-/// Why the condition shown is left out of the assessment, or what the data are.
+/// Returns the reason why the displayed condition is left out of the assessment, or a remark on the
+/// data.
 fn standing_remark(state: &State) -> String {
     let id = state.condition().id();
     match state

@@ -1,4 +1,4 @@
-//! The middle of the window: groups of views, the view in front with its title, and the dock below.
+//! Middle of the window: groups of views, the view in front with its title, and the dock below.
 
 use egui::containers::menu::MenuButton;
 use egui::{
@@ -23,16 +23,16 @@ use super::views::{View, ViewTitle};
 const BAR: f32 = 40.0;
 /// Height of a title \[pt\].
 const TITLE: f32 = 28.0;
-/// Height of the dock where it is folded \[pt\].
+/// Height of the folded dock \[pt\].
 const FOLDED: f32 = 34.0;
-/// A window of this height unfolds the dock \[pt\].
+/// Least window height that unfolds the dock \[pt\].
 const LEAST_WITH_DOCK: f32 = 680.0;
-/// Part of the height that the dock takes.
+/// Share of the height taken by the dock.
 const DOCK_PART: f32 = 0.252;
-/// Space left and right of everything \[pt\].
+/// Horizontal padding \[pt\].
 const PADDING: i8 = 16;
 
-/// Everything between the side panels.
+/// Draws everything between the side panels.
 pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     view_bar_ui(ui, state, palette, commands);
     if state.is_example {
@@ -67,7 +67,8 @@ pub fn centre_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &m
     );
 }
 
-/// Groups at the left, the views of the one in front beside them, and what can be done with the view at the right.
+/// Draws the groups at the left, the views of the group in front beside them, and the tools for the
+/// view at the right.
 fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let bar = Rect::from_min_size(ui.cursor().min, vec2(ui.available_width(), BAR));
     ui.allocate_rect(bar, Sense::hover());
@@ -100,7 +101,7 @@ fn view_bar_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
     );
 }
 
-/// One button of several joined ones for each group.
+/// Draws a joined button for each group.
 fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let font = medium(BODY_SIZE);
     let widths = ViewGroup::ALL.map(|group| text_width(ui, group.name(), font.clone()) + 24.0);
@@ -151,9 +152,9 @@ fn groups_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     }
 }
 
-/// The views of the group in front beside one another; one menu of them where there is no room for that.
+/// Draws the views of the group in front side by side, or as a menu if there is no room.
 fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &mut Vec<Command>) {
-    /// What else stands in the bar \[pt\].
+    /// Width of the other controls in the bar \[pt\].
     const TOOLS: f32 = 130.0;
     let arrangement = &state.display.arrangement;
     let width = |view: View| text_width(ui, view.name(), medium(BODY_SIZE)) + 16.0;
@@ -177,7 +178,7 @@ fn tabs_ui(ui: &mut Ui, state: &State, bar: Rect, palette: &Palette, commands: &
     named_switch(button, Role::Tab, true, front.name()).on_hover_text("The views of this group");
 }
 
-/// The name of a view, with a line of accent below the one in front.
+/// Draws the name of a view, underlined in the accent colour if it is in front.
 fn tab_ui(
     ui: &mut Ui,
     bar: Rect,
@@ -218,7 +219,7 @@ fn tab_ui(
         .asks(Command::ShowView(view), commands);
 }
 
-/// The button that shows a second view beside the one in front, or puts it away.
+/// Draws the button that shows a second view beside the view in front, or hides it.
 fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let arrangement = &state.display.arrangement;
     let (button, _) = MenuButton::from_button(Button::new("     ").frame(false)).ui(ui, |ui| {
@@ -258,7 +259,7 @@ fn beside_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
         .on_hover_text("Another view beside this one");
 }
 
-/// A view with its title and its tools in an area.
+/// Draws a view with its title and its tools into an area.
 fn part_ui(
     ui: &mut Ui,
     area: Rect,
@@ -275,7 +276,7 @@ fn part_ui(
     });
 }
 
-/// Content that stays within an area, with space around it, above and below as given.
+/// Draws content clipped to an area, with the given padding above and below.
 fn clipped_ui(
     ui: &mut Ui,
     id: impl AsIdSalt,
@@ -297,7 +298,8 @@ fn clipped_ui(
     ui.advance_cursor_after_rect(area);
 }
 
-/// What the view shows at the left, its tools at the right; these stand in a line of their own where there is no room beside.
+/// Draws the title of the view at the left and its tools at the right; the tools move to a line of
+/// their own if there is no room.
 fn title_row_ui(
     ui: &mut Ui,
     state: &State,
@@ -305,7 +307,7 @@ fn title_row_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    /// A title is not narrower \[pt\].
+    /// Least width of a title \[pt\].
     const LEAST: f32 = 200.0;
     let kind = view.kind();
     let width = ui.available_width();
@@ -342,7 +344,7 @@ fn tools_ui(
     palette: &Palette,
     commands: &mut Vec<Command>,
 ) {
-    // That of the view in front stands in the bar.
+    // The bar shows the tools of the view in front.
     if view != state.display.arrangement.view() {
         figure_button_ui(ui, state, view, commands);
     }
@@ -381,7 +383,7 @@ fn title_ui(ui: &mut Ui, state: &State, title: ViewTitle, palette: &Palette) {
     }
 }
 
-/// The view below the others, folded to its bar in a low window.
+/// Draws the view below the others, folded to its bar in a low window.
 fn dock_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -417,7 +419,8 @@ fn dock_ui(
     });
 }
 
-/// The name of the view in the dock, which folds it, the other views that it may show, and the tools.
+/// Draws the head of the dock: the name of its view, which folds it, the other views it can show,
+/// and the tools.
 fn dock_head_ui(
     ui: &mut Ui,
     state: &State,

@@ -1,4 +1,4 @@
-//! What the engineer asks the window to do.
+//! Commands: requests of the engineer to the window.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -24,243 +24,237 @@ use super::start_page::OpensWith;
 use super::tables::TableKind;
 use super::views::{AssessedFigures, PairSet, RequirementsPage, View};
 
-/// One action of the engineer: what a click, a key or a menu entry stands for. Views push them; the window carries them out.
+/// Action of the engineer: a click, a key or a menu entry. Views push commands; the window carries
+/// them out.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
-    /// Take a decision about the study.
+    /// Takes a decision about the study.
     Edit(Edit),
-    /// The decision being taken is complete: the slider was let go.
+    /// Completes the current decision, for example when a slider is released.
     EndEdit,
-    /// Take the last decision back.
+    /// Undoes the last decision.
     Undo,
-    /// Take a decision back as if it had never been taken, if it was the last.
+    /// Removes a decision from the history if it was the last.
     Forget(Edit),
-    /// Bring a decision taken back again.
+    /// Redoes the last undone decision.
     Redo,
-    /// Show a condition.
     SelectCondition(ConditionId),
-    /// Show a response in the large plot.
+    /// Shows a response in the large plot.
     FocusPair(Pair),
-    /// Point at a model in every view, as long as this is asked for in each frame.
+    /// Highlights a model in every view; repeated in each frame.
     Hover(ModelId),
-    /// Point at a condition; for this frame.
+    /// Highlights a condition for this frame.
     HoverCondition(ConditionId),
-    /// Say in the status bar what the pointer means in a plot; for this frame.
+    /// Describes the plot element under the pointer in the status bar, for this frame.
     Tell(String),
-    /// Show only this model beside the representatives; the same model again shows all.
+    /// Shows only this model beside the representatives; repeated for the same model, shows all
+    /// again.
     Isolate(ModelId),
-    /// Bring a plot to the front.
+    /// Brings a plot to the front.
     ShowView(View),
-    /// Bring a group of views to the front, with the one that it showed last.
+    /// Brings a group to the front, with the view it showed last.
     ShowGroup(ViewGroup),
-    /// Show a view beside the one in front, or that one alone.
+    /// Shows a view beside the view in front; with `None` the view in front alone.
     ShowBeside(Option<View>),
-    /// Show a view in the dock.
     ShowInDock(View),
-    /// Fold or unfold the dock.
+    /// Unfolds (`true`) or folds the dock.
     OpenDock(bool),
-    /// Every panel and plot goes back to its place.
+    /// Restores the default layout of panels and plots.
     ResetLayout,
-    /// Show the left panel in full, or as a rail.
+    /// Shows the left panel in full (`true`) or as a rail.
     ShowLeft(bool),
-    /// Show a sheet over the middle of the window, or none.
+    /// Shows a sheet over the middle of the window, or closes it.
     ShowSheet(Option<Sheet>),
-    /// Unfold the settings, or fold them.
+    /// Unfolds or folds the settings.
     ShowSettings(bool),
-    /// Unfold the settings that are seldom changed, or fold them.
+    /// Unfolds or folds the rarely changed settings.
     ShowAdvanced(bool),
-    /// Unfold the identified models, or fold them.
+    /// Unfolds or folds the identified models.
     ShowIdentified(bool),
-    /// Map the costs of another correction.
+    /// Selects the correction whose costs are mapped.
     MapCost(MappedCost),
-    /// Show the net gains of other responses.
+    /// Selects the responses in the net-gain plots.
     ShowNetGains(PairSet),
-    /// Pick a response for the net-gain plots, or let it go.
+    /// Adds a response to the net-gain plots, or removes it.
     PickPair(Pair),
-    /// Show gains or delays of the channels, over airspeed or over conditions.
+    /// Selects gains or delays of the channels, over airspeed or over conditions.
     ShowChannels(Measure, Across),
-    /// Show zeros among the poles, or not.
+    /// Shows or hides zeros among the poles.
     ShowZeros(bool),
-    /// Show error bars and bands in the plots of gains, or not.
+    /// Shows or hides error bars and bands in the plots of gains.
     ShowBars(bool),
-    /// Lay a variant over the present decisions in Bode and Net gain, or none.
+    /// Overlays a variant on the present decisions in Bode and Net gain, or removes the overlay.
     Overlay(Option<String>),
-    /// Show the evidence for the schedule beside the net gains, or not.
+    /// Shows or hides the evidence for the schedule beside the net gains.
     ShowEvidence(bool),
-    /// Lay other models of the conditions over one another.
+    /// Selects the models that are overlaid across conditions.
     ShowAcross(AcrossRole),
-    /// Assess something else, or show it in another form.
+    /// Changes the assessed quantity or its form.
     Assess(AssessedFigures),
-    /// Show another page of requirements.
+    /// Shows another page of requirements.
     ShowRequirements(RequirementsPage),
-    /// Over time, show answers to a test input, or to the records.
+    /// Selects responses over time to a test input (`true`) or to the records.
     ShowTest(bool),
-    /// Choose a file of levels, or of tolerances, with the desktop's dialog.
+    /// Opens the desktop's dialog for a file of levels or tolerances.
     AskRequirementTable(RequirementTable),
-    /// Ask where to write the tolerances.
+    /// Asks for the path of the tolerances.
     AskWriteTolerances,
-    /// Take the levels, or the tolerances, of a file.
+    /// Reads levels or tolerances from a file.
     ReadRequirementTable(RequirementTable, PathBuf),
-    /// Write the tolerances of the study to a file.
+    /// Writes the tolerances of the study to a file.
     WriteTolerances(PathBuf),
-    /// Show how a value was computed, or put that away.
+    /// Shows the derivation of a value, or closes it.
     Explain(Option<ExplainTarget>),
-    /// Read frequencies in another unit.
+    /// Changes the unit of frequencies.
     SetFrequencyUnit(FrequencyUnit),
-    /// Show the curves of the plots over frequency in another way.
+    /// Changes how plots over frequency show their curves.
     Curves(CurveCommand),
-    /// Show all models again, and select none.
+    /// Shows all models again and clears the selection.
     EndIsolation,
-    /// Draw curves in another way.
+    /// Changes the style of curves.
     SetLooks(PlotStyle),
-    /// Bring every curve back into view.
+    /// Fits the plots to their curves.
     FitPlots,
-    /// Follow the desktop's theme, or not.
+    /// Selects a theme, or follows the desktop's.
     SetTheme(ThemePreference),
-    /// Choose a file with the desktop's dialog.
+    /// Opens the desktop's dialog for a file.
     AskOpen,
-    /// Open a dataset or a study.
+    /// Opens a dataset or a study.
     Open(PathBuf),
-    /// Open a study whose dataset has moved: the study, the dataset.
+    /// Opens a study whose dataset has moved: path of the study, path of the dataset.
     OpenStudyOf(PathBuf, PathBuf),
-    /// Open the embedded example.
     OpenExample,
-    /// Put away what is open, and show the start page.
+    /// Closes the study and shows the start page.
     CloseStudy,
-    /// Show the start page, or what is open behind it.
+    /// Shows the start page, or the study behind it.
     ShowStart(bool),
-    /// Begin with something else the next time.
+    /// Selects what the program opens with at the next start.
     BeginWith(OpensWith),
-    /// Save the study where it was saved last.
+    /// Saves the study to its file.
     SaveStudy,
-    /// Choose a file for the study with the desktop's dialog.
+    /// Opens the desktop's dialog for the study's file.
     AskSaveStudy,
-    /// Save the study to a file.
+    /// Saves the study to another file.
     SaveStudyAs(PathBuf),
-    /// Show a form, or close the one shown.
+    /// Shows a form, or closes the open form.
     ShowForm(Option<FormKind>),
-    /// Choose the export folder with the desktop's dialog.
+    /// Opens the desktop's dialog for the export folder.
     AskExportFolder,
-    /// Write the corrections chosen in the export form.
+    /// Writes the corrections selected in the export form.
     Export,
-    /// Write all corrections in a format for other tools.
+    /// Writes all corrections in a format for other tools.
     ExportAs(ExportFormat, PathBuf),
-    /// Write over the files that the form has named.
+    /// Overwrites the files listed in the form.
     Overwrite,
-    /// Save the study, then go on with what would lose decisions that are not saved.
+    /// Saves the study, then continues with the action that would lose unsaved decisions.
     SaveAndGoOn,
-    /// Go on with what loses decisions that are not saved.
+    /// Continues with the action that loses unsaved decisions.
     DiscardAndGoOn,
-    /// Give up the reading under way, or else the computation.
+    /// Stops reading a file; if none is being read, stops the computation.
     StopComputing,
-    /// Compute what was given up.
+    /// Starts a stopped computation again.
     Compute,
-    /// Read the dataset's file again, which has changed.
+    /// Reads the dataset's changed file again.
     Reload,
-    /// Stay with the dataset that is open, though its file has changed.
+    /// Keeps the open dataset although its file has changed.
     KeepOpen,
-    /// Open the decisions of a recovery file, by the number of its offer.
+    /// Opens the decisions of a recovery file; the argument is the offer's number.
     RestoreRecovery(usize),
-    /// Remove a recovery file, by the number of its offer.
+    /// Removes a recovery file; the argument is the offer's number.
     DiscardRecovery(usize),
-    /// See which of the recent files are there.
+    /// Checks which recent files exist.
     LookForRecent,
-    /// Put a bar away.
+    /// Closes a bar.
     CloseBar(Bar),
-    /// Put a text on the clipboard.
+    /// Copies text to the clipboard.
     CopyText(String),
-    /// Put a table on the clipboard as text.
+    /// Copies a table to the clipboard as text.
     CopyTable(TableKind),
-    /// Ask where to save a table.
+    /// Asks for the path of a table.
     AskSaveTable(TableKind),
-    /// Ask where to save a table that a view shows.
+    /// Asks for the path of a table shown by a view.
     AskSaveShownTable(Arc<Table>),
-    /// Import models of files.
+    /// Imports models from files.
     Assembling(AssemblingCommand),
     /// Flight records, and models identified from them.
     Records(RecordsCommand),
-    /// Save a table as CSV.
+    /// Saves a table as CSV.
     SaveTable(Arc<Table>, PathBuf),
-    /// Put the numbers of what a view shows on the clipboard, as CSV.
+    /// Copies the numbers shown by a view to the clipboard as CSV.
     CopyFigure(View),
-    /// Ask where to save what a view shows.
+    /// Asks for the path of a view's figure.
     AskSaveFigure(View, FigureFormat),
-    /// Save what a view shows, in the format that the name says, as wide as it is to be printed.
+    /// Saves the figure of a view, in the format of the file extension and in the given printed
+    /// width.
     SaveFigure(View, ColumnWidth, PathBuf),
-    /// Ask where to write the report.
+    /// Asks for the path of the report.
     AskReport,
-    /// Write the report to a file.
+    /// Writes the report to a file.
     WriteReport(PathBuf),
-    /// Give the focus to the field of this accessible name.
+    /// Focuses the field with this accessible name.
     FocusField(&'static str),
-    /// Give the focus to the next part of the window, or to the one before.
+    /// Moves the focus to the next or to the previous region of the window.
     LeaveRegion {
-        /// Whether to the next.
         forward: bool,
     },
-    /// Show the first step of the guided tour.
+    /// Shows the first step of the guided tour.
     StartTour,
-    /// Show another step of the guided tour, or end it.
+    /// Shows another step of the guided tour, or ends it.
     ShowTourStep(Option<usize>),
-    /// Take a decision that a form asked for, and close the form.
+    /// Takes the decision requested by a form, and closes the form.
     DecideInForm(Edit),
-    /// Ask for the reason of a rejection, in words: of a model that is rejected, or that is to be.
+    /// Asks for the reason, in words, why a model is or will be rejected.
     AskReason(ModelId),
-    /// Say why what was typed is not taken.
+    /// Reports why an entry is refused.
     Refuse(String),
-    /// Put the message away.
+    /// Closes the message.
     DismissNotice,
-    /// Close the window.
     Quit,
 }
 
-/// A table that requirements are asked with, which is a file of the engineer's.
+/// Table of requirements that the engineer supplies as a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RequirementTable {
-    /// Levels of bandwidth and phase delay.
     Levels,
-    /// Tolerances of time histories.
     Tolerances,
 }
 
-/// A form in front of the window.
+/// Form in front of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FormKind {
-    /// Which file to open, by path.
+    /// Path of a file to open.
     Open,
-    /// Where the dataset of a study is now, by path.
+    /// New path of a study's dataset.
     FindDataset,
-    /// Where to save the study, by path.
+    /// Path for the study.
     Save,
-    /// What to export, and where.
+    /// Corrections to export, and the folder.
     Export,
-    /// As what to export for other tools, and where.
+    /// Format of an export for other tools, and the path.
     ExportAs,
-    /// Why a model is rejected, in words.
+    /// Reason of a rejection, in words.
     Reason,
-    /// Where to save a table, by path.
+    /// Path for a table.
     SaveTable,
-    /// What is made of models that are imported.
+    /// What to make of imported models.
     Models,
-    /// Which channels of records a dataset is made of, and where.
+    /// Channels of the records that a dataset consists of, and the path.
     RecordDataset,
-    /// Where to save a figure, by path, and how wide.
+    /// Path and width of a figure.
     SaveFigure,
-    /// Where to write the report, by path.
+    /// Path for the report.
     Report,
-    /// Which file of a table to take, by path.
+    /// Path of a table to read.
     ReadRequirementTable(RequirementTable),
-    /// Where to write the tolerances, by path.
+    /// Path for the tolerances.
     WriteTolerances,
-    /// Every command, found by its name.
+    /// Palette of all commands, searched by name.
     Palette,
-    /// Whether to lose unsaved decisions.
+    /// Confirmation before unsaved decisions are lost.
     Unsaved,
-    /// What is different in the dataset from the one the study was made with.
+    /// Differences between the dataset and the dataset of the saved study.
     Differences,
-    /// Keys and gestures.
     Shortcuts,
-    /// What the program is.
     About,
 }
 

@@ -1,4 +1,4 @@
-//! The palette: every command, found by some letters of its name.
+//! Command palette: finds every command by a few letters of its name.
 
 use std::cmp::Reverse;
 
@@ -13,19 +13,19 @@ use super::state::State;
 
 /// Height of the list \[pt\].
 const HEIGHT: f32 = 340.0;
-/// Rows that are drawn: whoever looks for more types another letter.
+/// Most rows drawn; further letters narrow a longer list.
 const MOST_ROWS: usize = 60;
 
-/// What the palette holds while it is shown.
+/// State of the open palette.
 #[derive(Clone, Debug, Default)]
 pub struct PaletteForm {
-    /// What is looked for, as typed.
+    /// Search text as typed.
     pub query: String,
-    /// The row that Enter carries out.
+    /// Row carried out by Enter.
     pub chosen: usize,
 }
 
-/// The field and the commands that answer it. Up and Down choose, Enter carries out.
+/// Draws the field and the matching commands. Up and Down select, Enter carries out.
 pub fn command_palette_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -55,7 +55,7 @@ pub fn command_palette_ui(
     let has_moved = down + up > 0;
     ui.add_space(4.0);
     let mut taken = found.get(chosen).filter(|_| entered).copied();
-    // As high whatever is found, so that the field stays in its place while letters are typed.
+    // The height is fixed, so that the field does not move while letters are typed.
     ScrollArea::vertical()
         .max_height(HEIGHT)
         .min_scrolled_height(HEIGHT)
@@ -83,7 +83,7 @@ pub fn command_palette_ui(
     }
 }
 
-/// What is looked for; whether it was changed.
+/// Draws the search field; returns whether its text has changed.
 fn field_ui(ui: &mut Ui, query: &mut String, opens: bool) -> bool {
     let shown = TextEdit::singleline(query)
         .hint_text("what to do")
@@ -127,12 +127,14 @@ fn entry_ui(ui: &mut Ui, entry: &Entry, chosen: bool, palette: &Palette) -> egui
     response.on_hover_text(entry.meaning)
 }
 
-/// How well a name answers a query: greater is better; `None` where a word of the query is not in it.
+/// Scores how well a name answers a query: greater is better; `None` if a word of the query is
+/// missing from it.
 ///
-/// Each word of the query, in any order, must be in the name: as a word of it (4), at the beginning of one (3), inside one (2), or
-/// at least as letters in this order (1). What undoes or does again, named after what was done last, comes behind all others unless it
-/// is asked for. Of names that answer equally well that one comes first whose command, before its arguments, answers better, and
-/// then the shorter one.
+/// Every word of the query must occur in the name, in any order: as a whole word (4), at the
+/// beginning of a word (3), inside a word (2), or at least as letters in the same order (1). Undo
+/// and redo, which are named after the last decision, come last unless the query asks for them.
+/// Equal names are ordered by the score of the command without its arguments, then by length,
+/// shortest first.
 pub fn answer_score(name: &str, query: &str) -> Option<(bool, usize, usize, Reverse<usize>)> {
     let name = name.to_lowercase();
     let query = query.to_lowercase();
@@ -163,7 +165,8 @@ fn word_score(name: &str, word: &str) -> Option<usize> {
     }
 }
 
-/// The places of the names that answer the query, the best first; all in their order for an empty one.
+/// Returns the indices of the names that answer the query, best first; all of them in their own
+/// order for an empty query.
 pub fn answers<'a>(names: impl Iterator<Item = &'a str>, query: &str) -> Vec<usize> {
     let scored = names
         .enumerate()

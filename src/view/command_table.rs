@@ -1,4 +1,4 @@
-//! Every command of the window, once: the menus, the shortcuts, the palette and the page of keys are made of this table.
+//! Table of all commands: the source of the menus, the shortcuts, the palette and the page of keys.
 
 use egui::{Key, KeyboardShortcut, Modifiers, ThemePreference};
 
@@ -22,51 +22,47 @@ use super::state::State;
 use super::tables::TableKind;
 use super::views::{PairSet, View};
 
-/// A menu of the bar on top.
+/// Menu of the bar at the top.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Menu {
     /// Opening, saving, exporting.
     File,
-    /// Decisions about the study.
     Edit,
-    /// What is shown, and how.
+    /// Displayed content and its form.
     View,
-    /// How curves are drawn: a part of the menu before.
+    /// Style of curves: a submenu of `View`.
     Curves,
-    /// Explanations.
     Help,
 }
 
 /// Where a shortcut works.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
-    /// Everywhere, also while text is typed.
+    /// Everywhere, also while text is being typed.
     Everywhere,
-    /// Only while nothing has the focus and no form is open: keys that lists, fields and texts use too.
+    /// Only without a focused control and without an open form: lists, fields and texts use these
+    /// keys too.
     WithoutFocus,
 }
 
-/// One command.
+/// Entry of a menu or of the palette.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// Its name, by which menus show it and the palette finds it.
+    /// Name in menus and in the palette.
     pub name: String,
-    /// What it does, where the name does not say all.
+    /// Explanation, if the name is not sufficient.
     pub meaning: &'static str,
-    /// The keys that give it, the first of which is shown.
+    /// Shortcuts; the first is displayed.
     pub shortcuts: Vec<KeyboardShortcut>,
-    /// Where they work.
     pub reach: Reach,
-    /// The menu it stands in, and its group there; groups are parted by lines.
+    /// Menu and group within it; groups are separated by lines.
     pub menu: Option<(Menu, u8)>,
-    /// Whether it can be given now.
     pub enabled: bool,
-    /// What it asks for.
     pub command: Command,
 }
 
 impl Entry {
-    /// An entry that only the palette has, without shortcut.
+    /// Creates an entry for the palette alone, without shortcut.
     pub(super) fn new(name: impl Into<String>, meaning: &'static str, command: Command) -> Self {
         let shortcuts = Vec::new();
         let reach = Reach::Everywhere;
@@ -86,7 +82,7 @@ impl Entry {
         self
     }
 
-    /// A key without modifiers that works only while nothing has the focus.
+    /// Adds a key without modifiers that works only while nothing has the focus.
     pub(super) fn free_key(mut self, key: Key) -> Self {
         self.reach = Reach::WithoutFocus;
         self.keys(Modifiers::NONE, key)
@@ -103,7 +99,7 @@ impl Entry {
     }
 }
 
-/// The entries of one group of a menu.
+/// Builds the entries of a group of a menu.
 fn group<const N: usize>(
     menu: Menu,
     group: u8,
@@ -120,7 +116,7 @@ const CTRL_SHIFT: Modifiers = Modifiers {
     ..Modifiers::COMMAND
 };
 
-/// The commands of the menus and of the keys, in the order in which menus and the page of keys show them.
+/// Returns the commands of the menus and keys, in the order of the menus and of the page of keys.
 pub fn command_table(state: &State) -> Vec<Entry> {
     let mut entries = file_entries(state);
     entries.extend(edit_entries(state));
@@ -161,7 +157,7 @@ pub fn command_table(state: &State) -> Vec<Entry> {
     entries
 }
 
-/// The command that shows a form.
+/// Returns the command that shows a form.
 fn form(form: FormKind) -> Command {
     Command::ShowForm(Some(form))
 }
@@ -253,7 +249,7 @@ fn file_entries(state: &State) -> Vec<Entry> {
     entries.chain(group(menu, 5, quit)).collect()
 }
 
-/// What can be done with the flight records of the condition shown.
+/// Returns the actions on the flight records of the displayed condition.
 fn record_entries(state: &State) -> [Entry; 4] {
     let condition = state.condition().id();
     let of = |id| state.records.conditions.get(&id);
@@ -379,7 +375,7 @@ fn edit_entries(state: &State) -> Vec<Entry> {
     entries.chain(group(menu, 3, scheduled)).collect()
 }
 
-/// "Hold LON → Q exactly" or "Release LON → Q"; a response that has no G cannot be held.
+/// Returns "Hold LON → Q exactly" or "Release LON → Q"; a response without G cannot be constrained.
 pub(super) fn hold_entry(state: &State, pair: Pair) -> Entry {
     let held = state.study.settings.constrained[pair];
     let name = state.dataset().pair_name(pair);
@@ -460,7 +456,7 @@ fn view_entries(state: &State) -> Vec<Entry> {
 
 const PARTS: &str = "Plots, dock, verdict, result, matrix, settings, conditions, models; each remembers what had the focus in it";
 
-/// Groups of views, their neighbours, panels and folds.
+/// Returns the entries for groups of views, their neighbours, panels and folds.
 fn layout_entries(state: &State) -> Vec<Entry> {
     let arrangement = &state.display.arrangement;
     let keys = [Key::Num1, Key::Num2, Key::Num3, Key::Num4];
@@ -536,7 +532,7 @@ fn layout_entries(state: &State) -> Vec<Entry> {
         .collect()
 }
 
-/// To the neighbours of the condition and of the response shown.
+/// Returns the steps to the neighbours of the displayed condition and response.
 fn steps(state: &State) -> [Entry; 4] {
     let conditions = state.dataset().conditions();
     let here = conditions
@@ -569,7 +565,7 @@ fn steps(state: &State) -> [Entry; 4] {
     ]
 }
 
-/// Every choice of every setting, and the way to every field of one.
+/// Returns an entry for every choice of every setting, and for every field of a setting.
 fn setting_entries(state: &State) -> Vec<Entry> {
     let mut entries = Vec::new();
     for setting in SETTINGS {
@@ -634,7 +630,8 @@ fn help_entries() -> impl Iterator<Item = Entry> {
     group(Menu::Help, 0, help).chain(group(Menu::Help, 1, about))
 }
 
-/// Those of the table, and one for each condition, response, model and recent file.
+/// Returns the commands of the table, and an entry for each condition, response, model and recent
+/// file.
 pub fn every_command(state: &State) -> Vec<Entry> {
     let mut entries = command_table(state);
     entries.retain(|entry| entry.command != Command::ShowForm(Some(FormKind::Palette)));
@@ -675,7 +672,7 @@ pub fn every_command(state: &State) -> Vec<Entry> {
     entries
 }
 
-/// What can be done with each model of the condition shown.
+/// Returns the actions on each model of the displayed condition.
 fn model_entries(state: &State) -> Vec<Entry> {
     let condition = state.condition();
     let choice = state.study.choice(condition.id());

@@ -1,4 +1,5 @@
-//! The list of flight conditions with the map of what the correction leaves in each; wide, or as a rail.
+//! List of flight conditions with a map of the costs that the correction leaves in each; wide, or
+//! as a rail.
 
 use egui::{
     Align2, Color32, CornerRadius, Mesh, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, pos2,
@@ -24,16 +25,18 @@ use super::palette::{BODY_SIZE, HEAT_COSTS, Palette, SMALL_SIZE, body, medium, s
 use super::state::State;
 use super::tables::TableKind;
 
-/// Where the number ends, the middle of the mark, and where the airspeed ends \[pt from the row's left edge\].
+/// Right edge of the number, centre of the mark, right edge of the airspeed \[pt from the row's
+/// left edge\].
 const PLACES: [f32; 3] = [20.0, 33.0, 70.0];
-/// Where the map begins, and how far its columns are apart at most \[pt\].
+/// Left edge of the map, and largest spacing of its columns \[pt\].
 const MAP: [f32; 2] = [88.0, 26.0];
-/// Size of half a cell of the map \[pt\].
+/// Half size of a cell of the map \[pt\].
 const HALF_CELL: [f32; 2] = [10.0, 12.0];
-/// Height of a row of the list, and of the rail \[pt\].
+/// Row heights of the list and of the rail \[pt\].
 const ROWS: [f32; 2] = [20.0, 24.0];
 
-/// Every condition with its airspeed and what the correction leaves of its held responses; a click shows it.
+/// Draws every condition with its airspeed and the remaining cost of its constrained responses; a
+/// click shows the condition.
 pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     region_ui(ui, Region::Conditions, |ui| {
         let older = if state.others_are_older() {
@@ -58,7 +61,8 @@ pub fn conditions_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     });
 }
 
-/// The same in a narrow strip: number, airspeed, the worst of the held responses; models and identified models as buttons.
+/// Draws the same as a narrow strip: number, airspeed, worst constrained response; buttons open the
+/// physics and the identified models.
 pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 0.0;
     pin_ui(ui, palette, commands);
@@ -96,7 +100,7 @@ pub fn rail_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
     });
 }
 
-/// The symbol that pins the panel in place of the rail.
+/// Draws the pin that replaces the rail by the full panel.
 fn pin_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     let (rect, response) = ui.allocate_exact_size(vec2(32.0, 32.0), Sense::click());
     let box_of = Rect::from_center_size(rect.center(), vec2(14.0, 12.0));
@@ -178,19 +182,19 @@ fn in_words(state: &FlightState) -> String {
     format!("{} kt{altitude}{weight}", state.airspeed_kt)
 }
 
-/// The list of one frame: what its columns are, and where they are.
+/// Layout of the list for one frame: its columns and their places.
 struct Map<'a> {
     state: &'a State,
     classes: Classes,
     columns: Vec<CostColumn>,
-    /// Where the columns begin \[pt from the row's left edge\], and how far they are apart.
+    /// Left edge of the columns \[pt from the row's left edge\], and their spacing.
     left: f32,
     pitch: f32,
     is_rail: bool,
 }
 
 impl<'a> Map<'a> {
-    /// In a row that has so much room for the columns, from `left` on.
+    /// Lays out the columns in a row from `left` on, within `room`.
     fn of(state: &'a State, left: f32, room: f32) -> Self {
         let columns = columns(state);
         let pitch = (room / columns.len().max(1) as f32).min(MAP[1]);
@@ -220,12 +224,12 @@ impl<'a> Map<'a> {
         }
     }
 
-    /// The middle of a column.
+    /// Returns the centre of a column.
     fn center(&self, row: Rect, place: usize) -> f32 {
         row.left() + self.left + self.pitch * place as f32 + HALF_CELL[0]
     }
 
-    /// The dot of a condition, as it is in Net gain.
+    /// Paints the dot of a condition as in Net gain.
     fn paint_mark(&self, ui: &Ui, at: Pos2, flight_state: &FlightState, palette: &Palette) {
         let is_filled = self.classes.is_first_weight(flight_state);
         let (fill, stroke) = match is_filled {
@@ -354,7 +358,7 @@ impl<'a> Map<'a> {
         response.on_hover_ui(|ui| tooltip_ui(ui, condition, &marks, palette));
     }
 
-    /// The cells of a condition; a click on one shows the condition and the response.
+    /// Draws the cells of a condition; a click on a cell shows the condition and the response.
     fn cells_ui(
         &self,
         ui: &mut Ui,
@@ -394,7 +398,7 @@ impl<'a> Map<'a> {
         }
     }
 
-    /// What the shades mean.
+    /// Draws the key of the shades.
     fn key_ui(&self, ui: &mut Ui, palette: &Palette) {
         let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), 32.0), Sense::hover());
         let lines = [
@@ -444,7 +448,7 @@ impl<'a> Map<'a> {
     }
 }
 
-/// The list as a picture: marks, airspeeds and costs, without anything to click.
+/// Paints the list as a static picture: marks, airspeeds and costs.
 pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
     const ROW: f32 = 17.0;
     let map = Map::of(state, 48.0, area.width() - 48.0);
@@ -490,7 +494,7 @@ pub fn cost_picture_ui(ui: &Ui, area: Rect, state: &State, palette: &Palette) {
     }
 }
 
-/// Magnitude in the left half, phase in the right one.
+/// Paints magnitude in the left half, phase in the right half.
 fn paint_cost(ui: &Ui, cell: Rect, cost: Cost, palette: &Palette) {
     let middle = cell.center().x;
     let halves = [
@@ -520,7 +524,7 @@ fn cost_words(
     format!("{name} of condition {condition}: J of magnitude {magnitude}, of phase {phase}")
 }
 
-/// What a right-click on a condition offers.
+/// Draws the context menu of a condition.
 fn menu_ui(ui: &mut Ui, condition: ConditionId, marks: &Marks, commands: &mut Vec<Command>) {
     let hold_out = if marks.held_out {
         "No longer hold out"
@@ -555,14 +559,15 @@ fn menu_ui(ui: &mut Ui, condition: ConditionId, marks: &Marks, commands: &mut Ve
     );
 }
 
-/// What the list says about a condition: what is still to do there.
+/// Open tasks of a condition, as marked in the list.
 #[derive(Default)]
 struct Marks {
-    /// Models that are suggested as outliers and not rejected.
+    /// Models suggested as outliers and not rejected.
     suggested: usize,
-    /// Held gains that are not matched.
+    /// Constrained gains that are not matched.
     unmatched_gains: usize,
-    /// Held delays that are not matched, though a decision could match them: not those that need lead where leads are not asked for.
+    /// Constrained delays that are not matched although a decision could match them; excludes
+    /// delays that need lead while leads are not requested.
     unmatched_delays: usize,
     left_out: bool,
     held_out: bool,
@@ -594,7 +599,7 @@ impl Marks {
         marks
     }
 
-    /// What the accessible name of the row says after the flight state.
+    /// Returns the part of the row's accessible name that follows the flight state.
     fn after_name(&self) -> &'static str {
         match (self.held_out, self.left_out) {
             (true, _) => ", held out",
@@ -603,7 +608,8 @@ impl Marks {
         }
     }
 
-    /// ⚠ where something is still to be decided; a stroke through a condition that is left out, an accent on one that is held out.
+    /// Paints ⚠ for an open decision, a stroke through an excluded condition, an accent on a
+    /// held-out condition.
     fn paint(&self, ui: &Ui, row: Rect, palette: &Palette) {
         if self.failure.is_some()
             || self.suggested + self.unmatched_gains + self.unmatched_delays > 0
@@ -625,7 +631,8 @@ impl Marks {
         }
     }
 
-    /// What is still to do, its state in the schedule and why it has no result: three at most.
+    /// Describes the open tasks, the state in the schedule and the reason for a missing result: at
+    /// most three sentences.
     fn sentences(&self) -> Vec<String> {
         let counted = [
             (self.suggested, "suggested as outliers, not rejected"),

@@ -1,5 +1,5 @@
-//! What panels and forms are made of: small texts, named controls, fields for texts and numbers, menus of commands, headings, and rows of
-//! lists.
+//! Building blocks of panels and forms: small texts, named controls, fields for text and numbers,
+//! command menus, headings, and list rows.
 
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
@@ -19,17 +19,17 @@ use super::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 use super::tables::TableKind;
 
 impl Palette {
-    /// A small dim text: what stands beside a value.
+    /// Returns small dim text, for notes beside a value.
     pub fn small(&self, text: impl Into<String>) -> RichText {
         RichText::new(text).size(SMALL_SIZE).color(self.dim_text)
     }
 
-    /// A dim text in the usual size: a label, or an explanation.
+    /// Returns dim text in the usual size, for labels and explanations.
     pub fn dim(&self, text: impl Into<String>) -> RichText {
         RichText::new(text).color(self.dim_text)
     }
 
-    /// A small text that something is amiss.
+    /// Returns small text in the warning colour.
     pub fn small_warning(&self, text: impl Into<String>) -> RichText {
         RichText::new(text).size(SMALL_SIZE).color(self.warning)
     }
@@ -43,7 +43,7 @@ pub fn named(response: Response, role: Role, name: impl Into<String>) -> Respons
     response
 }
 
-/// Names a control that is on or off.
+/// Names an on/off control.
 pub fn named_switch(
     response: Response,
     role: Role,
@@ -56,7 +56,7 @@ pub fn named_switch(
     response
 }
 
-/// Says a hint where there is one: an empty one would be an empty box.
+/// Adds a hint if it is not empty: an empty hint would show an empty box.
 fn hint_ui(response: Response, hint: impl Into<String>) -> Response {
     let hint = hint.into();
     if hint.is_empty() {
@@ -66,7 +66,7 @@ fn hint_ui(response: Response, hint: impl Into<String>) -> Response {
     }
 }
 
-/// A check box; whether it is on after a click on it.
+/// Draws a check box; returns its new state after a click.
 pub fn check_ui(
     ui: &mut Ui,
     is_on: bool,
@@ -80,9 +80,9 @@ pub fn check_ui(
     changed.then_some(value)
 }
 
-/// A control that stands for a command.
+/// Control that emits a command.
 pub trait Asks {
-    /// A click on it asks for the command.
+    /// Emits the command on a click.
     fn asks(&self, command: impl Into<Command>, commands: &mut Vec<Command>);
 }
 
@@ -94,7 +94,7 @@ impl Asks for Response {
     }
 }
 
-/// A button that gives a command.
+/// Draws a button that emits a command.
 pub fn button_ui(
     ui: &mut Ui,
     button: Button<'_>,
@@ -105,7 +105,7 @@ pub fn button_ui(
     hint_ui(ui.add(button), hint).asks(command, commands);
 }
 
-/// The entries of a menu, each with its command; a click closes the menu.
+/// Draws menu entries, each with its command; a click closes the menu.
 pub fn entries_ui<N: Into<String>>(
     ui: &mut Ui,
     entries: impl IntoIterator<Item = (N, Command)>,
@@ -119,7 +119,7 @@ pub fn entries_ui<N: Into<String>>(
     }
 }
 
-/// A line of text to type into, of this accessible name.
+/// Draws a single-line text field with an accessible name.
 pub fn text_field_ui(
     ui: &mut Ui,
     name: &str,
@@ -136,7 +136,7 @@ pub fn text_field_ui(
     response
 }
 
-/// Names a text field, with what stands in it.
+/// Names a text field and reports its content to screen readers.
 pub fn name_text_field(response: &Response, name: &str, text: &str) {
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::TextInput, true, name);
@@ -145,7 +145,7 @@ pub fn name_text_field(response: &Response, name: &str, text: &str) {
     });
 }
 
-/// Whether a field was left by the Enter key.
+/// Returns whether Enter ended the editing of a field.
 pub fn is_entered(ui: &Ui, field: &Response) -> bool {
     field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter))
 }
@@ -153,7 +153,7 @@ pub fn is_entered(ui: &Ui, field: &Response) -> bool {
 /// Height of a row \[pt\].
 pub const ROW_HEIGHT: f32 = 20.0;
 
-/// Allocates a row that can be clicked, paints its background, and names it for screen readers and tests.
+/// Allocates a clickable row, paints its background, and names it for screen readers and tests.
 pub fn row_ui(
     ui: &mut Ui,
     palette: &Palette,
@@ -164,7 +164,7 @@ pub fn row_ui(
     row_of_height_ui(ui, palette, (selected, pointed, ROW_HEIGHT), name)
 }
 
-/// The same, of another height \[pt\].
+/// As `row_ui`, with another height \[pt\].
 pub fn row_of_height_ui(
     ui: &mut Ui,
     palette: &Palette,
@@ -188,7 +188,8 @@ pub fn row_of_height_ui(
     (rect, response)
 }
 
-/// Puts the panel of this name back to its own size where its edge was double clicked; called before it is shown.
+/// Restores the default size of a named panel after a double click on its edge; call it before the
+/// panel is shown.
 pub fn restore_panel_size(ui: &Ui, name: &str) {
     let panel = ui.scope_id().with(name);
     if ui
@@ -199,16 +200,15 @@ pub fn restore_panel_size(ui: &Ui, name: &str) {
     }
 }
 
-/// Where a row has room for a text \[pt from the row's left edge\].
+/// Horizontal extent available to text \[pt from the row's left edge\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Room {
-    /// Where it begins.
     pub left: f32,
-    /// Where it ends.
     pub right: f32,
 }
 
-/// Paints text into its room, shortened in the middle where it is too long; nothing where there is no room for a letter of it.
+/// Paints text into its room, with the middle elided if it is too long; paints nothing without room
+/// for a letter.
 pub fn row_text_within(ui: &Ui, row: Rect, room: Room, text: &str, size: f32, color: Color32) {
     let shown = elided(ui, text, room.right - room.left, size);
     if !shown.is_empty() {
@@ -216,13 +216,14 @@ pub fn row_text_within(ui: &Ui, row: Rect, room: Room, text: &str, size: f32, co
     }
 }
 
-/// A text no wider than `room` \[pt\], its middle left out where it is too long. Empty where there is no room for one letter.
+/// Returns text no wider than `room` \[pt\], with the middle elided if it is too long. Empty
+/// without room for a letter.
 pub fn elided(ui: &Ui, text: &str, room: f32, size: f32) -> String {
     elided_at(ui, text, room, size, 0.5)
 }
 
-/// As [`elided`], of a name in a list: where its neighbours would be shortened to the same text, what is left out is at its
-/// beginning or at its end instead.
+/// As [`elided`], for a name in a list: if a neighbour would be shortened to the same text, the gap
+/// moves to the beginning or to the end.
 pub fn elided_among(
     ui: &Ui,
     text: &str,
@@ -230,7 +231,7 @@ pub fn elided_among(
     room: f32,
     size: f32,
 ) -> String {
-    /// Which part of what is kept stands before the gap.
+    /// Share of the remaining letters that precedes the gap.
     const HEADS: [f32; 3] = [0.5, 0.0, 1.0];
     let candidates = HEADS.map(|head| (head, elided_at(ui, text, room, size, head)));
     let is_told_apart = |(head, shown): &&(f32, String)| {
@@ -259,7 +260,8 @@ fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
             .chain(&letters[after..])
             .collect::<String>()
     };
-    // The widths grow with what is kept: the greatest that fits is found by halving.
+    // The width grows with the number of remaining letters: bisection finds the greatest number
+    // that fits.
     let mut fits = 0;
     let mut too_wide = letters.len();
     while too_wide - fits > 1 {
@@ -277,7 +279,7 @@ fn elided_at(ui: &Ui, text: &str, room: f32, size: f32, head: f32) -> String {
     }
 }
 
-/// How wide a text is in one line \[pt\].
+/// Returns the width of single-line text \[pt\].
 pub fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
     ui.fonts_mut(|fonts| {
         fonts
@@ -287,7 +289,7 @@ pub fn text_width(ui: &Ui, text: &str, font: FontId) -> f32 {
     })
 }
 
-/// What is added stands in `place`, from left to right or from right to left, each centred in height.
+/// Lays out content within `place`, left to right or right to left, vertically centred.
 pub fn in_line_ui<R>(
     ui: &mut Ui,
     place: Rect,
@@ -302,7 +304,7 @@ pub fn in_line_ui<R>(
     ui.scope_builder(UiBuilder::new().max_rect(place).layout(layout), add)
 }
 
-/// A drop-down list of this accessible name that shows `text`; what was chosen in it.
+/// Draws a drop-down list with an accessible name and `text` as its value; returns the choice.
 pub fn list_ui<T: Copy>(
     ui: &mut Ui,
     name: &str,
@@ -324,7 +326,8 @@ pub fn list_ui<T: Copy>(
     shown.inner.flatten()
 }
 
-/// Paints text of a font at `x` points from the row's left edge (before its right edge where negative), centred in height.
+/// Paints text at `x` points from the row's left edge (from its right edge if negative), vertically
+/// centred.
 pub fn painted_text(ui: &Ui, row: Rect, x: f32, text: &str, font: FontId, color: Color32) -> Rect {
     let (left, align) = if x < 0.0 {
         (row.right() + x, Align2::RIGHT_CENTER)
@@ -335,12 +338,13 @@ pub fn painted_text(ui: &Ui, row: Rect, x: f32, text: &str, font: FontId, color:
         .text(pos2(left, row.center().y), align, text, font, color)
 }
 
-/// Paints text at `x` points from the row's left edge (from its right edge where negative), centred in height.
+/// Paints text at `x` points from the row's left edge (from its right edge if negative), vertically
+/// centred.
 pub fn row_text(ui: &Ui, row: Rect, x: f32, text: &str, size: f32, color: Color32) -> Rect {
     painted_text(ui, row, x, text, FontId::proportional(size), color)
 }
 
-/// A button of this text and accessible name that is on or off; gives whether it was clicked.
+/// Draws an on/off button with a text and an accessible name; returns whether it was clicked.
 pub fn toggle_ui(ui: &mut Ui, (text, name): (&str, &str), is_on: bool, hint: &str) -> bool {
     let button = Button::new(text).selected(is_on).corner_radius(6.0);
     named_switch(ui.add(button), Role::CheckBox, is_on, name)
@@ -348,7 +352,8 @@ pub fn toggle_ui(ui: &mut Ui, (text, name): (&str, &str), is_on: bool, hint: &st
         .clicked()
 }
 
-/// A heading on the left, a value on the right, over a table: a right-click copies it or saves it, as the palette does.
+/// Draws a heading on the left and a value on the right over a table; a right-click copies or saves
+/// the table, as the palette does.
 pub fn table_heading_ui(
     ui: &mut Ui,
     palette: &Palette,
@@ -366,14 +371,14 @@ pub fn table_heading_ui(
     table_menu_ui(ui, &heading.response, kind, commands);
 }
 
-/// What a right-click offers on the heading of a table.
+/// Draws the context menu of a table's heading.
 pub fn table_menu_ui(
     ui: &mut Ui,
     heading: &egui::Response,
     kind: TableKind,
     commands: &mut Vec<Command>,
 ) {
-    // No stop of the Tab key: nothing on it can be pressed.
+    // Not focusable by Tab: it has no primary action.
     let response = ui.interact(heading.rect, heading.id.with("table"), Sense::CLICK);
     let response = named(response, Role::Label, format!("Heading of {}", kind.name()));
     response.context_menu(|ui| {
@@ -385,7 +390,8 @@ pub fn table_menu_ui(
     });
 }
 
-/// A tab of a page of a view; gives whether it was clicked. Its accessible name is "Page NAME".
+/// Draws a tab of a view's page; returns whether it was clicked. Its accessible name is "Page
+/// NAME".
 pub fn page_tab_ui(
     ui: &mut Ui,
     is_shown: bool,
@@ -399,7 +405,8 @@ pub fn page_tab_ui(
     (tab, is_clicked)
 }
 
-/// A text field of this accessible name that shows `value`; gives what was typed once the field is left or Enter is pressed.
+/// Draws a text field with an accessible name and `value`; returns the typed text after Enter or
+/// when the focus leaves.
 pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) -> Option<String> {
     let id = Id::unique(("entry", name));
     let held = ui.data(|data| data.get_temp::<String>(id));
@@ -420,7 +427,8 @@ pub fn entry_ui(ui: &mut Ui, name: &str, value: &str, hint: &str, width: f32) ->
     None
 }
 
-/// As [`entry_ui`], for a number; what is none is refused with the reason. None within where the field was emptied.
+/// As [`entry_ui`], for a number; refuses anything else with the reason. The inner `None` is an
+/// emptied field.
 pub fn number_entry_ui(
     ui: &mut Ui,
     name: &str,
@@ -435,7 +443,7 @@ pub fn number_entry_ui(
         .ok()
 }
 
-/// A number as engineers type it, with a decimal comma or a point; nothing for an empty text.
+/// Parses a number with a decimal comma or point; `None` for empty text.
 pub fn typed_number(text: &str) -> Result<Option<f64>, String> {
     let text = text.trim().replace(',', ".");
     if text.is_empty() {
@@ -447,48 +455,45 @@ pub fn typed_number(text: &str) -> Result<Option<f64>, String> {
     }
 }
 
-/// Height of a field for a number \[pt\].
+/// Height of a number field \[pt\].
 const FIELD_HEIGHT: f32 = 18.0;
-/// For so many passes after the Escape key egui may still take up the text that was being typed.
+/// Passes after Escape in which egui may still commit the text being typed.
 const PASSES_AFTER_ESCAPE: u64 = 2;
 
-/// What a field is about.
+/// Description of a number field.
 pub struct NumberField<'a> {
-    /// Its accessible name, one of a kind in the window.
+    /// Accessible name, unique in the window.
     pub name: &'a str,
-    /// What it means, with its unit.
+    /// Meaning, with the unit.
     pub hint: &'a str,
-    /// The unit in which it is typed; empty for a pure number.
+    /// Unit of the typed number; empty if dimensionless.
     pub unit: &'static str,
-    /// Whether the unit stands in the field, behind the number.
+    /// Whether the unit is shown behind the number.
     pub shows_unit: bool,
-    /// What it may be.
     pub range: RangeInclusive<f64>,
-    /// Whether only whole numbers make sense.
     pub is_whole: bool,
-    /// How much it changes by a point of dragging, or by an arrow key.
+    /// Change per point of dragging and per arrow key.
     pub step: f64,
-    /// Least width \[pt\]; 0 leaves it to the text.
+    /// Least width \[pt\]; 0 for the width of the text.
     pub width: f32,
-    /// How the number is written.
     pub digits: Digits,
 }
 
-/// What became of a field in this frame.
+/// Result of a field in this frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Entered {
-    /// The new number, where it is one that the field may hold.
+    /// New number, if it is valid.
     pub value: Option<f64>,
-    /// Why what was typed is not taken.
+    /// Reason why the entry is refused.
     pub refusal: Option<String>,
     /// Whether the number may still follow the pointer.
     pub is_dragged: bool,
-    /// Whether the decision is complete: the pointer let go, or the focus went on.
+    /// Whether the decision is complete: released pointer or lost focus.
     pub is_ended: bool,
 }
 
 impl<'a> NumberField<'a> {
-    /// A field for any pure number in the range, as wide as its text.
+    /// Creates a field for any dimensionless number in the range, as wide as its text.
     pub fn new(name: &'a str, hint: &'a str, range: RangeInclusive<f64>) -> Self {
         let unit = "";
         let shows_unit = false;
@@ -506,8 +511,8 @@ impl<'a> NumberField<'a> {
         }
     }
 
-    /// The field with `value` in it. A number is dragged within the range; one that is typed is taken up by Enter, or when the
-    /// focus goes on, and Escape leaves the old one.
+    /// Draws the field with `value`. Dragging stays within the range; a typed number is committed
+    /// by Enter or by a loss of focus, and Escape restores the old value.
     pub fn ui(&self, ui: &mut Ui, value: f64) -> Entered {
         let pass = ui.ctx().cumulative_pass_nr();
         let escaped = ui.data(|data| data.get_temp::<u64>(self.key("escaped")));
@@ -543,7 +548,8 @@ impl<'a> NumberField<'a> {
         Id::unique((what, self.name))
     }
 
-    /// The number that was typed; that in the field where it was left as it is shown, which may be less exact.
+    /// Parses the typed number; an unedited text keeps the exact old value, which the text may
+    /// round.
     fn read(
         &self,
         text: &str,
@@ -589,7 +595,8 @@ impl<'a> NumberField<'a> {
         }
     }
 
-    /// "Band from: expected a number from 0.0001 to 12 rad/s, found 30; it stays 0.500 rad/s."
+    /// Returns the refusal, for example "Band from: expected a number from 0.0001 to 12 rad/s,
+    /// found 30; it stays 0.500 rad/s."
     fn refusal(&self, found: &str, before: f64) -> String {
         let kind = if self.is_whole {
             "a whole number"
@@ -611,14 +618,15 @@ impl<'a> NumberField<'a> {
     }
 }
 
-/// Gives the focus to the field of this name, if it is in the window.
+/// Focuses the field with this name if it is in the window.
 pub fn focus_field(ctx: &Context, name: &str) {
     if let Some(id) = ctx.data(|data| data.get_temp::<Id>(Id::unique(("field", name)))) {
         ctx.memory_mut(|memory| memory.request_focus(id));
     }
 }
 
-/// A finite number with or without its unit; a comma alone is a decimal point, and the minus sign may be the typographical one.
+/// Parses a finite number with or without its unit; a lone comma is a decimal point, and the minus
+/// sign may be typographical.
 fn number_in(text: &str, unit: &str) -> Option<f64> {
     let text = text.trim();
     let text = text
@@ -635,7 +643,7 @@ fn number_in(text: &str, unit: &str) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| value.is_finite())
 }
 
-/// A number as a field writes it.
+/// Formats a number for a field.
 fn number_text(digits: Digits, value: f64) -> String {
     match digits {
         Digits::Significant => significant(value),
@@ -644,7 +652,7 @@ fn number_text(digits: Digits, value: f64) -> String {
     }
 }
 
-/// Three significant digits, without an exponent from 0.001 to 9999.
+/// Formats three significant digits, without an exponent from 0.001 to 9999.
 pub fn significant(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -657,7 +665,8 @@ pub fn significant(value: f64) -> String {
     }
 }
 
-/// A gain with three digits behind the point, two where the third is zero; three significant ones where it is small.
+/// Formats a gain with three decimals, two if the third is zero; a small gain with three
+/// significant digits.
 pub fn gain_text(gain: f64) -> String {
     if gain < 0.1 {
         return significant(gain);

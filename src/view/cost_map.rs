@@ -1,5 +1,5 @@
-//! The map of costs: J of magnitude and of phase of every held response in every condition, as shades of one hue; with couplings the
-//! mean of the others beside them.
+//! Map of costs: J of magnitude and phase of every constrained response in every condition, as
+//! shades of a single hue; with couplings, the mean of the other responses beside them.
 
 use gdcm_method::fidelity::Cost;
 use gdcm_model::dataset::{ConditionId, Pair};
@@ -7,15 +7,15 @@ use gdcm_study::study::CouplingCorrection;
 
 use super::state::State;
 
-/// Which correction the map shows.
+/// Correction whose costs the map shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MappedCost {
-    /// None: the physics representative as it is.
+    /// The uncorrected physics representative.
     Before,
-    /// Each condition's own optimum.
+    /// Optimum of each condition.
     #[default]
     Own,
-    /// The schedule, on the nominal model.
+    /// The schedule, applied to the nominal model.
     Scheduled,
 }
 
@@ -23,7 +23,7 @@ impl MappedCost {
     /// Every choice, in the order of the menu.
     pub const ALL: [Self; 3] = [Self::Before, Self::Own, Self::Scheduled];
 
-    /// What its menu entry says.
+    /// Returns the text of the menu entry.
     pub fn name(self) -> &'static str {
         match self {
             Self::Before => "before any correction",
@@ -33,21 +33,21 @@ impl MappedCost {
     }
 }
 
-/// More held responses than this are merged to the worst of each input.
+/// More constrained responses than this are merged into the worst of each input.
 const MOST_COLUMNS: usize = 8;
 
-/// One column of the map: a held response, those of one input, or all that are not held.
+/// Column of the map: a constrained response, the constrained responses of an input, or all
+/// unconstrained responses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CostColumn {
-    /// What stands above it.
     pub head: String,
-    /// Its responses.
     pub pairs: Vec<Pair>,
-    /// Whether its cost is their mean; else that of the worst.
+    /// Whether the cost is the mean of the responses; otherwise the cost of the worst.
     pub is_mean: bool,
 }
 
-/// The columns of the held responses, in the order of the outputs; and of what couplings are for.
+/// Returns the columns of the constrained responses, in the order of the outputs; with couplings
+/// also a column of the responses that these improve.
 pub fn columns(state: &State) -> Vec<CostColumn> {
     let mut columns = held_columns(state);
     if state.study.settings.couplings != CouplingCorrection::None {
@@ -97,7 +97,7 @@ fn held_columns(state: &State) -> Vec<CostColumn> {
     held.iter().map(column).collect()
 }
 
-/// J of one response in one condition, magnitude and phase; none where it has none.
+/// Returns J of magnitude and phase of a response in a condition; `None` without a result.
 pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost> {
     let analysis = state.analysis()?;
     if state.display.mapped_cost == MappedCost::Scheduled {
@@ -113,7 +113,8 @@ pub fn cost_of(state: &State, condition: ConditionId, pair: Pair) -> Option<Cost
     }
 }
 
-/// The cost of a column, magnitude and phase each for itself, with its response that has the greater sum.
+/// Returns the cost of a column, magnitude and phase separately, with the response whose sum is the
+/// greatest.
 pub fn cost_of_column(
     state: &State,
     condition: ConditionId,

@@ -1,4 +1,5 @@
-//! How the plots over frequency show their curves: units, what is hidden, cursors. Nothing of it changes a result.
+//! Display options of the plots over frequency: units, hidden curves, cursors. None of them changes
+//! a result.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,36 +14,32 @@ use super::plot::{CurveId, Role};
 use super::state::State;
 use crate::view::plot::quantity::{MagnitudeUnit, PhaseErrorUnit, PhaseUnit};
 
-/// How the plots over frequency show their curves.
+/// Display options of the plots over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveDisplay {
-    /// How magnitudes are read.
     pub magnitude: MagnitudeUnit,
-    /// How phases are drawn.
     pub phase: PhaseUnit,
-    /// How differences of phases are drawn.
     pub phase_error: PhaseErrorUnit,
-    /// Roles whose curves are not drawn.
     pub hidden_roles: BTreeSet<Role>,
-    /// Models that are not drawn.
     pub hidden_models: BTreeSet<ModelId>,
-    /// Whole turns that phases were moved up by hand.
+    /// Whole turns by which phases were shifted up by hand.
     pub turns: BTreeMap<(ConditionId, Pair, CurveId), i32>,
-    /// The frequency under the pointer, in whichever plot it is \[rad/s\].
+    /// Frequency under the pointer, in any plot \[rad/s\].
     pub cursor: Option<f64>,
-    /// Frequencies that stay marked \[rad/s\]: none, one or two.
+    /// Marked frequencies \[rad/s\]: none, one or two.
     pub pinned: Vec<f64>,
-    /// Frequencies that the bandwidth of the response shown is read at, by their names \[rad/s\].
+    /// Frequencies, with their names, that define the bandwidth of the displayed response
+    /// \[rad/s\].
     pub crossings: Vec<(&'static str, f64)>,
     /// Whether the values at the cursor are listed.
     pub lists_values: bool,
-    /// Whether Bode and the plot of errors show what a pilot does not notice.
+    /// Whether Bode and the plot of errors show the envelopes of maximum unnoticeable added
+    /// dynamics.
     pub shows_muad: bool,
-    /// Models that a box was drawn over.
+    /// Models selected by drawing a box.
     pub selected: BTreeSet<ModelId>,
-    /// Whether the bands of the identified models are drawn.
     pub shows_bands: bool,
-    /// The role that is drawn above all others.
+    /// Role drawn above all others.
     pub raised: Option<Role>,
 }
 
@@ -52,7 +49,7 @@ impl Default for CurveDisplay {
             magnitude: MagnitudeUnit::default(),
             phase: PhaseUnit::default(),
             phase_error: PhaseErrorUnit::default(),
-            // Couplings alone are drawn on wish.
+            // Curves with couplings alone are optional.
             hidden_roles: Self::hidden_at_first(),
             hidden_models: BTreeSet::new(),
             turns: BTreeMap::new(),
@@ -68,55 +65,55 @@ impl Default for CurveDisplay {
     }
 }
 
-/// A wish about how curves are shown.
+/// Request to change how curves are shown.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CurveCommand {
-    /// Read magnitudes in another unit.
+    /// Changes the unit of magnitudes.
     ReadMagnitudes(MagnitudeUnit),
-    /// Draw phases in another way.
+    /// Changes the form of phases.
     DrawPhases(PhaseUnit),
-    /// Draw differences of phases in another way.
+    /// Changes the form of phase differences.
     DrawPhaseErrors(PhaseErrorUnit),
-    /// Hide the curves of a role, or show them again.
+    /// Hides or shows the curves of a role.
     ToggleRole(Role),
-    /// Draw the curves of this role alone; again: all of them.
+    /// Draws the curves of this role alone; repeated, draws all of them.
     ShowRoleAlone(Role),
-    /// Draw the curves of this role above all others; again: as usual.
+    /// Draws the curves of this role above all others; repeated, restores the usual order.
     RaiseRole(Role),
-    /// Draw the bands of the identified models, or not.
+    /// Shows or hides the bands of the identified models.
     ShowBands(bool),
-    /// Do not draw a model.
+    /// Hides a model.
     HideModel(ModelId),
-    /// Draw every model, and the roles that are drawn at first.
+    /// Shows every model, and the roles shown by default.
     ShowHidden,
-    /// Move the phase of a curve by whole turns: condition, response, curve, turns up.
+    /// Shifts the phase of a curve by whole turns: condition, response, curve, turns up.
     Turn(ConditionId, Pair, CurveId, i32),
-    /// Point at a frequency \[rad/s\] in every plot, as long as this is asked for in each frame.
+    /// Highlights a frequency \[rad/s\] in every plot; repeated in each frame.
     PointAt(f64),
-    /// Mark a frequency \[rad/s\]; a third one takes the place of the first.
+    /// Marks a frequency \[rad/s\]; a third mark replaces the first.
     PinCursor(f64),
-    /// Name the frequencies that the bandwidth of the response shown is read at.
+    /// Sets the frequencies, with their names, that define the bandwidth of the displayed response.
     MarkCrossings(Vec<(&'static str, f64)>),
-    /// Take the marks of frequencies away.
+    /// Removes the marked frequencies.
     UnpinCursors,
-    /// List the values at the cursor, or not.
+    /// Shows or hides the list of values at the cursor.
     ListValues(bool),
-    /// Show in the plot of errors what a pilot does not notice, or not.
+    /// Shows or hides the envelopes of maximum unnoticeable added dynamics in the plot of errors.
     ShowMuad(bool),
-    /// Select models, in place of those that are.
+    /// Selects these models instead of the current selection.
     Select(BTreeSet<ModelId>),
 }
 
 impl CurveDisplay {
-    /// Marked frequencies: two, of which the difference is told.
+    /// Most marked frequencies: of two, the difference is reported.
     const MOST_PINNED: usize = 2;
 
-    /// Roles that are drawn only when they are asked for: the couplings alone are a step on the way, not a result.
+    /// Returns the roles hidden by default: couplings alone are an intermediate step, not a result.
     pub fn hidden_at_first() -> BTreeSet<Role> {
         BTreeSet::from([Role::Coupled])
     }
 
-    /// Carries a wish out.
+    /// Carries out a command.
     pub fn carry_out(&mut self, command: CurveCommand) {
         match command {
             CurveCommand::ReadMagnitudes(unit) => self.magnitude = unit,
@@ -171,7 +168,7 @@ impl CurveDisplay {
         }
     }
 
-    /// Forgets what is about models of another dataset.
+    /// Drops everything that refers to models of another dataset.
     pub fn forget_models(&mut self) {
         self.hidden_models.clear();
         self.turns.clear();
@@ -179,7 +176,7 @@ impl CurveDisplay {
     }
 }
 
-/// Units, read-outs, looks, and what is hidden.
+/// Returns the entries for units, read-outs, styles, and hidden curves.
 pub(super) fn curve_entries(state: &State) -> Vec<Entry> {
     let mut entries = unit_entries(state);
     entries.extend(look_entries(state.display.looks));
@@ -187,7 +184,7 @@ pub(super) fn curve_entries(state: &State) -> Vec<Entry> {
     entries
 }
 
-/// Each leads to the other of two ways.
+/// Returns an entry for each unit with two choices, which switches to the other.
 fn unit_entries(state: &State) -> Vec<Entry> {
     let curves = &state.display.curves;
     let entry = |name: &str, meaning, command: CurveCommand| {
@@ -307,8 +304,8 @@ fn visibility_entries(state: &State) -> Vec<Entry> {
         Command::EndIsolation,
     );
     vec![
-        // The key of an entry is taken from fields and menus, whether the entry is enabled or not: it is one only where it has
-        // something to end here.
+        // Fields and menus lose the key of an entry whether or not the entry is enabled, so it has
+        // the key only if there is something to end.
         if is_isolated {
             isolation.free_key(Key::Escape)
         } else {

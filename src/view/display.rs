@@ -1,5 +1,6 @@
-//! What is shown, and how: nothing of it changes a result. Which views the middle of the window shows, and where: one at a time in groups,
-//! another one beside it, and the dock below. What of it is kept from one day to the next.
+//! Display state, which never changes a result: the views in the middle of the window and their
+//! places (one at a time in groups, a second view beside it, and the dock below), and the
+//! preferences that persist between sessions.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -26,162 +27,142 @@ use crate::view::views::channels::ChannelsView;
 use crate::view::views::evidence::CachedEvidence;
 use crate::view::views::poles::CachedModes;
 
-/// What is shown, none of which changes a result.
+/// Display state; none of it changes a result.
 #[derive(Debug, Default)]
 pub struct Display {
-    /// The condition shown.
     pub condition: ConditionId,
-    /// The response in the large plot.
+    /// Response in the large plot.
     pub pair: Pair,
-    /// The model pointed at.
+    /// Model under the pointer.
     pub hovered: Option<ModelId>,
-    /// The condition that is pointed at, in the list or as a dot.
+    /// Condition under the pointer, in the list or as a dot.
     pub hovered_condition: Option<ConditionId>,
-    /// What the pointer means in a plot, in one line: nothing floats over curves.
+    /// Description of the plot element under the pointer, in a single line: nothing floats over
+    /// curves.
     pub told: Option<String>,
     /// The only model shown beside the representatives.
     pub isolated: Option<ModelId>,
-    /// The value whose derivation is shown.
+    /// Value whose derivation is shown.
     pub asked: Option<ExplainTarget>,
-    /// How the plots share the middle of the window.
     pub arrangement: Arrangement,
-    /// Whether the window is so wide that names and words have all of their room.
+    /// Whether the window is wide enough for full names and words.
     pub is_wide: bool,
     /// What the program opens with.
     pub opens_with: OpensWith,
-    /// Whether the left panel is shown in full; by the width of the window where that was not chosen.
+    /// Whether the left panel is shown in full; `None` follows the width of the window.
     pub left_open: Option<bool>,
-    /// The sheet over the middle of the window.
+    /// Sheet over the middle of the window.
     pub sheet: Option<Sheet>,
     /// Whether the settings are unfolded, over matrix and card.
     pub settings_open: bool,
-    /// Whether the settings that are seldom changed are unfolded.
+    /// Whether the rarely changed settings are unfolded.
     pub advanced_open: bool,
-    /// Whether the identified models are unfolded.
     pub identified_open: bool,
-    /// What the map of costs shows.
     pub mapped_cost: MappedCost,
-    /// Unit of frequencies.
     pub unit: FrequencyUnit,
-    /// How curves are drawn.
     pub looks: PlotStyle,
-    /// How the plots over frequency show their curves.
     pub curves: CurveDisplay,
     /// Ranges and transforms of the Bode plot.
     pub bode: BodeView,
     /// Ranges and transforms of the plot of errors.
     pub error: BodeView,
-    /// Which responses the net-gain plots show.
     pub net_gain_pairs: PairSet,
-    /// Responses held since the dataset was opened.
+    /// Responses constrained at any time since the dataset was opened.
     pub once_held: BTreeSet<Pair>,
-    /// Responses that the engineer picked for the net-gain plots.
+    /// Responses picked by the engineer for the net-gain plots.
     pub picked_pairs: BTreeSet<Pair>,
-    /// What the channel plots measure, and over what.
     pub channel_values: (Measure, Across),
     /// Transforms of the channel plots.
     pub channels: ChannelsView,
-    /// Whether zeros of the response in focus are shown among the poles.
+    /// Whether the zeros of the response in focus are shown among the poles.
     pub show_zeros: bool,
-    /// Modes and zeros, kept from frame to frame.
+    /// Modes and zeros, cached between frames.
     pub modes: CachedModes,
-    /// Order of the table of modes.
     pub modes_sorting: Sorting,
-    /// What the assessment shows.
     pub assessed: AssessedFigures,
-    /// Order of the table of the assessment.
     pub assessment_sorting: Sorting,
-    /// Whether models answer to a test input over time although there are records.
+    /// Whether responses to a test input are shown although there are records.
     pub shows_test: bool,
-    /// Which page of requirements is shown.
     pub requirements_page: RequirementsPage,
-    /// Orders of its tables.
     pub requirements_sorting: [Sorting; 2],
-    /// Whether the plots of gains show no error bars and bands.
+    /// Whether the plots of gains omit error bars and bands.
     pub hide_bars: bool,
-    /// Orders of the tables of the evidence: differences, second variables, forms of the schedule.
+    /// Orders of the evidence tables: differences, second variables, forms of the schedule.
     pub evidence_tables: [Sorting; 3],
-    /// Whether the evidence for the schedule stands beside the net gains.
+    /// Whether the evidence for the schedule is shown beside the net gains.
     pub show_evidence: bool,
-    /// What speaks for each form of the schedule, kept from frame to frame.
+    /// Evidence for each form of the schedule, cached between frames.
     pub evidence: CachedEvidence,
-    /// Order of the table of the evidence.
     pub evidence_sorting: Sorting,
-    /// What is shown of several conditions at once.
+    /// Displayed role of the plot across conditions.
     pub across_role: AcrossRole,
-    /// Ranges and transforms of the plot of several conditions.
+    /// Ranges and transforms of the plot across conditions.
     pub across: BodeView,
-    /// The response, and the model of each condition, that this plot was fitted to last.
+    /// Response, and model of each condition, to which that plot was last fitted.
     pub across_fitted: Option<(Pair, AcrossRole)>,
-    /// Shapes of several conditions' responses, kept from frame to frame.
+    /// Shapes of the responses across conditions, cached between frames.
     pub across_shapes: AirspeedCache,
-    /// The name that the present decisions are to be kept under, as typed.
+    /// Name for the present decisions as a variant, as typed.
     pub variant_name: String,
-    /// The variant whose corrected model and net gains are laid over those shown, by its name.
+    /// Name of the variant whose corrected model and net gains are overlaid.
     pub overlaid: Option<String>,
-    /// Orders of the tables of the comparison: what differs, and what it does.
+    /// Orders of the comparison tables: differences, and their effects.
     pub compare_sorting: [Sorting; 2],
-    /// Cells of the overview.
     pub overview: OverviewView,
-    /// What the figures of the views remember between frames.
+    /// State of the views' figures between frames.
     pub figures: BTreeMap<View, FigureView>,
-    /// Shapes of the responses drawn, kept from frame to frame.
+    /// Shapes of the drawn responses, cached between frames.
     pub shapes: BTreeMap<Pair, ResponseCache>,
-    /// The curves that the Bode plot shows.
+    /// Curves shown by the Bode plot.
     pub drawn: Vec<BodeCurve>,
-    /// Errors drawn, kept from frame to frame.
+    /// Drawn errors, cached between frames.
     pub errors: ErrorCache,
-    /// The curves that the plot of errors shows.
+    /// Curves shown by the plot of errors.
     pub drawn_errors: Vec<BodeCurve>,
 }
 
 impl Display {
-    /// Shows all of the curves in the plots over frequency.
+    /// Fits the plots over frequency to all of their curves.
     pub fn fit_frequency_plots(&mut self) {
         self.bode.request_fit();
         self.error.request_fit();
         self.across.request_fit();
     }
 
-    /// Shows other curves in the plots over frequency: what nobody has zoomed is fitted to them.
+    /// Fits the plots over frequency to other curves, except on axes that have been zoomed.
     pub fn refit_frequency_plots(&mut self) {
         self.bode.request_refit();
         self.error.request_refit();
     }
 }
 
-/// How the engineer likes the window. What a later version adds has its usual value where a text of an earlier one is read.
+/// Preferences of the engineer for the window. Fields missing from the text of an earlier version
+/// get their defaults.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
-    /// How the plots share the middle of the window.
     pub arrangement: Option<Arrangement>,
     /// What the program opens with.
     pub opens_with: OpensWith,
-    /// Whether the left panel is shown in full, where that was chosen.
+    /// Whether the left panel is shown in full, if chosen.
     pub left_open: Option<bool>,
-    /// Unit of frequencies.
     pub frequency_unit: FrequencyUnit,
-    /// How magnitudes are read.
     pub magnitude: MagnitudeUnit,
-    /// How phases are drawn.
     pub phase: PhaseUnit,
-    /// How differences of phases are drawn.
     pub phase_error: PhaseErrorUnit,
-    /// Roles that are hidden or shown otherwise than at first, whichever later versions hide at first.
+    /// Roles whose visibility differs from the default, which later versions may change.
     pub hidden_roles: BTreeSet<Role>,
-    /// Whether Bode and the plot of errors show what a pilot does not notice.
+    /// Whether Bode and the plot of errors show the envelopes of maximum unnoticeable added
+    /// dynamics.
     pub shows_muad: bool,
-    /// Whether the bands of identified models are drawn.
     pub shows_bands: bool,
     /// Whether the values at the cursor are not listed.
     pub lists_no_values: bool,
-    /// How curves are drawn.
     pub looks: PlotStyle,
 }
 
 impl Preferences {
-    /// Those that the window has now.
+    /// Returns the current preferences of a window.
     pub fn of(display: &Display) -> Self {
         Self {
             arrangement: Some(display.arrangement.clone()),
@@ -199,7 +180,7 @@ impl Preferences {
         }
     }
 
-    /// Gives a window these preferences.
+    /// Applies these preferences to a window.
     pub fn apply(&self, display: &mut Display) {
         display.arrangement = self
             .arrangement
@@ -220,17 +201,17 @@ impl Preferences {
     }
 }
 
-/// What the views are about.
+/// Group of views by subject.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ViewGroup {
     /// Responses over frequency.
     #[default]
     Response,
-    /// Models, and what they are identified from.
+    /// Models and the data behind them.
     Models,
-    /// What changes with airspeed.
+    /// Quantities over airspeed.
     Schedule,
-    /// What the correction is worth.
+    /// Value of the correction.
     Judge,
 }
 
@@ -238,7 +219,7 @@ impl ViewGroup {
     /// Every group, from left to right.
     pub const ALL: [Self; 4] = [Self::Response, Self::Models, Self::Schedule, Self::Judge];
 
-    /// What its button says.
+    /// Returns the text of the group's button.
     pub fn name(self) -> &'static str {
         match self {
             Self::Response => "Response",
@@ -248,7 +229,7 @@ impl ViewGroup {
         }
     }
 
-    /// Its views, from left to right.
+    /// Returns the views of the group, from left to right.
     pub fn views(self) -> impl Iterator<Item = View> {
         View::ALL
             .into_iter()
@@ -256,19 +237,19 @@ impl ViewGroup {
     }
 }
 
-/// What the middle of the window shows.
+/// Arrangement of the views in the middle of the window.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Arrangement {
-    /// The group in front.
+    /// Group in front.
     group: ViewGroup,
-    /// The view that each group shows, in the order of the groups.
+    /// View shown by each group, in the order of the groups.
     of_groups: [View; 4],
-    /// The view beside it, where there is one.
+    /// View beside the view in front.
     beside: Option<View>,
-    /// The view in the dock.
+    /// View in the dock.
     dock: View,
-    /// Whether the dock is unfolded; by the height of the window where that was not chosen.
+    /// Whether the dock is unfolded; `None` follows the height of the window.
     dock_open: Option<bool>,
 }
 
@@ -286,22 +267,22 @@ impl Default for Arrangement {
 }
 
 impl Arrangement {
-    /// The group in front.
+    /// Returns the group in front.
     pub fn group(&self) -> ViewGroup {
         self.group
     }
 
-    /// The view in front.
+    /// Returns the view in front.
     pub fn view(&self) -> View {
         self.of_groups[self.group as usize]
     }
 
-    /// The view beside it.
+    /// Returns the view beside the view in front.
     pub fn beside(&self) -> Option<View> {
         self.beside.filter(|beside| *beside != self.view())
     }
 
-    /// The view that the dock shows; none where the view in front takes its room.
+    /// Returns the view in the dock; `None` if the view in front takes its room.
     pub fn dock(&self) -> Option<View> {
         let is_free = !self.view().kind().takes_dock
             && self.view() != self.dock
@@ -309,7 +290,7 @@ impl Arrangement {
         is_free.then_some(self.dock)
     }
 
-    /// Whether the dock is unfolded in a window that has room for it, or has not.
+    /// Returns whether the dock is unfolded, given whether the window has room for it.
     pub fn is_dock_open(&self, has_room: bool) -> bool {
         self.dock_open.unwrap_or(has_room)
     }
@@ -319,12 +300,13 @@ impl Arrangement {
         self.dock_open = Some(is_open);
     }
 
-    /// Brings a group to the front, with the view that it showed last.
+    /// Brings a group to the front, with the view it showed last.
     pub fn show_group(&mut self, group: ViewGroup) {
         self.group = group;
     }
 
-    /// Brings a view to the front; one of the dock is unfolded there, unless it is in front already.
+    /// Brings a view to the front; a view of the dock is unfolded there instead, unless it is in
+    /// front already.
     pub fn show(&mut self, view: View) {
         let group = view.kind().group;
         self.group = group;
@@ -340,12 +322,12 @@ impl Arrangement {
         self.dock_open = Some(true);
     }
 
-    /// Shows a view beside the one in front, or none.
+    /// Shows a view beside the view in front, or none.
     pub fn show_beside(&mut self, view: Option<View>) {
         self.beside = view.filter(|view| *view != self.view());
     }
 
-    /// The view so many places further in the group in front, round about.
+    /// Returns the view `by` places further in the group in front, wrapping around.
     pub fn neighbour(&self, by: isize) -> View {
         let views: Vec<View> = self.group.views().collect();
         let here = views
@@ -355,12 +337,12 @@ impl Arrangement {
         views[(here as isize + by).rem_euclid(views.len() as isize) as usize]
     }
 
-    /// Whether a view can be seen.
+    /// Returns whether a view is visible.
     pub fn is_shown(&self, view: View) -> bool {
         self.view() == view || self.beside() == Some(view) || self.dock() == Some(view)
     }
 
-    /// This arrangement, kept from another day, where every group shows a view of its own.
+    /// Returns this stored arrangement if every group shows a view of its own.
     pub fn if_whole(self) -> Option<Self> {
         let is_of_group = |group: ViewGroup| self.of_groups[group as usize].kind().group == group;
         ViewGroup::ALL.into_iter().all(is_of_group).then_some(self)

@@ -1,5 +1,6 @@
-//! What explains results, in sheets over the middle of the window: how a value was computed and what decisions would cost, with the menus
-//! that ask for it; and why the result is as it is, where a lag may come from, and the proof.
+//! Sheets over the middle of the window that explain results: derivations of values and costs of
+//! decisions, with the menus that open them; and the reasons for the result, possible sources of
+//! lag, and the proof.
 
 use std::collections::BTreeSet;
 
@@ -25,21 +26,21 @@ use super::palette::{BODY_SIZE, Palette, SMALL_SIZE, TITLE_SIZE, medium};
 use super::state::State;
 use super::views::{View, offered_couplings, used_couplings};
 
-/// What a sheet may hold.
+/// Content of a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sheet {
-    /// Why the result is as it is.
+    /// Reasons for the result.
     Reasons,
-    /// The physics models, beside the rail.
+    /// Physics models, beside the rail.
     Models,
-    /// The identified models, beside the rail.
+    /// Identified models, beside the rail.
     Identified,
-    /// How a value was computed.
+    /// Derivation of a value.
     Derivation,
 }
 
 impl Sheet {
-    /// Its heading, which is also its accessible name.
+    /// Returns the heading, which is also the accessible name.
     pub fn title(self) -> &'static str {
         match self {
             Self::Reasons => "Why the result is so",
@@ -49,7 +50,7 @@ impl Sheet {
         }
     }
 
-    /// Whether it stands at the right side, and how wide it is \[pt\].
+    /// Returns whether the sheet is at the right side, and its width \[pt\].
     fn place(self) -> (bool, f32) {
         match self {
             Self::Reasons => (true, 380.0),
@@ -59,7 +60,7 @@ impl Sheet {
     }
 }
 
-/// Draws a sheet over `centre`; gives whether it is to be closed.
+/// Draws a sheet over `centre`; returns whether it is to be closed.
 pub fn sheet_ui(
     ui: &Ui,
     centre: Rect,
@@ -101,7 +102,7 @@ pub fn sheet_ui(
                         .show(ui, |ui| add(ui));
                 });
         });
-    // A first frame that draws it is that of the click which asked for it.
+    // In its first frame the sheet still sees the click that opened it.
     let is_new = ui
         .ctx()
         .data_mut(|data| !std::mem::replace(data.get_temp_mut_or_default::<bool>(id), true));
@@ -120,10 +121,10 @@ pub fn sheet_ui(
     is_closed
 }
 
-/// What asks for a derivation, everywhere.
+/// Menu text that opens a derivation, used everywhere.
 pub const QUESTION: &str = "How was this computed?";
 
-/// How the value asked about was computed, in a sheet; it follows the results while it is open.
+/// Draws the derivation of a value in a sheet; it follows the results while it is open.
 pub fn derivation_sheet_ui(
     ui: &mut Ui,
     state: &State,
@@ -181,7 +182,7 @@ fn derivation_ui(ui: &mut Ui, found: &Derivation, palette: &Palette, commands: &
     });
 }
 
-/// What holding or freeing the response that is asked about would cost.
+/// Draws the costs of constraining or releasing the response in question.
 fn toggle_costs_ui(ui: &mut Ui, state: &State, asked: &ExplainTarget, palette: &Palette) {
     let (ExplainTarget::DeltaGain(condition, pair) | ExplainTarget::DeltaDelay(condition, pair)) =
         asked
@@ -202,7 +203,7 @@ fn toggle_costs_ui(ui: &mut Ui, state: &State, asked: &ExplainTarget, palette: &
     }
 }
 
-/// The derivation as lines of text, the symbols with tabs before what they stand for.
+/// Returns the derivation as lines of text, with tabs between the symbols and their meanings.
 pub fn text_of(found: &Derivation) -> String {
     let heads = [&found.title, &found.equation]
         .into_iter()
@@ -219,7 +220,7 @@ pub fn text_of(found: &Derivation) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// A value whose click asks how it was computed.
+/// Draws a value whose click opens its derivation.
 pub fn value_label_ui(
     ui: &mut Ui,
     text: impl Into<WidgetText>,
@@ -231,7 +232,7 @@ pub fn value_label_ui(
     response.on_hover_cursor(CursorIcon::Help)
 }
 
-/// The part of a menu that asks how values were computed.
+/// Draws the part of a menu that opens derivations.
 pub fn question_menu_ui(
     ui: &mut Ui,
     values: Vec<(String, ExplainTarget)>,
@@ -248,7 +249,7 @@ pub fn question_menu_ui(
     });
 }
 
-/// What turns the models of a channel, or puts them back, with its label.
+/// Returns the label and the command that change the sign of a channel's models, or restore it.
 pub fn turn_entry(state: &State, channel: Channel, of: Option<SignRole>) -> (String, Command) {
     let (inputs, outputs) = state.dataset().names_of_channels();
     let name = channel.name(&inputs, &outputs);
@@ -260,7 +261,7 @@ pub fn turn_entry(state: &State, channel: Channel, of: Option<SignRole>) -> (Str
     (label, Edit::SetSign { channel, of }.into())
 }
 
-/// The remarks on the result shown, on the schedule, and on the couplings that are used.
+/// Returns the remarks on the displayed result, on the schedule, and on the couplings in use.
 pub fn remarks_shown(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
     let schedule = state
         .analysis()
@@ -270,7 +271,8 @@ pub fn remarks_shown(state: &State, shown: &ConditionAnalysis) -> Vec<Remark> {
     remarks
 }
 
-/// What couplings that are used are worth and cost, or why there are none; nothing where none are asked for.
+/// Returns the benefit and cost of the couplings in use, or the reason for their absence; empty if
+/// none are requested.
 pub fn coupling_remarks(state: &State) -> Vec<Remark> {
     match (
         state.analysis().map(|analysis| analysis.asked_couplings()),
@@ -282,7 +284,8 @@ pub fn coupling_remarks(state: &State) -> Vec<Remark> {
     }
 }
 
-/// The responses and the channels that are in each other's way, of the gains; channels of another sign or unit too.
+/// Returns the responses and channels whose gain constraints conflict, including channels of
+/// another sign or unit.
 pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeSet<Channel>) {
     let conflicts = &shown.gains.conflicts;
     let pairs = conflicts
@@ -300,7 +303,8 @@ pub fn gain_conflict_marks(shown: &ConditionAnalysis) -> (BTreeSet<Pair>, BTreeS
     )
 }
 
-/// What holding or freeing a response would cost, in words; nothing until the table of all toggles of this very result is computed.
+/// Describes the cost of constraining or releasing a response; empty until the table of all toggles
+/// of this very result is computed.
 pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
     let Some(toggles) = state.toggles() else {
         return Vec::new();
@@ -312,7 +316,8 @@ pub fn toggle_costs(state: &State, pair: Pair) -> Vec<String> {
     gain.into_iter().chain(delay).collect()
 }
 
-/// Where a common lag may come from, and where to look for it; a model is better mended there than corrected.
+/// Possible sources of a common lag, and the view that shows each; repairing the model there is
+/// better than correcting it.
 const CAUSES: [(&str, &str, &str, View); 4] = [
     (
         "Clock of the records",
@@ -340,7 +345,7 @@ const CAUSES: [(&str, &str, &str, View); 4] = [
     ),
 ];
 
-/// The sheet of reasons for the result of the condition shown.
+/// Draws the sheet of reasons for the result of the displayed condition.
 pub fn reasons_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(Ok(shown)) = state.outcome() else {
         let words = match state.outcome() {
@@ -379,7 +384,7 @@ fn causes_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     }
 }
 
-/// Whether better gains exist, and how far the answer may be from the best.
+/// Draws whether better gains exist, and how far the answer may be from the optimum.
 fn proof_ui(ui: &mut Ui, shown: &ConditionAnalysis, is_proving: bool, palette: &Palette) {
     let outcome = shown.gains.proof.outcome;
     let words = match outcome {
@@ -392,7 +397,7 @@ fn proof_ui(ui: &mut Ui, shown: &ConditionAnalysis, is_proving: bool, palette: &
     ui.label(palette.dim(format!("{words} Gap {:.0e}.", outcome.gap())));
 }
 
-/// Sentences, each with what can be done about it.
+/// Draws sentences, each with its possible actions.
 fn remarks_ui(
     ui: &mut Ui,
     state: &State,
@@ -437,7 +442,7 @@ fn remarks_ui(
     }
 }
 
-/// What is said of a button that decides for every condition.
+/// Hint of a button that decides for every condition.
 const UNDONE: &str = "In every condition; undo takes it back";
 
 fn objective_ui(
@@ -484,7 +489,7 @@ fn objective_ui(
     });
 }
 
-/// What each held response gets and each filter costs, in words.
+/// Draws the lead of each constrained response and the price of each filter.
 fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Palette) {
     if shown.compensated.is_none() {
         return;
@@ -501,7 +506,7 @@ fn lead_ui(ui: &mut Ui, state: &State, shown: &ConditionAnalysis, palette: &Pale
         });
 }
 
-/// What couplings would bring off the axis, where that is worth it, and the click that uses them.
+/// Draws the off-axis benefit of couplings, if worthwhile, and the link that uses them.
 fn couplings_offer_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some((assessment, _)) = offered_couplings(state) else {
         return;

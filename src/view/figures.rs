@@ -1,4 +1,4 @@
-//! What a view shows as a figure on paper, and the button that takes it away.
+//! Figures of the views for paper, and the button that copies or saves them.
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Role, Ui};
@@ -18,7 +18,7 @@ use crate::view::views::frequency::{bode_options, condition_source};
 use crate::view::views::histories::shown_over_time;
 use crate::view::views::requirements::{requirement_tables, shown_requirements};
 
-/// The figure that a view shows; none until its results are there.
+/// Returns the figure of a view; `None` until its results are available.
 pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     let bars = !state.display.hide_bars || view.figure().is_some_and(FigureKind::needs_bars);
     let with_bars = if bars {
@@ -26,14 +26,15 @@ pub fn figure_of(state: &State, view: View) -> Option<Figure> {
     } else {
         state.analysis().cloned()
     };
-    // What requirements are asked with has no part in the live answer, which may be older.
+    // The live answer does not depend on the inputs of the requirements and may be older than
+    // these.
     let with_bars = with_bars.map(|analysis| analysis.asked_with(&state.study.requirements));
     let analysis = with_bars.as_ref();
     let source = condition_source(state);
     request(state, view)?.figure(analysis, source.as_ref())
 }
 
-/// A name for the file of a view's figure: `bode-10-LON-Q`.
+/// Returns a file name for a view's figure: `bode-10-LON-Q`.
 pub fn figure_name(state: &State, view: View) -> String {
     let kind = view.figure();
     let mut parts: Vec<String> = kind.iter().map(|kind| kind.name().to_owned()).collect();
@@ -52,12 +53,12 @@ pub fn figure_name(state: &State, view: View) -> String {
         .collect()
 }
 
-/// The views that have a figure.
+/// Returns the views that have a figure.
 pub fn views_with_figure() -> impl Iterator<Item = View> {
     View::ALL.into_iter().filter(|view| view.figure().is_some())
 }
 
-/// What a view shows: the same that the command `gdcm figure` is asked for.
+/// Returns the figure request of a view, the same as of the command `gdcm figure`.
 pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
     let ViewFigure { kind, pairs } = view.kind().figure?;
     let display = &state.display;
@@ -68,7 +69,7 @@ pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
         View::Across => Some(&display.across),
         _ => None,
     };
-    // The parts of the axes that the engineer chose to see.
+    // Axis ranges chosen by the engineer.
     let values = PANES.map(|pane| plot.and_then(|plot| plot.chosen_values(pane)));
     let bode = BodeOptions {
         omega: plot.and_then(BodeView::chosen_omega),
@@ -93,14 +94,14 @@ pub(super) fn request(state: &State, view: View) -> Option<FigureRequest> {
     })
 }
 
-/// The tables that a view shows in place of a figure; none where it shows one.
+/// Returns the tables that a view shows instead of a figure; `None` if it shows a figure.
 pub fn tables_in_place(state: &State, view: View) -> Option<Vec<Table>> {
     (view == View::Requirements)
         .then(|| requirement_tables(state))
         .flatten()
 }
 
-/// The button that copies or saves what a view shows.
+/// Draws the button that copies or saves the content of a view.
 pub(super) fn figure_button_ui(
     ui: &mut Ui,
     state: &State,

@@ -1,4 +1,4 @@
-//! The keyboard's focus: the parts of the window that F6 goes through, and the ring around what has the focus.
+//! Keyboard focus: the regions of the window that F6 visits, and the focus ring.
 
 use std::collections::BTreeMap;
 
@@ -6,46 +6,45 @@ use egui::{Context, Id, Key, Modifiers, Rect, Stroke, StrokeKind, Ui, pos2};
 
 use super::palette::Palette;
 
-/// A part of the window, in the order of the F6 key.
+/// Region of the window, in the order of the F6 key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Region {
-    /// The plots of the view in front.
+    /// Plots of the view in front.
     Plots,
-    /// The plots below them.
+    /// Plots in the dock.
     Dock,
-    /// What is to be done.
+    /// Verdict and its steps.
     Verdict,
-    /// The result.
     Result,
-    /// The constraint matrix.
+    /// Constraint matrix.
     Matrix,
-    /// The settings.
     Settings,
-    /// The way to the export.
+    /// The export button.
     Export,
-    /// The list of conditions.
+    /// List of conditions.
     Conditions,
-    /// The bundles of the condition shown.
+    /// Bundles of the displayed condition.
     Models,
 }
 
-/// What the regions were found to hold when they were drawn.
+/// Content of the regions as they were drawn.
 #[derive(Clone, Default)]
 struct Regions {
     parts: BTreeMap<Region, Part>,
-    /// The rows that are selected, and the pass in which they were drawn: a region that was not visited yet begins with its own.
+    /// Selected rows, and the pass in which they were drawn: the focus enters an unvisited region
+    /// at its selected row.
     selected: (u64, Vec<Id>),
 }
 
 #[derive(Clone, Default)]
 struct Part {
-    /// The pass in which it was drawn last.
+    /// Pass in which the region was last drawn.
     pass: u64,
-    /// What in it can have the focus, in the order of the Tab key.
+    /// Focusable controls, in the order of the Tab key.
     controls: Vec<Id>,
-    /// What had the focus last.
+    /// Control that had the focus last.
     visited: Option<Id>,
-    /// Where it is, as far as it is in view.
+    /// Visible place of the region.
     place: Option<Rect>,
 }
 
@@ -53,8 +52,8 @@ fn key() -> Id {
     Id::unique("regions")
 }
 
-/// Draws a region, or one more piece of it, and keeps in mind what in it can have the focus. What gets the focus by the keyboard
-/// is brought into view.
+/// Draws a region, or a further piece of it, and records its focusable controls. Scrolls to a
+/// control focused by the keyboard.
 pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R) -> R {
     let layer = ui.layer_id();
     let ctx = ui.ctx().clone();
@@ -100,7 +99,7 @@ pub fn region_ui<R>(ui: &mut Ui, region: Region, add: impl FnOnce(&mut Ui) -> R)
     inner
 }
 
-/// Says that a row is the selected one of its list, in each frame that draws it.
+/// Marks a row as the selected row of its list, in each frame that draws it.
 pub fn begin_with(ctx: &Context, row: Id) {
     let pass = ctx.cumulative_pass_nr();
     ctx.data_mut(|data| {
@@ -112,7 +111,7 @@ pub fn begin_with(ctx: &Context, row: Id) {
     });
 }
 
-/// Where a region is in the window, as far as it is in view.
+/// Returns the visible place of a region in the window.
 pub fn region_place(ctx: &Context, region: Region) -> Option<Rect> {
     let place = ctx.data_mut(|data| {
         data.get_temp_mut_or_default::<Regions>(key())
@@ -123,8 +122,8 @@ pub fn region_place(ctx: &Context, region: Region) -> Option<Rect> {
     place.filter(|place| place.is_positive())
 }
 
-/// Gives the focus to the next region that has a control, or to the one before: to the control that had it last there, else to the
-/// selected row, or to the first control.
+/// Focuses the next or previous region that has a control: its last focused control, else its
+/// selected row, else its first control.
 pub fn leave_region(ctx: &Context, forward: bool) {
     let focused = ctx.memory(|memory| memory.focused());
     let regions = ctx.data_mut(|data| data.get_temp_mut_or_default::<Regions>(key()).clone());
@@ -165,22 +164,23 @@ fn had_focus() -> Id {
     Id::unique("had anything the focus")
 }
 
-/// Whether a control had the focus when the last frame ended: the Escape key has taken it away by now, and was meant for it.
+/// Returns whether a control had the focus at the end of the last frame: Escape was meant for it
+/// and has removed its focus by now.
 pub fn was_focused(ctx: &Context) -> bool {
     ctx.data(|data| data.get_temp(had_focus()).unwrap_or(false))
 }
 
-/// Takes the Escape key for something that it closes, unless it was meant for a control.
+/// Consumes Escape to close something, unless it was meant for a control.
 pub fn take_escape(ctx: &Context) -> bool {
     !was_focused(ctx) && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
 }
 
 /// Width of the ring \[pt\].
 const WIDTH: f32 = 2.0;
-/// Between the ring and what it surrounds \[pt\].
+/// Gap between the ring and its control \[pt\].
 const GAP: f32 = 1.0;
 
-/// Draws the ring over all that was drawn before: the same around every control, list row, cell and plot.
+/// Draws the focus ring on top of everything, alike around every control, list row, cell and plot.
 pub fn focus_ring_ui(ctx: &Context, palette: &Palette) {
     let focused = ctx.memory(|memory| memory.focused());
     ctx.data_mut(|data| data.insert_temp(had_focus(), focused.is_some()));
@@ -208,7 +208,7 @@ mod tests {
 
     use super::*;
 
-    /// Relative luminance as the Web Content Accessibility Guidelines 2.2 define it.
+    /// Computes the relative luminance defined by the Web Content Accessibility Guidelines 2.2.
     fn luminance(color: Color32) -> f32 {
         let [r, g, b, _] = egui::Rgba::from(color).to_array();
         0.2126 * r + 0.7152 * g + 0.0722 * b

@@ -1,4 +1,4 @@
-//! The forms in front of the window: paths to open and to save, what to export, questions, help.
+//! Forms in front of the window: paths to open and save, export options, questions, help.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -24,8 +24,8 @@ use super::palette::Palette;
 use super::records::{RecordsCommand, WantedDataset};
 use super::state::{Forms, State};
 
-/// Shows the form that is asked for, if any. Its field has the focus when it opens; Enter submits it; Escape and a click outside
-/// close it.
+/// Draws the requested form, if any. Its field has the focus when it opens; Enter submits it;
+/// Escape and a click outside close it.
 pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(kind) = state.forms.shown else {
         state.forms.drawn = None;
@@ -34,7 +34,7 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
     let asks_to_overwrite = !state.forms.existing.is_empty();
     let opens =
         state.forms.drawn.replace((kind, asks_to_overwrite)) != Some((kind, asks_to_overwrite));
-    // A form has an id of its own: the size of one is not that of another.
+    // Each form has its own id, because egui stores the size by id.
     let modal = Modal::new(Id::unique(("form", kind, asks_to_overwrite))).show(ctx, |ui| {
         ui.set_width(460.0);
         let form = &mut Form {
@@ -61,21 +61,21 @@ pub fn forms_ui(ctx: &Context, state: &mut State, palette: &Palette, commands: &
     }
 }
 
-/// The words of a form that asks for a path.
+/// Texts of a form that asks for a path.
 struct PathWords {
     kind: FormKind,
     title: &'static str,
     /// Accessible name of the field.
     field: &'static str,
-    /// What stands in the field while it is empty.
+    /// Placeholder of the empty field.
     hint: &'static str,
-    /// What is said below the field; nothing where it is empty.
+    /// Text below the field; may be empty.
     explanation: &'static str,
-    /// What the button says.
+    /// Text of the button.
     submit: &'static str,
 }
 
-/// Every form that asks for a path and for nothing else but one choice.
+/// Every form that asks for a path and at most for a choice.
 const PATHS: [PathWords; 10] = [
     PathWords {
         kind: FormKind::Open,
@@ -160,7 +160,8 @@ const PATHS: [PathWords; 10] = [
     },
 ];
 
-/// A form that asks for a path, and some for one of a few choices; none where it only asks whether to overwrite.
+/// Draws a form that asks for a path, and in some forms for a choice; draws nothing if the form
+/// only asks whether to overwrite.
 fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State) {
     let Some(words) = PATHS.iter().find(|words| words.kind == kind) else {
         return;
@@ -193,7 +194,7 @@ fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State) {
         }
         _ => {}
     }
-    // The end of the name goes with the format, as long as nobody has typed another.
+    // The extension follows the format until the name is edited.
     if let Some(stem) = path
         .strip_suffix(&format!(".{}", before.extension))
         .filter(|_| kind == FormKind::ExportAs)
@@ -225,7 +226,8 @@ fn path_ui(form: &mut Form<'_, '_>, kind: FormKind, state: &mut State) {
     *forms.typed_in(kind) = path;
 }
 
-/// What the file of an export would contain, and what it would leave out; nothing before there are results.
+/// Draws the planned contents of an exported file and its omissions; nothing before there are
+/// results.
 fn contents_ui(
     form: &mut Form<'_, '_>,
     state: &State,
@@ -243,7 +245,7 @@ fn contents_ui(
     }
 }
 
-/// What a form asks for with its path.
+/// Returns the command of a form with its path.
 fn path_command(kind: FormKind, forms: &Forms, path: PathBuf) -> Option<Command> {
     Some(match kind {
         FormKind::Open => Command::Open(path),
@@ -333,7 +335,7 @@ fn about_ui(form: &mut Form<'_, '_>) {
     form.button_ui("Close", true, Command::ShowForm(None));
 }
 
-/// Asks whether to overwrite files; a cancel goes back to the form that would.
+/// Asks whether to overwrite files; Cancel returns to the form.
 fn overwrite_ui(form: &mut Form<'_, '_>, kind: FormKind, existing: &[String]) {
     form.title(if existing.len() == 1 {
         "This file exists already"
@@ -346,7 +348,7 @@ fn overwrite_ui(form: &mut Form<'_, '_>, kind: FormKind, existing: &[String]) {
     form.ui.add_space(4.0);
     form.line(|form| {
         form.button_ui("Overwrite", false, Command::Overwrite);
-        // Enter loses nothing.
+        // Enter must not lose anything.
         form.button_ui("Cancel", true, Command::ShowForm(Some(kind)));
     });
 }
@@ -391,7 +393,7 @@ fn differences_ui(form: &mut Form<'_, '_>, state: &State) {
     });
 }
 
-/// Why a model is rejected; one that is kept is rejected with it.
+/// Draws the form for the reason of a rejection; a kept model is rejected on submission.
 fn reason_ui(form: &mut Form<'_, '_>, state: &mut State) {
     let Some(model) = state.forms.rejected_model.clone() else {
         return;
@@ -426,10 +428,10 @@ fn reason_ui(form: &mut Form<'_, '_>, state: &mut State) {
     });
 }
 
-/// Most columns of a record that are named.
+/// Most columns of a record that are listed.
 const MOST_COLUMNS: usize = 60;
 
-/// Which channels of records a dataset is made of, and where it is written.
+/// Draws the form that selects the record channels of a dataset, and its path.
 fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut WantedDataset) {
     form.title("A dataset of these records");
     form.explain(
@@ -513,10 +515,10 @@ fn record_dataset_ui(form: &mut Form<'_, '_>, wanted: &mut WantedDataset) {
     });
 }
 
-/// A form being drawn.
+/// Form being drawn.
 struct Form<'a, 'c> {
     ui: &'a mut Ui,
-    /// Whether this is the first frame that shows it.
+    /// Whether this is its first frame.
     opens: bool,
     palette: &'a Palette,
     commands: &'c mut Vec<Command>,
@@ -528,7 +530,7 @@ impl Form<'_, '_> {
         self.ui.add_space(4.0);
     }
 
-    /// What has to be known before the form is filled in.
+    /// Draws an explanation above the fields.
     fn explain(&mut self, text: &str) {
         self.ui.label(self.palette.dim(text));
     }
@@ -543,7 +545,7 @@ impl Form<'_, '_> {
         }
     }
 
-    /// What a field of several is, in front of it.
+    /// Draws the label in front of a field.
     fn labelled(&mut self, text: &str) {
         let size = vec2(56.0, self.ui.spacing().interact_size.y);
         self.ui
@@ -553,7 +555,7 @@ impl Form<'_, '_> {
             });
     }
 
-    /// The button that closes the form; what it asks for may wait for the newest results.
+    /// Draws the button that closes the form; its action may have to wait for the newest results.
     fn cancel_ui(&mut self, waits: bool) {
         self.button_ui("Cancel", false, Command::ShowForm(None));
         if waits {
@@ -561,7 +563,7 @@ impl Form<'_, '_> {
         }
     }
 
-    /// The text field of the form; whether the Enter key was pressed in it.
+    /// Draws the text field of the form; returns whether Enter was pressed in it.
     fn text_ui(&mut self, name: &str, text: &mut String, hint: &str) -> bool {
         let shown = TextEdit::singleline(text)
             .hint_text(hint)
@@ -570,7 +572,7 @@ impl Form<'_, '_> {
         let response = shown.response.response;
         name_text_field(&response, name, text);
         if self.opens {
-            // What stands there is replaced by what is typed.
+            // Typing replaces the initial text.
             let mut edited = shown.state;
             let all = CCursorRange::two(CCursor::new(0), CCursor::new(text.chars().count()));
             edited.cursor.set_char_range(Some(all));
@@ -580,14 +582,14 @@ impl Form<'_, '_> {
         is_entered(self.ui, &response)
     }
 
-    /// The button that submits the form, which Enter does too; others follow on the same line.
+    /// Draws the submit button, which Enter also presses; further buttons follow on the same line.
     fn submit_ui(&mut self, text: &str, is_ready: bool, entered: bool, command: Option<Command>) {
         let clicked = self.ui.add_enabled(is_ready, Button::new(text)).clicked();
         self.commands
             .extend(command.filter(|_| clicked || (entered && is_ready)));
     }
 
-    /// A button; the first of a form without a text field has the focus when it opens.
+    /// Draws a button; the first button of a form without a text field has the focus when it opens.
     fn button_ui(&mut self, text: &str, is_first: bool, command: Command) {
         let response = self.ui.button(text);
         if is_first && self.opens {
@@ -598,7 +600,7 @@ impl Form<'_, '_> {
         }
     }
 
-    /// What follows stands on one line.
+    /// Lays out the content in a single line.
     fn line(&mut self, add: impl FnOnce(&mut Form<'_, '_>)) {
         let opens = self.opens;
         let palette = self.palette;

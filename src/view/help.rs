@@ -1,4 +1,4 @@
-//! What explains the window: the page of keys and gestures, and the guided tour.
+//! Help on the window: the page of keys and gestures, and the guided tour.
 
 use egui::{
     Align2, Area, Button, Context, Frame, Grid, Id, Order, Rect, RichText, ScrollArea, Stroke,
@@ -15,7 +15,7 @@ use super::state::State;
 /// Width of the note \[pt\].
 const WIDTH: f32 = 300.0;
 
-/// One step: the part of the window, its title, and what is done there.
+/// Step of the tour: region of the window, title, and text.
 struct Step {
     region: Region,
     title: &'static str,
@@ -55,7 +55,7 @@ const STEPS: [Step; 5] = [
     },
 ];
 
-/// The step that is shown, if any: a ring around its part of the window, and a note beside it.
+/// Draws the current step, if any: a ring around its region, and a note beside it.
 pub fn tour_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some((number, step)) = state
         .tour
@@ -63,7 +63,7 @@ pub fn tour_ui(ctx: &Context, state: &State, palette: &Palette, commands: &mut V
     else {
         return;
     };
-    // Its notes are about the panels: it waits while there are none.
+    // The notes refer to the panels: the tour waits while these are hidden.
     if state.forms.shown.is_some() || state.assembling.is_some() || state.on_start_page {
         return;
     }
@@ -132,14 +132,15 @@ fn note_ui(
     });
 }
 
-/// Where the note stands: right of the part, left of it, or over it where it takes the whole width; which corner of it, and where.
+/// Places the note right of the region, left of it, or over it if the region takes the whole width;
+/// returns the note's corner and its position.
 fn beside(place: Rect, window: Rect) -> (Align2, egui::Pos2) {
     const GAP: Vec2 = vec2(12.0, 0.0);
     let room = WIDTH + 40.0;
     if window.right() - place.right() > room {
         (Align2::LEFT_TOP, place.right_top() + GAP)
     } else if place.left() - window.left() > room {
-        // Upwards from below: what stands at the foot of the window leaves no room downwards.
+        // Growing upwards, because a region at the foot of the window leaves no room below.
         let low = place.top() > window.center().y;
         if low {
             (Align2::RIGHT_BOTTOM, place.left_bottom() - GAP)
@@ -151,7 +152,7 @@ fn beside(place: Rect, window: Rect) -> (Align2, egui::Pos2) {
     }
 }
 
-/// What the pointer does, besides what is pressed by its name.
+/// Pointer gestures, except clicks on named controls.
 const GESTURES: &[(&str, &str)] = &[
     ("click on a curve", "reject or restore its model"),
     ("Alt+click on a curve", "show it alone; again: show all"),
@@ -229,7 +230,7 @@ const MARKS: &[(&str, &str)] = &[
     ),
 ];
 
-/// Every key of the table of commands, the gestures, and the marks.
+/// Draws every key of the command table, the gestures, and the marks.
 pub fn keys_page_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     let room = ui.ctx().content_rect().height() - 120.0;
     ScrollArea::vertical()

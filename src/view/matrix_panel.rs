@@ -1,5 +1,5 @@
-//! The constraint matrix: every response with G, D and J, held or free; and the card of the response in focus: what it wants, what is
-//! left, and how sure that is.
+//! Constraint matrix: every response with G, D and J, constrained or free; and the card of the
+//! response in focus with its request, remainder and error bar.
 
 use egui::{
     Align2, Color32, Grid, Key, Rect, Response, RichText, Role, ScrollArea, Sense, Stroke,
@@ -23,18 +23,19 @@ use super::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
 use super::state::{State, Sureness};
 use super::tables::TableKind;
 
-/// Height of a cell, at least and at most \[pt\].
+/// Least and greatest height of a cell \[pt\].
 const CELL_HEIGHTS: [f32; 2] = [34.0, 44.0];
-/// Between two cells \[pt\].
+/// Gap between two cells \[pt\].
 const GAP: f32 = 3.0;
 const LEAST_CELL_WIDTH: f32 = 58.0;
 const ROW_LABEL_WIDTH: f32 = 28.0;
 const HEADER_HEIGHT: f32 = 20.0;
 const LOCK_SIZE: f32 = 13.0;
-/// J at which an underline is as long as its cell.
+/// J at which an underline reaches the full length of its cell.
 const FULL_COST: f64 = 60.0;
-/// Every response as a cell, within `room` points of height. A click on the cell chooses the response for the large plot; a click on its box, a double click or
-/// the space bar holds or releases it; a right-click offers more.
+/// Draws every response as a cell, within `room` points of height. A click on the cell shows the
+/// response in the large plot; a click on its box, a double click or the space bar constrains or
+/// releases it; a right-click offers more.
 pub fn matrix_ui(
     ui: &mut Ui,
     state: &State,
@@ -61,7 +62,7 @@ pub fn matrix_ui(
     });
 }
 
-/// What the underlines mean, from right to left.
+/// Draws the key of the underlines, from right to left.
 fn key_ui(ui: &Ui, row: Rect, palette: &Palette) {
     let mut right = row.right();
     for (words, color) in [
@@ -110,7 +111,7 @@ fn cells_ui(
         (_, true) => (palette.text, medium(SMALL_SIZE)),
         _ => (palette.dim_text, small()),
     };
-    // A matrix of more channels than there is room for scrolls by itself: verdict and export stay.
+    // A matrix larger than its room scrolls by itself: verdict and export stay in place.
     ScrollArea::both()
         .id_salt("constraint matrix")
         .max_height(room)
@@ -146,7 +147,7 @@ struct Cell<'a> {
     focused: bool,
     constrained: bool,
     fitted: bool,
-    /// Whether it is not matched, or keeps others from being matched.
+    /// Whether the response is not matched, or prevents others from being matched.
     in_conflict: bool,
     shown: Option<&'a ConditionAnalysis>,
     state: &'a State,
@@ -168,7 +169,7 @@ impl<'a> Cell<'a> {
         }
     }
 
-    /// Why it has no G, once that is known.
+    /// Returns the reason why there is no G, once it is known.
     fn undefined(&self) -> Option<Undefined> {
         self.shown?.comparison.undefined[self.pair]
     }
@@ -203,7 +204,8 @@ impl<'a> Cell<'a> {
         response.on_hover_ui(|ui| self.tooltip_ui(ui, palette));
     }
 
-    /// The box that holds or frees it; it is there under the pointer, at the end of the line of G.
+    /// Draws the box that constrains or releases the response, at the end of the line of G; visible
+    /// under the pointer.
     fn lock_ui(&self, ui: &mut Ui, rect: Rect, is_pointed: bool, palette: &Palette) -> Response {
         let corner = rect.right_top() + vec2(-LOCK_SIZE, 1.0);
         let place = Rect::from_min_size(corner, vec2(LOCK_SIZE, LOCK_SIZE));
@@ -277,7 +279,8 @@ impl<'a> Cell<'a> {
         self.paint_values(ui, rect, is_pointed, palette);
     }
 
-    /// G and D, each with half the width of its bar, over an underline of its part of J.
+    /// Paints G and D, each with the half-width of its error bar, over an underline of its part of
+    /// J.
     fn paint_values(&self, ui: &Ui, rect: Rect, is_pointed: bool, palette: &Palette) {
         let Some(shown) = self.shown else { return };
         let (Some(gain), Some(delay_s)) = (
@@ -331,7 +334,8 @@ impl<'a> Cell<'a> {
             let value = painted_text(ui, line, 0.0, &text, font, strong);
             if let Some(bar) = bar {
                 let galley = ui.painter().layout_no_wrap(bar, small(), palette.dim_text);
-                // A bar of three digits beside a value of three has no room: both stand in the tooltip and in the card.
+                // The cell has no room for a three-digit half-width beside a three-digit value:
+                // both are in the tooltip and in the card.
                 let place = pos2(
                     line.right() - galley.size().x,
                     line.center().y - 0.5 * galley.size().y,
@@ -401,7 +405,8 @@ impl<'a> Cell<'a> {
         }
     }
 
-    /// Four aligned rows; all else is behind [`QUESTION`](super::explanation::QUESTION) in the menu.
+    /// Draws four aligned rows; the rest is available through
+    /// [`QUESTION`](super::explanation::QUESTION) in the menu.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         let held = if self.constrained { "held" } else { "free" };
         let ignored = if self.fitted {
@@ -418,8 +423,8 @@ impl<'a> Cell<'a> {
     }
 }
 
-/// The part of J before the correction, pale, and after it; orange where that is not less. A tip at its end stands for more than
-/// there is room for.
+/// Paints the part of J before the correction, pale, and after it; orange if it did not decrease. A
+/// tip at the end marks a value beyond the available length.
 fn underline(ui: &Ui, half: Rect, (before, after): (f64, f64), palette: &Palette) {
     let y = half.bottom() - 2.5;
     let left = half.left() + 4.0;
@@ -452,25 +457,25 @@ fn underline(ui: &Ui, half: Rect, (before, after): (f64, f64), palette: &Palette
 
 /// Height of the card \[pt\].
 pub const CARD_HEIGHT: f32 = 104.0;
-/// Height of a row of it \[pt\].
+/// Height of a row \[pt\].
 const ROW: f32 = 18.0;
 
-/// One row: its name, what the response wants, what the correction leaves, half the width of the bar, and whether too much is left.
+/// Row of the card.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CardRow {
-    /// "gain G".
     pub name: &'static str,
-    /// What the response wants, with its unit.
+    /// Requested value, with its unit.
     pub wants: String,
-    /// What is left of it.
+    /// Remainder after the correction.
     pub left: String,
-    /// Half the width of its bar.
+    /// Half-width of the error bar.
     pub half: String,
-    /// Whether what is left is not reduced.
+    /// Whether the remainder is not reduced.
     pub is_missed: bool,
 }
 
-/// Gain, delay and both parts of J of a response: what it wants, and what is left after the correction.
+/// Returns gain, delay and both parts of J of a response: requested values, and remainders after
+/// the correction.
 pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<CardRow> {
     let sureness = state.sureness();
     let mut rows = Vec::new();
@@ -527,12 +532,12 @@ pub fn card_rows(state: &State, shown: &ConditionAnalysis, pair: Pair) -> Vec<Ca
     rows
 }
 
-/// Whether a part of J is worth reading and was not made less: a tenth of J is seen by nobody.
+/// Returns whether a noticeable part of J has not decreased; a tenth of J is not noticeable.
 pub fn is_not_reduced(before: f64, after: f64) -> bool {
     after > 1.0 && after > before - 0.1
 }
 
-/// The card of the response in focus.
+/// Draws the card of the response in focus.
 pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     let (rect, _) = ui.allocate_exact_size(vec2(ui.available_width(), CARD_HEIGHT), Sense::hover());
     ui.painter().rect_stroke(
@@ -588,7 +593,7 @@ pub fn card_ui(ui: &mut Ui, state: &State, palette: &Palette) {
     }
 }
 
-/// The same rows in a tooltip, where the card has no room.
+/// Draws the same rows in a tooltip if there is no room for the card.
 pub fn card_grid_ui(ui: &mut Ui, state: &State, pair: Pair, palette: &Palette) {
     let Some(shown) = state.shown() else { return };
     Grid::new("card")

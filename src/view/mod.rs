@@ -1,4 +1,4 @@
-//! What the window shows: functions that draw the state and say what the engineer asks for.
+//! Window content: functions that draw the state and return the engineer's commands.
 
 pub mod answer_panel;
 pub mod assembling;

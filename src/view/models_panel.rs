@@ -1,4 +1,4 @@
-//! The bundles of the condition shown: which models are kept, which represents, which are suspect.
+//! Bundles of the displayed condition: kept models, representatives, suspected outliers.
 
 use std::collections::BTreeMap;
 
@@ -25,13 +25,13 @@ use super::palette::{BODY_SIZE, Palette, SMALL_SIZE, body, medium, small};
 use super::state::State;
 use super::tables::TableKind;
 
-/// The bundles of the condition shown, below one another in the left panel: the physics models, and the identified ones folded at
-/// its foot.
+/// Draws the bundles of the displayed condition in the left panel: the physics models above, the
+/// identified models folded at its foot.
 pub fn models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     region_ui(ui, Region::Models, |ui| {
         let is_open = state.display.identified_open;
         let room = ui.available_height();
-        // One line says that there is none.
+        // A single line reports the absence of models.
         let models = state
             .condition()
             .bundle(BundleKind::Identified)
@@ -66,7 +66,7 @@ pub fn models_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
     });
 }
 
-/// One bundle in a sheet beside the rail.
+/// Draws a bundle in a sheet beside the rail.
 pub fn bundle_sheet_ui(
     ui: &mut Ui,
     state: &State,
@@ -75,7 +75,7 @@ pub fn bundle_sheet_ui(
     commands: &mut Vec<Command>,
 ) {
     ui.spacing_mut().item_spacing.y = 0.0;
-    // The sheet has a heading of its own.
+    // The sheet has its own heading.
     region_ui(ui, Region::Models, |ui| {
         if kind == BundleKind::Physics {
             at_once_ui(ui, state, palette, commands);
@@ -101,7 +101,7 @@ fn physics_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     rows_ui(ui, state, palette, kind, commands);
 }
 
-/// What may be done with all of them at once: above the list, always in reach.
+/// Draws the actions on all models at once, above the list and always within reach.
 fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let choice = state.study.choice(condition);
@@ -134,7 +134,7 @@ fn at_once_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     });
 }
 
-/// The line that folds and unfolds the identified models.
+/// Draws the line that folds and unfolds the identified models.
 fn fold_ui(
     ui: &mut Ui,
     state: &State,
@@ -209,7 +209,7 @@ fn rows_ui(
         heads_ui(ui, trims.as_ref(), palette);
     }
     let names = short_names(models);
-    // No control of a row is higher than the row.
+    // Controls must not be higher than the row.
     ui.spacing_mut().interact_size.y = 16.0;
     ScrollArea::vertical()
         .id_salt(kind)
@@ -242,17 +242,17 @@ fn heads_ui(ui: &mut Ui, trims: Option<&TrimColumns>, palette: &Palette) {
     painted_text(ui, row, -1.0, "discontinuity", small(), palette.dim_text);
 }
 
-/// Where the columns of a trim end \[pt from the row's left edge\].
+/// Right edges of the trim columns \[pt from the row's left edge\].
 const TRIM_ENDS: [f32; 3] = [70.0, 114.0, 154.0];
 
-/// The coordinates of the perturbed trims, as columns.
+/// Coordinates of the perturbed trims, as columns.
 struct TrimColumns {
     keys: Vec<String>,
     heads: Vec<String>,
 }
 
 impl TrimColumns {
-    /// None where a model does not say its trim, or where there are more coordinates than columns.
+    /// Returns `None` if a model has no trim, or if there are more coordinates than columns.
     fn of(models: &[Model]) -> Option<Self> {
         let mut keys: Vec<String> = Vec::new();
         for model in models {
@@ -266,7 +266,7 @@ impl TrimColumns {
         (!keys.is_empty() && keys.len() <= TRIM_ENDS.len()).then_some(Self { keys, heads })
     }
 
-    /// The offsets of a model, "·" for none; nothing where it has none at all.
+    /// Returns the offsets of a model, "·" for zero; `None` if the model has no offsets.
     fn offsets(&self, model: &Model) -> Option<Vec<String>> {
         let trim = model
             .perturbation()
@@ -281,7 +281,8 @@ impl TrimColumns {
     }
 }
 
-/// "V kt" of "airspeed_kt": a name of three letters or less, with its unit where there is room for it.
+/// Returns "V kt" for "airspeed_kt": a name of at most three letters, with its unit if there is
+/// room.
 fn trim_head(key: &str) -> String {
     match key {
         "airspeed_kt" => "V kt".to_owned(),
@@ -299,15 +300,15 @@ fn trim_head(key: &str) -> String {
     }
 }
 
-/// The discontinuity ratio that fills its bar.
+/// Discontinuity ratio that fills its bar.
 const FULL_RATIO: f64 = 4.0;
 
 struct ModelRow<'a> {
     id: ModelId,
     model: &'a Model,
-    /// Its name as it is shown.
+    /// Displayed name.
     name: &'a str,
-    /// Names of the models above and below it.
+    /// Names of the models above and below.
     neighbours: [Option<&'a str>; 2],
     kept: bool,
     pinned: bool,
@@ -315,9 +316,9 @@ struct ModelRow<'a> {
     pointed: bool,
     score: Option<f64>,
     ratio: Option<f64>,
-    /// Why it takes no part in the comparison, if it does not.
+    /// Reason why the model is excluded from the comparison.
     set_aside: Option<String>,
-    /// Why it is rejected, in the engineer's words.
+    /// Reason of the rejection, in the engineer's words.
     reason: Option<String>,
 }
 
@@ -368,7 +369,7 @@ impl<'a> ModelRow<'a> {
         commands: &mut Vec<Command>,
     ) {
         let width = ui.available_width();
-        // No stop of the Tab key: what can be done is on its box, on its star, and in the palette.
+        // Not focusable by Tab: its actions are on the box, on the star, and in the palette.
         let (rect, response) = ui.allocate_exact_size(vec2(width, ROW_HEIGHT), Sense::CLICK);
         let response = named(
             response,
@@ -380,7 +381,7 @@ impl<'a> ModelRow<'a> {
         }
         self.keep_ui(ui, rect, commands);
         self.star_ui(ui, rect, palette, commands);
-        // Of a thousand rows few are in sight.
+        // Of a thousand rows only a few are visible.
         if ui.is_rect_visible(rect) {
             let value_width = self.paint_value(ui, rect, palette);
             match trims.and_then(|trims| trims.offsets(self.model)) {
@@ -456,7 +457,7 @@ impl<'a> ModelRow<'a> {
         });
     }
 
-    /// The star of the representative: a click chooses the model, or goes back to the medoid.
+    /// Draws the star of the representative: a click chooses the model, or returns to the medoid.
     fn star_ui(&self, ui: &mut Ui, rect: Rect, palette: &Palette, commands: &mut Vec<Command>) {
         let place = Rect::from_min_size(
             pos2(rect.left() + 24.0, rect.top()),
@@ -514,7 +515,7 @@ impl<'a> ModelRow<'a> {
         response.on_hover_text(hint);
     }
 
-    /// The ratio with its bar, or the order; returns the width taken on the right.
+    /// Paints the ratio with its bar, or the order; returns the width taken on the right.
     fn paint_value(&self, ui: &Ui, rect: Rect, palette: &Palette) -> f32 {
         let dim = if self.kept {
             palette.text
@@ -563,7 +564,7 @@ impl<'a> ModelRow<'a> {
         5.0
     }
 
-    /// The offsets of its trim, struck out where it is rejected.
+    /// Paints the offsets of the trim, struck out if the model is rejected.
     fn paint_offsets(&self, ui: &Ui, rect: Rect, offsets: &[String], palette: &Palette) {
         for (offset, end) in offsets.iter().zip(TRIM_ENDS) {
             let color = if !self.kept || offset == "·" {
@@ -604,7 +605,8 @@ impl<'a> ModelRow<'a> {
         );
     }
 
-    /// Its name over four aligned rows; all else is behind [`QUESTION`](super::explanation::QUESTION) in the menu.
+    /// Draws the name above four aligned rows; the rest is available through
+    /// [`QUESTION`](super::explanation::QUESTION) in the menu.
     fn tooltip_ui(&self, ui: &mut Ui, palette: &Palette) {
         ui.label(RichText::new(&self.model.name).font(medium(BODY_SIZE)));
         Grid::new("model")
@@ -667,8 +669,8 @@ fn signed_compact(value: f64) -> String {
     format!("{}{}", if value > 0.0 { "+" } else { "" }, compact(value))
 }
 
-/// The names without the method that every model of an identified bundle repeats: without "CT-PBSID" where some are of "CT-PBSID" and the
-/// others of "CT-PBSID, refined".
+/// Returns the names without the method that every model of an identified bundle repeats: without
+/// "CT-PBSID" if some names contain "CT-PBSID" and the others "CT-PBSID, refined".
 fn short_names(models: &[Model]) -> Vec<&str> {
     let repeated = models
         .iter()

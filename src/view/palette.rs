@@ -1,4 +1,5 @@
-//! The colours of the window, dark and light, the egui style made of them, and how curves are drawn, apart from the theme.
+//! Window colours, dark and light, the egui style built from them, and the theme-independent curve
+//! styles.
 
 use std::sync::Arc;
 
@@ -10,28 +11,29 @@ use egui::{
 };
 use serde::{Deserialize, Serialize};
 
-/// Size of captions: axes, units, bars, heads of tables, chips, the status \[pt\].
+/// Font size of captions: axes, units, bars, table headings, chips, status \[pt\].
 pub const SMALL_SIZE: f32 = 11.0;
-/// Size of running text: rows, controls, words \[pt\].
+/// Font size of running text: rows, controls, words \[pt\].
 pub const BODY_SIZE: f32 = 12.5;
-/// Size of the response in focus, and of the counts of the verdict \[pt\].
+/// Font size of the response in focus and of the verdict's counts \[pt\].
 pub const TITLE_SIZE: f32 = 15.0;
-/// Size of the heading of the start page \[pt\].
+/// Font size of the start page's heading \[pt\].
 pub const DISPLAY_SIZE: f32 = 20.0;
 
-/// The second cut of the typeface: headings of sections, what is selected, held figures, buttons.
+/// Returns the medium weight of the typeface: section headings, selection, constrained values,
+/// buttons.
 pub fn medium(size: f32) -> FontId {
     FontId::new(size, FontFamily::Name(MEDIUM.into()))
 }
 
 const MEDIUM: &str = "medium";
 
-/// The typeface of captions.
+/// Returns the font of captions.
 pub fn small() -> FontId {
     FontId::proportional(SMALL_SIZE)
 }
 
-/// The typeface of running text.
+/// Returns the font of running text.
 pub fn body() -> FontId {
     FontId::proportional(BODY_SIZE)
 }
@@ -40,19 +42,19 @@ const fn hex(rgb: u32) -> Color32 {
     Color32::from_rgb((rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8)
 }
 
-/// The costs J between which the colours of [`Palette::heat`] are mixed.
+/// Costs J between which the colours of [`Palette::heat`] are interpolated.
 pub const HEAT_COSTS: [f32; 5] = [0.0, 10.0, 30.0, 60.0, 110.0];
 
-/// The design tokens of one theme: each colour has one meaning everywhere.
+/// Design tokens of a theme: each colour has a single meaning everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Palette {
-    /// Whether text is light on dark.
+    /// Whether the theme has light text on a dark ground.
     pub is_dark: bool,
-    /// Behind the plots and inside text fields.
+    /// Ground of plots and text fields.
     pub background: Color32,
-    /// Side panels and bars.
+    /// Ground of side panels and bars.
     pub panel: Color32,
-    /// Buttons, legends, tooltips: what lies on a panel.
+    /// Elements on a panel: buttons, legends, tooltips.
     pub raised: Color32,
     /// Separators and outlines.
     pub line: Color32,
@@ -62,40 +64,40 @@ pub struct Palette {
     pub text: Color32,
     /// Captions and units.
     pub dim_text: Color32,
-    /// Behind what is selected.
+    /// Ground of a selection.
     pub selected: Color32,
-    /// The nominal physics model.
+    /// Nominal physics model.
     pub nominal: Color32,
     /// Physics models at perturbed trims, and their representative.
     pub perturbed: Color32,
     /// Models identified from flight.
     pub identified: Color32,
-    /// The corrected physics model, and the schedule.
+    /// Corrected physics model, and the schedule.
     pub corrected: Color32,
-    /// Models left out.
+    /// Rejected models.
     pub rejected: Color32,
-    /// What can be acted upon: links, handles, the band.
+    /// Interactive elements: links, handles, the band.
     pub accent: Color32,
-    /// Cautions, and what got worse.
+    /// Cautions and deteriorations.
     pub warning: Color32,
-    /// What is met.
+    /// Met requirements.
     pub good: Color32,
-    /// Behind a verdict that is not met, and behind what is not valid.
+    /// Ground of an unmet verdict and of an invalid region.
     pub warning_ground: Color32,
-    /// Behind a verdict that is met.
+    /// Ground of a met verdict.
     pub good_ground: Color32,
-    /// Figures that are null, and names of what is left out.
+    /// Zero values, and names of excluded items.
     pub quiet_text: Color32,
     /// Bars and ticks of boxes.
     pub quiet_mark: Color32,
-    /// J of the heat map at [`HEAT_COSTS`]: one hue, told apart by its lightness alone.
+    /// J of the heat map at [`HEAT_COSTS`]: a single hue in steps of lightness.
     pub heat: [Color32; 5],
-    /// What the widths of curves are multiplied by.
+    /// Factor on the widths of curves.
     pub line_width: f32,
 }
 
 impl Palette {
-    /// The dark theme.
+    /// Returns the dark theme.
     pub const fn dark() -> Self {
         Self {
             is_dark: true,
@@ -130,7 +132,7 @@ impl Palette {
         }
     }
 
-    /// The light theme.
+    /// Returns the light theme.
     pub const fn light() -> Self {
         Self {
             is_dark: false,
@@ -165,7 +167,7 @@ impl Palette {
         }
     }
 
-    /// The palette that goes with `visuals`.
+    /// Returns the palette that matches `visuals`.
     pub fn of(visuals: &Visuals) -> Self {
         if visuals.dark_mode {
             Self::dark()
@@ -174,7 +176,7 @@ impl Palette {
         }
     }
 
-    /// This palette with curves as the engineer wants them.
+    /// Returns this palette with the engineer's curve style.
     pub fn with_looks(self, looks: PlotStyle) -> Self {
         let line_width = looks.line_width;
         match looks.curve_colors {
@@ -193,12 +195,14 @@ impl Palette {
         }
     }
 
-    /// `color` moved towards the text by `amount` (0 to 1): a hovered or pressed shade of it.
+    /// Shifts `color` towards the text colour by `amount` (0 to 1), for hovered and pressed
+    /// elements.
     pub fn towards_text(&self, color: Color32, amount: f32) -> Color32 {
         color.lerp_to_gamma(self.text, amount)
     }
 
-    /// The colour of a cost J in a map of costs; the last one beyond the last of [`HEAT_COSTS`].
+    /// Returns the colour of a cost J in a map of costs; constant beyond the last of
+    /// [`HEAT_COSTS`].
     pub fn heat_of(&self, cost: f64) -> Color32 {
         let cost = (cost as f32).clamp(HEAT_COSTS[0], HEAT_COSTS[4]);
         let above = HEAT_COSTS
@@ -210,12 +214,12 @@ impl Palette {
         self.heat[above - 1].lerp_to_gamma(self.heat[above], part)
     }
 
-    /// The colour of a name that is written in the colour of its curve.
+    /// Returns the text colour of a name written in the colour of its curve.
     pub fn name_of(&self, curve: Color32) -> Color32 {
         self.towards_text(curve, 0.3)
     }
 
-    /// Text that stands on the accent colour.
+    /// Returns the text colour on the accent colour.
     pub fn on_accent(&self) -> Color32 {
         if self.is_dark {
             self.background
@@ -224,7 +228,7 @@ impl Palette {
         }
     }
 
-    /// The visuals made of these colours.
+    /// Builds the egui visuals from these colours.
     pub fn visuals(&self) -> Visuals {
         let base = if self.is_dark {
             Visuals::dark()
@@ -282,13 +286,13 @@ impl Palette {
             noninteractive: widget(self.panel, self.panel, self.line, self.text),
             inactive: widget(self.raised, self.line, self.line, self.text),
             hovered: widget(shade(0.07), shade(0.22), shade(0.3), self.text),
-            // Of a box that is pressed or has the focus: a fill of accent would look checked.
+            // Pressed and focused boxes: an accent fill would look checked.
             active: widget(self.selected, shade(0.22), self.accent, self.text),
             open: widget(shade(0.07), self.raised, self.line, self.text),
         }
     }
 
-    /// The whole style made of these colours: small text, close spacing, thin scroll bars.
+    /// Builds the whole egui style: small text, close spacing, thin scroll bars.
     pub fn style(&self) -> Style {
         let mut style = Style {
             visuals: self.visuals(),
@@ -333,7 +337,8 @@ impl Palette {
     }
 }
 
-/// The two cuts of the typeface, each followed by egui's own fonts, in which other scripts and rarer signs are found.
+/// Returns both weights of the typeface, each followed by egui's own fonts for other scripts and
+/// rare symbols.
 pub fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::default();
     let monospaced = fonts
@@ -373,7 +378,8 @@ pub fn fonts() -> FontDefinitions {
     fonts
 }
 
-/// Gives both of egui's themes the style of this program: switching between them is egui's own `set_theme`.
+/// Gives both of egui's themes this program's style, so that egui's `set_theme` switches between
+/// them.
 pub fn apply(ctx: &Context) {
     ctx.set_fonts(fonts());
     for (theme, palette) in [
@@ -384,21 +390,21 @@ pub fn apply(ctx: &Context) {
     }
 }
 
-/// The colours of the roles of curves.
+/// Colours of the curve roles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum CurveColors {
     /// Red, blue, amber, green.
     #[default]
     Standard,
-    /// Colours that stay apart without red, green or blue cones.
+    /// Distinguishable without red, green or blue cones.
     ForAllEyes,
 }
 
 impl CurveColors {
-    /// Each of them, in the order of a menu.
+    /// Every choice, in the order of the menu.
     pub const ALL: [Self; 2] = [Self::Standard, Self::ForAllEyes];
 
-    /// The name in a menu.
+    /// Returns the text of the menu entry.
     pub fn name(self) -> &'static str {
         match self {
             Self::Standard => "Standard colours of curves",
@@ -407,21 +413,21 @@ impl CurveColors {
     }
 }
 
-/// How the engineer wants curves to be drawn.
+/// Style of curves chosen by the engineer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct PlotStyle {
-    /// The colours of their roles.
     pub curve_colors: CurveColors,
-    /// What their widths are multiplied by.
+    /// Factor on the widths of curves.
     pub line_width: f32,
 }
 
 impl PlotStyle {
-    /// What widths can be multiplied by.
+    /// Selectable width factors.
     pub const LINE_WIDTHS: [f32; 6] = [0.5, 0.75, 1.0, 1.5, 2.0, 3.0];
 
-    /// These looks where the widths are some that can be seen; a preference may have been written by another version.
+    /// Clamps the width factor to the visible range; another version may have written the
+    /// preference.
     pub fn within_limits(self) -> Self {
         let line_width = if self.line_width.is_finite() {
             self.line_width.clamp(0.5, 3.0)
@@ -441,8 +447,9 @@ impl Default for PlotStyle {
     }
 }
 
-/// Nominal, perturbed, identified, corrected: of colours with a contrast of 3 to the background, near vermilion, blue, yellow and
-/// green, those whose least distance to one another and to grey is greatest, to all eyes.
+/// Colours of nominal, perturbed, identified and corrected models: of all colours near vermilion,
+/// blue, yellow and green with a contrast of 3 to the background, those with the greatest least
+/// distance from one another and from grey, for every kind of colour vision.
 const fn for_all_eyes(is_dark: bool) -> [Color32; 4] {
     if is_dark {
         [hex(0xc65b04), hex(0x6996ff), hex(0xe8d525), hex(0x12e782)]
@@ -459,7 +466,8 @@ mod tests {
     use super::*;
     use crate::view::plot::curve_style::CurveStyle;
 
-    /// Relative luminance and contrast as the Web Content Accessibility Guidelines 2.2 define them.
+    /// Computes contrast from relative luminance as defined by the Web Content Accessibility
+    /// Guidelines 2.2.
     fn contrast(a: Color32, b: Color32) -> f32 {
         let luminance = |color: Color32| {
             let [r, g, b, _] = egui::Rgba::from(color).to_array();
@@ -470,7 +478,7 @@ mod tests {
         (a.max(b) + 0.05) / (a.min(b) + 0.05)
     }
 
-    /// What the guidelines ask of text, and of lines that mean something.
+    /// Contrast required by the guidelines for text and for meaningful lines.
     const OF_TEXT: f32 = 4.5;
     const OF_LINES: f32 = 3.0;
 
@@ -511,7 +519,7 @@ mod tests {
                     );
                 }
             }
-            // Names of what is left out and links stand on what is selected too, errors on panels.
+            // Names of excluded items and links also appear on selections, errors on panels.
             for (text, surfaces) in [
                 (palette.quiet_text, [background, panel, raised, selected]),
                 (palette.accent, [background, panel, raised, selected]),
@@ -633,8 +641,9 @@ mod tests {
         }
     }
 
-    /// What is seen of a linear colour: all of it, or what is left without one kind of cones. Machado, Oliveira and Fernandes,
-    /// "A Physiologically-based Model for Simulation of Color Vision Deficiency", IEEE TVCG 15(6), 2009, severity 1.0.
+    /// Transformations of linear colour for full colour vision and for each missing kind of cones.
+    /// Machado, Oliveira and Fernandes, "A Physiologically-based Model for Simulation of Color
+    /// Vision Deficiency", IEEE TVCG 15(6), 2009, severity 1.0.
     const SIGHTS: [(&str, [[f32; 3]; 3]); 4] = [
         ("full", [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
         (
@@ -663,7 +672,7 @@ mod tests {
         ),
     ];
 
-    /// CIELAB under D65 (CIE 15:2004), of linear sRGB (IEC 61966-2-1).
+    /// Converts linear sRGB (IEC 61966-2-1) to CIELAB under D65 (CIE 15:2004).
     fn lab([r, g, b]: [f32; 3]) -> [f32; 3] {
         let x = (0.4124564 * r + 0.3575761 * g + 0.1804375 * b) / 0.95047;
         let y = 0.2126729 * r + 0.7151522 * g + 0.0721750 * b;
@@ -682,7 +691,7 @@ mod tests {
         ]
     }
 
-    /// The colour that a translucent one is a part of.
+    /// Returns the opaque colour that underlies a translucent colour.
     fn opaque(color: Color32) -> Color32 {
         let [r, g, b, _] = color.to_srgba_unmultiplied();
         Color32::from_rgb(r, g, b)
@@ -693,7 +702,7 @@ mod tests {
         lab(sight.map(|row| (row[0] * r + row[1] * g + row[2] * b).clamp(0.0, 1.0)))
     }
 
-    /// Distance of two colours to the eye: CIE76, where 2.3 can just be told.
+    /// Computes the perceived colour distance CIE76, of which 2.3 is just noticeable.
     fn distance(a: Color32, b: Color32, sight: &[[f32; 3]; 3]) -> f32 {
         let a = seen(a, sight);
         let b = seen(b, sight);
@@ -704,10 +713,10 @@ mod tests {
             .sqrt()
     }
 
-    /// Far enough for thin lines: ten times what can just be told of large fields.
+    /// Sufficient for thin lines: ten times the just noticeable difference of large fields.
     const APART: f32 = 23.0;
 
-    /// The looks of every role in both themes.
+    /// Returns the styles of every role in both themes.
     fn roles(curve_colors: CurveColors) -> Vec<Vec<(Role, CurveStyle)>> {
         let of = |theme: Palette| {
             let palette = theme.with_looks(PlotStyle {
@@ -743,7 +752,8 @@ mod tests {
 
     #[test]
     fn roles_of_two_colours_are_told_apart_by_colour_alone_to_all_eyes() {
-        // Some roles share a colour, and differ in pattern or width; translucent ones come back with a rounding error.
+        // Some roles share a colour and differ in pattern or width; translucent colours return with
+        // a rounding error.
         let is_shared =
             |a: &CurveStyle, b: &CurveStyle| distance(a.color, b.color, &SIGHTS[0].1) < 2.3;
         assert_told_apart(CurveColors::ForAllEyes, |a, b, distance| {

@@ -1,4 +1,4 @@
-//! The correction of the condition shown: gains and delays of inputs and outputs, side by side.
+//! Correction of the displayed condition: gains and delays of inputs and outputs, side by side.
 
 use egui::{Color32, CursorIcon, FontId, Rect, Role, Sense, Ui, pos2, vec2};
 
@@ -19,10 +19,10 @@ use crate::view::views::channels::bar_words;
 
 /// Height of a row \[pt\].
 const ROW: f32 = 18.0;
-/// Where gains and delays end, as parts of the width of a side.
+/// Right edges of gains and delays, as shares of the width of a side.
 const ENDS: [f32; 2] = [0.5, 0.85];
 
-/// Gains and delays of every channel; in a low window the range of the gains alone.
+/// Draws gains and delays of every channel; in a low window only the range of the gains.
 pub fn result_ui(
     ui: &mut Ui,
     state: &State,
@@ -72,7 +72,8 @@ pub fn result_ui(
     }
 }
 
-/// Whether better gains exist: small, for it is the rule; a click opens the proof.
+/// Draws whether better gains exist, in small text because it is the usual case; a click opens the
+/// proof.
 fn proof_ui(
     ui: &mut Ui,
     row: Rect,
@@ -100,7 +101,7 @@ fn proof_ui(
         .asks(Command::ShowSheet(Some(Sheet::Reasons)), commands);
 }
 
-/// The channels of one side.
+/// Channels of a side.
 struct Side<'a> {
     of_inputs: bool,
     side: Rect,
@@ -109,7 +110,8 @@ struct Side<'a> {
     palette: &'a Palette,
 }
 
-/// A value of a channel: where it ends, how it is painted with half the width of its bar, and what is told of it.
+/// Value of a channel: its right edge, its painting with the half-width of its error bar, and its
+/// tooltip.
 struct ChannelValue {
     end: f32,
     text: String,
@@ -228,7 +230,7 @@ impl Side<'_> {
         }
     }
 
-    /// A value with half the width of its bar; a click asks how it was computed.
+    /// Draws a value with the half-width of its error bar; a click opens its derivation.
     fn value_ui(&self, ui: &mut Ui, row: Rect, value: ChannelValue, commands: &mut Vec<Command>) {
         let ChannelValue {
             text,
@@ -272,7 +274,7 @@ impl Side<'_> {
     }
 }
 
-/// Text that ends at a part of the width of its row.
+/// Paints text that ends at a share of its row's width.
 fn painted_upto(ui: &Ui, row: Rect, end: f32, words: &str, font: FontId, color: Color32) -> Rect {
     painted_text(
         ui,

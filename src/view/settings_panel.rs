@@ -1,4 +1,4 @@
-//! The settings that change a result: a control for each row of the table of settings.
+//! Settings that change a result: a control for each row of the settings table.
 
 use egui::{ComboBox, Grid, Role, Slider, Ui, WidgetInfo, pos2};
 
@@ -14,15 +14,15 @@ use super::focus::{Region, region_ui};
 use super::palette::{BODY_SIZE, Palette, medium};
 use super::state::State;
 
-/// Largest value on a slider; more can be typed.
+/// Largest value on a slider; larger values can be typed.
 const SLIDER_END: f64 = 1e3;
-/// Value below which a slider goes to zero.
+/// Value below which a slider snaps to zero.
 const SLIDER_START: f64 = 1e-3;
 
 const LABEL_WIDTH: f32 = 60.0;
 const TYPED_WIDTH: f32 = 62.0;
 
-/// M15 in five lines.
+/// Summary of M15 in five lines.
 const LEADS_IN_SHORT: &str = "Delay or lead:\n\
     1  For each response, one straight line through the origin is fitted to the phase that is missing over the band: its slope is \
     a delay or, where negative, a lead.\n\
@@ -31,7 +31,8 @@ const LEADS_IN_SHORT: &str = "Delay or lead:\n\
     4  Then the gains are found as before, on what is left.\n\
     5  The price is gain above the band: it is told in dB.";
 
-/// Every setting that is not shown in the view of what it is about: first those that are changed often, the others folded.
+/// Draws every setting that is not part of a view: first the frequently changed settings, then the
+/// others, folded.
 pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.y = 4.0;
     region_ui(ui, Region::Settings, |ui| {
@@ -102,7 +103,7 @@ pub fn settings_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut
     });
 }
 
-/// The line that folds and unfolds the settings that are seldom changed.
+/// Draws the line that folds and unfolds the rarely changed settings.
 fn advanced_head_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mut Vec<Command>) {
     let (row, response) = row_ui(ui, palette, false, false, "Advanced settings");
     chevron(ui, pos2(row.left() + 6.0, row.center().y), is_open, palette);
@@ -111,7 +112,7 @@ fn advanced_head_ui(ui: &mut Ui, is_open: bool, palette: &Palette, commands: &mu
         .asks(Command::ShowAdvanced(!is_open), commands);
 }
 
-/// The control of one setting, where a view is about it.
+/// Draws the control of a setting inside the view it concerns.
 pub(super) fn setting_ui(
     ui: &mut Ui,
     state: &State,
@@ -128,7 +129,7 @@ pub(super) fn setting_ui(
     .control_ui(setting);
 }
 
-/// The settings that have an effect, line by line.
+/// Returns the effective settings, line by line.
 fn lines_of(state: &State) -> Vec<Vec<&'static Setting>> {
     let mut lines: Vec<Vec<&'static Setting>> = Vec::new();
     for setting in SETTINGS
@@ -144,7 +145,7 @@ fn lines_of(state: &State) -> Vec<Vec<&'static Setting>> {
     lines
 }
 
-/// What stands in place of a value that is found by the program.
+/// Returns the value determined by the program for an automatic setting.
 fn found_value(state: &State, setting: &Setting) -> Option<Value> {
     let shown = state.shown()?;
     if *setting == setting::GAIN_BOUNDS {
@@ -168,7 +169,7 @@ impl Panel<'_, '_> {
         self.commands.push(setting.to(value).into());
     }
 
-    /// Tells why what was entered is not taken, and ends the decision.
+    /// Reports why an entry is refused, and completes the decision.
     fn end(&mut self, entered: Entered) {
         self.commands.extend(entered.refusal.map(Command::Refuse));
         if entered.is_ended {
@@ -196,7 +197,7 @@ impl Panel<'_, '_> {
         }
     }
 
-    /// What has to be known of a setting beside its value.
+    /// Draws the note beside a setting's value.
     fn note_ui(&mut self, setting: &Setting) {
         let settings = &self.state.study.settings;
         let is_idle = settings.gain_source == GainSource::MeanOfPairs
@@ -271,7 +272,7 @@ impl Panel<'_, '_> {
         self.end(entered);
     }
 
-    /// A number on a slider, and in a field beside it.
+    /// Draws a number on a slider, with a field beside it.
     fn slider_ui(&mut self, setting: &'static Setting) {
         let (Kind::Number { range, .. }, Value::Number(now)) =
             (setting.kind, setting.value(&self.state.study.settings))
@@ -314,7 +315,7 @@ impl Panel<'_, '_> {
         self.take(setting, typed);
     }
 
-    /// A box that lets a threshold count, and the threshold; `on` is where it starts.
+    /// Draws a box that enables a threshold, and the threshold; `on` is its initial value.
     fn threshold_ui(&mut self, setting: &'static Setting, value: Value, on: f64, range: [f64; 2]) {
         let mut counts = value != Value::Nothing;
         let response = self.ui.checkbox(&mut counts, "from");
@@ -343,7 +344,7 @@ impl Panel<'_, '_> {
         self.take(setting, entered);
     }
 
-    /// A number that the program finds where it is not set by hand.
+    /// Draws a number that the program determines unless it is set by hand.
     fn automatic_number_ui(&mut self, setting: &'static Setting, value: Value, range: [f64; 2]) {
         let by_hand = value != Value::Nothing;
         let shown = if by_hand {
@@ -363,7 +364,8 @@ impl Panel<'_, '_> {
         self.take(setting, typed);
     }
 
-    /// The two ends of a range, which the program finds where it may and they are not set by hand.
+    /// Draws both ends of a range, which the program determines, where it can, unless they are set
+    /// by hand.
     fn range_ui(
         &mut self,
         setting: &'static Setting,
@@ -404,7 +406,7 @@ impl Panel<'_, '_> {
             let ends = Value::Range([low.value.unwrap_or(lower), high.value.unwrap_or(upper)]);
             match setting.check(ends) {
                 Ok(()) => self.set(setting, ends),
-                // An end that is dragged stops before the other.
+                // A dragged end stops before the other end.
                 Err(_) if low.is_dragged || high.is_dragged => {}
                 Err(error) => self.commands.push(Command::Refuse(error.to_string())),
             }
@@ -422,7 +424,7 @@ impl Panel<'_, '_> {
         self.end(high);
     }
 
-    /// The box that hands a value back to the program; the new state where it was clicked.
+    /// Draws the box that returns a value to the program; returns its new state after a click.
     fn automatic_ui(&mut self, setting: &Setting, by_hand: bool) -> Option<bool> {
         let mut automatic = !by_hand;
         let response = self.ui.checkbox(&mut automatic, "auto");
@@ -434,7 +436,7 @@ impl Panel<'_, '_> {
     }
 }
 
-/// The field of a number of a setting, in the unit for people.
+/// Creates the number field of a setting, in display units.
 fn field_of(
     setting: &'static Setting,
     name: &'static str,
@@ -455,7 +457,7 @@ fn field_of(
     }
 }
 
-/// A small drop-down list.
+/// Draws a small drop-down list.
 pub(super) fn choice_ui<T: Copy + PartialEq>(
     ui: &mut Ui,
     name: &str,

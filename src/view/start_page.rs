@@ -1,4 +1,5 @@
-//! The page without panels: three ways in, each named by what the engineer has, and what is open behind it.
+//! Start page without panels: three ways in, each named after the engineer's data, and the study
+//! behind the page.
 
 use egui::{
     Align, Align2, Button, Color32, Frame, Layout, Margin, Pos2, Rect, RichText, Role, ScrollArea,
@@ -20,15 +21,15 @@ use super::records::RecordsCommand;
 use super::state::State;
 use crate::view::views::frequency::bode_curves;
 
-/// What the program opens with where it is given nothing.
+/// Content of the window when the program is started without a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OpensWith {
     /// The embedded example.
     #[default]
     Example,
-    /// This page.
+    /// The start page.
     StartPage,
-    /// The study, or the dataset, that was open last.
+    /// The study or dataset that was open last.
     LastStudy,
 }
 
@@ -36,7 +37,7 @@ impl OpensWith {
     /// Every choice, in the order of the menu.
     pub const ALL: [Self; 3] = [Self::Example, Self::StartPage, Self::LastStudy];
 
-    /// What its menu entry says.
+    /// Returns the text of the menu entry.
     pub fn name(self) -> &'static str {
         match self {
             Self::Example => "Begin with the example",
@@ -46,14 +47,14 @@ impl OpensWith {
     }
 }
 
-/// Widths of the ways in, of what is open, and of the space between them \[pt\].
+/// Widths of the ways in, of the open study, and of the gap between them \[pt\].
 const WIDTHS: [f32; 3] = [600.0, 460.0, 64.0];
-/// Height of a line of text that goes over several \[pt\].
+/// Line height of multi-line text \[pt\].
 const LINE: f32 = 20.0;
 /// Height of a way in \[pt\].
 const WAY: f32 = 72.0;
 
-/// One way in.
+/// Way to begin.
 struct Way {
     title: &'static str,
     words: &'static str,
@@ -88,7 +89,7 @@ fn ways() -> [Way; 3] {
     ]
 }
 
-/// The line above the plots of the example that offers the same three ways.
+/// Draws the line above the example's plots that offers the same three ways.
 pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Command>) {
     let size = vec2(ui.available_width(), 18.0);
     ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
@@ -114,7 +115,7 @@ pub fn example_line_ui(ui: &mut Ui, palette: &Palette, commands: &mut Vec<Comman
     });
 }
 
-/// All of the page.
+/// Draws the whole page.
 pub fn start_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let area = ui.available_rect_before_wrap().shrink(24.0);
     let [left, right, gap] = WIDTHS;
@@ -236,7 +237,7 @@ fn way_ui(ui: &mut Ui, way: Way, is_primary: bool, palette: &Palette, commands: 
     ui.advance_cursor_after_rect(rect);
 }
 
-/// What is done with data, where nothing was open before.
+/// Draws the steps of the work with data, if no file has been open before.
 fn steps_ui(ui: &mut Ui, palette: &Palette) {
     let steps = [
         (
@@ -262,7 +263,7 @@ fn steps_ui(ui: &mut Ui, palette: &Palette) {
     });
 }
 
-/// What was open of late; what is not there any more cannot be chosen.
+/// Draws the recent files; missing files are disabled.
 fn recent_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     const SHOWN: usize = 5;
     ui.label(RichText::new("Open again").font(medium(BODY_SIZE)));
@@ -305,7 +306,7 @@ fn recent_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<C
     }
 }
 
-/// What is open behind the page, by its own picture, and the way back to it.
+/// Draws a picture of the study behind the page, and the way back to it.
 fn open_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let frame = Frame::new()
         .fill(palette.panel)
@@ -376,7 +377,7 @@ fn picture_ui(ui: &mut Ui, state: &mut State, palette: &Palette) {
     );
 }
 
-/// The frequencies and the phases where the lines of a small plot stand \[rad/s, deg\].
+/// Returns the grid frequencies and phases of a small plot \[rad/s, deg\].
 fn grid_of((min, max): (f64, f64), (least, most): (f64, f64)) -> [Vec<f64>; 2] {
     let decades = (min.log10().floor() as i32)..=(max.log10().ceil() as i32);
     let omegas = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|digit| digit * 10f64.powi(decade)));
@@ -388,7 +389,8 @@ fn grid_of((min, max): (f64, f64), (least, most): (f64, f64)) -> [Vec<f64>; 2] {
     ]
 }
 
-/// The phases of the identified and of the corrected model over the band, and what is missing between them.
+/// Paints the phases of the identified and of the corrected model over the band, and the gap
+/// between them.
 fn phases_ui(ui: &Ui, plot: Rect, curves: &[BodeCurve], (min, max): (f64, f64), palette: &Palette) {
     let plot = plot
         .with_min_x(plot.left() + 28.0)

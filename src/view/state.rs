@@ -1,4 +1,4 @@
-//! Everything the window shows: the study, what was computed and is being computed, messages and forms.
+//! State of the window: the study, finished and running computations, messages and forms.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -36,118 +36,112 @@ use super::display::Display;
 use super::records::{RecordsBefore, RecordsState};
 use super::views::{View, all_records, assessed_correction, assessment_choice};
 
-/// How a message is meant.
+/// Kind of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoticeKind {
-    /// Something was done.
+    /// Success.
     Done,
-    /// Something could not be done.
+    /// Failure.
     Trouble,
 }
 
-/// A message to the engineer.
+/// Message to the engineer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
-    /// How it is meant.
     pub kind: NoticeKind,
-    /// The message.
     pub text: String,
 }
 
-/// A file opened or saved of late.
+/// Recently opened or saved file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecentFile {
-    /// Where it is, or was.
+    /// Last known path.
     pub path: PathBuf,
-    /// Its name, to be shown.
+    /// Displayed name.
     pub name: String,
-    /// Its folder, to be shown.
+    /// Displayed folder.
     pub folder: String,
-    /// Whether it was not there when it was looked for last.
+    /// Whether the file was missing when last checked.
     pub missing: bool,
 }
 
-/// What the forms hold while they are shown.
+/// Contents of the forms.
 #[derive(Debug, Default)]
 pub struct Forms {
-    /// The form shown.
+    /// Form shown.
     pub shown: Option<FormKind>,
-    /// The form drawn last, and whether it asked to overwrite files: another one opens.
+    /// Form drawn last, and whether it asked to overwrite files: a change of either counts as a
+    /// newly opened form.
     pub drawn: Option<(FormKind, bool)>,
-    /// The path, or the text, in the field of each form, as typed.
+    /// Path or text in the field of each form, as typed.
     pub typed: BTreeMap<FormKind, String>,
-    /// The study whose dataset is not where it says, and what opening it said.
+    /// Study whose dataset was not found, and the message of the attempt to open it.
     pub lost_dataset: Option<(PathBuf, String)>,
-    /// The model whose rejection is given a reason.
+    /// Model whose rejection is given a reason.
     pub rejected_model: Option<ModelId>,
-    /// The table that is to be saved.
+    /// Table to be saved.
     pub table: Option<Arc<Table>>,
-    /// The view whose figure is to be saved.
+    /// View whose figure is to be saved.
     pub figure: Option<View>,
-    /// How wide the figure is printed.
+    /// Printed width of the figure.
     pub figure_width: ColumnWidth,
-    /// The conditions whose corrections are exported.
+    /// Conditions whose corrections are exported.
     pub exported: BTreeSet<ConditionId>,
-    /// As what corrections are exported for other tools.
+    /// Format of an export for other tools.
     pub export_format: ExportFormat,
-    /// The palette of commands.
     pub palette: PaletteForm,
-    /// Files that what the form asks for would overwrite: where there are any, it asks whether to.
+    /// Files that the form's action would overwrite; if not empty, the form asks whether to.
     pub existing: Vec<String>,
 }
 
 impl Forms {
-    /// What stands in the field of a form, to be typed into.
+    /// Returns the editable text of a form's field.
     pub fn typed_in(&mut self, form: FormKind) -> &mut String {
         self.typed.entry(form).or_default()
     }
 }
 
-/// Everything the window shows.
+/// State of the window.
 #[derive(Debug)]
 pub struct State {
-    /// The study: what is saved.
+    /// The study, the only saved part.
     pub study: Study,
     /// Whether the dataset is the embedded example.
     pub is_example: bool,
-    /// Whether the start page stands in the place of everything else.
+    /// Whether the start page covers everything else.
     pub on_start_page: bool,
-    /// The dataset that what is shown is of.
+    /// Dataset of the displayed results.
     followed: Arc<Dataset>,
-    /// What undo goes back over.
+    /// Undo history.
     pub history: History<RecordsBefore>,
-    /// Name of the study's file, or what stands for it.
+    /// Name of the study's file, or a substitute.
     pub study_name: String,
-    /// Whether there are decisions that are not saved.
+    /// Whether there are unsaved decisions.
     pub unsaved: bool,
-    /// What is shown.
     pub display: Display,
-    /// What was computed.
     pub results: Results,
-    /// Cautions of the file.
     pub file_cautions: Vec<String>,
-    /// What the dataset was found to differ in from the one the study was made with.
+    /// Differences between the dataset and the dataset of the saved study.
     pub differences: Vec<Difference>,
-    /// The message shown.
+    /// Message shown.
     pub notice: Option<Notice>,
-    /// What is told until it is dealt with, in bars below the menu.
+    /// Persistent messages, in bars below the menu.
     pub bars: Vec<Bar>,
-    /// Files opened and saved of late, the newest first.
+    /// Recently opened and saved files, newest first.
     pub recent: Vec<RecentFile>,
     /// Name of a file being read.
     pub opening: Option<String>,
-    /// What the forms hold.
     pub forms: Forms,
-    /// The step of the guided tour that is shown.
+    /// Current step of the guided tour.
     pub tour: Option<usize>,
-    /// Flight records, and what was identified from them.
+    /// Flight records, and models identified from them.
     pub records: RecordsState,
-    /// Models that are being imported, in the place of the study.
+    /// Models being imported, shown instead of the study.
     pub assembling: Option<AssemblyState>,
 }
 
 impl State {
-    /// The state of a window that shows `study` for the first time.
+    /// Creates the state of a window that shows `study` for the first time.
     pub fn new(study: Study, study_name: String, file_cautions: Vec<String>) -> Self {
         let pair = study
             .dataset
@@ -186,7 +180,7 @@ impl State {
         }
     }
 
-    /// What the window's title says: the study, marked where it is not saved, and the dataset.
+    /// Returns the window title: the study, marked if unsaved, and the dataset.
     pub fn window_title(&self) -> String {
         let mark = if self.unsaved { " •" } else { "" };
         format!(
@@ -196,23 +190,23 @@ impl State {
         )
     }
 
-    /// The dataset.
+    /// Returns the dataset.
     pub fn dataset(&self) -> &Dataset {
         &self.study.dataset
     }
 
-    /// The condition shown; the first one where the dataset does not have that any more.
+    /// Returns the displayed condition; the first condition if the dataset no longer contains it.
     pub fn condition(&self) -> &Arc<Condition> {
         let found = self.study.dataset.condition(self.display.condition);
         found.unwrap_or(&self.study.dataset.conditions()[0])
     }
 
-    /// The result of the condition shown, where there is one of this dataset.
+    /// Returns the result of the displayed condition, if there is a result of this dataset.
     pub fn shown(&self) -> Option<&ConditionAnalysis> {
         self.outcome()?.as_ref().ok()
     }
 
-    /// The models that a result suggests as outliers and that are not rejected.
+    /// Returns the models suggested as outliers by a result and not rejected.
     pub fn open_suggestions(&self, result: &ConditionAnalysis) -> Vec<String> {
         let rejected = &self.study.choice(result.condition.id()).physics.rejected;
         result
@@ -222,7 +216,7 @@ impl State {
             .collect()
     }
 
-    /// What came of the condition shown: the newest there is of this dataset.
+    /// Returns the newest outcome of the displayed condition for this dataset.
     pub fn outcome(&self) -> Option<&Result<ConditionAnalysis, ConditionFailure>> {
         let condition = self.condition().id();
         let first = self.results.first.as_ref().filter(|first| {
@@ -233,8 +227,9 @@ impl State {
             .or_else(|| self.analysis()?.conditions.get(&condition))
     }
 
-    /// Whether the results of the other conditions, and all that is made from them, are of older settings than what is shown of
-    /// this one: it is said beside each of them.
+    /// Returns whether the results of the other conditions, and everything derived from them,
+    /// belong to older settings than the displayed condition's; this is reported beside each of
+    /// them.
     pub fn others_are_older(&self) -> bool {
         let of_this_dataset =
             |first: &FirstResult| Arc::ptr_eq(&first.dataset, &self.study.dataset);
@@ -243,13 +238,14 @@ impl State {
             && self.analysis().is_some()
     }
 
-    /// What holding or freeing each response would cost, where it is of the result shown.
+    /// Returns the costs of constraining or releasing each response, if they belong to the
+    /// displayed result.
     pub fn toggles(&self) -> Option<&Toggles> {
         let (job, toggles) = self.results.toggles.as_ref()?;
         job.is_of(self.shown()?).then_some(toggles)
     }
 
-    /// The responses of the condition shown, for drawing.
+    /// Returns the responses of the displayed condition, for drawing.
     pub fn curves(&self) -> Option<&Arc<ConditionCurves>> {
         let (job, curves) = self.results.curves.as_ref()?;
         let fits = job.condition == self.condition().id()
@@ -257,27 +253,29 @@ impl State {
         fits.then_some(curves)
     }
 
-    /// The modes of every model of the condition shown.
+    /// Returns the modes of every model of the displayed condition.
     pub fn modes(&self) -> Option<&Arc<ConditionModes>> {
         let (job, modes) = self.results.modes.as_ref()?;
         Arc::ptr_eq(&job.condition, self.condition()).then_some(modes)
     }
 
-    /// The assessment that is asked for; one of an older analysis of the same dataset until it is there.
+    /// Returns the requested assessment; until it is ready, an assessment of an older analysis of
+    /// the same dataset.
     pub fn assessment(&self) -> Option<&Arc<AssessmentTable>> {
         let (job, table) = self.results.assessment.as_ref()?;
         let of_this = Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset);
         (of_this && job.choice == assessment_choice(self)).then_some(table)
     }
 
-    /// What a qualification asks; of an older analysis of the same dataset until it is there.
+    /// Returns the requirements; until they are ready, those of an older analysis of the same
+    /// dataset.
     pub fn requirements(&self) -> Option<&Arc<Requirements>> {
         let (job, found) = self.results.requirements.as_ref()?;
         Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset).then_some(found)
     }
 
-    /// What the models of the condition shown answer to the test input, in words why there is nothing; of an older analysis of the same
-    /// condition until it is there.
+    /// Returns the responses of the displayed condition's models to the test input, or the reason
+    /// for their absence; until they are ready, those of an older analysis of the same condition.
     pub fn test_answers(&self) -> Option<&Result<Arc<TestAnswers>, String>> {
         let (job, found) = self.results.test_answers.as_ref()?;
         let of_this = Arc::ptr_eq(&job.analysis.study.dataset, &self.study.dataset);
@@ -285,7 +283,8 @@ impl State {
             .then_some(found)
     }
 
-    /// The record of a job against the tolerances, in words why there is nothing; of an older analysis until it is there.
+    /// Returns the comparison of a job's record with the tolerances, or the reason for its absence;
+    /// until it is ready, the comparison of an older analysis.
     pub fn record_history(
         &self,
         job: &RecordHistoryJob,
@@ -294,26 +293,29 @@ impl State {
         (known.condition == job.condition && known.record == job.record).then_some(found)
     }
 
-    /// What the models answer to all records; of an older analysis of the same records until it is there.
+    /// Returns the models' responses to all records; until they are ready, those of an older
+    /// analysis of the same records.
     pub fn time_histories(&self) -> Option<&Arc<TimeHistories>> {
         let (job, found) = self.results.time_histories.as_ref()?;
         (job.records == all_records(self)).then_some(found)
     }
 
-    /// What couplings do to the study, or would do; those of older settings until new ones are there.
+    /// Returns the actual or potential effect of couplings on the study; until it is ready, the
+    /// effect under older settings.
     pub fn couplings(&self) -> Option<&AssessedCouplings> {
         let (known, assessed) = self.results.couplings.as_ref()?;
         let of_this = Arc::ptr_eq(&known.study.dataset, &self.study.dataset);
         (of_this && known.couplings == assessed_correction(self)).then_some(assessed)
     }
 
-    /// The responses of one model of each condition; those of older settings until new ones are there.
+    /// Returns the responses of a model of each condition; until they are ready, those of older
+    /// settings.
     pub fn across(&self) -> Option<&Arc<AcrossCurves>> {
         let (job, curves) = self.results.across.as_ref()?;
         Arc::ptr_eq(&job.dataset, &self.study.dataset).then_some(curves)
     }
 
-    /// What stands in the place of curves that are not there, or are to be renewed.
+    /// Returns the message shown instead of missing curves, or while curves are being renewed.
     pub fn curves_message(&self) -> Option<&'static str> {
         let results = &self.results;
         match self.curves() {
@@ -324,25 +326,27 @@ impl State {
         }
     }
 
-    /// Whether the proof of a result is still under way.
+    /// Returns whether a result is still being proven.
     pub fn is_proving(&self, shown: &ConditionAnalysis) -> bool {
         self.results.background.proofs.contains(&shown.gain_problem)
     }
 
-    /// The newest analysis, where it is one of the dataset shown.
+    /// Returns the newest analysis, if it belongs to the displayed dataset.
     pub fn analysis(&self) -> Option<&Analysis> {
         let analysis = self.results.analysis.as_deref()?;
         Arc::ptr_eq(&analysis.study.dataset, &self.study.dataset).then_some(analysis)
     }
 
-    /// How sure the values of the newest analysis are; none until that is computed, beside the live answer.
+    /// Returns the uncertainty of the newest analysis; `None` until it is computed, besides the
+    /// live answer.
     pub fn uncertainty(&self) -> Option<&Arc<Uncertainty>> {
         let (job, uncertainty) = self.results.uncertainty.as_ref()?;
         self.analysis()?;
         Arc::ptr_eq(&job.analysis, self.results.analysis.as_ref()?).then_some(uncertainty)
     }
 
-    /// How sure the values of the condition shown are; none until that is computed, or where it is of older settings.
+    /// Returns the uncertainty of the displayed condition's values; empty until it is computed, or
+    /// if it belongs to older settings.
     pub fn sureness(&self) -> Sureness<'_> {
         let uncertainty = self.uncertainty().filter(|_| !self.others_are_older());
         Sureness {
@@ -351,7 +355,8 @@ impl State {
         }
     }
 
-    /// The newest analysis with how sure its values are, as far as that is computed: what files and derivations are made of.
+    /// Returns the newest analysis with its uncertainty, as far as computed: the basis of files and
+    /// derivations.
     pub fn analysis_with_bars(&self) -> Option<Analysis> {
         let analysis = self.analysis()?.clone();
         Some(Analysis {
@@ -360,7 +365,7 @@ impl State {
         })
     }
 
-    /// What giving up a computation leaves, in words.
+    /// Describes the state after a computation was stopped.
     pub fn after_stop(&self) -> &'static str {
         match self.analysis() {
             Some(_) => "the results are older than the settings",
@@ -368,8 +373,8 @@ impl State {
         }
     }
 
-    /// Shows what there is of the study's dataset, where it is another one now: the same response where it has that, the first
-    /// otherwise.
+    /// Adapts the state to a replaced dataset: keeps the response in focus if it exists, otherwise
+    /// selects the first.
     pub fn follow_dataset(&mut self) {
         let dataset = &self.study.dataset;
         if Arc::ptr_eq(dataset, &self.followed) {
@@ -391,7 +396,7 @@ impl State {
         self.display.fit_frequency_plots();
     }
 
-    /// How many models of a bundle of the condition shown are kept: "14 of 19".
+    /// Returns the number of kept models in a bundle of the displayed condition: "14 of 19".
     pub fn kept_words(&self, kind: BundleKind) -> String {
         let count = self.condition().bundle(kind).len();
         let rejected = self
@@ -403,13 +408,13 @@ impl State {
         format!("{} of {count}", count - rejected)
     }
 
-    /// A model of the condition shown.
+    /// Returns the id of a model of the displayed condition.
     pub fn model_id(&self, bundle: BundleKind, name: &str) -> ModelId {
         ModelId::new(self.condition().id(), bundle, name)
     }
 }
 
-/// How sure the values of the condition shown are.
+/// Uncertainty of the displayed condition's values.
 #[derive(Clone, Copy, Debug)]
 pub struct Sureness<'a> {
     condition: ConditionId,
@@ -417,67 +422,65 @@ pub struct Sureness<'a> {
 }
 
 impl<'a> Sureness<'a> {
-    /// The bar of a value, and its level.
+    /// Returns the error bar of a value, and its confidence level.
     pub fn bar(&self, scalar: Scalar) -> Option<(&'a ErrorBar, f64)> {
         let uncertainty = self.uncertainty?;
         Some((uncertainty.bar(self.condition, scalar)?, uncertainty.level))
     }
 
-    /// Half-width of its bar: relative, of delays \[s\].
+    /// Returns the half-width of the error bar: relative, for delays in \[s\].
     pub fn half(&self, scalar: Scalar) -> Option<f64> {
         self.bar(scalar)
             .and_then(|(bar, level)| bar.half_width(level))
     }
 
-    /// The level of all bars.
+    /// Returns the confidence level of all error bars.
     pub fn level(&self) -> Option<f64> {
         self.uncertainty.map(|of| of.level)
     }
 }
 
-/// The result of the condition shown, ahead of the others'.
+/// Result of the displayed condition, available before the others.
 #[derive(Clone, Debug)]
 pub struct FirstResult {
-    /// Number of the request it answers.
+    /// Number of the answered request.
     pub generation: u64,
-    /// The dataset it belongs to.
+    /// Dataset of the result.
     pub dataset: Arc<Dataset>,
-    /// The condition.
     pub condition: ConditionId,
-    /// The result.
     pub outcome: Result<ConditionAnalysis, ConditionFailure>,
 }
 
-/// What is under way beside the live answer.
+/// Work in progress besides the live answer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Background {
-    /// Whether the live answer is being computed: steps done, of how many.
+    /// Live answer in progress: steps done, total.
     pub analysis: Option<(usize, usize)>,
-    /// The problems whose gains are being proven, or are to be.
+    /// Problems whose gains are being or will be proven.
     pub proofs: Vec<Arc<Problem>>,
-    /// Whether the costs of holding and freeing are being computed.
+    /// Whether the costs of constraining and releasing are being computed.
     pub toggles: bool,
-    /// Whether curves are being computed: models done, of how many.
+    /// Curves in progress: models done, total.
     pub curves: Option<(usize, usize)>,
-    /// Whether error bars are being computed: steps done, of how many (for each model its response, and the analysis with it in place
-    /// of the representative).
+    /// Error bars in progress: steps done, total (for each model its response, and the analysis
+    /// with this model as the representative).
     pub bars: Option<(usize, usize)>,
-    /// Whether models answer to all records: steps done, of how many.
+    /// Responses to all records in progress: steps done, total.
     pub time_histories: Option<(usize, usize)>,
-    /// Whether couplings are being assessed: steps done, of how many.
+    /// Assessment of couplings in progress: steps done, total.
     pub couplings: Option<(usize, usize)>,
-    /// Jobs that the views shown wait for.
+    /// Number of jobs that the visible views wait for.
     pub views: usize,
-    /// Whether a report is being written: conditions done, of how many.
+    /// Report in progress: conditions done, total.
     pub report: Option<(usize, usize)>,
-    /// Whether models are being identified: parts done, of how many.
+    /// Identification in progress: parts done, total.
     pub identification: Option<(usize, usize)>,
-    /// Whether something of it was stopped, by hand or by a fault.
+    /// Whether some of it was stopped, by hand or by a fault.
     pub stopped: bool,
 }
 
 impl Background {
-    /// Whether anything is under way.
+    /// Returns whether anything is in progress.
     pub fn is_busy(&self) -> bool {
         !self.proofs.is_empty()
             || self.toggles
@@ -491,69 +494,68 @@ impl Background {
     }
 }
 
-/// What was computed; never saved.
+/// Computed results; never saved.
 #[derive(Debug, Default)]
 pub struct Results {
-    /// The newest analysis.
     pub analysis: Option<Arc<Analysis>>,
-    /// The condition shown, where it is ahead of that analysis.
+    /// Displayed condition, if it is ahead of that analysis.
     pub first: Option<FirstResult>,
-    /// What holding or freeing each response of a condition would cost, and of which; see [`State::toggles`].
+    /// Costs of constraining or releasing each response of a condition, with their job; see
+    /// [`State::toggles`].
     pub toggles: Option<(TogglesJob, Arc<Toggles>)>,
-    /// Responses for drawing, and of what; see [`State::curves`].
+    /// Responses for drawing, with their job; see [`State::curves`].
     pub curves: Option<(CurvesJob, Arc<ConditionCurves>)>,
-    /// Modes of the models of one condition, and of which; see [`State::modes`].
+    /// Modes of the models of a condition, with their job; see [`State::modes`].
     pub modes: Option<(ModesJob, Arc<ConditionModes>)>,
-    /// The assessment that is asked for, and of what; see [`State::assessment`].
+    /// Requested assessment, with its job; see [`State::assessment`].
     pub assessment: Option<(AssessmentJob, Arc<AssessmentTable>)>,
-    /// Responses of one model of each condition, and of which; see [`State::across`].
+    /// Responses of a model of each condition, with their job; see [`State::across`].
     pub across: Option<(AcrossJob, Arc<AcrossCurves>)>,
-    /// How sure the values of an analysis are, and of which; see [`State::uncertainty`].
+    /// Uncertainty of an analysis, with its job; see [`State::uncertainty`].
     pub uncertainty: Option<(UncertaintyJob, Arc<Uncertainty>)>,
-    /// What couplings do, or would do, and to what; see [`State::couplings`].
+    /// Actual or potential effect of couplings, with its job; see [`State::couplings`].
     pub couplings: Option<(CouplingsJob, AssessedCouplings)>,
-    /// What a qualification asks, and of what; see [`State::requirements`].
+    /// Requirements, with their job; see [`State::requirements`].
     pub requirements: Option<(RequirementsJob, Arc<Requirements>)>,
-    /// What models answer to the test input, and of which condition; see [`State::test_answers`].
+    /// Responses to the test input, with their job; see [`State::test_answers`].
     pub test_answers: Option<(TestAnswersJob, Result<Arc<TestAnswers>, String>)>,
-    /// One record against the tolerances; see [`State::record_history`].
+    /// Comparison of a record with the tolerances; see [`State::record_history`].
     pub record_history: Option<(RecordHistoryJob, Result<Arc<RecordHistory>, String>)>,
-    /// What the models answer to all records, and of what; see [`State::time_histories`].
+    /// Models' responses to all records, with their job; see [`State::time_histories`].
     pub time_histories: Option<(TimeHistoriesJob, Arc<TimeHistories>)>,
-    /// Analyses of the variants.
     pub variants: Vec<(VariantJob, Arc<Analysis>)>,
-    /// Models against a record in time, or in words why not.
+    /// Models compared with a record in time, or the reason why not.
     pub simulations: Vec<(SimulationJob, Result<Arc<Validation>, String>)>,
-    /// What is under way beside the live answer.
     pub background: Background,
-    /// Since when something has been \[s of the window's clock\].
+    /// Start of the background work \[s of the window's clock\].
     pub background_since: Option<f64>,
     /// Number of the newest request.
     pub requested: u64,
-    /// Number of the request the analysis answers.
+    /// Number of the request answered by the analysis.
     pub received: u64,
-    /// When the oldest request without an answer was made \[s of the window's clock\].
+    /// Time of the oldest unanswered request \[s of the window's clock\].
     pub waiting_since: Option<f64>,
-    /// Whether a frame with an analysis has been on the screen.
+    /// Whether a frame with an analysis has been painted.
     pub is_painted: bool,
-    /// How long the newest analysis took \[ms\].
+    /// Duration of the newest analysis \[ms\].
     pub elapsed_ms: f64,
-    /// Whether the newest request was given up, by hand or by a fault: what is shown stays older than the settings.
+    /// Whether the newest request was stopped, by hand or by a fault; the displayed results then
+    /// stay older than the settings.
     pub stopped: bool,
 }
 
-/// Age \[s\] from which shown results that no longer fit the settings are marked as stale.
+/// Age \[s\] from which displayed results of older settings are marked as stale.
 const STALE_AFTER_S: f64 = 0.15;
-/// Time \[s\] from which work beside the live answer is told: most of it is over before it could be read.
+/// Duration \[s\] from which background work is reported: most of it ends before it could be read.
 const BACKGROUND_AFTER_S: f64 = 0.5;
 
 impl Results {
-    /// Whether an answer is still to come.
+    /// Returns whether an answer is pending.
     pub fn is_waiting(&self) -> bool {
         self.is_behind() && !self.stopped
     }
 
-    /// What stands in the place of a result that is not there.
+    /// Returns the message shown instead of a missing result.
     pub fn absence(&self) -> &'static str {
         if self.stopped {
             "not computed"
@@ -562,7 +564,7 @@ impl Results {
         }
     }
 
-    /// What stands in the place of error bars that are not there.
+    /// Returns the message shown instead of missing error bars.
     pub fn absence_of_bars(&self) -> String {
         match self.background.bars {
             Some(progress) if !self.is_behind() => bar_words(progress),
@@ -573,12 +575,13 @@ impl Results {
         }
     }
 
-    /// Whether what is shown is older than the settings.
+    /// Returns whether the displayed results are older than the settings.
     pub fn is_behind(&self) -> bool {
         self.requested > self.received
     }
 
-    /// Whether the condition shown is of newer settings than the analysis of all of them.
+    /// Returns whether the displayed condition's result has newer settings than the analysis of all
+    /// conditions.
     pub fn first_is_ahead(&self) -> bool {
         self.analysis.is_some()
             && self
@@ -587,13 +590,14 @@ impl Results {
                 .is_some_and(|first| first.generation > self.received)
     }
 
-    /// Whether something has been under way beside the live answer for so long that it should be told at `now`.
+    /// Returns whether background work has lasted long enough at `now` to be reported.
     pub fn is_background_told(&self, now: f64) -> bool {
         self.background_since
             .is_some_and(|since| now - since > BACKGROUND_AFTER_S)
     }
 
-    /// Whether what is shown should be marked as stale at `now` \[s of the window's clock\].
+    /// Returns whether the displayed results should be marked as stale at `now` \[s of the window's
+    /// clock\].
     pub fn is_stale(&self, now: f64) -> bool {
         self.stopped
             || self
@@ -602,7 +606,7 @@ impl Results {
     }
 }
 
-/// How far error bars are, in words.
+/// Describes the progress of the error bars.
 pub(super) fn bar_words((done, total): (usize, usize)) -> String {
     if total == 0 {
         "error bars …".to_owned()

@@ -1,4 +1,5 @@
-//! The tables of the window: as texts, to be copied and saved, and as they are drawn, sorted by a click on a heading.
+//! Tables of the window: as text to be copied and saved, and as drawn, sorted by a click on a
+//! heading.
 
 use std::sync::Arc;
 
@@ -17,14 +18,14 @@ use super::controls::{entries_ui, named};
 use super::palette::{Palette, SMALL_SIZE};
 use super::state::{State, Sureness};
 
-/// A table of the window.
+/// Table of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableKind {
-    /// Every condition with its flight state and what is still to do there.
+    /// Every condition with its flight state and its open tasks.
     Conditions,
-    /// The physics models of the condition shown.
+    /// Physics models of the displayed condition.
     PhysicsModels,
-    /// Its identified models.
+    /// Identified models of the displayed condition.
     IdentifiedModels,
     /// G, D and J of every response.
     Matrix,
@@ -42,7 +43,7 @@ impl TableKind {
         Self::Channels,
     ];
 
-    /// Its name.
+    /// Returns the title of the table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Conditions => "conditions",
@@ -53,7 +54,7 @@ impl TableKind {
         }
     }
 
-    /// The table of bundle models.
+    /// Returns the table of a bundle's models.
     pub fn of_bundle(bundle: BundleKind) -> Self {
         match bundle {
             BundleKind::Physics => Self::PhysicsModels,
@@ -62,7 +63,7 @@ impl TableKind {
     }
 }
 
-/// The table as it is now. Numbers have every digit; those that are not known are empty.
+/// Builds the current table. Numbers have full precision; unknown numbers are empty.
 pub fn table_of(state: &State, kind: TableKind) -> Table {
     match kind {
         TableKind::Conditions => conditions(state),
@@ -73,7 +74,7 @@ pub fn table_of(state: &State, kind: TableKind) -> Table {
     }
 }
 
-/// A number with every digit; nothing where there is none.
+/// Formats a number with full precision; empty for `None`.
 fn digits(value: Option<f64>) -> String {
     // Debug writes an exponent where Display would write hundreds of zeros.
     value
@@ -95,10 +96,10 @@ fn title(state: &State, what: &str) -> String {
     )
 }
 
-/// A row of a table: each heading with what stands below it.
+/// Row of a table: headings with their cells.
 type Row = Vec<(&'static str, String)>;
 
-/// A table of rows that have the same headings.
+/// Builds a table from rows with the same headings.
 fn table_of_rows(title: String, rows: Vec<Row>) -> Table {
     let headings = rows
         .first()
@@ -183,7 +184,7 @@ fn models(state: &State, bundle: BundleKind) -> Table {
     table_of_rows(title(state, TableKind::of_bundle(bundle).name()), rows)
 }
 
-/// What a table is of, with the level of its bars.
+/// Returns the title with the condition and the confidence level.
 fn title_with_bars(state: &State, kind: TableKind) -> String {
     let level = state
         .sureness()
@@ -195,7 +196,8 @@ fn title_with_bars(state: &State, kind: TableKind) -> String {
     )
 }
 
-/// Half-width of the bar of a value, and of its inner bar, "for this physics model": \[%\], of delays \[ms\].
+/// Returns the half-widths of a value's error bar and of its inner bar, "for this physics model":
+/// \[%\], for delays \[ms\].
 fn halves(sure: &Sureness<'_>, scalar: Scalar) -> [Option<f64>; 2] {
     let Some((bar, level)) = sure.bar(scalar) else {
         return [None; 2];
@@ -210,7 +212,8 @@ fn halves(sure: &Sureness<'_>, scalar: Scalar) -> [Option<f64>; 2] {
     [bar.half_width(level), bar.inner_half_width(level)].map(|half| half.map(shown))
 }
 
-/// G, D, net gain, each with its bars, net delay, and J, J_mag and J_phase before and after.
+/// Builds the table of G, D, net gain, each with error bars, net delay, and J, J_mag and J_phase
+/// before and after.
 fn matrix(state: &State) -> Table {
     let sure = state.sureness();
     let shown = state.shown();
@@ -302,12 +305,12 @@ fn channels(state: &State) -> Table {
     table_of_rows(title_with_bars(state, TableKind::Channels), rows)
 }
 
-/// By which column a table is sorted, and whether downwards; by none as it was made.
+/// Sort column and whether the order is descending; `None` for the original order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sorting(Option<(usize, bool)>);
 
 impl Sorting {
-    /// What a click on the heading of a column makes of it: rising, falling, as it was made.
+    /// Returns the order after a click on a column's heading: ascending, descending, original.
     pub fn clicked(self, column: usize) -> Self {
         Self(match self.0 {
             Some((sorted, false)) if sorted == column => Some((column, true)),
@@ -316,14 +319,16 @@ impl Sorting {
         })
     }
 
-    /// The rows of a table in this order: numbers by value, words by letters, empty cells last. Equal rows stay as they are.
+    /// Returns the sorted row indices: numbers by value, text alphabetically, empty cells last.
+    /// Equal rows keep their order.
     pub fn order(self, table: &Table) -> Vec<usize> {
         self.order_of(table.rows.len(), |row, column| {
             table.rows[row].get(column).cloned().unwrap_or_default()
         })
     }
 
-    /// The same of so many rows, by what stands in the cell of a row and a column.
+    /// As `order`, for the given number of rows and a function of row and column that returns a
+    /// cell.
     pub fn order_of(self, rows: usize, cell: impl Fn(usize, usize) -> String) -> Vec<usize> {
         let mut order: Vec<usize> = (0..rows).collect();
         let Some((column, falling)) = self.0 else {
@@ -347,7 +352,7 @@ impl Sorting {
         order
     }
 
-    /// The mark on the heading of a column.
+    /// Returns the sort mark of a column's heading.
     pub fn mark(self, column: usize) -> &'static str {
         match self.0 {
             Some((sorted, false)) if sorted == column => " ▲",
@@ -357,7 +362,7 @@ impl Sorting {
     }
 }
 
-/// The number that a cell begins with, whichever its minus sign.
+/// Parses the number at the beginning of a cell, with either minus sign.
 fn number_in(cell: &str) -> Option<f64> {
     cell.split_whitespace()
         .next()?
@@ -366,32 +371,32 @@ fn number_in(cell: &str) -> Option<f64> {
         .ok()
 }
 
-/// What the engineer did in a table.
+/// Click in a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TableClick {
-    /// Index of the row, as the table was made.
+    /// Index of the row in the original order.
     pub row: usize,
-    /// Index of the column.
     pub column: usize,
 }
 
-/// How the cells of a table look.
+/// Appearance of a table's cells.
 pub struct TableLook<'a> {
-    /// Colour of a cell's text, by row and column; the usual one where it is none.
+    /// Text colour of a cell, by row and column; the default if `None`.
     pub color: &'a dyn Fn(usize, usize) -> Option<Color32>,
-    /// Whether a row is the one in focus.
+    /// Whether a row is in focus.
     pub selected: &'a dyn Fn(usize) -> bool,
 }
 
 impl TableLook<'_> {
-    /// Every cell in the usual colour, no row in focus.
+    /// Default colours, no row in focus.
     pub const PLAIN: TableLook<'static> = TableLook {
         color: &|_, _| None,
         selected: &|_| false,
     };
 }
 
-/// Draws a table that scrolls where it is too large. Its headings sort it; a right-click copies or saves it.
+/// Draws a table that scrolls if it is too large. Its headings sort it; a right-click copies or
+/// saves it.
 pub fn table_ui(
     ui: &mut Ui,
     table: &Table,
@@ -409,7 +414,7 @@ pub fn table_ui(
     .inner
 }
 
-/// The same, as large as it is.
+/// As `table_ui`, in full size without scrolling.
 pub fn table_grid_ui(
     ui: &mut Ui,
     table: &Table,
@@ -420,7 +425,7 @@ pub fn table_grid_ui(
 ) -> Option<TableClick> {
     let mut clicked = None;
     let order = sorting.order(table);
-    // The heading is row 0.
+    // Row 0 is the heading.
     let is_selected: Vec<bool> = std::iter::once(false)
         .chain(order.iter().map(|row| (look.selected)(*row)))
         .collect();

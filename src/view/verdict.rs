@@ -1,4 +1,4 @@
-//! Whether the corrected model holds, and the one thing to do where it does not.
+//! Verdict: whether the corrected model holds, and the next step if it does not.
 
 use gdcm_method::correction::LeadPrice;
 use gdcm_method::correction::conflict::{ConflictKind, Remedy};
@@ -18,46 +18,47 @@ use super::explanation::{Sheet, turn_entry};
 use super::state::State;
 use super::views::{View, offered_couplings, used_couplings};
 
-/// Whether gain and phase of the held responses are met, here and in every condition, and what to do.
+/// Verdict on gain and phase of the constrained responses, here and in every condition, with the
+/// next steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// The condition that it is of.
+    /// Condition of the verdict.
     pub condition: ConditionId,
-    /// Of gains and of phases.
+    /// Gains, phases.
     pub rows: [VerdictRow; 2],
-    /// The one thing to do, and what may be done in its place.
+    /// Recommended step, followed by the alternatives.
     pub steps: Vec<Step>,
-    /// What is said beside the steps.
+    /// Note beside the steps.
     pub note: String,
-    /// What has to be known before the result is used: "Price: +21 dB above 12 rad/s".
+    /// Caution before the result is used: "Price: +21 dB above 12 rad/s".
     pub caution: Option<String>,
-    /// How many poles of kept physics models the couplings that are used make unstable within the band, in all conditions.
+    /// Number of poles of kept physics models, in all conditions, that the couplings in use make
+    /// unstable within the band.
     pub unstable_in_band: usize,
-    /// How many sentences the list of reasons has.
+    /// Number of sentences in the list of reasons.
     pub reasons: usize,
 }
 
-/// Gains or phases of the held responses.
+/// Gains or phases of the constrained responses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VerdictRow {
     /// "Gain" or "Phase".
     pub name: &'static str,
-    /// How many of the held responses are matched, of how many; none where there is no result.
+    /// Matched constrained responses, and their total; `None` without a result.
     pub here: Option<[usize; 2]>,
-    /// The same of all conditions that have a result.
+    /// The same over all conditions with a result.
     pub everywhere: Option<[usize; 2]>,
     /// "matched", "lags by ≈ 66 ms".
     pub words: String,
-    /// Whether all that is asked for is met.
+    /// Whether all requests are met.
     pub is_met: bool,
 }
 
-/// Something that can be done.
+/// Possible action.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// What its button says.
+    /// Text of the button.
     pub label: String,
-    /// What a click does.
     pub command: Command,
 }
 
@@ -69,7 +70,7 @@ impl Step {
         }
     }
 
-    /// The way to what explains the result.
+    /// Returns the step to the reasons for the result.
     fn reasons(label: &str) -> Self {
         Self::new(label, Command::ShowSheet(Some(Sheet::Reasons)))
     }
@@ -91,7 +92,7 @@ impl VerdictRow {
         counts.map_or("–".to_owned(), |[met, held]| format!("{met} of {held}"))
     }
 
-    /// All of it as one sentence, for screen readers.
+    /// Returns the verdict as a sentence for screen readers.
     pub fn sentence(&self) -> String {
         let [here, everywhere] = [self.here, self.everywhere].map(Self::count);
         format!(
@@ -102,7 +103,7 @@ impl VerdictRow {
 }
 
 impl Verdict {
-    /// Of the condition shown.
+    /// Returns the verdict on the displayed condition.
     pub fn of(state: &State) -> Self {
         let condition = state.condition().id();
         let nothing = |gain: String, steps: Vec<Step>| Self {
@@ -150,13 +151,13 @@ impl Verdict {
         }
     }
 
-    /// Whether gains and phases are met, and no pole within the band became unstable for it.
+    /// Returns whether gains and phases are met and no pole within the band became unstable.
     pub fn is_met(&self) -> bool {
         self.rows.iter().all(|row| row.is_met) && self.unstable_in_band == 0
     }
 }
 
-/// How many held responses have their gain and their phase, of how many.
+/// Counts the constrained responses with matched gain and with matched phase, each with the total.
 fn counts(shown: &ConditionAnalysis) -> [[usize; 2]; 2] {
     let held = shown.held().marked().count();
     [&shown.gains, &shown.delays].map(|solution| [held - solution.unmatched.len().min(held), held])
@@ -244,7 +245,8 @@ fn gain_words(state: &State, shown: &ConditionAnalysis) -> String {
     }
 }
 
-/// "2 share PED": responses that have an input or an output in common, by which they pull at one another.
+/// Returns "2 share PED" for responses that conflict because they have an input or output in
+/// common.
 fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
     let [first, rest @ ..] = pairs else {
         return None;
@@ -264,13 +266,13 @@ fn shared_words(state: &State, pairs: &[Pair]) -> Option<String> {
     Some(format!("{} share {}", pairs.len(), channel.name))
 }
 
-/// A name that is not broken at its end of line.
+/// Returns a name that does not break at the end of a line.
 pub(super) fn joined(name: &str) -> String {
     name.replace(' ', "\u{a0}")
 }
 
-/// "lags by ≈ 66 ms" where all want about the same, as the remark on a common lead understands it; "lags 20–110 ms" otherwise, short
-/// enough for the narrowest window.
+/// Returns "lags by ≈ 66 ms" if all responses lag about equally, by the criterion of the remark on
+/// a common lead, otherwise "lags 20–110 ms"; short enough for the narrowest window.
 fn lag_words(left_ms: &mut [f64]) -> String {
     let (least, most) = left_ms
         .iter()
@@ -296,7 +298,7 @@ fn lag_words(left_ms: &mut [f64]) -> String {
     }
 }
 
-/// What to do, the first of it at once; and what is said beside it.
+/// Returns the steps, the recommended step first, and the note beside them.
 fn steps(state: &State, shown: &ConditionAnalysis) -> (Vec<Step>, String) {
     let condition = shown.condition.id();
     let alone = |steps: Vec<Step>| (steps, String::new());
@@ -360,7 +362,7 @@ fn steps(state: &State, shown: &ConditionAnalysis) -> (Vec<Step>, String) {
     }
 }
 
-/// Couplings, where they are worth it; or to do without them, where those that are used are not.
+/// Returns the steps to use worthwhile couplings, or to remove couplings that are not worthwhile.
 fn couplings_steps(state: &State) -> Option<(Vec<Step>, String)> {
     let words = |cost: CouplingCost| {
         let others = cost.without.others.zip(cost.with.others);
@@ -383,12 +385,12 @@ fn couplings_steps(state: &State) -> Option<(Vec<Step>, String)> {
     is_doubtful.then(|| (vec![leave_them, look()], words(cost)))
 }
 
-/// How many poles within the band the couplings that are used make unstable.
+/// Counts the poles within the band that the couplings in use make unstable.
 fn unstable_in_band(state: &State) -> usize {
     used_couplings(state).map_or(0, |used| used.unstable_in_band())
 }
 
-/// The command that opens the form of the export.
+/// Returns the command that opens the export form.
 pub(super) fn export() -> Command {
     Command::ShowForm(Some(FormKind::Export))
 }
@@ -400,7 +402,7 @@ fn free_step(state: &State, pair: Pair) -> Step {
     )
 }
 
-/// The bound that would do, where one would; then the response to be freed.
+/// Returns the bound that would be sufficient, if any, then the response to release.
 fn gain_steps(state: &State, shown: &ConditionAnalysis) -> Vec<Step> {
     let Some(remedy) = &shown.gains.remedy else {
         return vec![Step::reasons("Why?")];
@@ -423,8 +425,8 @@ fn widened(remedy: &Remedy, shown: &ConditionAnalysis) -> Option<Value> {
         .map(Value::Range)
 }
 
-/// That there are no couplings where some are asked for, or what they do to poles and loop; else the price of the leads; else what the
-/// schedule costs here.
+/// Returns the caution: missing couplings although some are requested, or the effect of couplings
+/// on poles and loop; else the price of the leads; else the cost of the schedule in this condition.
 fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
     let of_couplings = coupling_caution(state);
     let is_trouble = of_couplings
@@ -440,7 +442,8 @@ fn caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
     }
 }
 
-/// That the schedule leaves more than twice the J of the condition's own correction here (M12).
+/// Returns a caution if the schedule leaves more than twice the J of the condition's own correction
+/// (M12).
 fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<String> {
     let schedule = state.analysis()?.schedule.as_ref().ok()?;
     for caution in &schedule.cautions {
@@ -454,7 +457,8 @@ fn schedule_caution(state: &State, shown: &ConditionAnalysis) -> Option<String> 
     None
 }
 
-/// The gravest of what there is to say of the couplings that are used, in a few words; the list of reasons has all of it.
+/// Returns the most serious remark on the couplings in use in a few words; the list of reasons has
+/// all of them.
 fn coupling_caution(state: &State) -> Option<(RemarkKind, String)> {
     if state.analysis()?.asked_couplings().is_err() {
         return Some((
@@ -478,7 +482,8 @@ fn coupling_caution(state: &State) -> Option<(RemarkKind, String)> {
     }
 }
 
-/// The price of the leads: what the filters of the held response that pays most add above the band (M15.6).
+/// Returns the price of the leads: the greatest magnitude that the filters of a constrained
+/// response add above the band (M15.6).
 fn lead_caution(shown: &ConditionAnalysis) -> Option<String> {
     let price = LeadPrice::of(&shown.compensated.as_ref()?.leads)?;
     let most_db = shown
@@ -554,7 +559,8 @@ mod tests {
             (phase.here, phase.everywhere),
             (Some([0, 5]), Some([0, 55]))
         );
-        // The medians of D of the example's held responses in condition 10: 56 to 72 ms of lead.
+        // The medians of D of the example's constrained responses in condition 10: 56 to 72 ms of
+        // lead.
         assert_eq!(phase.words, "lags by ≈ 66 ms");
         assert!(!verdict.is_met() && verdict.caution.is_none());
         assert_eq!(labels(&verdict), ["Use leads", "Find the cause first"]);

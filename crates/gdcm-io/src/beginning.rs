@@ -1,4 +1,4 @@
-//! What is wrong in the beginning of a dataset or a study, without reading the rest.
+//! Errors in the beginning of a dataset or a study, without reading the rest.
 //!
 //! ```text
 //! n <- 64 KiB
@@ -8,7 +8,7 @@
 //! 4  n <- 16 n, and again up to 16 MiB
 //! ```
 //!
-//! Of a sound file a sixteenth is read twice.
+//! A sixteenth of a valid file is read twice.
 
 use std::io::Read;
 use std::path::Path;
@@ -22,23 +22,23 @@ use crate::variables::ReadingBudget;
 
 /// Length of the first beginning \[bytes\].
 const FIRST: usize = 1 << 16;
-/// How many times longer the next one is.
+/// Growth factor from each beginning to the next.
 const GROWTH: usize = 16;
 /// Length of the last beginning \[bytes\].
 const LAST: usize = 16 << 20;
 
-/// Looks for the first error in the structure of a dataset or a study: text that is not JSON, another format or version, values of
-/// another type than their keys ask for, lists that are too long.
+/// Looks for the first structural error of a dataset or a study: text that is not JSON, another
+/// format or version, values of a type other than their keys require, lists that are too long.
 ///
 /// # Errors
-/// That error, where it stands in the beginning of the file; and where there is no file.
+/// Returns that error if it lies in the beginning of the file, and an error if the file is missing.
 pub fn check_beginning(path: &Path) -> Result<(), FileError> {
     let mut reader = text_reader(path)?;
     let mut text = Vec::new();
     let mut length = FIRST;
     while length <= LAST {
         let wanted = length - text.len();
-        // What cannot be read or unpacked is reported by the reader proper.
+        // A file that cannot be read or unpacked is reported by the reader proper.
         let Ok(found) = reader.by_ref().take(wanted as u64).read_to_end(&mut text) else {
             return Ok(());
         };
@@ -51,9 +51,9 @@ pub fn check_beginning(path: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// The first error in a text that goes on.
+/// Returns the first error in a text that continues beyond its end.
 fn check_text(text: &[u8], path: &Path) -> Result<(), FileError> {
-    // A number or a word that is cut off would be another one.
+    // A number or a word that is cut off would have another value.
     let Some(comma) = text.iter().rposition(|&byte| byte == b',') else {
         return Ok(());
     };
@@ -66,7 +66,7 @@ fn check_text(text: &[u8], path: &Path) -> Result<(), FileError> {
         check_dataset_text(text, path, &budget)
     };
     match checked {
-        // Of course: there is more.
+        // Expected: the text continues.
         Err(FileError::CutOff { .. }) => Ok(()),
         checked => checked,
     }
@@ -95,7 +95,7 @@ mod tests {
         assert!(tried > 1000, "{tried}");
     }
 
-    /// A file that begins so and goes on for more than is ever read.
+    /// A file with this beginning that exceeds every reading limit.
     fn endless(begin: &str) -> tempfile::NamedTempFile {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(&file, begin).unwrap();

@@ -1,4 +1,5 @@
-//! What an export contains of a correction: gains, delays, leads and couplings, scheduled or a condition's own; and what it leaves out.
+//! Contents of an export: gains, delays, leads and couplings, scheduled or a condition's own; and
+//! the parts it omits.
 
 use serde_json::{Value, json};
 
@@ -7,21 +8,20 @@ use gdcm_model::dataset::{ConditionId, Dataset};
 use gdcm_study::study::schedule_losses::DelayedChannel;
 use gdcm_study::study::{Analysis, AssessedCorrection, PhaseCorrection};
 
-/// Where a part of an exported correction comes from.
+/// Source of a part of an exported correction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartSource {
-    /// The schedule.
     Scheduled,
     /// Each condition's own correction.
     Own,
-    /// Both, beside each other.
+    /// Both, side by side.
     OwnAndScheduled,
-    /// It is not in the file.
+    /// Not in the file.
     None,
 }
 
 impl PartSource {
-    /// Its word in files.
+    /// Returns its word in files.
     pub fn word(self) -> &'static str {
         match self {
             Self::Scheduled => "scheduled",
@@ -43,7 +43,7 @@ impl PartSource {
         if is_own { Self::Own } else { Self::None }
     }
 
-    /// This part beside the same part of the schedule.
+    /// Combines this part with the same part of the schedule.
     fn beside(self, scheduled: Self) -> Self {
         match (self, scheduled) {
             (Self::Own, Self::Scheduled) => Self::OwnAndScheduled,
@@ -56,16 +56,17 @@ impl PartSource {
 /// A part of the conditions' corrections that an export does not contain.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LeftOutPart {
-    /// A channel's delays in the own corrections of some conditions, which the schedule has not.
+    /// A channel's delays in the own corrections of some conditions that the schedule does not
+    /// have.
     Delay(DelayedChannel),
     /// The lead filters of the schedule.
     Leads,
-    /// The couplings that the study asks for, and why there are none.
+    /// The requested couplings, and the reason why there are none.
     Couplings(String),
 }
 
 impl LeftOutPart {
-    /// Its code.
+    /// Returns its code.
     pub fn code(&self) -> &'static str {
         match self {
             Self::Delay(_) => "delay-not-scheduled",
@@ -74,7 +75,7 @@ impl LeftOutPart {
         }
     }
 
-    /// It in words: "delay of output NX: 5.3 ms in condition 4 (not scheduled)".
+    /// Describes it in words: "delay of output NX: 5.3 ms in condition 4 (not scheduled)".
     pub fn words(&self, dataset: &Dataset) -> String {
         match self {
             Self::Delay(of) => format!("{} (not scheduled)", of.words(dataset)),
@@ -84,23 +85,21 @@ impl LeftOutPart {
     }
 }
 
-/// What an export contains of a correction, and what it leaves out.
+/// Contents of an export, and the parts it omits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExportContents {
-    /// Gains of the channels.
     pub gains: PartSource,
-    /// Delays of the channels.
     pub delays: PartSource,
-    /// Lead filters of the channels.
     pub leads: PartSource,
     /// Mixing and feedback of the models, the same for all conditions.
     pub couplings: PartSource,
-    /// What is not in it.
+    /// The omitted parts.
     pub left_out: Vec<LeftOutPart>,
 }
 
 impl ExportContents {
-    /// Contents of the files of results: each condition's own correction, and the schedule beside it where there is one.
+    /// Returns the contents of the result files: each condition's own correction, beside the
+    /// schedule if the study has one.
     pub fn of_results(analysis: &Analysis) -> Self {
         let own = Self::of_own(analysis);
         let Ok(schedule) = &analysis.schedule else {
@@ -122,7 +121,7 @@ impl ExportContents {
         }
     }
 
-    /// Contents of the study's schedule; of a study without one, nothing.
+    /// Returns the contents of the study's schedule; empty for a study without one.
     pub fn of_scheduled(analysis: &Analysis) -> Self {
         match &analysis.schedule {
             Ok(schedule) => Self::of_schedule(analysis, schedule),
@@ -130,10 +129,10 @@ impl ExportContents {
         }
     }
 
-    /// Contents of the corrected models of these conditions.
+    /// Returns the contents of the corrected models of these conditions.
     ///
     /// # Errors
-    /// [`ScheduleError`] where a schedule is asked for and there is none.
+    /// [`ScheduleError`] if a schedule is requested and there is none.
     pub fn of_models(
         analysis: &Analysis,
         correction: AssessedCorrection,
@@ -209,7 +208,7 @@ impl ExportContents {
         contents
     }
 
-    /// Each part with its name, in the order in which they are told.
+    /// Returns each part with its name, in the order of reports.
     pub fn parts(&self) -> [(&'static str, PartSource); 4] {
         [
             ("gains", self.gains),
@@ -219,14 +218,14 @@ impl ExportContents {
         ]
     }
 
-    /// The parts in words: "gains scheduled, delays none, leads none, couplings none".
+    /// Describes the parts: "gains scheduled, delays none, leads none, couplings none".
     pub fn words(&self) -> String {
         self.parts()
             .map(|(name, source)| format!("{name} {}", source.word()))
             .join(", ")
     }
 
-    /// What is left out, in words.
+    /// Describes the omitted parts.
     pub fn left_out_words(&self, dataset: &Dataset) -> Vec<String> {
         self.left_out
             .iter()
@@ -234,7 +233,7 @@ impl ExportContents {
             .collect()
     }
 
-    /// Lines that say both: "contains: …", then "left out: …" for each part that is.
+    /// Returns lines with both: "contains: …", then "left out: …" for each omitted part.
     pub fn lines(&self, dataset: &Dataset) -> Vec<String> {
         let mut lines = vec![format!("contains: {}", self.words())];
         for words in self.left_out_words(dataset) {
@@ -243,7 +242,7 @@ impl ExportContents {
         lines
     }
 
-    /// The block `contains` of files.
+    /// Returns the block `contains` of files.
     pub fn json(&self, dataset: &Dataset) -> Value {
         json!({
             "gains": self.gains.word(),

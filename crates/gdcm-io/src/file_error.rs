@@ -1,4 +1,4 @@
-//! Why a file could not be read or written.
+//! Reasons why a file could not be read or written.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -14,13 +14,13 @@ use crate::exports::ExportFault;
 use crate::json_text::line_of;
 use crate::variables::VariableFault;
 
-/// Why a file could not be read or written: one line that names the file, and the place in it.
+/// Reason why a file could not be read or written: one line that names the file, and the place in
+/// it.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// There is no file of this name.
+    /// There is no file with this name.
     #[error("{}: there is no such file", sanitized_path(path))]
     Missing {
-        /// The file.
         path: PathBuf,
     },
     /// The path is a directory.
@@ -29,7 +29,6 @@ pub enum FileError {
         sanitized_path(path)
     )]
     Directory {
-        /// The directory.
         path: PathBuf,
     },
     /// The path is neither a file nor a directory: reading it might never end.
@@ -38,65 +37,54 @@ pub enum FileError {
         sanitized_path(path)
     )]
     NotAFile {
-        /// The path.
         path: PathBuf,
-        /// What it is, in words.
         kind: &'static str,
     },
-    /// A named pipe, a socket or a device stands where a file is to be written.
+    /// The output path is a named pipe, a socket or a device.
     #[error(
         "{}: this is {kind}, not a file, and is not written to; give the name of a file",
         sanitized_path(path)
     )]
     OutputNotAFile {
-        /// The path.
         path: PathBuf,
-        /// What it is, in words.
         kind: &'static str,
     },
-    /// The system does not let the file be read.
+    /// The system does not permit reading the file.
     #[error("{}: cannot be read: {reason}", sanitized_path(path))]
     Unreadable {
-        /// The file.
         path: PathBuf,
-        /// What the system says.
         reason: String,
     },
-    /// The file, or what it unpacks to, is larger than the program takes.
+    /// The file, or its uncompressed content, exceeds the size limit.
     #[error(
         "{}: holds more than {most_mib} MiB, which is the most that is read; split the file",
         sanitized_path(path)
     )]
     TooLarge {
-        /// The file.
         path: PathBuf,
-        /// The limit \[MiB\].
         most_mib: u64,
     },
-    /// The packed data are damaged.
+    /// The compressed data are damaged.
     #[error(
         "{}: the gzip data are damaged; pack or copy the file again",
         sanitized_path(path)
     )]
     Gzip {
-        /// The file.
         path: PathBuf,
     },
-    /// The packed data end too early.
+    /// The compressed data end too early.
     #[error(
         "{}: the gzip data end too early, the file is cut off; copy it again",
         sanitized_path(path)
     )]
     GzipCutOff {
-        /// The file.
         path: PathBuf,
     },
     /// The text ends before the JSON does.
     #[error("{}: {}the JSON ends too early (line {line}, column {column}), the file is cut off; copy it again", sanitized_path(path), place.before())]
     CutOff {
-        /// The file.
         path: PathBuf,
-        /// What was being read.
+        /// Where the reader was.
         place: Box<Location>,
         /// Line, counted from 1.
         line: usize,
@@ -106,93 +94,81 @@ pub enum FileError {
     /// The text is not JSON.
     #[error("{}: {}this is not JSON (line {line}, column {column}: {reason})", sanitized_path(path), place.before())]
     NotJson {
-        /// The file.
         path: PathBuf,
-        /// What was being read.
+        /// Where the reader was.
         place: Box<Location>,
         /// Line, counted from 1.
         line: usize,
         /// Column in bytes, counted from 1.
         column: usize,
-        /// What is wrong there.
         reason: String,
     },
-    /// The file is of another kind.
+    /// The file has another format.
     #[error(
         "{}: expected \"format\": \"{expected}\", found {found}",
         sanitized_path(path)
     )]
     Format {
-        /// The file.
         path: PathBuf,
-        /// The format asked for, or the formats.
+        /// The expected format or formats.
         expected: &'static str,
-        /// What the file says, in words.
+        /// The format in the file, in words.
         found: String,
     },
-    /// The file is of a version this program does not know.
+    /// The file has an unknown version.
     #[error(
         "{}: expected version {newest} of {format}, found {found}; a newer gdcm may be able to read it",
         sanitized_path(path)
     )]
     Version {
-        /// The file.
         path: PathBuf,
-        /// The format.
         format: &'static str,
-        /// The version this program reads.
+        /// The version that this program reads.
         newest: u64,
-        /// What the file says, in words.
+        /// The version in the file, in words.
         found: String,
     },
-    /// Something in the file is not what it has to be.
+    /// Some content of the file is invalid.
     #[error("{}: {}{fault}{}", sanitized_path(path), place.before(), line.map(|line| format!(" (line {line})")).unwrap_or_default())]
     Content {
-        /// The file.
         path: PathBuf,
-        /// Where in the file.
+        /// Place in the file.
         place: Box<Location>,
-        /// What is wrong there.
+        /// Fault at that place.
         fault: Box<ContentFault>,
-        /// Line at which the condition or the model begins, counted from 1; none where the fault names its own.
+        /// Line at which the condition or the model begins, counted from 1; `None` if the fault has
+        /// its own.
         line: Option<usize>,
     },
-    /// A file of variables cannot be read, or not be written.
+    /// A file of variables cannot be read or written.
     #[error("{}: {}", sanitized_path(path), sanitized(&.fault.to_string()))]
     Variables {
-        /// The file.
         path: PathBuf,
-        /// Why not.
         fault: VariableFault,
     },
-    /// Folders lie in folders, deeper than models are looked for.
+    /// Folders are nested more deeply than the search for models goes.
     #[error(
         "{}: folders lie too deep inside one another; give a folder farther down",
         sanitized_path(path)
     )]
     FolderTooDeep {
-        /// The folder.
         path: PathBuf,
     },
-    /// A file of records does not hold the one that is asked for.
+    /// A file of records does not contain the requested record.
     #[error("{}: {}", sanitized_path(path), no_record_words(record.as_deref(), *held))]
     NoRecord {
-        /// The file.
         path: PathBuf,
-        /// The record; none for the only one.
+        /// The record; `None` for the only one.
         record: Option<String>,
-        /// How many records it holds.
+        /// Number of records in it.
         held: usize,
     },
-    /// A folder holds more files than are looked at.
     #[error(
         "{}: holds more than {most} files; give a folder with fewer",
         sanitized_path(path)
     )]
     TooManyFiles {
-        /// The folder.
         path: PathBuf,
-        /// The limit.
         most: usize,
     },
     /// The dataset of a study cannot be read.
@@ -201,45 +177,40 @@ pub enum FileError {
         sanitized_path(path)
     )]
     StudyDataset {
-        /// The study.
         path: PathBuf,
-        /// Why not, with the dataset's path.
+        /// The reason, with the dataset's path.
         dataset: Box<FileError>,
     },
-    /// A file stands where a directory has to be made.
+    /// A file has the path of a directory to be created.
     #[error(
         "{}: cannot be written: a file stands where this directory would have to be made",
         sanitized_path(path)
     )]
     NotADirectory {
-        /// The directory.
         path: PathBuf,
     },
-    /// Files are there already, and were not asked to be replaced.
+    /// Files exist, and replacing them was not requested.
     #[error("{} {} already", listed(paths), if paths.len() == 1 { "exists" } else { "exist" })]
     Exists {
-        /// The files.
         paths: Vec<PathBuf>,
     },
-    /// The file is what the program reads from.
+    /// The output file is an input of the program.
     #[error(
         "{}: the data are read from this file, so it is not overwritten; choose another name or directory",
         sanitized_path(path)
     )]
     Input {
-        /// The file.
         path: PathBuf,
     },
-    /// The name of a file does not say what a figure is to be written as.
+    /// The extension of an output file is no figure format.
     #[error(
         "{}: a figure is written to a name that ends in .svg, .png, .pdf or .csv",
         sanitized_path(path)
     )]
     FigureFormat {
-        /// The file.
         path: PathBuf,
     },
-    /// The numbers of a figure are asked for that shows none.
+    /// A figure without numbers was requested as numbers.
     #[error(
         "{}: \"{}\" shows no numbers that could be written: none of the responses or channels asked for has a result; ask for others, or \
          for .svg",
@@ -247,25 +218,19 @@ pub enum FileError {
         sanitized(title)
     )]
     FigureWithoutNumbers {
-        /// The file.
         path: PathBuf,
-        /// The title of the figure.
         title: String,
     },
-    /// What was asked for cannot be exported.
+    /// The requested export is impossible.
     #[error("{}: {}", sanitized_path(path), sanitized(&.fault.to_string()))]
     Export {
-        /// The file.
         path: PathBuf,
-        /// Why not.
         fault: ExportFault,
     },
-    /// The file could not be written; what was there before is still there.
+    /// The file could not be written; an existing file is unchanged.
     #[error("{}: cannot be written: {reason}", sanitized_path(path))]
     Unwritable {
-        /// The file.
         path: PathBuf,
-        /// What the system says.
         reason: String,
     },
 }
@@ -297,7 +262,7 @@ impl FileError {
         }
     }
 
-    /// Why the variables of a file cannot be read; a remedy names the file.
+    /// Creates the error for unreadable variables in a file; a remedy names the file.
     pub(super) fn variables(path: &Path, mut fault: VariableFault) -> Self {
         if let VariableFault::Unsupported { remedy, .. } = &mut fault {
             let name =
@@ -312,7 +277,7 @@ impl FileError {
         }
     }
 
-    /// The stable code of an error that scripts tell from others; none where there is none yet.
+    /// Returns the stable code by which scripts distinguish an error; `None` if it has none yet.
     pub fn code(&self) -> Option<&'static str> {
         match self {
             Self::NotAFile { .. } => Some("input-not-a-file"),
@@ -321,7 +286,7 @@ impl FileError {
         }
     }
 
-    /// Whether the reader was stopped, by whoever asked for the file.
+    /// Returns whether the reader was stopped by the caller.
     pub fn is_stopped(&self) -> bool {
         matches!(
             self,
@@ -349,7 +314,8 @@ impl FileError {
         }
     }
 
-    /// As [`FileError::content`], with the line of the JSON text at which the condition or the model begins.
+    /// Creates an error like [`FileError::content`], with the line of the JSON text at which the
+    /// condition or the model begins.
     pub(super) fn content_of(path: &Path, flaw: ContentError, text: &[u8]) -> Self {
         let ContentError { place, fault } = flaw;
         let line = line_of(text, &place);
@@ -382,7 +348,7 @@ fn listed(paths: &[PathBuf]) -> String {
         .join(", ")
 }
 
-/// What the system says, without its numbers.
+/// Returns the system's message without its error number.
 pub fn system_words(error: &std::io::Error) -> String {
     let words = match error.kind() {
         ErrorKind::StorageFull => "the disk is full",
@@ -398,17 +364,14 @@ pub fn system_words(error: &std::io::Error) -> String {
     words.to_owned()
 }
 
-// What can be wrong at a place in a file.
 
-/// What is wrong at a place in a file: expected, found, how to mend it.
+/// Fault at a place in a file: expected, found, remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ContentFault {
-    /// Something of another type stands there.
+    /// The value has the wrong type.
     #[error("expected {expected}, found {found} (line {line}, column {column})")]
     Type {
-        /// What has to stand there.
         expected: String,
-        /// What stands there.
         found: String,
         /// Line, counted from 1.
         line: usize,
@@ -418,14 +381,13 @@ pub enum ContentFault {
     /// A number is NaN, infinite, or too large for a 64-bit number.
     #[error("expected a finite number, found {found} (line {line}, column {column})")]
     NotFinite {
-        /// What stands there.
         found: String,
         /// Line, counted from 1.
         line: usize,
         /// Column in bytes, counted from 1.
         column: usize,
     },
-    /// Lists stand inside lists, deeper than any file of this format.
+    /// Lists are nested more deeply than in any file of this format.
     #[error("lists or objects are nested too deeply (line {line}, column {column})")]
     TooDeep {
         /// Line, counted from 1.
@@ -433,67 +395,62 @@ pub enum ContentFault {
         /// Column in bytes, counted from 1.
         column: usize,
     },
-    /// A key that must be there is not.
+    /// A required key is missing.
     #[error("the key \"{key}\" is missing; add it")]
     MissingKey {
-        /// The key.
         key: String,
     },
-    /// A key stands twice.
+    /// Duplicate key.
     #[error("the key {} stands twice; remove one", quoted(key))]
     DuplicateKey {
-        /// The key.
         key: String,
     },
-    /// Any other complaint about the text.
+    /// Any other fault of the text.
     #[error("{reason} (line {line}, column {column})")]
     Text {
-        /// The complaint.
         reason: String,
         /// Line, counted from 1.
         line: usize,
         /// Column in bytes, counted from 1.
         column: usize,
     },
-    /// A list has more entries than the program takes.
+    /// A list has more entries than permitted.
     #[error("expected at most {most} entries, found {found}")]
     TooMany {
-        /// The limit.
         most: usize,
-        /// How many there are.
+        /// Number of entries.
         found: usize,
     },
-    /// A text is none of those that may stand there.
+    /// A text is none of the permitted words.
     #[error("expected {expected}, found {}", quoted(found))]
     Word {
-        /// What may stand there.
+        /// The permitted words.
         expected: String,
-        /// What stands there.
         found: String,
     },
-    /// A row of a table of tolerances is wrong.
+    /// A row of a table of tolerances is invalid.
     #[error(transparent)]
     Tolerance(#[from] ToleranceError),
-    /// The ends of the band are wrong.
+    /// The ends of the band are invalid.
     #[error(transparent)]
     Band(#[from] BandError),
-    /// What the file says is no dataset.
+    /// The content is not a valid dataset.
     #[error("{}", sanitized(&.0.to_string()))]
     Dataset(#[from] DraftFault),
-    /// A study has a condition twice.
+    /// A study contains a condition twice.
     #[error("condition {id} stands twice; remove one")]
     DuplicateCondition {
-        /// The id.
         id: i64,
     },
-    /// A study holds a decision that cannot be taken.
+    /// A study contains an invalid decision.
     #[error("{}", sanitized(&.0.to_string()))]
     Refused(#[from] EditRefusal),
 }
 
 // Something wrong in a file.
 
-/// What is wrong in a file, and where. Boxed, so that results that are mostly right stay small.
+/// A fault in a file with its place. Boxed, so that results, which are mostly successful, stay
+/// small.
 #[derive(Debug)]
 pub(super) struct ContentError {
     pub(super) place: Box<Location>,

@@ -1,4 +1,4 @@
-//! JSON text to values, with the place of what is wrong and of what is not known.
+//! Conversion of JSON text to values, with the places of errors and unknown keys.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -23,11 +23,11 @@ use crate::file_error::{ContentError, ContentFault, FileError};
 use crate::location::{Outline, Step, UnknownKeys, location_of};
 use crate::variables::ReadingBudget;
 
-/// Memory that a byte of a file of this program takes at most \[bytes\]: a number, of a digit and a comma at least, in a list that
-/// grows into twice its memory.
+/// Maximum memory per byte of a file of this program \[bytes\]: a number takes at least a digit and
+/// a comma, in a list that grows into twice its memory.
 const TYPED: u64 = 8;
 
-/// Writes a value as JSON on lines of their own, for people to read.
+/// Writes a value as JSON with line breaks, for people to read.
 pub fn write_pretty(value: &impl Serialize, file: &mut dyn Write) -> io::Result<()> {
     serde_json::to_writer_pretty(SpelledOut(&mut *file), value)?;
     file.write_all(b"\n")
@@ -39,8 +39,8 @@ pub(super) fn write_compact(value: &impl Serialize, file: &mut dyn Write) -> io:
     file.write_all(b"\n")
 }
 
-/// Writes JSON in which control characters and invisible ones are spelt out, those too that JSON lets stand: a file that is shown on a
-/// terminal does nothing to it, and no name reads as another.
+/// Writes JSON with control and invisible characters spelled out, including those that JSON
+/// permits: a file shown on a terminal cannot affect it, and no name reads as another.
 struct SpelledOut<W>(W);
 
 impl<W: Write> Write for SpelledOut<W> {
@@ -71,7 +71,7 @@ impl<W: Write> Write for SpelledOut<W> {
     }
 }
 
-/// A kind of file: what its "format" and "version" have to say.
+/// A kind of file: the expected values of its "format" and "version".
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Format {
     pub(super) name: &'static str,
@@ -79,9 +79,10 @@ pub(super) struct Format {
 }
 
 impl Format {
-    /// The value that the text holds, and a caution for each key that is not known. The memory for it is taken from the budget first.
+    /// Reads the value of the text, with a caution for each unknown key. Its memory is first taken
+    /// from the budget.
     ///
-    /// Another format or version is told before anything else is complained of.
+    /// Another format or version is reported before any other error.
     pub(super) fn decode<'t, T: Deserialize<'t>>(
         self,
         text: &'t [u8],
@@ -107,7 +108,7 @@ impl Format {
             })
     }
 
-    /// Refuses a file that says it is of another format or version.
+    /// Rejects a file with another format or version.
     fn check(self, text: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<(), FileError> {
         let (format, version) = Outline::format_and_version(text, budget);
         let path = path.to_owned();
@@ -130,7 +131,7 @@ impl Format {
     }
 }
 
-/// Refuses a list at the top, which serde would take for an object without its keys.
+/// Rejects a list at the top, which serde would read as an object without its keys.
 fn check_object(text: &[u8], path: &Path) -> Result<(), FileError> {
     if text.trim_ascii_start().first() != Some(&b'[') {
         return Ok(());
@@ -157,7 +158,7 @@ fn step_of(segment: &serde_path_to_error::Segment) -> Option<Step> {
     }
 }
 
-/// Puts serde_json's complaint into the engineer's words.
+/// Translates serde_json's errors into the engineer's words.
 pub(super) fn json_error(
     text: &[u8],
     path: &Path,
@@ -199,7 +200,8 @@ pub(super) fn json_error(
                     },
                 ),
             ),
-            // A word where the reader can tell at once that none of those it knows will stand there.
+            // A word that the reader can reject at once, because it matches none of the known
+            // words.
             None if is_json_so_far(text) => {
                 let expected = "a text in quotation marks".to_owned();
                 let found = "something else".to_owned();
@@ -230,7 +232,7 @@ pub(super) fn json_error(
     }
 }
 
-/// Whether a text is JSON, or the beginning of some.
+/// Returns whether a text is JSON, or the beginning of JSON.
 fn is_json_so_far(text: &[u8]) -> bool {
     match serde_json::from_slice::<IgnoredAny>(text) {
         Ok(_) => true,
@@ -238,7 +240,7 @@ fn is_json_so_far(text: &[u8]) -> bool {
     }
 }
 
-/// serde_json's words for what is wrong with a text, where they speak of its own workings.
+/// Translates serde_json's syntax errors that mention its internals.
 fn syntax_words(reason: &str) -> String {
     match reason {
         "expected ident" => "a word that JSON does not know".to_owned(),
@@ -295,13 +297,13 @@ fn data_fault(reason: String, line: usize, column: usize) -> ContentFault {
     }
 }
 
-/// serde's words for what it found, in words that JSON's own authors would use.
+/// Translates serde's words for the value found into those of JSON authors.
 fn found_words(found: &str, is_length: bool) -> String {
     if is_length {
         return format!("{found} entries");
     }
     let unquoted = found.replace('`', "");
-    // serde writes every digit of a number out.
+    // serde writes all digits of a number.
     if let Some(Ok(value)) = unquoted.strip_prefix("floating point ").map(str::parse) {
         return number(value);
     }
@@ -319,7 +321,7 @@ fn found_words(found: &str, is_length: bool) -> String {
     })
 }
 
-/// serde's words for what it expected, in words for the file's author.
+/// Translates serde's words for the expected value into those of the file's author.
 fn expected_words(expected: &str) -> String {
     match expected {
         "f64" => "a number (without quotation marks)".to_owned(),
@@ -334,7 +336,7 @@ fn expected_words(expected: &str) -> String {
     }
 }
 
-/// The line at which the condition or the model of a place begins, counted from 1.
+/// Returns the line at which the condition or the model of a place begins, counted from 1.
 pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
     let mut value = entry(
         serde_json::from_slice(text).ok()?,
@@ -352,14 +354,15 @@ pub(super) fn line_of(text: &[u8], place: &Location) -> Option<usize> {
     Some(1 + text[..offset].iter().filter(|byte| **byte == b'\n').count())
 }
 
-/// An entry of a list in an object, counted from 1: the part of the text that it is, not a copy.
+/// Returns an entry of a list in an object, counted from 1: a part of the text, not a copy.
 fn entry<'t>(object: &'t RawValue, key: &str, position: usize) -> Option<&'t RawValue> {
     let object: BTreeMap<String, &RawValue> = serde_json::from_str(object.get()).ok()?;
     let list: Vec<&RawValue> = serde_json::from_str(object.get(key)?.get()).ok()?;
     list.get(position.checked_sub(1)?).copied()
 }
 
-/// The bare word around a column (counted from 1) of a line (counted from 1): `NaN`, `1e999`.
+/// Returns the bare word around a column (counted from 1) of a line (counted from 1): `NaN`,
+/// `1e999`.
 fn token_at(text: &[u8], line: usize, column: usize) -> Option<String> {
     /// Longer than any number that a program writes.
     const LONGEST: usize = 60;
@@ -384,28 +387,30 @@ fn token_at(text: &[u8], line: usize, column: usize) -> Option<String> {
     (!token.is_empty()).then_some(token)
 }
 
-/// Whether a word is a number to other programs, but not to JSON or not a finite one.
+/// Returns whether a word is a number in other programs, but not in JSON, or not a finite one.
 fn is_number_like(token: &str) -> bool {
-    // Rust reads NaN, inf and infinity in any case and with any sign, as C and Python write them; 1e999 reads as infinite.
+    // Rust reads NaN, inf and infinity in any case and with any sign, as C and Python write them;
+    // 1e999 is read as infinite.
     token.parse::<f64>().is_ok_and(|value| !value.is_finite())
 }
 
-// Numbers in lists in lists, as JSON writes matrices and tables.
+// Numbers in nested lists, as JSON writes matrices and tables.
 
-/// A rectangular array of `DEPTH` dimensions, the last one running fastest: `[[1, 2], [3, 4]]` has the shape 2 x 2.
+/// A rectangular array of `DEPTH` dimensions, the last one running fastest: `[[1, 2], [3, 4]]` has
+/// the shape 2 x 2.
 ///
-/// Read flat, so that a file of empty lists cannot take more memory than its own length; a matrix no further than the states of a
-/// model go, a table of responses no further than the channels and the frequencies.
+/// Read flat, so that a file of empty lists cannot take more memory than its own length; a matrix
+/// is limited by the number of states of a model, a table of responses by the numbers of channels
+/// and frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Nested<const DEPTH: usize> {
-    /// Entries along each dimension; 0 where a dimension before it is empty.
+    /// Entries along each dimension; 0 if a previous dimension is empty.
     pub(super) shape: [usize; DEPTH],
-    /// The numbers.
     pub(super) values: Vec<f64>,
 }
 
 impl<const DEPTH: usize> Nested<DEPTH> {
-    /// Most entries of a list at a depth, 0 the outermost.
+    /// Returns the maximum number of entries of a list at a depth, 0 being the outermost.
     const fn most(depth: usize) -> usize {
         match (DEPTH, depth) {
             (2, _) => MOST_STATES,
@@ -416,7 +421,7 @@ impl<const DEPTH: usize> Nested<DEPTH> {
 }
 
 impl Nested<2> {
-    /// A matrix, row by row.
+    /// Creates a matrix, row by row.
     pub(super) fn of_matrix(matrix: &DMatrix<f64>) -> Self {
         // nalgebra stores columns, a file has rows.
         Self {
@@ -444,14 +449,14 @@ impl<'de, const DEPTH: usize> Deserialize<'de> for Nested<DEPTH> {
     }
 }
 
-/// An array while it is read.
+/// An array being read.
 struct Filling<const DEPTH: usize> {
-    /// Length of the lists of each depth, once the first of them has ended.
+    /// Length of the lists at each depth, known once the first of them has ended.
     lengths: [Option<usize>; DEPTH],
     values: Vec<f64>,
 }
 
-/// One list at a depth, 0 the outermost.
+/// A list at a depth, 0 being the outermost.
 struct List<'f, const DEPTH: usize> {
     filling: &'f mut Filling<DEPTH>,
     depth: usize,
@@ -518,7 +523,7 @@ impl<const DEPTH: usize> Serialize for Nested<DEPTH> {
     }
 }
 
-/// A list of an array while it is written.
+/// A list of an array being written.
 struct Part<'v> {
     shape: &'v [usize],
     values: &'v [f64],
@@ -543,7 +548,8 @@ impl Serialize for Part<'_> {
     }
 }
 
-// Lists and objects that are read no further than a limit, so that what is refused for its length is never held in memory.
+// Lists and objects with a limit on their length, so that those rejected for it never occupy
+// memory.
 
 /// Reads a list of at most `MOST` entries.
 pub(super) fn list<'de, const MOST: usize, T, D>(deserializer: D) -> Result<Vec<T>, D::Error>
@@ -566,18 +572,18 @@ impl<'de, T: Deserialize<'de>, const MOST: usize> Deserialize<'de> for Limited<T
 }
 
 impl<T, const MOST: usize> Limited<T, MOST> {
-    /// A list, where there is anything in it.
+    /// Wraps a list; `None` if it is empty.
     pub(super) fn some(list: Vec<T>) -> Option<Self> {
         (!list.is_empty()).then_some(Self(list))
     }
 
-    /// The entries of a list that may be missing.
+    /// Returns the entries of an optional list.
     pub(super) fn entries(list: Option<Self>) -> Vec<T> {
         list.map(|list| list.0).unwrap_or_default()
     }
 }
 
-/// Reads a list of at most `most` entries, as long as `check` has nothing against the next.
+/// Reads a list of at most `most` entries, as long as `check` accepts the next.
 pub(super) fn list_while<'de, T, D>(
     deserializer: D,
     most: usize,
@@ -594,7 +600,7 @@ where
     })
 }
 
-/// Says that a list or an object goes on beyond its limit.
+/// Creates the error that a list or an object exceeds its limit.
 pub(super) fn too_long<E: Error>(most: usize) -> E {
     E::custom(format_args!("expected at most {most} entries, found more"))
 }
@@ -681,7 +687,7 @@ mod tests {
             .chars()
             .filter(|letter| is_unprintable(*letter))
             .collect();
-        // Line ends of its own, and a code that is nothing on a terminal.
+        // Line ends of its own, and a code without effect on a terminal.
         assert_eq!(left, ['\n', '\u{7f}', '\n'], "{text:?}");
         assert!(
             text.contains("\\u009b31m")

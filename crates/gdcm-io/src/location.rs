@@ -1,4 +1,4 @@
-//! Where in a file something stands, in the engineer's words.
+//! Locations in a file, in the engineer's words.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use gdcm_model::message_text::{quoted, sanitized, shortened};
 
 use crate::variables::ReadingBudget;
 
-/// One step on the way from the top of a JSON text to a value in it.
+/// A step on the path from the top of a JSON text to a value in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Step {
     /// Into an object, to this key.
@@ -19,7 +19,7 @@ pub(super) enum Step {
     Entry(usize),
 }
 
-/// The location that these steps lead to.
+/// Returns the location at the end of these steps.
 pub(super) fn location_of(steps: &[Step], outline: &Outline) -> Location {
     let mut place = Location::default();
     let mut rest = steps;
@@ -55,7 +55,8 @@ fn bundle_of(key: &str) -> Option<BundleKind> {
     }
 }
 
-/// Steps in words: `A[2][0]` is "matrix A, row 3, column 1", `re[0][1][4]` is "re, output 1, input 2, entry 5".
+/// Describes steps: `A[2][0]` is "matrix A, row 3, column 1", `re[0][1][4]` is "re, output 1, input
+/// 2, entry 5".
 fn entry_words(steps: &[Step]) -> String {
     let mut words: Vec<String> = Vec::new();
     let mut indices: &[&str] = &[];
@@ -88,35 +89,36 @@ fn entry_words(steps: &[Step]) -> String {
     words.join(", ")
 }
 
-// What a file calls itself, its conditions and its models, as far as it can be read at all.
 
-/// Most conditions and models that are labelled, so that an outline takes no more memory than a dataset.
+/// Maximum number of labelled conditions and models, so that an outline takes no more memory than a
+/// dataset.
 const MOST_LABELS: usize = 50_000;
-/// Most lists and objects inside one another; labels stand far above that.
+/// Maximum nesting of lists and objects; labels lie far above that.
 const DEEPEST: usize = 100;
 
-/// The labels of a file, for naming places in it; whatever stands behind an error in the text is missing.
+/// The labels of a file, for naming places in it; those after an error in the text are missing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Outline {
-    /// What stands at "format": text, or the kind of thing that is not text.
+    /// Value of "format": a text, or the type of another value.
     pub(super) format: Option<String>,
-    /// What stands at "version".
+    /// Value of "version".
     pub(super) version: Option<String>,
     /// Ids of conditions.
     ids: BTreeMap<usize, i64>,
-    /// Names of models: by the index of their condition, the key of their bundle, and their index in it.
+    /// Names of models, by the index of their condition, the key of their bundle, and their index
+    /// in it.
     names: BTreeMap<(usize, String, usize), String>,
 }
 
 impl Outline {
-    /// Every label that can be read before the text ends or breaks.
+    /// Collects all labels that can be read before the text ends or breaks.
     pub(super) fn of(text: &[u8]) -> Self {
         Self::read(text, |outline| {
             outline.ids.len() + outline.names.len() >= MOST_LABELS
         })
     }
 
-    /// What the file calls its format; reads no further than that, nor on where the reader shall stop.
+    /// Returns the format in the file; reads no further than that, and stops when the budget does.
     pub(super) fn format_of(text: &[u8], budget: &ReadingBudget<'_>) -> Option<String> {
         Self::read(text, |outline| {
             outline.format.is_some() || budget.work(0, "").is_err()
@@ -124,7 +126,7 @@ impl Outline {
         .format
     }
 
-    /// What the file calls its format and its version; reads no further than those.
+    /// Returns format and version in the file; reads no further than those.
     pub(super) fn format_and_version(
         text: &[u8],
         budget: &ReadingBudget<'_>,
@@ -136,19 +138,21 @@ impl Outline {
         (outline.format, outline.version)
     }
 
-    /// The id of a condition, by index.
+    /// Returns the id of a condition, by index.
     pub(super) fn id(&self, condition: usize) -> Option<i64> {
         self.ids.get(&condition).copied()
     }
 
-    /// The name of a model, by the index of its condition, the key of its bundle, and its index in it.
+    /// Returns the name of a model, by the index of its condition, the key of its bundle, and its
+    /// index in it.
     pub(super) fn name(&self, condition: usize, bundle: &str, model: usize) -> Option<String> {
         self.names
             .get(&(condition, bundle.to_owned(), model))
             .cloned()
     }
 
-    /// An error ends the outline; it is found again, and told, by the reader proper.
+    /// Reads until `enough`; an error ends the outline, and the reader proper finds and reports it
+    /// again.
     fn read(text: &[u8], enough: impl Fn(&Self) -> bool) -> Self {
         let mut outline = Self::default();
         let mut parser = SliceJsonParser::new(text);
@@ -180,7 +184,7 @@ impl Outline {
         outline
     }
 
-    /// Takes a value for a label, if that is what it is.
+    /// Stores a value if it is a label.
     fn note(&mut self, steps: &[Step], value: &JsonEvent<'_>) {
         match (steps, value) {
             ([Step::Key(key)], _) if key == "format" => self.format = Some(words(value)),
@@ -208,7 +212,8 @@ impl Outline {
     }
 }
 
-/// A value in words: a text in quotation marks, a number as it stands, of a list or an object only that it is one.
+/// Describes a value: a text in quotation marks, a number unchanged, a list or an object only by
+/// its type.
 fn words(value: &JsonEvent<'_>) -> String {
     match value {
         JsonEvent::String(text) => quoted(text),
@@ -220,22 +225,22 @@ fn words(value: &JsonEvent<'_>) -> String {
     }
 }
 
-// Keys of a file that the program does not know.
 
-/// Most keys told one by one; a file with more is not one of ours, or made to fill the memory.
+/// Maximum number of keys reported individually; a file with more is not one of ours, or made to
+/// fill the memory.
 const MOST_KEYS: usize = 50;
 
-/// Keys that the program does not know, the same key in the same kind of place counted once.
+/// Keys unknown to the program, counted once for the same key in the same kind of place.
 #[derive(Debug, Default)]
 pub(super) struct UnknownKeys {
-    /// By the steps without their indices: the first such place, and how many there are.
+    /// By the steps without their indices: the first such place, and their number.
     found: BTreeMap<Vec<String>, (Vec<Step>, usize)>,
-    /// How many are not kept, because there are too many others.
+    /// Number of those not kept, because there are too many others.
     beyond: usize,
 }
 
 impl UnknownKeys {
-    /// Notes one key, or one entry, that was passed over.
+    /// Adds a key or an entry that was skipped.
     pub(super) fn add(&mut self, path: &serde_ignored::Path<'_>) {
         let mut steps = Vec::new();
         collect_steps(path, &mut steps);
@@ -252,7 +257,7 @@ impl UnknownKeys {
         }
     }
 
-    /// A caution for each, with its place in the text.
+    /// Returns a caution for each, with its place in the text.
     pub(super) fn cautions(&self, text: &[u8]) -> Vec<String> {
         if self.found.is_empty() {
             return Vec::new();

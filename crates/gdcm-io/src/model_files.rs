@@ -1,4 +1,4 @@
-//! Models in files of whatever format, and in folders of them.
+//! Models in files of any format, and in folders.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -21,32 +21,34 @@ use crate::models_file::{bare_draft, labels};
 use crate::recognise::{Found, recognise};
 use crate::variables::{ReadingBudget, Value, Variable, VariableFault};
 
-/// The headings of every table of as many columns, among those of single files.
+/// Key for the headings of every table with the same number of columns, among the keys of single
+/// files.
 pub const EVERY_TABLE: &str = "*";
 
-/// What was found in files.
+/// Models found in files.
 #[derive(Clone, Debug, Default)]
 pub struct FoundModels {
-    /// The models, in the order of their files.
+    /// In the order of their files.
     pub models: Vec<FoundModel>,
-    /// What could not be taken: files, and what looks like a model in them, each with its place and why.
+    /// Files, and apparent models in them, that could not be read, each with its place and the
+    /// reason.
     pub faults: Vec<String>,
-    /// What is no model, in words.
+    /// Contents that are not models, in words.
     pub ignored: Vec<String>,
-    /// The variables that were not used, by the file that holds models beside them.
+    /// The unused variables, by the file that contains them beside models.
     pub unused: BTreeMap<String, Vec<String>>,
-    /// The tables of columns among the files, with the headings that they were read by.
+    /// The tables of columns among the files, with the headings used.
     pub tables: Headings,
-    /// The units that have to be said before these tables are frequency responses.
+    /// The units needed before these tables are frequency responses.
     pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
-    /// Number of files that were read.
+    /// Number of files read.
     pub files: usize,
 }
 
 impl FoundModels {
-    /// One line for each file of which variables were not used.
+    /// Returns one line for each file with unused variables.
     pub fn unused_words(&self) -> Vec<String> {
-        /// Names of a file that are written out.
+        /// Maximum number of names listed per file.
         const NAMED: usize = 20;
         let words = |(file, names): (&String, &Vec<String>)| {
             let rest = names.len().saturating_sub(NAMED);
@@ -58,8 +60,8 @@ impl FoundModels {
     }
 }
 
-/// The models of files and folders, folders with all that is in them; tables of columns by the headings that are said of them. A
-/// file that cannot be read is a fault, and the rest is read.
+/// Reads the models in files and folders, including all subfolders; tables of columns by the given
+/// headings. A file that cannot be read is a fault, and the rest is read.
 pub fn read_models(
     paths: &[PathBuf],
     headings: &Headings,
@@ -76,7 +78,7 @@ pub fn read_models(
     Ok(FoundModels { files, ..found })
 }
 
-/// The models in the bytes of a file of this name, within a budget.
+/// Reads the models in the bytes of a file with this name, within a budget.
 pub fn models_of_bytes(
     bytes: &[u8],
     name: &str,
@@ -95,11 +97,11 @@ pub fn models_of_bytes(
     })
 }
 
-/// Files of models while they are read.
+/// Files of models being read.
 struct ModelReading<'h> {
     headings: &'h Headings,
     found: FoundModels,
-    /// Matrices that have files to themselves.
+    /// Matrices in separate files.
     matrices: Vec<LooseMatrix>,
 }
 
@@ -189,7 +191,7 @@ impl ModelReading<'_> {
                     }
                 }
                 self.found.ignored.extend(of_file(name, ignored));
-                // Its arrays are those of NumPy.
+                // Its arrays are NumPy arrays: pages come first.
                 self.of_variables(variables, Vec::new(), ((name, &sha256), true), budget)
                     .map_err(wrong)?
             }
@@ -251,7 +253,7 @@ impl ModelReading<'_> {
     }
 }
 
-/// What a text holds, where models are looked for.
+/// Contents of a text in the search for models.
 enum TextContents {
     Variables {
         variables: Vec<Variable>,
@@ -260,7 +262,7 @@ enum TextContents {
     Table(TextTable),
 }
 
-/// A matrix where the file is named as one, matrices under names where there are some, else a table.
+/// Reads a matrix if the file is named as one, named matrices if there are some, otherwise a table.
 fn models_text(
     text: &str,
     path: &Path,
@@ -293,8 +295,8 @@ fn stem(path: &Path) -> &str {
         .unwrap_or_default()
 }
 
-/// Every model, with what the dataset says about it and its condition; `name` is the name of the dataset's file, relative to what was
-/// asked for.
+/// Returns every model, with the dataset's information on it and its condition; `name` is the name
+/// of the dataset's file, relative to the requested path.
 fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel> {
     let mut models = Vec::new();
     for condition in dataset.conditions() {
@@ -307,7 +309,8 @@ fn models_of_dataset(dataset: &Dataset, name: &str) -> Vec<FoundModel> {
     models
 }
 
-/// What is said of the condition; its records' files are relative to the dataset's folder, and become relative to what was asked for.
+/// Returns the information on the condition; the paths of its records, relative to the dataset's
+/// folder, become relative to the requested path.
 fn facts(condition: &Condition, name: &str) -> Facts {
     let state = condition.flight_state();
     let beside = |record: &ConditionRecord| {
@@ -363,21 +366,20 @@ fn found(
     }
 }
 
-// Matrices that have files to themselves: `A.csv`, `B.csv`, `C.csv` and `D.csv` of a folder, or `nominal_A.npy`, ….
 
-/// A matrix that has a file to itself.
+/// A matrix in a separate file.
 struct LooseMatrix {
-    /// The folder and what stands before the letter: matrices of the same are one model.
+    /// The folder and the part of the name before the letter: matrices with the same group are one
+    /// model.
     group: String,
-    /// The file.
     file: String,
-    /// SHA-256 of the file.
     sha256: String,
-    /// The matrix, under its letter.
+    /// The matrix, named by its letter.
     variable: Variable,
 }
 
-/// The letter of a file that is named as a matrix, and what stands before it: "nominal_A" is A of "nominal".
+/// Returns the letter of a file that is named as a matrix, and the part before it: "nominal_A" is A
+/// of "nominal".
 fn matrix_letter(stem: &str) -> Option<(char, &str)> {
     let letter = stem
         .chars()
@@ -389,7 +391,7 @@ fn matrix_letter(stem: &str) -> Option<(char, &str)> {
 }
 
 impl LooseMatrix {
-    /// The only variable of a file that is named as a matrix.
+    /// Takes the only variable of a file that is named as a matrix.
     fn of(variables: &[Variable], file: &str) -> Option<Self> {
         let [variable] = variables else { return None };
         if !matches!(variable.value, Value::Array(_)) {
@@ -414,7 +416,8 @@ impl LooseMatrix {
     }
 }
 
-/// The models that loose matrices make, each group one; its file is the folder, or what stands before the letters.
+/// Builds one model from each group of loose matrices; its file is the folder, or the part of the
+/// name before the letters.
 fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     let mut groups: BTreeMap<String, Vec<LooseMatrix>> = BTreeMap::new();
     for matrix in loose {
@@ -461,10 +464,10 @@ fn models_of_matrices(loose: Vec<LooseMatrix>) -> Found<FoundModel> {
     found
 }
 
-// Frequency responses out of tables of columns.
+// Frequency responses from tables of columns.
 
-/// The responses of a table, each a model of one input and one output; a table that holds none is passed over in words, with the
-/// units that would make it one.
+/// Returns the responses of a table, each a model with one input and one output; a table without
+/// any is reported as ignored, with the units that would make it one.
 fn models_of_table(
     table: &TextTable,
     file: &str,
@@ -533,7 +536,7 @@ fn model(
         omega: points.omega,
         re: array(points.re),
         im: array(points.im),
-        // Missing coherence trusts nothing.
+        // Points with missing coherence are not trusted.
         coherence: points.coherence.map(|values| {
             array(
                 values

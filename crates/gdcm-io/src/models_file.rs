@@ -1,4 +1,5 @@
-//! Models as they were found, `gdcm-models` 1, which `gdcm convert` writes, and as they were identified, `gdcm-identified` 1.
+//! Models as found, `gdcm-models` 1, which `gdcm convert` writes, and as identified,
+//! `gdcm-identified` 1.
 
 use std::io::{self, Write};
 use std::iter::once;
@@ -29,12 +30,12 @@ use crate::json_text::{Format, Limited, Nested, list, write_compact};
 use crate::output_set::OutputSet;
 use crate::variables::ReadingBudget;
 
-/// What a file of models calls itself.
+/// Format and version of a file of models.
 pub(super) const MODELS: Format = Format {
     name: "gdcm-models",
     version: 1,
 };
-/// What a file of identified models calls itself.
+/// Format and version of a file of identified models.
 pub(super) const IDENTIFIED: Format = Format {
     name: "gdcm-identified",
     version: 1,
@@ -69,7 +70,7 @@ fn write_models(models: &[FoundModel], file: &mut dyn Write) -> io::Result<()> {
     write_compact(&text, file)
 }
 
-/// A corrected model, with what of the correction it contains.
+/// A corrected model with the contents of the correction.
 pub(super) struct ContainingModel {
     pub(super) model: FoundModel,
     /// The block `contains`.
@@ -112,11 +113,11 @@ pub(super) fn write_containing_models(
     )
 }
 
-/// The text of a model outside a dataset.
+/// Converts a model outside a dataset to text.
 pub(super) fn model_text(model: &FoundModel) -> ModelText {
     let text = ModelText::of(model.draft.clone());
     let role = match &model.draft.origin {
-        // What a model is that says nothing of itself.
+        // The origin of a model without information on it.
         Origin::Perturbed { perturbation: None } => None,
         Origin::Identified { .. } => Some("identified".to_owned()),
         Origin::Nominal { .. } | Origin::Perturbed { .. } => text.role,
@@ -158,8 +159,9 @@ fn units_text(labels: &[ChannelLabel]) -> Option<Limited<String, MOST_CHANNELS>>
     ))
 }
 
-/// The models of a text of this program, and what of it is not known; nothing where it is no such text, or where something unknown looks
-/// like a delay: it is then read as any other text, which knows the ways of writing delays and asks about the rest.
+/// Reads the models of a text of this program, with its unknown keys; `None` for any other text, or
+/// if an unknown key looks like a delay: it is then read like any other text, with the knowledge of
+/// all notations for delays, and a question about the rest.
 pub(super) fn found_models(
     text: &[u8],
     path: &Path,
@@ -180,7 +182,7 @@ pub(super) fn found_models(
     Some((models.collect::<Option<_>>()?, unknown))
 }
 
-/// Whether words about a key that is not known name one that looks like a delay.
+/// Returns whether the words about an unknown key name one that looks like a delay.
 fn names_delay(words: &str) -> bool {
     let words = words.to_lowercase();
     ["delay", "\"tau", "\"td", "dead", "latency"]
@@ -188,7 +190,7 @@ fn names_delay(words: &str) -> bool {
         .any(|word| words.contains(word))
 }
 
-/// The labels of a dataset's channels.
+/// Returns the labels of a dataset's channels.
 pub(super) fn labels(channels: &[Channel]) -> Vec<ChannelLabel> {
     let label = |channel: &Channel| ChannelLabel {
         name: Some(channel.name.clone()),
@@ -197,7 +199,7 @@ pub(super) fn labels(channels: &[Channel]) -> Vec<ChannelLabel> {
     channels.iter().map(label).collect()
 }
 
-/// A model of which nothing is known yet but what it is called and what it is of.
+/// Creates a draft with only a name and an origin.
 pub(super) fn bare_draft(name: String, origin: Origin) -> ModelDraft {
     ModelDraft {
         name,
@@ -211,7 +213,8 @@ pub(super) fn bare_draft(name: String, origin: Origin) -> ModelDraft {
     }
 }
 
-/// The model of a text, under the name that a list of models has for it; nothing where it has no size.
+/// Converts the model of a text, with its index as the default name in a list of models; `None` if
+/// it has no size.
 fn found(mut text: ModelText, index: usize) -> Option<FoundModel> {
     let origin = text.origin().or_else(|| {
         (text.method.is_some() || text.order.is_some()).then(|| text.identified_origin())
@@ -250,7 +253,8 @@ fn found(mut text: ModelText, index: usize) -> Option<FoundModel> {
     })
 }
 
-/// The labels of channels out of their names and units, empty where there are none; nothing where there are more or fewer of them.
+/// Returns the labels of channels from their names and units, empty without names; `None` if their
+/// number is wrong.
 fn labels_of(count: usize, names: Vec<LabelText>, units: Vec<String>) -> Option<Vec<ChannelLabel>> {
     if [names.len(), units.len()]
         .into_iter()
@@ -276,19 +280,17 @@ fn labels_of(count: usize, names: Vec<LabelText>, units: Vec<String>) -> Option<
     Some((0..count).map(label).collect())
 }
 
-// Models identified from flight records, `gdcm-identified` 1: what `gdcm identify` writes.
+// Models identified from flight records, `gdcm-identified` 1, as written by `gdcm identify`.
 
-/// What an identification found, with what its file says beside it.
+/// Results of an identification, with the additional information in its file.
 pub struct IdentifiedModels<'f> {
-    /// What was found, in the units of the channels.
+    /// In the units of the channels.
     pub found: &'f Identification,
-    /// The channels.
     pub channels: &'f RecordChannels,
-    /// The records, in order.
+    /// In order.
     pub records: &'f [ConditionRecord],
-    /// What is to be minded.
     pub cautions: &'f [CautionNote],
-    /// What was assumed and what was done while the records were read.
+    /// Assumptions and actions while the records were read.
     pub reading: &'f [String],
 }
 
@@ -317,8 +319,9 @@ struct MeasuredText {
     sd_deg: Nested<3>,
 }
 
-/// Adds what identification found as a file to `outputs`: the recommended model first, then CT-PBSID without refinement, then the
-/// rest of the bundle; values that are not finite become `null`.
+/// Adds the results of an identification as a file to `outputs`: the recommended model first, then
+/// CT-PBSID without refinement, then the rest of the bundle; values that are not finite become
+/// `null`.
 pub fn add_identified(
     of: &IdentifiedModels,
     path: &Path,
@@ -354,8 +357,9 @@ pub fn add_identified(
             .collect(),
         measured: measured_text(&found.measured),
         poles: found.poles.iter().map(pole_text).collect(),
-        // Costs over degrees of freedom of the records of the fit and of those held out, these also where the model may move within its
-        // own uncertainty; share of each output of the held-out records that the model reproduces in time [%], and Theil's coefficient.
+        // Costs over degrees of freedom of the fitted and of the held-out records, the latter also
+        // with the model free within its own uncertainty; share of each output of the held-out
+        // records that the model reproduces in time [%], and Theil's coefficient.
         validation: json!({
             "fit_per_dof": found.cost,
             "held_out_per_dof": found.held_out_cost,
@@ -407,7 +411,8 @@ fn measured_text(measured: &ResponseEstimate) -> MeasuredText {
     }
 }
 
-/// A caution: the one record that it is about, and all of them; output and input of its pair.
+/// Returns a caution: its record if it concerns a single one, and all its records; output and input
+/// of its pair.
 fn caution_text(of: &CautionNote) -> Value {
     json!({
         "code": of.code,
@@ -424,7 +429,8 @@ fn pole_text(of: &PoleEstimate) -> Value {
     json!({"re": of.pole.re, "im": of.pole.im, "sd": of.sd_re.hypot(of.sd_im), "determined": of.determined})
 }
 
-/// A record: first and last time of the part of the file that it is, and of each part of it that was used; why others were not.
+/// Returns a record: first and last time of its part of the file, and of each used segment; the
+/// reasons why others were not used.
 fn record_text(found: &Identification, index: usize, record: &ConditionRecord) -> Value {
     let gaps = found
         .record_uses

@@ -1,4 +1,4 @@
-//! Files that are written whole, or not at all; several of them together.
+//! Files that are written whole, or not at all; individually or as a set.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -13,16 +13,16 @@ use tempfile::NamedTempFile;
 use super::file_error::FileError;
 use super::source::kind_of;
 
-/// What becomes of a file that stands where another is to be written.
+/// Treatment of existing files at the places of new ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
-    /// It stays, and nothing is written.
+    /// They stay, and nothing is written.
     Keep,
-    /// The new one takes its place.
+    /// The new files replace them.
     Replace,
 }
 
-/// Files that take their places together.
+/// A set of files that take their places together.
 ///
 /// ```text
 /// check    nothing stands in the way                                   (before any work)
@@ -31,11 +31,11 @@ pub enum Existing {
 ///          on an error rename back what was kept aside
 /// ```
 ///
-/// No file system renames several files at once. A process that is killed between two of them leaves new files beside old ones; where
-/// that matters, checksums that are added last tell it.
+/// No file system renames several files at once. A process killed between two of them leaves new
+/// files beside old ones; checksums, added last, reveal this.
 ///
-/// Dropped before it is persisted, a set leaves everything as it was. What a killed run left behind is removed when something is
-/// next written into its directory.
+/// A set dropped before it is persisted changes nothing. Leftovers of a killed run are removed by
+/// the next write into their directory.
 #[derive(Debug)]
 pub struct OutputSet {
     existing: Existing,
@@ -43,18 +43,18 @@ pub struct OutputSet {
     staged: Vec<Staged>,
 }
 
-/// A file that is written, but not in its place.
+/// A file that is written, but not yet in its place.
 #[derive(Debug)]
 struct Staged {
-    /// Its place, as it was asked for.
+    /// The requested place.
     path: PathBuf,
-    /// The file that a link there leads to, or the place itself.
+    /// The file to which a link there leads, or the place itself.
     target: PathBuf,
     temporary: NamedTempFile,
 }
 
 impl OutputSet {
-    /// A set without files; `inputs`, what the program reads from, are never replaced.
+    /// Creates an empty set; `inputs`, from which the program reads, are never replaced.
     pub fn new(existing: Existing, inputs: Vec<PathBuf>) -> Self {
         Self {
             existing,
@@ -63,22 +63,22 @@ impl OutputSet {
         }
     }
 
-    /// The same set, which replaces none of these either.
+    /// Returns the set with more inputs, which are not replaced either.
     #[must_use]
     pub fn also_reading(mut self, inputs: impl IntoIterator<Item = PathBuf>) -> Self {
         self.inputs.extend(inputs);
         self
     }
 
-    /// Refuses places that cannot be written to, or may not be: a question for before the work.
+    /// Rejects places that cannot or must not be written to, before the work.
     pub fn check<P: AsRef<Path>>(&self, places: &[P]) -> Result<(), FileError> {
         let mut there = Vec::new();
         for path in places.iter().map(AsRef::as_ref) {
             let Ok(found) = fs::metadata(path) else {
                 continue;
             };
-            // Before the path is opened for any purpose: opening a pipe waits for its other end. Replacing a pipe or a device by a file
-            // would break what others use it for.
+            // Before the path is opened for any purpose: opening a pipe waits for its other end.
+            // Replacing a pipe or a device by a file would break its other users.
             if let Some(kind) = kind_of(found.file_type()) {
                 return Err(FileError::OutputNotAFile {
                     path: path.to_owned(),
@@ -107,7 +107,7 @@ impl OutputSet {
         }
     }
 
-    /// Writes a file beside its place, down to the disk.
+    /// Writes a file beside its place, flushed to the disk.
     pub fn add(
         &mut self,
         path: &Path,
@@ -135,8 +135,8 @@ impl OutputSet {
         Ok(())
     }
 
-    /// Adds the SHA-256 of every file so far, as `sha256sum` writes them: this file takes its place last, and tells whether the others
-    /// belong together.
+    /// Adds the SHA-256 of every file so far, in the format of `sha256sum`: this file takes its
+    /// place last, and shows whether the others belong together.
     pub fn add_checksums(&mut self, path: &Path) -> Result<(), FileError> {
         let line = |staged: &Staged| {
             let name = &staged
@@ -153,13 +153,14 @@ impl OutputSet {
 
     /// Puts every file in its place, or none.
     pub fn persist(self) -> Result<(), FileError> {
-        // Each directory once, by whatever way: a set that waited for itself would wait for ever.
+        // Each directory once, whatever the path to it: a set that waited for itself would wait for
+        // ever.
         let directory = |staged: &Staged| {
             let directory = directory_of(&staged.target);
             fs::canonicalize(directory).unwrap_or_else(|_| directory.to_owned())
         };
         let directories: BTreeSet<PathBuf> = self.staged.iter().map(directory).collect();
-        // Of one file the last to write is right.
+        // For a single file, the last writer wins.
         let is_set = self.staged.len() > 1;
         let _locks: Vec<SetLock> = directories
             .iter()
@@ -190,7 +191,8 @@ impl OutputSet {
     }
 }
 
-/// Whether an output is an input, through whatever links. An input that is a pipe or a device is none, and is not opened.
+/// Returns whether an output is an input, through any links. An input that is a pipe or a device
+/// does not count, and is not opened.
 fn is_same_file(path: &Path, input: &Path) -> bool {
     let Ok(found) = fs::metadata(input) else {
         return false;
@@ -198,20 +200,20 @@ fn is_same_file(path: &Path, input: &Path) -> bool {
     kind_of(found.file_type()).is_none() && same_file::is_same_file(path, input).unwrap_or(false)
 }
 
-/// A file's line among checksums.
+/// Returns a file's line in the checksums.
 fn checksum(name: &str, bytes: &[u8]) -> String {
     format!("{:x}  {name}\n", Sha256::digest(bytes))
 }
 
-/// The right to put a set of files into a directory: a locked file there, which the next set waits for. It ends with its process,
-/// however that ends.
+/// Lock for putting a set of files into a directory: a locked file there, for which the next set
+/// waits. It ends with its process, however that ends.
 struct SetLock {
     path: PathBuf,
     _file: File,
 }
 
 impl SetLock {
-    /// Waits for the right; none where the file system knows no locks.
+    /// Waits for the lock; `None` if the file system has no locks.
     fn of(directory: &Path) -> Option<Self> {
         let path = directory.join(format!("{PREFIX}lock{SUFFIX}"));
         loop {
@@ -223,7 +225,7 @@ impl SetLock {
                 .ok()?;
             file.lock().ok()?;
             let locked = same_file::Handle::from_file(file.try_clone().ok()?).ok()?;
-            // Whoever had it before has removed the file that was waited for.
+            // The previous owner may have removed the file whose lock was awaited.
             if same_file::Handle::from_path(&path).is_ok_and(|there| there == locked) {
                 return Some(Self { path, _file: file });
             }
@@ -233,7 +235,7 @@ impl SetLock {
 
 impl Drop for SetLock {
     fn drop(&mut self) {
-        // What cannot be removed is removed as a leftover later.
+        // A file that cannot be removed now is removed as a leftover later.
         let _ = fs::remove_file(&self.path);
     }
 }
@@ -241,7 +243,7 @@ impl Drop for SetLock {
 /// A file in its place.
 struct Placed {
     target: PathBuf,
-    /// What stood there before, under a second name.
+    /// The previous file, under a second name.
     earlier: Option<NamedTempFile>,
 }
 
@@ -263,7 +265,7 @@ impl Placed {
         Ok(Self { target, earlier })
     }
 
-    /// Restores what was there; there is nothing left to do about a failure to.
+    /// Restores the previous file; a failure to do so has no remedy.
     fn take_back(self) {
         match self.earlier {
             Some(earlier) => drop(earlier.persist(&self.target)),
@@ -272,14 +274,15 @@ impl Placed {
     }
 }
 
-/// A second name for a file, or a copy of it where the file system knows no second names; removed when dropped.
+/// Creates a second name for a file, or a copy of it if the file system has no hard links; removed
+/// when dropped.
 fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
     named().make_in(directory_of(target), |path| {
         match fs::hard_link(target, path) {
             Err(error) if error.kind() != ErrorKind::AlreadyExists => drop(fs::copy(target, path)?),
             linked => linked?,
         }
-        // Another process may take it for a leftover before the lock: then another name is taken.
+        // Another process may take it for a leftover before the lock: then another name is chosen.
         let removed = || io::Error::from(ErrorKind::AlreadyExists);
         let file = File::open(path).map_err(|error| {
             if error.kind() == ErrorKind::NotFound {
@@ -297,7 +300,8 @@ fn kept_aside(target: &Path) -> io::Result<NamedTempFile> {
     })
 }
 
-/// Writes one file, in place of what is there; on an error that is untouched. A link is followed: what it leads to is replaced.
+/// Writes a file, replacing an existing one, which an error leaves untouched. Links are followed:
+/// their target is replaced.
 pub(super) fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -307,7 +311,7 @@ pub(super) fn write_whole(
     set.persist()
 }
 
-/// Makes a directory and those above it, where they are not there yet.
+/// Creates a directory and its missing parents.
 pub fn make_directory(path: &Path) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists | ErrorKind::NotADirectory => FileError::NotADirectory {
@@ -317,9 +321,10 @@ pub fn make_directory(path: &Path) -> Result<(), FileError> {
     })
 }
 
-/// Makes a file that grows beyond what the system allows (`ulimit -f`) an error like any other, in place of the program's end.
+/// Turns the signal for a file beyond the system's size limit (`ulimit -f`) into an ordinary error,
+/// instead of the end of the program.
 pub fn report_size_limit() {
-    // Where that fails, the program ends as before, and still leaves no half of a file.
+    // If that fails, the program ends as before, and still leaves no partial file.
     #[cfg(unix)]
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::<AtomicBool>::default());
 }
@@ -339,10 +344,12 @@ fn directory_of(file: &Path) -> &Path {
         .unwrap_or(Path::new("."))
 }
 
-/// A temporary file, locked as long as it is open: the lock ends with its process, however that ends, and on whatever machine.
+/// Creates a temporary file, locked as long as it is open: the lock ends with its process, however
+/// that ends, and on any machine.
 fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> {
     let mut builder = named();
-    // That of the file it replaces, or what the process's mask leaves of reading and writing for all.
+    // The permissions of the replaced file, or reading and writing for all, reduced by the
+    // process's mask.
     #[cfg(unix)]
     builder.permissions(
         fs::metadata(target)
@@ -353,11 +360,11 @@ fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> 
             }),
     );
     loop {
-        // Its own words would name the temporary file.
+        // Its own message would name the temporary file.
         let temporary = builder
             .tempfile_in(directory)
             .map_err(|error| io::Error::from(error.kind()))?;
-        // A file system without locks has no leftovers removed, see below.
+        // On a file system without locks no leftovers are removed, see below.
         let _ = temporary.as_file().lock();
         // Another process may have taken it for a leftover before the lock.
         if temporary.path().exists() {
@@ -366,7 +373,7 @@ fn temporary_file(target: &Path, directory: &Path) -> io::Result<NamedTempFile> 
     }
 }
 
-/// Removes the temporary files of runs that were killed: those that nobody has locked.
+/// Removes the temporary files of killed runs: those without a lock.
 fn remove_leftovers(directory: &Path) {
     for entry in fs::read_dir(directory).into_iter().flatten().flatten() {
         let is_ours = entry
@@ -404,10 +411,11 @@ mod tests {
         Ok(set)
     }
 
-    /// Says in an environment before which file a process of a test ends as if it were killed.
+    /// Environment variable that names the file before which a test process ends as if it were
+    /// killed.
     const END: &str = "GDCM_TEST_END_BEFORE";
 
-    /// Ends the process where a test asked for that.
+    /// Ends the process where a test requests it.
     pub(super) fn end_here(path: &Path) {
         if std::env::var_os(END).is_some_and(|name| path.file_name() == Some(&name)) {
             std::process::abort();
@@ -427,7 +435,7 @@ mod tests {
         set.persist()
     }
 
-    /// The text of a set that is whole by its checksums.
+    /// Returns the text of a set whose checksums match.
     fn whole_set(directory: &Path) -> Option<String> {
         let read = |name: &str| fs::read_to_string(directory.join(name)).unwrap();
         let lines = SET.map(|name| checksum(name, read(name).as_bytes()));
@@ -437,7 +445,7 @@ mod tests {
     #[test]
     fn a_set_whose_process_is_killed_on_the_way_is_not_whole_by_its_checksums_and_the_next_one_is()
     {
-        // The process that is killed runs this very test.
+        // The killed process runs this very test.
         if let Some(directory) = std::env::var_os("GDCM_TEST_DIRECTORY") {
             write_set(Path::new(&directory), "after").unwrap();
         }

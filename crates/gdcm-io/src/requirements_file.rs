@@ -1,4 +1,4 @@
-//! Files of requirements (M17): `requirements.json` and `requirements.csv`, the same numbers in both.
+//! Files of requirements (M17): `requirements.json` and `requirements.csv`, with the same numbers.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -25,15 +25,15 @@ use crate::variables::ReadingBudget;
 const NAME: &str = "gdcm-requirements";
 const VERSION: u64 = 1;
 
-/// The names of the files of requirements.
+/// Names of the files of requirements.
 pub const REQUIREMENT_FILES: [&str; 2] = ["requirements.json", "requirements.csv"];
 
-/// Where the files of requirements stand in a directory.
+/// Returns the paths of the files of requirements in a directory.
 pub fn requirement_paths(directory: &Path) -> [PathBuf; 2] {
     REQUIREMENT_FILES.map(|name| directory.join(name))
 }
 
-/// `requirements.json`: what was found, behind what it was found of.
+/// `requirements.json`: the findings, preceded by their subject.
 #[derive(Serialize)]
 struct RequirementsDocument<'a> {
     format: &'static str,
@@ -51,7 +51,7 @@ struct DatasetName<'a> {
     sha256: &'a str,
 }
 
-/// Writes both files into a directory, made where there is none: both, or none.
+/// Writes both files into a directory, created if missing: both, or none.
 ///
 /// `dataset` is the name of the dataset and the SHA-256 of its file.
 pub fn write_requirements(
@@ -78,10 +78,10 @@ pub fn write_requirements(
     outputs.persist()
 }
 
-/// What stands in the columns.
+/// Headings of the columns.
 const HEADING: &str = "question condition airspeed_kt role model output input mode record tolerance quantity value low high remark";
 
-/// A row for each number.
+/// Writes a row for each number.
 fn write_rows(
     requirements: &Requirements,
     time_histories: &TimeHistories,
@@ -102,7 +102,7 @@ fn write_rows(
     )
 }
 
-/// What a number is of: the first ten cells of a row.
+/// Subject of a number: the first ten cells of a row.
 #[derive(Clone, Copy, Default)]
 struct Subject<'a> {
     question: &'a str,
@@ -169,7 +169,7 @@ fn bandwidth_rows(finding: &BandwidthFinding) -> Vec<Vec<String>> {
     finding.quantities().into_iter().map(row).collect()
 }
 
-/// Why a number is absent, or what it rests on.
+/// Returns the reason why a number is missing, or its basis.
 fn bandwidth_remark(finding: &BandwidthFinding, name: &'static str, is_known: bool) -> String {
     if !is_known {
         return finding.absent.get(name).cloned().unwrap_or_default();
@@ -258,7 +258,7 @@ fn summary_rows(finding: &SummaryFinding) -> Vec<Vec<String>> {
         .collect()
 }
 
-/// What has no tolerance first, then each tolerance.
+/// Returns rows for values without a tolerance first, then for each tolerance.
 fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
     let subject = Subject {
         question: "time_histories",
@@ -293,7 +293,7 @@ fn history_rows(finding: &HistoryFinding) -> Vec<Vec<String>> {
     std::iter::once(rms).chain(theil).chain(against).collect()
 }
 
-/// The unit of an excess, and the trend that a correlation says.
+/// Returns the unit of an excess, and the trend indicated by a correlation.
 fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
     match (name, finding.correlation, finding.trend) {
         ("largest_excess", ..) => finding.unit.clone(),
@@ -303,8 +303,8 @@ fn tolerance_remark(finding: &ToleranceFinding, name: &str) -> String {
     }
 }
 
-// The engineer's own tables that requirements are asked with, each a file of its own, for any study (M17): levels of bandwidth and
-// phase delay, tolerances of time histories.
+// The engineer's own tables for requirements, each a separate file, for any study (M17): levels of
+// bandwidth and phase delay, tolerances of time histories.
 
 const TOLERANCES: Format = Format {
     name: "gdcm-tolerances",
@@ -320,10 +320,11 @@ struct TolerancesText {
     tolerances: Vec<Tolerance>,
 }
 
-/// The boundaries of levels in a file, `[{"name": "Level 1", "axis": "P", "points": [[rad/s, s], ...]}]` (M17.1).
+/// Reads the boundaries of levels from a file, `[{"name": "Level 1", "axis": "P", "points":
+/// [[rad/s, s], ...]}]` (M17.1).
 ///
 /// # Errors
-/// [`FileError`] with the line where the file cannot be read, or a boundary is none.
+/// [`FileError`] with the line if the file cannot be read, or a boundary is invalid.
 pub fn read_levels(path: &Path) -> Result<LevelBoundaries, FileError> {
     let source = Source::read(path, &ReadingBudget::default())?;
     let text = source.text();
@@ -331,7 +332,7 @@ pub fn read_levels(path: &Path) -> Result<LevelBoundaries, FileError> {
         .map_err(|error| json_error(text, path, Location::default(), &error))
 }
 
-/// Reads a table of tolerances; whole, or not at all. Keys that are not known are cautions.
+/// Reads a table of tolerances; whole, or not at all. Unknown keys are cautions.
 pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<String>), FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
@@ -345,7 +346,7 @@ pub fn load_tolerances(path: &Path) -> Result<(ToleranceTable, Vec<String>), Fil
     ))
 }
 
-/// Writes a table of tolerances beside others of `outputs`.
+/// Adds a table of tolerances to `outputs`.
 pub fn add_tolerances(
     table: &ToleranceTable,
     path: &Path,

@@ -1,4 +1,5 @@
-//! Rules files, `*.gdcm-rules.json`: what the engineer says about the files of a folder, for next week's folder too.
+//! Rules files, `*.gdcm-rules.json`: the engineer's rules for the files of a folder, reusable for
+//! later folders.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,10 +19,10 @@ use crate::output_set::OutputSet;
 use crate::source::Source;
 use crate::variables::ReadingBudget;
 
-/// How the name of a rules file ends.
+/// Extension of a rules file.
 const RULES_EXTENSION: &str = "gdcm-rules.json";
 
-/// The place of the rules beside a dataset: "week.gdcm-rules.json" beside "week.json.gz".
+/// Returns the path of the rules beside a dataset: "week.gdcm-rules.json" beside "week.json.gz".
 pub fn rules_path(dataset: &Path) -> PathBuf {
     let name = dataset
         .file_name()
@@ -31,7 +32,7 @@ pub fn rules_path(dataset: &Path) -> PathBuf {
     dataset.with_file_name(format!("{stem}.{RULES_EXTENSION}"))
 }
 
-/// Reads a rules file; whole, or not at all. Keys that are not known are cautions.
+/// Reads a rules file; whole, or not at all. Unknown keys are cautions.
 pub fn load_rules(path: &Path) -> Result<(Rules, Vec<String>), FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
@@ -40,7 +41,7 @@ pub fn load_rules(path: &Path) -> Result<(Rules, Vec<String>), FileError> {
     Ok((rules, cautions))
 }
 
-/// Writes a rules file beside others of `outputs`.
+/// Adds a rules file to `outputs`.
 pub fn add_rules(rules: &Rules, path: &Path, outputs: &mut OutputSet) -> Result<(), FileError> {
     let text = text_of(rules);
     outputs.add(path, |file| write_pretty(&text, file))
@@ -125,7 +126,8 @@ fn rules_of(text: RulesText) -> Result<Rules, ContentError> {
     Ok(rules)
 }
 
-/// Refuses a factor that converts nothing, an empty unit, a sign that is none, and a unit beside a factor of one channel.
+/// Rejects a factor that converts nothing, an empty unit, an invalid sign, and a unit beside a
+/// factor of the same channel.
 fn check_declarations(text: &RulesText) -> Result<(), ContentError> {
     let of_scopes = text.declarations.iter().map(|declared| {
         let place = format!("declarations, {}", declared.of);
@@ -203,18 +205,17 @@ fn text_of(rules: &Rules) -> RulesText {
     }
 }
 
-// A rules file, key by key.
 
-/// What a rules file calls itself.
+/// Format and version of a rules file.
 pub(super) const FORMAT: Format = Format {
     name: "gdcm-rules",
     version: 1,
 };
 
-/// Most patterns, and conversions, of a rules file.
+/// Maximum number of patterns, and of conversions, in a rules file.
 const MOST_PATTERNS: usize = 200;
 
-/// Most declarations of a rules file, each for a role, for folders or for a file.
+/// Maximum number of declarations in a rules file, each for a role, for folders or for a file.
 const MOST_DECLARATIONS: usize = 1000;
 
 #[derive(Deserialize, Serialize)]
@@ -249,18 +250,18 @@ pub(super) struct RulesText {
         deserialize_with = "list::<MOST_DECLARATIONS, _, _>"
     )]
     pub(super) declarations: Vec<ScopedDeclarations>,
-    /// Sample time of models without one \[s\], 0 of continuous-time models.
+    /// Sample time of models without one \[s\], 0 for continuous-time models.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) sample_time_s: Option<f64>,
-    /// What the columns of tables hold, by file.
+    /// Column headings of tables, by file.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(super) headings: BTreeMap<String, Vec<String>>,
-    /// What is said of single models, by file and variable.
+    /// Rules for single models, by file and variable.
     #[serde(default)]
     pub(super) models: BTreeMap<String, RowRule>,
 }
 
-/// The patterns of a file that names none.
+/// Returns the patterns of a file without any.
 fn standard() -> Vec<String> {
     standard_patterns()
         .iter()

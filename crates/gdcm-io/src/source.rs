@@ -1,4 +1,4 @@
-//! A file's bytes, read within limits.
+//! Reading of a file's bytes, within limits.
 
 use std::borrow::Cow;
 use std::fs;
@@ -17,22 +17,22 @@ use crate::variables::ReadingBudget;
 
 /// The two bytes that every gzip file starts with (RFC 1952).
 pub(super) const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
-/// What some editors put in front of UTF-8.
+/// Written before UTF-8 text by some editors.
 const BYTE_ORDER_MARK: [u8; 3] = [0xef, 0xbb, 0xbf];
 
-/// How many bytes are read, unpacked or summed up before the budget is asked again.
+/// Number of bytes read, decompressed or hashed between queries of the budget.
 const CHUNK: usize = 1 << 16;
 
-/// What a file holds: the hash of its bytes, and its text.
+/// A file's content: the hash of its bytes, and its text.
 #[derive(Debug)]
 pub(super) struct Source<'b> {
-    /// SHA-256 of the file's bytes as they are stored, in lower-case hexadecimal.
+    /// SHA-256 of the stored bytes of the file, in lower-case hexadecimal.
     pub(super) sha256: String,
     text: Cow<'b, [u8]>,
 }
 
 impl Source<'static> {
-    /// Reads a file within a budget, unpacking it where it is packed.
+    /// Reads a file within a budget, decompressing it if necessary.
     pub(super) fn read(path: &Path, budget: &ReadingBudget<'_>) -> Result<Self, FileError> {
         let bytes = read_bytes(path, LARGEST_TEXT, budget)?;
         let Source { sha256, text } = Source::of(&bytes, path, budget)?;
@@ -49,7 +49,7 @@ impl Source<'static> {
 }
 
 impl<'b> Source<'b> {
-    /// Takes bytes that are already at hand; `path` is what an error calls them.
+    /// Takes bytes in memory; errors name them by `path`.
     pub(super) fn of(
         bytes: &'b [u8],
         path: &Path,
@@ -61,22 +61,22 @@ impl<'b> Source<'b> {
         })
     }
 
-    /// The text, without a byte order mark.
+    /// Returns the text, without a byte order mark.
     pub(super) fn text(&self) -> &[u8] {
         without_mark(&self.text)
     }
 }
 
-/// A text without what some editors put in front of it.
+/// Removes a byte order mark from a text.
 pub(super) fn without_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(&BYTE_ORDER_MARK).unwrap_or(text)
 }
 
-/// A file to read from, and its length \[bytes\].
+/// Opens a file for reading and returns its length \[bytes\].
 ///
 /// # Errors
-/// Where there is none, or something else: opening a pipe waits for somebody who writes into it, and a directory can be opened on some
-/// systems.
+/// Returned if the path is missing or not a file: opening a pipe waits for a writer, and some
+/// systems permit opening a directory.
 fn open_file(path: &Path) -> Result<(File, u64), FileError> {
     let failed = |error: std::io::Error| FileError::reading(path, &error);
     let metadata = fs::metadata(path).map_err(failed)?;
@@ -94,7 +94,7 @@ fn open_file(path: &Path) -> Result<(File, u64), FileError> {
     Ok((File::open(path).map_err(failed)?, metadata.len()))
 }
 
-/// A file's text from its beginning on, unpacked where the file is packed.
+/// Returns a reader of a file's text from its beginning, decompressed if necessary.
 pub(super) fn text_reader(path: &Path) -> Result<Box<dyn Read>, FileError> {
     let mut file = BufReader::with_capacity(CHUNK, open_file(path)?.0);
     let begin = file
@@ -107,7 +107,7 @@ pub(super) fn text_reader(path: &Path) -> Result<Box<dyn Read>, FileError> {
     }
 }
 
-/// The bytes of a file of at most `most`.
+/// Reads a file of at most `most` bytes.
 pub(super) fn read_bytes(
     path: &Path,
     most: u64,
@@ -132,7 +132,7 @@ pub(super) fn read_bytes(
     Ok(bytes)
 }
 
-/// What stands under a path that is neither a file nor a directory, in words.
+/// Describes a path that is neither a file nor a directory.
 pub(super) fn kind_of(kind: FileType) -> Option<&'static str> {
     if kind.is_file() || kind.is_dir() || kind.is_symlink() {
         return None;
@@ -153,7 +153,7 @@ pub(super) fn kind_of(kind: FileType) -> Option<&'static str> {
     Some("something of the system")
 }
 
-/// The text that bytes are, or that is packed in them, with the memory for what is unpacked taken from a budget.
+/// Returns the text of bytes, decompressed if necessary with its memory taken from a budget.
 pub(super) fn text_of<'b>(
     bytes: &'b [u8],
     path: &Path,
@@ -166,16 +166,18 @@ pub(super) fn text_of<'b>(
     Ok(Cow::Borrowed(bytes))
 }
 
-/// Unpacks as it goes, and no further than the limit: a few kilobytes can unpack to gigabytes.
+/// Decompresses incrementally, and no further than the limit: a few kilobytes can expand to
+/// gigabytes.
 ///
-/// A file may have several members (RFC 1952), and zeros behind the last, with which tapes and copying programs fill their blocks.
+/// A file may have several members (RFC 1952), and zeros after the last, with which tapes and
+/// copying programs fill their blocks.
 fn unpack(bytes: &[u8], path: &Path, budget: &ReadingBudget<'_>) -> Result<Vec<u8>, FileError> {
     let mut text = Vec::new();
     let mut rest = bytes;
     while rest.iter().any(|&byte| byte != 0) {
         let mut member = GzDecoder::new(rest);
         loop {
-            // A text that grows is copied into twice its memory.
+            // A growing text is copied into twice its memory.
             budget
                 .take(CHUNK as u64, 2, "")
                 .map_err(|fault| FileError::variables(path, fault))?;
@@ -208,7 +210,7 @@ fn check_length(length: u64, most: u64, path: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// SHA-256 of bytes, in lower-case hexadecimal.
+/// Computes the SHA-256 of bytes, in lower-case hexadecimal.
 pub(super) fn sha256(
     bytes: &[u8],
     path: &Path,
@@ -228,9 +230,8 @@ pub(super) fn sha256(
         .collect())
 }
 
-// Whether a file is still what it was.
 
-/// What changes when a file is written: cheap to look at, also on a network drive.
+/// Metadata that change when a file is written: cheap to query, also on a network drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FileStamp {
     modified: Option<SystemTime>,
@@ -238,7 +239,7 @@ pub struct FileStamp {
 }
 
 impl FileStamp {
-    /// The stamp of a file; none while there is no such file.
+    /// Returns the stamp of a file; `None` if there is no such file.
     pub fn of(path: &Path) -> Option<Self> {
         let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
         Some(Self {
@@ -248,23 +249,23 @@ impl FileStamp {
     }
 }
 
-/// SHA-256 of a file's bytes as they are stored, in lower-case hexadecimal.
+/// Computes the SHA-256 of the stored bytes of a file, in lower-case hexadecimal.
 ///
 /// # Errors
-/// Where the file cannot be read.
+/// Returned if the file cannot be read.
 pub fn file_sha256(path: &Path) -> Result<String, FileError> {
     Ok(Source::read(path, &ReadingBudget::default())?.sha256)
 }
 
-/// Whether there is such a file.
+/// Returns whether the file exists.
 pub fn file_exists(path: &Path) -> bool {
     path.is_file()
 }
 
-// The home directory in a path as it is typed.
+// The home directory in a typed path.
 
-/// `~` and `~/x` with the home directory in the place of `~`, as a shell reads them; any other path, and each of them where there is
-/// no home directory, as it is.
+/// Expands `~` and `~/x` with the home directory, as a shell does; any other path, and any path
+/// without a known home directory, is unchanged.
 pub fn at_home(path: &Path, home: Option<&Path>) -> PathBuf {
     match (path.strip_prefix("~"), home) {
         (Ok(rest), Some(home)) if rest.as_os_str().is_empty() => home.to_owned(),

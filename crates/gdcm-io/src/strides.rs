@@ -2,7 +2,8 @@
 
 use crate::variables::{Array, ElementKind, ReadingBudget, VariableFault};
 
-/// Where the elements of an array stand in a file, in the order in which this program keeps them: the first index running fastest.
+/// Positions of the elements of an array in a file, in the order of this program: the first index
+/// running fastest.
 pub(crate) struct Places {
     shape: Vec<usize>,
     strides: Vec<usize>,
@@ -12,7 +13,8 @@ pub(crate) struct Places {
 }
 
 impl Places {
-    /// For a file in which the last index runs fastest (row by row); none where the elements cannot be counted.
+    /// For a file in which the last index runs fastest (row by row); `None` if the number of
+    /// elements overflows.
     pub(crate) fn row_major(shape: &[usize]) -> Option<Self> {
         let left = count(shape)?;
         let mut strides = vec![1; shape.len()];
@@ -22,7 +24,8 @@ impl Places {
         Some(Self::new(shape, strides, left))
     }
 
-    /// For a file in which the first index runs fastest (column by column); none where the elements cannot be counted.
+    /// For a file in which the first index runs fastest (column by column); `None` if the number of
+    /// elements overflows.
     pub(crate) fn column_major(shape: &[usize]) -> Option<Self> {
         let left = count(shape)?;
         let mut strides = vec![1; shape.len()];
@@ -43,9 +46,10 @@ impl Places {
     }
 }
 
-/// Number of elements of an array; none beyond what can be counted.
+/// Returns the number of elements of an array; `None` on overflow.
 ///
-/// Lengths beside a zero are multiplied all the same: an array of nothing with sides that cannot be multiplied is refused too.
+/// Lengths beside a zero are multiplied all the same: an empty array with sides whose product
+/// overflows is rejected too.
 pub(crate) fn count(shape: &[usize]) -> Option<usize> {
     shape
         .iter()
@@ -78,7 +82,7 @@ impl Iterator for Places {
 
 impl ExactSizeIterator for Places {}
 
-/// Elements from the last index running fastest to the first one running fastest.
+/// Reorders elements from the last index running fastest to the first index running fastest.
 pub(crate) fn first_index_fastest<T>(shape: &[usize], elements: Vec<T>) -> Vec<T> {
     let mut elements: Vec<Option<T>> = elements.into_iter().map(Some).collect();
     let places = Places::row_major(shape).into_iter().flatten();
@@ -87,7 +91,7 @@ pub(crate) fn first_index_fastest<T>(shape: &[usize], elements: Vec<T>) -> Vec<T
         .collect()
 }
 
-/// A shape with at least two dimensions: numbers alone are 1 x 1, lists are rows.
+/// Returns a shape with at least two dimensions: scalars are 1 x 1, lists are rows.
 pub(crate) fn matrix_shape(shape: &[usize]) -> Vec<usize> {
     match *shape {
         [] => vec![1, 1],
@@ -96,13 +100,13 @@ pub(crate) fn matrix_shape(shape: &[usize]) -> Vec<usize> {
     }
 }
 
-// Matrices of which only the numbers other than zero are stored, filled up.
+// Sparse matrices, expanded.
 
-/// The numbers other than zero, each with its place.
+/// The nonzero elements with their places.
 pub(crate) struct Entries {
     /// Number of rows and columns.
     pub(crate) shape: [usize; 2],
-    /// What the numbers are.
+    /// Type of the numbers.
     pub(crate) kind: ElementKind,
     /// Row of each number, counted from 0.
     pub(crate) rows: Vec<usize>,
@@ -110,13 +114,14 @@ pub(crate) struct Entries {
     pub(crate) columns: Vec<usize>,
     /// Real part of each number.
     pub(crate) re: Vec<f64>,
-    /// Imaginary part of each number of complex ones.
+    /// Imaginary part of each number, if complex.
     pub(crate) im: Option<Vec<f64>>,
 }
 
 impl Entries {
-    /// Those of numbers that stand column by column, `starts` being where each column begins among them and where the last ends;
-    /// nothing where that does not fit them. Room for further numbers may have been left behind the last.
+    /// Creates the entries from numbers stored by columns, `starts` containing the index at which
+    /// each column begins and that at which the last ends; `None` if it does not match the numbers.
+    /// There may be room for further numbers after the last.
     pub(crate) fn of_columns(
         shape: [usize; 2],
         kind: ElementKind,
@@ -150,9 +155,9 @@ impl Entries {
         })
     }
 
-    /// The whole matrix; what two entries say of the same place is added.
+    /// Returns the full matrix; entries at the same place are added.
     ///
-    /// `outside` is the fault that a number lies outside the matrix.
+    /// `outside` is the fault for a number outside the matrix.
     pub(crate) fn filled(
         &self,
         variable: &str,
@@ -185,9 +190,9 @@ impl Entries {
     }
 }
 
-// Numbers as binary files hold them.
+// Numbers in binary files.
 
-/// How the bits of a number are read.
+/// Interpretation of the bits of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NumberClass {
     /// True where any bit is set.
@@ -200,7 +205,7 @@ pub(crate) enum NumberClass {
     Float,
 }
 
-/// One number in a file: how its bits are read, how many bytes it takes, and their order.
+/// A number in a file: the interpretation of its bits, its size in bytes, and the byte order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct StoredNumber {
     class: NumberClass,
@@ -209,7 +214,7 @@ pub(crate) struct StoredNumber {
 }
 
 impl StoredNumber {
-    /// A number of `size` bytes, unless there is no such number.
+    /// Creates a number of `size` bytes; `None` if there is no such number.
     pub(crate) fn new(class: NumberClass, size: usize, big_endian: bool) -> Option<Self> {
         let sizes: &[usize] = match class {
             NumberClass::Float => &[2, 4, 8],
@@ -222,7 +227,7 @@ impl StoredNumber {
         })
     }
 
-    /// A number of one of these sizes, the lowest byte first.
+    /// Creates a number of a valid size, the lowest byte first.
     pub(crate) const fn little_endian(class: NumberClass, size: usize) -> Self {
         Self {
             class,
@@ -231,12 +236,12 @@ impl StoredNumber {
         }
     }
 
-    /// Number of bytes.
+    /// Returns the number of bytes.
     pub(crate) fn size(self) -> usize {
         self.size
     }
 
-    /// What an array of such numbers holds.
+    /// Returns the element kind of an array of such numbers.
     pub(crate) fn kind(self) -> ElementKind {
         match self.class {
             NumberClass::Logical => ElementKind::Logical,
@@ -245,8 +250,8 @@ impl StoredNumber {
         }
     }
 
-    /// The number that stands at the beginning of `bytes`, with zeros for bytes that are missing; whole numbers beyond 2^53 are
-    /// rounded to the nearest float.
+    /// Decodes the number at the beginning of `bytes`, with zeros for missing bytes; integers
+    /// beyond 2^53 are rounded to the nearest float.
     pub(crate) fn decode(self, bytes: &[u8]) -> f64 {
         let bits = self.bits(bytes);
         match self.class {
@@ -264,7 +269,7 @@ impl StoredNumber {
         }
     }
 
-    /// The number that stands at a place; none where the bytes end before.
+    /// Decodes the number at an offset; `None` if the bytes end too early.
     pub(crate) fn at(self, bytes: &[u8], offset: usize) -> Option<f64> {
         Some(self.decode(bytes.get(offset..offset.checked_add(self.size)?)?))
     }
@@ -280,7 +285,7 @@ impl StoredNumber {
     }
 }
 
-/// The value of a float of 16 bits (IEEE 754, binary16).
+/// Returns the value of a 16-bit float (IEEE 754, binary16).
 fn half(bits: u16) -> f64 {
     let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
     let exponent = i32::from(bits >> 10 & 31);
@@ -325,7 +330,8 @@ mod stored_number_tests {
 
     #[test]
     fn half_floats_have_the_values_of_the_standard() {
-        // IEEE 754-2008, table 3.5: largest, smallest normal and smallest subnormal number of binary16.
+        // IEEE 754-2008, table 3.5: largest, smallest normal and smallest subnormal number of
+        // binary16.
         let cases = [
             (0x7bff, 65504.0),
             (0x0400, 2f64.powi(-14)),

@@ -1,4 +1,4 @@
-//! Study files, `*.gdcm-study.json`: the decisions of a study, as they are held, and which dataset they are about.
+//! Study files, `*.gdcm-study.json`: the decisions of a study, and a reference to its dataset.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -28,30 +28,28 @@ use crate::output_set::{Existing, OutputSet};
 use crate::source::Source;
 use crate::variables::ReadingBudget;
 
-/// Most variants that a study file may hold.
+/// Maximum number of variants in a study file.
 pub(crate) const MOST_VARIANTS: usize = 1000;
 
-/// What a study file calls itself.
+/// Format and version of a study file.
 const FORMAT: Format = Format {
     name: "gdcm-study",
     version: 1,
 };
 
-/// How the name of a study file ends.
+/// Extension of a study file.
 pub const STUDY_EXTENSION: &str = "gdcm-study.json";
-/// What stands for a path where a study is about the embedded example.
+/// Replaces a path if a study uses the embedded example.
 const EMBEDDED: &str = "embedded example";
 
-/// A study with the dataset it is about, and what is different in that from when the study was saved.
+/// A study with its dataset, and the changes of the dataset since the study was saved.
 #[derive(Clone, Debug)]
 pub struct OpenedStudy {
     /// The study, with every decision that still applies.
     pub study: Study,
-    /// Its dataset.
     pub loaded: LoadedDataset,
-    /// The study's file.
     pub path: PathBuf,
-    /// What has changed in the dataset, and the decisions that no longer apply; none where it is the same.
+    /// Changes of the dataset, and the decisions that no longer apply; empty if it is unchanged.
     pub differences: Vec<Difference>,
 }
 
@@ -66,24 +64,24 @@ struct StudyText {
     settings: Settings<ResponseNames>,
     #[serde(deserialize_with = "list::<MOST_CONDITIONS, _, _>")]
     conditions: Vec<ConditionText>,
-    /// Identified models taken in place of the dataset's own; absent where there are none.
+    /// Identified models that replace the dataset's own; absent if there are none.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
         deserialize_with = "list::<MOST_CONDITIONS, _, _>"
     )]
     taken: Vec<TakenText>,
-    /// Channels whose models are turned; absent where there are none.
+    /// Channels with reversed sign in their models; absent if there are none.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
         deserialize_with = "list::<MOST_CHANNELS, _, _>"
     )]
     signs: Vec<TurnedChannel>,
-    /// What requirements are asked with; absent where nothing of it was decided.
+    /// Inputs for the requirements; absent if nothing was decided.
     #[serde(default, skip_serializing_if = "is_default")]
     requirements: RequirementSettings,
-    /// Decisions kept under names; absent in studies of older programs.
+    /// Named decisions; absent in studies of older programs.
     #[serde(
         default,
         skip_serializing_if = "Vec::is_empty",
@@ -92,7 +90,7 @@ struct StudyText {
     variants: Vec<VariantText>,
 }
 
-/// Identified models taken into a condition, and the flight records that they are of.
+/// Identified models adopted in a condition, and their flight records.
 #[derive(Deserialize, Serialize)]
 struct TakenText {
     #[serde(deserialize_with = "whole")]
@@ -103,7 +101,7 @@ struct TakenText {
     records: Vec<RecordText>,
 }
 
-/// Decisions kept under a name.
+/// Named decisions.
 #[derive(Deserialize, Serialize)]
 struct VariantText {
     name: String,
@@ -112,20 +110,21 @@ struct VariantText {
     conditions: Vec<ConditionText>,
 }
 
-/// Which dataset a study is about.
+/// Reference to the dataset of a study.
 #[derive(Deserialize, Serialize)]
 struct DatasetReference {
-    /// Path relative to the study's directory, with `/` between its parts; `None` for the embedded example.
+    /// Path relative to the study's directory, with `/` between its parts; `None` for the embedded
+    /// example.
     path: Option<String>,
     /// The dataset's name, for people; "embedded example" for the embedded example.
     name: String,
     sha256: String,
-    /// What it held; absent in studies of older programs.
+    /// Inventory of its content; absent in studies of older programs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     holds: Option<Inventory>,
 }
 
-/// The choices in one condition.
+/// The choices for a condition.
 #[derive(Deserialize, Serialize)]
 struct ConditionText {
     #[serde(deserialize_with = "whole")]
@@ -200,7 +199,7 @@ fn is_default(settings: &RequirementSettings) -> bool {
     *settings == RequirementSettings::default()
 }
 
-/// The decisions of a study file about its dataset.
+/// Returns the decisions in a study file about its dataset.
 fn decisions_of(
     settings: Settings<ResponseNames>,
     conditions: Vec<ConditionText>,
@@ -226,7 +225,7 @@ fn decisions_of(
     Ok(decisions)
 }
 
-/// Decisions without variants; each setting has to be within its range.
+/// Returns decisions without variants; each setting must be within its range.
 fn present_decisions(
     mut settings: Settings<ResponseNames>,
     conditions: Vec<ConditionText>,
@@ -275,7 +274,7 @@ fn present_decisions(
     })
 }
 
-/// The models that a study has taken, for its dataset.
+/// Returns the models adopted by a study, for its dataset.
 fn taken_of(
     text: Vec<TakenText>,
     dataset: &Dataset,
@@ -302,18 +301,19 @@ fn taken_of(
     text.into_iter().enumerate().map(of).collect()
 }
 
-/// Saves a study of a loaded dataset, in place of what is there; whole, or not at all. The dataset itself is never replaced.
+/// Saves a study of a loaded dataset, replacing an existing file; whole, or not at all. The dataset
+/// itself is never replaced.
 pub fn save_study(study: &Study, loaded: &LoadedDataset, path: &Path) -> Result<(), FileError> {
     save(study, loaded, path, |dataset| path_text(dataset, path))
 }
 
-/// Saves a study with its dataset's absolute path: for a file that lies nowhere near it.
+/// Saves a study with its dataset's absolute path: for a file in an unrelated place.
 pub(super) fn save_recovery(
     study: &Study,
     loaded: &LoadedDataset,
     path: &Path,
 ) -> Result<(), FileError> {
-    // Its directory may be out of reach just now: the decisions are kept all the same.
+    // Its directory may be out of reach at the moment: the decisions are kept all the same.
     let absolute = |dataset: &Path| {
         settled(dataset).or_else(|_| Ok(std::path::absolute(dataset).unwrap_or(dataset.into())))
     };
@@ -353,7 +353,7 @@ fn save(
     output.persist()
 }
 
-/// What a study file says its dataset is, in words: the name of its file. None where the study cannot be read.
+/// Returns the file name of the dataset in a study file. `None` if the study cannot be read.
 pub(super) fn dataset_of_study(path: &Path) -> Option<String> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget).ok()?;
@@ -366,7 +366,7 @@ pub(super) fn dataset_of_study(path: &Path) -> Option<String> {
     })
 }
 
-/// Opens a study and the dataset it is about: where the study says, or else beside the study.
+/// Opens a study and its dataset: at the path in the study, otherwise beside the study.
 pub fn open_study(path: &Path) -> Result<OpenedStudy, FileError> {
     let budget = ReadingBudget::default();
     study_from(&Source::read(path, &budget)?, path, None, &budget)
@@ -381,7 +381,7 @@ pub fn open_study_of(
     study_from(&Source::read(path, budget)?, path, Some(dataset), budget)
 }
 
-/// Whether a text has the structure of a study, as far as it goes.
+/// Checks the structure of a study's text, as far as it goes.
 pub(super) fn check_study_text(
     text: &[u8],
     path: &Path,
@@ -390,7 +390,7 @@ pub(super) fn check_study_text(
     FORMAT.decode::<StudyText>(text, path, budget).map(drop)
 }
 
-/// The study that a source holds; its dataset is at `moved`, or where the study says.
+/// Returns the study in a source; its dataset is at `moved`, or at the path in the study.
 pub(super) fn study_from(
     source: &Source<'_>,
     path: &Path,
@@ -450,7 +450,7 @@ fn load_referenced(
         path: study.to_owned(),
         dataset: Box::new(error),
     };
-    // A dataset whose reading was stopped is not lost.
+    // A dataset whose reading was stopped is not missing.
     load(path).map_err(|error| {
         if error.is_stopped() {
             error
@@ -460,7 +460,7 @@ fn load_referenced(
     })
 }
 
-/// Where the study says that its dataset is, or beside the study if it is only there.
+/// Returns the path of the dataset in the study, or beside the study if it exists only there.
 fn referenced_path(study: &Path, relative: &str) -> PathBuf {
     let directory = study.parent().unwrap_or(Path::new(""));
     let said = directory.join(relative);
@@ -470,11 +470,11 @@ fn referenced_path(study: &Path, relative: &str) -> PathBuf {
         .unwrap_or(said)
 }
 
-/// The dataset's path as the study at `study` has to write it.
+/// Returns the dataset's path as written in the study at `study`.
 fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
     let dataset = settled(dataset)?;
     let directory = settled(study)?;
-    // No way leads to another drive: there the path is the dataset's own.
+    // There is no relative path to another drive: the dataset's own path is used.
     let relative = directory
         .parent()
         .and_then(|directory| pathdiff::diff_paths(&dataset, directory))
@@ -482,8 +482,8 @@ fn path_text(dataset: &Path, study: &Path) -> Result<String, FileError> {
     slashed(&relative, study)
 }
 
-/// The way from the folder of `file` to `folder`, the present one where that is empty, with `/` between its parts; the folder as it is
-/// where there is none.
+/// Returns the relative path from the folder of `file` to `folder`, the current one if that is
+/// empty, with `/` between its parts; the unchanged folder if there is no such path.
 pub fn relative_folder(folder: &Path, file: &Path) -> String {
     let folder = if folder.as_os_str().is_empty() {
         Path::new(".")
@@ -501,7 +501,7 @@ pub fn relative_folder(folder: &Path, file: &Path) -> String {
         .replace(std::path::MAIN_SEPARATOR, "/")
 }
 
-/// A path with `/` between its parts.
+/// Returns a path with `/` between its parts.
 fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
     let unreadable = || FileError::unwritable(study, "the dataset's path is not valid Unicode");
     let text = path.to_str().ok_or_else(unreadable)?;
@@ -512,7 +512,8 @@ fn slashed(path: &Path, study: &Path) -> Result<String, FileError> {
     })
 }
 
-/// The absolute path of a file, its directory's links followed: `..` after a link would lead elsewhere.
+/// Returns the absolute path of a file, with the links of its directory resolved: `..` after a link
+/// would lead elsewhere.
 fn settled(path: &Path) -> Result<PathBuf, FileError> {
     let failed = |error: std::io::Error| FileError::writing(path, &error);
     let absolute = std::path::absolute(path).map_err(failed)?;
@@ -527,23 +528,20 @@ fn settled(path: &Path) -> Result<PathBuf, FileError> {
     }
 }
 
-// Files of either kind that the program opens.
 
-/// What a file turned out to be.
+/// Content of an opened file.
 #[derive(Clone, Debug)]
 #[expect(
     clippy::large_enum_variant,
     reason = "one is made when a file is opened, and taken apart at once"
 )]
 pub enum Opened {
-    /// A dataset.
     Dataset(LoadedDataset),
-    /// A study, with the dataset it is about.
     Study(OpenedStudy),
 }
 
 impl Opened {
-    /// The study: the one opened, or that of the dataset before any decision; the dataset; and what is different in it.
+    /// Returns the study, opened or new for the dataset; the dataset; and its differences.
     pub fn into_study(self) -> (Study, LoadedDataset, Vec<Difference>) {
         match self {
             Opened::Dataset(loaded) => (Study::new(loaded.dataset.clone()), loaded, Vec::new()),
@@ -557,8 +555,8 @@ impl Opened {
     }
 }
 
-/// Whether a path is a folder, or a file that by its name and its first sign only models can be taken from: neither a dataset nor a
-/// study.
+/// Returns whether a path is a folder, or a file that by its name and its first character can only
+/// provide models: neither a dataset nor a study.
 pub fn holds_models(path: &Path) -> bool {
     let extension = path
         .extension()
@@ -567,14 +565,14 @@ pub fn holds_models(path: &Path) -> bool {
     path.is_dir() || path.is_file() && by_name && !begins_an_object(path)
 }
 
-/// Whether the first sign of a file opens an object of JSON.
+/// Returns whether the first character of a file opens a JSON object.
 fn begins_an_object(path: &Path) -> bool {
     let mut first = Vec::new();
     let read = std::fs::File::open(path).and_then(|file| file.take(64).read_to_end(&mut first));
     read.is_ok() && first.trim_ascii_start().starts_with(b"{")
 }
 
-/// Opens a dataset or a study, whichever the file says it is, within a budget.
+/// Opens a dataset or a study, as identified by its content, within a budget.
 pub fn load_any(path: &Path, budget: &ReadingBudget<'_>) -> Result<Opened, FileError> {
     let source = Source::read(path, budget)?;
     match Outline::format_of(source.text(), budget).as_deref() {

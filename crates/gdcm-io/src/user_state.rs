@@ -1,4 +1,5 @@
-//! What the program remembers of its user between two starts: the files opened and saved of late, and that it was started before.
+//! State of the user kept between starts of the program: recently opened and saved files, and
+//! whether it was started before.
 
 use std::fs::{self, File, OpenOptions, TryLockError, create_dir_all};
 use std::io::{Read, Seek, Write};
@@ -19,11 +20,11 @@ use crate::source::Source;
 use crate::study_file::{STUDY_EXTENSION, dataset_of_study, save_recovery};
 use crate::variables::ReadingBudget;
 
-/// Most files that are listed.
+/// Maximum number of listed files.
 const MOST: usize = 10;
 /// Name of the list in the program's directory.
 const NAME: &str = "recent-files.json";
-/// What the list calls itself.
+/// Format and version of the list.
 const FORMAT: Format = Format {
     name: "gdcm-recent-files",
     version: 1,
@@ -37,7 +38,7 @@ struct RecentText {
     files: Vec<String>,
 }
 
-/// The files listed in `directory`, the newest first; none where there is no list, or none that can be read.
+/// Returns the files listed in `directory`, the newest first; empty if there is no readable list.
 pub fn recent_files(directory: &Path) -> Vec<PathBuf> {
     let path = directory.join(NAME);
     let budget = ReadingBudget::default();
@@ -51,10 +52,10 @@ pub fn recent_files(directory: &Path) -> Vec<PathBuf> {
     )
 }
 
-/// Puts a file in front of the list, of which another window may have written in between.
+/// Puts a file at the front of the list, which another window may have changed in the meantime.
 ///
 /// # Errors
-/// Where the list cannot be written.
+/// Returned if the list cannot be written.
 pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
     let Some(file) = std::path::absolute(file)
         .ok()
@@ -80,11 +81,12 @@ pub fn add_recent_file(directory: &Path, file: &Path) -> Result<(), FileError> {
     write_whole(&directory.join(NAME), |writer| write_pretty(&text, writer))
 }
 
-/// The file that says so.
+/// The marker file of an earlier start.
 const STARTED: &str = "started";
 
-/// Whether nothing in the program's directory says that it was started before; from now on something does. Where that cannot be
-/// kept, it is taken as started before: what the first start shows would come at every one.
+/// Returns whether this is the first start, and records it in the program's directory. Also false
+/// if the record cannot be created: otherwise the content of the first start would appear at every
+/// start.
 pub fn is_first_start(directory: &Path) -> bool {
     let kept = create_dir_all(directory).and_then(|()| {
         OpenOptions::new()
@@ -95,15 +97,16 @@ pub fn is_first_start(directory: &Path) -> bool {
     kept.is_ok()
 }
 
-// Recovery files: decisions that were not saved, kept where a crash or a kill leaves them.
+// Recovery files: unsaved decisions that survive a crash or a kill.
 
-/// How the name of the file ends that shows by its lock whether the process lives.
+/// Extension of the file whose lock shows whether the process lives.
 const LOCK_EXTENSION: &str = "lock";
-/// Far more than passes between the making of a lock file and its lock.
+/// Much longer than the time between the creation of a lock file and its lock.
 const YOUNG: Duration = Duration::from_secs(60);
 
-/// The recovery file of a window that is open. It is a study file, `PROCESS-NUMBER.gdcm-study.json`; beside it lies a file
-/// that is locked as long as the process lives, and that names the study's own file.
+/// The recovery file of an open window. It is a study file, `PROCESS-NUMBER.gdcm-study.json`;
+/// beside it lies a file that is locked as long as the process lives, and that contains the path of
+/// the study's own file.
 #[derive(Debug)]
 pub struct RecoveryFile {
     path: PathBuf,
@@ -112,12 +115,12 @@ pub struct RecoveryFile {
 }
 
 impl RecoveryFile {
-    /// Takes a name of its own in `directory`, which is made where there is none.
+    /// Claims a unique name in `directory`, which is created if missing.
     ///
     /// # Errors
-    /// Where the directory or the lock cannot be made.
+    /// Returned if the directory or the lock cannot be created.
     pub fn claim(directory: &Path) -> Result<Self, FileError> {
-        /// Two windows of one process have two names.
+        /// Two windows of the same process have different names.
         static NUMBER: AtomicUsize = AtomicUsize::new(1);
         make_directory(directory)?;
         loop {
@@ -128,7 +131,7 @@ impl RecoveryFile {
             );
             let path = directory.join(format!("{name}.{STUDY_EXTENSION}"));
             let lock_path = directory.join(format!("{name}.{LOCK_EXTENSION}"));
-            // One of an earlier process with this number may be waiting there for its restoration.
+            // A file of an earlier process with this number may be waiting there to be restored.
             if path.exists() || lock_path.exists() {
                 continue;
             }
@@ -144,7 +147,7 @@ impl RecoveryFile {
         }
     }
 
-    /// Where the decisions are kept.
+    /// Returns the path of the kept decisions.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -152,7 +155,7 @@ impl RecoveryFile {
     /// Keeps a study, whole or not at all; `saved_as` is the study's own file.
     ///
     /// # Errors
-    /// Where it cannot be written.
+    /// Returned if it cannot be written.
     pub fn write(
         &mut self,
         study: &Study,
@@ -167,63 +170,66 @@ impl RecoveryFile {
             .set_len(0)
             .and_then(|()| self.lock.rewind())
             .map_err(failed)?;
-        // A name that is not valid Unicode is not kept: a letter put in its place would lead to another file.
+        // A name that is not valid Unicode is not kept: a replacement character would lead to
+        // another file.
         self.lock
             .write_all(name.to_str().unwrap_or_default().as_bytes())
             .map_err(failed)?;
         save_recovery(study, loaded, &self.path)
     }
 
-    /// Removes what was kept: it is saved, or not wanted.
+    /// Removes the kept decisions, which are saved or not wanted.
     ///
     /// # Errors
-    /// Where it is there and cannot be removed.
+    /// Returned if they exist and cannot be removed.
     pub fn clear(&mut self) -> Result<(), FileError> {
         remove(&self.path)
     }
 }
 
 impl Drop for RecoveryFile {
-    /// What was kept stays, with its lock file, for the next start.
+    /// Leaves kept decisions, with their lock file, for the next start.
     fn drop(&mut self) {
         if !self.path.exists() {
-            // Left behind, it is removed by the next start.
+            // If left behind, it is removed by the next start.
             let _ = remove(&self.lock_path);
         }
     }
 }
 
-/// The recovery file of a window that ended without saving; no other window is offered it as long as this is held.
+/// The recovery file of a window that ended without saving; it is not offered to other windows as
+/// long as this value exists.
 #[derive(Debug)]
 pub struct LostStudy {
     path: PathBuf,
     lock_path: PathBuf,
     _lock: File,
-    /// When the decisions were kept.
+    /// Time at which the decisions were kept.
     pub kept_at: SystemTime,
-    /// The dataset they are about, in words.
+    /// Their dataset, in words.
     pub dataset: String,
-    /// The study's own file, where it had one.
+    /// The study's own file, if it had one.
     pub saved_as: Option<PathBuf>,
 }
 
 impl LostStudy {
-    /// Where the decisions are.
+    /// Returns the path of the decisions.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Removes the decisions for good.
+    /// Removes the decisions permanently.
     ///
     /// # Errors
-    /// Where they cannot be removed.
+    /// Returned if they cannot be removed.
     pub fn remove(self) -> Result<(), FileError> {
         remove(&self.path)?;
         remove(&self.lock_path)
     }
 }
 
-/// The recovery files of `directory` whose processes are gone, the newest first. What has nothing to offer is cleaned up.
+/// Returns the recovery files in `directory` whose processes have ended, the newest first. Files
+/// without decisions are removed.
 pub fn lost_studies(directory: &Path) -> Vec<LostStudy> {
     let Ok(entries) = fs::read_dir(directory) else {
         return Vec::new();
@@ -234,7 +240,7 @@ pub fn lost_studies(directory: &Path) -> Vec<LostStudy> {
     lost
 }
 
-/// What lies beside one lock file, unless its process lives.
+/// Returns the recovery file beside a lock file, unless its process lives.
 fn lost_study(lock_path: &Path) -> Option<LostStudy> {
     if lock_path.extension()? != LOCK_EXTENSION {
         return None;
@@ -251,7 +257,8 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
     }
     let Ok(kept_at) = fs::metadata(&path).and_then(|there| there.modified()) else {
         let made_at = lock.metadata().and_then(|there| there.modified()).ok();
-        // Of a process that left nothing to offer; a young one may be another's, made and not locked yet.
+        // Left by a process without decisions; a young one may belong to another process that has
+        // created but not yet locked it.
         if made_at
             .and_then(|at| at.elapsed().ok())
             .is_some_and(|age| age > YOUNG)
@@ -261,7 +268,7 @@ fn lost_study(lock_path: &Path) -> Option<LostStudy> {
         return None;
     };
     let mut name = String::new();
-    // A name that cannot be read is one that is not known.
+    // An unreadable name is treated as unknown.
     let _ = lock.read_to_string(&mut name);
     let saved_as = (!name.is_empty()).then(|| PathBuf::from(name));
     let dataset =

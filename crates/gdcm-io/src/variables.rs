@@ -1,6 +1,6 @@
-//! Variables by name, as files of other programs hold them; what they mean is decided elsewhere.
+//! Named variables in files of other programs; their meaning is determined elsewhere.
 //!
-//! Every reader of such files (MATLAB's, NumPy's, text) gives these values and knows nothing of models.
+//! All readers of such files (MATLAB, NumPy, text) return these values and know nothing of models.
 
 use std::cell::Cell;
 use std::sync::Arc;
@@ -10,14 +10,13 @@ use gdcm_model::message_text::shortened_name;
 
 use crate::formats::MOST_MEMORY;
 
-// Numbers in an array of any number of dimensions.
 
-/// What the numbers were in the file.
+/// Type of the numbers in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ElementKind {
     /// IEEE 754 numbers of 32 or 64 bits.
     Float,
-    /// Whole numbers, signed or not.
+    /// Signed or unsigned integers.
     Integer,
     /// True and false, as 1 and 0.
     Logical,
@@ -28,16 +27,16 @@ pub enum ElementKind {
 pub struct Array {
     /// Number of elements along each dimension, at least two (a scalar is 1 x 1).
     pub shape: Vec<usize>,
-    /// What the numbers were.
     pub kind: ElementKind,
-    /// The numbers, or their real parts. NaN and infinities are kept: who uses the numbers refuses them with their place.
+    /// The numbers, or their real parts. NaN and infinities are kept: the user of the numbers
+    /// rejects them with their place.
     pub re: Vec<f64>,
-    /// Imaginary parts, as many, of complex numbers.
+    /// Imaginary parts of complex numbers, of the same length.
     pub im: Option<Vec<f64>>,
 }
 
 impl Array {
-    /// A real matrix, given column by column.
+    /// Creates a real matrix from its values by columns.
     pub fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Self {
         debug_assert_eq!(rows * columns, values.len());
         Self {
@@ -48,46 +47,42 @@ impl Array {
         }
     }
 
-    /// Number of elements.
+    /// Returns the number of elements.
     pub fn len(&self) -> usize {
         self.re.len()
     }
 
-    /// Whether there are no elements.
+    /// Returns whether there are no elements.
     pub fn is_empty(&self) -> bool {
         self.re.is_empty()
     }
 }
 
-// One value of a file of variables.
 
-/// A value under its name.
+/// A value with its name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variable {
-    /// The name, as it stands in the file.
     pub name: String,
-    /// The value.
     pub value: Value,
 }
 
-/// One value, whatever file it comes from.
+/// A value from any kind of file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// Numbers; sparse ones are filled up with zeros.
+    /// Numbers; sparse arrays are expanded with zeros.
     Array(Array),
-    /// Characters.
     Text(TextArray),
-    /// Values of any kind in an array.
+    /// An array of values of any kind.
     Cell(CellArray),
-    /// Records with the same fields in an array.
+    /// An array of records with the same fields.
     Struct(StructArray),
     /// An object of a class, as far as it could be decoded.
     Object(Object),
-    /// What is there but cannot be read.
+    /// An unreadable value.
     Opaque {
-        /// Its class, or what it is in words.
+        /// Its class, or a description.
         class: String,
-        /// Why it cannot be read.
+        /// The reason why it cannot be read.
         why: String,
     },
 }
@@ -97,42 +92,41 @@ pub enum Value {
 pub struct TextArray {
     /// Number of texts along each dimension.
     pub shape: Vec<usize>,
-    /// The texts, the first index running fastest. Rows of characters keep the blanks that fill them up.
+    /// The texts, the first index running fastest. Rows of characters keep their padding blanks.
     pub texts: Vec<String>,
 }
 
-/// Values in an array, the first index running fastest.
+/// An array of values, the first index running fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellArray {
     /// Number of values along each dimension.
     pub shape: Vec<usize>,
-    /// The values.
     pub values: Vec<Value>,
 }
 
-/// Records in an array, the first index running fastest.
+/// An array of records, the first index running fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StructArray {
     /// Number of records along each dimension.
     pub shape: Vec<usize>,
-    /// The fields in their order: name, and one value for each record.
+    /// The fields in order: name, and one value for each record.
     pub fields: Vec<(String, Vec<Value>)>,
 }
 
-/// What a record counts for beside its fields while files are read, also where it has none \[bytes\].
+/// Memory charged for a record besides its fields while files are read, even without fields
+/// \[bytes\].
 pub(crate) const RECORD: u64 = 64;
 
-/// An object of a class, or several of the same class in an array.
+/// An object of a class, or an array of objects of the same class.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
-    /// Name of the class: "ss", "idss", "string".
+    /// Class name: "ss", "idss", "string".
     pub class: String,
-    /// The objects and their properties.
     pub records: StructArray,
 }
 
 impl TextArray {
-    /// One text.
+    /// Creates an array with a single text.
     pub fn one(text: impl Into<String>) -> Self {
         Self {
             shape: vec![1, 1],
@@ -142,17 +136,17 @@ impl TextArray {
 }
 
 impl Value {
-    /// A text.
+    /// Creates a text.
     pub fn text(text: impl Into<String>) -> Self {
         Self::Text(TextArray::one(text))
     }
 
-    /// A real number.
+    /// Creates a real number.
     pub fn number(number: f64) -> Self {
         Self::Array(Array::matrix(1, 1, vec![number]))
     }
 
-    /// True or false.
+    /// Creates a logical value.
     pub fn truth(truth: bool) -> Self {
         let number = f64::from(u8::from(truth));
         Self::Array(Array {
@@ -161,12 +155,12 @@ impl Value {
         })
     }
 
-    /// An array without elements.
+    /// Creates an array without elements.
     pub fn empty() -> Self {
         Self::Array(Array::matrix(0, 0, Vec::new()))
     }
 
-    /// What is there but cannot be read, and why.
+    /// Creates an unreadable value with the reason.
     pub fn opaque(class: impl Into<String>, why: impl Into<String>) -> Self {
         Self::Opaque {
             class: class.into(),
@@ -174,7 +168,7 @@ impl Value {
         }
     }
 
-    /// The values that lie in this one.
+    /// Iterates over the values inside this value.
     pub(crate) fn inner(&self) -> impl Iterator<Item = &Self> {
         let (values, fields): (&[Self], &[(String, Vec<Self>)]) = match self {
             Self::Cell(cell) => (&cell.values, &[]),
@@ -186,7 +180,7 @@ impl Value {
             .chain(fields.iter().flat_map(|(_, values)| values))
     }
 
-    /// Bytes that it takes without the values in it, rounded up.
+    /// Returns its memory, excluding inner values, rounded up \[bytes\].
     pub(crate) fn own_memory(&self) -> u64 {
         let text = |text: &String| size_of::<String>() + text.len();
         let shape = |shape: &[usize]| size_of_val(shape);
@@ -210,7 +204,7 @@ impl Value {
         (size_of::<Self>() + bytes) as u64
     }
 
-    /// What this is, in words fit for a message: "a 3 x 4 array of numbers".
+    /// Describes the value in a message: "a 3 x 4 array of numbers".
     pub fn words(&self) -> String {
         let by = |shape: &[usize]| {
             shape
@@ -239,7 +233,7 @@ impl Value {
 }
 
 impl StructArray {
-    /// One record.
+    /// Creates a single record.
     pub fn one(fields: Vec<(String, Vec<Value>)>) -> Self {
         Self {
             shape: vec![1, 1],
@@ -247,7 +241,7 @@ impl StructArray {
         }
     }
 
-    /// The values of a field, one for each record.
+    /// Returns the values of a field, one for each record.
     pub fn field(&self, name: &str) -> Option<&[Value]> {
         self.fields
             .iter()
@@ -256,25 +250,23 @@ impl StructArray {
     }
 }
 
-// Why variables could not be read from a file.
 
-/// Why variables could not be read: what, and in which variable (a path such as "sys.A" or "models{3}.B"; empty where none was begun).
+/// Reason why variables could not be read, and the variable (a path such as "sys.A" or
+/// "models{3}.B"; empty if none was begun).
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum VariableFault {
-    /// The file is of another kind.
+    /// The file has another format.
     #[error("expected {expected}, found {found}")]
     Format {
-        /// The kind of file asked for.
         expected: &'static str,
-        /// What the file begins with, in words.
+        /// Beginning of the file, in words.
         found: String,
     },
-    /// The file ends in the middle of something.
+    /// The file ends prematurely.
     #[error("{}the file is cut off (byte {offset}); copy it again", at(variable))]
     CutOff {
-        /// The variable.
         variable: String,
-        /// Where in the file, in bytes.
+        /// Position in the file \[bytes\].
         offset: u64,
     },
     /// The bytes contradict the format.
@@ -283,65 +275,57 @@ pub enum VariableFault {
         at(variable)
     )]
     Damaged {
-        /// The variable.
         variable: String,
-        /// What is wrong.
         what: String,
-        /// Where in the file, in bytes.
+        /// Position in the file \[bytes\].
         offset: u64,
     },
-    /// A line of a text says what cannot be taken.
+    /// A line of a text is invalid.
     #[error("{}line {line}: {what}", at(variable))]
     Line {
-        /// The variable.
         variable: String,
-        /// Number of the line, from 1.
+        /// Line number, from 1.
         line: usize,
-        /// What is wrong, and what to write instead.
+        /// The fault and its remedy.
         what: String,
     },
-    /// The format allows it, this program does not read it.
+    /// The format permits the content, but this program does not read it.
     #[error("{}{what} cannot be read; {remedy}", at(variable))]
     Unsupported {
-        /// The variable.
         variable: String,
-        /// What it is.
         what: String,
-        /// How to come by the data all the same, with `{file}` and `{stem}` in the place of the file's name with and without its ending.
+        /// How to obtain the data all the same; `{file}` and `{stem}` represent the file's name
+        /// with and without its extension.
         remedy: String,
     },
-    /// The file holds, or claims to hold, more than is read.
+    /// The file contains, or claims to contain, more than the limit.
     #[error(
         "{}this would take more than {most_mib} MiB of memory, which is the most that is read; split the file",
         at(variable)
     )]
     TooLarge {
-        /// The variable.
         variable: String,
         /// The limit \[MiB\].
         most_mib: u64,
     },
-    /// Reading the file would take longer than any file of data does.
+    /// Reading the file would take longer than for any file of data.
     #[error(
         "{}this would take more than {most_millions} million steps of work, which is the most that is read; split the file",
         at(variable)
     )]
     TooMuchWork {
-        /// The variable.
         variable: String,
         /// The limit \[million steps\].
         most_millions: u64,
     },
-    /// Values lie in values, deeper than anything that is read, or in a circle.
+    /// Values are nested more deeply than the limit, or in a cycle.
     #[error("{}values are nested too deeply, or contain themselves", at(variable))]
     TooDeep {
-        /// The variable.
         variable: String,
     },
-    /// A name stands twice.
+    /// Duplicate name.
     #[error("the name \"{name}\" stands twice; rename one")]
     Duplicate {
-        /// The name.
         name: String,
     },
     /// The reader was stopped.
@@ -350,7 +334,7 @@ pub enum VariableFault {
 }
 
 impl VariableFault {
-    /// The file is of another kind.
+    /// Creates the error for a file with another format.
     pub(crate) fn format(expected: &'static str, found: impl Into<String>) -> Self {
         Self::Format {
             expected,
@@ -358,7 +342,7 @@ impl VariableFault {
         }
     }
 
-    /// The file, of which these are the bytes, is of another kind.
+    /// Creates the error for a file with another format, from its bytes.
     pub(crate) fn other_bytes(expected: &'static str, bytes: &[u8]) -> Self {
         Self::format(
             expected,
@@ -370,7 +354,7 @@ impl VariableFault {
         )
     }
 
-    /// The file ends in the middle of something.
+    /// Creates the error for a file that ends prematurely.
     pub(crate) fn cut_off(variable: &str, offset: usize) -> Self {
         Self::CutOff {
             variable: variable.to_owned(),
@@ -378,7 +362,7 @@ impl VariableFault {
         }
     }
 
-    /// The bytes contradict the format.
+    /// Creates the error for bytes that contradict the format.
     pub(crate) fn damaged(variable: &str, what: impl Into<String>, offset: u64) -> Self {
         Self::Damaged {
             variable: variable.to_owned(),
@@ -387,7 +371,7 @@ impl VariableFault {
         }
     }
 
-    /// A line of a text says what cannot be taken.
+    /// Creates the error for an invalid line of a text.
     pub(crate) fn line(variable: &str, line: usize, what: impl Into<String>) -> Self {
         Self::Line {
             variable: variable.to_owned(),
@@ -396,7 +380,7 @@ impl VariableFault {
         }
     }
 
-    /// The format allows it, this program does not read it.
+    /// Creates the error for content that the format permits but this program does not read.
     pub(crate) fn unsupported(
         variable: &str,
         what: impl Into<String>,
@@ -409,14 +393,14 @@ impl VariableFault {
         }
     }
 
-    /// Values lie in values, deeper than anything that is read.
+    /// Creates the error for values nested more deeply than the limit.
     pub(crate) fn too_deep(variable: &str) -> Self {
         Self::TooDeep {
             variable: variable.to_owned(),
         }
     }
 
-    /// The same with the value that it concerns, unless it says so already.
+    /// Adds the affected value, unless the error names one already.
     #[must_use]
     pub(crate) fn of(mut self, name: impl FnOnce() -> String) -> Self {
         match &mut self {
@@ -436,7 +420,7 @@ impl VariableFault {
         self
     }
 
-    /// Whether the budget ends the reading: nothing else of the file is to be tried.
+    /// Returns whether the budget ends the reading: no other attempt with the file should follow.
     pub fn is_of_the_budget(&self) -> bool {
         matches!(
             self,
@@ -453,13 +437,15 @@ fn at(variable: &str) -> String {
     }
 }
 
-// How much a reader may take, and whether it shall go on.
+// Limits of a reader, and its cancellation.
 
-/// Steps of work that reading one file may take: bytes of a text, elements of an array, values, comparisons of names.
+/// Maximum work for reading one file \[steps\]: bytes of a text, elements of an array, values,
+/// comparisons of names.
 pub(crate) const MOST_WORK: u64 = 4_000_000_000;
 
-/// Counts the memory and the work of a reader: what goes beyond the limits is refused before it is taken, and a reader that shall stop
-/// is told so. Every reader asks in its inner loops, for things without content too: a file of a few bytes may speak of 10^18 of them.
+/// Counts the memory and the work of a reader: anything beyond the limits is rejected before it is
+/// allocated, and a cancelled reader stops. Every reader asks in its inner loops, even for elements
+/// without content: a file of a few bytes may claim 10^18 of them.
 pub struct ReadingBudget<'p> {
     most_memory: u64,
     most_work: u64,
@@ -470,7 +456,7 @@ pub struct ReadingBudget<'p> {
 }
 
 impl ReadingBudget<'static> {
-    /// A budget for at most `most` bytes of memory.
+    /// Creates a budget for at most `most` bytes of memory.
     pub fn new(most: u64) -> Self {
         let zero = || Cell::new(0);
         let stop = Arc::default();
@@ -486,14 +472,14 @@ impl ReadingBudget<'static> {
 }
 
 impl Default for ReadingBudget<'static> {
-    /// The budget of any one file, which nobody stops.
+    /// Creates the budget of a single file, without cancellation.
     fn default() -> Self {
         Self::new(MOST_MEMORY)
     }
 }
 
 impl<'p> ReadingBudget<'p> {
-    /// With another limit of work \[steps\].
+    /// Returns the budget with another limit of work \[steps\].
     pub fn with_work(self, most: u64) -> Self {
         Self {
             most_work: most,
@@ -501,12 +487,13 @@ impl<'p> ReadingBudget<'p> {
         }
     }
 
-    /// Ended by whoever sets this.
+    /// Returns the budget with a flag that stops the reader when set.
     pub fn stopped_by(self, stop: Arc<AtomicBool>) -> Self {
         Self { stop, ..self }
     }
 
-    /// With somebody who is told, whenever memory is taken, how many bytes are.
+    /// Returns the budget with a callback that receives the number of bytes whenever memory is
+    /// taken.
     pub fn telling<'q>(self, tell: &'q dyn Fn(u64)) -> ReadingBudget<'q> {
         let Self {
             most_memory,
@@ -526,12 +513,13 @@ impl<'p> ReadingBudget<'p> {
         }
     }
 
-    /// What ends the reader when it is set.
+    /// Returns the flag that stops the reader when set.
     pub fn stop(&self) -> &Arc<AtomicBool> {
         &self.stop
     }
 
-    /// Counts `count` elements of `size` bytes that `variable` is about to take, each of which is a step of work too.
+    /// Counts `count` elements of `size` bytes that `variable` is about to take; each is also a
+    /// step of work.
     pub fn take(&self, count: u64, size: u64, variable: &str) -> Result<(), VariableFault> {
         let memory = self.memory.get().saturating_add(count.saturating_mul(size));
         if memory > self.most_memory {
@@ -547,7 +535,8 @@ impl<'p> ReadingBudget<'p> {
         Ok(())
     }
 
-    /// Ends a reader that shall stop among elements which are counted already; asked for each, it looks now and then.
+    /// Stops a cancelled reader among elements that are already counted; called for each element,
+    /// it checks now and then.
     pub fn go_on(&self, element: usize) -> Result<(), VariableFault> {
         /// Elements that take less than a hundredth of a second.
         const BETWEEN: usize = 1 << 14;
@@ -564,7 +553,7 @@ impl<'p> ReadingBudget<'p> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(VariableFault::Stopped);
         }
-        // Whoever asks has done something since it asked last.
+        // The caller has done some work since its last call.
         let work = self.work.get().saturating_add(steps.max(1));
         if work > self.most_work {
             let most_millions = self.most_work / 1_000_000;

@@ -1,15 +1,16 @@
-//! Independent pieces of work, and who carries them out: the numeric half knows of no thread, its callers may have some.
+//! Independent tasks and their execution: the numerical crates know nothing of threads, but their
+//! callers may.
 
-/// One piece of work that depends on no other.
+/// A task that depends on no other.
 pub type Task<'a> = Box<dyn FnOnce() + Send + 'a>;
 
-/// Carries out independent pieces of work, in any order and on as many threads as it has; returns when all are done.
+/// Runs independent tasks, in any order and on any number of threads; returns when all are done.
 pub trait Executor: Send + Sync {
-    /// Carries out `tasks`, every one of them.
+    /// Runs all `tasks`.
     fn carry_out(&self, tasks: Vec<Task<'_>>);
 }
 
-/// One thread: the caller's.
+/// Runs tasks on the caller's thread.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Sequential;
 
@@ -19,8 +20,8 @@ impl Executor for Sequential {
     }
 }
 
-/// `of` each of `things`, in their order, carried out by `executor`: what comes of it does not depend on by whom. What an
-/// executor leaves undone the caller's thread does.
+/// Applies `of` to each of `things` on `executor` and returns the results in order; they do not
+/// depend on the executor. Tasks that the executor leaves undone run on the caller's thread.
 pub fn each<S: Send, T: Send>(
     executor: &dyn Executor,
     things: impl IntoIterator<Item = S>,
@@ -48,7 +49,7 @@ pub fn each<S: Send, T: Send>(
 mod tests {
     use super::*;
 
-    /// The last first.
+    /// Runs the tasks in reverse order.
     struct Backwards;
 
     impl Executor for Backwards {
@@ -57,7 +58,7 @@ mod tests {
         }
     }
 
-    /// Does every other piece of work.
+    /// Runs every other task only.
     struct Careless;
 
     impl Executor for Careless {

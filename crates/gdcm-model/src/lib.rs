@@ -1,18 +1,18 @@
 //! The Gain-Delay Correction Method: models, flight conditions and their responses.
 //!
-//! **Question answered:** what did the engineer load, and how does one model respond?
+//! **Question answered:** which data did the engineer load, and how does one model respond?
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`dataset`] | channels, models, measured responses, flight conditions; checked once, at construction |
+//! | [`dataset`] | channels, models, measured responses, flight conditions; checked at construction |
 //! | [`response`] | frequency responses, poles, zeros, lead filters |
 //! | [`simulation`] | time responses: flight records, and a model simulated against them |
-//! | [`assembly`] | from the models of many files to one dataset: names, channels, units |
-//! | [`units`] | conversions of units, and numbers in text |
-//! | [`executor`], [`progress`] | parallel work, and how far it has come |
-//! | [`message_text`], [`whole_number`] | text and whole numbers of files |
+//! | [`assembly`] | models from many files into one dataset: names, channels, units |
+//! | [`units`] | unit conversions and number formatting |
+//! | [`executor`], [`progress`] | parallel tasks, progress and cancellation |
+//! | [`message_text`], [`whole_number`] | sanitised text, and whole numbers in JSON |
 //!
-//! Nothing here knows of files, windows or threads.
+//! No dependence on files, windows or threads.
 //!
 //! ```
 //! use gdcm_model::dataset::{Pair, StateSpace};

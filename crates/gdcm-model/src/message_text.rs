@@ -1,9 +1,9 @@
-//! Text from a file, fit for a message.
+//! Sanitised text for messages.
 
 use std::path::Path;
 
-/// A text with its control characters and its invisible ones spelt out: a name with a line end, an escape sequence or a change of
-/// the writing direction in it would break a message, or a terminal, or read as another name.
+/// Escapes control and invisible characters: a name with a line end, an escape sequence or a change
+/// of writing direction could break a message or a terminal, or read as another name.
 pub fn sanitized(text: &str) -> String {
     let mut words = String::with_capacity(text.len());
     for character in text.chars() {
@@ -16,13 +16,13 @@ pub fn sanitized(text: &str) -> String {
     words
 }
 
-/// A path in a plain text.
+/// Returns a path as sanitised text.
 pub fn sanitized_path(path: &Path) -> String {
     sanitized(&path.to_string_lossy())
 }
 
-/// Whether a character is no part of a plain text: a control character, or one that has no shape of its own, but turns the writing
-/// direction, joins or parts letters, ends a line or a paragraph.
+/// Returns whether a character is unprintable: a control character, or one without a shape that
+/// changes the writing direction, joins or separates letters, or ends a line or a paragraph.
 pub fn is_unprintable(character: char) -> bool {
     let is_invisible = matches!(
         character,
@@ -32,14 +32,15 @@ pub fn is_unprintable(character: char) -> bool {
     is_invisible || character.is_control()
 }
 
-/// A plain text in quotation marks, no longer than a message can bear.
+/// Returns sanitised text in quotation marks, shortened to fit a message.
 pub fn quoted(text: &str) -> String {
     format!("\"{}\"", shortened(&sanitized(text)))
 }
 
-/// A message that is no longer than a reader can bear, nor any word in it: what is left out of either stands in its middle.
+/// Shortens a message and its words to a readable length; an ellipsis replaces the middle of each.
 pub fn shortened_message(text: &str) -> String {
-    /// Longer than every sentence of the program with the names of sixty columns in it, and what is kept of each end.
+    /// Limit above every sentence of the program with sixty column names, and length kept at each
+    /// end.
     const MESSAGE: [usize; 2] = [2000, 900];
     let words: Vec<String> = text
         .split(' ')
@@ -48,15 +49,15 @@ pub fn shortened_message(text: &str) -> String {
     without_middle(&words.join(" "), MESSAGE)
 }
 
-/// A name in a message, without its middle where it is longer than the path of most files.
+/// Shortens a name in a message by its middle where it is longer than most file paths.
 pub fn shortened_name(text: &str) -> String {
     without_middle(text, WORD)
 }
 
-/// Longer than the path of most files, and what is kept of each end.
+/// Limit above most file paths, and length kept at each end.
 const WORD: [usize; 2] = [400, 40];
 
-/// A text of more than so many letters without its middle: so many of either end are kept.
+/// Removes the middle of a text above `longest` characters; `kept` characters remain at each end.
 fn without_middle(text: &str, [longest, kept]: [usize; 2]) -> String {
     let letters = text.chars().count();
     if letters <= longest {
@@ -67,7 +68,7 @@ fn without_middle(text: &str, [longest, kept]: [usize; 2]) -> String {
     start.chain(std::iter::once('…')).chain(end).collect()
 }
 
-/// The start of a text, no longer than a message can bear.
+/// Returns the start of a text, short enough for a message.
 pub fn shortened(text: &str) -> String {
     const LONGEST: usize = 80;
     match text.char_indices().nth(LONGEST) {
@@ -92,7 +93,7 @@ mod tests {
                 format!("a{}b", invisible.escape_default())
             );
         }
-        // A letter and its accent as two characters, as some systems write file names.
+        // A letter and its accent as two characters, as stored in file names by some systems.
         assert_eq!(sanitized("e\u{301}"), "e\u{301}");
     }
 

@@ -1,27 +1,28 @@
-//! The progress of long work, and its end before its time.
+//! Progress and cancellation of long computations.
 
 use std::sync::{Mutex, PoisonError};
 
 use crate::dataset::StateSpace;
 
-/// Told of the progress of long work, and asked whether it is still wanted.
+/// Receives the progress of a long computation, and can cancel it.
 ///
-/// The work may be carried out by several threads, and each of them asks.
+/// A computation may run on several threads, each of which checks for cancellation.
 pub trait Progress: Sync {
-    /// Whether the work should end now, without a result.
+    /// Returns whether the computation should stop now, without a result.
     fn cancelled(&self) -> bool;
 
-    /// `done` of `total` steps are behind.
+    /// Reports that `done` of `total` steps are complete.
     fn advanced(&self, done: usize, total: usize);
 
-    /// The step that begins, in words.
+    /// Reports the start of a step, in words.
     fn step(&self, _what: &str) {}
 
-    /// A first model of an identification, in the units of the records; a better one follows.
+    /// Reports a preliminary model of an identification, in the units of the records; a better one
+    /// follows.
     fn first_model(&self, _model: &StateSpace) {}
 }
 
-/// Nobody observes: the work runs to its end.
+/// Ignores progress and never cancels.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Unobserved;
 
@@ -33,7 +34,7 @@ impl Progress for Unobserved {
     fn advanced(&self, _done: usize, _total: usize) {}
 }
 
-/// Reports the steps of one part of the work as that part's share of the whole.
+/// Reports progress within one part of a computation as its share of the whole.
 pub struct Portion<'a> {
     shares: &'a Shares<'a>,
     share: f64,
@@ -43,7 +44,7 @@ pub struct Portion<'a> {
 }
 
 impl<'a> Portion<'a> {
-    /// A part that is `share` of the whole, reported as the step `what`.
+    /// Creates a part that makes up `share` of the whole, reported as the step `what`.
     pub fn new(shares: &'a Shares<'a>, share: f64, what: &'static str) -> Self {
         Self {
             shares,
@@ -53,17 +54,17 @@ impl<'a> Portion<'a> {
         }
     }
 
-    /// Reports the rest of the part.
+    /// Reports the part as complete.
     ///
     /// # Errors
-    /// [`Cancelled`] where the work is not wanted any more.
+    /// [`Cancelled`] where the computation was cancelled.
     pub fn finish(self) -> Result<(), Cancelled> {
         self.report(1.0)
     }
 
-    /// Reports that `done` (0 to 1) of the part is behind, never backwards.
+    /// Reports that `done` (0 to 1) of the part is complete; never goes backwards.
     fn report(&self, done: f64) -> Result<(), Cancelled> {
-        // A panic while the lock was held leaves a number that is still whole.
+        // A panic while the lock was held leaves a valid number.
         let mut reported = self.reported.lock().unwrap_or_else(PoisonError::into_inner);
         let rise = (done.min(1.0) * self.share - *reported).max(0.0);
         *reported += rise;
@@ -77,24 +78,25 @@ impl Progress for Portion<'_> {
     }
 
     fn advanced(&self, done: usize, total: usize) {
-        // Whether to go on is asked by the part itself.
+        // The part itself checks for cancellation.
         let _ = self.report(done as f64 / total.max(1) as f64);
     }
 }
 
-/// The work was stopped before its end.
+/// The error of a cancelled computation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the analysis was stopped")]
 pub struct Cancelled;
 
-/// Tells of work that is divided by shares of the whole, some of which end in any order: never backwards.
+/// Reports progress of a computation split into shares of the whole, some of which end in any
+/// order; never goes backwards.
 pub struct Shares<'a> {
     progress: &'a dyn Progress,
     done: Mutex<f64>,
 }
 
 impl<'a> Shares<'a> {
-    /// Nothing is done yet.
+    /// Starts at zero.
     pub fn new(progress: &'a dyn Progress) -> Self {
         Self {
             progress,
@@ -102,28 +104,28 @@ impl<'a> Shares<'a> {
         }
     }
 
-    /// Who is told.
+    /// Returns the receiver of the reports.
     pub fn progress(&self) -> &'a dyn Progress {
         self.progress
     }
 
-    /// The next step, with `done` (0 to 1) of the whole done before it.
+    /// Starts the next step, with `done` (0 to 1) of the whole complete before it.
     pub fn next(&self, done: f64, what: &str) -> Result<(), Cancelled> {
         self.tell(|_| done, what)
     }
 
-    /// A step of `share` of the whole, for work of which steps end in any order.
+    /// Reports a completed step with `share` of the whole, where steps end in any order.
     pub fn advance(&self, share: f64, what: &str) -> Result<(), Cancelled> {
         self.tell(|done| done + share, what)
     }
 
     fn tell(&self, done: impl Fn(f64) -> f64, what: &str) -> Result<(), Cancelled> {
-        /// Parts into which the whole is divided.
+        /// Resolution of the reported progress.
         const PARTS: f64 = 1000.0;
         if self.progress.cancelled() {
             return Err(Cancelled);
         }
-        // A panic while the lock was held leaves a number that is still whole.
+        // A panic while the lock was held leaves a valid number.
         let mut last = self.done.lock().unwrap_or_else(PoisonError::into_inner);
         *last = last.max(done(*last).min(1.0));
         self.progress.step(what);
@@ -137,7 +139,7 @@ impl<'a> Shares<'a> {
 mod tests {
     use super::*;
 
-    /// Keeps every number that it hears.
+    /// Records every reported number.
     #[derive(Default)]
     struct Heard(Mutex<Vec<usize>>);
 

@@ -1,40 +1,41 @@
-//! Every conversion between the units inside (SI, rad/s, rad, ratios) and those the engineer reads.
+//! Conversions between internal units (SI, rad/s, rad, ratios) and display units.
 
-/// Magnitude ratio to decibels: `20 log10 r`. Zero gives minus infinity.
+/// Converts a magnitude ratio to decibels: `20 log10 r`. Zero gives minus infinity.
 pub fn ratio_to_db(ratio: f64) -> f64 {
     20.0 * ratio.log10()
 }
 
-/// Decibels to magnitude ratio: `10^(db/20)`.
+/// Converts decibels to a magnitude ratio: `10^(db/20)`.
 pub fn db_to_ratio(db: f64) -> f64 {
     10.0_f64.powf(db / 20.0)
 }
 
-/// Natural logarithm of a magnitude ratio to decibels, as of small relative errors: `20 neper / ln 10`.
+/// Converts the natural logarithm of a magnitude ratio, such as a small relative error, to
+/// decibels: `20 neper / ln 10`.
 pub fn neper_to_db(neper: f64) -> f64 {
     const DB_PER_NEPER: f64 = 8.685_889_638_065_037;
     DB_PER_NEPER * neper
 }
 
-/// Angular frequency \[rad/s\] to frequency \[Hz\]: `f = omega / 2 pi`.
+/// Converts an angular frequency \[rad/s\] to a frequency \[Hz\]: `f = omega / 2 pi`.
 pub fn rad_s_to_hz(omega: f64) -> f64 {
     omega / std::f64::consts::TAU
 }
 
-/// Milliseconds to seconds.
+/// Converts milliseconds to seconds.
 pub fn ms_to_s(milliseconds: f64) -> f64 {
     1e-3 * milliseconds
 }
 
-/// Seconds to milliseconds.
+/// Converts seconds to milliseconds.
 pub fn s_to_ms(seconds: f64) -> f64 {
     1e3 * seconds
 }
 
-/// A number as a message repeats it: the shortest text that reads back as the same number, with an exponent where the digits
-/// before or after the point would hide it (1e300, 2.5e-12).
+/// Formats a number for a message: the shortest text that parses to the same number, with an
+/// exponent where the digits before or after the point would hide it (1e300, 2.5e-12).
 pub fn number(value: f64) -> String {
-    /// Longest text without an exponent, where one with it would be shorter.
+    /// Longest text without an exponent, where the exponent form would be shorter.
     const LONGEST: usize = 10;
     let plain = value.to_string();
     let exponent = format!("{value:e}");
@@ -45,13 +46,13 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// A setting or another figure for people, with at most six significant digits: "0.530279", "12", "1e300".
+/// Formats a value for display with at most six significant digits: "0.530279", "12", "1e300".
 pub fn six_digits(value: f64) -> String {
     let rounded = format!("{value:.5e}").parse().unwrap_or(value);
     number(rounded)
 }
 
-/// The text of a number, a zero without its sign: "0.0" of "-0.0"; any other text as it is.
+/// Removes the sign of a formatted zero: "0.0" for "-0.0"; any other text is unchanged.
 pub fn without_sign_of_zero(text: &str) -> &str {
     let Some(digits) = text.strip_prefix(['-', '\u{2212}']) else {
         return text;
@@ -60,9 +61,10 @@ pub fn without_sign_of_zero(text: &str) -> &str {
     if is_zero { digits } else { text }
 }
 
-/// A figure that is not zero in so many decimals, and in more where it would read as nothing: two digits always stand.
+/// Formats a nonzero value with the given decimals, or with more, so that at least two digits
+/// remain where it would round to zero.
 pub fn telling(value: f64, decimals: usize) -> String {
-    /// Beyond these decimals an exponent is shorter.
+    /// Beyond this number of decimals an exponent is shorter.
     const MOST: i32 = 6;
     if value == 0.0 || !value.is_finite() || value.abs() >= 10_f64.powi(-(decimals as i32)) {
         return format!("{value:.decimals$}");
@@ -75,16 +77,17 @@ pub fn telling(value: f64, decimals: usize) -> String {
     }
 }
 
-/// Two figures in so many decimals, and in as many more as it takes to tell one from the other.
+/// Formats two values with the given decimals, or with as many more as needed to distinguish them.
 pub fn told_apart(a: f64, b: f64, decimals: usize) -> (String, String) {
-    /// All that a number of order one has.
+    /// All decimals of a number of order one.
     const MOST: usize = 15;
     let texts = |decimals: usize| (format!("{a:.decimals$}"), format!("{b:.decimals$}"));
     let enough = (decimals..=MOST).find(|&decimals| texts(decimals).0 != texts(decimals).1);
     texts(enough.unwrap_or(decimals))
 }
 
-/// A change in words, with its sign and so many decimals: "+12.3", "−0.4"; what rounds to nothing has no sign.
+/// Formats a change with its sign and the given decimals: "+12.3", "−0.4"; a change that rounds to
+/// zero has no sign.
 pub fn signed(change: f64, decimals: usize) -> String {
     let text = format!("{change:+.decimals$}");
     let is_nothing = text.chars().all(|c| matches!(c, '+' | '-' | '0' | '.'));

@@ -1,4 +1,4 @@
-//! Whole numbers of JSON, which many programs write as `7.0`.
+//! Whole numbers in JSON, which many programs write as `7.0`.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -6,9 +6,9 @@ use std::marker::PhantomData;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Unexpected, Visitor};
 
-/// The numbers that a type of Rust's whole numbers takes.
+/// Integer types that accept whole numbers.
 pub trait WholeNumber: TryFrom<i64> {
-    /// What a file has to hold there.
+    /// Description of the expected value in a file.
     const EXPECTED: &'static str;
 }
 
@@ -24,16 +24,17 @@ impl WholeNumber for usize {
     const EXPECTED: &'static str = "a whole number not below 0";
 }
 
-/// A whole number, also where it is written with a fraction of zero: for `#[serde(deserialize_with = "…")]`.
+/// Deserialises a whole number, also when written with a zero fraction: for
+/// `#[serde(deserialize_with = "…")]`.
 pub fn whole<'de, T: WholeNumber, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
     deserializer.deserialize_any(Whole(PhantomData))
 }
 
-/// The same, or null; for a key that may be absent, with `#[serde(default)]`.
+/// As `whole`, or null; for an optional key, with `#[serde(default)]`.
 pub fn whole_or_none<'de, T: WholeNumber, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Option<T>, D::Error> {
-    /// A whole number, as an option takes it.
+    /// A whole number inside an option.
     #[derive(Deserialize)]
     #[serde(bound = "T: WholeNumber", transparent)]
     struct Held<T>(#[serde(deserialize_with = "whole")] T);
@@ -61,7 +62,7 @@ impl<T: WholeNumber> Visitor<'_> for Whole<T> {
     }
 
     fn visit_f64<E: Error>(self, number: f64) -> Result<T, E> {
-        /// Up to here every whole number is a floating-point number of its own.
+        /// Up to this limit every whole number has its own floating-point value.
         const LARGEST: f64 = 9_007_199_254_740_992.0;
         if number.fract() == 0.0 && number.abs() <= LARGEST {
             self.visit_i64(number as i64)

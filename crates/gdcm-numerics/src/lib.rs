@@ -1,7 +1,9 @@
-//! Fourier transforms and convex programs of other crates, behind functions without type parameters.
+//! Fourier transforms and convex programs from other crates, behind functions without type
+//! parameters.
 //!
-//! Their algorithms are generic, and would be compiled anew with every build and every test of the crate that uses them: a
-//! quarter of the instructions of `gdcm-method` and `gdcm-sysid`. Here they are compiled once.
+//! Their algorithms are generic, and would be recompiled with every build and every test of the
+//! crate that uses them: a quarter of the instructions of `gdcm-method` and `gdcm-sysid`. This
+//! crate compiles them once.
 
 use std::sync::Arc;
 
@@ -11,24 +13,24 @@ use clarabel::solver::{DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 use nalgebra::Complex;
 use realfft::{RealFftPlanner, RealToComplex};
 
-/// Plans transforms, of which those of one length share their tables.
+/// Plans transforms; transforms of the same length share their tables.
 #[derive(Default)]
 pub struct FourierPlanner(RealFftPlanner<f64>);
 
-/// The Fourier transform of real signals of one length.
+/// The Fourier transform of real signals with a fixed length.
 #[derive(Clone)]
 pub struct FourierTransform(Arc<dyn RealToComplex<f64>>);
 
 impl FourierPlanner {
-    /// The transform of signals of so many samples.
+    /// Plans the transform of signals with `length` samples.
     pub fn plan(&mut self, length: usize) -> FourierTransform {
         FourierTransform(self.0.plan_fft_forward(length))
     }
 }
 
 impl FourierTransform {
-    /// `X_k = sum_n x[n] e^(-2 pi j k n / N)` for k = 0 ... N / 2; none where the signal has another length. The samples are
-    /// overwritten.
+    /// Computes `X_k = sum_n x[n] e^(-2 pi j k n / N)` for k = 0 ... N / 2; `None` where the signal
+    /// has another length. The samples are overwritten.
     pub fn of(&self, samples: &mut [f64]) -> Option<Vec<Complex<f64>>> {
         let mut lines = self.0.make_output_vec();
         self.0.process(samples, &mut lines).ok()?;
@@ -36,10 +38,10 @@ impl FourierTransform {
     }
 }
 
-/// `argmin x' P x / 2 + q' x` subject to `A x <= b`, with P given by its upper triangle.
+/// Computes `argmin x' P x / 2 + q' x` subject to `A x <= b`, with P given by its upper triangle.
 ///
 /// # Errors
-/// What the solver says where it finds no solution.
+/// The solver's status where it finds no solution.
 pub fn convex_program(
     p: &CscMatrix<f64>,
     q: &[f64],

@@ -1,13 +1,16 @@
 //! The Gain-Delay Correction Method: an engineer's decisions and their results.
 //!
-//! **Question answered:** given these settings, rejections and constraints, what is the correction, and why?
+//! **Question answered:** given these settings, rejections and constraints, what is the correction,
+//! and why?
 //!
-//! A [`Study`](study::Study) holds a dataset and all decisions; an [`Engine`](study::Engine) computes its
-//! [`Analysis`](study::Analysis) in stages and keeps what has not changed. All of it is in [`study`].
+//! A [`Study`](study::Study) contains a dataset and all decisions; an [`Engine`](study::Engine)
+//! computes its [`Analysis`](study::Analysis) in stages and caches each stage while its inputs stay
+//! the same. All items are in [`study`].
 //!
-//! # An example
+//! # Example
 //!
-//! A helicopter of one response, `q = g / (s + 1)` times the stick, that answers in flight by a fifth more than its physics model:
+//! A helicopter with one response, `q = g / (s + 1)` times the stick, whose measured response is a
+//! fifth larger than that of its physics model:
 //!
 //! ```
 //! use gdcm_model::dataset::*;

@@ -1,4 +1,4 @@
-//! What is being imported: the models found, the rules about them, and what is shown of both.
+//! State of an import: the models found, their rules, and the displayed parts of both.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -11,82 +11,78 @@ use super::details::Preview;
 use crate::view::command::Command;
 use crate::view::tables::Sorting;
 
-/// Most steps that can be undone.
+/// Maximum number of undo steps.
 const MOST_STEPS: usize = 200;
 
-/// What the engineer asks for while models are imported.
+/// A command of the import view.
 #[derive(Clone, Debug, PartialEq)]
 pub enum AssemblingCommand {
-    /// Begin, or go on.
+    /// Start, or continue.
     Open,
     /// Choose a folder with the desktop's dialog.
     AskFolder,
-    /// Read files, and folders with all that is in them.
+    /// Read files, and folders with all their files.
     Add(Vec<PathBuf>),
-    /// Read no further.
+    /// Stop reading.
     StopReading,
-    /// Say something else about the files.
+    /// Change the rules.
     Change(Box<Rules>),
-    /// Take the last change back.
+    /// Undo the last change.
     Undo,
-    /// Bring it back again.
+    /// Redo the last undone change.
     Redo,
-    /// Show a model.
     Select(usize),
-    /// Sort the table by the column of this index; by the same one the other way round.
+    /// Sort the table by the column with this index; the same column again reverses the order.
     Sort(usize),
-    /// Show the response of this place in the preview.
+    /// Show the response with this index in the preview.
     ShowResponse(usize),
-    /// Load rules from a file.
     LoadRules(PathBuf),
-    /// Write the rules to a file.
     SaveRules(PathBuf),
-    /// Write the dataset and its rules, and open it.
+    /// Write the dataset and its rules, and open the dataset.
     MakeDataset(PathBuf),
-    /// Leave it; nothing of it is kept.
+    /// Leave the import and discard it.
     Close,
 }
 
-/// How far the reading of files is.
+/// Progress of reading files.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Reading {
-    /// Number of the file that is being read, from 1.
+    /// Number of the current file, from 1.
     pub number: usize,
-    /// How many there are.
+    /// Total number of files.
     pub of: usize,
-    /// Its name.
+    /// Name of the current file.
     pub name: String,
-    /// Bytes of its values that are read.
+    /// Bytes of the current file's values read so far.
     pub taken: u64,
 }
 
-/// Models that are being imported.
+/// Models being imported.
 #[derive(Debug, Default)]
 pub struct AssemblyState {
     assembly: Assembly,
     earlier: Vec<Rules>,
     later: Vec<Rules>,
-    /// Whether the rules are the engineer's, and not proposed.
+    /// Whether the engineer changed the rules; otherwise they are proposed.
     are_said: bool,
-    /// What was read: the files and folders asked for.
+    /// The requested files and folders.
     pub sources: Vec<PathBuf>,
-    /// What could not be taken, in words.
+    /// Messages about content that could not be read.
     pub faults: Vec<String>,
-    /// What is no model, in words.
+    /// Messages about content that is no model.
     pub ignored: Vec<String>,
-    /// What of files with models was not used, a line for each.
+    /// Unused content of files with models, one line each.
     pub unused: Vec<String>,
-    /// The tables of columns among the files, with the headings that they were read by.
+    /// The tables among the files, with the headings used to read them.
     pub tables: Headings,
-    /// The units that have to be said before these tables are frequency responses.
+    /// Units needed to interpret these tables as frequency responses.
     pub unsaid: BTreeMap<String, Vec<UnsaidUnit>>,
-    /// The reading under way.
+    /// Progress of a running read.
     pub reading: Option<Reading>,
-    /// Index of the model shown.
+    /// Index of the displayed model.
     pub selected: usize,
-    /// How the table is sorted.
     pub sorting: Sorting,
-    /// The response of the model shown.
+    /// Response of the displayed model.
     pub preview: Preview,
     /// Path of a folder or a file, as typed.
     pub source_path: String,
@@ -97,12 +93,13 @@ pub struct AssemblyState {
 }
 
 impl AssemblyState {
-    /// The models and what the rules make of them.
+    /// Returns the models with the rules applied.
     pub fn assembly(&self) -> &Assembly {
         &self.assembly
     }
 
-    /// Takes more models; rules that nothing was said in yet are proposed anew. A model that was found before takes its place again.
+    /// Adds models; rules that the engineer has not changed are proposed again. A model found
+    /// before replaces its earlier version.
     pub fn add(&mut self, name: &str, found: Vec<FoundModel>) {
         let mut models: Vec<FoundModel> = self
             .assembly
@@ -122,7 +119,7 @@ impl AssemblyState {
             .min(self.assembly.parts().len().saturating_sub(1));
     }
 
-    /// Forgets all models and what was told of their files; what was said of them stays.
+    /// Removes all models and the messages about their files; the rules stay.
     pub fn forget_models(&mut self) {
         self.assembly = Assembly::new(Vec::new(), self.assembly.rules().clone());
         self.faults.clear();
@@ -132,7 +129,7 @@ impl AssemblyState {
         self.unsaid.clear();
     }
 
-    /// Takes other rules, which can be undone.
+    /// Replaces the rules as an undoable step.
     pub fn change(&mut self, rules: Rules) {
         if rules == *self.assembly.rules() {
             return;
@@ -145,7 +142,7 @@ impl AssemblyState {
         self.put(rules);
     }
 
-    /// Takes the last change back.
+    /// Undoes the last change.
     pub fn undo(&mut self) {
         if let Some(rules) = self.earlier.pop() {
             self.later.push(self.assembly.rules().clone());
@@ -153,7 +150,7 @@ impl AssemblyState {
         }
     }
 
-    /// Brings the change taken back last again.
+    /// Redoes the last undone change.
     pub fn redo(&mut self) {
         if let Some(rules) = self.later.pop() {
             self.earlier.push(self.assembly.rules().clone());
@@ -161,7 +158,7 @@ impl AssemblyState {
         }
     }
 
-    /// Whether there is something to undo, and to redo.
+    /// Returns whether undo and redo are possible.
     pub fn steps(&self) -> (bool, bool) {
         (!self.earlier.is_empty(), !self.later.is_empty())
     }
@@ -171,14 +168,14 @@ impl AssemblyState {
         self.assembly = self.assembly.with_rules(rules);
     }
 
-    /// The command that changes the rules in this way.
+    /// Returns the command that changes the rules with `change`.
     pub fn changed(&self, change: impl FnOnce(&mut Rules)) -> Command {
         let mut rules = self.assembly.rules().clone();
         change(&mut rules);
         AssemblingCommand::Change(Box::new(rules)).into()
     }
 
-    /// The command that says something else about one model.
+    /// Returns the command that changes the rule of one model.
     pub fn said_of(&self, part: usize, say: impl FnOnce(&mut RowRule)) -> Command {
         self.changed(|rules| {
             if let Some(part) = self.assembly.parts().get(part) {
@@ -187,7 +184,8 @@ impl AssemblyState {
         })
     }
 
-    /// The command that gives a column of a table another heading; the file's own headings stand where nothing else is said.
+    /// Returns the command that changes the heading of a table's column; the file's own headings
+    /// apply where none are given.
     pub fn with_heading(&self, file: &str, column: usize, heading: &str) -> Command {
         self.changed(|rules| {
             let Some(headings) = self.tables.get(file) else {
@@ -203,7 +201,8 @@ impl AssemblyState {
         })
     }
 
-    /// The command that says the unit of a column in a table, and in every other that has the same headings.
+    /// Returns the command that sets the unit of a column in a table, and in all tables with the
+    /// same headings.
     pub fn with_unit(&self, file: &str, column: usize, unit: &str) -> Command {
         self.changed(|rules| {
             for file in self.tables_alike(file) {
@@ -218,7 +217,7 @@ impl AssemblyState {
         })
     }
 
-    /// The tables that ask for the same units under the same headings, this one among them.
+    /// Returns the tables, including this one, that need the same units under the same headings.
     pub fn tables_alike(&self, file: &str) -> Vec<&String> {
         let of = |file: &str| (self.tables.get(file), self.unsaid.get(file));
         self.tables
@@ -227,7 +226,8 @@ impl AssemblyState {
             .collect()
     }
 
-    /// The command that says the same about every model below `part`, in the order of the table, of its folder.
+    /// Returns the command that copies a setting to every model below `part`, in table order, in
+    /// the same folder.
     pub fn filled_down(&self, part: usize, say: impl Fn(&mut RowRule)) -> Command {
         let parts = self.assembly.parts();
         let folder = |part: usize| {
@@ -247,7 +247,7 @@ impl AssemblyState {
         })
     }
 
-    /// Indices of the models in the order of the table.
+    /// Returns the indices of the models in table order.
     pub fn order(&self) -> Vec<usize> {
         let parts = self.assembly.parts();
         self.sorting

@@ -1,4 +1,4 @@
-//! What one model is to be, field by field, what the columns of its file hold, and its response, as soon as it is chosen.
+//! Details of one model: its settings, the columns of its file, and its response.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ use crate::view::settings_panel::choice_ui;
 
 const FIELD_WIDTH: f32 = 200.0;
 
-/// What a text in a field says of a model.
+/// How a field's text changes the rule of a model.
 enum Says {
     Text(fn(&mut RowRule) -> &mut Option<String>),
     Number(fn(&mut RowRule) -> &mut Option<f64>),
@@ -35,7 +35,7 @@ enum Says {
     Other(fn(&str, &mut RowRule) -> Result<(), String>),
 }
 
-/// A field: its name, what stands in it, and what a text in it says.
+/// A field: its name, its current text, and its effect on the rule.
 struct Field {
     name: &'static str,
     value: String,
@@ -55,7 +55,7 @@ impl Field {
     }
 }
 
-/// The fields of the model shown.
+/// Draws the fields of the displayed model.
 pub(super) fn details_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -129,7 +129,7 @@ fn role_ui(ui: &mut Ui, assembly: &AssemblyState, part: &Part, commands: &mut Ve
     ui.end_row();
 }
 
-/// A button that says the same of the models below, in the same folder.
+/// Draws a button that copies the setting to the models below in the same folder.
 fn fill_ui(ui: &mut Ui, name: &str) -> bool {
     let name = format!("Fill down {name}");
     let hint = format!("{name}: the same for every model below it in the same folder");
@@ -151,7 +151,7 @@ fn field_ui(ui: &mut Ui, assembly: &AssemblyState, field: &Field, commands: &mut
         }));
     }
     if fill_ui(ui, field.name) {
-        // What stands in a field was accepted before.
+        // A field's text was accepted before.
         commands.push(
             assembly.filled_down(assembly.selected, |row| drop(field.say(&field.value, row))),
         );
@@ -278,7 +278,8 @@ fn fields(part: &Part, rule: Option<&RowRule>) -> Vec<Field> {
     ]
 }
 
-/// The channels of a file in its own order, as they are said to be or as the file calls them; "?" where it does not.
+/// Returns the channels in the file's own order, with the names from the rules or the file; "?" for
+/// unnamed ones.
 fn channel_names(labels: &[ChannelLabel], said: Option<&Vec<String>>) -> String {
     let of_file = || {
         labels
@@ -289,7 +290,7 @@ fn channel_names(labels: &[ChannelLabel], said: Option<&Vec<String>>) -> String 
     said.cloned().unwrap_or_else(of_file).join(", ")
 }
 
-/// "LON, LAT, PED, COL"; an empty text says nothing.
+/// Parses "LON, LAT, PED, COL"; an empty text sets nothing.
 fn said_names(text: &str) -> Option<Vec<String>> {
     said(text).map(|text| text.split(',').map(|name| name.trim().to_owned()).collect())
 }
@@ -318,7 +319,7 @@ pub(super) fn trim_words(perturbation: &BTreeMap<String, f64>) -> String {
         .join(", ")
 }
 
-/// "roll_deg 5, airspeed_kt -10": a coordinate and its offset, separated by commas.
+/// Parses "roll_deg 5, airspeed_kt -10": coordinates and offsets, separated by commas.
 fn say_trim(text: &str, row: &mut RowRule) -> Result<(), String> {
     row.perturbation = Some(numbers_by_name(
         text,
@@ -327,7 +328,8 @@ fn say_trim(text: &str, row: &mut RowRule) -> Result<(), String> {
     Ok(())
 }
 
-/// "NZ -1, R 1": a channel of the dataset and its sign, separated by commas; an empty text says nothing.
+/// Parses "NZ -1, R 1": channels of the dataset and their signs, separated by commas; an empty text
+/// sets nothing.
 fn say_signs(text: &str, row: &mut RowRule) -> Result<(), String> {
     row.signs = Some(signs_of(text)?).filter(|signs| !signs.is_empty());
     Ok(())
@@ -344,10 +346,11 @@ pub(super) fn signs_of(text: &str) -> Result<Signs, String> {
     }
 }
 
-/// "LON in, Q rad/s": a channel of the dataset and its unit in the file; an empty text says nothing.
+/// Parses "LON in, Q rad/s": channels of the dataset and their units in the file; an empty text
+/// sets nothing.
 fn say_units(text: &str, row: &mut RowRule) -> Result<(), String> {
     let units = units_of(text)?;
-    // A channel has a unit or a factor.
+    // A channel has either a unit or a factor.
     if let Some(factors) = &mut row.factors {
         factors.retain(|channel, _| !units.contains_key(channel));
     }
@@ -355,7 +358,7 @@ fn say_units(text: &str, row: &mut RowRule) -> Result<(), String> {
     Ok(())
 }
 
-/// "LON 8, NZ -9.81": a channel of the dataset and its factor; an empty text says nothing.
+/// Parses "LON 8, NZ -9.81": channels of the dataset and their factors; an empty text sets nothing.
 fn say_factors(text: &str, row: &mut RowRule) -> Result<(), String> {
     let factors = factors_of(text)?;
     if let Some(units) = &mut row.units {
@@ -400,7 +403,7 @@ pub(super) fn unit_words(units: &BTreeMap<String, String>) -> String {
         .join(", ")
 }
 
-/// Names and numbers, separated by commas.
+/// Parses names and numbers, separated by commas.
 fn numbers_by_name(text: &str, expected: &str) -> Result<BTreeMap<String, f64>, String> {
     let mut offsets = BTreeMap::new();
     for part in text
@@ -417,10 +420,11 @@ fn numbers_by_name(text: &str, expected: &str) -> Result<BTreeMap<String, f64>, 
 }
 
 const HEADING_WIDTH: f32 = 180.0;
-/// More columns than this are counted.
+/// Maximum number of displayed columns; further ones are only counted.
 const MOST_COLUMNS: usize = 60;
 
-/// A field for the heading of each column of a file; the file is read again by what is said.
+/// Shows a field for the heading of each column of a file; a changed heading causes the file to be
+/// read again.
 pub(super) fn columns_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -454,7 +458,8 @@ pub(super) fn columns_ui(
     }
 }
 
-/// Buttons for the units that a column may be in, where neither its heading nor its numbers say.
+/// Shows buttons for the possible units of a column if neither its heading nor its numbers
+/// determine the unit.
 fn units_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -486,21 +491,21 @@ fn units_ui(
     });
 }
 
-/// Frequencies of the curve.
+/// Number of frequencies of the curve.
 const POINTS: usize = 300;
-/// How far the curve reaches beyond the band of comparison on either side, as a factor.
+/// Factor by which the curve extends beyond the comparison band on either side.
 const BEYOND: f64 = 3.0;
 
-/// The response drawn, kept while the model and the choice stay.
+/// Displayed response, cached while the model and the selection stay the same.
 #[derive(Debug, Default)]
 pub struct Preview {
-    /// Place of the response: `output * inputs + input`, in the file's own order.
+    /// Index of the response: `output * inputs + input`, in the file's own order.
     pub response: usize,
     view: BodeView,
     drawn: Option<(String, usize, Vec<BodeCurve>)>,
 }
 
-/// The response of the model shown, and which one.
+/// Shows the response of the displayed model, and a choice of responses.
 pub(super) fn preview_ui(
     ui: &mut Ui,
     assembly: &mut AssemblyState,
@@ -546,7 +551,7 @@ pub(super) fn preview_ui(
             .is_none_or(|(of, ..)| *of != key);
         assembly.preview.drawn =
             Some((key, place, curve(&found, place, band).into_iter().collect()));
-        // A measured response may be at other frequencies than the model shown before.
+        // A measured response may have other frequencies than the previous model.
         if is_other_model {
             assembly.preview.view.request_fit();
         } else {
@@ -565,7 +570,7 @@ pub(super) fn preview_ui(
     bode_ui(ui, &scene, &mut assembly.preview.view, palette);
 }
 
-/// "LON → Q", in the file's own names.
+/// Returns "LON → Q", with the file's own names.
 fn pair_name(found: &FoundModel, place: usize) -> String {
     let inputs = found.inputs.len().max(1);
     let name = |labels: &[ChannelLabel], index: usize, side: &str| {

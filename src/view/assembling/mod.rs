@@ -1,5 +1,5 @@
-//! Importing models of many files, a table with a line a model, what each is to be, and its response: sources above, table and problems at
-//! the left, one model and the channels at the right.
+//! Importing models from several files: sources above, a table with one line per model and the list
+//! of problems on the left, the selected model and the channels on the right.
 
 mod assembly_state;
 mod details;
@@ -27,7 +27,7 @@ use table::{problems_ui, table_ui};
 pub use assembly_state::{AssemblingCommand, AssemblyState, Reading};
 pub use table::{COLUMNS, Column};
 
-/// Draws the view in the place of everything below the menu.
+/// Draws the view, which covers everything below the menu.
 pub fn assembling_ui(
     ui: &mut Ui,
     assembly: &mut AssemblyState,
@@ -216,7 +216,7 @@ fn making_ui(
     });
 }
 
-/// Name and band of the dataset.
+/// Shows name and band of the dataset.
 fn dataset_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -243,9 +243,9 @@ fn dataset_ui(
     }
 }
 
-/// A text of a channel's rule: its name in accessible names, the hint, the width, what stands in it.
+/// A text field of a channel rule: label for accessible names, hint, width, current text.
 type ChannelField = (&'static str, &'static str, f32, fn(&ChannelRule) -> String);
-/// What is typed into it: the rules, the channel's side and place, the text.
+/// Applies typed text: the rules, the channel's side and index, the text.
 type TypedField = fn(&mut Rules, (ChannelSide, usize), String);
 
 const SIDES: [(&str, ChannelSide); 2] = [
@@ -272,7 +272,7 @@ const FIELDS: [(ChannelField, TypedField); 3] = [
     ),
 ];
 
-/// Names and units of every channel, and conversions that units alone do not give.
+/// Shows names and units of every channel, and conversions that units alone do not determine.
 fn channels_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -330,7 +330,8 @@ fn channels_ui(
     conversions_ui(ui, assembly, palette, commands);
 }
 
-/// The signs that are said of channels for a role, or for all files; those of one model stand with the model.
+/// Shows the signs declared for a role or for all files; those of a single model are shown with the
+/// model.
 fn signs_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands: &mut Vec<Command>) {
     type Place = fn(&mut Rules) -> &mut Signs;
     let places: [(&str, Place); 3] = [
@@ -362,8 +363,8 @@ fn signs_ui(ui: &mut Ui, assembly: &AssemblyState, palette: &Palette, commands: 
         });
 }
 
-/// The units and factors that are declared of channels for a role; those of one model stand with the model, those of a pattern of
-/// folders in the rules file.
+/// Shows the units and factors declared for a role; those of a single model are shown with the
+/// model, those of a folder pattern only in the rules file.
 fn declarations_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -421,7 +422,7 @@ fn declarations_ui(
         });
 }
 
-/// A factor for each conversion that is asked for, and for those that were said.
+/// Shows a factor for each required or declared conversion.
 fn conversions_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,

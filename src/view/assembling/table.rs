@@ -1,4 +1,4 @@
-//! The table of models, and the list of what is to be completed.
+//! The table of models, and the list of incomplete items.
 
 use egui::{
     Align, Button, Color32, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Ui, vec2,
@@ -16,20 +16,20 @@ use crate::view::palette::{Palette, SMALL_SIZE, small};
 /// A column of the table.
 pub struct Column {
     heading: &'static str,
-    /// Part of the width that it gets.
+    /// Share of the table's width.
     share: f32,
-    /// What stands in the cell of a model; a question mark where it is to be completed.
+    /// Text of a model's cell; `None` if it must be completed.
     cell: fn(&Part) -> Option<String>,
 }
 
 impl Column {
-    /// What stands in the cell of a model.
+    /// Returns the text of a model's cell; "?" if it must be completed.
     pub fn text(&self, part: &Part) -> String {
         (self.cell)(part).unwrap_or_else(|| "?".to_owned())
     }
 }
 
-/// What is told of each model: which condition it is of, what it is there, and where it was found.
+/// The columns: condition, properties and source file of each model.
 pub const COLUMNS: [Column; 9] = [
     Column {
         heading: "condition",
@@ -87,7 +87,7 @@ pub const COLUMNS: [Column; 9] = [
     },
 ];
 
-/// The column that is marked where something is to be completed.
+/// Index of the column that marks incomplete models.
 const FILE: usize = COLUMNS.len() - 1;
 
 /// "roll_deg +5, airspeed_kt -10".
@@ -104,7 +104,7 @@ fn trim_text(part: &Part) -> String {
         .join(", ")
 }
 
-/// Draws the table; only the lines in view are laid out.
+/// Draws the table; only visible lines are laid out.
 pub(super) fn table_ui(
     ui: &mut Ui,
     assembly: &AssemblyState,
@@ -180,7 +180,7 @@ pub(super) fn table_ui(
     });
 }
 
-/// The texts of a row; what is cut tells it from the rows beside it.
+/// Paints the texts of a row; cut texts keep the part that distinguishes them from other rows.
 fn paint_cells(
     ui: &Ui,
     row: Rect,
@@ -218,12 +218,13 @@ fn paint_cells(
     }
 }
 
-/// More lines than this are counted.
+/// Maximum number of listed lines; further ones are only counted.
 const MOST_LINES: usize = 200;
-/// Tables of which no model came whose columns can be said here; the others follow as these are read.
+/// Maximum number of tables without models whose columns are shown here; the others follow once
+/// these are read.
 const MOST_TABLES: usize = 5;
 
-/// A line for each item that is to be completed; a click shows its model.
+/// Shows a line for each incomplete item; a click displays its model.
 pub(super) fn problems_ui(
     ui: &mut Ui,
     state: &AssemblyState,

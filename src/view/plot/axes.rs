@@ -1,4 +1,4 @@
-//! What every plot has in common: its frame, the look of its axes, and no interaction of its own.
+//! Common parts of all plots: frame, appearance of the axes, and disabled interaction.
 
 use std::ops::RangeInclusive;
 
@@ -12,7 +12,7 @@ use gdcm_plot::figure::axis::{Scale, Tick, TickGaps, compact, ticks_of};
 
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
-/// Size of tick labels \[pt\].
+/// Font size of tick labels \[pt\].
 pub const TICK_SIZE: f32 = 11.0;
 /// Least distance between the ticks of a vertical axis \[pt\].
 pub const VERTICAL_TICK_GAP: f64 = 27.0;
@@ -21,17 +21,17 @@ pub const TICKS_HEIGHT: f32 = 15.0;
 /// Height of an axis with tick labels and a label \[pt\].
 pub const LABELLED_HEIGHT: f32 = 33.0;
 
-/// The font of tick labels.
+/// Returns the font of tick labels.
 pub fn tick_font() -> FontId {
     FontId::proportional(TICK_SIZE)
 }
 
-/// The font of captions in plots: titles, axis labels, legends, labels of dots.
+/// Returns the font of captions in plots: titles, axis labels, legends, labels of dots.
 pub fn caption_font() -> FontId {
     FontId::proportional(SMALL_SIZE)
 }
 
-/// A plot that shows what it is told to and answers to nothing: callers own ranges, hovering and clicks.
+/// Creates a plot without interaction: callers manage ranges, hovering and clicks.
 pub fn quiet_plot<'a>(id: Id, palette: &Palette) -> Plot<'a> {
     Plot::new(id)
         .id(id)
@@ -48,13 +48,14 @@ pub fn quiet_plot<'a>(id: Id, palette: &Palette) -> Plot<'a> {
         .auto_bounds(false)
 }
 
-/// Leaves the ground of the plots in `ui` as it is: theirs has its very colour, and without a graphics processor every pixel that is
-/// filled twice counts.
+/// Makes the plots in `ui` transparent: their ground already has the same colour, and without a
+/// graphics processor every pixel filled twice costs time.
 pub(super) fn keep_ground(ui: &mut Ui) {
     ui.visuals_mut().extreme_bg_color = Color32::TRANSPARENT;
 }
 
-/// The look of one axis, told by `ticks`, with `label` beside it (none where empty), `thickness` points in all.
+/// Returns the appearance of an axis with `ticks`, a `label` beside it (none if empty), and a total
+/// thickness of `thickness` points.
 pub fn axis_hints<'a>(
     axis: Axis,
     label: &str,
@@ -79,30 +80,30 @@ pub fn axis_hints<'a>(
     }
 }
 
-/// Makes the frame of the plots drawn in `ui` that of the palette, whatever the style around says.
+/// Sets the frame colours of the plots in `ui` from the palette, whatever the surrounding style.
 pub fn use_frame_colors(ui: &mut Ui, palette: &Palette) {
     let visuals = ui.visuals_mut();
     visuals.extreme_bg_color = palette.background;
     visuals.widgets.noninteractive.bg_stroke.color = palette.line;
 }
 
-/// Distance \[pt\] a labelled mark pretends to have from the next.
+/// Nominal distance of a labelled mark from the next \[pt\].
 const LABELLED: f64 = 100.0;
-/// Distance \[pt\] a minor mark pretends to have from the next.
+/// Nominal distance of a minor mark from the next \[pt\].
 const MINOR: f64 = 25.0;
 
-/// The `grid_spacing` under which the pretended distances mean full strength and half of it.
+/// `grid_spacing` for which the nominal distances mean full and half strength.
 pub const GRID_SPACING: Rangef = Rangef {
     min: 1.0,
     max: 100.0,
 };
-/// The `label_spacing` under which labelled marks are labelled in full strength, and minor ones not at all.
+/// `label_spacing` for which labelled marks have labels in full strength, and minor marks none.
 pub const LABEL_SPACING: Rangef = Rangef {
     min: 50.0,
     max: 51.0,
 };
 
-/// A mark with a label at `value`, on an axis of `units_per_point`.
+/// Returns a labelled mark at `value`, on an axis of `units_per_point`.
 pub fn labelled_mark(value: f64, units_per_point: f64) -> GridMark {
     GridMark {
         value,
@@ -113,21 +114,21 @@ pub fn labelled_mark(value: f64, units_per_point: f64) -> GridMark {
 /// Least distance between two labels of a decade, and between two of its lines \[pt\].
 const DECADE_GAPS: [f64; 2] = [34.0, 5.0];
 
-/// How the places along an axis of a plot are told.
+/// Kind of tick labels along an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ticks {
-    /// As they are, with labels so many points apart: decibels, knots, gains.
+    /// Plain values with labels at this distance in points: decibels, knots, gains.
     Decimal(f64),
-    /// As they are, at parts of a turn.
+    /// Plain values at fractions of a turn.
     Degrees,
-    /// They are `log10(omega)`, told as frequencies in a unit.
+    /// Values of `log10(omega)`, labelled as frequencies in a unit.
     Frequency(FrequencyUnit),
-    /// They are decibels, told as ratios.
+    /// Decibels, labelled as ratios.
     Ratio,
 }
 
 impl Ticks {
-    /// A place as its number.
+    /// Converts a place on the axis to its number.
     pub fn number(self, place: f64) -> f64 {
         match self {
             Self::Decimal(_) | Self::Degrees => place,
@@ -136,7 +137,7 @@ impl Ticks {
         }
     }
 
-    /// The place of a number; not finite where it has none.
+    /// Converts a number to its place on the axis; not finite if it has none.
     pub fn place(self, number: f64) -> f64 {
         match self {
             Self::Decimal(_) | Self::Degrees => number,
@@ -145,7 +146,7 @@ impl Ticks {
         }
     }
 
-    /// Ticks and grid lines between two places on an axis of `units_per_point`.
+    /// Returns the ticks and grid lines between two places on an axis of `units_per_point`.
     pub fn marks(self, bounds: (f64, f64), units_per_point: f64) -> Vec<GridMark> {
         let is_finite = [bounds.0, bounds.1, units_per_point]
             .into_iter()
@@ -172,7 +173,7 @@ impl Ticks {
                 },
             )
         };
-        // One number says nothing of the scale: in a low plot the numbers stand closer.
+        // A single number does not show the scale: in a low plot the numbers are closer together.
         let mut gap = labels;
         let mut found = ticks(labels);
         while found.iter().filter(|tick| tick.label.is_some()).count() < 2 && gap > CLOSEST {
@@ -190,7 +191,8 @@ impl Ticks {
         found.into_iter().map(mark).collect()
     }
 
-    /// [`Self::marks`] whose numbers stand beside one another, `digit` points a letter: so far apart that the widest has room.
+    /// As [`Self::marks`], with horizontal labels of `digit` points a letter, far enough apart for
+    /// the widest.
     pub fn marks_beside(
         self,
         bounds: (f64, f64),
@@ -212,21 +214,21 @@ impl Ticks {
         }
     }
 
-    /// [`Self::marks`] as egui_plot asks for them, where the base step is one point.
+    /// Wraps [`Self::marks`] for egui_plot, where the base step is one point.
     pub fn spacer(self) -> impl Fn(GridInput) -> Vec<GridMark> {
         move |input| self.marks(input.bounds, input.base_step_size)
     }
 
-    /// The text of a tick.
+    /// Returns the text of a tick.
     pub fn text(self, mark: GridMark) -> String {
         compact(self.number(mark.value))
     }
 }
 
-/// Labelled ticks are never closer \[pt\]: letters are 11 high.
+/// Least distance between labelled ticks \[pt\]; letters are 11 high.
 const CLOSEST: f64 = 13.0;
 
-/// Shows `message` in the middle of `rect`, which it takes from `ui`.
+/// Shows `message` in the middle of `rect`, which is allocated from `ui`.
 pub(super) fn message_ui(ui: &mut Ui, rect: Rect, message: &str, palette: &Palette) {
     let response = ui.allocate_rect(rect, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, message));
@@ -245,7 +247,7 @@ pub(super) fn message_ui(ui: &mut Ui, rect: Rect, message: &str, palette: &Palet
 mod tests {
     use super::*;
 
-    /// Whether a mark of an axis of `units_per_point` has a label.
+    /// Returns whether a mark on an axis of `units_per_point` has a label.
     fn is_labelled(mark: GridMark, units_per_point: f64) -> bool {
         mark.step_size / units_per_point > f64::from(LABEL_SPACING.min)
     }
@@ -306,7 +308,7 @@ mod tests {
     #[test]
     fn bounds_that_are_no_range_give_no_ticks() {
         assert!(Ticks::Decimal(28.0).marks((1.0, 1.0), 0.0).is_empty());
-        // A chart of a record 58 points high.
+        // Chart of a record, 58 points high.
         assert_eq!(
             values(Ticks::Decimal(28.0), (-8.0, 8.0), 58.0),
             [-5.0, 0.0, 5.0]

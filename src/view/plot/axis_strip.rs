@@ -1,4 +1,5 @@
-//! An axis taken hold of: the wheel over it zooms it, dragging it pans it, a double click or a secondary click asks for its limits.
+//! Interactive axes: the wheel zooms, dragging pans, a double click or a secondary click opens the
+//! form for the limits.
 
 use egui::{
     CursorIcon, Popup, PopupCloseBehavior, Rect, Response, RichText, Role, Sense, TextEdit, Ui,
@@ -15,19 +16,19 @@ use super::drawn_curves::Pane;
 use super::navigation::turned;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
-/// Limits of an axis being typed.
+/// Form for the limits of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LimitsForm {
     axis: PlotAxis,
-    /// The pane whose axis was asked.
+    /// Pane of the axis.
     pane: Pane,
     texts: [String; 2],
-    /// Why they are not shown.
+    /// Reason why the limits are refused.
     trouble: Option<String>,
     is_new: bool,
 }
 
-/// Lets the axes of a pane, drawn into `rect`, be taken hold of.
+/// Makes the axes of a pane, drawn into `rect`, interactive.
 pub(super) fn axis_strips_ui(
     ui: &Ui,
     (pane, rect): (Pane, Rect),
@@ -45,7 +46,7 @@ pub(super) fn axis_strips_ui(
         (PlotAxis::Values(pane), beside, CursorIcon::ResizeVertical),
     ] {
         let name = axis.name(scene, pane);
-        // Not a stop of the Tab key: the plot itself takes all of these wishes from the keyboard.
+        // Not focusable by Tab: the plot itself offers the same actions on the keyboard.
         let response = ui.interact(strip, ui.scope_id().with(&name), Sense::CLICK | Sense::DRAG);
         response.widget_info(|| WidgetInfo::labeled(Role::ScrollBar, true, &name));
         let response = response.on_hover_cursor(icon);
@@ -90,7 +91,7 @@ fn take_hold(ui: &Ui, (axis, pane): (PlotAxis, Pane), response: &Response, view:
     }
 }
 
-/// The form for the limits, beside the axis, where it is this axis that was asked.
+/// Draws the form for the limits beside the axis, if it is open for this axis.
 fn limits_ui(
     ui: &Ui,
     (axis, pane): (PlotAxis, Pane),
@@ -136,7 +137,7 @@ fn limits_ui(
     }
 }
 
-/// What was decided in the form.
+/// Answer of the form.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum FormAnswer {
     #[default]
@@ -198,17 +199,17 @@ fn form_ui(
     answer
 }
 
-/// One axis of a Bode plot.
+/// Axis of a Bode plot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PlotAxis {
-    /// That of the frequencies, which both panes share.
+    /// Frequency axis, shared by both panes.
     Frequency,
-    /// The vertical one of a pane.
+    /// Vertical axis of a pane.
     Values(Pane),
 }
 
 impl PlotAxis {
-    /// "Frequency axis, magnitude plot".
+    /// Returns the accessible name: "Frequency axis, magnitude plot".
     pub(super) fn name(self, scene: &BodeScene<'_>, pane: Pane) -> String {
         let kind = match self {
             Self::Frequency => "Frequency",
@@ -217,7 +218,7 @@ impl PlotAxis {
         format!("{kind} axis, {}", scene.quantity.place(pane))
     }
 
-    /// The unit in brackets, empty where there is none.
+    /// Returns the unit in brackets; empty without a unit.
     pub(super) fn unit(self, scene: &BodeScene<'_>) -> String {
         let symbol = match self {
             Self::Frequency => scene.unit.symbol(),
@@ -230,7 +231,7 @@ impl PlotAxis {
         }
     }
 
-    /// How its places are told.
+    /// Returns the kind of tick labels.
     fn ticks(self, scene: &BodeScene<'_>) -> Ticks {
         match self {
             Self::Frequency => Ticks::Frequency(scene.unit),
@@ -238,19 +239,19 @@ impl PlotAxis {
         }
     }
 
-    /// The ends of a range as they are typed.
+    /// Formats the ends of a range for typing.
     pub(super) fn texts(self, scene: &BodeScene<'_>, range: Range) -> [String; 2] {
         [range.min, range.max].map(|place| compact(self.ticks(scene).number(place)))
     }
 
-    /// The range between two numbers as they are typed, or why it cannot be shown.
+    /// Parses the range between two typed numbers, or returns the reason why it cannot be shown.
     pub(super) fn range(self, scene: &BodeScene<'_>, texts: &[String; 2]) -> Result<Range, String> {
         let [min, max] = [self.place(scene, &texts[0])?, self.place(scene, &texts[1])?];
         let range = (min < max).then_some(Range { min, max });
         range.ok_or_else(|| "the lower limit has to be below the upper one".to_owned())
     }
 
-    /// The place on the axis of a number as it is typed, with either minus sign.
+    /// Parses a typed number, with either minus sign, to a place on the axis.
     fn place(self, scene: &BodeScene<'_>, text: &str) -> Result<f64, String> {
         let number = text.trim().replace('\u{2212}', "-").parse::<f64>().ok();
         let what = if self == Self::Frequency {

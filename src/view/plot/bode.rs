@@ -1,4 +1,5 @@
-//! The Bode plot, magnitude over phase of every model of a condition for one pair; and the same of what the fit sees of them.
+//! Bode plot: magnitude over phase of every model of a condition for a pair, or the corresponding
+//! errors used by the fit.
 
 use std::collections::BTreeSet;
 
@@ -28,80 +29,80 @@ use crate::view::controls::{elided, named, painted_text, row_text};
 use crate::view::curve_display::CurveCommand;
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
-/// Part of the height that the magnitude plot gets.
+/// Share of the height taken by the magnitude plot.
 const MAGNITUDE_PART: f32 = 0.52;
-/// Height of the line over a pane \[pt\].
+/// Height of the line above a pane \[pt\].
 const HEADING: f32 = 20.0;
 /// Space above and below the read-out \[pt\].
 const GAP: f32 = 6.0;
-/// Space at the right for the unit of the frequencies, for the names of curves, and for those of lines \[pt\].
+/// Space at the right for the unit of the frequencies, for the names of curves, and for the names
+/// of lines \[pt\].
 const MARGINS: [f32; 3] = [36.0, 78.0, 118.0];
-/// In a lower plot, the values have no room between the panes \[pt\].
+/// Least plot height with room for the values between the panes \[pt\].
 const LEAST_WITH_STRIP: f32 = 300.0;
-/// Height of the strip of coherence, and of the plot that has room for it \[pt\].
+/// Height of the coherence strip, and least height of a plot with room for it \[pt\].
 const COHERENCE_HEIGHT: f32 = 52.0;
 const LEAST_WITH_COHERENCE: f32 = 380.0;
-/// Below this, there is no room for two plots \[pt\].
+/// Least size with room for two plots \[pt\].
 const LEAST_SIZE: egui::Vec2 = vec2(140.0, 130.0);
 
-/// What a Bode plot shows.
+/// Content of a Bode plot.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct BodeScene<'a> {
-    /// Responses, or what the fit sees of them.
+    /// Responses, or the errors used by the fit.
     pub quantity: BodeQuantity<'a>,
-    /// The pair, as a title: "LON → Q".
+    /// Title of the pair: "LON → Q".
     pub pair_title: &'a str,
-    /// The curves, in any order.
+    /// Curves, in any order.
     pub curves: &'a [BodeCurve],
-    /// Labelled lines across the panes.
+    /// Labelled reference lines across the panes.
     pub rules: &'a [ReferenceLine],
-    /// The curve that the others are compared with: no model is decided on by a click on it.
+    /// Reference curve of the comparison: a click on it decides nothing.
     pub reference: Option<&'a CurveId>,
-    /// Areas around curves.
     pub bands: &'a [BodeBand],
     /// Coherence of measured responses, in a strip below the panes.
     pub coherence: &'a [CoherenceCurve],
-    /// From which coherence on a frequency counts.
+    /// Least coherence at which a frequency counts.
     pub least_coherence: f64,
     /// Frequencies marked along the lower edge of each pane \[rad/s\].
     pub strips: &'a [(f64, f64)],
-    /// The frequencies that fitting shows \[rad/s\]; those of the curves where there are none.
+    /// Frequency range after fitting \[rad/s\]; `None` for the range of the curves.
     pub omega_range: Option<(f64, f64)>,
-    /// Where a cursor stands that is led elsewhere \[rad/s\].
+    /// Cursor controlled by another plot \[rad/s\].
     pub cursor: Option<f64>,
     /// Marked frequencies \[rad/s\].
     pub pinned: &'a [f64],
-    /// Frequencies that numbers of the response are read at, by their names \[rad/s\].
+    /// Frequencies, with their names, at which values of the response are read \[rad/s\].
     pub crossings: &'a [(&'static str, f64)],
-    /// What every role has at the cursor.
+    /// Values of every role at the cursor.
     pub readout: Option<&'a Readout>,
-    /// What stands at the right over each pane: what the correction did there, and whether that is to be warned of.
+    /// Note at the right above each pane: effect of the correction, and whether it is a warning.
     pub notes: [Option<&'a PaneNote>; 2],
-    /// What a correction is still to give: the phase between the corrected and the identified model, within the band.
+    /// Remaining phase error: the area between the corrected and the identified model, within the
+    /// band.
     pub missing: Option<&'a BodeBand>,
-    /// Where the curves are drawn only to show what the leads cost; none where there are no leads.
+    /// Region where curves only illustrate the price of the leads; `None` without leads.
     pub invalid: Option<&'a InvalidRegion>,
-    /// Whether bands are drawn; none where there are no bands.
+    /// Whether bands are drawn; `None` if there are no bands.
     pub shows_bands: Option<bool>,
-    /// The role that is drawn above all others.
+    /// Role drawn above all others.
     pub raised: Option<Role>,
     /// Whether the ends of the heavy curves are named in the margin.
     pub names_curves: bool,
-    /// Roles whose curves are not drawn, where there are some.
+    /// Roles whose curves are hidden; `None` if there are none.
     pub hidden_roles: Option<&'a BTreeSet<Role>>,
-    /// What holds for the plot now.
+    /// Current restrictions of the plot.
     pub chips: &'a [Chip],
-    /// The band of comparison: lower and upper end \[rad/s\].
+    /// Band of comparison: lower and upper end \[rad/s\].
     pub band: (f64, f64),
-    /// The unit of the frequency axis.
     pub unit: FrequencyUnit,
-    /// Whether the curves are older than the settings: they are dimmed until new ones arrive.
+    /// Whether the curves are older than the settings: they are dimmed until new curves arrive.
     pub stale: bool,
-    /// What to say where there is nothing to draw.
+    /// Message shown if there is nothing to draw.
     pub message: Option<&'a str>,
 }
 
-/// What stands at the right over a pane.
+/// Note at the right above a pane.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PaneNote {
     /// "J 13.4 → 0.3".
@@ -112,25 +113,27 @@ pub struct PaneNote {
     pub warns: bool,
 }
 
-/// Frequencies above the band, where the corrected model is not valid but pays for its leads.
+/// Frequencies above the band, where the corrected model is invalid and shows the price of its
+/// leads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InvalidRegion {
-    /// Where it ends: as far as curves are drawn \[rad/s\].
+    /// End of the region, which is the end of the curves \[rad/s\].
     pub up_to: f64,
     /// "not valid above 12 rad/s".
     pub words: String,
-    /// Magnitudes of the corrected model with leads and without at its end \[dB\].
+    /// Magnitudes of the corrected model with and without leads at its end \[dB\].
     pub ends_db: Option<[f64; 2]>,
 }
 
 impl<'a> BodeScene<'a> {
-    /// "+19.4 dB": how far the leads raise the magnitude where the curves end.
+    /// Returns "+19.4 dB": the increase of the magnitude by the leads at the end of the curves.
     fn price_words(&self) -> Option<String> {
         let [with, without] = self.invalid?.ends_db?;
         Some(format!("{} dB", signed(with - without, 1)))
     }
 
-    /// Responses of a pair in decibels, degrees and rad/s, and nothing else.
+    /// Creates a scene with the responses of a pair in decibels, degrees and rad/s, and nothing
+    /// else.
     pub fn of(pair_title: &'a str, curves: &'a [BodeCurve], band: (f64, f64)) -> Self {
         Self {
             pair_title,
@@ -141,39 +144,36 @@ impl<'a> BodeScene<'a> {
     }
 }
 
-/// What the engineer did in a Bode plot.
+/// Event in a Bode plot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BodeEvent {
-    /// The pointer came to mean another curve, or none.
+    /// Another curve, or none, is under the pointer.
     Hovered(Option<CurveId>),
-    /// A curve was clicked.
     Clicked(CurveId),
-    /// The last click was the first of a double click: it is to be as if it had not been.
+    /// The last click began a double click: its effect is to be undone.
     TakenBack(CurveId),
-    /// A curve was clicked with Alt held.
+    /// A curve was clicked with Alt pressed.
     Isolated(CurveId),
     /// The band is being dragged to these ends \[rad/s\].
     BandDragged {
-        /// Lower end.
         min: f64,
-        /// Upper end.
         max: f64,
     },
-    /// The band was let go after dragging.
+    /// The band was released after dragging.
     BandReleased,
-    /// Curves are to be shown in another way, or frequencies to be marked.
+    /// Another display of curves, or marks at frequencies, were requested.
     Display(CurveCommand),
-    /// The model of a curve is to be rejected, for a reason.
+    /// Rejection of a curve's model was requested, with a reason.
     RejectedBecause(CurveId, String),
-    /// Something was chosen from a curve's menu.
+    /// An entry of a curve's menu was chosen.
     Wished(CurveId, CurveWish),
     /// A box was drawn over these curves.
     Boxed(Vec<CurveId>),
-    /// A chip was clicked, by its index.
+    /// A chip was clicked; the argument is its index.
     ChipClicked(usize),
 }
 
-/// Draws a Bode plot into the space that is left in `ui`.
+/// Draws a Bode plot into the remaining space of `ui`.
 pub fn bode_ui(
     ui: &mut Ui,
     scene: &BodeScene<'_>,
@@ -207,7 +207,7 @@ pub fn bode_ui(
             .collect();
         visible.curves = &drawn;
     }
-    // While an end of the band is dragged, nothing moves under the pointer.
+    // While an end of the band is dragged, the view must not move under the pointer.
     if scene.omega_range.is_none() && !ui.input(|input| input.pointer.any_down()) {
         view.follow_curves(scene.curves);
     }
@@ -240,7 +240,8 @@ pub fn bode_ui(
     events
 }
 
-/// The switches of all curves, hidden ones too, and what holds for the plot; gives the height that they take.
+/// Draws the switches of all curves, including hidden curves, and the current restrictions of the
+/// plot; returns their height.
 fn chips_ui(
     ui: &Ui,
     rect: Rect,
@@ -281,7 +282,7 @@ fn has_data(curves: &[BodeCurve]) -> bool {
     curves.iter().any(is_finite)
 }
 
-/// Draws both panes and does what is asked in them; gives whether one of them has the focus.
+/// Draws both panes and handles their interaction; returns whether one of them has the focus.
 fn panes_ui(
     ui: &mut Ui,
     places: &Places,
@@ -330,7 +331,7 @@ fn panes_ui(
     has_focus
 }
 
-/// A secondary click asks what can be done with the curve there, or with the ground.
+/// Opens the menu of the curve, or of the empty ground, on a secondary click.
 fn ask_for_menu(
     response: &Response,
     scene: &BodeScene<'_>,
@@ -349,7 +350,7 @@ fn ask_for_menu(
     }
 }
 
-/// Where headings, panes and the read-out go.
+/// Places of headings, panes and the read-out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Places {
     headings: [Rect; 2],
@@ -367,7 +368,7 @@ impl Places {
             foot.with_min_x(inner.left() + VALUE_AXIS_WIDTH)
         });
         let inner = coherence.map_or(inner, |strip| inner.with_max_y(strip.top() - GAP));
-        // Its room is kept while there is nothing to read out: nothing moves when the pointer comes.
+        // The strip keeps its room without values, so that nothing moves when the pointer arrives.
         let has_strip = scene.readout.is_some() && inner.height() >= LEAST_WITH_STRIP;
         let between = if has_strip {
             STRIP_HEIGHT + 2.0 * GAP
@@ -396,7 +397,7 @@ impl Places {
     }
 }
 
-/// Where the pointer is in the plots, as they were drawn in the last frame.
+/// Pointer position in the plots as drawn in the last frame.
 #[derive(Clone, Copy, Debug)]
 struct Pointing {
     log_omega: f64,
@@ -413,7 +414,7 @@ impl Pointing {
                 .transform(pane)
                 .filter(|transform| is_inside(*transform.frame()))?;
             let log_omega = transform.value_from_position(pointer).x;
-            // While something is dragged, curves passing under the pointer are not meant.
+            // During dragging, curves that pass under the pointer are ignored.
             let hit = if is_dragging {
                 None
             } else {
@@ -424,11 +425,11 @@ impl Pointing {
     }
 }
 
-/// So near to a line that curves are read against, the pointer is on it, whatever runs below \[pt\].
+/// Distance from a reference line within which the pointer is on it, whatever lies below \[pt\].
 const ON_RULE: f32 = 1.0;
 
-/// The curve that the pointer means: the nearest one, unless a line that curves are read against, which is drawn over them, is as near
-/// or has the pointer on it.
+/// Returns the curve under the pointer: the nearest curve, unless a reference line, which is drawn
+/// on top, is as near or has the pointer on it.
 fn meant(
     scene: &BodeScene<'_>,
     pane: Pane,
@@ -445,7 +446,7 @@ fn takes_clicks(scene: &BodeScene<'_>, hit: Hit) -> bool {
     scene.reference != Some(&scene.curves[hit.curve].id)
 }
 
-/// The panes, from above.
+/// Panes, from top to bottom.
 pub(crate) const PANES: [Pane; 2] = [Pane::Magnitude, Pane::Phase];
 
 fn set_hovered(view: &mut BodeView, hovered: Option<CurveId>, events: &mut Vec<BodeEvent>) {
@@ -455,8 +456,9 @@ fn set_hovered(view: &mut BodeView, hovered: Option<CurveId>, events: &mut Vec<B
     }
 }
 
-/// A click means the nearest curve, and nothing where that is the reference. The second of a double click takes the first one back
-/// where that meant a curve, and fits the plot on empty ground.
+/// Handles a click: it means the nearest curve, and nothing if this is the reference. The second
+/// click of a double click undoes the first if that was on a curve, and fits the plot on empty
+/// ground.
 fn click(
     pane: Pane,
     scene: &BodeScene<'_>,
@@ -492,8 +494,8 @@ fn click(
     }
 }
 
-/// What stands around the panes: what each shows, what the correction did there, the values at the cursor, the names of the heavy
-/// curves at their ends, and whether newer curves are on their way.
+/// Draws the texts around the panes: their contents, the effect of the correction, the values at
+/// the cursor, the names at the ends of the heavy curves, and whether newer curves are expected.
 fn headings_ui(
     ui: &Ui,
     places: &Places,
@@ -516,7 +518,7 @@ fn headings_ui(
             };
             let verdict = row_text(ui, line, -0.01, &note.verdict, BODY_SIZE, color);
             let mut rest = line.with_max_x(verdict.left() - 12.0);
-            // Beside the bracket where there is a margin, else here.
+            // Beside the bracket if there is a margin, otherwise here.
             if let Some(price) = scene
                 .price_words()
                 .filter(|_| pane == Pane::Magnitude && !scene.names_curves)
@@ -563,7 +565,8 @@ fn headings_ui(
     }
 }
 
-/// Coherence of the measured responses over the frequencies of the panes, with the least that counts.
+/// Draws the coherence of the measured responses over the frequencies of the panes, with the least
+/// coherence that counts.
 fn coherence_ui(
     ui: &Ui,
     strip: Rect,
@@ -635,7 +638,7 @@ fn coherence_ui(
         .on_hover_text("γ² of the measured responses; below the dashed line a frequency does not count, or is a guess");
 }
 
-/// The roles that are named where they end.
+/// Roles named at the ends of their curves.
 const NAMED: [Role; 5] = [
     Role::IdentifiedRepresentative,
     Role::Corrected,
@@ -646,7 +649,7 @@ const NAMED: [Role; 5] = [
 /// Least distance between two names \[pt\].
 const NAME_GAP: f32 = 14.0;
 
-/// Space at the right \[pt\].
+/// Returns the width of the right margin \[pt\].
 fn margin(scene: &BodeScene<'_>) -> f32 {
     match (scene.rules.is_empty(), scene.names_curves) {
         (false, _) => MARGINS[2],
@@ -655,7 +658,7 @@ fn margin(scene: &BodeScene<'_>) -> f32 {
     }
 }
 
-/// The names of the heavy curves at their ends, and of the lines that curves are read against.
+/// Draws the names of the heavy curves at their ends, and of the reference lines.
 fn names_ui(ui: &Ui, pane: Pane, scene: &BodeScene<'_>, view: &BodeView, palette: &Palette) {
     let Some(transform) = view.transform(pane) else {
         return;
@@ -701,7 +704,7 @@ fn names_ui(ui: &Ui, pane: Pane, scene: &BodeScene<'_>, view: &BodeView, palette
     }
 }
 
-/// Moves places down until no two are closer than a name is high, then up again where they leave the plot.
+/// Shifts labels down until they no longer overlap, then up again if they leave the plot.
 fn spread<T, U>(ends: &mut [(f32, T, U)], bottom: f32) {
     for index in 1..ends.len() {
         ends[index].0 = ends[index].0.max(ends[index - 1].0 + NAME_GAP);

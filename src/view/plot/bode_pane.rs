@@ -1,4 +1,4 @@
-//! One of the two stacked plots: axes, band, curves, labelled lines across and cursor.
+//! Pane of a Bode plot: axes, band, curves, labelled reference lines and cursor.
 
 use egui::{
     Align2, Color32, Context, CursorIcon, FontId, Id, PointerButton, Rect, Response, Sense, Shape,
@@ -24,23 +24,23 @@ use super::navigation::{Turn, distance_to, drawn_box_ui, plot_keys, turned};
 use crate::view::controls::elided;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
-/// Width of the vertical axes \[pt\]: the same above and below, so that the frequencies stand under one another.
+/// Width of the vertical axes \[pt\], equal in both panes so that the frequencies align.
 pub(super) const VALUE_AXIS_WIDTH: f32 = 40.0;
-/// How far from a curve its drawn line may be \[pt\].
+/// Greatest distance of a drawn line from its curve \[pt\].
 const TOLERANCE: f64 = 0.1;
 
-/// What is left of the strength of curves that are being computed anew.
+/// Opacity of curves that are being recomputed.
 const STALE: f32 = 0.5;
 
-/// What the panes draw beside the scene's own.
+/// Transient elements of the panes in addition to the scene.
 pub(super) struct Emphasis {
-    /// The curve that the pointer means.
+    /// Curve under the pointer.
     pub(super) curve: Option<CurveId>,
-    /// The `log10 omega` under the pointer, in whichever pane it is.
+    /// `log10 omega` under the pointer, in either pane.
     pub(super) cursor: Option<f64>,
 }
 
-/// Draws a pane into `rect`, and pans and zooms it as the pointer says.
+/// Draws a pane into `rect`, and pans and zooms it with the pointer.
 pub(super) fn pane_ui(
     ui: &mut Ui,
     (pane, rect): (Pane, Rect),
@@ -110,7 +110,8 @@ pub(super) fn pane_ui(
     shown.response
 }
 
-/// The primary button pans, with Shift it draws a box over curves; the secondary one draws a box to zoom into.
+/// Handles dragging: the primary button pans, with Shift it draws a box over curves; the secondary
+/// button draws a box to zoom into.
 fn drag(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView, palette: &Palette) {
     let Some(frame) = view.transform(pane).map(|transform| *transform.frame()) else {
         return;
@@ -140,7 +141,7 @@ fn pane_plot<'a>(
 ) -> egui_plot::Plot<'a> {
     let unit = scene.unit;
     let frequencies = Ticks::Frequency(unit);
-    // One axis of frequencies, below both panes.
+    // A single frequency axis, below both panes.
     let below = match pane {
         Pane::Magnitude => Vec::new(),
         Pane::Phase => vec![axis_hints(Axis::X, "", TICKS_HEIGHT, palette, frequencies)],
@@ -172,9 +173,9 @@ fn band_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palette) 
     );
 }
 
-/// Hatches the frequencies where the model is not valid.
+/// Hatches the frequencies at which the model is invalid.
 fn hatch(plot: &mut PlotUi<'_>, scene: &BodeScene<'_>, palette: &Palette) {
-    /// Between two lines \[pt\].
+    /// Distance between two lines \[pt\].
     const STEP: f32 = 7.0;
     if scene.invalid.is_none() {
         return;
@@ -193,7 +194,7 @@ fn hatch(plot: &mut PlotUi<'_>, scene: &BodeScene<'_>, palette: &Palette) {
             return;
         }
         for line in 1..=((width + height) / STEP) as usize {
-            // A line of 45 degrees down to the left, cut off where it leaves the region.
+            // A line descending to the left at 45 degrees, clipped to the region.
             let along = line as f32 * STEP;
             let top = along.min(width);
             let foot = (along - height).max(0.0);
@@ -203,7 +204,8 @@ fn hatch(plot: &mut PlotUi<'_>, scene: &BodeScene<'_>, palette: &Palette) {
     }));
 }
 
-/// A strip over the upper edge that says above which frequency nothing is valid, and how far the leads raise what is drawn.
+/// Draws a strip over the upper edge with the frequency above which the model is invalid, and the
+/// increase of the magnitude by the leads.
 fn invalid_strip_ui(
     ui: &Ui,
     (top, invalid): (f64, &InvalidRegion),
@@ -248,7 +250,7 @@ fn invalid_strip_ui(
     }
 }
 
-/// Dims what lies outside the band: it is drawn, but does not count.
+/// Dims the frequencies outside the band: these are drawn but do not count.
 fn outside_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palette) {
     let veil = palette.background.gamma_multiply(0.4);
     for range in [f64::NEG_INFINITY..=min.log10(), max.log10()..=f64::INFINITY] {
@@ -256,8 +258,8 @@ fn outside_shade(plot: &mut PlotUi<'_>, (min, max): (f64, f64), palette: &Palett
     }
 }
 
-/// Draws the curves, what matters most on top. Where very many lie at the bottom, those are one image, and lines once more
-/// while the pointer means them.
+/// Draws the curves, the most important on top. If a great many are at the bottom, these are drawn
+/// as an image, and the curve under the pointer again as lines.
 fn draw_curves<'a>(
     plot: &mut PlotUi<'a>,
     scene: &BodeScene<'_>,
@@ -297,7 +299,7 @@ fn draw_curves<'a>(
     }
 }
 
-/// The image of the curves at the bottom, if there are very many and they stand still.
+/// Returns the image of the curves at the bottom, if there are a great many and they are static.
 fn image_of_many(
     ctx: &Context,
     scene: &BodeScene<'_>,
@@ -334,7 +336,7 @@ fn image_of_many(
     })
 }
 
-/// Whether a curve is one of many that only say how far their bundle reaches.
+/// Returns whether a curve is one of many that only show the spread of their bundle.
 fn lies_at_the_bottom(curve: &BodeCurve) -> bool {
     curve.role.layer(curve.rejected) <= Role::Perturbed.layer(false)
 }
@@ -363,7 +365,7 @@ fn draw_cursors<'a>(
     }
 }
 
-/// The wheel zooms about the pointer, and so do two fingers; the sideways wheel only along the frequency axis.
+/// The wheel and pinching zoom about the pointer; the sideways wheel zooms only the frequency axis.
 fn zoom_by_scrolling(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView) {
     if let Some((Turn { both, sideways }, pointer)) = turned(ui.ctx(), response) {
         view.zoom(
@@ -376,9 +378,9 @@ fn zoom_by_scrolling(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeVi
     }
 }
 
-/// Half the width of the strip that takes hold of an end \[pt\].
+/// Half-width of the strip that grabs an end \[pt\].
 const GRAB_RADIUS: f32 = 4.0;
-/// Least ratio of the ends: a band is never empty.
+/// Least ratio of the ends, so that the band is never empty.
 const LEAST_RATIO: f64 = 1.05;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -402,7 +404,7 @@ impl End {
         }
     }
 
-    /// The band with this end at `omega`, as far as the other end lets it.
+    /// Returns the band with this end at `omega`, limited by the other end.
     fn moved(self, band: (f64, f64), omega: f64) -> (f64, f64) {
         match self {
             Self::Lower => (omega.min(band.1 / LEAST_RATIO), band.1),
@@ -411,7 +413,7 @@ impl End {
     }
 }
 
-/// Draws both ends of the band over a pane and lets them be dragged.
+/// Draws both ends of the band over a pane and makes them draggable.
 pub(super) fn band_handles_ui(
     ui: &Ui,
     pane: Pane,
@@ -481,7 +483,7 @@ fn paint(
     }
     let text = unit.readout(end.of(band));
     let galley = painter.layout_no_wrap(text, caption_font(), palette.text);
-    // In the line over the plot: not over its curves.
+    // In the line above the plot, where it does not cover the curves.
     let size = galley.size() + vec2(10.0, 2.0);
     let left = (x - 0.5 * size.x).clamp(frame.left(), (frame.right() - size.x).max(frame.left()));
     let place = Rect::from_min_size(pos2(left, frame.top() - size.y - 2.0), size);
@@ -496,7 +498,7 @@ fn paint(
     painter.galley(place.min + vec2(5.0, 1.0), galley, palette.text);
 }
 
-/// Draws the rules of a pane into the plot that was drawn as `transform` says.
+/// Draws the rules of a pane into a plot with this `transform`.
 pub(super) fn rules_ui(
     ui: &Ui,
     rules: &[ReferenceLine],
@@ -514,7 +516,8 @@ pub(super) fn rules_ui(
     painter.extend(shapes);
 }
 
-/// How far the nearest rule of a pane is from `pointer` \[pt\]; none where none comes near.
+/// Returns the distance of the nearest rule of a pane from `pointer` \[pt\]; `None` if none is
+/// near.
 pub(super) fn distance_to_rules(
     rules: &[ReferenceLine],
     pane: Pane,
@@ -533,7 +536,8 @@ pub(super) fn distance_to_rules(
     least
 }
 
-/// The labels of the rules of a pane, each at the height where its line leaves the plot, what is said besides below it.
+/// Returns the labels of the rules of a pane, each at the height where its line leaves the plot,
+/// with any further text below.
 pub(super) fn rule_ends(
     rules: &[ReferenceLine],
     pane: Pane,
@@ -558,7 +562,7 @@ pub(super) fn rule_ends(
 fn path(level: &Level, transform: &PlotTransform) -> Vec<egui::Pos2> {
     let points = level.points(transform.bounds().min()[0], transform.bounds().max()[0]);
     let position = |[x, y]: [f64; 2]| transform.position_from_point(&PlotPoint::new(x, y));
-    // Far outside the frame a line is not drawn; so long a way in dashes would take its time.
+    // Lines far outside the frame are skipped, because their many dashes would take time.
     let frame = transform.frame();
     let is_near = |at: &egui::Pos2| (at.y - frame.center().y).abs() < 2.0 * frame.height();
     points.into_iter().map(position).filter(is_near).collect()
@@ -589,8 +593,8 @@ pub(super) fn strips_ui(
 /// Height of a strip along the lower edge \[pt\].
 const STRIP_HEIGHT: f32 = 5.0;
 
-/// Draws what is in `view` of the band in a pane, stretch by stretch: where a value is not finite, or a wrapped phase jumps, it has
-/// a gap.
+/// Draws the visible part of a band in a pane, in segments: non-finite values and jumps of a
+/// wrapped phase leave a gap.
 pub(super) fn draw_band(
     plot: &mut PlotUi<'_>,
     band: &BodeBand,
@@ -622,7 +626,8 @@ pub(super) fn draw_band(
     }
 }
 
-/// Whether something of the band between two points, each a place with its lower and its upper value, is in view.
+/// Returns whether part of the band between two points, each a place with its lower and upper
+/// value, is visible.
 fn is_in_view(from: &[f64; 3], to: &[f64; 3], view: &PlotBounds) -> bool {
     let [min_x, min_y] = view.min();
     let [max_x, max_y] = view.max();

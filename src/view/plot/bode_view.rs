@@ -1,4 +1,4 @@
-//! What the Bode plot remembers between frames: the part in view, and where things are on the screen.
+//! State of the Bode plot between frames: visible ranges and screen positions.
 
 use egui::{Pos2, Rect, Vec2};
 use egui_plot::{PlotBounds, PlotPoint, PlotTransform};
@@ -14,50 +14,49 @@ use super::drawn_curves::{BodeCurve, CurveId, DrawnCurves, Pane};
 use super::navigation::ViewedRange;
 use super::quantity::ValueUnit;
 
-/// Decades that can be in view.
+/// Decades that can be visible.
 const DECADES: Range = Range {
     min: 1e-3,
     max: 12.0,
 };
-/// Values of `log10 omega` that can be in view: far inside what a float holds.
+/// Values of `log10 omega` that can be visible, far inside the range of floats.
 const LOG_OMEGA: Range = Range {
     min: -30.0,
     max: 30.0,
 };
-/// Space above and below the curves after fitting, as a part of their height.
+/// Space above and below the curves after fitting, as a share of their height.
 const FIT_MARGIN: f64 = 0.04;
 
-/// What the Bode plot remembers between frames.
+/// State of the Bode plot between frames.
 ///
-/// The view stands still: whatever is computed anew, only what the engineer does moves it. Values that nobody has zoomed into
-/// are fitted once to another response or condition.
+/// Recomputed curves do not move the view; only the engineer does. Value ranges that have not been
+/// zoomed are fitted once to another response or condition.
 #[derive(Clone, Debug)]
 pub struct BodeView {
     log_omega: ViewedRange,
     /// Magnitudes \[dB\] and phases \[deg\].
     values: [ViewedRange; 2],
-    /// The curve under the pointer.
     pub hovered: Option<CurveId>,
-    /// The frequency under the pointer \[rad/s\].
+    /// Frequency under the pointer \[rad/s\].
     pub pointed_omega: Option<f64>,
     pub(super) last_clicked: Option<CurveId>,
-    /// What the menu that is open, or was last, was asked for.
+    /// Subject of the menu that is open or was open last.
     pub(super) menu_subject: Option<MenuSubject>,
     /// Whether a box is being drawn to select curves.
     pub(super) is_selecting: bool,
-    /// The box that was drawn.
+    /// Finished selection box.
     pub(super) selection: Option<(Pane, Rect)>,
-    /// Limits of an axis being typed.
+    /// Open form for the limits of an axis.
     pub(super) limits: Option<LimitsForm>,
     must_fit_frequencies: bool,
     must_fit_values: bool,
-    /// The frequencies of the curves that were last in view, as `log10 omega`.
+    /// Frequency range of the curves when last followed, as `log10 omega`.
     followed: Option<Range>,
-    /// What each pane drew last.
+    /// Last drawing of each pane.
     pub(super) drawn: [DrawnPane; 2],
 }
 
-/// What a pane drew last: where, its lines, and the image of those that stand still.
+/// Last drawing of a pane: its place, its lines, and the image of its static lines.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnPane {
     pub(super) transform: Option<PlotTransform>,
@@ -65,7 +64,7 @@ pub(super) struct DrawnPane {
     pub(super) image: CachedRaster,
 }
 
-/// From the first to the last frequency of all curves, as `log10 omega`.
+/// Returns the range from the first to the last frequency of all curves, as `log10 omega`.
 fn log_omega_of(curves: &[BodeCurve]) -> Option<Range> {
     Range::of(
         curves
@@ -120,7 +119,7 @@ impl Default for BodeView {
 }
 
 impl BodeView {
-    /// Shows all of the data at the next frame, whatever the engineer has zoomed into.
+    /// Fits all axes to the data at the next frame, including zoomed axes.
     pub fn request_fit(&mut self) {
         self.log_omega.release();
         self.values.iter_mut().for_each(ViewedRange::release);
@@ -128,18 +127,20 @@ impl BodeView {
         self.must_fit_values = true;
     }
 
-    /// Shows all values of other curves at the next frame, on the axes that the engineer has not zoomed; the frequencies stay.
+    /// Fits the values of other curves at the next frame, on axes that have not been zoomed; the
+    /// frequencies stay.
     pub fn request_refit(&mut self) {
         self.must_fit_values = true;
     }
 
-    /// Shows all values of a pane at the next frame: they are in another unit.
+    /// Fits the values of a pane at the next frame, because their unit changes.
     pub fn release_values(&mut self, pane: Pane) {
         self.values[pane as usize].release();
         self.must_fit_values = true;
     }
 
-    /// Shows all frequencies again where the curves came to have others, unless the engineer chose what is in view.
+    /// Fits the frequencies if those of the curves have changed, unless the engineer chose the
+    /// range.
     pub(super) fn follow_curves(&mut self, curves: &[BodeCurve]) {
         let ends = log_omega_of(curves);
         if ends.is_some() && ends != self.followed {
@@ -151,54 +152,54 @@ impl BodeView {
         }
     }
 
-    /// Shows the frequencies that another plot shows.
+    /// Adopts the frequency range of another plot.
     pub fn share_frequencies(&mut self, other: &Self) {
         self.log_omega = other.log_omega;
         self.must_fit_frequencies = other.must_fit_frequencies;
     }
 
-    /// The frequencies in view \[rad/s\].
+    /// Returns the visible frequencies \[rad/s\].
     pub fn omega_range(&self) -> (f64, f64) {
         let Range { min, max } = self.log_omega.range();
         (10f64.powf(min), 10f64.powf(max))
     }
 
-    /// The frequencies in view \[rad/s\], where the engineer chose them.
+    /// Returns the visible frequencies \[rad/s\] if the engineer chose them.
     pub fn chosen_omega(&self) -> Option<Range> {
         let (min, max) = self.omega_range();
         self.log_omega.is_chosen().then_some(Range { min, max })
     }
 
-    /// The part of a pane's vertical axis in view, where the engineer chose it.
+    /// Returns the visible range of a pane's vertical axis if the engineer chose it.
     pub fn chosen_values(&self, pane: Pane) -> Option<Range> {
         let viewed = &self.values[pane as usize];
         viewed.is_chosen().then(|| viewed.range())
     }
 
-    /// The part of a pane's vertical axis that is in view.
+    /// Returns the visible range of a pane's vertical axis.
     pub fn value_range(&self, pane: Pane) -> Range {
         self.values[pane as usize].range()
     }
 
-    /// Where a pane was drawn last: x is `log10 omega`, y is in dB or in degrees.
+    /// Returns the last transform of a pane: x is `log10 omega`, y is in dB or in degrees.
     pub fn transform(&self, pane: Pane) -> Option<&PlotTransform> {
         self.drawn[pane as usize].transform.as_ref()
     }
 
-    /// Where `value` at `omega` \[rad/s\] is on the screen.
+    /// Returns the screen position of `value` at `omega` \[rad/s\].
     pub fn screen_position(&self, pane: Pane, omega: f64, value: f64) -> Option<Pos2> {
         let transform = self.transform(pane)?;
         Some(transform.position_from_point(&PlotPoint::new(omega.log10(), value)))
     }
 
-    /// The part in view of a pane as egui_plot wants it.
+    /// Returns the visible range of a pane as egui_plot bounds.
     pub(super) fn bounds(&self, pane: Pane) -> PlotBounds {
         let frequencies = self.log_omega.range();
         let values = self.value_range(pane);
         PlotBounds::from_min_max([frequencies.min, values.min], [frequencies.max, values.max])
     }
 
-    /// Moves what a pane shows by so much on the screen.
+    /// Pans a pane by a distance on the screen.
     pub(super) fn pan(&mut self, pane: Pane, by: Vec2) {
         let Some(transform) = self.transform(pane) else {
             return;
@@ -210,7 +211,7 @@ impl BodeView {
         self.values[pane as usize].choose(values);
     }
 
-    /// Looks `factor` times closer at a pane, with the point under `pointer` staying where it is.
+    /// Magnifies a pane by `factor`, with the point under `pointer` fixed.
     pub(super) fn zoom(
         &mut self,
         pane: Pane,
@@ -226,7 +227,7 @@ impl BodeView {
         self.values[pane as usize].zoom(value_factor, fixed.y);
     }
 
-    /// What is in view of an axis, and what can be.
+    /// Returns the visible range of an axis with its limits.
     pub(super) fn axis_mut(&mut self, axis: PlotAxis) -> &mut ViewedRange {
         match axis {
             PlotAxis::Frequency => &mut self.log_omega,
@@ -234,7 +235,7 @@ impl BodeView {
         }
     }
 
-    /// Shows all of the curves on one axis at the next frame.
+    /// Fits an axis to all of the curves at the next frame.
     pub(super) fn fit_axis(&mut self, axis: PlotAxis) {
         self.axis_mut(axis).release();
         match axis {
@@ -243,7 +244,7 @@ impl BodeView {
         }
     }
 
-    /// Shows what lies in `area` of the screen.
+    /// Zooms into an `area` of the screen.
     pub(super) fn zoom_to(&mut self, pane: Pane, area: Rect) {
         let Some(transform) = self.transform(pane) else {
             return;
@@ -254,7 +255,8 @@ impl BodeView {
         self.values[pane as usize].choose(Range::new(a.y, b.y));
     }
 
-    /// Shows all curves of `scene`, rejected ones included, where that was asked for. Without data the request stays.
+    /// Fits all curves of `scene`, including rejected ones, if requested. Without data the request
+    /// stays pending.
     pub(super) fn fit_if_requested(&mut self, scene: &BodeScene<'_>) {
         let ends = scene
             .omega_range

@@ -1,4 +1,4 @@
-//! Many curves that stand still, as one image.
+//! Cached raster image of many static curves.
 
 use egui::{
     Color32, ColorImage, Context, Pos2, Rect, Shape, Stroke, TextureHandle, TextureOptions, pos2,
@@ -9,24 +9,24 @@ use vello_cpu::{Pixmap, RenderContext, RenderSettings, Resources};
 
 use super::curve_style::CurveStyle;
 
-/// From so many curves on an image is worth its memory: filling their lines takes longer than everything else in a frame.
+/// Number of curves from which an image is worth its memory: filling their lines takes longer than
+/// everything else in a frame.
 pub(super) const MANY: usize = 200;
-/// How far a drawn circle may be from a true one \[pt\].
+/// Greatest distance of a drawn circle from a true circle \[pt\].
 const TOLERANCE: f64 = 0.05;
 
-/// What an image shows: as long as it stays the same, so does the image.
+/// Content of an image, which is valid as long as this stays the same.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct StillScene {
-    /// Where the curves are on the screen \[pt\].
+    /// Place of the curves on the screen \[pt\].
     pub(super) frame: Rect,
-    /// Pixels to a point.
     pub(super) pixels_per_point: f32,
-    /// The points of each curve, by the number under which they were made, and its look; from bottom to top.
+    /// Serial number of each curve's points, and its style; from bottom to top.
     pub(super) curves: Vec<(u64, CurveStyle)>,
 }
 
-/// Many curves that stand still, as one image. Without a graphics processor a frame of a thousand curves is bound by the
-/// filling of their lines, though from one position of the pointer to the next none of them moves.
+/// Cached image of many static curves. Without a graphics processor, filling the lines of a
+/// thousand curves dominates the time of a frame, although none of them moves with the pointer.
 ///
 /// ```text
 /// the scene is another than in the frame before:  lines are drawn; no image
@@ -49,7 +49,8 @@ impl std::fmt::Debug for CachedRaster {
 }
 
 impl CachedRaster {
-    /// The image of `scene`, if it has stood still since the last frame; `shapes` says what is in it.
+    /// Returns the image of `scene` if it has not changed since the last frame; `shapes` returns
+    /// its content.
     pub(super) fn of(
         &mut self,
         ctx: &Context,
@@ -61,7 +62,7 @@ impl CachedRaster {
                 scene: Some(scene),
                 image: None,
             };
-            // Whatever moves is drawn as lines; the frame after it tells whether it has come to rest.
+            // A changing scene is drawn as lines; the next frame shows whether it has come to rest.
             ctx.request_repaint();
             return None;
         }
@@ -85,7 +86,7 @@ impl CachedRaster {
     }
 }
 
-/// The least rectangle of whole pixels around `frame`, and its width and height in pixels.
+/// Returns the least rectangle of whole pixels around `frame`, with its width and height in pixels.
 fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<(Rect, [u16; 2])> {
     let min = (frame.min * pixels_per_point).floor();
     let max = (frame.max * pixels_per_point).ceil();
@@ -101,7 +102,7 @@ fn whole_pixels(frame: Rect, pixels_per_point: f32) -> Option<(Rect, [u16; 2])> 
     ))
 }
 
-/// The shapes on a transparent ground, where `origin` \[pt\] is the upper left corner.
+/// Fills the shapes on a transparent ground with its upper left corner at `origin` \[pt\].
 fn filled(
     shapes: &[Shape],
     (origin, pixels_per_point): (Pos2, f32),
@@ -128,7 +129,7 @@ fn filled(
     )
 }
 
-/// What lines are made of: strokes, and discs for dots.
+/// Fills a shape of a line: strokes, and discs for dots.
 fn fill(context: &mut RenderContext, shape: &Shape) {
     match shape {
         Shape::Vec(shapes) => shapes.iter().for_each(|shape| fill(context, shape)),
@@ -170,14 +171,15 @@ fn take_color(context: &mut RenderContext, color: Color32) {
     context.set_paint(AlphaColor::from_rgba8(red, green, blue, alpha));
 }
 
-/// An image on whole pixels. (A `PlotImage` lies below every other item, bands too, and has its size in the plot's coordinates.)
+/// Image on whole pixels. (A `PlotImage` lies below every other item, including bands, and has its
+/// size in the plot's coordinates.)
 pub(super) struct StillImage {
     texture: TextureHandle,
     area: Rect,
 }
 
 impl StillImage {
-    /// The image with so much of its strength.
+    /// Returns the image with reduced opacity.
     pub(super) fn shape(&self, strength: f32) -> Shape {
         let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         Shape::image(
@@ -212,7 +214,7 @@ mod tests {
         }
     }
 
-    /// Where the image is drawn.
+    /// Returns the rectangle into which the image is drawn.
     fn image(still: &mut CachedRaster, ctx: &Context, scene: StillScene) -> Option<Rect> {
         still.of(ctx, scene, Vec::new).map(|item| item.area)
     }
@@ -259,7 +261,7 @@ mod tests {
             Shape::circle_filled(pos2(40.0, 40.0), 3.0, Color32::BLUE),
         ];
         let image = filled(&shapes, (pos2(10.0, 20.0), 2.0), [100, 60]);
-        // One rounding of a premultiplied colour either way.
+        // Rounding of a premultiplied colour in either direction.
         let near = |[x, y]: [usize; 2], color: Color32| {
             image[(x, y)]
                 .to_array()

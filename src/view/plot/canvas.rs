@@ -1,5 +1,5 @@
-//! The screen as a canvas for what figures are drawn of on paper: the same shapes, larger, in the colours of the theme; and what the marks of a
-//! figure stand for, in one line above its plots.
+//! Screen canvas for the shapes of printed figures, enlarged and in the colours of the theme; and
+//! the legend line above the plots of a figure.
 
 use egui::epaint::TextShape;
 use egui::{FontId, Mesh, Painter, Pos2, Rect, Sense, Shape, Stroke, Ui, pos2, vec2};
@@ -11,22 +11,20 @@ use gdcm_plot::figure::role::Sample;
 
 use crate::view::palette::Palette;
 
-/// Points of the screen to one of paper: lines are printed as much finer.
+/// Screen points per paper point: printed lines are finer by this factor.
 pub(super) const SCALE: f32 = 1.8;
-/// Size of letters, in points of paper.
+/// Font size, in points of paper.
 pub(super) const LETTERS_PT: f64 = 10.5 / SCALE as f64;
 
-/// A part of the screen that shapes are drawn on.
+/// Part of the screen on which shapes are drawn.
 pub(super) struct Canvas<'a> {
-    /// What draws them.
     pub(super) painter: &'a Painter,
-    /// Where their origin is.
+    /// Screen position of the origin.
     pub(super) origin: Pos2,
-    /// The colours of the theme.
     pub(super) palette: &'a Palette,
 }
 
-/// A rectangle of the screen as an area of paper whose origin is its corner.
+/// Converts a rectangle of the screen to an area of paper with its origin at the corner.
 pub(super) fn area(rect: Rect) -> Area {
     Area::new(
         0.0,
@@ -37,18 +35,18 @@ pub(super) fn area(rect: Rect) -> Area {
 }
 
 impl Canvas<'_> {
-    /// Where a place on paper is.
+    /// Converts a place on paper to the screen.
     pub(super) fn at(&self, [x, y]: [f64; 2]) -> Pos2 {
         self.origin + SCALE * vec2(x as f32, y as f32)
     }
 
-    /// The place on paper of one on the screen.
+    /// Converts a screen position to paper.
     pub(super) fn from(&self, at: Pos2) -> [f64; 2] {
         let offset = (at - self.origin) / SCALE;
         [offset.x.into(), offset.y.into()]
     }
 
-    /// Draws shapes, the later ones over the earlier.
+    /// Draws shapes, later shapes over earlier ones.
     pub(super) fn paint(&self, shapes: &[Drawn]) {
         for shape in shapes {
             match shape {
@@ -66,7 +64,8 @@ impl Canvas<'_> {
                         (Some(color), stroke) if *closed => {
                             let stroke = stroke.map_or(Stroke::NONE, |line| self.stroke(line));
                             let bounds = Rect::from_points(&points);
-                            // An outline that comes back on itself has no direction at its ends: it is the line that it looks like.
+                            // A closed outline without area has no direction at its ends: it is
+                            // drawn as the line it looks like.
                             match bounds.is_positive() {
                                 true => self.painter.add(Shape::convex_polygon(
                                     points,
@@ -127,7 +126,8 @@ impl Canvas<'_> {
         self.painter.extend(shapes);
     }
 
-    /// Fills the area between two lines over the same places, the second of which comes back from the end of the first.
+    /// Fills the area between two lines over the same places; the second returns from the end of
+    /// the first.
     fn fill_between(&self, outline: &[Pos2], color: egui::Color32) {
         let mut mesh = Mesh::default();
         for (place, (lower, upper)) in outline
@@ -184,7 +184,7 @@ impl Canvas<'_> {
 /// Size of a sample \[pt\].
 const SAMPLE: egui::Vec2 = vec2(18.0, 14.0);
 
-/// A sample and a name for each key among the marks of a figure, as the legend on paper has them.
+/// Draws a sample and a name for each key among the marks of a figure, as in the printed legend.
 pub fn figure_legend_ui(ui: &mut Ui, figure: &Figure, palette: &Palette) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(4.0, 0.0);

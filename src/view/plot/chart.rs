@@ -1,4 +1,4 @@
-//! A plain plot: lines, bands and marks with error bars over a linear or a logarithmic axis.
+//! Simple plot: lines, bands and marks with error bars over a linear or logarithmic axis.
 
 use std::sync::Arc;
 
@@ -23,25 +23,25 @@ use super::navigation::{Turn, turned};
 use crate::view::palette::Palette;
 
 const TITLE_HEIGHT: f32 = 18.0;
-/// As wide as the longest number: frames of charts below one another stand in line \[pt\].
+/// Width of the longest number, so that the frames of stacked charts align \[pt\].
 const VALUE_AXIS_WIDTH: f32 = 54.0;
 const RIGHT_MARGIN: f32 = 8.0;
 const NOTE_GAP: f32 = 8.0;
-/// Space at either end of the horizontal axis, as a part of it.
+/// Space at either end of the horizontal axis, as a share of its length.
 const EDGE: f64 = 0.01;
 const TICK_GAP: f64 = 50.0;
-/// How far from a line the drawn one may be \[pt\].
+/// Greatest distance of a drawn line from its data \[pt\].
 const TOLERANCE: f64 = 0.1;
-/// No screen is wider \[pixels\].
+/// Upper bound on the width of a screen \[pixels\].
 const MOST_PIXELS: f64 = 10_000.0;
 
-/// What the horizontal axis of a chart is.
+/// Quantity of the horizontal axis of a chart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ChartAxis {
-    /// Values as they are.
+    /// Plain values.
     #[default]
     Linear,
-    /// Angular frequencies \[rad/s\], drawn by their logarithm, read in this unit.
+    /// Angular frequencies \[rad/s\], drawn logarithmically and labelled in this unit.
     Frequency(FrequencyUnit),
 }
 
@@ -54,70 +54,64 @@ impl ChartAxis {
     }
 }
 
-/// A line of a chart.
+/// Line of a chart.
 #[derive(Clone, Debug)]
 pub struct ChartLine {
-    /// Its points, ascending along the horizontal axis; what is out of view or finer than a pixel is not drawn.
+    /// Points, ascending along the horizontal axis; invisible points and details finer than a pixel
+    /// are not drawn.
     pub points: Arc<[[f64; 2]]>,
-    /// Its colour.
     pub color: Color32,
-    /// Its width \[pt\].
+    /// Width \[pt\].
     pub width: f32,
-    /// Whether it is dashed.
     pub dashed: bool,
 }
 
-/// The area between two lines over the same places.
+/// Area between two lines over the same places.
 #[derive(Clone, Debug)]
 pub struct ChartBand {
     /// Places, lower and upper values.
     pub points: Vec<[f64; 3]>,
-    /// Its colour.
     pub color: Color32,
 }
 
-/// Marks of one look.
+/// Marks with the same style.
 #[derive(Clone, Debug)]
 pub struct ChartMarks {
-    /// Places and values, and how far the error bar goes to either side of each value; 0 for none.
+    /// Places, values, and half-lengths of the vertical error bars; 0 for none.
     pub points: Vec<[f64; 3]>,
-    /// How far an error bar goes to either side along the horizontal axis; empty for none.
+    /// Half-lengths of the horizontal error bars; empty for none.
     pub sideways: Vec<f64>,
-    /// Their colour.
     pub color: Color32,
-    /// Whether they are filled.
     pub filled: bool,
-    /// Whether they are crosses, and not circles.
+    /// Whether the marks are crosses instead of circles.
     pub crosses: bool,
 }
 
-/// A stretch of the horizontal axis that is marked.
+/// Marked stretch of the horizontal axis.
 #[derive(Clone, Debug)]
 pub struct ChartSpan {
-    /// Its ends.
     pub ends: [f64; 2],
-    /// Its colour.
     pub color: Color32,
 }
 
-/// What a chart shows.
+/// Content of a chart.
 #[derive(Clone, Debug, Default)]
 pub struct Chart<'a> {
-    /// Its title, which is its name too.
+    /// Title, which is also its accessible name.
     pub title: &'a str,
-    /// Words at the right end of the title's line, and their colours.
+    /// Words at the right end of the title line, with their colours.
     pub notes: Vec<(String, Color32)>,
-    /// What its horizontal axis is.
     pub across: ChartAxis,
-    /// What stands below the horizontal axis; nothing keeps it low.
+    /// Label of the horizontal axis; an empty label keeps the axis low.
     pub across_label: &'a str,
-    /// What stands beside the vertical axis.
+    /// Label of the vertical axis.
     pub value_label: &'a str,
-    /// Whether the values in view fill its height: then only the horizontal axis is zoomed and dragged.
+    /// Whether the visible values fill the height: then only the horizontal axis can be zoomed and
+    /// panned.
     pub fits_values: bool,
-    /// Charts of one group show the same stretch of the horizontal axis.
+    /// Charts of a group share the visible stretch of the horizontal axis.
     pub group: Option<Id>,
-    /// Stretches that are marked.
+    /// Marked stretches.
     pub spans: Vec<ChartSpan>,
     /// Areas, below all lines.
     pub bands: Vec<ChartBand>,
@@ -125,29 +119,29 @@ pub struct Chart<'a> {
     pub lines: Vec<ChartLine>,
     /// Marks, on top of the lines.
     pub marks: Vec<ChartMarks>,
-    /// Vertical lines.
     pub verticals: Vec<f64>,
-    /// A picture below everything else.
+    /// Image below everything else.
     pub image: Option<ChartImage>,
-    /// Whether dragging chooses a stretch of the horizontal axis, which [`chosen_stretch`] gives for the group, in place of panning.
+    /// Whether dragging chooses a stretch of the horizontal axis, returned by [`chosen_stretch`]
+    /// for the group, instead of panning.
     pub chooses: bool,
 }
 
-/// A picture over a stretch of both axes; the vertical one is of frequencies \[rad/s\].
+/// Image over a stretch of both axes; the vertical axis shows frequencies \[rad/s\].
 #[derive(Clone, Copy, Debug)]
 pub struct ChartImage {
-    /// It, the highest frequency on top.
+    /// Texture with the highest frequency at the top.
     pub texture: TextureId,
-    /// The places of its left and right edge.
+    /// Places of the left and right edges.
     pub across: [f64; 2],
-    /// The frequencies of its lower and upper edge \[rad/s\].
+    /// Frequencies of the lower and upper edges \[rad/s\].
     pub omega: [f64; 2],
-    /// In which frequencies are read.
+    /// Display unit of the frequencies.
     pub unit: FrequencyUnit,
 }
 
 impl<'a> Chart<'a> {
-    /// An empty chart.
+    /// Creates an empty chart.
     pub fn new(
         title: &'a str,
         across: ChartAxis,
@@ -164,7 +158,7 @@ impl<'a> Chart<'a> {
     }
 }
 
-/// Draws a chart into `rect`: dragging pans, the wheel zooms, a double click shows all.
+/// Draws a chart into `rect`: dragging pans, the wheel zooms, a double click shows everything.
 pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -> Response {
     let id = ui.make_persistent_id(chart.title);
     let plot_rect = Rect::from_min_max(
@@ -184,7 +178,7 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
     let bounds = shown.inner.transform.bounds();
     let is_whole = shown.inner.inner[0] == f64::NEG_INFINITY;
     if !is_whole && shown.inner.inner != [bounds.min()[0], bounds.max()[0]] {
-        // The lines were drawn for the view of the frame before.
+        // The lines were drawn for the view of the previous frame.
         ui.request_repaint();
     }
     let response = shown.inner.response;
@@ -219,7 +213,7 @@ pub fn chart_ui(ui: &mut Ui, rect: Rect, chart: &Chart<'_>, palette: &Palette) -
     response
 }
 
-/// Where dragging began and where it is, and whether it has ended.
+/// Start and current place of a drag, and whether it has ended.
 type Stretch = ([f64; 2], bool);
 
 fn choose_by_dragging(plot: &PlotUi<'_>, group: Id) {
@@ -228,7 +222,7 @@ fn choose_by_dragging(plot: &PlotUi<'_>, group: Id) {
         return;
     }
     let place = |at: Pos2| plot.plot_from_screen(at).x;
-    // A drag is known as one some points after the button went down.
+    // A drag is only recognised some points after the button was pressed.
     let (from, to) = plot
         .ctx()
         .input(|input| (input.pointer.press_origin(), input.pointer.latest_pos()));
@@ -244,8 +238,8 @@ fn choose_by_dragging(plot: &PlotUi<'_>, group: Id) {
     });
 }
 
-/// The stretch that is being chosen by dragging in a group of charts, its lower end first, and whether that has ended; it is given
-/// once then.
+/// Returns the stretch chosen by dragging in a group of charts, lower end first, and whether the
+/// drag has ended; a finished stretch is returned once.
 pub fn chosen_stretch(ui: &Ui, group: Id) -> Option<([f64; 2], bool)> {
     let id = group.with("stretch");
     let ([from, to], has_ended) = ui.data(|data| data.get_temp::<Stretch>(id))?;
@@ -255,7 +249,7 @@ pub fn chosen_stretch(ui: &Ui, group: Id) -> Option<([f64; 2], bool)> {
     Some(([from.min(to), from.max(to)], has_ended))
 }
 
-/// The wheel zooms about the pointer, and so do two fingers.
+/// The wheel and pinching zoom about the pointer.
 fn zoom_by_scrolling(plot: &mut PlotUi<'_>, chart: &Chart<'_>) {
     let fits_values = chart.fits_values;
     if let Some((turn, pointer)) = turned(plot.ctx(), plot.response()) {
@@ -282,18 +276,18 @@ fn zoom_by_scrolling(plot: &mut PlotUi<'_>, chart: &Chart<'_>) {
             .into_iter()
             .for_each(|range| plot.set_plot_bounds_y(range));
         plot.set_auto_bounds(Vec2b::new(false, fits_values));
-        // What the chart lies in does not scroll by it too.
+        // Keeps the surrounding area from scrolling as well.
         plot.ctx()
             .input_mut(|input| input.smooth_scroll_delta = Vec2::ZERO);
     } else if fits_values && !plot.auto_bounds().y {
-        // Dragging has ended the fit.
+        // The drag has ended the automatic fit.
         plot.set_auto_bounds(Vec2b::new(plot.auto_bounds().x, true));
     }
 }
 
-/// How far the wheel looks: to the ends of the times, a decade beyond other data.
+/// Returns the zoom limits: the ends of a time axis, a decade beyond other data.
 fn ends(chart: &Chart<'_>) -> [Option<Range>; 2] {
-    /// So many widths of the data beyond each of their ends.
+    /// Widths of the data that can be shown beyond each of their ends.
     const BEYOND: f64 = 4.5;
     let lines = || {
         chart
@@ -448,7 +442,7 @@ fn draw<'a>(plot: &mut PlotUi<'a>, chart: &Chart<'_>, palette: &Palette) {
     }
 }
 
-/// The ends of the horizontal axis in view: all of it where that is what the plot is to show, wherever that is.
+/// Returns the visible ends of the horizontal axis: unbounded if the plot is about to be fitted.
 fn view_of(plot: &PlotUi<'_>) -> [f64; 2] {
     if plot.auto_bounds().x {
         return [f64::NEG_INFINITY, f64::INFINITY];
@@ -457,7 +451,8 @@ fn view_of(plot: &PlotUi<'_>) -> [f64; 2] {
     [bounds.min()[0], bounds.max()[0]]
 }
 
-/// The pixel of the plot as it was drawn last; where it never was, one of so many that no screen has more.
+/// Returns the pixel of the plot as last drawn; before the first drawing, a pixel finer than that
+/// of any screen.
 fn pixel_in(plot: &PlotUi<'_>, points: &[[f64; 2]]) -> Pixel {
     let pixel = pixel_of(plot.transform(), plot.ctx().pixels_per_point(), TOLERANCE);
     if pixel.width.is_finite() && pixel.width > 0.0 {
@@ -509,7 +504,8 @@ fn draw_marks(plot: &mut PlotUi<'_>, chart: &Chart<'_>, marks: &ChartMarks) {
     plot.points(points.allow_hover(false));
 }
 
-/// What of a line shows in a plot: the stretch between `ends` with a point to either side, no finer than its pixels.
+/// Returns the visible part of a line: the stretch between `ends` with a point on either side, no
+/// finer than its pixels.
 fn in_view(points: &[[f64; 2]], ends: [f64; 2], pixel: Pixel) -> Vec<[f64; 2]> {
     let from = points
         .partition_point(|point| point[0] < ends[0])

@@ -1,4 +1,4 @@
-//! What can be done with a curve, and with the ground between the curves, on a secondary click.
+//! Context menus of a curve and of the empty ground between curves.
 
 use egui::{
     Button, Id, Key, Popup, PopupCloseBehavior, Response, RichText, Role as WidgetRole, TextEdit,
@@ -16,29 +16,29 @@ use crate::view::curve_display::CurveCommand;
 use crate::view::explanation::QUESTION;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
-/// What the engineer wants of a curve.
+/// Action on a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveWish {
     /// Reject its model, or restore it.
     RejectOrRestore,
-    /// Let its model represent the bundle.
+    /// Make its model the representative of the bundle.
     Pin,
-    /// Show it alone beside the representatives, or all again.
+    /// Show it alone beside the representatives, or show all again.
     Isolate,
-    /// Do not draw it.
+    /// Hide it.
     Hide,
-    /// Put its frequencies and values on the clipboard.
+    /// Copy its frequencies and values to the clipboard.
     CopyValues,
-    /// Move its phase by whole turns.
+    /// Shift its phase by whole turns.
     Turn(i32),
 }
 
-/// What a menu was asked for: a curve or the ground, and the frequency there \[rad/s\].
+/// Subject of a menu: a curve or the ground, and the frequency there \[rad/s\].
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct MenuSubject {
     pub(super) curve: Option<CurveId>,
     pub(super) omega: f64,
-    /// Why the model is to be rejected, as far as it is typed.
+    /// Reason of the rejection, as typed so far.
     pub(super) reason: String,
 }
 
@@ -75,7 +75,7 @@ fn entry(ui: &mut Ui, text: &str, hint: &str) -> bool {
     clicked
 }
 
-/// A field for the reason of a rejection; gives whether the model is to be rejected for it.
+/// Draws the field for the reason of a rejection; returns whether the rejection was confirmed.
 fn reason_ui(ui: &mut Ui, reason: &mut String) -> bool {
     let field = ui.add(
         TextEdit::singleline(reason)
@@ -150,7 +150,7 @@ fn curve_menu_ui(
     }
 }
 
-/// What can be done with the model of a curve, in whichever plot it is drawn; nothing where it is of no model.
+/// Draws the actions on a curve's model, in whichever plot; nothing if the curve has no model.
 pub(super) fn model_wishes_ui(ui: &mut Ui, curve: &BodeCurve) -> Option<CurveWish> {
     if !matches!(curve.id, CurveId::Model(_)) {
         return None;
@@ -214,18 +214,18 @@ fn ground_menu_ui(
     }
 }
 
-/// A figure that can be asked about, and its name.
+/// Value with a derivation, and its name.
 pub type NamedFigure = (String, ExplainTarget);
 
-/// Which figures a menu asks about, while it is open.
+/// Values listed in an open menu.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Questions {
-    /// The plot that was clicked, and the figures that were under the pointer.
+    /// Clicked plot, and the values under the pointer.
     asked_of: Option<(Id, Vec<NamedFigure>)>,
 }
 
 impl Questions {
-    /// Opens the menu of a plot on a secondary click on `pointed`, and gives the figure that was chosen in it.
+    /// Opens the menu of a plot on a secondary click on `pointed`; returns the value chosen in it.
     pub(super) fn ui(
         &mut self,
         response: &Response,

@@ -7,7 +7,7 @@ use gdcm_plot::figure::drawing::{Dash, Hue};
 
 use crate::view::palette::Palette;
 
-/// Gap between dashes as a part of their length.
+/// Gap between dashes as a share of their length.
 const GAP_OF_DASH: f32 = 0.618;
 /// Length of a dot between dashes \[pt\].
 const DOT_LENGTH: f32 = 1.8;
@@ -15,21 +15,20 @@ const DOT_LENGTH: f32 = 1.8;
 /// Colour, width and pattern of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurveStyle {
-    /// Colour of the line.
     pub color: Color32,
-    /// Width of the line \[pt\].
+    /// Width \[pt\].
     pub width: f32,
-    /// Tells roles apart where colours do not.
+    /// Pattern, which distinguishes roles in the same colour.
     pub dash: Dash,
-    /// Of each dash, or from dot to dot \[pt\].
+    /// Length of a dash, or distance between dots \[pt\].
     pub length: f32,
 }
 
 impl CurveStyle {
-    /// This line as it is drawn while something points at it.
+    /// Returns the style of this line under the pointer.
     pub fn emphasized(self) -> Self {
         let color = self.color.to_opaque();
-        // Dots need room to stay dots.
+        // Dots need a wider spacing to remain dots.
         let (wider, longer) = if self.dash == Dash::Dotted {
             (0.7, 1.5)
         } else {
@@ -43,9 +42,9 @@ impl CurveStyle {
         }
     }
 
-    /// This line in a small plot: narrower, with a shorter pattern.
+    /// Returns the style of this line in a small plot: narrower, with a shorter pattern.
     pub fn in_miniature(self) -> Self {
-        /// Width as a part of that in a full plot.
+        /// Share of the width in a full plot.
         const WIDTH_PART: f32 = 0.72;
         let length = match self.dash {
             Dash::Solid => 0.0,
@@ -60,12 +59,12 @@ impl CurveStyle {
         }
     }
 
-    /// Whether the line is made of many pieces, which begin where it does.
+    /// Returns whether the line has many pieces, whose places depend on its start.
     pub fn is_broken(&self) -> bool {
         self.dash != Dash::Solid
     }
 
-    /// This line along `path`, in screen coordinates.
+    /// Adds this line along `path`, in screen coordinates.
     pub fn add_shapes(&self, path: Vec<Pos2>, shapes: &mut Vec<Shape>) {
         let stroke = Stroke::new(self.width, self.color);
         let length = self.length;
@@ -93,7 +92,7 @@ impl CurveStyle {
 }
 
 impl Palette {
-    /// A colour by what it means, in this theme.
+    /// Returns the colour of a meaning in this theme.
     pub fn color(&self, color: Color) -> Color32 {
         let of_hue = match color.hue {
             Hue::Background => self.background,
@@ -119,7 +118,7 @@ impl Palette {
         }
     }
 
-    /// A line as this theme draws it, as wide as the engineer wants it.
+    /// Returns a line's style in this theme, with the engineer's line width.
     pub fn curve_style(&self, line: gdcm_plot::figure::drawing::Stroke) -> CurveStyle {
         let length = match line.dash {
             Dash::Solid => 0.0,
@@ -138,7 +137,7 @@ impl Palette {
         }
     }
 
-    /// How a curve of a role is drawn.
+    /// Returns the style of a role's curves.
     pub fn role_style(&self, role: Role, rejected: bool) -> CurveStyle {
         self.curve_style(role.line(rejected))
     }
@@ -165,7 +164,8 @@ mod tests {
     #[test]
     fn every_pattern_looks_different_along_a_line() {
         assert_eq!(shapes(Dash::Solid, 0.0), 1);
-        // 100 points of dashes of 8 with gaps of 4.9; of 8, 1.8 and two gaps of 3.0; of dots every 5 but at the end.
+        // 100 points of dashes of 8 with gaps of 4.9; of dashes of 8, dots of 1.8 and two gaps of
+        // 3.0; of dots every 5 except at the end.
         assert_eq!(shapes(Dash::Long, 8.0), 8);
         assert_eq!(shapes(Dash::DashDot, 8.0), 13);
         assert_eq!(shapes(Dash::Dotted, 5.0), 20);

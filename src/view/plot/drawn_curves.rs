@@ -1,4 +1,5 @@
-//! A frequency response as the Bode plot draws it: the points of a pane's curves that have to be drawn, and their lines.
+//! Frequency responses as drawn in the Bode plot: the visible points of a pane's curves, and their
+//! lines.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -12,35 +13,36 @@ use gdcm_plot::figure::thinning::{Pixel, thinned};
 use super::curve_style::CurveStyle;
 use crate::view::palette::Palette;
 
-/// How far outside the view a point may be to be drawn, as a part of the view: a line has a width.
+/// Distance outside the view within which points are drawn, as a share of the view: lines have a
+/// width.
 const LINE_MARGIN: f64 = 0.02;
-/// The same for dashes and dots: panning a little is not to change where they begin.
+/// The same for dashes and dots: a small pan must not change where they begin.
 const PATTERN_MARGIN: f64 = 1.0;
 
-/// The points of a pane's curves that have to be drawn, kept as long as they would come out the same: with a thousand
-/// models, finding them costs more than drawing them.
+/// Visible points of a pane's curves, cached as long as they would not change: with a thousand
+/// models, finding them takes longer than drawing them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DrawnCurves {
-    /// The part in view, and its least detail.
+    /// Visible range, and its finest detail.
     drawn: Option<(PlotBounds, Pixel)>,
-    /// In the order of the curves.
+    /// Drawn curves, in the order of the curves.
     curves: Vec<DrawnCurve>,
-    /// How many curves were made so far.
+    /// Number of curves made so far.
     made: u64,
 }
 
-/// The points of one curve, and from what they were made.
+/// Points of a curve, and the numbers they were made from.
 #[derive(Clone, Debug)]
 struct DrawnCurve {
     numbers: CurveNumbers,
     margin: f64,
     runs: Vec<Vec<PlotPoint>>,
-    /// Which of all that were made it is.
+    /// Serial number among all curves made.
     serial: u64,
 }
 
 impl DrawnCurves {
-    /// Makes the points anew of what changed since the last frame.
+    /// Recomputes the points of what changed since the last frame.
     pub(super) fn update(
         &mut self,
         curves: &[BodeCurve],
@@ -73,7 +75,7 @@ impl DrawnCurves {
                 kept.as_ref()
                     .is_some_and(|kept| kept.is_of(curve, pane, margin))
             };
-            // Mostly the curves are those of the last frame, in the same order.
+            // Usually the curves are those of the last frame, in the same order.
             let here = kept.get(index).is_some_and(is_same).then_some(index);
             let place = here.or_else(|| kept.iter().position(is_same));
             place
@@ -100,12 +102,13 @@ impl DrawnCurves {
         self.curves = curves.iter().enumerate().map(drawn).collect();
     }
 
-    /// The lines of the curve at an index.
+    /// Returns the lines of the curve at an index.
     pub(super) fn runs(&self, index: usize) -> &[Vec<PlotPoint>] {
         self.curves.get(index).map_or(&[], |curve| &curve.runs)
     }
 
-    /// The number of the lines of the curve at an index: another one as soon as they are made anew.
+    /// Returns the serial number of the lines of the curve at an index, which changes whenever they
+    /// are recomputed.
     pub(super) fn serial(&self, index: usize) -> u64 {
         self.curves.get(index).map_or(0, |curve| curve.serial)
     }
@@ -125,7 +128,8 @@ fn margin(curve: &BodeCurve, palette: &Palette) -> f64 {
     }
 }
 
-/// The pixel of a plot drawn as `transform` says, where lines may be `tolerance_pt` points away from their curves.
+/// Returns the pixel of a plot with this `transform`, where lines may be `tolerance_pt` points away
+/// from their curves.
 pub(super) fn pixel_of(
     transform: &PlotTransform,
     pixels_per_point: f32,
@@ -138,10 +142,11 @@ pub(super) fn pixel_of(
     }
 }
 
-/// Splits points into runs that are finite throughout and come within `margin` of `view`, a part of its size.
+/// Splits points into runs that are finite throughout and come within `margin` of `view`, a share
+/// of its size.
 ///
-/// A point that is not finite makes debug builds of egui_plot panic, and a curve that runs far outside the view costs time in
-/// proportion to its points, and where it is dashed, to its length on the screen.
+/// A non-finite point makes debug builds of egui_plot panic, and a curve far outside the view costs
+/// time in proportion to its points and, if dashed, to its length on the screen.
 pub fn runs_in_view(
     points: impl Iterator<Item = [f64; 2]>,
     view: &PlotBounds,
@@ -183,14 +188,14 @@ fn enlarged(view: &PlotBounds, margin: f64) -> PlotBounds {
     )
 }
 
-/// Whether the rectangle spanned by two points meets `bounds`.
+/// Returns whether the rectangle spanned by two points meets `bounds`.
 fn touches(a: [f64; 2], b: [f64; 2], bounds: &PlotBounds) -> bool {
     (0..2).all(|axis| {
         a[axis].max(b[axis]) >= bounds.min()[axis] && a[axis].min(b[axis]) <= bounds.max()[axis]
     })
 }
 
-/// The numbers that a pane showed of a curve.
+/// Numbers of a curve shown by a pane.
 #[derive(Clone, Debug)]
 pub(super) struct CurveNumbers {
     omega: Arc<[f64]>,
@@ -198,7 +203,7 @@ pub(super) struct CurveNumbers {
 }
 
 impl CurveNumbers {
-    /// Those of a curve.
+    /// Returns the numbers of a curve.
     pub(super) fn of(curve: &BodeCurve, pane: Pane) -> Self {
         Self {
             omega: Arc::clone(&curve.omega),
@@ -206,10 +211,11 @@ impl CurveNumbers {
         }
     }
 
-    /// Whether `curve` still has them: mostly they are in the same place in memory.
+    /// Returns whether `curve` still has these numbers: usually they are in the same place in
+    /// memory.
     pub(super) fn are_of(&self, curve: &BodeCurve, pane: Pane) -> bool {
         let same = |one: &Arc<[f64]>, other: &Arc<[f64]>| {
-            // Gaps are not numbers: they are the same by their bits.
+            // Gaps are NaN, so they are compared by their bits.
             let bits = |values: &Arc<[f64]>| {
                 values
                     .iter()
@@ -222,7 +228,7 @@ impl CurveNumbers {
     }
 }
 
-/// What a curve of one or more runs of points is drawn of, in screen coordinates.
+/// Returns the drawing of a curve with its runs of points, in screen coordinates.
 pub(super) fn curve_lines(
     runs: &[Vec<PlotPoint>],
     look: CurveStyle,
@@ -238,17 +244,17 @@ pub(super) fn curve_lines(
     }
 }
 
-/// Adds the shapes of something to those of a plot.
+/// Adds shapes to those of a plot.
 type Drawing<'a> = Box<dyn Fn(&PlotTransform, &mut Vec<Shape>) + 'a>;
 
-/// Shapes among the items of a plot, which nobody points at: that is not egui_plot's business.
+/// Plot item of shapes, which egui_plot does not pick.
 pub(super) struct DrawnItem<'a> {
     base: PlotItemBase,
     draw: Drawing<'a>,
 }
 
 impl<'a> DrawnItem<'a> {
-    /// What `draw` adds to the shapes of the plot.
+    /// Creates an item from the function that adds its shapes to the plot.
     pub(super) fn new(draw: impl Fn(&PlotTransform, &mut Vec<Shape>) + 'a) -> Self {
         Self {
             base: PlotItemBase::new(String::new()),
@@ -309,7 +315,7 @@ mod tests {
         drawn.update(curves, Pane::Magnitude, view(height), &Palette::dark());
     }
 
-    /// Where the points are in memory: elsewhere once they are made anew.
+    /// Addresses of the points in memory, which change once they are recomputed.
     fn places(drawn: &DrawnCurves) -> Vec<*const PlotPoint> {
         drawn
             .curves
@@ -339,7 +345,8 @@ mod tests {
             [3, 1],
             "what is made anew has a number of its own"
         );
-        // Of the curve that goes up to 9 and back to 5, the steps up to 6 and farther are out of sight.
+        // Of the curve that rises to 9 and returns to 5, the segments up to 6 and further are
+        // invisible.
         update(&mut drawn, &curves[1..], 0.5);
         assert!(drawn.runs(0).is_empty());
     }

@@ -1,4 +1,5 @@
-//! A figure on the screen: its plots beside one another, what the pointer means in them, and what a click does.
+//! Figure on the screen: its plots side by side, the meaning of the pointer in them, and the effect
+//! of a click.
 
 use std::ops::RangeInclusive;
 
@@ -29,43 +30,44 @@ use crate::view::palette::{Palette, SMALL_SIZE, medium};
 
 const TITLE_HEIGHT: f32 = 18.0;
 const RIGHT_MARGIN: f32 = 8.0;
-/// Between the panels of a plot \[pt\].
+/// Gap between the panels of a plot \[pt\].
 const PANEL_GAP: f32 = 4.0;
-/// Width of the strip at the left with the label of the vertical axes, where it is one for all \[pt\].
+/// Width of the strip at the left with the common label of the vertical axes \[pt\].
 const LABEL_STRIP: f32 = 16.0;
 /// Width of a vertical axis \[pt\].
 const VALUE_AXIS_WIDTH: f32 = 38.0;
-/// Beside the last plot of a compact figure: the unit of its axis \[pt\].
+/// Width of the unit beside the last plot of a compact figure \[pt\].
 const UNIT_MARGIN: f32 = 14.0;
 /// Least distance between the ticks of an axis \[pt\].
 const TICK_GAP: f64 = 26.0;
 /// The same in a low plot \[pt\].
 const COMPACT_TICK_GAP: f64 = 17.0;
-/// Radius of the ring around what is in focus, or pointed at \[pt\].
+/// Radius of the ring around a focused or highlighted dot \[pt\].
 const RING: f32 = 8.0;
-/// How much larger a dot is while something points at what it is of.
+/// Magnification of a highlighted dot.
 const EMPHASIZED: f64 = 1.3;
-/// How many times what a panel shows by itself can be in view.
+/// Greatest visible width, relative to the width of the whole panel.
 const FARTHEST: f64 = 10.0;
-/// The least width of an axis that can be in view.
+/// Least visible width of an axis.
 const LEAST_WIDTH: f64 = 1e-4;
 
-/// What the plots of a figure say about what they show.
+/// Descriptions of the plots of a figure.
 pub trait FigureWords {
-    /// What a plot shows, for who does not see it.
+    /// Describes a plot for screen readers.
     fn plot(&self, plot: usize) -> String;
 
-    /// The same of a dot at a place of the axes; none where it is not told one by one.
+    /// Describes a dot at a place of the axes for screen readers; `None` if dots are not described
+    /// individually.
     fn dot(&self, _plot: usize, _id: &MarkId, _at: [f64; 2]) -> Option<String> {
         None
     }
 
-    /// What pointing at a mark says, in one line; none where nothing is said.
+    /// Returns the status line for a mark under the pointer; `None` for no text.
     fn pointed(&self, _plot: usize, _id: &MarkId, _at: [f64; 2]) -> Option<String> {
         None
     }
 
-    /// The figures that can be asked about at a mark.
+    /// Returns the values with a derivation at a mark.
     fn questions(&self, _plot: usize, _id: &MarkId) -> Vec<NamedFigure> {
         Vec::new()
     }
@@ -77,35 +79,36 @@ impl FigureWords for Figure {
     }
 }
 
-/// A figure, and what is needed to work with it on the screen. The panels of a plot stand above one another; what can be pointed at stands
-/// in the first.
+/// Figure with its interaction on the screen. The panels of a plot are stacked; interactive marks
+/// are in the first panel.
 pub struct FigureScene<'a> {
-    /// Tells its widgets from those of other figures.
+    /// Distinguishes the widgets from those of other figures.
     pub name: &'static str,
-    /// What is shown.
     pub figure: &'a Figure,
-    /// What is in focus.
+    /// Mark in focus.
     pub selected: Option<MarkId>,
-    /// What another view points at.
+    /// Mark highlighted by another view.
     pub highlighted: Option<MarkId>,
-    /// What stands at each name of the horizontal axes, where that is pointed at and not dots.
+    /// Marks at the names of the horizontal axes, if the columns are interactive instead of the
+    /// dots.
     pub columns: &'a [MarkId],
-    /// Whether the plots are zoomed and dragged.
+    /// Whether the plots can be zoomed and panned.
     pub zooms: bool,
-    /// A plot is never smaller \[pt\].
+    /// Least size of a plot \[pt\].
     pub least: Vec2,
-    /// What to say where there is nothing to draw.
+    /// Message shown if there is nothing to draw.
     pub message: &'a str,
-    /// Whether the vertical axis stands once, at the left of each row, and the unit of the other one at its end.
+    /// Whether the label of the vertical axis appears once, at the left of each row, and the unit
+    /// of the horizontal axis at its end.
     pub is_compact: bool,
-    /// The plot of what is in focus: it has a bar of accent.
+    /// Plot in focus, which has a bar in the accent colour.
     pub accented: Option<usize>,
-    /// What the plots say, and the number by which they know the first one here.
+    /// Descriptions of the plots, and the number of this figure's first plot in them.
     pub words: (&'a dyn FigureWords, usize),
 }
 
 impl<'a> FigureScene<'a> {
-    /// A figure that stands still, nothing of it in focus.
+    /// Creates a figure without zoom and without a mark in focus.
     pub fn new(
         name: &'static str,
         figure: &'a Figure,
@@ -136,51 +139,51 @@ impl<'a> FigureScene<'a> {
     }
 }
 
-/// What the engineer did in a figure.
+/// Event in a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FigureEvent {
-    /// The pointer means this.
+    /// The mark under the pointer.
     Pointed(MarkId),
-    /// What it means, in words.
+    /// Its description.
     Told(String),
-    /// It was clicked in this plot, with these keys held.
+    /// A mark was clicked in this plot, with these modifier keys.
     Clicked(usize, MarkId, Modifiers),
-    /// How a figure was computed is asked.
+    /// The derivation of a value was requested.
     Asked(ExplainTarget),
 }
 
-/// What a figure remembers between frames.
+/// State of a figure between frames.
 #[derive(Clone, Debug, Default)]
 pub struct FigureView {
     hovered: Option<MarkId>,
-    /// Where on the axes the dot is that the pointer means.
+    /// Place on the axes of the dot under the pointer.
     pointed_at: Option<[f64; 2]>,
-    /// What the plots are of, as far as that was said.
+    /// Subject of the plots, if known.
     subject: String,
     plots: Vec<PlotView>,
     questions: Questions,
 }
 
-/// What one of its plots remembers.
+/// State of a plot.
 #[derive(Clone, Debug, Default)]
 struct PlotView {
-    /// What is in view where that was zoomed or dragged.
+    /// Visible ranges, if zoomed or panned.
     ranges: Option<[Range; 2]>,
     transform: Option<PlotTransform>,
-    /// The panel, the part of the screen and the ranges that the shapes are for: placing labels costs more than drawing them.
+    /// Panel, area and ranges of the shapes: placing labels takes longer than drawing them.
     drawn_for: Option<(Panel, Area, [Range; 2])>,
     shapes: Vec<Shape>,
-    /// The same of its other panels, from above.
+    /// States of the other panels, from top to bottom.
     lower: Vec<PlotView>,
 }
 
 impl FigureView {
-    /// Shows all of the plots at the next frame.
+    /// Fits all plots at the next frame.
     pub fn request_fit(&mut self) {
         self.plots.iter_mut().for_each(|plot| plot.ranges = None);
     }
 
-    /// Says what the plots are of: all of them is shown where it is something else than before.
+    /// Sets the subject of the plots: a new subject fits all of them.
     pub fn is_of(&mut self, subject: &str) {
         if self.subject != subject {
             subject.clone_into(&mut self.subject);
@@ -188,22 +191,22 @@ impl FigureView {
         }
     }
 
-    /// Where on the axes of its plot the dot is that the pointer means.
+    /// Returns the place, on the axes of its plot, of the dot under the pointer.
     pub fn pointed_at(&self) -> Option<[f64; 2]> {
         self.pointed_at
     }
 
-    /// What was in view of a plot when it was drawn last.
+    /// Returns the visible ranges of a plot as last drawn.
     pub fn ranges(&self, plot: usize) -> Option<[Range; 2]> {
         self.plots.get(plot)?.ranges
     }
 
-    /// Where a plot was drawn last.
+    /// Returns the last transform of a plot.
     pub fn transform(&self, plot: usize) -> Option<&PlotTransform> {
         self.plots.get(plot)?.transform.as_ref()
     }
 
-    /// Where a place of the axes of a plot is on the screen.
+    /// Returns the screen position of a place on the axes of a plot.
     pub fn position(&self, plot: usize, [x, y]: [f64; 2]) -> Option<Pos2> {
         Some(
             self.transform(plot)?
@@ -211,7 +214,7 @@ impl FigureView {
         )
     }
 
-    /// Where the dot of a mark was drawn last in a plot.
+    /// Returns the last screen position of a mark's dot in a plot.
     pub fn screen_position(&self, plot: usize, id: &MarkId) -> Option<Pos2> {
         let (panel, ..) = self.plots.get(plot)?.drawn_for.as_ref()?;
         let dot = panel.dots().find(|dot| dot.id.as_ref() == Some(id))?;
@@ -219,7 +222,7 @@ impl FigureView {
     }
 }
 
-/// Draws a figure into the space that is left in `ui`.
+/// Draws a figure into the remaining space of `ui`.
 pub fn figure_ui(
     ui: &mut Ui,
     scene: &FigureScene<'_>,
@@ -232,7 +235,8 @@ pub fn figure_ui(
     events
 }
 
-/// In how many rows the plots of a figure stand in an area of `size`, none smaller than `least`.
+/// Returns the number of rows of a figure's plots in an area of `size`, with no plot smaller than
+/// `least`.
 pub fn rows(figure: &Figure, size: Vec2, least: Vec2) -> usize {
     match figure.plots.len() {
         0 => 0,
@@ -311,13 +315,13 @@ pub fn figure_within_ui(
     events
 }
 
-/// The label of the vertical axes, where they are one.
+/// Returns the label of the vertical axes, if they share it.
 fn common_label(figure: &Figure) -> Option<&str> {
     let panel = figure.plots.first()?.panels.first()?;
     Some(panel.y.label.as_str()).filter(|_| figure.shared.y)
 }
 
-/// The label of all the vertical axes, upright at the left edge.
+/// Paints the common label of the vertical axes, upright at the left edge.
 fn upright_label_ui(ui: &Ui, rect: Rect, label: &str, palette: &Palette) {
     let galley = ui.painter().layout_no_wrap(
         label.to_owned(),
@@ -330,8 +334,8 @@ fn upright_label_ui(ui: &Ui, rect: Rect, label: &str, palette: &Palette) {
         .add(text.with_angle(-std::f32::consts::FRAC_PI_2));
 }
 
-/// Draws the panels of a plot above one another into `rect`, over the same part of their horizontal axis; what the pointer means in the first,
-/// and where that is on its axes.
+/// Draws the stacked panels of a plot into `rect`, over the same part of their horizontal axis;
+/// returns the mark under the pointer in the first panel, and its place on the axes.
 fn panels_ui(
     ui: &mut Ui,
     (id, rect): (Id, Rect),
@@ -378,7 +382,8 @@ fn panels_ui(
     shown
 }
 
-/// Draws a panel of a plot into `rect`; what the pointer means in it, and where that is on its axes.
+/// Draws a panel of a plot into `rect`; returns the mark under the pointer, and its place on the
+/// axes.
 fn plot_ui(
     ui: &mut Ui,
     (id, rect): (Id, Rect),
@@ -460,7 +465,8 @@ fn plot_ui(
             .as_ref()
             .and_then(|id| words.dot(number, id, [dot.x, dot.y]));
         if let Some(told) = told {
-            // For screen readers; pointing and clicking are the plot's, which takes the nearest dot.
+            // For screen readers; the plot itself handles pointing and clicking, and takes the
+            // nearest dot.
             let at = transform.position_from_point(&PlotPoint::new(dot.x, dot.y));
             let place = Rect::from_center_size(at, Vec2::splat(RING));
             let response = ui.interact(place, id.with(("dot", &dot.id)), Sense::hover());
@@ -474,7 +480,8 @@ fn plot_ui(
     (response, pointed)
 }
 
-/// The name of a plot over it, with a bar of accent where it is in focus; beside the last one the unit of the horizontal axis.
+/// Draws the name above a plot, with a bar in the accent colour if it is in focus; beside the last
+/// plot, the unit of the horizontal axis.
 fn title_ui(
     ui: &Ui,
     (title, panel): (&str, &Panel),
@@ -518,7 +525,7 @@ fn title_ui(
 }
 
 impl PlotView {
-    /// Draws what stands in the frame, anew only where it changed; what is meant by the pointer stands out.
+    /// Draws the marks, recomputed only if changed; the mark under the pointer is emphasized.
     fn paint(
         &mut self,
         ui: &Ui,
@@ -600,7 +607,8 @@ impl PlotView {
         }
     }
 
-    /// The wheel zooms about the pointer, dragging pans, a double click beside the dots shows all.
+    /// Handles navigation: the wheel zooms about the pointer, dragging pans, a double click beside
+    /// the dots fits.
     fn navigate(
         &mut self,
         response: &Response,
@@ -624,7 +632,7 @@ impl PlotView {
                 min: zoomed[axis].min.max(ends[axis].min),
                 max: zoomed[axis].max.min(ends[axis].max),
             });
-            // Where all of it was dragged beyond the ends, it stays.
+            // An axis whose whole range was dragged beyond the ends stays as it is.
             shown = [0, 1].map(|axis| {
                 if within[axis].width() > 0.0 {
                     within[axis]
@@ -647,7 +655,7 @@ impl PlotView {
     }
 }
 
-/// How far the wheel looks: to the ends of the times, a decade beyond other data.
+/// Returns the zoom limits: the ends of a time axis, a decade beyond other data.
 fn ends(panel: &Panel, [across, values]: [Range; 2]) -> [Range; 2] {
     let beyond = |range: Range| range.with_margin(0.5 * (FARTHEST - 1.0), LEAST_WIDTH);
     let across = match panel.x.scale {
@@ -658,7 +666,7 @@ fn ends(panel: &Panel, [across, values]: [Range; 2]) -> [Range; 2] {
     [across, beyond(values)]
 }
 
-/// All that a panel shows; the horizontal axis of the screen has logarithms where that of the panel is logarithmic.
+/// Returns the full ranges of a panel; on the screen, a logarithmic horizontal axis has logarithms.
 fn whole(panel: &Panel) -> [Range; 2] {
     let [x, y] = [Along::X, Along::Y].map(|along| panel.shown(along));
     match panel.x.scale {
@@ -667,7 +675,7 @@ fn whole(panel: &Panel) -> [Range; 2] {
     }
 }
 
-/// The values at these places.
+/// Returns the range of the values at these places.
 fn values(panel: &Panel, places: Range) -> Range {
     match panel.x.scale {
         Scale::Logarithmic => Range::new(10f64.powf(places.min), 10f64.powf(places.max)),
@@ -675,7 +683,7 @@ fn values(panel: &Panel, places: Range) -> Range {
     }
 }
 
-/// The frame with its axes.
+/// Builds the frame with its axes.
 fn frame<'a>(
     ui: &Ui,
     (id, size): (Id, Vec2),
@@ -684,7 +692,7 @@ fn frame<'a>(
     palette: &Palette,
 ) -> Frame<'a> {
     let names: Vec<(f64, String)> = panel.x.names.clone().unwrap_or_default();
-    // Low plots have as many numbers as have room.
+    // Low plots have as many numbers as fit.
     let gap = if scene.is_compact {
         COMPACT_TICK_GAP
     } else {
@@ -733,7 +741,7 @@ fn frame<'a>(
     } else {
         panel.y.label.as_str()
     };
-    // No label is longer than its axis: beside a low panel its unit stands alone.
+    // No label is longer than its axis: beside a low panel only the unit is shown.
     let is_too_long = width(label) > size.y - height;
     let label = label
         .rfind('[')
@@ -770,9 +778,9 @@ fn frame<'a>(
     }
 }
 
-/// One mark for each name; where they are too wide, for every second, third … one.
+/// Returns a mark for each name, or for every second, third … name if they are too wide.
 fn named_marks(input: &GridInput, count: usize, widest: f32) -> Vec<GridMark> {
-    /// Least space between two names \[pt\].
+    /// Least gap between two names \[pt\].
     const SPACE: f64 = 6.0;
     let every = ((f64::from(widest) + SPACE) * input.base_step_size)
         .ceil()

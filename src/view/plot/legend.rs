@@ -1,4 +1,5 @@
-//! Chips above a plot in place of a legend: one switch for each role that is present, and what holds for the plot now.
+//! Chips above a plot instead of a legend: a switch for each role present, and the current
+//! restrictions of the plot.
 
 use std::collections::BTreeSet;
 
@@ -15,19 +16,19 @@ use super::drawn_curves::BodeCurve;
 use crate::view::curve_display::CurveCommand;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
-/// Height of a chip, and of a line of them \[pt\].
+/// Height of a chip, and of a line of chips \[pt\].
 const HEIGHTS: [f32; 2] = [22.0, 27.0];
-/// Between two chips \[pt\].
+/// Gap between two chips \[pt\].
 const GAP: f32 = 5.0;
-/// Length of a sample of a curve, and where there is little room; between it and the words \[pt\].
+/// Length of a curve's sample in normal and in tight chips \[pt\].
 const SAMPLES: [f32; 2] = [18.0, 12.0];
 const SAMPLE_GAP: f32 = 6.0;
-/// Space at both ends of a chip \[pt\].
+/// Padding at both ends of a chip \[pt\].
 const PAD: f32 = 6.0;
 /// Longest name of a single model shown beside its role, in characters.
 const NAME_LENGTH: usize = 22;
 
-/// A chip that switches curves.
+/// Chip that switches curves.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RoleChip {
     pub(super) role: Role,
@@ -35,12 +36,12 @@ pub(super) struct RoleChip {
     pub(super) look: CurveStyle,
     /// Whether the curves of the role are drawn.
     pub(super) shown: bool,
-    /// Whether the pointer is on a curve of the role, or on what stands for one elsewhere.
+    /// Whether the pointer is on a curve of the role, or on its counterpart in another view.
     pub(super) lit: bool,
 }
 
 impl RoleChip {
-    /// Leaves the name of a single model or variant out of what the chip says, and shortens the longest words.
+    /// Removes the name of a single model or variant from the chip, and shortens the longest words.
     fn shorten(&mut self) {
         match self.role {
             Role::Representative => "repr.".clone_into(&mut self.text),
@@ -51,7 +52,7 @@ impl RoleChip {
     }
 }
 
-/// One chip for each role among `curves`, drawn or `hidden`, in the order of [`Role::ALL`].
+/// Returns a chip for each role among `curves`, drawn or `hidden`, in the order of [`Role::ALL`].
 pub(super) fn role_chips(
     curves: &[BodeCurve],
     hidden: Option<&BTreeSet<Role>>,
@@ -63,7 +64,7 @@ pub(super) fn role_chips(
             .filter(|curve| curve.role.shown(curve.rejected) == role)
             .collect();
         let first = members.first()?;
-        // One chip for kept and rejected nominal models: dotted only where none is kept.
+        // A single chip for kept and rejected nominal models: dotted only if none is kept.
         let rejected = members.iter().all(|curve| curve.rejected);
         let look = palette.role_style(first.role, rejected);
         Some(RoleChip {
@@ -94,24 +95,24 @@ fn text(role: Role, members: &[&BodeCurve]) -> String {
     }
 }
 
-/// What holds for a plot now, and what a click on it does.
+/// Current restriction of a plot, and the effect of a click on it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chip {
-    /// What it says: "Only V+10kt ×".
+    /// Text: "Only V+10kt ×".
     pub text: String,
-    /// What a click does.
+    /// Effect of a click.
     pub hint: String,
 }
 
 /// All chips of a plot.
 pub(super) struct Chips<'a> {
-    /// What tells them from those of other plots.
+    /// Distinguishes these chips from those of other plots.
     pub(super) plot: &'a str,
     pub(super) roles: Vec<RoleChip>,
-    /// Whether bands are drawn; none where there are no bands.
+    /// Whether bands are drawn; `None` if there are no bands.
     pub(super) bands: Option<bool>,
     pub(super) states: &'a [Chip],
-    /// Whether samples and words are short, where there is little room.
+    /// Whether samples and words are shortened, for lack of room.
     pub(super) is_tight: bool,
 }
 
@@ -122,7 +123,7 @@ impl Chips<'_> {
         self.roles.iter_mut().for_each(RoleChip::shorten);
     }
 
-    /// How wide all of them are beside one another \[pt\].
+    /// Returns the total width of the chips side by side \[pt\].
     pub(super) fn width(&self, ui: &Ui) -> f32 {
         let text = |text: &str| {
             let font = FontId::proportional(SMALL_SIZE);
@@ -147,7 +148,8 @@ impl Chips<'_> {
             - GAP
     }
 
-    /// Draws them in lines from the upper left corner of `area`; gives the height that they take, and what was clicked.
+    /// Draws the chips in lines from the upper left corner of `area`; returns their height, and the
+    /// clicked chip.
     pub(super) fn ui(&self, ui: &Ui, area: Rect, palette: &Palette) -> (f32, Option<BodeEvent>) {
         let sample = SAMPLES[usize::from(self.is_tight)];
         let mut row = Row {
@@ -215,7 +217,7 @@ impl Chips<'_> {
         (height, row.event)
     }
 
-    /// What the chip of the bands says.
+    /// Returns the text of the bands' chip.
     fn bands_text(&self) -> &'static str {
         if self.is_tight {
             "95 %"
@@ -225,7 +227,7 @@ impl Chips<'_> {
     }
 }
 
-/// Where the next chip goes.
+/// Place of the next chip.
 struct Row {
     area: Rect,
     corner: egui::Pos2,
@@ -235,7 +237,8 @@ struct Row {
 }
 
 impl Row {
-    /// A chip with the sample of a curve, pale and dashed where that is hidden; one of accent where it has none.
+    /// Draws a chip with the sample of a curve, pale and dashed if hidden; in the accent colour if
+    /// it has no sample.
     fn chip_ui(
         &mut self,
         ui: &Ui,
@@ -331,7 +334,7 @@ impl Row {
     }
 }
 
-/// The outline of a rectangle whose ends are half circles, as one path.
+/// Returns the outline of a rectangle with semicircular ends, as a single path.
 fn rounded(place: Rect, radius: f32) -> Vec<egui::Pos2> {
     let centers = [
         pos2(place.right() - radius, place.center().y),

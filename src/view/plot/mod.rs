@@ -1,4 +1,4 @@
-//! The plots: each takes a scene and what it remembers of the last frame, and gives back what the engineer did.
+//! Plots: each takes a scene and its state of the last frame, and returns the engineer's actions.
 
 mod axes;
 mod axis_strip;

@@ -1,4 +1,5 @@
-//! What mouse and keyboard ask of a plot: to pan and to zoom it, and which curve the pointer means, the nearest one and not the topmost.
+//! Mouse and keyboard navigation of plots: panning and zooming, and picking the curve under the
+//! pointer, the nearest and not the topmost.
 
 use egui::{
     Context, EventFilter, Key, Modifiers, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind,
@@ -12,12 +13,13 @@ use super::bode_view::BodeView;
 use super::drawn_curves::{BodeCurve, CurveId, LogFrequencies, Pane};
 use crate::view::palette::Palette;
 
-/// Part of what is in view that an arrow moves it by.
+/// Share of the visible range by which an arrow key pans.
 const STEP: f32 = 0.1;
-/// How much closer + looks.
+/// Zoom factor of the + key.
 const CLOSER: f64 = 1.25;
 
-/// Arrows pan a pane that has the focus, + and − zoom it (with Shift only its frequencies), Home fits the plot. Escape leaves it.
+/// Handles the keys of a focused pane: arrows pan, + and − zoom (with Shift only the frequencies),
+/// Home fits, Escape leaves the plot.
 pub(super) fn plot_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut BodeView) {
     if !response.has_focus() {
         return;
@@ -34,7 +36,7 @@ pub(super) fn plot_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut Bod
     let shift = ui.input(|input| input.modifiers.shift);
     let pressed =
         |key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key)) as f32;
-    // The view moves where the arrow points: what is drawn moves the other way.
+    // The view moves in the direction of the arrow, and the drawing in the opposite direction.
     let along = pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
     let up = pressed(Key::ArrowUp) - pressed(Key::ArrowDown);
     let closer = pressed(Key::Plus) + pressed(Key::Equals) - pressed(Key::Minus);
@@ -62,7 +64,7 @@ pub(super) fn plot_keys(ui: &Ui, pane: Pane, response: &Response, view: &mut Bod
     }
 }
 
-/// The digit from 1 to 9 that is pressed, taken from the keys.
+/// Takes the digit from 1 to 9 that is pressed out of the input.
 pub(super) fn pressed_digit(ui: &Ui) -> Option<usize> {
     let digits = [
         Key::Num1,
@@ -79,31 +81,32 @@ pub(super) fn pressed_digit(ui: &Ui) -> Option<usize> {
     digits.iter().position(pressed).map(|place| place + 1)
 }
 
-/// How much closer one notch of a wheel looks.
+/// Zoom factor of a notch of the wheel.
 const NOTCH: f32 = 1.1;
-/// Points that a notch scrolls by.
+/// Scroll distance of a notch \[pt\].
 const NOTCH_PT: f32 = 40.0;
-/// How far beyond what is computed the wheel looks, in decades of frequency.
+/// Zoom limit beyond the computed data, in decades of frequency.
 const BEYOND: f64 = 1.0;
 
-/// How much closer to look, in x and y.
+/// Zoom factors in x and y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Turn {
-    /// By the wheel, or by two fingers.
+    /// From the wheel, or from pinching.
     pub(super) both: Vec2,
-    /// By the sideways wheel, which Shift makes of any: only x means it.
+    /// From the sideways wheel, and from any wheel with Shift: applies to x only.
     pub(super) sideways: f32,
 }
 
 impl Turn {
-    /// The same where there is one axis only: whichever way the wheel turns.
+    /// Returns the combined zoom factor for a plot with a single zoomable axis.
     pub(super) fn along_one_axis(self) -> f32 {
         let pinched = (self.both.x * self.both.y).sqrt();
         pinched * self.sideways
     }
 }
 
-/// What the wheel and two fingers ask of the widget under the pointer, and where; nothing where they rest.
+/// Returns the zoom requested of the widget under the pointer by wheel or pinching, and the
+/// pointer's position; `None` without input.
 pub(super) fn turned(ctx: &Context, response: &Response) -> Option<(Turn, Pos2)> {
     let pointer = response.hover_pos()?;
     let (scrolled, pinched) =
@@ -111,7 +114,7 @@ pub(super) fn turned(ctx: &Context, response: &Response) -> Option<(Turn, Pos2)>
     if scrolled == Vec2::ZERO && pinched == Vec2::splat(1.0) {
         return None;
     }
-    // Two fingers scroll by parts of a notch.
+    // A touchpad scrolls by fractions of a notch.
     let closer = |points: f32| NOTCH.powf(points / NOTCH_PT);
     Some((
         Turn {
@@ -122,19 +125,20 @@ pub(super) fn turned(ctx: &Context, response: &Response) -> Option<(Turn, Pos2)>
     ))
 }
 
-/// The part of an axis in view. What the engineer chose stays until a fit of everything is asked for.
+/// Visible part of an axis. The engineer's choice persists until a fit of everything is requested.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ViewedRange {
     range: Range,
     is_chosen: bool,
-    /// Widths that can be in view.
+    /// Permitted widths.
     widths: Range,
-    /// Values that can be in view.
+    /// Permitted values.
     ends: Range,
 }
 
 impl ViewedRange {
-    /// Shows `range` until something is fitted, later always a part of `ends` with a width in `widths`.
+    /// Shows `range` until something is fitted; always a part of `ends` with a width in `widths`
+    /// after that.
     pub(super) fn new(range: Range, widths: Range, ends: Range) -> Self {
         Self {
             range,
@@ -144,12 +148,12 @@ impl ViewedRange {
         }
     }
 
-    /// From now on no farther than a decade beyond what is computed, which is `computed` in decades.
+    /// Limits the view to a decade beyond the computed range, where `computed` is in decades.
     pub(super) fn reach(&mut self, computed: Range) {
         self.ends = Range::new(computed.min - BEYOND, computed.max + BEYOND);
     }
 
-    /// Looks `factor` times closer, with `fixed` staying where it is, no farther than allowed.
+    /// Zooms by `factor` about `fixed`, within the limits.
     pub(super) fn zoom(&mut self, factor: f64, fixed: f64) {
         let Range { min, max } = self.range.zoomed(factor, fixed);
         if min < self.ends.max && max > self.ends.min {
@@ -157,17 +161,17 @@ impl ViewedRange {
         }
     }
 
-    /// What is in view.
+    /// Returns the visible range.
     pub(super) fn range(&self) -> Range {
         self.range
     }
 
-    /// Whether the engineer chose what is in view.
+    /// Returns whether the engineer chose the visible range.
     pub(super) fn is_chosen(&self) -> bool {
         self.is_chosen
     }
 
-    /// Shows what the engineer wants to see, where the numbers allow it.
+    /// Sets the range chosen by the engineer, within the limits.
     pub(super) fn choose(&mut self, range: Range) {
         if let Some(range) = self.allowed(range).filter(|range| *range != self.range) {
             self.range = range;
@@ -175,14 +179,14 @@ impl ViewedRange {
         }
     }
 
-    /// Shows what fits the data, unless the engineer chose something else.
+    /// Sets the range that fits the data, unless the engineer chose another.
     pub(super) fn fit(&mut self, range: Range) {
         if let Some(range) = self.allowed(range).filter(|_| !self.is_chosen) {
             self.range = range;
         }
     }
 
-    /// Forgets the engineer's choice: the next fit counts.
+    /// Drops the engineer's choice: the next fit applies.
     pub(super) fn release(&mut self) {
         self.is_chosen = false;
     }
@@ -193,21 +197,21 @@ impl ViewedRange {
     }
 }
 
-/// How far from a curve the pointer may be to mean it \[pt\].
+/// Greatest distance of the pointer from a curve under it \[pt\].
 pub const PICK_RADIUS: f32 = 8.0;
 
-/// The curve that the pointer means.
+/// Curve under the pointer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Index of the curve.
     pub curve: usize,
-    /// The frequency of its point nearest to the pointer \[rad/s\].
+    /// Frequency of its point nearest to the pointer \[rad/s\].
     pub omega: f64,
     /// Distance from the pointer \[pt\].
     pub distance: f32,
 }
 
-/// The curve nearest to `pointer`, if one is within [`PICK_RADIUS`]. Of equally near ones, the one drawn on top.
+/// Returns the curve nearest to `pointer` within [`PICK_RADIUS`]; of equally near curves, the
+/// topmost.
 pub fn nearest(
     curves: &[BodeCurve],
     pane: Pane,
@@ -242,10 +246,10 @@ pub fn nearest(
     best.map(|(hit, _)| hit)
 }
 
-/// How far from a dot the pointer may be to mean it \[pt\].
+/// Greatest distance of the pointer from a dot under it \[pt\].
 const DOT_RADIUS: f32 = 10.0;
 
-/// The nearest dot that is one of something; of equally near ones the one on top, which is drawn last.
+/// Returns the nearest dot with an id; of equally near dots, the topmost, which is drawn last.
 pub(super) fn nearest_dot(
     panel: &Panel,
     transform: &PlotTransform,
@@ -263,7 +267,7 @@ pub(super) fn nearest_dot(
     near.map(|(_, (id, at))| (id.clone(), at))
 }
 
-/// The curves that run through `area` of the screen.
+/// Returns the curves that run through `area` of the screen.
 pub(super) fn touched(
     curves: &[BodeCurve],
     pane: Pane,
@@ -293,10 +297,11 @@ pub(super) fn touched(
         .collect()
 }
 
-/// Whether the segment between two points has a part in `area`.
+/// Returns whether part of the segment between two points lies in `area`.
 ///
-/// Of the segment `from + t (to - from)`, 0 <= t <= 1, each pair of edges leaves an interval of t (Liang and Barsky, "A new concept
-/// and method for line clipping", ACM TOG 3(1), 1984); it meets the area where the intervals have something in common.
+/// Of the segment `from + t (to - from)`, 0 <= t <= 1, each pair of edges leaves an interval of t
+/// (Liang and Barsky, "A new concept and method for line clipping", ACM TOG 3(1), 1984); the
+/// segment meets the area if the intervals intersect.
 fn meets(from: Pos2, to: Pos2, area: Rect) -> bool {
     let along = to - from;
     let mut first = 0.0f32;
@@ -318,7 +323,8 @@ fn meets(from: Pos2, to: Pos2, area: Rect) -> bool {
     first <= last
 }
 
-/// Distance from `pointer` to a curve and the point of the curve that has it; nothing where no part comes near.
+/// Returns the distance from `pointer` to a curve and the nearest point of the curve; `None` if no
+/// part is near.
 pub(super) fn distance_to(
     points: impl Iterator<Item = [f64; 2]>,
     pointer: Pos2,
@@ -356,10 +362,11 @@ fn closest_on_segment(pointer: Pos2, from: Pos2, to: Pos2) -> Pos2 {
     from + along * ((pointer - from).dot(along) / length_sq).clamp(0.0, 1.0)
 }
 
-/// A box less wide or high than this is a slip of the hand \[pt\].
+/// Least width and height of a box; a smaller box is accidental \[pt\].
 const LEAST_SIDE: f32 = 5.0;
 
-/// Draws the box while it is being drawn over `frame` with `button`, and gives it when it is done.
+/// Draws the selection box while it is dragged over `frame` with `button`; returns it when it is
+/// finished.
 pub(super) fn drawn_box_ui(
     ui: &Ui,
     plot: &Response,
@@ -373,7 +380,7 @@ pub(super) fn drawn_box_ui(
     }
     let (origin, now) =
         ui.input(|input| (input.pointer.press_origin(), input.pointer.latest_pos()));
-    // By the time the button is let go, there is no origin any more: the last frame's is kept.
+    // When the button is released, the drag origin is already gone: the last frame's is stored.
     let memory = plot.id.with("box origin");
     let origin = origin.or_else(|| ui.data(|data| data.get_temp(memory)))?;
     ui.data_mut(|data| data.insert_temp(memory, origin));
@@ -468,7 +475,7 @@ mod tests {
         }
     }
 
-    /// One decade and 100 dB on 100 by 100 points: a decibel is a point.
+    /// A decade and 100 dB on 100 by 100 points: a decibel is a point.
     fn transform() -> PlotTransform {
         let frame = Rect::from_min_max(pos2(0.0, 0.0), pos2(100.0, 100.0));
         PlotTransform::new(

@@ -1,4 +1,4 @@
-//! Every response at once: a table of small Bode plots, outputs down, inputs across.
+//! Every response at once: a table of small Bode plots with outputs in rows and inputs in columns.
 
 use std::collections::BTreeMap;
 
@@ -21,70 +21,66 @@ use crate::view::palette::{Palette, SMALL_SIZE};
 
 const HEADER: Vec2 = vec2(52.0, 22.0);
 const GAP: f32 = 4.0;
-/// Part of a cell's height that the magnitude gets where the phase is shown too.
+/// Share of a cell's height taken by the magnitude if the phase is shown too.
 const MAGNITUDE_PART: f32 = 0.58;
-/// Cells smaller than this have no texts \[pt\].
+/// Least cell size with texts \[pt\].
 const LEAST_WITH_TEXT: Vec2 = vec2(96.0, 54.0);
-/// Height of the line of text over the curves of a cell \[pt\].
+/// Height of the line of text above the curves of a cell \[pt\].
 const CELL_HEAD: f32 = 16.0;
 
-/// One response in the overview.
+/// Response in the overview.
 #[derive(Clone, Debug)]
 pub struct OverviewCell<'a> {
-    /// Which response.
     pub pair: Pair,
-    /// Its curves; may be empty.
     pub curves: &'a [BodeCurve],
-    /// Whether its gain is constrained.
     pub constrained: bool,
     /// Whether it is the pair in focus.
     pub selected: bool,
-    /// A short text in its corner, such as J. May be empty.
+    /// Short text in the corner, such as J; may be empty.
     pub note: String,
 }
 
-/// What the overview shows.
+/// Content of the overview.
 #[derive(Clone, Copy, Debug)]
 pub struct OverviewScene<'a> {
     /// Names of the inputs: the columns.
     pub inputs: &'a [String],
     /// Names of the outputs: the rows.
     pub outputs: &'a [String],
-    /// The responses, in any order.
+    /// Responses, in any order.
     pub cells: &'a [OverviewCell<'a>],
-    /// The band of comparison: lower and upper end \[rad/s\].
+    /// Band of comparison: lower and upper end \[rad/s\].
     pub band: (f64, f64),
-    /// What to say where there is nothing to draw.
+    /// Message shown if there is nothing to draw.
     pub message: Option<&'a str>,
 }
 
-/// What the engineer did in the overview.
+/// Event in the overview.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OverviewEvent {
-    /// A response was clicked.
     PairClicked(Pair),
-    /// The pointer means a curve.
+    /// A curve is under the pointer.
     Hovered(CurveId),
-    /// What the pointer means, in words.
+    /// Description of the element under the pointer.
     Told(String),
-    /// A curve was clicked with Alt held.
+    /// A curve was clicked with Alt pressed.
     Isolated(CurveId),
-    /// Something was chosen in the menu of a curve.
+    /// An entry of a curve's menu was chosen.
     Wished(CurveId, CurveWish),
 }
 
-/// What the overview remembers between frames.
+/// State of the overview between frames.
 #[derive(Clone, Debug, Default)]
 pub struct OverviewView {
     /// Whether phases are shown below magnitudes.
     pub show_phase: bool,
     sketches: BTreeMap<(Pair, Pane), Sketch>,
-    /// The curve whose menu is open, and in which cell.
+    /// Curve whose menu is open, with its cell.
     menu_of: Option<(Pair, CurveId)>,
 }
 
 impl OverviewView {
-    /// The curve of a cell that the pointer means, if it means one.
+    /// Returns the curve of a cell under the pointer, if any.
     fn curve_at<'c>(&self, cell: &OverviewCell<'c>, pointer: Pos2) -> Option<&'c BodeCurve> {
         let hit = |pane: Pane| {
             let transform = self.sketches.get(&(cell.pair, pane))?.transform?;
@@ -96,13 +92,13 @@ impl OverviewView {
         cell.curves.get(hit.curve)
     }
 
-    /// Where a magnitude of a response is on the screen: decades of frequency and decibels.
+    /// Returns the screen position of a magnitude of a response: decades of frequency and decibels.
     pub fn position_in(&self, pair: Pair, log_omega: f64, magnitude_db: f64) -> Option<Pos2> {
         let transform = self.sketches.get(&(pair, Pane::Magnitude))?.transform?;
         Some(transform.position_from_point(&PlotPoint::new(log_omega, magnitude_db)))
     }
 
-    /// The middle of the magnitude of a response on the screen.
+    /// Returns the screen position of the centre of a response's magnitude.
     pub fn screen_position(&self, pair: Pair) -> Option<Pos2> {
         Some(
             self.sketches
@@ -114,7 +110,7 @@ impl OverviewView {
     }
 }
 
-/// Draws the overview into the space that is left in `ui`.
+/// Draws the overview into the remaining space of `ui`.
 pub fn overview_ui(
     ui: &mut Ui,
     scene: &OverviewScene<'_>,
@@ -123,7 +119,7 @@ pub fn overview_ui(
 ) -> Vec<OverviewEvent> {
     let rect = ui.available_rect_before_wrap();
     let curves = scene.cells.iter().flat_map(|cell| cell.curves);
-    // Frequencies ascend: the ends are enough.
+    // Frequencies ascend: the ends are sufficient.
     let ends = curves
         .flat_map(|curve| [curve.omega.first(), curve.omega.last()])
         .flatten();
@@ -166,7 +162,7 @@ pub fn overview_ui(
     events
 }
 
-/// Where the cells are.
+/// Places of the cells.
 struct Table {
     rect: Rect,
     columns: usize,
@@ -234,7 +230,7 @@ fn headers_ui(
     }
 }
 
-/// Draws one response.
+/// Draws a response.
 fn cell_ui(
     ui: &Ui,
     scene: &OverviewScene<'_>,
@@ -267,7 +263,8 @@ fn cell_ui(
             ranges.push(sketch.range_text(pane));
         }
         if has_texts {
-            // What the heights of the cell are, for want of an axis, and its note: over its curves, not on them.
+            // The vertical ranges of the cell, which has no axis, and its note: above its curves,
+            // not on them.
             let head = head.shrink2(vec2(3.0, 0.0));
             let note = row_text(ui, head, -0.01, &cell.note, SMALL_SIZE, palette.text);
             let ranges = elided(
@@ -282,7 +279,8 @@ fn cell_ui(
     response.on_hover_cursor(CursorIcon::PointingHand)
 }
 
-/// What was done in a cell: a click brings its response into focus, the rest is about the curve under the pointer.
+/// Handles the events in a cell: a click brings its response into focus, the others concern the
+/// curve under the pointer.
 fn cell_events(
     (response, name): (&Response, &str),
     cell: &OverviewCell<'_>,
@@ -374,19 +372,21 @@ fn paint_band(
     );
 }
 
-/// How far from the curve a drawn line may be \[pt\].
+/// Greatest distance of a drawn line from the curve \[pt\].
 const TOLERANCE: f64 = 0.25;
 
-/// A sparkline as it was drawn last.
+/// Sparkline as last drawn.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sketch {
     drawn: DrawnCurves,
-    /// Where the curves were drawn last: x counts decades of frequency; nothing where there was nothing to draw.
+    /// Transform of the last drawing, where x counts decades of frequency; `None` if there was
+    /// nothing to draw.
     transform: Option<PlotTransform>,
 }
 
 impl Sketch {
-    /// Draws all values of `curves` into `rect`, with a little space above and below, what matters most on top.
+    /// Draws all values of `curves` into `rect`, with a little space above and below, the most
+    /// important curves on top.
     pub(super) fn paint(
         &mut self,
         painter: &Painter,
@@ -432,7 +432,7 @@ impl Sketch {
         painter.extend(shapes);
     }
 
-    /// The part of the vertical axis that was in view, in words; empty where there was nothing to draw.
+    /// Describes the last visible range of the vertical axis; empty if there was nothing to draw.
     pub(super) fn range_text(&self, pane: Pane) -> String {
         let unit = if pane == Pane::Magnitude { " dB" } else { "°" };
         self.transform.map_or_else(String::new, |transform| {

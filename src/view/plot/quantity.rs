@@ -1,4 +1,4 @@
-//! What the two stacked panes show, and in which units.
+//! Quantities of the two stacked panes, and their units.
 
 use gdcm_model::units::db_to_ratio;
 use gdcm_plot::figure::axis::compact;
@@ -8,36 +8,31 @@ use gdcm_plot::figure::{Range, decimals};
 use super::axes::{Ticks, VERTICAL_TICK_GAP};
 use super::drawn_curves::Pane;
 
-/// What the two stacked panes show.
+/// Quantity shown by the two stacked panes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BodeQuantity<'a> {
-    /// Responses: their magnitudes above, their phases below.
+    /// Responses: magnitudes above, phases below.
     Response {
-        /// How magnitudes are read.
         magnitude: MagnitudeUnit,
-        /// How phases are drawn.
         phase: PhaseUnit,
-        /// The unit of a ratio: "(deg/s)/in".
+        /// Unit of a ratio: "(deg/s)/in".
         ratio_unit: &'a str,
-        /// In which plot they are.
         place: ResponsePlace,
     },
-    /// What the fit sees of them: `20 log10 |H_ref| / |H_sim|` above, `Delta phi(H_sim, H_ref)` below (M6).
-    Error {
-        /// How differences of phases are drawn.
-        phase: PhaseErrorUnit,
-    },
+    /// Errors used by the fit: `20 log10 |H_ref| / |H_sim|` above, `Delta phi(H_sim, H_ref)` below
+    /// (M6).
+    Error { phase: PhaseErrorUnit },
 }
 
-/// In which plot responses are, which tells its controls from the same ones of the others.
+/// Plot of the responses, which distinguishes its controls from the same controls of other plots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ResponsePlace {
-    /// That of the condition shown.
+    /// Plot of the displayed condition.
     #[default]
     Condition,
-    /// That of every condition.
+    /// Plot across conditions.
     EveryCondition,
-    /// That of a model that was found in a file.
+    /// Plot of a model found in a file.
     FoundModel,
 }
 
@@ -48,12 +43,12 @@ impl Default for BodeQuantity<'_> {
 }
 
 impl BodeQuantity<'_> {
-    /// Responses in decibels and degrees.
+    /// Responses of the displayed condition in decibels and degrees.
     pub const RESPONSE: BodeQuantity<'static> = Self::in_place(ResponsePlace::Condition);
-    /// The same of every condition.
+    /// Responses of every condition in decibels and degrees.
     pub const RESPONSE_OF_EVERY_CONDITION: BodeQuantity<'static> =
         Self::in_place(ResponsePlace::EveryCondition);
-    /// The same of a model that was found in a file.
+    /// Responses of a model found in a file, in decibels and degrees.
     pub const RESPONSE_OF_FOUND_MODEL: BodeQuantity<'static> =
         Self::in_place(ResponsePlace::FoundModel);
 
@@ -66,7 +61,8 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// What tells this plot from the others: its widgets, its labels, and what stands behind the name of a pane and behind its place.
+    /// Returns the texts that distinguish this plot from others: for its widgets, for its labels,
+    /// and the suffixes of a pane's name and of its place.
     fn words(self) -> [&'static str; 4] {
         match self {
             Self::Response {
@@ -95,17 +91,18 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// Tells this plot's widgets from those of the others.
+    /// Returns the id salt that distinguishes this plot's widgets from those of others.
     pub(super) fn salt(self) -> &'static str {
         self.words()[0]
     }
 
-    /// What tells labels of this plot from the same ones of the Bode plot.
+    /// Returns the suffix that distinguishes this plot's labels from those of the Bode plot.
     pub(super) fn label_suffix(self) -> &'static str {
         self.words()[1]
     }
 
-    /// Whether it is of the condition shown, and not of others beside it or of a file.
+    /// Returns whether the plot shows the displayed condition, not a comparison across conditions
+    /// or a file.
     pub(crate) fn is_of_condition(self) -> bool {
         matches!(
             self,
@@ -117,17 +114,17 @@ impl BodeQuantity<'_> {
         )
     }
 
-    /// What a pane shows: "Magnitude".
+    /// Returns the name of a pane: "Magnitude".
     pub(super) fn name(self, pane: Pane) -> String {
         format!("{pane:?}{}", self.words()[2])
     }
 
-    /// A pane as part of a sentence: "magnitude plot".
+    /// Returns a pane as part of a sentence: "magnitude plot".
     pub(super) fn place(self, pane: Pane) -> String {
         format!("{}{}", format!("{pane:?}").to_lowercase(), self.words()[3])
     }
 
-    /// The unit that a pane is read in.
+    /// Returns the display unit of a pane.
     pub(crate) fn unit(self, pane: Pane) -> ValueUnit {
         match (self, pane) {
             (
@@ -148,7 +145,7 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// What the numbers of a curve in a pane are, with the unit that they are drawn in.
+    /// Returns the label of a pane's numbers, with the unit in which they are drawn.
     pub(crate) fn drawn_label(self, pane: Pane) -> String {
         match self {
             Self::Response { .. } => Self::RESPONSE.axis_label(pane),
@@ -156,7 +153,7 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// What stands beside a pane's axis.
+    /// Returns the axis label of a pane.
     pub(super) fn axis_label(self, pane: Pane) -> String {
         match (self, pane) {
             (
@@ -187,7 +184,7 @@ impl BodeQuantity<'_> {
         }
     }
 
-    /// The least height that fitting gives a pane.
+    /// Returns the least height of a pane after fitting.
     pub(super) fn least_height(self, pane: Pane) -> f64 {
         match (self, pane) {
             (Self::Response { .. }, Pane::Magnitude) => 4.0,
@@ -198,21 +195,18 @@ impl BodeQuantity<'_> {
     }
 }
 
-/// The unit that the values of a pane are read in. What is drawn is in decibels for the first two.
+/// Display unit of a pane's values. For the first two, drawn values are in decibels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueUnit {
-    /// Decibels.
     Decibel,
-    /// The ratio that decibels mean, on a logarithmic axis.
+    /// Ratio equivalent to the decibels, on a logarithmic axis.
     Ratio,
-    /// Degrees.
     Degree,
-    /// Milliseconds.
     Millisecond,
 }
 
 impl ValueUnit {
-    /// What stands behind a value: " dB", "°".
+    /// Returns the suffix of a value: " dB", "°".
     pub fn suffix(self) -> &'static str {
         match self {
             Self::Decibel => " dB",
@@ -222,7 +216,7 @@ impl ValueUnit {
         }
     }
 
-    /// A drawn value as a reader wants it: "2.9 dB", "−99°".
+    /// Formats a drawn value for display: "2.9 dB", "−99°".
     pub fn readout(self, value: f64) -> String {
         match self {
             Self::Decibel | Self::Millisecond => format!("{}{}", decimals(value, 1), self.suffix()),
@@ -231,7 +225,7 @@ impl ValueUnit {
         }
     }
 
-    /// Values that can be in view, by their width.
+    /// Returns the permitted widths of the visible range.
     pub(super) fn widths(self) -> Range {
         match self {
             Self::Decibel | Self::Ratio => Range {
@@ -245,7 +239,7 @@ impl ValueUnit {
         }
     }
 
-    /// How its axis is told.
+    /// Returns the kind of tick labels of the axis.
     pub(super) fn ticks(self) -> Ticks {
         match self {
             Self::Decibel | Self::Millisecond => Ticks::Decimal(VERTICAL_TICK_GAP),
@@ -255,7 +249,7 @@ impl ValueUnit {
     }
 }
 
-/// `value` rounded to three significant digits.
+/// Rounds `value` to three significant digits.
 fn three_significant(value: f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
@@ -272,7 +266,7 @@ mod tests {
     fn a_ratio_is_read_from_its_decibels_and_back() {
         let ticks = ValueUnit::Ratio.ticks();
         let drawn = ticks.place(2.0);
-        // 20 log10 2, and one rounding of each function.
+        // 20 log10 2, with a rounding error for each function.
         assert!((drawn - 6.020_599_913_279_624).abs() < 1e-12);
         assert!((ticks.number(drawn) - 2.0).abs() < 1e-12);
         assert!(!ticks.place(0.0).is_finite() && !ticks.place(-1.0).is_finite());

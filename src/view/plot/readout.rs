@@ -1,4 +1,5 @@
-//! What curves have where the pointer is: the one that it means in words, the roles in a strip between the panes.
+//! Values of curves at the pointer: the curve under it in words, the roles in a strip between the
+//! panes.
 
 use egui::{FontId, Rect, Role as WidgetRole, Sense, Stroke, Ui, WidgetInfo, vec2};
 
@@ -13,7 +14,7 @@ use super::quantity::BodeQuantity;
 use crate::view::controls::{elided, painted_text, row_text};
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 
-/// "nominal · 2.9 dB · −99°" at `omega` \[rad/s\].
+/// Formats "nominal · 2.9 dB · −99°" at `omega` \[rad/s\].
 pub(super) fn value_text(quantity: BodeQuantity<'_>, curve: &BodeCurve, omega: f64) -> String {
     let value = |pane| match curve.value_at(pane, omega) {
         Some(value) => quantity.unit(pane).readout(value),
@@ -34,7 +35,8 @@ pub(super) fn value_text(quantity: BodeQuantity<'_>, curve: &BodeCurve, omega: f
     )
 }
 
-/// " (−99° less 1 turn)": where a phase \[deg\] lies on another branch than that of its principal value.
+/// Returns " (−99° less 1 turn)" if a phase \[deg\] lies on another branch than its principal
+/// value.
 fn branch_text(phase_deg: f64) -> Option<String> {
     let principal = wrap(phase_deg.to_radians()).to_degrees();
     let turns = ((phase_deg - principal) / 360.0).round();
@@ -44,7 +46,7 @@ fn branch_text(phase_deg: f64) -> Option<String> {
     (count > 0.0).then(|| format!(" ({}° {word} {count} {noun})", decimals(principal, 0)))
 }
 
-/// Frequency, name and values of the curve that the pointer means, in one line.
+/// Formats frequency, name and values of the curve under the pointer in a single line.
 pub fn pointed_words(
     view: &BodeView,
     curves: &[BodeCurve],
@@ -66,32 +68,32 @@ pub fn pointed_words(
     ))
 }
 
-/// The values of one role, or the difference of two.
+/// Values of a role, or the difference of two roles.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadoutCell {
-    /// Whose they are; none of a difference.
+    /// Role; `None` for a difference.
     pub role: Option<Role>,
-    /// What stands above them.
+    /// Heading.
     pub name: String,
     /// Magnitude and phase, each with its unit.
     pub values: [String; 2],
-    /// Which of the two is worth a warning.
+    /// Whether magnitude and phase are worth a warning.
     pub warns: [bool; 2],
 }
 
-/// What the roles have at a frequency.
+/// Values of the roles at a frequency.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Readout {
-    /// Whose frequency it is: "ω at the pointer".
+    /// Kind of the frequency: "ω at the pointer".
     pub heading: String,
-    /// The frequency: "6.00 rad/s".
+    /// Formatted frequency: "6.00 rad/s".
     pub frequency: String,
-    /// The roles, in the order of the chips; the difference last.
+    /// Roles in the order of the chips; the difference last.
     pub cells: Vec<ReadoutCell>,
 }
 
 impl Readout {
-    /// All of it as one sentence.
+    /// Returns the values as a sentence.
     fn words(&self) -> String {
         let cells: Vec<String> = self
             .cells
@@ -104,10 +106,11 @@ impl Readout {
 
 /// Height of the strip \[pt\].
 pub(super) const STRIP_HEIGHT: f32 = 40.0;
-/// A cell is not narrower \[pt\].
+/// Least width of a cell \[pt\].
 const LEAST_CELL: f32 = 96.0;
 
-/// Draws a read-out between the panes, its cells side by side; what there is no room for is left out, the first role first.
+/// Draws a read-out between the panes, its cells side by side; without enough room, the first roles
+/// are omitted first.
 pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette: &Palette) {
     ui.painter().rect_filled(strip, 6.0, palette.raised);
     let most = ((strip.width() / LEAST_CELL) as usize).saturating_sub(1);
@@ -168,7 +171,7 @@ pub(super) fn readout_strip_ui(ui: &Ui, strip: Rect, readout: &Readout, palette:
             ui.painter().extend(shapes);
             from = 20.0;
         }
-        // "nominal" where there is no room for "nominal, rejected".
+        // "nominal" if there is no room for "nominal, rejected".
         let shown = elided(ui, &cell.name, upper.width() - from, SMALL_SIZE);
         let name = match cell.name.split_once(", ") {
             Some((first, _)) if shown != cell.name => {

@@ -1,13 +1,14 @@
-//! Small multiples: many plots of one size in a row, or in as many rows as show them largest.
+//! Small multiples: many plots of equal size in a row, or in the number of rows that makes them
+//! largest.
 
 use egui::{Rect, ScrollArea, Ui, UiBuilder, Vec2, pos2, vec2};
 
-/// Width over height that suits a small plot.
+/// Preferred ratio of width to height of a small plot.
 const ASPECT: f32 = 1.15;
-/// How much larger plots must be to be worth a gap in the last row \[pt\].
+/// Gain in size required to accept a gap in the last row \[pt\].
 const PRICE_OF_GAP: f32 = 4.0;
 
-/// How many plots stand beside and under one another, and how large they are.
+/// Arrangement of plots in rows and columns, and their size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Tiles {
     pub(super) columns: usize,
@@ -16,9 +17,10 @@ pub(super) struct Tiles {
 }
 
 impl Tiles {
-    /// The arrangement of `count` plots in `available` that shows them largest, none smaller than `least`.
+    /// Returns the arrangement of `count` plots in `available` with the largest plots, none smaller
+    /// than `least`.
     ///
-    /// Where they do not fit, they stand in one row wider than what is available: it scrolls.
+    /// If they do not fit, they form a single row wider than `available`, which scrolls.
     pub(super) fn arrange(count: usize, available: Vec2, least: Vec2) -> Self {
         let count = count.max(1);
         let candidates = (1..=count).map(|columns| {
@@ -42,13 +44,14 @@ impl Tiles {
             })
     }
 
-    /// Size of the largest plot of good proportions in a tile; full rows look better than a last one with gaps.
+    /// Rates an arrangement by the size of the largest well-proportioned plot in a tile, less a
+    /// price for gaps in the last row \[pt\].
     fn usefulness(self, count: usize) -> f32 {
         let gaps = self.columns * self.rows - count;
         (self.size.x / ASPECT).min(self.size.y) - PRICE_OF_GAP * gaps as f32
     }
 
-    /// Size of all tiles together.
+    /// Returns the total size of the tiles.
     fn all(self) -> Vec2 {
         vec2(
             self.columns as f32 * self.size.x,
@@ -56,7 +59,7 @@ impl Tiles {
         )
     }
 
-    /// The place of a tile in an area that begins at `origin`.
+    /// Returns the place of a tile in an area that begins at `origin`.
     fn rect(self, index: usize, origin: egui::Pos2) -> Rect {
         let column = index % self.columns;
         let row = index / self.columns;
@@ -65,7 +68,8 @@ impl Tiles {
     }
 }
 
-/// Calls `tile_ui(ui, index, rect)` for each of `count` tiles in `rect`, with scroll bars where they do not fit.
+/// Calls `tile_ui(ui, index, rect)` for each of `count` tiles in `rect`, with scroll bars if they
+/// do not fit.
 pub(super) fn tiles_ui(
     ui: &mut Ui,
     name: &str,
@@ -77,7 +81,7 @@ pub(super) fn tiles_ui(
     let mut tiles = Tiles::arrange(count, rect.size(), least);
     let fits = tiles.all().x <= rect.width() + 0.5 && tiles.all().y <= rect.height() + 0.5;
     if !fits {
-        // What is wider than the room leaves some of its height to the scroll bar.
+        // Tiles wider than the area leave some of the height to the scroll bar.
         tiles.size.y = (tiles.size.y - ui.spacing().scroll.allocated_width()).max(least.y);
     }
     let size = tiles.all();

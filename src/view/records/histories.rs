@@ -1,4 +1,4 @@
-//! Every channel of a record over time, and which input was moved in it, up to which frequency.
+//! Every channel of a record over time, and the excitation of the inputs over frequency.
 
 use std::any::Any;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -29,10 +29,10 @@ use crate::view::plot::chart::{
 };
 use crate::view::settings_panel::choice_ui;
 
-/// Least height of a chart \[pt\]; more of them scroll.
+/// Minimum height of a chart \[pt\]; further charts scroll.
 const LEAST_HEIGHT: f32 = 84.0;
 
-/// A chart for each input and output, with the responses of models to the same inputs where those are asked for.
+/// Shows a chart for each input and output, with the selected models' responses to the same inputs.
 pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
@@ -97,7 +97,7 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
                 .allocate_exact_size(vec2(2.0 * width, height * rows as f32), Sense::hover())
                 .0;
             for (place, name) in names.iter().enumerate() {
-                // Down the first column, then down the second: inputs stand before outputs.
+                // Column by column, so that inputs come before outputs.
                 let column = place / rows;
                 let line = place % rows;
                 let corner = area.min + vec2(column as f32 * width, line as f32 * height);
@@ -171,12 +171,12 @@ pub(super) fn histories_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Comma
 /// Height of the spectrogram \[pt\].
 const SPECTROGRAM_HEIGHT: f32 = 150.0;
 
-/// What the charts of the record shown have in common: the stretch of time.
+/// Id of the time axis shared by the charts of the displayed record.
 fn charts() -> Id {
     Id::unique("flight record")
 }
 
-/// Parts of a record, dragged in the charts or typed, become records of their own.
+/// Makes records from parts dragged in the charts or typed.
 fn part_ui(
     ui: &mut Ui,
     Page {
@@ -207,7 +207,7 @@ fn part_ui(
     }
 }
 
-/// The part that is typed: two times on the clock of the record, or with `+` before both from its start.
+/// Parses a typed part: two times on the record's clock, or with `+` before both, from its start.
 fn part_of(text: &str, span_s: Option<[f64; 2]>) -> Option<[f64; 2]> {
     let [from, to] = numbers(text).ok()?[..] else {
         return None;
@@ -225,7 +225,8 @@ fn part_of(text: &str, span_s: Option<[f64; 2]>) -> Option<[f64; 2]> {
     (part_s[0] < part_s[1]).then_some(part_s)
 }
 
-/// From when to when the record shown runs, on its own clock and from the start of the whole record.
+/// Shows the time span of the displayed record, on its own clock and from the start of the whole
+/// record.
 fn span_ui(ui: &mut Ui, records: &ConditionRecords, palette: &Palette) {
     let Some(row) = records.rows.get(records.chosen) else {
         return;
@@ -248,7 +249,7 @@ fn span_ui(ui: &mut Ui, records: &ConditionRecords, palette: &Palette) {
     ui.add(Label::new(palette.small(words)).truncate());
 }
 
-/// Whether a spectrogram is shown, and of which input.
+/// Selects the spectrogram's input, or none.
 fn spectrogram_choice_ui(
     ui: &mut Ui,
     Page { state, palette, .. }: Page<'_>,
@@ -268,7 +269,7 @@ fn spectrogram_choice_ui(
     }
 }
 
-/// The spectrogram of the input that is chosen for it, above the charts and over the same time.
+/// Shows the spectrogram of the selected input above the charts, over the same time.
 fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
     let Page {
         state,
@@ -327,7 +328,8 @@ fn spectrogram_ui(ui: &mut Ui, page: Page<'_>, flight: &Arc<FlightRecord>) {
     chart_ui(ui, area, &chart, palette);
 }
 
-/// A pixel for each window and row, from the background to the colour of identified models.
+/// Returns an image with a pixel for each window and row, from the background to the colour of
+/// identified models.
 fn picture_of(found: &Spectrogram, palette: &Palette) -> ColorImage {
     let shade = |level: f64| {
         palette.background.lerp_to_gamma(
@@ -342,7 +344,7 @@ fn picture_of(found: &Spectrogram, palette: &Palette) -> ColorImage {
     ColorImage::new([found.levels.len(), Spectrogram::ROWS], pixels)
 }
 
-/// The samples of a channel as unbroken lines: what is missing stays a gap.
+/// Returns the samples of a channel as unbroken lines, with gaps for missing samples.
 fn points_of(flight: &FlightRecord, place: usize) -> Vec<Arc<[[f64; 2]]>> {
     let inputs = flight.inputs.ncols();
     let value = |sample: usize| match place.checked_sub(inputs) {
@@ -359,7 +361,8 @@ fn points_of(flight: &FlightRecord, place: usize) -> Vec<Arc<[[f64; 2]]>> {
     runs.filter(|run| !run.is_empty()).map(Arc::from).collect()
 }
 
-/// The modes of the system that logged the record, every other one shaded, named above the charts.
+/// Returns the modes of the logging system as spans, every other one shaded, and shows their names
+/// above the charts.
 fn modes_ui(ui: &mut Ui, modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan> {
     let named = modes
         .iter()
@@ -384,7 +387,8 @@ fn modes_ui(ui: &mut Ui, modes: &[ModeSpan], palette: &Palette) -> Vec<ChartSpan
         .collect()
 }
 
-/// The parts of the record shown that are records of their own; what was bridged and what was cut out of it.
+/// Returns spans of the displayed record: parts that are separate records, bridged gaps, and cut
+/// stretches.
 fn spans(records: &ConditionRecords, palette: &Palette) -> Vec<ChartSpan> {
     let source = records
         .rows
@@ -421,15 +425,15 @@ fn spans(records: &ConditionRecords, palette: &Palette) -> Vec<ChartSpan> {
     parts.into_iter().chain(gaps.iter().map(span)).collect()
 }
 
-/// Least height of a chart of spectra \[pt\].
+/// Minimum height of a spectrum chart \[pt\].
 const LEAST_SPECTRUM: f32 = 140.0;
-/// Lines of a spectrum that are averaged into one point.
+/// Number of spectral lines averaged into one point.
 const SMOOTHED: usize = 5;
 
-/// Autospectrum of each input over frequency: \[rad/s\] and \[dB of its unit squared by Hz\].
+/// Autospectrum of each input: frequency \[rad/s\] and level \[dB of the squared unit per Hz\].
 type Autospectra = Vec<Arc<[[f64; 2]]>>;
 
-/// A chart for each input: its spectrum in every record, the chosen one on top.
+/// Shows a chart for each input with its spectrum in every record, the selected record on top.
 pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
         state,
@@ -512,8 +516,10 @@ pub(super) fn inputs_ui(ui: &mut Ui, page: Page<'_>) {
         });
 }
 
-/// Power of each input by frequency, `2 dt² / T |sum u e^(-j omega t)|²` about its mean, averaged over a few lines: one-sided, so that its
-/// integral over frequency \[Hz\] is the variance (Bendat and Piersol, Random Data, 5.2.2).
+/// Computes the power of each input by frequency, `2 dt² / T
+/// sum u e^(-j omega t)
+/// ²` about its mean, averaged over a few lines: one-sided, so that its integral over frequency
+/// \[Hz\] is the variance (Bendat and Piersol, Random Data, 5.2.2).
 fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
     let finite = |value: f64| if value.is_finite() { value } else { 0.0 };
     let steps: Vec<f64> = flight
@@ -566,7 +572,7 @@ fn autospectra(flight: &FlightRecord, highest: f64) -> Autospectra {
         .collect()
 }
 
-/// What something is computed from: held as long as what came of it, so that nothing else can take its place in memory.
+/// Source data of a cached value: kept alive with the value, so that its address cannot be reused.
 pub(super) type Source = Arc<dyn Any + Send + Sync>;
 
 struct Kept<T> {
@@ -575,7 +581,8 @@ struct Kept<T> {
     value: Arc<T>,
 }
 
-/// What `compute` gives for these very sources and `key`, computed when those of this name change.
+/// Returns the cached result of `compute` for these sources (compared by address) and `key`;
+/// recomputes it when either changes.
 pub(super) fn kept<T: Send + Sync + 'static>(
     ui: &Ui,
     name: &str,
@@ -614,7 +621,8 @@ mod tests {
 
     #[test]
     fn the_integral_of_an_autospectrum_is_the_variance() {
-        // 500 lines below half the sampling frequency, averaged by fives: none is left over.
+        // 500 lines below half the sampling frequency, averaged in groups of five without
+        // remainder.
         let samples = 1001;
         let input: Vec<f64> = (0..samples)
             .map(|n| (0.7 * (n * n) as f64).sin() + 3.0)
@@ -637,7 +645,7 @@ mod tests {
             .map(|[_, db]| 10f64.powf(0.1 * db) * step_hz)
             .sum();
         let variance = input.iter().map(|u| (u - mean).powi(2)).sum::<f64>() / samples as f64;
-        // Parseval; rounding of a thousand terms.
+        // Parseval's theorem, up to the rounding of a thousand terms.
         assert!(
             (integral / variance - 1.0).abs() < 1e-9,
             "{integral} {variance}"

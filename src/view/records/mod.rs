@@ -1,5 +1,5 @@
-//! Flight records of the condition shown, and the models identified from them: the records with what is searched at the left, one page
-//! about them at the right.
+//! Flight records of the displayed condition and the models identified from them: records and
+//! search settings on the left, a page about them on the right.
 
 mod histories;
 mod outcome;
@@ -48,7 +48,7 @@ pub use simulation::{TimeModel, simulation_jobs};
 /// Width of the list \[pt\].
 const LIST_WIDTH: f32 = 340.0;
 
-/// What is done with all records. Laid out from right to left.
+/// Draws the commands for all records, from right to left.
 pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let condition = state.condition().id();
     let records = state.records.conditions.get(&condition);
@@ -81,7 +81,7 @@ pub fn records_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>
     }
 }
 
-/// Records of the condition shown, and what comes of them.
+/// Draws the records of the displayed condition and their results.
 pub fn records_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -116,7 +116,7 @@ pub fn records_view_ui(
                 outcome_ui(ui, page, commands);
             });
     });
-    // Clear of the line between list and page.
+    // Keeps a distance from the line between list and page.
     Frame::new()
         .inner_margin(Margin {
             left: 6,
@@ -140,7 +140,7 @@ pub fn records_view_ui(
     state.records.advanced_field = field;
 }
 
-/// One tab for each page, in one line that scrolls where it is too long.
+/// Shows one tab for each page, in a line that scrolls if it is too long.
 fn pages_ui(ui: &mut Ui, shown: RecordsPage, commands: &mut Vec<Command>) {
     let tabs = ScrollArea::horizontal()
         .id_salt("pages")
@@ -160,7 +160,7 @@ fn pages_ui(ui: &mut Ui, shown: RecordsPage, commands: &mut Vec<Command>) {
     });
 }
 
-/// Where records come from.
+/// Shows the sources of the records.
 fn source_ui(
     ui: &mut Ui,
     state: &State,
@@ -214,7 +214,7 @@ fn source_ui(
     }
 }
 
-/// The units that no file says, asked once for the records of all conditions.
+/// Asks once for all missing units in the records of all conditions.
 fn open_units_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let Some(open) = state.records.open_units() else {
         return;
@@ -247,7 +247,7 @@ fn open_units_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut V
     });
 }
 
-/// What is done with the records of all conditions at once, where several have some.
+/// Shows the commands for the records of all conditions, if several have some.
 fn all_conditions_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let count = with_records(state).count();
     if count < 2 || !state.records.running.is_empty() {
@@ -271,7 +271,8 @@ fn all_conditions_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
-/// The conditions that have records, one below the other; a heading sorts them, a click on one shows it.
+/// Shows the table of conditions with records; a heading sorts it, a click on a row displays the
+/// condition.
 fn condition_table_ui(
     ui: &mut Ui,
     page: Page<'_>,
@@ -307,8 +308,9 @@ fn with_records(state: &State) -> impl Iterator<Item = (&ConditionId, &Condition
         .filter(|(_, of)| of.used_rows().next().is_some())
 }
 
-/// A row for each condition that has records: its order, χ²/dof of the fit and of what was held out, how many models and cautions there
-/// are, and how long it took. Where nothing was identified yet, the cells are empty, or say why.
+/// Returns a row for each condition with records: model order, χ²/dof of the fit and of the
+/// held-out records, numbers of models and cautions, and computing time. Before an identification
+/// the cells are empty or give the reason.
 pub fn condition_table(state: &State) -> Table {
     let columns = [
         "condition",
@@ -354,11 +356,12 @@ pub fn condition_table(state: &State) -> Table {
 }
 
 const FIELD_WIDTH: f32 = 150.0;
-/// Fields that cautions go to.
+/// Names of the fields that cautions refer to.
 const ORDERS: &str = "orders";
 const REFERENCES: &str = "references";
 
-/// A field for each, behind a heading; an empty one leaves it to the records. Goes to `field` once that is there.
+/// Shows the search settings under a heading, one field each; an empty field is determined from the
+/// records. Focuses `field` once it is visible.
 fn advanced_ui(
     ui: &mut Ui,
     page: Page<'_>,
@@ -449,7 +452,7 @@ fn advanced_ui(
     });
 }
 
-/// Which columns are recorded references: those first whose names say that they may be.
+/// Selects the columns of recorded references; those whose names suggest references come first.
 fn references_ui(ui: &mut Ui, page: Page<'_>, is_wanted: bool, commands: &mut Vec<Command>) {
     let Page {
         records, palette, ..
@@ -503,7 +506,8 @@ fn references_ui(ui: &mut Ui, page: Page<'_>, is_wanted: bool, commands: &mut Ve
     ui.end_row();
 }
 
-/// The columns of the first record used that may be references, and whether their names say so; those first.
+/// Returns the columns of the first used record that may be references, and whether their names
+/// suggest it; those come first.
 fn possible_references(ui: &Ui, records: &ConditionRecords) -> Arc<Vec<(String, bool)>> {
     let Some((_, row)) = records.used_rows().next() else {
         return Arc::default();
@@ -523,7 +527,7 @@ fn possible_references(ui: &Ui, records: &ConditionRecords) -> Arc<Vec<(String, 
     )
 }
 
-/// Takes a list over into what is searched, or says what is wrong with it.
+/// Applies a list to the search settings, or returns an error message.
 type Sets = fn(&mut SearchSpace, &[f64]) -> Result<(), String>;
 
 fn field_ui(ui: &mut Ui, name: &str, said: &str, hint: &str, palette: &Palette) -> Option<String> {
@@ -546,7 +550,7 @@ fn listed<T: ToString>(list: &[T]) -> String {
         .join(" ")
 }
 
-/// Numbers between blanks.
+/// Parses numbers separated by blanks.
 fn numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split_whitespace()
         .filter_map(|part| typed_number(part.trim_end_matches([',', ';'])).transpose())

@@ -1,4 +1,4 @@
-//! What came of an identification, in words, with a button beside each caution that something can be done about.
+//! The outcome of an identification, with a button beside each caution that has a remedy.
 
 use std::sync::Arc;
 
@@ -29,7 +29,7 @@ use crate::view::command::Command;
 use crate::view::controls::Asks;
 use crate::view::palette::{Palette, SMALL_SIZE};
 
-/// How far the identification is, or what came of it.
+/// Shows the progress of the identification, or its outcome.
 pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
@@ -96,7 +96,7 @@ pub(super) fn outcome_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command
     }
 }
 
-/// A button that asks which of the models are taken.
+/// Shows a menu for the choice of models to use.
 pub(super) fn offered_menu_ui(
     ui: &mut Ui,
     (text, hint): (&str, &str),
@@ -154,7 +154,7 @@ fn summary_ui(ui: &mut Ui, found: &Identification, palette: &Palette) {
     )));
 }
 
-/// A caution in its words, and what can be done about it.
+/// Shows a caution and its remedies.
 fn caution_ui(
     ui: &mut Ui,
     (words, actions): (&str, Vec<Action>),
@@ -173,7 +173,8 @@ fn caution_ui(
     actions_ui(ui, actions, commands);
 }
 
-/// A channel that is late in all records alike, which only a physics model can tell.
+/// Shows a caution about a channel with the same delay in all records, which only a physics model
+/// can reveal.
 fn late_channel_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
@@ -209,7 +210,7 @@ fn late_channel_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     );
 }
 
-/// Takes a delay out of a channel, beside what had been taken out of it when that was found.
+/// Removes a delay from a channel, in addition to the delay already removed when it was found.
 fn taken_out(records: &ConditionRecords, signal: &Signal, delay_s: f64) -> Action {
     let known = records
         .found
@@ -223,7 +224,7 @@ fn taken_out(records: &ConditionRecords, signal: &Signal, delay_s: f64) -> Actio
     )
 }
 
-/// Takes what is wrong with a record out of it, besides what had been taken out.
+/// Removes a fault from a record, in addition to earlier remedies.
 fn put_right(records: &ConditionRecords, of: &ContradictingRecord) -> Option<Action> {
     let ContradictingRecord {
         record,
@@ -262,7 +263,7 @@ fn put_right(records: &ConditionRecords, of: &ContradictingRecord) -> Option<Act
     Some((words, RecordsCommand::SetRemedies(row, remedies).into()))
 }
 
-/// What a button says, and what it asks for.
+/// Label and command of a button.
 type Action = (String, Command);
 
 fn actions_ui(ui: &mut Ui, actions: Vec<Action>, commands: &mut Vec<Command>) {
@@ -273,7 +274,7 @@ fn actions_ui(ui: &mut Ui, actions: Vec<Action>, commands: &mut Vec<Command>) {
     });
 }
 
-/// Another band, where that is what an identification without a model needs.
+/// Proposes another band if an identification without a model needs one.
 fn band_action(why: &IdentificationError, [lowest, highest]: [f64; 2]) -> Option<Action> {
     match why {
         IdentificationError::TooShort { enough, .. } if *enough < highest => {
@@ -291,7 +292,7 @@ fn narrower(band: [f64; 2]) -> Action {
     (text, RecordsCommand::SetBand(Some(band)).into())
 }
 
-/// What can be done about a caution; nothing where only another flight helps.
+/// Returns the remedies of a caution; empty if only another flight helps.
 fn actions(ui: &Ui, records: &ConditionRecords, caution: &IdentificationCaution) -> Vec<Action> {
     let show = |text: &str, page| (text.to_owned(), RecordsCommand::Show(page).into());
     let order = || {
@@ -348,7 +349,7 @@ fn actions(ui: &Ui, records: &ConditionRecords, caution: &IdentificationCaution)
     }
 }
 
-/// The same of what stands in the records themselves.
+/// Returns the remedies of a caution about the records themselves.
 fn actions_on_records(records: &ConditionRecords, caution: &RecordCaution) -> Vec<Action> {
     let inputs = || {
         (
@@ -395,7 +396,7 @@ fn actions_on_records(records: &ConditionRecords, caution: &RecordCaution) -> Ve
     }
 }
 
-/// Leaves a record out, where others are left to fit a model to.
+/// Leaves a record out if another one remains for the fit.
 fn leave_out(records: &ConditionRecords, name: &str) -> Option<Action> {
     let (index, _) = records
         .used_rows()
@@ -408,7 +409,7 @@ fn leave_out(records: &ConditionRecords, name: &str) -> Option<Action> {
         .then(|| (text(), RecordsCommand::SetUsed(index, false).into()))
 }
 
-/// Fits a model to a record that was held out, too.
+/// Includes a held-out record in the fit.
 fn fit_too(records: &ConditionRecords, name: &str) -> Option<Action> {
     let (index, _) = records
         .used_rows()
@@ -419,19 +420,20 @@ fn fit_too(records: &ConditionRecords, name: &str) -> Option<Action> {
     ))
 }
 
-/// The band from the frequency on of which the longest record has five periods; it has one of `once` \[rad/s\].
+/// Proposes a band whose lowest frequency has five periods in the longest record; the frequency
+/// `once` \[rad/s\] has one period.
 fn longer(records: &ConditionRecords, once: f64) -> Option<Action> {
-    /// A hair more, so that rounding does not say it again.
+    /// Slightly more than five, so that rounding does not repeat the caution.
     const PERIODS: f64 = 5.001;
     let (job, _) = records.found.as_ref()?;
     let [_, highest] = job.request.options.band;
     (PERIODS * once < highest).then(|| narrower([PERIODS * once, highest]))
 }
 
-/// Most references that have a button of their own.
+/// Maximum number of references with their own button.
 const MOST_REFERENCES: usize = 3;
 
-/// The references that the names of columns propose, and the list of all columns.
+/// Proposes the references suggested by column names, and the list of all columns.
 fn by_reference(ui: &Ui, records: &ConditionRecords) -> Vec<Action> {
     let possible = possible_references(ui, records);
     let named = possible

@@ -1,4 +1,4 @@
-//! The records of a condition line by line, and which columns of one are its channels.
+//! The list of a condition's records, and the assignment of a record's columns to channels.
 
 use egui::{
     Align, Checkbox, Grid, Label, Layout, RichText, Role as AccessRole, ScrollArea, Sense, Ui, vec2,
@@ -17,16 +17,16 @@ use crate::view::command::Command;
 use crate::view::controls::{Asks, elided_among, list_ui, named, named_switch, number_entry_ui};
 use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE};
 
-/// Width of all columns but the names \[pt\].
+/// Width of all columns except the names \[pt\].
 const OTHER_COLUMNS: f32 = 124.0;
-/// Least width of the names \[pt\].
+/// Minimum width of the names \[pt\].
 const LEAST_NAME: f32 = 60.0;
-/// What the cost of a fit means.
+/// Explanation of the cost of a fit.
 pub(super) const CHI_SQUARED: &str = "Cost per degree of freedom of the recommended model; 1 is what noise explains (M14, section 6)";
-/// Cost per degree of freedom above which a record is not fitted well (M14, section 6).
+/// Cost per degree of freedom above which the fit of a record is bad (M14, section 6).
 pub(super) const BAD: f64 = 1.5;
 
-/// A line a record: whether it is used and held out, and how well the model fits it.
+/// Shows one line for each record: whether it is used or held out, and the fit of the model.
 pub(super) fn record_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
@@ -81,7 +81,8 @@ pub(super) fn record_list_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Com
     }
 }
 
-/// Problems in words; those that page Columns mends in one sentence a kind, where they are of several channels.
+/// Describes problems; those repairable on the Columns page share one sentence for each kind if
+/// they concern several channels.
 fn problem_words(problems: &[LayoutProblem]) -> Vec<String> {
     let mut missing = Vec::new();
     let mut unsaid = Vec::new();
@@ -198,7 +199,7 @@ fn row_ui(ui: &mut Ui, page: Page<'_>, index: usize, width: f32, commands: &mut 
     });
 }
 
-/// A cost per degree of freedom, with a warning where the fit is bad.
+/// Formats a cost per degree of freedom, with a warning if the fit is bad.
 pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
     let color = match cost {
         cost if cost <= BAD => palette.text,
@@ -207,7 +208,7 @@ pub(super) fn cost_text(cost: f64, palette: &Palette) -> RichText {
     RichText::new(format!("{cost:.2}")).color(color)
 }
 
-/// Which manoeuvre a record is of.
+/// Selects the manoeuvre of a record.
 fn kind_ui(
     ui: &mut Ui,
     index: usize,
@@ -232,7 +233,7 @@ fn kind_ui(
     });
 }
 
-/// Cost per degree of freedom of a row under the recommended model.
+/// Returns the cost per degree of freedom of a row with the recommended model.
 fn cost_of(records: &ConditionRecords, index: usize) -> Option<f64> {
     let found = records.identification().filter(|_| !records.changed)?;
     let fit = found
@@ -243,10 +244,10 @@ fn cost_of(records: &ConditionRecords, index: usize) -> Option<f64> {
 }
 
 const FIELD_WIDTH: f32 = 90.0;
-/// Width of what holds for the record shown alone \[pt\].
+/// Width of the values that apply to the displayed record only \[pt\].
 const HERE_WIDTH: f32 = 60.0;
 
-/// A line for the time and for each channel: column, factor, time skew.
+/// Shows a line for the time and for each channel: column, factor, time skew.
 pub(super) fn columns_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,
@@ -378,7 +379,7 @@ fn channel_row_ui(
                 .map(|(factor, used)| with(ColumnUse { factor, ..used })),
         );
     } else {
-        // The units that samples can be in, of which none is said.
+        // Possible units of the samples, none of them selected.
         let units = open_units
             .into_iter()
             .map(|unit| (unit, false, unit.to_owned()));
@@ -441,7 +442,7 @@ fn channel_row_ui(
     ui.end_row();
 }
 
-/// A choice among the columns of a record; what was chosen anew.
+/// Selects a column of a record; returns a changed selection.
 fn column_ui(ui: &mut Ui, name: &str, row: &LaidOutRecord, chosen: Option<usize>) -> Option<usize> {
     let words = |column: usize| {
         row.table

@@ -1,4 +1,4 @@
-//! What the Records view holds: records by condition, and what was identified from them.
+//! State of the Records view: records by condition, and the models identified from them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -31,30 +31,30 @@ use crate::view::palette::Palette;
 use crate::view::state::State;
 use crate::view::tables::Sorting;
 
-/// What a page of the view shows.
+/// A page of the Records view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RecordsPage {
-    /// Every channel of the chosen record over time.
+    /// Every channel of the selected record over time.
     #[default]
     Histories,
-    /// What was excited, and up to which frequency.
+    /// Excitation of the inputs, and its highest frequency.
     Inputs,
-    /// The measured response under the models.
+    /// The measured response with the models.
     Response,
-    /// Poles over the order.
+    /// Poles over the model order.
     Stabilisation,
-    /// The poles of the recommended model with their standard deviations.
+    /// Poles of the recommended model with their standard deviations.
     Poles,
-    /// How well the model fits each record and output.
+    /// Fit of the model to each record and output.
     Fit,
-    /// Which columns are the channels.
+    /// Assignment of columns to channels.
     Columns,
-    /// What was identified in every condition.
+    /// Results of identification in every condition.
     Conditions,
 }
 
 impl RecordsPage {
-    /// Every page, in the order in which they are offered.
+    /// All pages, in display order.
     pub const ALL: [Self; 8] = [
         Self::Histories,
         Self::Inputs,
@@ -66,7 +66,7 @@ impl RecordsPage {
         Self::Conditions,
     ];
 
-    /// Its name; its name where there is little room, for all of them stand in one line; and what it shows, in a sentence.
+    /// Returns the name, a shorter name for narrow windows, and a sentence about the content.
     pub fn words(self) -> (&'static str, &'static str, &'static str) {
         match self {
             Self::Histories => (
@@ -113,114 +113,113 @@ impl RecordsPage {
     }
 }
 
-/// What the engineer asks for in the Records view.
+/// A command of the Records view.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecordsCommand {
-    /// Read files, and folders with all that is in them.
+    /// Read files, and folders with all their files.
     Add(Vec<PathBuf>),
     /// Choose files with the desktop's dialog.
     AskFiles,
-    /// Ask which channels of the records shown a dataset is to be made of.
+    /// Ask for the channels of a dataset to be made from the displayed records.
     AskDataset,
-    /// Make a dataset of the channels asked for, and open it.
+    /// Make a dataset with the requested channels, and open it.
     MakeDataset,
-    /// Show a record.
     Choose(usize),
     /// Use a record, or leave it out.
     SetUsed(usize, bool),
-    /// Keep a record from the fit, to judge it by; or not.
+    /// Hold a record out from the fit for validation, or include it.
     SetHeldOut(usize, bool),
-    /// Say which manoeuvre a record is of.
+    /// Set the manoeuvre of a record.
     SetKind(usize, RecordKind),
-    /// Say which columns are the channels: of this record, and of all that have columns of these names.
+    /// Assign columns to channels, for this record and all with the same column names.
     SetLayout(usize, RecordLayout),
-    /// Say how late a channel is logged \[s\].
+    /// Set the delay of a channel's log \[s\].
     SetDelay(Signal, f64),
-    /// Put channels right in one record alone (M14.16).
+    /// Set remedies for channels in a single record (M14.16).
     SetRemedies(usize, Vec<(Signal, ChannelRemedy)>),
-    /// Say what the stairs in a channel are.
+    /// Set the meaning of the steps in a staircase signal.
     SetHold(Signal, Hold),
-    /// Identify over another band \[rad/s\]; none takes the study's.
+    /// Set the identification band \[rad/s\]; `None` takes the study's.
     SetBand(Option<[f64; 2]>),
-    /// Identify by way of these columns, recorded references that drove the loop from outside (M14.15); none goes the direct way.
+    /// Identify with these columns as recorded references that excited the loop externally
+    /// (M14.15); an empty list selects the direct method.
     SetReferences(Vec<String>),
-    /// Try these orders, past windows and poles.
+    /// Set the orders, past windows and poles to try.
     SetSearch(SearchSpace),
-    /// Unfold what is searched, and go to the field of this name.
+    /// Expand the search settings and focus the field with this name.
     ShowAdvanced(&'static str),
-    /// Draw the response of a model to the same inputs, or not.
+    /// Draw the response of a model to the same inputs, or hide it.
     ShowTimeModel(TimeModel, bool),
-    /// Take every unit that no file says, in the records of all conditions, to be that of the dataset's channel.
+    /// Assume the dataset channel's unit wherever a file states none, in the records of all
+    /// conditions.
     TakeDatasetUnits,
-    /// Show a record, of whichever condition, whose columns are not clear, and its columns.
+    /// Show a record with unclear columns, from any condition, on the Columns page.
     ShowUnclear,
-    /// Make the part of a record between two times \[s\] a record of its own, in place of the whole.
+    /// Make the part of a record between two times \[s\] a record that replaces the whole.
     AddPart(usize, [f64; 2]),
-    /// Forget a part of a record.
+    /// Remove a part of a record.
     RemovePart(usize),
-    /// Whether dragging in the charts over time chooses parts.
+    /// Set whether dragging in the time charts selects parts.
     ChooseParts(bool),
-    /// Show the spectrogram of an input beside the records over time, or none.
+    /// Show the spectrogram of an input beside the records over time, or hide it.
     ShowSpectrogram(Option<usize>),
-    /// Show a page.
     Show(RecordsPage),
-    /// Identify models of the condition shown.
+    /// Identify models of the displayed condition.
     Identify,
-    /// Identify models of every condition that has records.
+    /// Identify models of every condition with records.
     IdentifyAll,
-    /// Give up what is being identified.
+    /// Stop the identification.
     Stop,
-    /// Put what was identified into the condition shown.
+    /// Put the identified models into the displayed condition.
     Take(OfferedModels),
-    /// Put what was identified into every condition that has something.
+    /// Put the identified models into every condition that has some.
     TakeAll(OfferedModels),
-    /// Put the models of the dataset's file back into the condition shown.
+    /// Restore the models of the dataset's file in the displayed condition.
     Return,
 }
 
-/// What became of a record that was read.
+/// Outcome of adding a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AddedRecord {
-    /// It is new.
     New,
-    /// It takes the place of the record that the same file held before.
+    /// It replaces the record previously read from the same file.
     ReadAgain,
-    /// It was there already.
+    /// It was loaded already.
     KnownAlready,
 }
 
-/// The records of one condition, and what was made of them.
+/// Records of one condition, and the models identified from them.
 #[derive(Clone, Debug, Default)]
 pub struct ConditionRecords {
-    /// The records.
     pub rows: Vec<LaidOutRecord>,
-    /// Index of the one shown.
+    /// Index of the displayed record.
     pub chosen: usize,
-    /// How inputs are prepared, where that is not as they are.
+    /// Preparation of the inputs, if changed.
     pub inputs: Vec<ChannelPreparation>,
-    /// How outputs are prepared.
+    /// Preparation of the outputs.
     pub outputs: Vec<ChannelPreparation>,
-    /// Band \[rad/s\]; none is the study's.
+    /// Band \[rad/s\]; `None` takes the study's.
     pub band: Option<[f64; 2]>,
-    /// Columns of recorded references that drove the loop from outside (M14.15).
+    /// Columns of recorded references that excited the loop externally (M14.15).
     pub references: Vec<String>,
-    /// What is tried in place of the defaults.
+    /// Search settings that replace the defaults.
     pub search: SearchSpace,
-    /// What was identified last, and from what.
+    /// Latest identification, with the job that produced it.
     pub found: Option<(
         IdentifyJob,
         Result<Arc<Identification>, IdentificationError>,
     )>,
-    /// Whether something else was said since.
+    /// Whether the settings have changed since.
     pub changed: bool,
-    /// End of the band \[rad/s\] that topics were brought to a clock for; none where that is not known of all.
+    /// End of the band \[rad/s\] used to choose the clock of resampled topics; `None` if unknown
+    /// for some records.
     pub clock_band_end: Option<f64>,
-    /// Records that the engineer leaves out himself, whether or not they have parts.
+    /// Records that the engineer has left out, whether or not they have parts.
     left_out: Vec<RecordSource>,
 }
 
 impl ConditionRecords {
-    /// Records of a condition of `dataset`.
+    /// Creates the records of a condition of `dataset`.
     pub fn new(rows: Vec<LaidOutRecord>, dataset: &Dataset) -> Self {
         let (inputs, outputs) = dataset.names_of_channels();
         let [inputs, outputs] =
@@ -246,10 +245,11 @@ impl ConditionRecords {
         true
     }
 
-    /// A part of a record as a record of its own behind it; the whole is no longer used, for evidence counts once.
+    /// Adds a part of a record as a record behind it; the whole is no longer used, because evidence
+    /// counts once.
     ///
     /// # Errors
-    /// In words: the record has no samples then.
+    /// A message, if the record has no samples at that time.
     pub fn add_part(
         &mut self,
         index: usize,
@@ -295,15 +295,16 @@ impl ConditionRecords {
         Ok(())
     }
 
-    /// Whether parts of a record are records of their own.
+    /// Returns whether some records are parts of this one.
     fn has_parts(&self, source: &RecordSource) -> bool {
         self.rows
             .iter()
             .any(|row| row.table.part_s.is_some() && row.table.source == *source)
     }
 
-    /// Adds a record that was read, unless it is there already. A record of a file that has changed since takes the place of the one
-    /// that was read before; `read_from` says where files lie. Another one of the same name gets a number behind it.
+    /// Adds a record unless it is already loaded. A record from a changed file replaces the earlier
+    /// one; `read_from` gives the paths of files. A different record with the same name gets a
+    /// number after its name.
     pub fn add_row(
         &mut self,
         mut row: LaidOutRecord,
@@ -349,7 +350,8 @@ impl ConditionRecords {
         AddedRecord::New
     }
 
-    /// Forgets a part of a record; the record that it was the last part of is used again, where the engineer did not leave it out.
+    /// Removes a part of a record. If it was the last part, the whole record is used again, unless
+    /// the engineer left it out.
     pub fn remove_part(&mut self, index: usize) -> bool {
         if self
             .rows
@@ -372,12 +374,12 @@ impl ConditionRecords {
         true
     }
 
-    /// What was identified, where that went well.
+    /// Returns the latest identification if it succeeded.
     pub fn identification(&self) -> Option<&Arc<Identification>> {
         self.found.as_ref()?.1.as_ref().ok()
     }
 
-    /// The rows that are used, with their indices.
+    /// Returns the used rows with their indices.
     pub fn used_rows(&self) -> impl Iterator<Item = (usize, &LaidOutRecord)> {
         self.rows
             .iter()
@@ -385,7 +387,8 @@ impl ConditionRecords {
             .filter(|(_, row)| row.used_flight().is_some())
     }
 
-    /// What speaks against what was identified, and of which rows where it is of some; nothing once something else was said.
+    /// Returns the cautions about the identification, each with the rows it concerns, if any; none
+    /// once the settings have changed.
     pub fn cautions(&self) -> impl Iterator<Item = (Vec<usize>, CautionNote)> {
         let found = self.identification().filter(|_| !self.changed);
         found
@@ -399,14 +402,14 @@ impl ConditionRecords {
             })
     }
 
-    /// What cautions of a code say, with the sign of a caution and in a few words.
+    /// Returns short marks, with a caution sign, for the cautions with a code.
     pub(super) fn marks(&self, code: &'static str) -> impl Iterator<Item = String> {
         self.cautions()
             .filter(move |(_, note)| note.code == code)
             .map(|(_, note)| format!("⚠ {}", note.mark()))
     }
 
-    /// Brings topics to the clock that the band takes which is identified over.
+    /// Resamples topics to the clock required by the identification band.
     pub fn follow_band(&mut self, channels: &RecordChannels) {
         self.clock_band_end = channels.resampling.band_end;
         for row in &mut self.rows {
@@ -417,17 +420,17 @@ impl ConditionRecords {
         }
     }
 
-    /// Shows a row, or the last where there is none of this index.
+    /// Displays a row, or the last row if the index is too large.
     pub fn choose(&mut self, index: usize) {
         self.chosen = index.min(self.rows.len().saturating_sub(1));
     }
 
-    /// The row of a record of the identification.
+    /// Returns the row of a record of the identification.
     pub fn row_of_record(&self, record: usize) -> Option<usize> {
         self.used_rows().nth(record).map(|(index, _)| index)
     }
 
-    /// How a channel is prepared, to change.
+    /// Returns the preparation of a channel for editing.
     pub fn channel_mut(&mut self, signal: &Signal) -> Option<&mut ChannelPreparation> {
         match signal.role {
             ChannelSide::Input => self.inputs.get_mut(signal.index),
@@ -435,7 +438,7 @@ impl ConditionRecords {
         }
     }
 
-    /// How the channels are prepared.
+    /// Returns the preparation of the channels.
     pub fn preparation(&self) -> Preparation {
         Preparation {
             inputs: self.inputs.clone(),
@@ -444,10 +447,11 @@ impl ConditionRecords {
         }
     }
 
-    /// The job of what is said now, over a band \[rad/s\]; `channels` are those that the records give.
+    /// Creates the identification job for the current settings, over a band \[rad/s\]; `channels`
+    /// are those in the records.
     ///
     /// # Errors
-    /// In words: no record is used, all are held out, or one lacks a reference.
+    /// A message, if no record is used, all are held out, or one lacks a reference.
     pub fn job(
         &self,
         condition: ConditionId,
@@ -469,7 +473,7 @@ impl ConditionRecords {
         Ok(IdentifyJob::new(condition, request))
     }
 
-    /// A record with the references behind its inputs.
+    /// Returns a record with the references added after its inputs.
     fn with_references(
         &self,
         row: &LaidOutRecord,
@@ -494,7 +498,7 @@ impl ConditionRecords {
         }
     }
 
-    /// What is taken into the condition, where something was identified.
+    /// Returns the models to put into the condition, if an identification succeeded.
     pub fn taken(
         &self,
         offered: OfferedModels,
@@ -513,18 +517,19 @@ impl ConditionRecords {
     }
 }
 
-/// What an edit of records is to be taken back to: the records of conditions as they are on the other side of it. An edit changes the
-/// records of few conditions; nothing of the others is kept.
+/// Target of an undo or redo step: the records of conditions on the other side of an edit. Only the
+/// conditions changed by the edit are included.
 #[derive(Clone, Debug, Default)]
 pub struct RecordsBefore {
-    /// Records by condition; none of a condition that was not looked at yet.
+    /// Records by condition; `None` for a condition without loaded records.
     pub conditions: BTreeMap<ConditionId, Option<ConditionRecords>>,
-    /// The files and folders that were added, where the edit changes them.
+    /// The added files and folders, if the edit changes them.
     pub sources: Option<Vec<PathBuf>>,
 }
 
 impl ConditionRecords {
-    /// These records, taken up again in place of `now`: what was identified since stays, as something of other records.
+    /// Returns these records, restored instead of `now`. Models identified since stay, marked as
+    /// results of other records.
     fn taken_up(mut self, now: Option<Self>) -> Self {
         let Some(now) = now else { return self };
         let job = |of: &Self| of.found.as_ref().map(|(job, _)| job.clone());
@@ -538,19 +543,18 @@ impl ConditionRecords {
     }
 }
 
-/// What the pages of the view draw: the records of the condition shown.
+/// Context for drawing a page: the records of the displayed condition.
 #[derive(Clone, Copy)]
 pub(super) struct Page<'a> {
-    /// What the window shows.
     pub(super) state: &'a State,
-    /// The records of the condition shown.
+    /// Records of the displayed condition.
     pub(super) records: &'a ConditionRecords,
-    /// The colours of the theme.
+    /// Colours of the theme.
     pub(super) palette: &'a Palette,
 }
 
 impl Page<'_> {
-    /// What was identified; where nothing was, that is said.
+    /// Returns the identification; shows a message if there is none.
     pub(super) fn identification_ui(&self, ui: &mut Ui) -> Option<&Identification> {
         let found = self.records.identification();
         if found.is_none() {
@@ -563,45 +567,44 @@ impl Page<'_> {
     }
 }
 
-/// What the Records view holds. Not saved: records stay in their files.
+/// State of the Records view. Not saved: records stay in their files.
 #[derive(Clone, Debug, Default)]
 pub struct RecordsState {
-    /// Records by condition; a condition without an entry was not looked at yet.
+    /// Records by condition; no entry means that the condition's records are not loaded yet.
     pub conditions: BTreeMap<ConditionId, ConditionRecords>,
-    /// Whether the dataset is the example, of which the program holds some records.
+    /// Whether the dataset is the example, which has embedded records.
     pub is_example: bool,
-    /// The page shown.
     pub page: RecordsPage,
-    /// How the table of conditions is sorted.
+    /// Sorting of the table of conditions.
     pub sorting: Sorting,
     /// Models whose responses to the same inputs are drawn.
     pub time_models: BTreeSet<TimeModel>,
-    /// Whether dragging in the charts over time chooses parts.
+    /// Whether dragging in the time charts selects parts.
     pub chooses_parts: bool,
-    /// The input whose spectrogram is drawn.
+    /// Input of the displayed spectrogram.
     pub spectrogram: Option<usize>,
-    /// The field of what is searched that is to be gone to.
+    /// Search field to focus.
     pub advanced_field: Option<&'static str>,
     /// Path of files, as typed.
     pub path: String,
-    /// The files and folders that were added.
+    /// The added files and folders.
     pub sources: Vec<PathBuf>,
-    /// Where the files of records lie that were read, by their SHA-256: of a file that has changed since, records are read again.
+    /// Paths of the files read, by SHA-256, to read records of changed files again.
     pub read_from: BTreeMap<String, PathBuf>,
-    /// The dataset that is to be made of the records shown.
+    /// Form for a dataset made from the displayed records.
     pub wanted: WantedDataset,
-    /// What is being read.
+    /// Name of the files being read.
     pub reading: Option<String>,
-    /// What could not be read, in words.
+    /// Messages about unreadable content.
     pub faults: Vec<String>,
-    /// What is being identified, and what is to be.
+    /// Running and waiting identification jobs.
     pub running: Vec<IdentifyJob>,
-    /// How many conditions were asked for since nothing was running.
+    /// Number of conditions requested since the queue was last empty.
     pub asked: usize,
 }
 
 impl RecordsState {
-    /// The records of these conditions as they are.
+    /// Returns a copy of the records of these conditions.
     pub fn before(&self, conditions: impl IntoIterator<Item = ConditionId>) -> RecordsBefore {
         let conditions = conditions
             .into_iter()
@@ -613,7 +616,7 @@ impl RecordsState {
         }
     }
 
-    /// Takes up the records on the other side of an edit, and gives those of this side.
+    /// Restores the records on the other side of an edit; returns the current ones.
     pub fn exchange(&mut self, before: RecordsBefore) -> RecordsBefore {
         let mut now = RecordsBefore::default();
         for (id, records) in before.conditions {
@@ -630,7 +633,7 @@ impl RecordsState {
         now
     }
 
-    /// The records whose columns are not clear for want of a unit: their channels, how many records and of how many conditions.
+    /// Returns the channels that lack a unit, with the numbers of affected records and conditions.
     pub fn open_units(&self) -> Option<OpenUnits> {
         let mut open = OpenUnits::default();
         for (id, of) in &self.conditions {
@@ -658,17 +661,17 @@ impl RecordsState {
         (open.records > 0).then_some(open)
     }
 
-    /// The job of a condition that is under way or waits.
+    /// Returns the running or waiting job of a condition.
     pub fn running(&self, condition: ConditionId) -> Option<&IdentifyJob> {
         self.running.iter().find(|job| job.condition == condition)
     }
 
-    /// The job under way, once it has told of a step.
+    /// Returns the running job, once it has reported a step.
     pub fn under_way(&self) -> Option<&IdentifyJob> {
         self.running.iter().find(|job| !job.told().step.is_empty())
     }
 
-    /// What is to be identified, that of the condition shown first.
+    /// Returns the identification jobs, that of the displayed condition first.
     pub fn by_urgency(&self, shown: ConditionId) -> Vec<IdentifyJob> {
         let mut jobs = self.running.clone();
         jobs.sort_by_key(|job| job.condition != shown);
@@ -676,39 +679,38 @@ impl RecordsState {
     }
 }
 
-/// Units that no file says, in the records of all conditions.
+/// Missing units in the records of all conditions.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct OpenUnits {
-    /// The channels with their units in the dataset.
+    /// Channels with their units in the dataset.
     pub channels: Vec<(String, String)>,
-    /// How many records lack some of them.
+    /// Number of records that lack some of these units.
     pub records: usize,
-    /// Of how many conditions.
+    /// Number of these records' conditions.
     pub conditions: usize,
-    /// The first of these.
+    /// The first of these conditions.
     pub first: Option<ConditionId>,
 }
 
-/// A dataset that is to be made of records, as typed.
+/// Form for a dataset made from records, as typed.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct WantedDataset {
-    /// Inputs, as [`ChannelList`] reads them.
+    /// Inputs, in the syntax of [`ChannelList`].
     pub inputs: String,
-    /// Outputs, in the same way.
+    /// Outputs, in the same syntax.
     pub outputs: String,
     /// Lower and upper end of the band \[rad/s\].
     pub band: [String; 2],
-    /// Path of the dataset.
     pub path: String,
-    /// The columns of the records, in words.
+    /// Description of the records' columns.
     pub columns: Vec<String>,
-    /// Why it could not be made, in words.
+    /// Reasons why the dataset could not be made.
     pub problems: Vec<String>,
 }
 
 impl WantedDataset {
-    /// What is proposed for the records of a condition: the channels that the documentation of a system knows; others are to be
-    /// typed.
+    /// Creates a proposal from the records of a condition: the channels known from the
+    /// documentation of their system; others must be typed.
     pub fn proposed(records: &ConditionRecords, band: Band, path: String) -> Self {
         let tables = || records.rows.iter().map(|row| row.table.as_ref());
         let known = |inputs: bool| {
@@ -729,7 +731,7 @@ impl WantedDataset {
             names.retain(|name| seen.insert(name.clone()));
             names.join(", ")
         };
-        // Topics that no channel has joined yet are records of their own, under the names of their variables.
+        // Topics not yet joined to a channel are separate records, named after their variables.
         let words = |table: &RecordTable, column: &RecordColumn| {
             let topic = table
                 .source
@@ -755,10 +757,10 @@ impl WantedDataset {
         }
     }
 
-    /// The channels and the band that are asked for.
+    /// Parses the requested channels and the band.
     ///
     /// # Errors
-    /// In words, what is no channel or no band.
+    /// Messages about invalid channels or an invalid band.
     pub fn channels(&self) -> Result<(RecordChannels, Band), String> {
         let rules = |side: &str, text: &str| {
             let list: ChannelList = text.parse().map_err(|error| format!("{side}: {error}"))?;

@@ -1,4 +1,5 @@
-//! What was identified: the measured response under the models, the poles over the order, and those recommended.
+//! Results of the identification: the measured response with the models, the poles over the order,
+//! and the recommended poles.
 
 use std::sync::Arc;
 
@@ -27,37 +28,39 @@ use crate::view::plot::chart::{
 };
 use crate::view::state::State;
 
-/// Frequencies of a model's curve.
+/// Number of frequencies of a model's curve.
 const POINTS: usize = 200;
-/// How far curves reach beyond the band.
+/// Factor by which curves extend beyond the band.
 const BEYOND: f64 = 1.5;
 
-/// A response by its frequencies \[rad/s\], magnitudes \[dB\] and unwrapped phases \[deg\].
+/// A response as frequencies \[rad/s\], magnitudes \[dB\] and unwrapped phases \[deg\].
 type Curve = Vec<[f64; 3]>;
 
-/// What is drawn of one pair.
+/// The curves of one pair.
 #[derive(Clone, Debug, Default)]
 struct DrawnResponse {
-    /// The measured points, standard deviations \[dB, deg\] of each, and whether it is trusted.
+    /// The measured points, their standard deviations \[dB, deg\], and whether each is trusted.
     measured: Vec<([f64; 3], [f64; 2], bool)>,
     recommended: Curve,
-    /// Standard deviations \[dB, deg\] of the same.
+    /// Standard deviations \[dB, deg\] of the recommended curve.
     bands: Vec<[f64; 2]>,
     unrefined: Curve,
-    /// Where the recommended model leaves the measured points \[rad/s\] (M14.17).
+    /// Intervals in which the recommended model deviates from the measured points \[rad/s\]
+    /// (M14.17).
     left: Vec<[f64; 2]>,
-    /// Where the reference did not excite the input \[rad/s\] (M14.15).
+    /// Intervals in which the reference did not excite the input \[rad/s\] (M14.15).
     unexcited: Vec<[f64; 2]>,
 }
 
-/// The most that is drawn of a bar or a band on either side \[dB, deg\]: what is not known would hide what is.
+/// Maximum half-length of drawn bars and bands \[dB, deg\]: large uncertainties would hide the
+/// rest.
 const MOST_HALF: [f64; 2] = [20.0, 180.0];
 
-/// Half height of the mark where the model leaves the points \[dB, deg\].
+/// Half height of the mark at deviations from the points \[dB, deg\].
 const LEFT_DB: f64 = 2.0;
 const LEFT_DEG: f64 = 15.0;
 
-/// Magnitude above, phase below; the first model while it is being refined.
+/// Shows magnitude above and phase below; during refinement, the initial model.
 pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
         state,
@@ -123,7 +126,8 @@ pub(super) fn response_ui(ui: &mut Ui, page: Page<'_>) {
     }
 }
 
-/// What speaks against the response shown, in a few words each: of the pair, of its input, its output, or of all.
+/// Returns short marks for cautions about the displayed response: its pair, input or output, or all
+/// responses.
 fn marks(Page { state, records, .. }: Page<'_>) -> impl Iterator<Item = &'static str> {
     let dataset = state.dataset();
     let pair = state.display.pair;
@@ -143,7 +147,8 @@ fn marks(Page { state, records, .. }: Page<'_>) -> impl Iterator<Item = &'static
         .map(|note| note.mark())
 }
 
-/// Where in frequency a caution of all responses holds: at the lower end of short records, and beyond what any input shows.
+/// Returns the frequency intervals of cautions about all responses: the lower end for short
+/// records, and frequencies that no input excites.
 fn spans(
     Page {
         records, palette, ..
@@ -166,7 +171,7 @@ fn spans(
     ends.map(move |ends| ChartSpan { ends, color })
 }
 
-/// Half of the 95 % interval of a magnitude or a phase, as far as it is drawn.
+/// Returns half of the 95 % interval of a magnitude or a phase, limited to the drawn length.
 fn half_drawn(sd: &[f64; 2], part: usize) -> f64 {
     (TWO_SIDED_95 * sd[part - 1]).min(MOST_HALF[part - 1])
 }
@@ -209,7 +214,7 @@ fn legend_ui(ui: &mut Ui, drawn: &DrawnResponse, palette: &Palette) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 14.0;
         for (key, text, color) in legend.into_iter().chain(unexcited) {
-            // One piece: no line ends between a sample and its words.
+            // In one piece: no line break between a sample and its label.
             let words = text_width(ui, text, small());
             let (rect, response) =
                 ui.allocate_exact_size(vec2(SAMPLE + 4.0 + words, 14.0), Sense::hover());
@@ -225,7 +230,7 @@ fn legend_ui(ui: &mut Ui, drawn: &DrawnResponse, palette: &Palette) {
 /// Length of a sample in the legend \[pt\].
 const SAMPLE: f32 = 18.0;
 
-/// What stands before words of the legend.
+/// Sample in front of a legend label.
 #[derive(Clone, Copy)]
 enum Key {
     Line { dashed: bool },
@@ -292,7 +297,8 @@ fn chart_of<'a>(
         line(&drawn.unrefined, palette.accent, true),
         line(&drawn.recommended, palette.identified, false),
     ];
-    // Where the model leaves the points, or the reference shows nothing: a bar about the curve.
+    // A bar about the curve where the model deviates from the points or the reference does not
+    // excite the input.
     let marked = drawn.left.iter().map(|span| (span, palette.warning));
     for (span, color) in marked.chain(drawn.unexcited.iter().map(|span| (span, palette.dim_text))) {
         let near = drawn
@@ -392,7 +398,8 @@ fn drawn(
     }
 }
 
-/// Where the coherence of an input with the reference is too low for a response.
+/// Returns the intervals in which the coherence of an input with the reference is too low for a
+/// response.
 fn unexcited(points: &[EstimatePoint], at: (usize, usize)) -> Vec<[f64; 2]> {
     let is_low = |point: &EstimatePoint| point.partial_coherence[at] < TRUSTED_COHERENCE;
     let runs = points
@@ -402,7 +409,7 @@ fn unexcited(points: &[EstimatePoint], at: (usize, usize)) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The response of a model, the phase on the branch nearest to `reference`.
+/// Returns the response of a model, with the phase on the branch nearest to `reference`.
 fn curve(model: &StateSpace, omegas: &[f64], pair: Pair, reference: Option<[f64; 3]>) -> Curve {
     let response = evaluate(model, omegas);
     let values = omegas
@@ -426,7 +433,8 @@ fn model_curve(
     )
 }
 
-/// Magnitude and phase, the phase unwrapped and on the branch nearest to `reference`, a point of another curve.
+/// Returns magnitude and unwrapped phase, on the branch nearest to `reference`, a point of another
+/// curve.
 fn shape(values: impl Iterator<Item = (f64, Complex<f64>)>, reference: Option<[f64; 3]>) -> Curve {
     let (omega, values): (Vec<f64>, Vec<Complex<f64>>) = values.unzip();
     let ResponseShape {
@@ -445,7 +453,8 @@ fn shape(values: impl Iterator<Item = (f64, Complex<f64>)>, reference: Option<[f
         .collect()
 }
 
-/// Moduli of the poles over frequency, one row an order; crosses stay where the order before has them.
+/// Shows moduli of the poles over frequency, one row for each order; crosses mark poles that agree
+/// with those of the order two below.
 pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
     let Page {
         state,
@@ -495,7 +504,7 @@ pub(super) fn stabilisation_ui(ui: &mut Ui, page: Page<'_>) {
     chart_ui(ui, area, &chart, palette);
 }
 
-/// The s-plane with an error bar on every pole.
+/// Shows the s-plane with an error bar on every pole.
 pub(super) fn identified_poles_ui(ui: &mut Ui, page: Page<'_>) {
     let palette = page.palette;
     let Some(found) = page.identification_ui(ui) else {
@@ -523,7 +532,7 @@ pub(super) fn identified_poles_ui(ui: &mut Ui, page: Page<'_>) {
                 .iter()
                 .filter(move |pole| pole.determined == determined)
         };
-        // A bar of a pole that is not determined would hide the others.
+        // The bar of an undetermined pole would hide the others.
         let bar = |sd: f64| if determined { TWO_SIDED_95 * sd } else { 0.0 };
         let place = |of: &PoleEstimate| [of.pole.re, of.pole.im, bar(of.sd_im)];
         chart.marks.push(ChartMarks {

@@ -1,4 +1,4 @@
-//! Models beside a record in time: which are asked for, what they give, and how well they fit.
+//! Comparison of models with a record in the time domain: model selection, responses and fit.
 
 use std::sync::Arc;
 
@@ -25,15 +25,15 @@ pub enum TimeModel {
     Identified,
     /// The physics representative.
     Physics,
-    /// The same, corrected.
+    /// The corrected physics representative.
     Corrected,
 }
 
 impl TimeModel {
-    /// Every one.
+    /// All models, in display order.
     pub const ALL: [Self; 3] = [Self::Identified, Self::Physics, Self::Corrected];
 
-    /// Its name.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Identified => "identified",
@@ -51,23 +51,22 @@ impl TimeModel {
     }
 }
 
-/// A model beside the record shown.
+/// A model compared with the displayed record.
 pub(super) struct Simulated<'a> {
-    /// Which.
     pub(super) model: TimeModel,
-    /// The colour of its lines.
+    /// Colour of its lines.
     pub(super) color: Color32,
-    /// What it gives, or in words why it gives nothing; none while that is computed.
+    /// Its response, or the reason why there is none; `None` during the computation.
     pub(super) result: Option<&'a Result<Arc<Validation>, String>>,
 }
 
 impl Simulated<'_> {
-    /// What it gives, once that is computed.
+    /// Returns the response once it is computed.
     pub(super) fn validation(&self) -> Option<&Validation> {
         Some(self.result?.as_ref().ok()?.as_ref())
     }
 
-    /// How well it fits an output; none where that is not known.
+    /// Describes the fit of an output; `None` if unknown.
     pub(super) fn fit_words(&self, output: usize) -> Option<String> {
         let fit = self
             .validation()?
@@ -78,7 +77,7 @@ impl Simulated<'_> {
         Some(format!("{fit:.1} %"))
     }
 
-    /// Says why it gives nothing, or that it is being computed.
+    /// Shows why there is no response, or that it is being computed.
     pub(super) fn absence_ui(&self, ui: &mut Ui, state: &State, palette: &Palette) {
         let (words, color) = match self.result {
             Some(Ok(_)) => return,
@@ -89,7 +88,7 @@ impl Simulated<'_> {
         ui.add(Label::new(RichText::new(words).size(SMALL_SIZE).color(color)).wrap());
     }
 
-    /// The lines of an output, one a window, each from an initial state of its own.
+    /// Returns the lines of an output, one per window, each from its own initial state.
     pub(super) fn lines(&self, ui: &Ui, output: usize) -> Vec<ChartLine> {
         let Some(Ok(validation)) = self.result else {
             return Vec::new();
@@ -122,7 +121,8 @@ fn simulated_points(validation: &Validation, output: usize) -> Vec<Arc<[[f64; 2]
     windows.collect()
 }
 
-/// The models asked for beside the record shown, with the job that computes what each gives.
+/// Returns the models selected for the displayed record, with the jobs that compute their
+/// responses.
 fn jobs(state: &State) -> Vec<(TimeModel, SimulationJob)> {
     let Some(records) = state.records.conditions.get(&state.condition().id()) else {
         return Vec::new();
@@ -150,12 +150,12 @@ fn jobs(state: &State) -> Vec<(TimeModel, SimulationJob)> {
     state.records.time_models.iter().filter_map(of).collect()
 }
 
-/// What the models asked for beside the record shown wait for.
+/// Returns the jobs of the models selected for the displayed record.
 pub fn simulation_jobs(state: &State) -> Vec<SimulationJob> {
     jobs(state).into_iter().map(|(_, job)| job).collect()
 }
 
-/// The models asked for beside the record shown.
+/// Returns the models selected for the displayed record.
 pub(super) fn simulated<'a>(state: &'a State, palette: &Palette) -> Vec<Simulated<'a>> {
     let of = |(model, job): (TimeModel, SimulationJob)| {
         let known = state
@@ -172,7 +172,7 @@ pub(super) fn simulated<'a>(state: &'a State, palette: &Palette) -> Vec<Simulate
     jobs(state).into_iter().map(of).collect()
 }
 
-/// A model; none where it is not there, or is not one of continuous time.
+/// Returns a model's state space; `None` if the model is unavailable or not continuous-time.
 fn state_space(state: &State, records: &ConditionRecords, model: TimeModel) -> Option<StateSpace> {
     let plain = |of: &StateSpace| of.timing().is_plain().then(|| of.clone());
     if model == TimeModel::Identified {
@@ -195,7 +195,7 @@ fn state_space(state: &State, records: &ConditionRecords, model: TimeModel) -> O
     }
 }
 
-/// Which models are drawn beside the record.
+/// Selects the models drawn beside the record.
 pub(super) fn time_models_ui(
     ui: &mut Ui,
     state: &State,
@@ -215,10 +215,10 @@ pub(super) fn time_models_ui(
     }
 }
 
-/// Theil's coefficient below which a model is a good one (M14, section 6).
+/// Theil's coefficient below which a model is good (M14, section 6).
 const GOOD_THEIL: f64 = 0.25;
 
-/// Tables of the fit: by record, by output, and in time.
+/// Shows tables of the fit: by record, by output, and in time.
 pub(super) fn fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page { state, palette, .. } = page;
     ScrollArea::vertical()
@@ -266,7 +266,7 @@ pub(super) fn fit_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
         });
 }
 
-/// Fit and Theil's coefficient of each model asked for, of the record shown.
+/// Shows the fit and Theil's coefficient of each selected model for the displayed record.
 fn time_ui(ui: &mut Ui, page: Page<'_>, commands: &mut Vec<Command>) {
     let Page {
         state,

@@ -1,4 +1,4 @@
-//! What the correction is worth, condition by condition.
+//! Benefit of the correction, condition by condition.
 
 use egui::{Align, Layout, Rect, RichText, Sense, Ui, Vec2, vec2};
 
@@ -22,7 +22,7 @@ use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 use crate::view::tables::{TableLook, table_ui};
 
-/// What is assessed, and how it is shown. Laid out from right to left.
+/// Draws the selection of the assessed quantity and of its form, from right to left.
 pub fn assessment_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.display.assessed;
     let mut chosen = shown;
@@ -116,7 +116,8 @@ fn choices_ui(ui: &mut Ui, chosen: &mut AssessedFigures) {
     choice_ui(ui, "Responses assessed", &mut chosen.pairs, &pairs);
 }
 
-/// The change of J of the responses chosen in every condition (Figures 8 to 19), summed up in a sentence.
+/// Draws the change of J of the selected responses in every condition (Figures 8 to 19), with a
+/// summary in a sentence.
 pub fn assessment_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -178,16 +179,17 @@ pub fn assessment_view_ui(
     state.display.figures.insert(View::Assessment, view);
 }
 
-/// A plot is never smaller \[pt\].
+/// Least size of a plot \[pt\].
 const LEAST_PLOT: Vec2 = vec2(190.0, 150.0);
-/// Width of a bar, where conditions are 1 apart.
+/// Width of a bar, in units of the distance between conditions.
 const BAR: f64 = 0.6;
-/// How much fainter the phase part of a bar is \[%\].
+/// Colour strength of the phase part of a bar, relative to the magnitude part \[%\].
 const PHASE_PERCENT: u8 = 45;
-/// Space above and below the bars, as a part of their height, and that of a number from its bar.
+/// Space above and below the bars as a share of their height, and distance of a number from its
+/// bar.
 const MARGINS: [f64; 2] = [0.12, 0.05];
 
-/// What the bars mean, laid out from right to left.
+/// Draws the key of the bars, from right to left.
 fn key_ui(ui: &mut Ui, palette: &Palette) {
     let faint = palette
         .dim_text
@@ -216,7 +218,7 @@ fn key_ui(ui: &mut Ui, palette: &Palette) {
     );
 }
 
-/// The change of J of each response shown, bar by bar.
+/// Change of J of each displayed response, as bars.
 struct AssessmentPlots<'a> {
     state: &'a State,
     table: &'a AssessmentTable,
@@ -224,7 +226,7 @@ struct AssessmentPlots<'a> {
 }
 
 impl AssessmentPlots<'_> {
-    /// The change in each condition; none where it is left out.
+    /// Returns the change in each condition; `None` for excluded conditions.
     fn changes(&self, pair: Pair) -> impl Iterator<Item = (ConditionId, Option<CostChange>)> + '_ {
         self.state
             .dataset()
@@ -233,8 +235,8 @@ impl AssessmentPlots<'_> {
             .map(move |of| (of.id(), self.table.change(of.id(), pair)))
     }
 
-    /// Both parts of each change stand on one another where they are of one sign, else on either side of zero; a line across says their
-    /// sum.
+    /// Builds the panel of a response. The two parts of a change are stacked if they have the same
+    /// sign, otherwise they lie on either side of zero; a line across marks their sum.
     fn panel(&self, pair: Pair) -> Panel {
         let found: Vec<(f64, CostChange)> = self
             .changes(pair)
@@ -346,7 +348,7 @@ impl AssessmentPlots<'_> {
             .with_all(bars);
         let panel = panel.with(Rule::horizontal(0.0, Stroke::solid(Color::DIM, 0.6)));
         let panel = panel.with(totals);
-        // The numbers of every bar would lie over one another: the status line has the others.
+        // Numbers on every bar would overlap; the status line shows the others.
         let most = found
             .iter()
             .max_by(|a, b| a.1.total().abs().total_cmp(&b.1.total().abs()))
@@ -416,7 +418,7 @@ impl FigureWords for AssessmentPlots<'_> {
     }
 }
 
-/// The table, with a warning where J rises. A click shows its response and its condition.
+/// Draws the table, with a warning if J rises. A click selects the response and the condition.
 fn text_table_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -447,21 +449,20 @@ fn text_table_ui(
     state.display.assessment_sorting = sorting;
 }
 
-/// Which responses an assessment shows.
+/// Responses shown by an assessment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AssessedPairs {
-    /// The on-axis responses (Figures 8 to 12).
+    /// On-axis responses (Figures 8 to 12).
     #[default]
     OnAxis,
     /// All others (Figures 13 to 19).
     OffAxis,
-    /// The response in focus.
+    /// Response in focus.
     Focused,
-    /// Every response.
     All,
 }
 
-/// Which part of J the table of an assessment shows.
+/// Part of J shown by the table of an assessment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CostPart {
     /// `Delta J`.
@@ -474,7 +475,7 @@ pub enum CostPart {
 }
 
 impl CostPart {
-    /// Its symbol.
+    /// Returns the symbol.
     pub fn symbol(self) -> &'static str {
         match self {
             Self::Total => "ΔJ",
@@ -492,24 +493,22 @@ impl CostPart {
     }
 }
 
-/// What the assessment shows, and how.
+/// Selection and form of the assessment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AssessedFigures {
-    /// Which physics model.
     pub model: AssessedModel,
-    /// Under which correction.
+    /// Correction applied to the model.
     pub correction: AssessedCorrection,
-    /// How squared errors are averaged; as the settings say where it is none.
+    /// Average of squared errors; `None` follows the settings.
     pub average: Option<CostAverage>,
-    /// Which responses.
     pub pairs: AssessedPairs,
-    /// Whether it is a table in place of bars.
+    /// Whether a table is shown instead of bars.
     pub as_table: bool,
-    /// Which part of J the table shows.
+    /// Part of J in the table.
     pub part: CostPart,
 }
 
-/// What is to be assessed, and how.
+/// Returns the assessment to compute.
 pub fn assessment_choice(state: &State) -> AssessmentChoice {
     let AssessedFigures {
         model,
@@ -524,7 +523,7 @@ pub fn assessment_choice(state: &State) -> AssessmentChoice {
     }
 }
 
-/// The responses that the assessment shows, in the order of the matrix.
+/// Returns the assessed responses, in the order of the matrix.
 pub fn assessed_pairs(state: &State) -> Vec<Pair> {
     let measuring = state.dataset().measuring_pairs();
     let is_in = |pair: &Pair| match state.display.assessed.pairs {
@@ -536,7 +535,7 @@ pub fn assessed_pairs(state: &State) -> Vec<Pair> {
     measuring.pairs().filter(is_in).collect()
 }
 
-/// Why a response of a condition has no change of J.
+/// Returns the reason why a response of a condition has no change of J.
 fn why_not(table: &AssessmentTable, condition: ConditionId, pair: Pair) -> String {
     let left_out = table
         .left_out
@@ -558,7 +557,8 @@ fn why_not(table: &AssessmentTable, condition: ConditionId, pair: Pair) -> Strin
     why.unwrap_or("not computed").to_owned()
 }
 
-/// The responses shown down, the conditions across, with the change of J in each cell; signed.
+/// Builds the table with the responses in rows, the conditions in columns, and the signed change of
+/// J in each cell.
 pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
     let part = state.display.assessed.part;
     let condition = |of: &std::sync::Arc<Condition>| (of.id(), of.id().to_string());
@@ -574,7 +574,7 @@ pub fn assessment_text_table(state: &State, table: &AssessmentTable) -> Table {
     )
 }
 
-/// The assessment in sentences: how much came closer, and what was left out.
+/// Summarises the assessment in sentences: number of improved responses, and omissions.
 pub fn assessment_sentences(state: &State, table: &AssessmentTable) -> Vec<String> {
     let pairs = assessed_pairs(state);
     let marked = state

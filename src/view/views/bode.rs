@@ -1,5 +1,5 @@
-//! The views of responses over frequency: the focused one, large, what the fit sees of it, the same response in every condition, and every
-//! response of a condition, small.
+//! Views of responses over frequency: the response in focus, large; its errors as used by the fit;
+//! the same response in every condition; and every response of a condition, small.
 
 use egui::{Align2, Pos2, Rect, Ui, vec2};
 
@@ -30,7 +30,7 @@ use crate::view::plot::{BodeCurve, BodeScene, CurveId, Pane, Role, bode_ui};
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
-/// Magnitude and phase of the response in focus, of every model of the condition shown.
+/// Draws magnitude and phase of the response in focus, for every model of the displayed condition.
 pub fn bode_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -89,7 +89,8 @@ pub fn bode_view_ui(
     state.display.drawn = curves;
 }
 
-/// Where the curves are drawn only to show the price of leads: none without leads (M15.6).
+/// Returns the region where curves only illustrate the price of leads; `None` without leads
+/// (M15.6).
 fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> {
     let leads = &state.shown()?.compensated.as_ref()?.leads;
     leads.filters().iter().find_map(|(_, filter)| *filter)?;
@@ -120,7 +121,8 @@ fn invalid_region(state: &State, curves: &[BodeCurve]) -> Option<InvalidRegion> 
     })
 }
 
-/// The phase between the corrected and the identified model, within the band \[rad/s\].
+/// Returns the area between the phases of the corrected and of the identified model, within the
+/// band \[rad/s\].
 fn missing_phase(curves: &[BodeCurve], (min, max): (f64, f64)) -> Option<BodeBand> {
     let of_role = |role: Role| {
         curves
@@ -147,7 +149,7 @@ fn missing_phase(curves: &[BodeCurve], (min, max): (f64, f64)) -> Option<BodeBan
     })
 }
 
-/// J of magnitude and of phase before and after the correction, and what is left in words.
+/// Returns J of magnitude and phase before and after the correction, and the remainder in words.
 fn notes(state: &State, pair: Pair) -> Option<[PaneNote; 2]> {
     let shown = state.shown()?;
     let change = shown.cost[pair]?;
@@ -189,7 +191,8 @@ fn unit_words(state: &State, omega: f64) -> String {
     format!("{} {}", number(unit.of_omega(omega)), unit.symbol())
 }
 
-/// The errors of the response in focus, of every physics model kept, beside those that the correction leaves.
+/// Draws the errors of the response in focus for every kept physics model, beside the errors left
+/// by the correction.
 pub fn error_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -227,7 +230,7 @@ pub fn error_view_ui(
     state.display.drawn_errors = curves;
 }
 
-/// How differences of phases are read.
+/// Draws the selection of the unit of phase differences.
 pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let mut unit = state.display.curves.phase_error;
     let units = [
@@ -244,7 +247,7 @@ pub fn error_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
     }
 }
 
-/// What stands where there is no error to draw.
+/// Returns the message shown instead of missing errors.
 pub fn error_message(state: &State, pair: Pair) -> String {
     match state.shown() {
         Some(shown) if shown.comparison.undefined[pair] == Some(Undefined::NotCoherent) => {
@@ -267,11 +270,11 @@ pub fn error_message(state: &State, pair: Pair) -> String {
     }
 }
 
-/// Steps of the key of airspeeds.
+/// Steps of the colour key for airspeeds.
 const KEY_STEPS: u8 = 24;
 const KEY_SIZE: egui::Vec2 = vec2(96.0, 8.0);
 
-/// Which model of each condition, and what the colours mean. Laid out from right to left.
+/// Draws the selection of the model in each condition and the colour key, from right to left.
 pub fn across_header_ui(
     ui: &mut Ui,
     state: &State,
@@ -297,7 +300,7 @@ pub fn across_header_ui(
     ui.label(palette.small(format!("{least:.0} kt")));
 }
 
-/// The colours from the slowest condition to the fastest.
+/// Paints the colours from the slowest condition to the fastest.
 fn paint_key(ui: &Ui, rect: Rect, palette: &Palette) {
     let width = rect.width() / f32::from(KEY_STEPS);
     for step in 0..KEY_STEPS {
@@ -312,7 +315,8 @@ fn paint_key(ui: &Ui, rect: Rect, palette: &Palette) {
     }
 }
 
-/// Magnitude and phase of the response in focus, of one model of every condition; a click shows a condition.
+/// Draws magnitude and phase of the response in focus for a model of every condition; a click
+/// selects a condition.
 pub fn across_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -356,14 +360,14 @@ pub fn across_view_ui(
     }
 }
 
-/// Fits the plot of several conditions to the curves of another response or of other models, as soon as these are there.
+/// Fits the plot across conditions once the curves of another response or model are available.
 fn fit_across(state: &mut State) {
     let asked = (state.display.pair, state.display.across_role);
     if state.display.across_fitted == Some(asked) {
         return;
     }
     state.display.across.request_refit();
-    // Until then the curves of the models that were shown before are drawn.
+    // Until then the previous models' curves are drawn.
     let models = across_job(state).models;
     if state
         .results
@@ -375,10 +379,10 @@ fn fit_across(state: &mut State) {
     }
 }
 
-/// Frequencies of each curve.
+/// Number of frequencies of each curve.
 const POINTS: usize = 300;
 
-/// The responses that the view needs: one model of each condition.
+/// Returns the job of the responses needed by the view: a model of each condition.
 pub fn across_job(state: &State) -> AcrossJob {
     let grid = (display_band(state.study.settings.band), POINTS);
     AcrossJob::of(
@@ -389,7 +393,8 @@ pub fn across_job(state: &State) -> AcrossJob {
     )
 }
 
-/// The response in focus of one model of each condition; none until their responses are there.
+/// Returns the curves of the response in focus for a model of each condition; empty until the
+/// responses are available.
 pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     let Some(curves) = state.across().cloned() else {
         return Vec::new();
@@ -408,7 +413,7 @@ pub fn across_curves(state: &mut State) -> Vec<BodeCurve> {
     drawn
 }
 
-/// Every response of the condition shown; a click brings it into focus.
+/// Draws every response of the displayed condition; a click brings a response into focus.
 pub fn overview_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -460,7 +465,7 @@ pub fn overview_view_ui(
     }
 }
 
-/// "J 75→61": of the physics representative as it is, and of the corrected one with all that is done to it.
+/// Returns "J 75→61": J of the uncorrected physics representative and of the fully corrected model.
 fn cost_note(state: &State, pair: Pair) -> String {
     let cost = state.shown().and_then(|shown| {
         shown.before_couplings().representative.cost[pair]

@@ -1,4 +1,4 @@
-//! Channel gains against airspeed.
+//! Channel gains over airspeed.
 
 use egui::{Align2, FontId, Rect, Ui, Vec2, pos2, vec2};
 
@@ -18,7 +18,7 @@ use crate::view::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figur
 use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 
-/// Gains or delays, over airspeed or over conditions. Laid out from right to left.
+/// Draws the selection of gains or delays and of airspeed or conditions, from right to left.
 pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.display.channel_values;
     let (mut measure, mut across) = shown;
@@ -52,19 +52,20 @@ pub fn channels_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command
 
 const HEADING_HEIGHT: f32 = 20.0;
 const GAP: f32 = 8.0;
-/// A plot is never smaller \[pt\].
+/// Least size of a plot \[pt\].
 const LEAST_PLOT: Vec2 = vec2(122.0, 120.0);
 
-/// What the plots of channels remember between frames.
+/// State of the channel plots between frames.
 #[derive(Clone, Debug, Default)]
 pub struct ChannelsView {
-    /// Of the input channels.
+    /// Input channels.
     pub inputs: FigureView,
-    /// Of the output channels.
+    /// Output channels.
     pub outputs: FigureView,
 }
 
-/// Gain or delay of every channel against airspeed (Figures 3 and 4): inputs above, outputs below, on the same axes.
+/// Draws gain or delay of every channel over airspeed (Figures 3 and 4): inputs above, outputs
+/// below, on the same axes.
 pub fn channels_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -89,7 +90,7 @@ pub fn channels_view_ui(
         figure_ui(ui, &scene, &mut view.inputs, palette);
     }
     let rect = ui.available_rect_before_wrap();
-    // As much height as their rows need.
+    // Each half gets the height required by its rows.
     let half = vec2(rect.width(), 0.5 * rect.height());
     let [above, below] = [&inputs, &outputs].map(|figure| rows(figure, half, LEAST_PLOT) as f32);
     let (upper, lower) =
@@ -136,7 +137,8 @@ pub fn channels_view_ui(
     state.display.channels = view;
 }
 
-/// One plot for each channel, inputs first: its gain or delay in each condition's optimum, and the schedule.
+/// Builds a plot for each channel, inputs first: gain or delay in each condition's optimum, and the
+/// schedule.
 pub fn channel_plots(state: &State) -> GainPlots<'_> {
     let (measure, across) = state.display.channel_values;
     let channels = if state.analysis().is_some() {
@@ -167,7 +169,7 @@ pub fn channel_plots(state: &State) -> GainPlots<'_> {
     }
 }
 
-/// How sure gains and delays are, where that is shown.
+/// Returns the uncertainty of gains and delays, if error bars are shown.
 pub(super) fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
     state
         .uncertainty()
@@ -175,10 +177,10 @@ pub(super) fn shown_uncertainty(state: &State) -> Option<&Uncertainty> {
         .map(AsRef::as_ref)
 }
 
-/// Plots of gains or delays, and what they are of.
+/// Plots of gains or delays, with their subjects.
 pub struct GainPlots<'a> {
     pub(super) state: &'a State,
-    /// The plots, with one panel each.
+    /// Plots with a single panel each.
     pub figure: Figure,
     pub(super) quantities: Vec<GainQuantity>,
     pub(super) across: Across,
@@ -300,7 +302,7 @@ impl FigureWords for GainPlots<'_> {
     }
 }
 
-/// What a click in a plot over airspeed asks for.
+/// Returns the command of a click in a plot over airspeed.
 pub(super) fn gain_command(state: &State, event: FigureEvent) -> Option<Command> {
     match event {
         FigureEvent::Clicked(_, MarkId::Condition(condition), keys) if keys.command => {
@@ -325,7 +327,7 @@ pub(super) fn gain_command(state: &State, event: FigureEvent) -> Option<Command>
     }
 }
 
-/// How sure a figure is, in words: "± 3.3 % (90 %): trim 78 %, identification 22 % of the variance".
+/// Describes an error bar: "± 3.3 % (90 %): trim 78 %, identification 22 % of the variance".
 pub fn bar_words(bar: &Bar, scalar: Scalar, level: f64) -> String {
     let remarks = bar.remarks().join(", ");
     let Some(half) = bar.half_width(level) else {

@@ -1,4 +1,4 @@
-//! Variants: decisions kept under names, beside the present ones.
+//! Variants: named sets of decisions, compared with the present decisions.
 
 use egui::{Align, Button, Layout, RichText, Role, Ui};
 
@@ -15,7 +15,8 @@ use crate::view::palette::{Palette, SMALL_SIZE};
 use crate::view::state::State;
 use crate::view::tables::{TableLook, table_ui};
 
-/// The variants of the study, what differs between them and the present decisions, and what it does.
+/// Draws the variants of the study, their differences from the present decisions, and the effects
+/// of these differences.
 pub fn compare_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -58,7 +59,7 @@ pub fn compare_view_ui(
     }
 }
 
-/// The field for a name, and the button that keeps the present decisions under it.
+/// Draws the name field and the button that stores the present decisions under that name.
 fn keep_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let name = &mut state.display.variant_name;
@@ -115,7 +116,7 @@ fn variant_ui(ui: &mut Ui, variant: &Variant, is_overlaid: bool, commands: &mut 
     });
 }
 
-/// The analyses that the comparison needs.
+/// Returns the analyses needed by the comparison.
 pub fn variant_jobs(state: &State) -> Vec<VariantJob> {
     let studies = state
         .study
@@ -125,7 +126,7 @@ pub fn variant_jobs(state: &State) -> Vec<VariantJob> {
     studies.map(|study| VariantJob { study }).collect()
 }
 
-/// The analysis of a variant, where it is there.
+/// Returns the analysis of a variant, if available.
 pub fn variant_analysis<'a>(state: &'a State, variant: &Variant) -> Option<&'a Analysis> {
     let job = VariantJob {
         study: state.study.of_variant(&variant.name)?,
@@ -138,20 +139,20 @@ pub fn variant_analysis<'a>(state: &'a State, variant: &Variant) -> Option<&'a A
         .map(|(_, analysis)| analysis.as_ref())
 }
 
-/// The variant that is laid over the present decisions, and its analysis, where that is there.
+/// Returns the overlaid variant and its analysis, if available.
 pub fn overlaid_analysis(state: &State) -> Option<(&str, &Analysis)> {
     let variant = state.study.variant(state.display.overlaid.as_deref()?)?;
     Some((&variant.name, variant_analysis(state, variant)?))
 }
 
-/// The analysis that is laid over what is shown.
+/// Returns the job of the overlaid analysis.
 pub fn overlay_job(state: &State) -> Option<VariantJob> {
     Some(VariantJob {
         study: state.study.of_variant(state.display.overlaid.as_deref()?)?,
     })
 }
 
-/// Every decision in which a variant differs from the present ones.
+/// Builds the table of the decisions in which a variant differs from the present decisions.
 pub fn difference_table(state: &State) -> Table {
     let mut table = Table::new(
         "What differs",
@@ -177,8 +178,9 @@ pub fn difference_table(state: &State) -> Table {
     table
 }
 
-/// What the decisions do: net gain and J of the responses of the net-gain plots in the condition shown, and the mean change of J
-/// of the scheduled correction over all conditions, now and in each variant.
+/// Builds the table of effects, now and in each variant: net gain and J of the responses of the
+/// net-gain plots in the displayed condition, and the mean change of J of the scheduled correction
+/// over all conditions.
 pub fn figure_table(state: &State) -> Table {
     let condition = state.condition().id();
     let title =
@@ -242,7 +244,8 @@ fn cost(analysis: &Analysis, condition: ConditionId, pair: Pair) -> Option<Strin
     ))
 }
 
-/// Mean change of J of the on-axis responses of the nominal models under the schedule, over the conditions assessed.
+/// Returns the mean change of J of the nominal models' on-axis responses under the schedule, over
+/// the assessed conditions.
 fn mean_change(state: &State, analysis: &Analysis) -> Option<String> {
     let measuring = state.dataset().measuring_pairs();
     let changes: Vec<f64> = analysis

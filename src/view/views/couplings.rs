@@ -1,4 +1,4 @@
-//! Couplings: what mixes the inputs and feeds outputs back, what that is worth, and what it does to the loop.
+//! Couplings: input mixing and output feedback, their benefit, and their effect on the loop.
 
 use std::sync::Arc;
 
@@ -23,10 +23,10 @@ use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 use crate::view::tables::{Sorting, TableLook, table_grid_ui};
 
-/// Part of the width that words and tables take.
+/// Share of the width taken by words and tables.
 const WORDS_PART: f32 = 0.56;
 
-/// Which couplings are fitted.
+/// Draws the selection of the fitted couplings.
 pub fn couplings_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.study.settings.couplings;
     let mut chosen = shown;
@@ -53,7 +53,8 @@ pub fn couplings_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Comman
     }
 }
 
-/// The couplings that the study asks for; where it asks for none, mixing and feedback: those that are assessed.
+/// Returns the couplings requested by the study; if there are none, mixing and feedback, which are
+/// then assessed.
 pub fn assessed_correction(state: &State) -> CouplingCorrection {
     match state.study.settings.couplings {
         CouplingCorrection::None => CouplingCorrection::MixingAndFeedback,
@@ -61,7 +62,7 @@ pub fn assessed_correction(state: &State) -> CouplingCorrection {
     }
 }
 
-/// The job that finds out what they do, or would do.
+/// Returns the job that assesses the couplings.
 pub fn couplings_job(state: &State) -> CouplingsJob {
     CouplingsJob {
         study: state.study.clone(),
@@ -69,8 +70,9 @@ pub fn couplings_job(state: &State) -> CouplingsJob {
     }
 }
 
-/// Whether couplings are assessed whatever view is shown: where they are used, for what they cost; where they are not, once delays or leads
-/// do what a channel can, of three conditions or more, for they may be worth an offer.
+/// Returns whether couplings are assessed in every view: couplings in use, for their cost; unused
+/// couplings, once delays are matched or leads are requested and there are enough conditions (three
+/// or more), because they may be worth an offer.
 pub fn are_couplings_judged(state: &State) -> bool {
     let settings = &state.study.settings;
     let Some(analysis) = state.analysis().filter(|_| !state.results.is_behind()) else {
@@ -86,7 +88,7 @@ pub fn are_couplings_judged(state: &State) -> bool {
         || is_left && results().count() >= LEAST_CONDITIONS
 }
 
-/// What couplings would bring off the axis, where they are not used and that is worth it by J of conditions left out.
+/// Returns the off-axis benefit of unused couplings, if worthwhile by J of left-out conditions.
 pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, CouplingCost)> {
     let is_used = state.study.settings.couplings != CouplingCorrection::None;
     let assessment = state
@@ -103,13 +105,13 @@ pub fn offered_couplings(state: &State) -> Option<(&Arc<CouplingsAssessment>, Co
     ))
 }
 
-/// What the couplings that are used are worth and cost, once it is known.
+/// Returns the assessment of the couplings in use, once known.
 pub fn used_couplings(state: &State) -> Option<&Arc<CouplingsAssessment>> {
     let is_used = state.study.settings.couplings != CouplingCorrection::None;
     state.couplings().filter(|_| is_used)?.as_ref().ok()
 }
 
-/// Words and tables at the left, the loop and the poles at the right.
+/// Draws words and tables at the left, the loop and the poles at the right.
 pub fn couplings_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -137,7 +139,7 @@ pub fn couplings_view_ui(
             .auto_shrink(false)
             .show(ui, |ui| {
                 use_ui(ui, state, &assessment, palette, commands);
-                // What decides comes first.
+                // The deciding figures come first.
                 let costs = Table {
                     title: "J, mean over the conditions".to_owned(),
                     ..assessment.cost_table()
@@ -172,12 +174,13 @@ pub fn couplings_view_ui(
     state.display.figures.insert(View::Couplings, view);
 }
 
-/// The assessment that the view shows.
+/// Returns the assessment shown by the view.
 pub fn shown_couplings(state: &State) -> Option<Arc<CouplingsAssessment>> {
     state.couplings()?.as_ref().ok().cloned()
 }
 
-/// Whether the couplings are used, and the click that uses them, or leaves them where they are not worth it.
+/// Draws whether the couplings are used, and the link that uses them, or removes them if they are
+/// not worthwhile.
 fn use_ui(
     ui: &mut Ui,
     state: &State,
@@ -240,7 +243,7 @@ fn tables_ui(
     commands: &mut Vec<Command>,
 ) {
     for table in assessment.matrix_tables(state.dataset()) {
-        // What is within its bar is not told from nothing.
+        // Values within their error bar are indistinguishable from zero.
         let dim = |row: usize, column: usize| {
             table.rows[row][column]
                 .starts_with('(')
@@ -278,7 +281,8 @@ fn table_part_ui(
         });
 }
 
-/// What couplings do at ten times the band to the held responses of each condition, and how near its loop is to ringing.
+/// Builds the table of the couplings' effect at ten times the band on the constrained responses of
+/// each condition, with the least singular value of its loop.
 fn above_band_table(dataset: &Dataset, assessment: &CouplingsAssessment) -> Table {
     let columns = [
         "condition",
@@ -305,7 +309,7 @@ fn above_band_table(dataset: &Dataset, assessment: &CouplingsAssessment) -> Tabl
     table
 }
 
-/// The rows of the condition shown in the table of poles.
+/// Returns the pole table's rows of the displayed condition.
 fn poles_of_condition(state: &State, assessment: &CouplingsAssessment) -> Table {
     let id = state.condition().id().to_string();
     let mut table = assessment.pole_table();

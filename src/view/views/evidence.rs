@@ -1,4 +1,5 @@
-//! What the scatter of the net gains is made of, which differences are in earnest, and what the schedule needs.
+//! Sources of the scatter of the net gains, significant differences, and the required form of the
+//! schedule.
 
 use std::sync::Arc;
 
@@ -20,14 +21,15 @@ use crate::view::palette::{BODY_SIZE, Palette, SMALL_SIZE, medium};
 use crate::view::state::State;
 use crate::view::tables::{Sorting, TableLook, table_ui};
 
-/// Height of the bar of one scatter \[pt\].
+/// Height of the bar of a scatter \[pt\].
 const BAR_HEIGHT: f32 = 15.0;
-/// A table is not higher; it scrolls by itself then \[pt\].
+/// Greatest height of a table, which scrolls by itself beyond it \[pt\].
 const MOST_TABLE: f32 = 330.0;
-/// Width of what stands before the bars, and of what stands behind them \[pt\].
+/// Width of the labels before the bars, and of the text behind them \[pt\].
 const LABELS: [f32; 2] = [170.0, 400.0];
 
-/// The paper's question on one screen: is the scatter at one airspeed trim, identification, or real?
+/// Draws the paper's question on a single screen: is the scatter at a given airspeed due to trim,
+/// to identification, or real?
 pub fn evidence_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -48,7 +50,8 @@ pub fn evidence_view_ui(
     state.display.evidence_tables = sorting;
 }
 
-/// The significant differences in aligned columns, and a second variable that no response needs.
+/// Draws the significant differences in aligned columns, and a note if no response needs a second
+/// variable.
 fn answer_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Palette) {
     let beyond: Vec<_> = uncertainty
         .differences
@@ -98,7 +101,7 @@ fn answer_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Pa
     ui.add_space(4.0);
 }
 
-/// A stacked bar for each response, at equal airspeed and about the schedule.
+/// Draws a stacked bar for each response, at equal airspeed and about the schedule.
 fn scatter_ui(ui: &mut Ui, state: &State, uncertainty: &Uncertainty, palette: &Palette) {
     ui.horizontal(|ui| {
         ui.label(
@@ -211,7 +214,8 @@ fn split_words(split: &VarianceDecomposition, level: f64) -> String {
     )
 }
 
-/// Differences, second variables, and what each form of the schedule would have said of a condition that it has not seen.
+/// Draws the differences, the second variables, and the prediction error of each form of the
+/// schedule for left-out conditions.
 fn tables_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -268,7 +272,7 @@ fn tables_ui(
     state.display.evidence = cached;
 }
 
-/// The evidence for every form of the schedule; a click on a form takes it.
+/// Draws the evidence for every form of the schedule; a click on a form selects it.
 pub(super) fn forms_ui(
     ui: &mut Ui,
     state: &State,
@@ -287,7 +291,7 @@ pub(super) fn forms_ui(
     commands.extend(taken.map(|&kind| setting::SCHEDULE.to(kind).into()));
 }
 
-/// Where a table of so many rows goes that is one among others in something that scrolls: as high as its rows.
+/// Draws a table among others in a scrolling area, with the height of its rows.
 fn rows_high<R>(ui: &mut Ui, rows: usize, add: impl FnOnce(&mut Ui) -> R) -> R {
     let row = ui.spacing().interact_size.y + 3.0;
     let bar = ui.spacing().scroll.allocated_width();
@@ -296,7 +300,7 @@ fn rows_high<R>(ui: &mut Ui, rows: usize, add: impl FnOnce(&mut Ui) -> R) -> R {
         .inner
 }
 
-/// The evidence for every form of the schedule, kept while the analysis is the same.
+/// Evidence for every form of the schedule, cached as long as the analysis is the same.
 #[derive(Debug, Default)]
 pub struct CachedEvidence {
     analysis: Option<Arc<Analysis>>,
@@ -305,7 +309,7 @@ pub struct CachedEvidence {
 }
 
 impl CachedEvidence {
-    /// Makes it anew where the analysis is another one.
+    /// Recomputes the evidence for another analysis.
     pub fn refresh(&mut self, state: &State) {
         let Some(analysis) = state
             .results
@@ -330,12 +334,12 @@ impl CachedEvidence {
         }
     }
 
-    /// The evidence for each degree of the signed delays.
+    /// Returns the evidence for each degree of the signed delays.
     pub fn leads(&self) -> &[LeadDegreeFit] {
         &self.leads
     }
 
-    /// The conditions of the schedule, and the evidence in their order.
+    /// Returns the conditions of the schedule, and the evidence in their order.
     pub fn found(&self) -> Option<(&[ConditionId], &FormComparison)> {
         self.found
             .as_ref()
@@ -343,8 +347,8 @@ impl CachedEvidence {
     }
 }
 
-/// For each degree of the scheduled signed delays what it misses of each response shown, and what it would have missed of a condition
-/// that it has not seen; none where there are no leads.
+/// Builds the table of the residuals and of the prediction errors for left-out conditions of each
+/// displayed response, for each degree of the scheduled signed delays; `None` without leads.
 pub fn lead_evidence_table(state: &State, evidence: &[LeadDegreeFit]) -> Option<Table> {
     let pairs = net_gain_pairs(state);
     let names = pairs.iter().flat_map(|pair| {
@@ -373,7 +377,7 @@ pub fn lead_evidence_table(state: &State, evidence: &[LeadDegreeFit]) -> Option<
     (!evidence.is_empty()).then_some(table)
 }
 
-/// What a form of the schedule is called in the table.
+/// Returns the name of a form of the schedule in the table.
 fn kind_name(kind: ScheduleKind) -> String {
     match kind {
         ScheduleKind::Polynomial { degree: 0 } => "constant".to_owned(),
@@ -382,13 +386,13 @@ fn kind_name(kind: ScheduleKind) -> String {
     }
 }
 
-/// A root mean square of `ln k` as a part of the gain \[%\].
+/// Converts a root mean square of `ln k` to a share of the gain \[%\].
 fn percent(rms_ln: Option<f64>) -> String {
     rms_ln.map_or_else(|| "–".to_owned(), |rms| format!("{:.2}", 100.0 * rms))
 }
 
-/// For each form of the schedule what it misses of each response shown, and what it would have missed of a condition that it has
-/// not seen.
+/// Builds the table of the residuals and of the prediction errors for left-out conditions of each
+/// displayed response, for each form of the schedule.
 pub fn evidence_table(state: &State, evidence: &FormComparison) -> (Table, Vec<ScheduleKind>) {
     let pairs = net_gain_pairs(state);
     let names = pairs
@@ -418,7 +422,7 @@ pub fn evidence_table(state: &State, evidence: &FormComparison) -> (Table, Vec<S
     (table, kinds)
 }
 
-/// Root mean square of the residuals over these responses.
+/// Computes the root mean square of the residuals over these responses.
 fn fit(kind: &FormFit, pairs: &[Pair]) -> Option<f64> {
     let squares = pairs
         .iter()
@@ -427,7 +431,8 @@ fn fit(kind: &FormFit, pairs: &[Pair]) -> Option<f64> {
     (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
 
-/// Residual of each condition under the schedule as it is set, for each response shown \[% of the scheduled gain\].
+/// Builds the table of the residuals of each condition under the present schedule, for each
+/// displayed response \[% of the scheduled gain\].
 pub fn residual_table(
     state: &State,
     conditions: &[ConditionId],
@@ -452,7 +457,7 @@ pub fn residual_table(
     Some(table)
 }
 
-/// The coefficients of the schedule, channel by channel; none without a schedule.
+/// Builds the table of the schedule's coefficients, channel by channel; `None` without a schedule.
 pub fn coefficient_table(state: &State) -> Option<Table> {
     let schedule = state.analysis()?.schedule.as_ref().ok()?;
     let (inputs, outputs) = state.dataset().names_of_channels();

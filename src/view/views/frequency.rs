@@ -1,4 +1,4 @@
-//! What the engineer does in a plot over frequency, as commands: the same in all of them.
+//! Events of the plots over frequency as commands, shared by all of these plots.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -26,8 +26,9 @@ use crate::view::plot::readout::{Readout, ReadoutCell, pointed_words};
 use crate::view::plot::{BodeCurve, BodeScene, BodeView, CurveId, Pane, Role, bode_ui};
 use crate::view::state::State;
 
-/// Draws a plot over frequency of the condition shown with what all of them have in common: cursors, what every role has there, chips.
-/// Pushes what was done in it, and what the pointer means.
+/// Draws a plot over frequency of the displayed condition with the common elements: cursors, values
+/// of every role at the cursor, chips. Pushes the resulting commands and the description of the
+/// element under the pointer.
 pub(super) fn frequency_plot_ui(
     ui: &mut Ui,
     state: &State,
@@ -127,7 +128,7 @@ fn reject_or_restore(state: &State, id: ModelId) -> Command {
     .into()
 }
 
-/// What a wish about a curve asks for.
+/// Returns the command for a wish about a curve.
 pub(super) fn wished(state: &State, id: CurveId, wish: CurveWish) -> Option<Command> {
     match (wish, id) {
         (CurveWish::Turn(by), id) => {
@@ -141,7 +142,7 @@ pub(super) fn wished(state: &State, id: CurveId, wish: CurveWish) -> Option<Comm
     }
 }
 
-/// The numbers of a curve as text: a heading, then a line for each frequency, with tabs between.
+/// Formats the numbers of a curve as text: a heading, then a tab-separated line for each frequency.
 fn values(quantity: BodeQuantity<'_>, curve: &BodeCurve) -> String {
     let [magnitude, phase] = PANES.map(|pane| quantity.drawn_label(pane));
     let mut text = format!("{}\nω [rad/s]\t{magnitude}\t{phase}\n", curve.label);
@@ -156,7 +157,8 @@ fn values(quantity: BodeQuantity<'_>, curve: &BodeCurve) -> String {
     text
 }
 
-/// What holds for the plots over frequency now, with the command that ends it or acts on it.
+/// Returns the current restrictions of the plots over frequency, each with the command that ends it
+/// or acts on it.
 fn chips(state: &State) -> Vec<(Chip, Command)> {
     let chip = |text: String, hint: &str, command: Command| {
         (
@@ -247,7 +249,8 @@ fn counted(models: usize) -> String {
     }
 }
 
-/// What the curves of the condition shown are made of; none until its responses are there.
+/// Returns the source of the displayed condition's curves; `None` until its responses are
+/// available.
 pub(in crate::view) fn condition_source(state: &State) -> Option<ConditionSource<'_>> {
     let schedule = state
         .analysis()
@@ -264,7 +267,7 @@ pub(in crate::view) fn condition_source(state: &State) -> Option<ConditionSource
     })
 }
 
-/// What of the responses is shown, and how: the same on paper.
+/// Returns the displayed parts of the responses and their form, the same as on paper.
 pub(in crate::view) fn bode_options(state: &State) -> BodeOptions {
     let display = &state.display;
     let curves = &state.display.curves;
@@ -287,7 +290,8 @@ pub(in crate::view) fn bode_options(state: &State) -> BodeOptions {
     }
 }
 
-/// Every curve of one response in the condition shown; none until its responses are there.
+/// Returns every curve of a response in the displayed condition; empty until its responses are
+/// available.
 pub(in crate::view) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCurve> {
     let mut cache = state.display.shapes.remove(&pair).unwrap_or_default();
     let options = bode_options(state);
@@ -298,7 +302,8 @@ pub(in crate::view) fn bode_curves(state: &mut State, pair: Pair) -> Vec<BodeCur
     drawn
 }
 
-/// What the fit sees of one response in the condition shown; none until its responses are there.
+/// Returns the errors of a response, as used by the fit, in the displayed condition; empty until
+/// its responses are available.
 pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions) -> Vec<BodeCurve> {
     let mut cache = std::mem::take(&mut state.display.errors);
     let curves =
@@ -310,7 +315,8 @@ pub(super) fn error_curves(state: &mut State, pair: Pair, options: &BodeOptions)
     drawn
 }
 
-/// Among errors the curve of the identified model: it is zero everywhere, and the others are read against it.
+/// Returns the curve of the identified model among errors: it is zero everywhere, and the others
+/// are read against it.
 pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
     let is_identified = |curve: &&BodeCurve| matches!(&curve.id, CurveId::Model(id) if id.bundle == BundleKind::Identified);
     curves
@@ -319,8 +325,8 @@ pub(super) fn error_reference(curves: &[BodeCurve]) -> Option<CurveId> {
         .map(|curve| curve.id.clone())
 }
 
-/// The curves with what they are in the window: those pointed at stand out, and what a click does is said, which does nothing on the
-/// reference.
+/// Adds interaction to the curves: emphasis of the curve under the pointer, and a description of
+/// the effect of a click, which has none on the reference.
 fn pointed_out(
     state: &State,
     mut curves: Vec<BodeCurve>,
@@ -355,7 +361,7 @@ fn pointed_out(
     curves
 }
 
-/// The roles whose values are told.
+/// Roles whose values are reported.
 const TOLD: [Role; 4] = [
     Role::Nominal,
     Role::IdentifiedRepresentative,
@@ -363,8 +369,9 @@ const TOLD: [Role; 4] = [
     Role::Scheduled,
 ];
 
-/// The values of the heavy curves at the pointer or at a marked frequency \[rad/s\]; without either, at the frequency of the largest
-/// error within the band. Of two marked frequencies, what changes from one to the other.
+/// Returns the values of the heavy curves at the pointer or at a marked frequency \[rad/s\];
+/// without either, at the frequency of the largest error within the band. For two marked
+/// frequencies, the change between them.
 pub fn cursor_readout(
     curves: &[BodeCurve],
     (quantity, unit): (BodeQuantity<'_>, FrequencyUnit),
@@ -442,8 +449,9 @@ fn change_text(quantity: BodeQuantity<'_>, pane: Pane, change: Option<f64>) -> S
     change.map_or("–".to_owned(), |change| unit.readout(change))
 }
 
-/// The corrected less the identified model: decibels, and the principal value of the phases, for a single frequency knows no turns
-/// (M4). Warned of from 1 dB and from 10 degrees on: below, J is small.
+/// Returns the corrected minus the identified model: decibels, and the principal value of the
+/// phases, because a single frequency does not define turns (M4). Warns from 1 dB and from 10
+/// degrees on; below, J is small.
 fn difference_cell(
     quantity: BodeQuantity<'_>,
     (corrected, identified): (&BodeCurve, &BodeCurve),
@@ -465,7 +473,7 @@ fn difference_cell(
     }
 }
 
-/// The frequency within the band at which what J is made of is greatest (M4).
+/// Returns the frequency within the band at which the integrand of J is greatest (M4).
 fn largest_error(
     (corrected, identified): (&BodeCurve, &BodeCurve),
     (min, max): (f64, f64),

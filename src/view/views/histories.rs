@@ -1,5 +1,5 @@
-//! Requirements in time: flight records with the corridors about them and what the models answer, or a step or a doublet where there are
-//! no records (M17.2).
+//! Requirements over time: flight records with their corridors and the models' responses; without
+//! records, a step or a doublet (M17.2).
 
 use std::sync::Arc;
 
@@ -26,14 +26,15 @@ use crate::view::settings_panel::choice_ui;
 use crate::view::state::State;
 use crate::view::tables::{TableLook, table_grid_ui};
 
-/// A plot is never smaller \[pt\].
+/// Least size of a plot \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 96.0);
-/// The same of a record with the difference from flight below it \[pt\].
+/// Least size of a record with the difference from flight below it \[pt\].
 const LEAST_RECORD: Vec2 = vec2(260.0, 190.0);
-/// Part of the height that the table has at first.
+/// Initial share of the height taken by the table.
 const TABLE_PART: f32 = 0.32;
 
-/// The record that is shown over time; none where there is none, or a test is shown in its place.
+/// Returns the job of the record shown over time; `None` without a record, or if a test is shown
+/// instead.
 fn record_job(state: &State) -> Option<RecordHistoryJob> {
     let analysis = current(state)?;
     let condition = state.condition().id();
@@ -68,7 +69,7 @@ fn test_job(state: &State) -> Option<TestAnswersJob> {
     })
 }
 
-/// The analysis of the present settings, where it is there.
+/// Returns the analysis of the present settings, if available.
 pub(super) fn current(state: &State) -> Option<Arc<Analysis>> {
     state
         .results
@@ -77,14 +78,14 @@ pub(super) fn current(state: &State) -> Option<Arc<Analysis>> {
         .filter(|_| state.analysis().is_some())
 }
 
-/// What is to be computed over time.
+/// Returns the computation needed over time.
 pub fn over_time_need(state: &State) -> Option<Need> {
     record_job(state)
         .map(Need::RecordHistory)
         .or_else(|| test_job(state).map(Need::TestAnswers))
 }
 
-/// What models answer over time, in words why there is nothing; none until it is computed.
+/// Returns the models' responses over time, or the reason for their absence; `None` until computed.
 pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
     match record_job(state) {
         Some(job) => {
@@ -95,14 +96,14 @@ pub fn over_time(state: &State) -> Option<Result<OverTime, String>> {
     }
 }
 
-/// The same for a figure, where it is shown.
+/// Returns the same for a figure, if it is shown.
 pub fn shown_over_time(state: &State, kind: FigureKind) -> Option<OverTime> {
     let is_shown = kind == FigureKind::Requirements
         && state.display.requirements_page == RequirementsPage::Histories;
     over_time(state).filter(|_| is_shown)?.ok()
 }
 
-/// What is flown, or the test, and the answers of the models.
+/// Draws the flown record, or the test input, and the models' responses.
 pub fn histories_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -161,7 +162,7 @@ pub fn histories_ui(
     state.display.figures.insert(View::Requirements, view);
 }
 
-/// A record of the condition, or a test input.
+/// Draws the selection of a record of the condition, or of a test input.
 fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let records = state.records.conditions.get(&state.condition().id());
     let rows = records.into_iter().flat_map(|records| records.used_rows());
@@ -201,7 +202,7 @@ fn subject_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<
     }
 }
 
-/// Share of time inside and largest excess of every quantity and model.
+/// Draws the share of time inside the corridor and the largest excess of every quantity and model.
 fn shares_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -235,7 +236,7 @@ fn shares_ui(
         });
 }
 
-/// Course, size and duration of the test input.
+/// Draws shape, size and duration of the test input.
 fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let test = state.study.requirements.test;
     let input = &state.dataset().inputs()[state.display.pair.input];
@@ -302,7 +303,7 @@ fn test_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Com
     });
 }
 
-/// What the plots over time say.
+/// Descriptions of the plots over time.
 struct HistoryWords<'a>(&'a Figure);
 
 impl FigureWords for HistoryWords<'_> {

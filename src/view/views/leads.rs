@@ -1,4 +1,4 @@
-//! What delay or lead does in each channel of the condition, and what leads cost above the band.
+//! Effect of delay or lead in each channel of the condition, and the cost of leads above the band.
 
 use egui::{Panel, Ui, vec2};
 
@@ -16,10 +16,10 @@ use crate::view::plot::{FigureScene, figure_ui};
 use crate::view::state::State;
 use crate::view::tables::{Sorting, TableLook, table_ui};
 
-/// Part of the width that the table takes.
+/// Share of the width taken by the table.
 const TABLE_PART: f32 = 0.5;
 
-/// Gain and phase of the leads to ten times the band, and the table of the channels.
+/// Draws gain and phase of the leads up to ten times the band, and the table of the channels.
 pub fn leads_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -74,7 +74,7 @@ pub fn leads_view_ui(
     state.display.figures.insert(View::Leads, view);
 }
 
-/// The figure of the response in focus; without plots where there are no leads.
+/// Builds the figure of the response in focus; without plots if there are no leads.
 fn figure(state: &State) -> Figure {
     let has_leads = state
         .shown()
@@ -86,8 +86,9 @@ fn figure(state: &State) -> Figure {
         .unwrap_or_default()
 }
 
-/// Every channel: delay or lead, the lag at the band's end that its lead takes out, which servo it replaces, and its price; in its title
-/// where the corrected model ends to be valid. None without leads.
+/// Builds the table of the channels: delay or lead, the lag removed by its lead at the end of the
+/// band, the replaced servo, and the price; the title gives the end of the corrected model's
+/// validity. `None` without leads.
 pub fn leads_table(state: &State) -> Option<Table> {
     let leads = state.shown()?.correction.leads.as_ref()?;
     let price = LeadPrice::of(leads);

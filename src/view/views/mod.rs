@@ -1,5 +1,5 @@
-//! The plots between the side panels, each with its header: what is drawn, and which commands its events stand for. Which there are,
-//! and what each needs, stands in one list.
+//! Views between the side panels, each with its header. A single list holds all views with their
+//! contents, commands and needs.
 
 use std::sync::Arc;
 
@@ -62,34 +62,34 @@ use requirements::{
     NO_QUALIFICATION, requirements_header_ui, requirements_needs, requirements_view_ui,
 };
 
-/// One of the plots between the side panels.
+/// Plot between the side panels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum View {
-    /// The focused response: magnitude and phase.
+    /// Response in focus: magnitude and phase.
     Bode,
-    /// What the fit sees of it.
+    /// Its errors as used by the fit.
     Error,
     /// Every response, small.
     Overview,
-    /// One response in every condition.
+    /// A response in every condition.
     Across,
     /// Poles and modes of every model of the condition.
     Poles,
-    /// What mixes the inputs and feeds outputs back (M16).
+    /// Input mixing and output feedback (M16).
     Couplings,
-    /// Channel gains against airspeed (Figures 3 and 4).
+    /// Channel gains over airspeed (Figures 3 and 4).
     Channels,
-    /// What the correction is worth (Figures 8 to 19).
+    /// Benefit of the correction (Figures 8 to 19).
     Assessment,
-    /// What the scatter of the gains is made of, and what speaks for the schedule.
+    /// Sources of the scatter of the gains, and the evidence for the schedule.
     Evidence,
-    /// Decisions kept under names, beside the present ones.
+    /// Variants, compared with the present decisions.
     Compare,
-    /// What a qualification asks: bandwidth, modes, summary (M17).
+    /// Questions of a qualification: bandwidth, modes, summary (M17).
     Requirements,
-    /// Net gains against airspeed (Figures 6 and 7).
+    /// Net gains over airspeed (Figures 6 and 7).
     NetGain,
-    /// What delay or lead does in each channel, to ten times the band, and its price.
+    /// Effect of delay or lead in each channel, up to ten times the band, and its price.
     Leads,
     /// Flight records of the condition, and models identified from them.
     Records,
@@ -114,7 +114,7 @@ impl View {
         Self::Requirements,
     ];
 
-    /// Those that the dock may show: that of leads where these are asked for.
+    /// Returns the views that the dock can show, with the leads only if these are requested.
     pub fn docked(state: &State) -> impl Iterator<Item = Self> {
         let has_leads = state.study.settings.phase == PhaseCorrection::Lead;
         Self::ALL
@@ -122,17 +122,18 @@ impl View {
             .filter(move |view| view.kind().is_docked && (*view != Self::Leads || has_leads))
     }
 
-    /// What its tab says.
+    /// Returns the text of the tab.
     pub fn name(self) -> &'static str {
         self.kind().name
     }
 
-    /// Which figure it is on paper, where it is one.
+    /// Returns the kind of the figure on paper, if there is one.
     pub fn figure(self) -> Option<FigureKind> {
         Some(self.kind().figure?.kind)
     }
 
-    /// All that the window knows of it: tabs, menus, the palette, background jobs and figures read this list.
+    /// Returns the description of the view: the source of tabs, menus, the palette, background jobs
+    /// and figures.
     pub fn kind(self) -> ViewKind {
         match self {
             Self::Bode => ViewKind {
@@ -260,7 +261,7 @@ impl View {
                 }),
                 ..ViewKind::PLAIN
             },
-            // The button of its figure stands in its first line: it has no tools.
+            // The figure button is in the first line of the view, so the view has no tools.
             Self::Evidence => ViewKind {
                 name: "Evidence",
                 purpose: "What the scatter of the net gains is made of, which differences are significant, and what the schedule needs",
@@ -327,39 +328,38 @@ impl View {
     }
 }
 
-/// One kind of view: what it shows, which background results it needs, and its tools.
+/// Description of a view: its content, the background results it needs, and its tools.
 #[derive(Clone, Copy)]
 pub struct ViewKind {
-    /// What its tab says.
+    /// Text of the tab.
     pub name: &'static str,
-    /// What it shows, in a sentence.
+    /// Purpose, in a sentence.
     pub purpose: &'static str,
-    /// Draws it.
     pub draw: fn(&mut Ui, &mut State, &Palette, &mut Vec<Command>),
-    /// What its header says besides.
+    /// Additional text of the header.
     pub title: ViewTitle,
-    /// The controls in its header, laid out from right to left.
+    /// Controls in the header, laid out from right to left.
     pub tools: fn(&mut Ui, &State, &Palette, &mut Vec<Command>),
-    /// The width that they need \[pt\]; the title takes what is left.
+    /// Width of the tools \[pt\]; the title takes the rest.
     pub tools_width: f32,
-    /// What has to be computed for it beside the live answer.
+    /// Computations needed besides the live answer.
     pub needs: fn(&State) -> Vec<Need>,
-    /// Whether it shows results of every condition: it is said where those are of older settings.
+    /// Whether the view shows results of every condition; it then reports results of older
+    /// settings.
     pub is_of_all_conditions: bool,
-    /// The group that it stands in.
     pub group: ViewGroup,
-    /// Whether the dock may show it.
     pub is_docked: bool,
     /// Whether it takes the room of the dock.
     pub takes_dock: bool,
-    /// What its heading in the dock says, where that is more than its tab does.
+    /// Heading in the dock, if longer than the text of the tab.
     pub long_name: Option<&'static str>,
-    /// What it is on paper. Variants are tables, which are saved as such; of records what is identified is saved.
+    /// Figure on paper. Variants are tables and are saved as such; for records, the identified
+    /// models are saved.
     pub figure: Option<ViewFigure>,
 }
 
 impl ViewKind {
-    /// One that shows nothing, has no tools and needs nothing.
+    /// View without content, tools and needs.
     const PLAIN: Self = Self {
         name: "",
         purpose: "",
@@ -377,17 +377,16 @@ impl ViewKind {
     };
 }
 
-/// A view on paper.
+/// Figure of a view on paper.
 #[derive(Clone, Copy)]
 pub struct ViewFigure {
-    /// Which figure it is.
     pub kind: FigureKind,
-    /// The responses that it is of; none of a figure that is of all or of no response.
+    /// Responses in the figure; empty for a figure of all responses or of none.
     pub pairs: fn(&State) -> Vec<Pair>,
 }
 
 impl ViewFigure {
-    /// Of the response in focus.
+    /// Figure of the response in focus.
     fn of_focus(kind: FigureKind) -> Self {
         Self {
             kind,
@@ -395,7 +394,7 @@ impl ViewFigure {
         }
     }
 
-    /// Of all responses, or of none.
+    /// Figure of all responses, or of none.
     fn of_all(kind: FigureKind) -> Self {
         Self {
             kind,
@@ -404,10 +403,9 @@ impl ViewFigure {
     }
 }
 
-/// What the header of a view says of what is shown.
+/// Text in the header of a view.
 #[derive(Clone, Copy, Debug)]
 pub enum ViewTitle {
-    /// Nothing.
     None,
     /// The condition.
     Condition,
@@ -415,31 +413,28 @@ pub enum ViewTitle {
     Response,
     /// The response in focus.
     Focus,
-    /// These words.
     Words(fn(&State) -> String),
 }
 
-/// What a view has to have computed beside the live answer.
+/// Computation needed by a view besides the live answer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Need {
-    /// Modes of the models of the condition.
+    /// Modes of the condition's models.
     Modes(ModesJob),
-    /// An assessment.
     Assessment(AssessmentJob),
-    /// One model of each condition.
+    /// A model of each condition.
     Across(AcrossJob),
-    /// The analysis of a variant.
+    /// Analysis of a variant.
     Variant(VariantJob),
-    /// A model against a record in time.
+    /// Comparison of a model with a record in time.
     Simulation(SimulationJob),
-    /// What couplings do.
+    /// Effect of couplings.
     Couplings(CouplingsJob),
-    /// What a qualification asks.
     Requirements(RequirementsJob),
-    /// What models answer to the test input.
+    /// Models' responses to the test input.
     TestAnswers(TestAnswersJob),
-    /// What they answer to a flight record.
+    /// Models' responses to a flight record.
     RecordHistory(RecordHistoryJob),
-    /// What they answer to all of them.
+    /// Models' responses to all flight records.
     TimeHistories(TimeHistoriesJob),
 }

@@ -1,4 +1,4 @@
-//! Net gains against airspeed, and the form of the schedule.
+//! Net gains over airspeed, and the form of the schedule.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Grid, Panel, PopupCloseBehavior, RichText, Role, ScrollArea, Ui, WidgetInfo};
@@ -22,10 +22,10 @@ use crate::view::settings_panel::{choice_ui, setting_ui};
 use crate::view::state::State;
 use crate::view::tables::{Sorting, TableLook, table_ui};
 
-/// Room \[pt\] in which the controls of this view stand in one line.
+/// Width of this view's controls in a single line \[pt\].
 pub const NET_GAIN_CONTROLS: f32 = 410.0;
 
-/// What the plots show, in words.
+/// Describes the content of the plots.
 pub fn net_gain_words(state: &State) -> String {
     let level = 100.0 * state.study.settings.uncertainty.level;
     let bars = if state.display.hide_bars {
@@ -39,7 +39,7 @@ pub fn net_gain_words(state: &State) -> String {
     )
 }
 
-/// What the plots show, and the form of the schedule, laid out from right to left.
+/// Draws the selection of the responses and of the form of the schedule, from right to left.
 pub fn net_gain_header_ui(
     ui: &mut Ui,
     state: &State,
@@ -79,7 +79,7 @@ pub fn net_gain_header_ui(
     pair_set_ui(ui, state, commands);
 }
 
-/// The switch of error bars and bands, by this text and name.
+/// Draws the switch of error bars and bands.
 pub(super) fn bars_switch_ui(
     ui: &mut Ui,
     state: &State,
@@ -97,7 +97,7 @@ pub(super) fn bars_switch_ui(
     }
 }
 
-/// Which responses are shown. Laid out from right to left.
+/// Draws the selection of the displayed responses, from right to left.
 fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let pair = state.display.pair;
     if state.display.net_gain_pairs == PairSet::Picked {
@@ -125,7 +125,7 @@ fn pair_set_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     }
 }
 
-/// Net gain of the responses chosen against airspeed.
+/// Draws the net gain of the selected responses over airspeed.
 pub fn net_gain_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -174,7 +174,7 @@ pub fn net_gain_view_ui(
     state.display.figures.insert(View::NetGain, view);
 }
 
-/// What speaks for each form of the schedule; a click on a form takes it.
+/// Draws the evidence for each form of the schedule; a click on a form selects it.
 fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let mut cached = std::mem::take(&mut state.display.evidence);
     cached.refresh(state);
@@ -200,7 +200,7 @@ fn evidence_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut
     state.display.evidence_sorting = sorting;
 }
 
-/// What the form of the schedule is made of, line by line.
+/// Draws the parameters of the schedule's form, line by line.
 fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let rows = [
         &setting::SCHEDULE,
@@ -225,24 +225,24 @@ fn schedule_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec
         });
 }
 
-/// Which responses the plots of net gain show.
+/// Set of responses in the net-gain plots.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PairSet {
-    /// Those held, and those that were held since the window was opened: freeing one does not take its plot away.
+    /// Responses constrained now or at any time since the window was opened: releasing a response
+    /// keeps its plot.
     #[default]
     Held,
-    /// The response in focus.
+    /// Response in focus.
     Focused,
-    /// The dataset's on-axis responses.
+    /// On-axis responses of the dataset.
     OnAxis,
-    /// Every response.
     All,
-    /// Those that the engineer picked.
+    /// Responses picked by the engineer.
     Picked,
 }
 
 impl PairSet {
-    /// Every set, in the order of its list.
+    /// Every set, in the order of the list.
     pub const ALL: [Self; 5] = [
         Self::Held,
         Self::Focused,
@@ -251,7 +251,7 @@ impl PairSet {
         Self::Picked,
     ];
 
-    /// Its name.
+    /// Returns the name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Held => "held",
@@ -262,7 +262,7 @@ impl PairSet {
         }
     }
 
-    /// What is in it, in a sentence.
+    /// Describes the content of the set in a sentence.
     pub fn purpose(self) -> &'static str {
         match self {
             Self::Held => "The responses held, and those held before",
@@ -274,7 +274,7 @@ impl PairSet {
     }
 }
 
-/// The responses of the plots of net gain, in the order of the matrix.
+/// Returns the responses of the net-gain plots, in the order of the matrix.
 pub fn net_gain_pairs(state: &State) -> Vec<Pair> {
     let display = &state.display;
     let constrained = &state.study.settings.constrained;
@@ -288,7 +288,8 @@ pub fn net_gain_pairs(state: &State) -> Vec<Pair> {
     constrained.pairs().filter(is_in).collect()
 }
 
-/// One plot for each response of the set shown: the net gain of each condition's optimum, and the schedule.
+/// Builds a plot for each response of the displayed set: the net gain of each condition's optimum,
+/// and the schedule.
 pub fn net_gain_plots(state: &State) -> GainPlots<'_> {
     let pairs = if state.analysis().is_some() {
         net_gain_pairs(state)

@@ -28,7 +28,8 @@ use crate::view::plot::{FigureEvent, FigureScene, FigureView, FigureWords, figur
 use crate::view::state::State;
 use crate::view::tables::{TableLook, table_ui};
 
-/// Real and imaginary parts in the window of the slow modes \[rad/s\]: the rigid-body modes of a helicopter lie there.
+/// Real and imaginary parts in the window of the slow modes \[rad/s\], which contains the
+/// rigid-body modes of a helicopter.
 const SLOW: [Range; 2] = [
     Range {
         min: -2.0,
@@ -39,12 +40,12 @@ const SLOW: [Range; 2] = [
         max: 3.2,
     },
 ];
-/// A plot is never smaller \[pt\].
+/// Least size of a plot \[pt\].
 const LEAST_PLOT: Vec2 = vec2(140.0, 130.0);
-/// Part of the height that the table has at first.
+/// Initial share of the height taken by the table.
 const TABLE_PART: f32 = 0.3;
 
-/// Whether zeros are shown. Laid out from right to left.
+/// Draws the switch of the zeros, from right to left.
 pub fn poles_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let mut shown = state.display.show_zeros;
     let name = format!("zeros of {}", state.dataset().pair_name(state.display.pair));
@@ -54,7 +55,7 @@ pub fn poles_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) 
     }
 }
 
-/// Poles of every model of the condition shown; a click rejects or restores a model.
+/// Draws the poles of every model of the displayed condition; a click rejects or restores a model.
 pub fn poles_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -113,7 +114,8 @@ pub fn poles_view_ui(
     state.display.figures.insert(View::Poles, view);
 }
 
-/// Poles of every model of the condition shown, and zeros of the response in focus where they are wanted; none until they are known.
+/// Builds the figure of the poles of every model of the displayed condition, optionally with the
+/// zeros of the response in focus; `None` until they are known.
 pub fn poles(state: &State) -> Option<Figure> {
     let CachedModes { zeros, shifts, .. } = &state.display.modes;
     let found = |id: &ModelId| {
@@ -132,7 +134,8 @@ pub fn poles(state: &State) -> Option<Figure> {
     Some(figure).filter(|figure| figure.plots[0].panels[0].dots().next().is_some())
 }
 
-/// The figure as the window shows it: with arcs of equal frequency in what is in view, and what matters most larger.
+/// Returns the figure as shown in the window: with arcs of equal frequency in the visible range,
+/// and enlarged marks of the most important models.
 fn dressed(mut figure: Figure, view: &FigureView) -> Figure {
     if let [_, slow] = &mut figure.plots[..] {
         slow.title = "s-plane, slow modes".to_owned();
@@ -166,7 +169,7 @@ fn dressed(mut figure: Figure, view: &FigureView) -> Figure {
     figure
 }
 
-/// What the plots of poles say.
+/// Descriptions of the pole plots.
 struct PoleWords<'a> {
     state: &'a State,
     dots: usize,
@@ -214,7 +217,7 @@ impl FigureWords for PoleWords<'_> {
     }
 }
 
-/// The table of modes; a click on a row points at the model that jumps.
+/// Draws the table of modes; a click on a row highlights the model that jumps.
 fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Vec<Command>) {
     let (table, jumping) = state.display.modes.table();
     let look = TableLook {
@@ -237,27 +240,27 @@ fn modes_ui(ui: &mut Ui, state: &mut State, palette: &Palette, commands: &mut Ve
     state.display.modes_sorting = sorting;
 }
 
-/// The modes of one condition followed from model to model, zeros of one response, and where couplings move poles: kept while what they
-/// are made of is the same.
+/// Modes of a condition followed from model to model, zeros of a response, and pole shifts by
+/// couplings; cached as long as their inputs are the same.
 #[derive(Debug, Default)]
 pub struct CachedModes {
     made_of: Option<MadeOf>,
     table: Table,
-    /// Of each row the first model that jumps.
+    /// For each row, the first model that jumps.
     jumping: Vec<Option<ModelId>>,
     zeros: Vec<(ModelId, Vec<Complex<f64>>)>,
-    /// Where couplings move the poles of the physics representative.
+    /// Shifts of the physics representative's poles by couplings.
     shifts: Vec<PoleShift>,
 }
 
-/// What the modes, the zeros and the shifts are made of.
+/// Inputs of the modes, the zeros and the shifts.
 #[derive(Debug)]
 struct MadeOf {
     modes: Arc<ConditionModes>,
-    /// Index of the physics model whose modes the others' are matched to.
+    /// Index of the physics model to whose modes the others' are matched.
     reference: usize,
     couplings: Option<Arc<FittedCouplings>>,
-    /// The response and the models whose zeros are shown.
+    /// Response and models whose zeros are shown.
     zeros_of: Option<(Pair, Vec<ModelId>)>,
 }
 
@@ -286,12 +289,12 @@ impl MadeOf {
 }
 
 impl CachedModes {
-    /// The table of modes, and of each row the first model that jumps.
+    /// Returns the table of modes, and for each row the first model that jumps.
     pub fn table(&self) -> (&Table, &[Option<ModelId>]) {
         (&self.table, &self.jumping)
     }
 
-    /// Makes it anew where it no longer fits the state.
+    /// Recomputes the cache if it no longer matches the state.
     pub fn refresh(&mut self, state: &State) {
         let Some(modes) = state.modes() else {
             *self = Self::default();
@@ -327,7 +330,7 @@ impl CachedModes {
     }
 }
 
-/// The nominal model and both representatives: zeros of every model would hide the poles.
+/// Returns the nominal model and both representatives: zeros of every model would hide the poles.
 fn models_with_zeros(state: &State, modes: &ConditionModes) -> Vec<ModelId> {
     let condition = &modes.condition;
     let nominal = &condition.bundle(BundleKind::Physics)[condition.nominal()];
@@ -340,7 +343,8 @@ fn models_with_zeros(state: &State, modes: &ConditionModes) -> Vec<ModelId> {
     wanted
 }
 
-/// Index of the physics model whose modes the others' are matched to: the representative, the nominal one until it is known.
+/// Returns the index of the physics model to whose modes the others' are matched: the
+/// representative, or the nominal model until it is known.
 fn reference(state: &State, modes: &ConditionModes) -> usize {
     let name = state
         .shown()
@@ -364,14 +368,14 @@ fn mode_words(mode: &Mode) -> String {
     words.join(", ")
 }
 
-/// What a mode is called, where the states of its model are named (M17.3).
+/// Returns the name of a mode, if the states of its model are named (M17.3).
 fn name_words(mode: &Mode, model: &Model) -> Option<String> {
     let (name, by) = ModeName::of(mode, &model.states);
     name.filter(|_| by == NamedBy::States)
         .map(|name| name.to_string())
 }
 
-/// What a pole of a model of discrete time stands for.
+/// Describes how a pole of a discrete-time model is to be read.
 fn sampled_words(model: &Model) -> Option<String> {
     let Dynamics::StateSpace(system) = &model.dynamics else {
         return None;
@@ -383,7 +387,7 @@ fn sampled_words(model: &Model) -> Option<String> {
     ))
 }
 
-/// The states that take part most, so many at most: "w 62 %, q 21 %".
+/// Lists the states with the largest participation, at most `most`: "w 62 %, q 21 %".
 fn participation_words(mode: &Mode, model: &Model, most: usize) -> Option<String> {
     let shares = match &mode.participation {
         Ok(shares) => shares,
@@ -400,7 +404,8 @@ fn participation_words(mode: &Mode, model: &Model, most: usize) -> Option<String
     Some(words.collect::<Vec<_>>().join(", ")).filter(|words| !words.is_empty())
 }
 
-/// The modes of the physics bundle, followed from model to model: one row a mode of the reference model.
+/// Builds the table of the physics bundle's modes, followed from model to model: a row for each
+/// mode of the reference model.
 fn modes_table(
     state: &State,
     modes: &ConditionModes,

@@ -1,4 +1,5 @@
-//! The tables that requirements are asked with, in fields: tolerances of time histories and of modes, limits of the overview (M17).
+//! Editable tables of the requirements: tolerances of time histories and of modes, limits of the
+//! overview (M17).
 
 use egui::{Button, Grid, Ui};
 
@@ -15,17 +16,17 @@ use crate::view::state::State;
 /// Width of a field \[pt\].
 const FIELD: f32 = 56.0;
 
-/// A number without the last digits that a unit left behind.
+/// Rounds away the last digits introduced by a unit conversion.
 fn shown(value: f64) -> String {
     number((1e9 * value).round() / 1e9)
 }
 
-/// What a number is multiplied by where it is shown, and what is typed.
+/// Factors from the stored to the displayed number, and to the typed number.
 const AS_IT_IS: [f64; 2] = [1.0, 1.0];
 const IN_PERCENT: [f64; 2] = [100.0, 0.01];
 const IN_MILLISECONDS: [f64; 2] = [1e3, 1e-3];
 
-/// A field of a number, which is what was typed then.
+/// Draws a number field; returns the typed number.
 fn field_ui(
     ui: &mut Ui,
     name: &str,
@@ -40,7 +41,7 @@ fn field_ui(
     }
 }
 
-/// The same that may stay empty.
+/// As `field_ui`, for a field that may be empty.
 fn optional_field_ui(
     ui: &mut Ui,
     name: &str,
@@ -54,7 +55,7 @@ fn optional_field_ui(
     }
 }
 
-/// Every row of the table of tolerances of time histories.
+/// Draws every row of the tolerances of time histories.
 pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let table = &state.study.requirements.tolerances;
     let to = |tolerances: ToleranceTable| {
@@ -122,7 +123,7 @@ pub fn tolerances_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &m
     }
 }
 
-/// Every row of the table of tolerances of modes.
+/// Draws every row of the tolerances of modes.
 pub fn mode_tolerances_ui(
     ui: &mut Ui,
     state: &State,
@@ -185,7 +186,8 @@ pub fn mode_tolerances_ui(
     }
 }
 
-/// From where on the overview says that a corrected model is far from the identified one.
+/// Draws the limits beyond which the overview reports that a corrected model is far from the
+/// identified model.
 pub fn overview_limits_ui(
     ui: &mut Ui,
     state: &State,

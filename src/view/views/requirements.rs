@@ -1,4 +1,5 @@
-//! Requirements: the questions of a qualification after J, of physics, corrected, scheduled and identified models side by side (M17).
+//! Requirements: the questions of a qualification beyond J, for physics, corrected, scheduled and
+//! identified models side by side (M17).
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -32,28 +33,29 @@ use crate::view::records::ConditionRecords;
 use crate::view::state::State;
 use crate::view::tables::{TableClick, TableLook, table_grid_ui};
 
-/// What stands over every page.
+/// Text at the top of every page.
 pub(super) const NO_QUALIFICATION: &str = "Of the models, not of the aircraft: these numbers are no qualification. Sources in docs/requirements.md.";
-/// A plot is never smaller \[pt\].
+/// Least size of a plot \[pt\].
 const LEAST_PLOT: Vec2 = vec2(220.0, 150.0);
-/// Part of the height that the table has at first.
+/// Initial share of the height taken by the table.
 const TABLE_PART: f32 = 0.34;
 
-/// Which question is answered.
+/// Page of requirements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RequirementsPage {
     /// Bandwidth and phase delay of every response, condition and model.
     #[default]
     Bandwidth,
-    /// What the models of the condition shown answer over time.
+    /// Responses of the displayed condition's models over time.
     Histories,
-    /// Modes of the condition shown.
+    /// Modes of the displayed condition.
     Modes,
-    /// The corrected model of every condition against the identified one; mean J and shares of the band of every condition and model.
+    /// Corrected model of every condition compared with the identified model; mean J and shares of
+    /// the band of every condition and model.
     Summary,
 }
 
-/// Which question is answered. Laid out from right to left.
+/// Draws the tabs of the pages, from right to left.
 pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = state.display.requirements_page;
     let pages = [
@@ -84,7 +86,7 @@ pub fn requirements_header_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Com
     }
 }
 
-/// The job of what is shown; none until there is an analysis.
+/// Returns the job of the displayed requirements; `None` until there is an analysis.
 pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
     let analysis = current(state)?;
     Some(RequirementsJob {
@@ -95,7 +97,7 @@ pub fn requirements_job(state: &State) -> Option<RequirementsJob> {
     })
 }
 
-/// The poles of what was identified in this session, condition by condition.
+/// Returns the poles identified in this session, condition by condition.
 pub fn known_poles(state: &State) -> KnownPoles {
     let found = |(id, records): (&ConditionId, &ConditionRecords)| {
         Some((*id, records.identification()?.poles.clone()))
@@ -103,7 +105,7 @@ pub fn known_poles(state: &State) -> KnownPoles {
     state.records.conditions.iter().filter_map(found).collect()
 }
 
-/// What the page that is chosen has to have computed.
+/// Returns the computations needed by the selected page.
 pub fn requirements_needs(state: &State) -> Vec<Need> {
     match state.display.requirements_page {
         RequirementsPage::Histories => over_time_need(state).into_iter().collect(),
@@ -119,7 +121,7 @@ pub fn requirements_needs(state: &State) -> Vec<Need> {
     }
 }
 
-/// The flight records of every condition that are used.
+/// Returns the flight records in use of every condition.
 pub fn all_records(state: &State) -> Vec<HistoryRecords> {
     let of_condition = |(id, records): (&ConditionId, &ConditionRecords)| {
         HistoryRecords::of(*id, &records.rows, records.preparation())
@@ -128,7 +130,7 @@ pub fn all_records(state: &State) -> Vec<HistoryRecords> {
     all.filter(|of| !of.records.is_empty()).collect()
 }
 
-/// The answers of all models to all records; none where there are none.
+/// Returns the job of all models' responses to all records; `None` without records.
 fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
     let analysis = current(state)?;
     let records = all_records(state);
@@ -140,7 +142,7 @@ fn time_histories_job(state: &State) -> Option<TimeHistoriesJob> {
     })
 }
 
-/// The page that is chosen, below what has to be known of all of them.
+/// Draws the selected page below the notes that concern all pages.
 pub fn requirements_view_ui(
     ui: &mut Ui,
     state: &mut State,
@@ -181,7 +183,7 @@ pub fn requirements_view_ui(
     plots_ui(ui, state, &requirements, palette, commands);
 }
 
-/// What has no answer, and what has to be known of the answers.
+/// Draws the missing answers, and the reservations about the others.
 fn known_ui(ui: &mut Ui, requirements: &Requirements, palette: &Palette) {
     let missing = requirements.missing.iter().map(|missing| {
         let condition = missing
@@ -199,7 +201,7 @@ fn known_ui(ui: &mut Ui, requirements: &Requirements, palette: &Palette) {
     }
 }
 
-/// The command that changes what requirements are asked with.
+/// Returns the command that changes the inputs of the requirements.
 pub(super) fn decided(
     state: &State,
     what: &'static str,
@@ -210,7 +212,8 @@ pub(super) fn decided(
     Edit::SetRequirements(what, Arc::new(settings)).into()
 }
 
-/// What bandwidths are asked with: which sticks command an attitude, and the engineer's levels.
+/// Draws the inputs of the bandwidths: the sticks that command an attitude, and the engineer's
+/// levels.
 fn asked_ui(ui: &mut Ui, state: &State, palette: &Palette, commands: &mut Vec<Command>) {
     let settings = &state.study.requirements;
     let decided = |what, change: &dyn Fn(&mut RequirementSettings)| decided(state, what, change);
@@ -291,7 +294,7 @@ fn plots_ui(
     state.display.figures.insert(View::Requirements, view);
 }
 
-/// The model whose mark stands at a place of a plot.
+/// Returns the model whose mark is at a place of a plot.
 fn role_at(
     requirements: &Requirements,
     (pair, id): (Pair, ConditionId),
@@ -303,11 +306,12 @@ fn role_at(
             .and_then(bandwidth_place)
             .is_some_and(|place| place == at)
     };
-    // Of marks at the same place the one on top.
+    // Of marks at the same place, the topmost.
     RequirementRole::ALL.into_iter().rev().find(is_at)
 }
 
-/// The response in focus in Bode, with the frequencies marked that bandwidth and phase delay of a model are read at.
+/// Shows the response in focus in Bode, with marks at the frequencies that define the bandwidth and
+/// phase delay of a model.
 fn marked_in_bode(
     requirements: &Requirements,
     (pair, id): (Pair, ConditionId),
@@ -333,13 +337,13 @@ fn marked_in_bode(
     commands
 }
 
-/// A table of the page shown, and how its cells are coloured.
+/// Table of the displayed page, with the colours of its cells.
 struct ShownTable<'a> {
     table: Table,
     color: Box<dyn Fn(usize, usize) -> Option<Hue> + 'a>,
 }
 
-/// The tables of the page that is shown.
+/// Returns the tables of the displayed page.
 fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<ShownTable<'a>> {
     let dataset = state.dataset();
     match state.display.requirements_page {
@@ -387,7 +391,8 @@ fn page_tables<'a>(state: &State, requirements: &'a Requirements) -> Vec<ShownTa
     }
 }
 
-/// The tables of the page that is shown where it has no figure; none where it has one, or nothing is known yet.
+/// Returns the tables of the displayed page if it has no figure; `None` if it has a figure, or if
+/// nothing is known yet.
 pub fn requirement_tables(state: &State) -> Option<Vec<Table>> {
     let is_table = matches!(
         state.display.requirements_page,
@@ -447,7 +452,7 @@ fn requirements_tables_ui(
     state.display.requirements_sorting = sorting;
 }
 
-/// Where a click on a row goes.
+/// Returns the command of a click on a row.
 fn went_to(
     state: &State,
     requirements: &Requirements,
@@ -472,7 +477,7 @@ fn went_to(
     }
 }
 
-/// What rests on the model above the band is grey.
+/// Returns grey for values that depend on the model above the band.
 fn bandwidth_look(requirements: &Requirements, (row, column): (usize, usize)) -> Option<Hue> {
     let names = [
         "omega_bw_rad_s",
@@ -486,7 +491,7 @@ fn bandwidth_look(requirements: &Requirements, (row, column): (usize, usize)) ->
     of.rests_above(name).then_some(Hue::DimText)
 }
 
-/// A mode within its tolerance, or outside of it; what has no verdict is grey.
+/// Returns the colour of a mode inside or outside its tolerance; grey without a verdict.
 fn mode_look(table: &Table, (row, column): (usize, usize)) -> Option<Hue> {
     if !table.columns[column].ends_with(": tolerance") {
         return None;
@@ -500,7 +505,7 @@ fn mode_look(table: &Table, (row, column): (usize, usize)) -> Option<Hue> {
     })
 }
 
-/// Mean J beyond what is acceptable; of the rms error nothing says what is.
+/// Returns the colour of a mean J beyond the acceptable limit; there is no limit for the rms error.
 fn summary_look(
     requirements: &Requirements,
     table: &Table,
@@ -521,7 +526,7 @@ fn summary_look(
     })
 }
 
-/// What the plots of bandwidth say.
+/// Descriptions of the bandwidth plots.
 struct BandwidthWords<'a> {
     state: &'a State,
     requirements: &'a Requirements,
@@ -562,7 +567,7 @@ impl FigureWords for BandwidthWords<'_> {
     }
 }
 
-/// The requirements for a figure.
+/// Returns the requirements for a figure.
 pub fn shown_requirements(state: &State, kind: FigureKind) -> Option<Arc<Requirements>> {
     state
         .requirements()

@@ -1,4 +1,4 @@
-//! The text of `corrections.json`: everything that an analysis found, key by key.
+//! The text of `corrections.json`: all results of an analysis, key by key.
 
 use std::collections::BTreeSet;
 
@@ -26,10 +26,10 @@ use crate::corrections_file::uncertainty::{bars, net_gain_bar, uncertainty};
 use crate::corrections_file::{NAME, VERSION};
 use crate::export_contents::ExportContents;
 
-/// Everything that was found in the chosen conditions, with the schedule of the whole study, as `corrections.json` holds it. The
-/// documentation of file formats says what each key means.
+/// Returns all results of the chosen conditions, with the schedule of the whole study, as
+/// `corrections.json` contains them. The documentation of file formats describes each key.
 ///
-/// `sha256` is that of the dataset's file.
+/// `sha256` is the hash of the dataset's file.
 pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<ConditionId>) -> Value {
     let dataset = &analysis.study.dataset;
     let names = ChannelNames::of(analysis);
@@ -62,7 +62,7 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
         }
     }
     let mut settings = analysis.study.settings.named(dataset);
-    // Readers of older programs find there whether the schedule below has delays.
+    // Readers of older programs look here for whether the schedule below has delays.
     settings.schedule.delays = analysis
         .schedule
         .as_ref()
@@ -87,7 +87,7 @@ pub fn corrections(analysis: &Analysis, sha256: &str, chosen: &BTreeSet<Conditio
     without_empty(corrections, &["signs", "couplings", "uncertainty"])
 }
 
-/// Names and units of channels, in the order of every list and table.
+/// Returns names and units of channels, in the order of all lists and tables.
 fn channels(channels: &[dataset::Channel]) -> Value {
     channels
         .iter()
@@ -95,13 +95,13 @@ fn channels(channels: &[dataset::Channel]) -> Value {
         .collect()
 }
 
-/// Whether a member says nothing: null, false, and empty lists.
+/// Returns whether a member is empty: null, false, or an empty list.
 pub(super) fn says_nothing(value: &Value) -> bool {
     matches!(value, Value::Null | Value::Bool(false))
         || value.as_array().is_some_and(|list| list.is_empty())
 }
 
-/// An object without those of its members that say nothing.
+/// Returns an object without those of the named members that are empty.
 pub(crate) fn without_empty(mut object: Value, members: &[&str]) -> Value {
     if let Value::Object(all) = &mut object {
         all.retain(|name, value| !(members.contains(&name.as_str()) && says_nothing(value)));
@@ -109,14 +109,15 @@ pub(crate) fn without_empty(mut object: Value, members: &[&str]) -> Value {
     object
 }
 
-/// A table as rows of outputs; what is not finite is null, for JSON has no such numbers.
+/// Returns a table as rows of outputs; values that are not finite become null, since JSON has no
+/// such numbers.
 fn rows<T>(table: &PairTable<Option<T>>, figure: impl Fn(&T) -> f64) -> Value {
     rows_of(table.outputs(), table.inputs(), |pair| {
         table[pair].as_ref().map(&figure).into()
     })
 }
 
-/// A table as rows of outputs.
+/// Returns a table as rows of outputs.
 pub(super) fn rows_of(outputs: usize, inputs: usize, entry: impl Fn(Pair) -> Value) -> Value {
     let row = |output| {
         (0..inputs)
@@ -126,7 +127,7 @@ pub(super) fn rows_of(outputs: usize, inputs: usize, entry: impl Fn(Pair) -> Val
     (0..outputs).map(row).collect()
 }
 
-/// An analysis, with the names of its dataset's channels.
+/// An analysis with the channel names of its dataset.
 pub(super) struct ChannelNames<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) inputs: Vec<String>,
@@ -143,7 +144,7 @@ impl<'a> ChannelNames<'a> {
         }
     }
 
-    /// The names of a response, output first.
+    /// Returns the names of a response, output first.
     fn pair(&self, pair: Pair) -> (String, String) {
         self.analysis.study.dataset.channel_names(pair)
     }
@@ -152,7 +153,7 @@ impl<'a> ChannelNames<'a> {
         pairs.into_iter().map(|pair| self.pair(pair)).collect()
     }
 
-    /// What is known of a response, behind the names of its output and its input.
+    /// Returns the entries of a response, preceded by the names of its output and its input.
     pub(super) fn of_pair(&self, pair: Pair, entries: Value) -> Value {
         let (output, input) = self.pair(pair);
         let mut members = Map::from_iter([
@@ -165,7 +166,7 @@ impl<'a> ChannelNames<'a> {
         Value::Object(members)
     }
 
-    /// A value for each channel, by its name.
+    /// Returns a value for each channel, by its name.
     pub(super) fn by_channel<T: Into<Value>>(&self, value: impl Fn(Channel) -> T) -> Value {
         let named = |names: &[String], channel: fn(usize) -> Channel| -> Value {
             names
@@ -177,7 +178,7 @@ impl<'a> ChannelNames<'a> {
         json!({"inputs": named(&self.inputs, Channel::Input), "outputs": named(&self.outputs, Channel::Output)})
     }
 
-    /// The figures of the regression of each channel.
+    /// Returns the coefficients of the regression of each channel.
     fn figures(&self, of: &Channels<Regression>) -> Value {
         self.by_channel(|channel| of[channel].figures().to_vec())
     }
@@ -190,7 +191,7 @@ impl<'a> ChannelNames<'a> {
         self.by_channel(|channel| correction.pure_delay_s(channel))
     }
 
-    /// The signed delay and the lead filter of each channel (M15), where there are any.
+    /// Returns the signed delay and the lead filter of each channel (M15), if any.
     fn leads(&self, correction: &ChannelCorrection) -> Option<Value> {
         let leads = correction.leads.as_ref()?;
         let price = LeadPrice::of(leads);
@@ -311,7 +312,7 @@ impl<'a> ChannelNames<'a> {
         let top = self.analysis.study.settings.band.max();
         let unmatched = delays.unmatched.iter().map(|entry| {
             let mut why = entry.words(top, &self.inputs, &self.outputs);
-            // A lone response that needs lead has said so already.
+            // A single response that needs lead has already been reported.
             if !entry.why.is_lone_lead() {
                 why = format!("{why} {}", entry.why.words(&self.inputs, &self.outputs));
             }
@@ -334,7 +335,8 @@ impl<'a> ChannelNames<'a> {
         without_empty(solution, &["kkt_residual_s"])
     }
 
-    /// Why the gains, or the delays, are not matched, what would help, and what holding costs.
+    /// Explains why the gains, or the delays, are not matched, what would help, and the cost of the
+    /// constraints.
     fn explanation(&self, problem: &Problem, solution: &Solution) -> Value {
         let conflict = |of: &Conflict| self.conflict(of, of.words(&self.inputs, &self.outputs));
         let agreement =
@@ -403,7 +405,7 @@ impl<'a> ChannelNames<'a> {
         })
     }
 
-    /// The gains as functions of airspeed.
+    /// Returns the gains as functions of airspeed.
     fn schedule(&self, schedule: &Schedule) -> Value {
         let airspeeds = &schedule.airspeeds;
         let figures = self.figures(&schedule.gains);
@@ -463,7 +465,8 @@ impl<'a> ChannelNames<'a> {
         without_empty(used, &["second_variable", "tau_s", "caution_notes"])
     }
 
-    /// A caution about the schedule by its code, with its figures where it is about one condition.
+    /// Returns a caution about the schedule by its code, with its numbers if it concerns a single
+    /// condition.
     fn schedule_caution(&self, caution: &ScheduleCaution) -> Value {
         let text = caution.words(&self.inputs, &self.outputs);
         match caution {
@@ -499,7 +502,7 @@ impl<'a> ChannelNames<'a> {
     }
 }
 
-/// Where the models come from, as far as their dataset says.
+/// Returns the sources of the models, as far as their dataset records them.
 fn sources(condition: &Condition) -> Value {
     let entry = |bundle: BundleKind, model: &Model| {
         let Provenance {
@@ -534,7 +537,7 @@ fn sources(condition: &Condition) -> Value {
     BundleKind::BOTH.into_iter().flat_map(of_bundle).collect()
 }
 
-/// Discontinuity ratios by name, in file order; none where none could be computed.
+/// Returns discontinuity ratios by name, in file order; null if none could be computed.
 fn discontinuity(condition: &Condition, result: &ConditionAnalysis) -> Value {
     let ratios = result
         .figures
@@ -551,9 +554,9 @@ fn discontinuity(condition: &Condition, result: &ConditionAnalysis) -> Value {
     )
 }
 
-// Which couplings the physics models have, and what these are worth (M16).
+// Couplings of the physics models, and their value (M16).
 
-/// Mixing and feedback of the study, in the dataset's units; null without couplings.
+/// Returns mixing and feedback of the study, in the dataset's units; null without couplings.
 pub(super) fn couplings(analysis: &Analysis) -> Value {
     let fitted = match &analysis.couplings {
         None => return Value::Null,
@@ -566,7 +569,7 @@ pub(super) fn couplings(analysis: &Analysis) -> Value {
     let (inputs, outputs) = feedback.shape();
     let assessment = analysis.coupling_assessment.as_deref();
     let deviations = assessment.map(CouplingsAssessment::feedback);
-    // Rows are of the input that receives.
+    // Each row belongs to the receiving input.
     let rows = |entry: &dyn Fn(usize, usize) -> Value| {
         rows_of(inputs, outputs, |at: Pair| entry(at.output, at.input))
     };
@@ -608,7 +611,8 @@ fn coupling_cost(of: CouplingCost) -> Value {
     })
 }
 
-/// The mixing of a condition, ones on its diagonal, and what the couplings do to its physics representative; null without couplings.
+/// Returns the mixing of a condition, with ones on its diagonal, and the effect of the couplings on
+/// its physics representative; null without couplings.
 pub(super) fn condition_couplings(analysis: &Analysis, result: &ConditionAnalysis) -> Value {
     let Some(coupled) = &result.coupled else {
         return Value::Null;

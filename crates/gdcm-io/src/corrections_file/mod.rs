@@ -27,7 +27,7 @@ pub(crate) use corrections::without_empty;
 const NAME: &str = "gdcm-corrections";
 const VERSION: u64 = 1;
 
-/// The names of the files of results; the last holds the checksums of the others.
+/// Names of the result files; the last contains the checksums of the others.
 pub const RESULT_FILES: [&str; 4] = [
     "corrections.json",
     "corrections.csv",
@@ -35,15 +35,15 @@ pub const RESULT_FILES: [&str; 4] = [
     "corrections.sha256",
 ];
 
-/// Where the files of results stand in a directory.
+/// Returns the paths of the result files in a directory.
 pub fn result_paths(directory: &Path) -> [PathBuf; 4] {
     RESULT_FILES.map(|name| directory.join(name))
 }
 
-/// Writes the results of the chosen conditions into a directory, made where there is none: all files, or none; last their checksums, which
-/// tell whether they belong together.
+/// Writes the results of the chosen conditions into a directory, created if missing: all files, or
+/// none. The checksums come last and show whether the files belong together.
 ///
-/// `sha256` is that of the dataset's file.
+/// `sha256` is the hash of the dataset's file.
 pub fn write_results(
     analysis: &Analysis,
     sha256: &str,
@@ -63,7 +63,7 @@ pub fn write_results(
     outputs.persist()
 }
 
-/// `corrections.json`: everything that was found in the chosen conditions.
+/// Writes `corrections.json`: all results of the chosen conditions.
 pub(super) fn write_corrections(
     analysis: &Analysis,
     sha256: &str,
@@ -73,15 +73,16 @@ pub(super) fn write_corrections(
     write_pretty(&corrections(analysis, sha256, chosen), file)
 }
 
-// The results as comma-separated values (RFC 4180), one row for each condition and channel, or condition and response.
+// The results as comma-separated values (RFC 4180), with a row for each condition and channel, or
+// condition and response.
 
-/// What is known of a condition.
+/// Results of a condition.
 #[derive(Clone)]
 struct Found<'a> {
     analysis: &'a Analysis,
     condition: &'a Condition,
     scheduled: Option<ChannelCorrection>,
-    /// What the file contains of the corrections, and what it leaves out, in words.
+    /// Contents of the correction and omitted parts, in words.
     contains: String,
 }
 
@@ -300,9 +301,10 @@ const RESPONSE_COLUMNS: [ResponseColumn; 34] = [
     }),
 ];
 
-/// `corrections.csv`: the channel gains (ratios) and delays \[s\] of the chosen conditions, and the scheduled ones at the same
-/// airspeed; where leads were asked for, the signed delays and the filters of the negative ones. A value that does not exist is an
-/// empty cell. With couplings a column for each input and each output follows: what an input takes of it (M16).
+/// Returns `corrections.csv`: the channel gains (ratios) and delays \[s\] of the chosen conditions,
+/// and the scheduled ones at the same airspeed; if leads were requested, the signed delays and the
+/// filters of the negative ones. A missing value is an empty cell. With couplings, a column for
+/// each input and each output follows, with their shares in an input (M16).
 pub(crate) fn channel_table(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -334,9 +336,10 @@ pub(crate) fn channel_table(
     write_records(file, std::iter::once(heading).chain(rows.map(cells)))
 }
 
-/// `assessment.csv`: G, D \[s\], net gains and J of the nominal model before and under the scheduled correction, of every response of the
-/// chosen conditions. A value that does not exist is an empty cell; `left_out` says why a condition is not
-/// assessed, `D_band_s` is the band delay (M15.2). Each bar is that of the value of its name.
+/// Returns `assessment.csv`: G, D \[s\], net gains and J of the nominal model before and under the
+/// scheduled correction, of every response of the chosen conditions. A missing value is an empty
+/// cell; `left_out` gives the reason why a condition is not assessed, `D_band_s` is the band delay
+/// (M15.2). Each bar belongs to the value with its name.
 pub(super) fn response_table(
     analysis: &Analysis,
     chosen: &BTreeSet<ConditionId>,
@@ -392,7 +395,7 @@ impl Found<'_> {
         self.analysis.condition(self.condition.id())
     }
 
-    /// The condition's own correction.
+    /// Returns the condition's own correction.
     fn own(&self) -> Option<&ChannelCorrection> {
         self.result().map(|result| &result.correction)
     }
@@ -404,7 +407,7 @@ impl Found<'_> {
             .bar(self.condition.id(), scalar)
     }
 
-    /// The lower (0) or upper (1) end of the whole bar, of a gain as a ratio.
+    /// Returns the lower (0) or upper (1) end of the total interval; for a gain as a ratio.
     fn end(&self, scalar: Scalar, end: usize) -> String {
         let level = self
             .analysis
@@ -424,7 +427,7 @@ impl Found<'_> {
         }))
     }
 
-    /// The standard deviation of a component of a bar.
+    /// Returns the standard deviation of a component of an interval.
     fn deviation(
         &self,
         scalar: Scalar,
@@ -448,7 +451,7 @@ impl ChannelRow<'_> {
         of?.leads.as_ref().map(|leads| leads.taus_s[self.channel])
     }
 
-    /// Of an input what it takes of each input and of each output; nothing without couplings.
+    /// Returns the weights of each input and of each output in an input; empty without couplings.
     fn coupling_cells(&self) -> Vec<String> {
         let Some(fitted) = self.found.analysis.fitted_couplings() else {
             return Vec::new();
@@ -510,9 +513,9 @@ impl ResponseRow<'_> {
     }
 }
 
-/// A value to the last digit; an empty cell where there is none, or none that is finite.
+/// Formats a value at full precision; empty if it is missing or not finite.
 fn cell(value: Option<f64>) -> String {
-    // Debug writes an exponent where Display would write hundreds of zeros.
+    // Debug writes an exponent, unlike Display, which would write hundreds of zeros.
     value
         .filter(|value| value.is_finite())
         .map(|value| format!("{value:?}"))

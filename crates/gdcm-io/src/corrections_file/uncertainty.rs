@@ -1,4 +1,4 @@
-//! The text of `corrections.json` that says how sure the results are (M13).
+//! The text of `corrections.json` about the uncertainty of the results (M13).
 
 use serde_json::{Value, json};
 
@@ -12,8 +12,9 @@ use gdcm_study::study::uncertainty::{
 
 use super::corrections::{ChannelNames, rows_of, says_nothing, without_empty};
 
-/// A bar, with what one gain leaves over in the band. Of a gain the intervals are factors and the deviations those of its natural
-/// logarithm; of a delay \[s\].
+/// Returns a confidence interval, with the remaining error in the band after one gain. For a gain
+/// the intervals are factors and the standard deviations those of its natural logarithm; for a
+/// delay both are in seconds.
 fn bar(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Value {
     let told = |interval: Option<[f64; 2]>| {
         interval.map(|ends| ends.map(|end| if scalar.is_delay() { end } else { end.exp() }))
@@ -42,7 +43,7 @@ fn bar(scalar: Scalar, bar: &Bar, level: f64, left_in_band: Option<f64>) -> Valu
         .collect()
 }
 
-/// The bar of a net gain.
+/// Returns the interval of a net gain.
 pub(super) fn net_gain_bar(
     analysis: &Analysis,
     condition: ConditionId,
@@ -59,7 +60,7 @@ pub(super) fn net_gain_bar(
     ))
 }
 
-/// The bars of a condition's other figures.
+/// Returns the intervals of the other quantities of a condition.
 pub(super) fn bars(names: &ChannelNames, condition: ConditionId) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let of = uncertainty.conditions.get(&condition)?;
@@ -86,7 +87,7 @@ pub(super) fn bars(names: &ChannelNames, condition: ConditionId) -> Option<Value
     Some(without_empty(bars, &["D_band_s"]))
 }
 
-/// What follows from the bars of all conditions, where they are there.
+/// Returns the consequences of the intervals of all conditions, if they are available.
 pub(super) fn uncertainty(names: &ChannelNames) -> Option<Value> {
     let uncertainty = names.analysis.uncertainty.as_ref()?;
     let level = uncertainty.level;
@@ -125,7 +126,8 @@ fn difference(of: &AirspeedDifference, level: f64) -> Value {
     })
 }
 
-/// What the scatter of a net gain is made of, standard deviations of the natural logarithm.
+/// Returns the contributions to the scatter of a net gain, as standard deviations of the natural
+/// logarithm.
 fn scatter(of: &PairScatter, level: f64) -> Value {
     let split = |split: &VarianceDecomposition| {
         json!({
@@ -146,7 +148,8 @@ fn scatter(of: &PairScatter, level: f64) -> Value {
     })
 }
 
-/// The scheduled net gains that measure a model with their bands, as natural logarithms.
+/// Returns the scheduled net gains of responses that measure a model with their bands, as natural
+/// logarithms.
 fn bands(names: &ChannelNames, uncertainty: &Uncertainty) -> Value {
     let (Ok(schedule), Some(bands)) = (&names.analysis.schedule, &uncertainty.bands) else {
         return json!([]);
@@ -178,7 +181,7 @@ fn bands(names: &ChannelNames, uncertainty: &Uncertainty) -> Value {
         .collect()
 }
 
-/// Whether the schedule of a net gain needs a second variable.
+/// Returns whether the schedule of a net gain needs a second variable.
 fn second_variable(of: &SecondVariableTest) -> Value {
     let effect = of.effect.as_ref().ok();
     json!({

@@ -23,15 +23,15 @@ use text::{DatasetText, FORMAT};
 
 pub(super) use text::{LabelText, ModelText, RecordText};
 
-/// The example dataset: a synthetic UH-60A-class helicopter at the paper's eleven flight conditions.
+/// The example dataset: a synthetic UH-60A-class helicopter at the paper's eleven flight
+/// conditions.
 const EXAMPLE: &[u8] = include_bytes!("../../../../assets/example-dataset.json.gz");
 /// Name under which the example is written.
 const EXAMPLE_NAME: &str = "example-dataset.json";
 
-/// Where a dataset comes from.
+/// Origin of a dataset.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DatasetOrigin {
-    /// A file.
     File(PathBuf),
     /// The example inside the program.
     EmbeddedExample,
@@ -47,7 +47,7 @@ impl fmt::Display for DatasetOrigin {
 }
 
 impl DatasetOrigin {
-    /// The file, if it comes from one.
+    /// Returns the file, if it comes from one.
     pub fn file(&self) -> Option<PathBuf> {
         match self {
             DatasetOrigin::File(path) => Some(path.clone()),
@@ -55,7 +55,7 @@ impl DatasetOrigin {
         }
     }
 
-    /// The path, or what stands for it in an error.
+    /// Returns the path, or the name that replaces it in errors.
     pub(super) fn path(&self) -> PathBuf {
         match self {
             DatasetOrigin::File(path) => path.clone(),
@@ -64,21 +64,19 @@ impl DatasetOrigin {
     }
 }
 
-/// A dataset, with what identifies its file and what is odd about it.
+/// A dataset with the identification and the cautions of its file.
 #[derive(Clone, Debug)]
 pub struct LoadedDataset {
-    /// The dataset.
     pub dataset: Arc<Dataset>,
-    /// SHA-256 of the file's bytes as they are stored, in lower-case hexadecimal.
+    /// SHA-256 of the stored bytes of the file, in lower-case hexadecimal.
     pub sha256: String,
-    /// Where it comes from.
     pub origin: DatasetOrigin,
-    /// Keys that the program does not know, and other oddities, each with its place.
+    /// Unknown keys and other oddities, each with its place.
     pub cautions: Vec<String>,
 }
 
 impl LoadedDataset {
-    /// The dataset's file; none of the embedded example.
+    /// Returns the dataset's file; `None` for the embedded example.
     pub fn path(&self) -> Option<&Path> {
         match &self.origin {
             DatasetOrigin::File(path) => Some(path),
@@ -86,7 +84,7 @@ impl LoadedDataset {
         }
     }
 
-    /// The name of the dataset's file, or what stands for it.
+    /// Returns the name of the dataset's file, or its replacement.
     pub fn file_name(&self) -> String {
         let name = self.path().and_then(Path::file_name);
         name.map_or_else(
@@ -96,12 +94,12 @@ impl LoadedDataset {
     }
 }
 
-/// Loads a dataset from a file, packed by gzip or not; whole, or not at all.
+/// Loads a dataset from a file, with or without gzip compression; whole, or not at all.
 pub fn load_dataset(path: &Path) -> Result<LoadedDataset, FileError> {
     load_dataset_within(path, &ReadingBudget::default())
 }
 
-/// The same within a budget that somebody may end.
+/// Loads a dataset within a reading budget that can be stopped.
 pub fn load_dataset_within(
     path: &Path,
     budget: &ReadingBudget<'_>,
@@ -113,8 +111,8 @@ pub fn load_dataset_within(
     )
 }
 
-/// Everything that is wrong in a dataset's file, each with its place; nothing where it can be loaded. Text that cannot be read at all
-/// is an error.
+/// Returns everything that is wrong in a dataset's file, each with its place; empty if it can be
+/// loaded. Text that cannot be read at all is an error.
 pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     let budget = ReadingBudget::default();
     let source = Source::read(path, &budget)?;
@@ -126,7 +124,7 @@ pub fn dataset_faults(path: &Path) -> Result<Vec<FileError>, FileError> {
     Ok(draft.faults().into_iter().map(told).collect())
 }
 
-/// Whether a text has the structure of a dataset, as far as it goes.
+/// Checks the structure of a dataset's text, as far as it goes.
 pub(super) fn check_dataset_text(
     text: &[u8],
     path: &Path,
@@ -135,7 +133,7 @@ pub(super) fn check_dataset_text(
     FORMAT.decode::<DatasetText>(text, path, budget).map(drop)
 }
 
-/// Loads a dataset from bytes that are already at hand; `origin` is what errors call them.
+/// Loads a dataset from bytes in memory; errors name them by `origin`.
 pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedDataset, FileError> {
     let budget = ReadingBudget::default();
     dataset_from(
@@ -145,12 +143,13 @@ pub fn load_dataset_bytes(bytes: &[u8], origin: DatasetOrigin) -> Result<LoadedD
     )
 }
 
-/// The example dataset inside the program.
+/// Returns the example dataset inside the program.
 pub fn embedded_example() -> Result<LoadedDataset, FileError> {
     load_dataset_bytes(EXAMPLE, DatasetOrigin::EmbeddedExample)
 }
 
-/// Writes the example dataset, unpacked, into a directory (made where there is none), and returns the file's path.
+/// Writes the example dataset, uncompressed, into a directory (created if missing), and returns the
+/// file's path.
 pub fn write_example(directory: &Path, existing: Existing) -> Result<PathBuf, FileError> {
     let source = Source::of(
         EXAMPLE,
@@ -166,14 +165,14 @@ pub fn write_example(directory: &Path, existing: Existing) -> Result<PathBuf, Fi
     Ok(path)
 }
 
-/// Saves a dataset in place of what is there; packed by gzip where the name ends in `.gz`.
+/// Saves a dataset, replacing an existing file; compressed with gzip if the name ends in `.gz`.
 pub fn save_dataset(dataset: &Dataset, path: &Path) -> Result<(), FileError> {
     let mut outputs = OutputSet::new(Existing::Replace, Vec::new());
     add_dataset(dataset, path, &mut outputs)?;
     outputs.persist()
 }
 
-/// Adds a dataset to `outputs`; packed by gzip where the name ends in `.gz`.
+/// Adds a dataset to `outputs`; compressed with gzip if the name ends in `.gz`.
 pub fn add_dataset(
     dataset: &Dataset,
     path: &Path,
@@ -185,7 +184,8 @@ pub fn add_dataset(
         .is_some_and(|extension| extension.eq_ignore_ascii_case("gz"));
     outputs.add(path, |file| {
         if packed {
-            // The encoder clears a buffer of its own at each piece, and the pieces of JSON are single numbers and marks.
+            // The encoder clears a buffer of its own at each piece, and the pieces of JSON are
+            // single numbers and punctuation marks.
             let mut pieces =
                 BufWriter::with_capacity(1 << 16, GzEncoder::new(file, Compression::default()));
             write_compact(&text, &mut pieces)?;
@@ -197,7 +197,7 @@ pub fn add_dataset(
     })
 }
 
-/// The dataset that a source holds.
+/// Returns the dataset in a source.
 pub(super) fn dataset_from(
     source: &Source<'_>,
     origin: DatasetOrigin,

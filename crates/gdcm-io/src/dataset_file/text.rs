@@ -1,4 +1,4 @@
-//! A dataset file, key by key, and what its text stands for: drafts, and back from what was checked.
+//! A dataset file, key by key, and its conversion to drafts and from checked datasets.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ use gdcm_model::whole_number::{whole, whole_or_none};
 use crate::file_error::{ContentError, ContentFault};
 use crate::json_text::{Format, Limited, Nested, Numbers, list, list_while};
 
-/// What a dataset file calls itself.
+/// Format and version of a dataset file.
 pub(super) const FORMAT: Format = Format {
     name: "gdcm-dataset",
     version: 1,
@@ -49,7 +49,7 @@ pub(super) struct DatasetText {
     pub(super) conditions: Vec<ConditionText>,
 }
 
-/// Reads conditions as long as they and their models are not too many.
+/// Reads conditions up to the limits on their number and on their models.
 fn conditions<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<ConditionText>, D::Error> {
     let mut models = 0;
     list_while(
@@ -122,11 +122,11 @@ pub(crate) struct RecordText {
     pub(super) variable: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) sha256: Option<String>,
-    /// "other" where it is not given.
+    /// "other" if absent.
     pub(super) kind: Option<String>,
     #[serde(default)]
     pub(super) held_out: bool,
-    /// True where it is not given.
+    /// True if absent.
     pub(super) used: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) sample_time_s: Option<f64>,
@@ -138,11 +138,12 @@ pub(crate) struct RecordText {
     pub(super) remedies: BTreeMap<String, ChannelRemedy>,
 }
 
-/// A model: of a dataset, of the models of any file (`gdcm-models`) or of identified ones (`gdcm-identified`).
+/// A model of a dataset, of any model file (`gdcm-models`) or of identified models
+/// (`gdcm-identified`).
 #[derive(Default, Deserialize, Serialize)]
 pub(crate) struct ModelText {
     pub(crate) name: String,
-    /// Of a physics model.
+    /// Physics models only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) role: Option<String>,
     #[serde(
@@ -151,7 +152,7 @@ pub(crate) struct ModelText {
         skip_serializing_if = "Option::is_none"
     )]
     pub(crate) perturbation: Option<BTreeMap<String, f64>>,
-    /// Of an identified model.
+    /// Identified models only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) method: Option<String>,
     #[serde(
@@ -160,7 +161,7 @@ pub(crate) struct ModelText {
         skip_serializing_if = "Option::is_none"
     )]
     pub(crate) order: Option<usize>,
-    /// What the file of a model outside a dataset says about its flight condition.
+    /// Flight condition of a model outside a dataset, according to its file.
     #[serde(
         default,
         deserialize_with = "whole_or_none",
@@ -173,7 +174,7 @@ pub(crate) struct ModelText {
     pub(crate) altitude_ft: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) mass_kg: Option<f64>,
-    /// Names of the channels of a model outside a dataset, empty where its file has none.
+    /// Names of the channels of a model outside a dataset; empty if its file has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) inputs: Option<Limited<LabelText, MOST_CHANNELS>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -193,7 +194,7 @@ pub(crate) struct ModelText {
     pub(crate) c: Option<Nested<2>>,
     #[serde(rename = "D", skip_serializing_if = "Option::is_none")]
     pub(crate) d: Option<Nested<2>>,
-    /// Sample time of a model of discrete time.
+    /// Sample time of a discrete-time model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) sample_time_s: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -206,15 +207,15 @@ pub(crate) struct ModelText {
     pub(crate) bands: Option<BandsText>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) source: Option<SourceText>,
-    /// How a model outside a dataset was read.
+    /// Notes from reading a model outside a dataset.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) notes: Option<Limited<String, MOST_PIECES>>,
-    /// Whether identification recommends the model, where it made it.
+    /// Whether identification recommends the model, if it produced it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) recommended: Option<bool>,
 }
 
-/// A channel of a model outside a dataset: its name, or the object that is a channel of a dataset.
+/// A channel of a model outside a dataset: its name, or an object like a channel of a dataset.
 #[derive(Clone, Deserialize, Serialize)]
 #[serde(untagged)]
 pub(crate) enum LabelText {
@@ -227,7 +228,7 @@ pub(crate) enum LabelText {
 }
 
 impl LabelText {
-    /// The name and the unit.
+    /// Returns the name and the unit.
     pub(crate) fn into_parts(self) -> (String, Option<String>) {
         match self {
             Self::Name(name) => (name, None),
@@ -236,7 +237,7 @@ impl LabelText {
     }
 }
 
-/// Which file a model was made from.
+/// Source file of a model.
 #[derive(Default, Deserialize, Serialize)]
 pub(crate) struct SourceText {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -252,10 +253,10 @@ pub(crate) struct SourceText {
     /// Flight records of the condition.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) records: Option<Limited<String, MOST_PIECES>>,
-    /// Variables of the file that were not used.
+    /// Unused variables of the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) unused: Option<Limited<String, MOST_PIECES>>,
-    /// The sides whose channels were taken by their position: "inputs", "outputs".
+    /// The sides with channels assigned by position: "inputs", "outputs".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) by_position: Option<Limited<SideText, 2>>,
 }
@@ -311,8 +312,8 @@ pub(crate) struct ResponseText {
 }
 
 impl DatasetText {
-    /// The draft that the text holds, and a caution for each key of a model that has no meaning there. Of the content only what JSON
-    /// alone spells is checked: words, not numbers.
+    /// Converts the text to a draft, with a caution for each key of a model without meaning there.
+    /// Checks only content that JSON alone spells: words, not numbers.
     pub(super) fn into_draft(self) -> Result<(DatasetDraft, Vec<String>), ContentError> {
         let band = self.frequency_band;
         if band.unit != "rad/s" {
@@ -348,7 +349,7 @@ impl DatasetText {
         Ok((draft, cautions))
     }
 
-    /// The text of a dataset, entry by entry.
+    /// Creates the text of a dataset, entry by entry.
     pub(super) fn of(dataset: &Dataset) -> Self {
         let names = |pair: gdcm_model::dataset::Pair| {
             (
@@ -470,7 +471,7 @@ impl ConditionText {
 }
 
 impl RecordText {
-    /// The record; `condition` is where it stands.
+    /// Converts to a record; `condition` is its place.
     pub(crate) fn into_record(
         self,
         condition: &Location,
@@ -505,7 +506,7 @@ impl RecordText {
         })
     }
 
-    /// A record, as files say it.
+    /// Creates the text of a record.
     pub(crate) fn of(record: &ConditionRecord) -> Self {
         let record = record.clone();
         Self {
@@ -525,7 +526,7 @@ impl RecordText {
 }
 
 impl ModelText {
-    /// Keys of other models than those of a bundle of a dataset.
+    /// Returns the present keys that have no meaning in a bundle of this kind in a dataset.
     fn misplaced(&self, kind: BundleKind) -> impl Iterator<Item = &'static str> + use<> {
         let is_physics = kind == BundleKind::Physics;
         let keys = [
@@ -576,7 +577,7 @@ impl ModelText {
         }
     }
 
-    /// What the role says that the model is of; nothing where it says something unknown.
+    /// Returns the origin that the role implies; `None` for an unknown role.
     pub(crate) fn origin(&self) -> Option<Origin> {
         let perturbation = self.perturbation.clone();
         match self.role.as_deref() {
@@ -587,7 +588,7 @@ impl ModelText {
         }
     }
 
-    /// The draft of an identified model of a dataset or a study.
+    /// Converts to the draft of an identified model of a dataset or a study.
     pub(crate) fn into_identified(self) -> ModelDraft {
         let origin = self.identified_origin();
         self.into_draft(origin)
@@ -614,12 +615,12 @@ impl ModelText {
         }
     }
 
-    /// A model of a dataset, as files say it.
+    /// Creates the text of a model of a dataset.
     pub(crate) fn of_model(model: &Model) -> Self {
         Self::of(ModelDraft::of(model))
     }
 
-    /// A model, as files say it.
+    /// Creates the text of a model.
     pub(crate) fn of(draft: ModelDraft) -> Self {
         let [a, b, c, d] = draft
             .matrices

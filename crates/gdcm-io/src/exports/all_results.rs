@@ -1,4 +1,5 @@
-//! Everything that an analysis found: `corrections.json`, `corrections.csv`, and the fields of the former as one struct of MATLAB.
+//! All results of an analysis: `corrections.json`, `corrections.csv`, and the fields of the former
+//! as one MATLAB struct.
 
 use std::collections::BTreeSet;
 
@@ -50,7 +51,7 @@ pub(super) const CSV: ExportFormat = ExportFormat {
     },
 };
 
-/// The struct `corrections` of MATLAB.
+/// The MATLAB struct `corrections`.
 pub(super) const MAT: ExportFormat = ExportFormat {
     name: "mat",
     extension: "mat",
@@ -73,15 +74,16 @@ fn all(analysis: &Analysis) -> BTreeSet<ConditionId> {
     analysis.conditions.keys().copied().collect()
 }
 
-/// Figures of channels are arrays in the order of the dataset's `inputs` and `outputs`.
+/// Values of channels are arrays in the order of the dataset's `inputs` and `outputs`.
 const LAYOUT: Layout = Layout {
     by_channel: &["inputs", "outputs"],
     by_name: &["discontinuity"],
     columns: &["table"],
 };
 
-/// The fields of `corrections.json`. Lists of responses are matrices of truths with a row for each output and a column for each input,
-/// the figures of `net_gains` stand in the matrices of `net_gain_table`; beside them, what earlier programs wrote keeps its name.
+/// Returns the fields of `corrections.json`. Lists of responses become logical matrices with a row
+/// for each output and a column for each input, the values of `net_gains` become the matrices of
+/// `net_gain_table`; besides these, fields of earlier programs keep their names.
 fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
     let pair_rows = |of: &dyn Fn(&str, &str) -> Tree| -> Tree {
         let row = |output: &Channel| {
@@ -106,7 +108,7 @@ fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
     for name in ["constrained", "ignored"] {
         settings[name] = marked(&settings[name]);
     }
-    // Absent where coherence counts for nothing.
+    // Absent if coherence is not used.
     if settings.get("coherence_threshold").is_none() {
         settings["coherence_threshold"] = Tree::Null;
     }
@@ -151,7 +153,7 @@ fn corrections_struct(mut corrections: Tree, dataset: &Dataset) -> Value {
             condition[name] = condition[solution][field].clone();
         }
     }
-    // Names and units stand in columns of their own.
+    // Names and units are in separate columns.
     for side in ["inputs", "outputs"] {
         corrections
             .as_object_mut()
@@ -204,7 +206,8 @@ mod tests {
     use super::*;
     use crate::dataset_file::embedded_example;
 
-    /// The paths of everything that JSON holds, without places in lists and names of channels and models.
+    /// Collects the paths of all JSON members, without list indices and names of channels and
+    /// models.
     fn json_paths(json: &serde_json::Value, path: &str, found: &mut BTreeSet<String>) {
         match json {
             serde_json::Value::Array(list) => {

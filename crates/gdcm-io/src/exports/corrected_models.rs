@@ -1,4 +1,5 @@
-//! Corrected models of the conditions as matrices, with the names of their states: for MATLAB, for `NumPy`, and as `gdcm-models`.
+//! Corrected models of the conditions as matrices, with state names: for MATLAB, for `NumPy`, and
+//! as `gdcm-models`.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -25,7 +26,7 @@ use crate::formats::npy::write_npz;
 use crate::models_file::{ContainingModel, bare_draft, labels, write_containing_models};
 use crate::variables::{TextArray, Value, Variable};
 
-/// Corrected models, in the format that the end of the file's name says.
+/// Corrected models, in the format of the file extension.
 pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
     name: "state-space",
     extension: "mat",
@@ -38,7 +39,7 @@ pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
         let dataset = &of.analysis.study.dataset;
         let remarks = models.iter().map(ExportedModel::words).collect();
         let exported = match ModelsFormat::of(of.path)? {
-            // Packed: the matrices of delayed models are mostly zeros.
+            // Compressed: the matrices of delayed models are mostly zeros.
             ModelsFormat::Mat => {
                 Exported::bytes(mat::write_packed(&[models_variable(&models, dataset)])?)
             }
@@ -52,7 +53,7 @@ pub(super) const STATE_SPACE: ExportFormat = ExportFormat {
     },
 };
 
-/// What corrected models are written as.
+/// Format of corrected models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ModelsFormat {
     Mat,
@@ -76,9 +77,8 @@ impl ModelsFormat {
     }
 }
 
-/// A corrected model as it is written.
+/// A corrected model, ready to be written.
 struct ExportedModel {
-    /// Its condition.
     condition: ConditionId,
     /// True airspeed of the condition \[kt\].
     airspeed_kt: f64,
@@ -86,32 +86,31 @@ struct ExportedModel {
     name: String,
     /// "scheduled" or "own".
     correction: &'static str,
-    /// The matrices.
     model: StateSpace,
     /// A name for each state.
     states: Vec<String>,
-    /// How many of them are of delays.
+    /// Number of states for delays.
     delay_states: usize,
-    /// How many of them are of lead filters.
+    /// Number of states for lead filters.
     lead_states: usize,
     /// Order of the approximants of its delays; 0 in discrete time, where delays are exact.
     pade_order: usize,
-    /// Greatest phase error of its approximants at the top of the band \[deg\].
+    /// Largest phase error of its approximants at the top of the band \[deg\].
     approximation_error_deg: f64,
-    /// Greatest phase there \[deg\] that delays of the condition's own correction would add, where it is under the schedule and that has
-    /// none.
+    /// Largest phase \[deg\] there that delays of the condition's own correction would add, if the
+    /// model is under a schedule without delays.
     left_out_deg: f64,
-    /// What of the correction is in it.
+    /// Contents of the correction in it.
     contents: ExportContents,
     /// Top of the band of comparison \[rad/s\].
     band_top_rad_s: f64,
-    /// What its lead filters cost, with that in words; none where it has none.
+    /// Cost of its lead filters, with a description; `None` without lead filters.
     price: Option<(LeadPrice, String)>,
-    /// The couplings in it, in words; empty without.
+    /// Description of its couplings; empty without couplings.
     couplings: &'static str,
 }
 
-/// The corrected models that a request asks for, in the dataset's order.
+/// Returns the requested corrected models, in the dataset's order.
 fn exported_models(
     analysis: &Analysis,
     request: &ExportRequest,
@@ -134,7 +133,7 @@ fn exported_models(
         .collect()
 }
 
-/// What the models of a request contain; of a study without the schedule that is asked for, nothing.
+/// Returns the contents of the requested models; empty if the study lacks the requested schedule.
 fn contents_of(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
     let dataset = &analysis.study.dataset;
     let conditions: Vec<ConditionId> = match request.condition {
@@ -145,7 +144,8 @@ fn contents_of(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
     contents.unwrap_or_else(|_| ExportContents::of_scheduled(analysis))
 }
 
-/// The greatest phase \[deg\] at `omega` \[rad/s\] that the delays of a condition's own correction add and an export leaves out.
+/// Returns the largest phase \[deg\] at `omega` \[rad/s\] of those delays of a condition's own
+/// correction that an export omits.
 fn left_out_phase_deg(contents: &ExportContents, omega: f64) -> f64 {
     let mut input_s = 0.0_f64;
     let mut output_s = 0.0_f64;
@@ -225,7 +225,7 @@ fn exported_model(
     })
 }
 
-/// What is in a model besides the correction of its channels.
+/// Describes the parts of a model besides the correction of its channels.
 fn couplings_words(analysis: &Analysis, dynamics: &StateSpace) -> &'static str {
     let has_delays =
         !StateSpace::timing(dynamics).is_plain() && dynamics.timing().sample_time_s.is_none();
@@ -307,7 +307,8 @@ fn result_of<'a>(
     }
 }
 
-/// "LON lead 1" and "LON delay 1" of the inputs, the model's own names, "Q delay 1" and "Q lead 1" of the outputs.
+/// Returns state names: "LON lead 1" and "LON delay 1" of the inputs, the model's own names, "Q
+/// delay 1" and "Q lead 1" of the outputs.
 fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -> Vec<String> {
     let dataset = &analysis.study.dataset;
     let of_channels = |channels: &[Channel], what: &str, counts: &[usize]| -> Vec<String> {
@@ -338,13 +339,14 @@ fn state_names(analysis: &Analysis, model: &Model, corrected: &CorrectedModel) -
 }
 
 impl ExportedModel {
-    /// Greatest phase error at the top of the band against the condition's own correction of delays \[deg\], as far as it is due to
-    /// the export: of approximants, and of delays that are left out.
+    /// Returns the largest phase error \[deg\] at the top of the band against the condition's own
+    /// correction of delays, as far as it is caused by the export: by approximants and omitted
+    /// delays.
     fn phase_error_deg(&self) -> f64 {
         self.approximation_error_deg + self.left_out_deg
     }
 
-    /// What it is and how exact, in one line.
+    /// Describes the model and its accuracy in one line.
     fn words(&self) -> String {
         let Self {
             condition,
@@ -365,7 +367,8 @@ impl ExportedModel {
         )
     }
 
-    /// The gain at ten times the band that the leads of the response that pays most add \[dB\]; 0 without leads.
+    /// Returns the gain at ten times the band \[dB\] that the leads of the most expensive response
+    /// add; 0 without leads.
     fn gain_above_band_db(&self) -> f64 {
         let most = |gains_db: &[f64]| gains_db.iter().copied().fold(0.0, f64::max);
         self.price.as_ref().map_or(0.0, |(price, _)| {
@@ -373,7 +376,8 @@ impl ExportedModel {
         })
     }
 
-    /// That delays of the condition's own correction are not in it, and what that is at the top of the band; else nothing.
+    /// Describes omitted delays of the condition's own correction and their phase at the top of the
+    /// band; empty without them.
     fn left_out_words(&self) -> String {
         if self.left_out_deg == 0.0 {
             return String::new();
@@ -385,7 +389,8 @@ impl ExportedModel {
         )
     }
 
-    /// Which parts are in it, and how exact they are; never a word of exactness about delays that are not in it.
+    /// Describes the parts in it and their accuracy; no accuracy is stated for delays that are not
+    /// in it.
     fn delay_words(&self) -> String {
         let has_delays = self.contents.delays != PartSource::None;
         if self.pade_order == 0 && self.lead_states > 0 {
@@ -402,7 +407,7 @@ impl ExportedModel {
             return match (has_delays, self.delay_states) {
                 (true, _) => "gains and delays exact",
                 (false, 0) => "gains exact, without delays",
-                // Of discrete time: whole samples.
+                // In discrete time: whole samples.
                 (false, _) => "gains and the model's own delays exact",
             }
             .to_owned();
@@ -426,9 +431,10 @@ impl ExportedModel {
     }
 }
 
-/// An upper bound of a phase error \[deg\] in words: nothing below a thousandth of a degree is told apart.
+/// Describes an upper bound of a phase error \[deg\]; values below a thousandth of a degree are not
+/// distinguished.
 fn bound_words(error_deg: f64) -> String {
-    /// The least bound that is told.
+    /// The smallest bound that is reported.
     const LEAST_DEG: f64 = 1e-3;
     let bound_deg = if error_deg > 0.0 {
         error_deg.max(LEAST_DEG)
@@ -438,7 +444,8 @@ fn bound_words(error_deg: f64) -> String {
     format!("{bound_deg:.3}")
 }
 
-/// The models under the names "condition 10, nominal"; their notes say what was done to them and how exact it is.
+/// Returns the models with the names "condition 10, nominal"; their notes describe the changes and
+/// the accuracy.
 fn found_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<FoundModel> {
     let found = |model: &ExportedModel| FoundModel {
         draft: ModelDraft {
@@ -462,7 +469,7 @@ fn found_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<FoundModel> 
     models.iter().map(found).collect()
 }
 
-/// The same models, each with its block `contains`.
+/// Returns the same models, each with its block `contains`.
 fn containing_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<ContainingModel> {
     let mut containing = Vec::new();
     for (model, exported) in found_models(models, dataset).into_iter().zip(models) {
@@ -474,7 +481,8 @@ fn containing_models(models: &[ExportedModel], dataset: &Dataset) -> Vec<Contain
     containing
 }
 
-/// The variable `models`: one record for each model, with the properties of MATLAB's `ss`: `ss(m.A, m.B, m.C, m.D, m.Ts)`.
+/// Returns the variable `models`: one record for each model, with the properties of MATLAB's `ss`:
+/// `ss(m.A, m.B, m.C, m.D, m.Ts)`.
 fn models_variable(models: &[ExportedModel], dataset: &Dataset) -> Variable {
     let names =
         |channels: &[Channel]| cell_of_texts(channels.iter().map(|channel| channel.name.clone()));
@@ -531,7 +539,7 @@ const METRICS: [Metric; 8] = [
     ("gain_above_band_db", ExportedModel::gain_above_band_db),
 ];
 
-/// A part of a correction by its name, and where it comes from.
+/// A part of a correction by its name, and its source.
 type ContainedPart = (&'static str, fn(&ExportContents) -> PartSource);
 
 const CONTAINED: [ContainedPart; 4] = [
@@ -541,8 +549,8 @@ const CONTAINED: [ContainedPart; 4] = [
     ("couplings", |contents| contents.couplings),
 ];
 
-/// The same as arrays, which is all that `NumPy` has: of model 0 `A_0`, `B_0`, `C_0`, `D_0` and `StateName_0`; one entry for each model in
-/// the others.
+/// Returns the same as arrays, the only type of `NumPy`: for model 0 `A_0`, `B_0`, `C_0`, `D_0` and
+/// `StateName_0`; one entry for each model in the others.
 fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
     let variable = |name: String, value: Value| Variable { name, value };
     let mut variables = Vec::new();
@@ -587,7 +595,7 @@ fn model_arrays(models: &[ExportedModel], dataset: &Dataset) -> Vec<Variable> {
     variables
 }
 
-/// MATLAB's `Ts` \[s\]: 0 in continuous time.
+/// Returns MATLAB's `Ts` \[s\]: 0 in continuous time.
 fn sample_time_s(model: &ExportedModel) -> f64 {
     model.model.timing().sample_time_s.unwrap_or(0.0)
 }
@@ -598,7 +606,7 @@ fn matrices(model: &ExportedModel) -> [(&'static str, &DMatrix<f64>); 4] {
 }
 
 fn array(values: &DMatrix<f64>) -> Value {
-    // Both run column by column.
+    // Both are stored by columns.
     matrix(values.nrows(), values.ncols(), values.as_slice().to_vec())
 }
 

@@ -1,4 +1,5 @@
-//! The gains and delays of a schedule at some airspeeds, for lookup tables that are linear between them: in text, and for MATLAB.
+//! The gains and delays of a schedule at given airspeeds, for lookup tables with linear
+//! interpolation: as text, and for MATLAB.
 
 use std::fmt::Write;
 use std::iter::once;
@@ -14,7 +15,7 @@ use crate::export_contents::ExportContents;
 use crate::formats::mat;
 use crate::variables::{Value, Variable};
 
-/// The lookup table in text.
+/// The lookup table as text.
 pub(super) const CSV: ExportFormat = ExportFormat {
     name: "table-csv",
     extension: "csv",
@@ -44,11 +45,11 @@ pub(super) const MAT: ExportFormat = ExportFormat {
 
 const OPTIONS: &[&str] = &["--breakpoints"];
 
-/// What a column holds: a gain, or a time \[s\].
+/// Quantity of a column: a gain, or a time \[s\].
 #[derive(Debug, PartialEq)]
 struct Kind {
     name: &'static str,
-    /// Its part in the names of fields.
+    /// Part of the field names.
     field: &'static str,
     is_time: bool,
 }
@@ -75,10 +76,10 @@ const LEAD: Kind = Kind {
 };
 
 impl Kind {
-    /// The error of a value against the true one: \[%\] of a gain, \[ms\] of a time.
+    /// Returns the error of a value against the true value: \[%\] for a gain, \[ms\] for a time.
     fn error(&self, value: f64, truth: f64) -> f64 {
         match value - truth {
-            // Both zero: no error; a table that misses a zero has no error in percent.
+            // Both zero: no error; the percentage error of a table that misses a zero is undefined.
             0.0 => 0.0,
             difference if self.is_time => 1e3 * difference.abs(),
             difference => 100.0 * (difference / truth).abs(),
@@ -86,32 +87,34 @@ impl Kind {
     }
 }
 
-/// A schedule at some airspeeds.
+/// A schedule at given airspeeds.
 struct BreakpointTable<'e> {
     of: Scheduled<'e>,
     /// Airspeeds \[kt\], increasing.
     airspeeds_kt: Vec<f64>,
-    /// Airspeed and second variable of each row: all airspeeds for each value of the second variable.
+    /// Airspeed and second variable of each row: all airspeeds for each value of the second
+    /// variable.
     rows: Vec<(f64, Option<f64>)>,
     /// One for each gain, each delay and each lead filter: of every input, then of every output.
     columns: Vec<Column>,
 }
 
-/// What a channel has at the airspeeds of a table.
+/// Values of a channel at the airspeeds of a table.
 struct Column {
     kind: &'static Kind,
     channel: Channel,
     name: String,
     values: Vec<f64>,
-    /// How far the table lies from the schedule at most: \[%\] of a gain, \[ms\] of a time.
+    /// Largest deviation of the table from the schedule: \[%\] for a gain, \[ms\] for a time.
     error: TableError,
 }
 
 impl<'e> BreakpointTable<'e> {
-    /// The table at the airspeeds asked for, or else at the distinct ones of the scheduled conditions \[kt\].
+    /// Builds the table at the requested airspeeds, by default at the distinct airspeeds of the
+    /// scheduled conditions \[kt\].
     ///
     /// # Errors
-    /// [`ExportFault::Breakpoints`] where these do not increase.
+    /// [`ExportFault::Breakpoints`] if these do not increase.
     fn of(of: Scheduled<'e>, breakpoints_kt: Option<&[f64]>) -> Result<Self, ExportFault> {
         of.check()?;
         let distinct = || {
@@ -128,7 +131,7 @@ impl<'e> BreakpointTable<'e> {
         {
             return Err(ExportFault::Breakpoints);
         }
-        // Ends and middle: between them the effect is nearly a straight line.
+        // Ends and middle: between them the effect is nearly linear.
         let second = of.schedule.second.as_ref().map_or_else(
             || vec![None],
             |term| {
@@ -170,7 +173,8 @@ impl<'e> BreakpointTable<'e> {
         Ok(table)
     }
 
-    /// What each input takes of each input, where there are couplings: of the first input first.
+    /// Adds the weights of each input in each input, if there are couplings: for the first input
+    /// first.
     fn add_mixing(&mut self) {
         let (Some(couplings), count) = (self.of.couplings, self.of.dataset.inputs().len()) else {
             return;
@@ -193,7 +197,8 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// The column of values at an airspeed \[kt\] and each of these values of the second variable.
+    /// Returns the column of values at an airspeed \[kt\] and each of these values of the second
+    /// variable.
     fn column(
         &self,
         channel: Channel,
@@ -234,7 +239,7 @@ impl<'e> BreakpointTable<'e> {
         }
     }
 
-    /// What is to be known of the schedule, and how far the table lies from it.
+    /// Returns remarks on the schedule, and the deviations of the table from it.
     fn remarks(&self) -> Vec<String> {
         let off = self
             .columns
@@ -250,7 +255,8 @@ impl<'e> BreakpointTable<'e> {
         self.of.notes().into_iter().chain(off).collect()
     }
 
-    /// Lines that begin with # say what it is and how far each column lies from its curve at most.
+    /// Writes the table as CSV, preceded by lines with # that describe it and the largest deviation
+    /// of each column from its curve.
     fn csv(&self) -> String {
         let mut text: String = self
             .of
@@ -294,7 +300,7 @@ impl<'e> BreakpointTable<'e> {
         text
     }
 
-    /// The feedback, a line for each input that receives; nothing without couplings.
+    /// Returns the feedback, a line for each receiving input; empty without couplings.
     fn feedback_lines(&self) -> Vec<String> {
         let Some(couplings) = self.of.couplings else {
             return Vec::new();
@@ -318,8 +324,9 @@ impl<'e> BreakpointTable<'e> {
         (0..inputs.len()).map(line).collect()
     }
 
-    /// The variable `gdcm_table`: the airspeeds, and for each input and output a column of gains and one of delays \[s\], where there are
-    /// leads one of their numerators \[s\] too, to be interpolated linearly between them; with the greatest error of that.
+    /// Returns the variable `gdcm_table`: the airspeeds, and for each input and output a column of
+    /// gains and one of delays \[s\], with leads also one of their numerators \[s\], for linear
+    /// interpolation; with its largest error.
     fn variable(&self) -> Variable {
         let schedule = self.of.schedule;
         let (inputs, outputs) = self.of.dataset.names_of_channels();
@@ -429,12 +436,12 @@ impl Column {
         }
     }
 
-    /// What it is: "gain of input LON".
+    /// Describes the column: "gain of input LON".
     fn words(&self) -> String {
         format!("{} of {} {}", self.kind.name, self.side(), self.name)
     }
 
-    /// The greatest error in words: "1.200e0 % at 62.000 kt".
+    /// Describes the largest error: "1.200e0 % at 62.000 kt".
     fn error_words(&self) -> String {
         let unit = if self.kind.is_time { "ms" } else { "%" };
         let TableError { error, airspeed_kt } = self.error;
@@ -447,23 +454,24 @@ impl Column {
     }
 }
 
-/// Intervals of the grid on which the greatest error is looked for.
+/// Intervals of the grid in the search for the largest error.
 const GRID: usize = 2000;
-/// Steps of the golden section: each makes the interval 0.618 times as long.
+/// Steps of the golden-section search: each multiplies the interval by 0.618.
 const STEPS: usize = 60;
 
-/// The greatest error of linear interpolation in a table.
+/// The largest error of linear interpolation in a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TableError {
-    /// The error, without a sign, in the unit in which it was measured.
+    /// The absolute error, in the unit of measurement.
     error: f64,
-    /// The airspeed at which it is found \[kt\].
+    /// The airspeed of the largest error \[kt\].
     airspeed_kt: f64,
 }
 
 impl TableError {
-    /// Finds the greatest error of a table of `curve` at `points` within `range`; `measure` is the error of a value against the
-    /// true one. A grid finds the neighbourhood, the golden section the place.
+    /// Finds the largest error of a table of `curve` at `points` within `range`; `measure` returns
+    /// the error of a value against the true value. A grid finds the neighbourhood, a
+    /// golden-section search the location.
     fn greatest(
         points: &[f64],
         range_kt: [f64; 2],
@@ -509,7 +517,7 @@ impl TableError {
     }
 }
 
-/// What a table gives at an airspeed: linear between its points, the end values outside.
+/// Interpolates a table at an airspeed: linear between its points, the end values outside.
 fn interpolated(points: &[f64], values: &[f64], airspeed_kt: f64) -> f64 {
     let above = points.partition_point(|&point| point <= airspeed_kt);
     match (above.checked_sub(1), points.get(above)) {

@@ -1,38 +1,39 @@
-//! Anything that serde serializes as values of MATLAB: one schema for JSON and for `.mat`.
+//! Conversion of serde-serialisable data to MATLAB values: one schema for JSON and for `.mat`.
 
 use serde_json::Value as Json;
 
 use crate::strides::first_index_fastest;
 use crate::variables::{Array, CellArray, ElementKind, StructArray, Value};
 
-/// Longest name that MATLAB takes (`namelengthmax`).
+/// Longest name that MATLAB accepts (`namelengthmax`).
 pub(super) const LONGEST_NAME: usize = 63;
 
 static NULL: Json = Json::Null;
 
-/// Which members are not simply lists and objects.
+/// Members that are not simply lists and objects.
 pub(super) struct Layout {
     /// Objects with a member for each channel: arrays in the order of the channels.
     pub(super) by_channel: &'static [&'static str],
-    /// Objects whose members have names that MATLAB does not take: structs of `name` and `value`.
+    /// Objects with member names that MATLAB does not accept: structs of `name` and `value`.
     pub(super) by_name: &'static [&'static str],
-    /// Lists of objects that become one struct of columns in place of an array of structs.
+    /// Lists of objects that become one struct of columns instead of an array of structs.
     pub(super) columns: &'static [&'static str],
 }
 
-/// A number, or null, which stands for none.
+/// Returns whether the value is a number or null, which represents a missing number.
 fn is_number(json: &Json) -> bool {
     matches!(json, Json::Number(_) | Json::Null)
 }
 
-/// The number; NaN where there is none.
+/// Returns the number; NaN if it is missing.
 fn number(json: &Json) -> f64 {
     json.as_f64().unwrap_or(f64::NAN)
 }
 
 impl Layout {
-    /// The value of JSON: objects are structs, lists of objects arrays of structs, rectangular lists of numbers matrices, lists of
-    /// texts columns of cells; what is null is NaN.
+    /// Converts a JSON value: objects become structs, lists of objects arrays of structs,
+    /// rectangular lists of numbers matrices, lists of texts columns of cells, and null becomes
+    /// NaN.
     pub(super) fn value(&self, name: &str, json: &Json) -> Value {
         match json {
             Json::Null | Json::Number(_) => Value::number(number(json)),
@@ -82,7 +83,7 @@ impl Layout {
         }
     }
 
-    /// A row of structs that all have the same fields; what one lacks is empty there.
+    /// Returns a row of structs with the same fields; missing members are empty.
     fn records(&self, objects: &[&Json]) -> Value {
         let of = |name: &str| {
             let values = objects.iter().map(|object| object.get(name));
@@ -100,7 +101,8 @@ impl Layout {
         })
     }
 
-    /// Leaves of an array of this shape, its last index running fastest: of objects a struct of arrays, of numbers an array.
+    /// Returns leaves of an array of this shape, with its last index running fastest: objects
+    /// become a struct of arrays, numbers an array.
     fn gathered<'j>(&self, shape: &[usize], leaves: Vec<&'j Json>) -> Value {
         if leaves.iter().any(|leaf| leaf.is_object()) {
             let mut fields = Fields::default();
@@ -177,7 +179,7 @@ impl Layout {
     }
 }
 
-/// The names of the members of all objects, each once, in the order in which they are met.
+/// Returns the distinct member names of all objects, in order of appearance.
 fn names_of<'j>(objects: &[&'j Json]) -> Vec<&'j str> {
     let mut names: Vec<&str> = Vec::new();
     for name in objects
@@ -192,7 +194,7 @@ fn names_of<'j>(objects: &[&'j Json]) -> Vec<&'j str> {
     names
 }
 
-/// A name that MATLAB takes for a field: a letter, then letters, digits and _.
+/// Returns a name that MATLAB accepts for a field: a letter, then letters, digits and _.
 fn valid_name(name: &str) -> String {
     let letters = name.chars().map(|letter| {
         if letter.is_ascii_alphanumeric() {
@@ -209,7 +211,7 @@ fn valid_name(name: &str) -> String {
     first.chars().chain(letters).take(LONGEST_NAME).collect()
 }
 
-/// At least two sides; a list stands as a column.
+/// Returns at least two dimensions; a list becomes a column.
 fn sides(shape: &[usize]) -> Vec<usize> {
     if let [length] = shape {
         vec![*length, 1]
@@ -228,25 +230,25 @@ fn array(shape: &[usize], numbers: Vec<f64>, kind: ElementKind) -> Value {
     })
 }
 
-/// The fields of a record, in their order.
+/// The fields of a record, in order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Fields {
     fields: Vec<(String, Value)>,
 }
 
 impl Fields {
-    /// Adds a field. Names are ours: letters, digits and _.
+    /// Adds a field. Names come from the program: letters, digits and _.
     pub(super) fn add(&mut self, name: &str, value: Value) {
         self.fields.push((name.to_owned(), value));
     }
 
-    /// One record.
+    /// Returns a single record.
     pub(super) fn record(self) -> Value {
         records(vec![self])
     }
 }
 
-/// A row of records that all have the same fields.
+/// Returns a row of records with the same fields.
 pub(super) fn records(records: Vec<Fields>) -> Value {
     let shape = vec![1, records.len()];
     let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
@@ -261,7 +263,7 @@ pub(super) fn records(records: Vec<Fields>) -> Value {
     Value::Struct(StructArray { shape, fields })
 }
 
-/// Texts below one another, each in a cell.
+/// Returns a column of texts, each in a cell.
 pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
     let values: Vec<Value> = texts.into_iter().map(Value::text).collect();
     Value::Cell(CellArray {
@@ -270,19 +272,19 @@ pub(super) fn cell_of_texts(texts: impl IntoIterator<Item = String>) -> Value {
     })
 }
 
-/// Numbers beside one another.
+/// Returns a row of numbers.
 pub(super) fn row(values: impl IntoIterator<Item = f64>) -> Value {
     let values: Vec<f64> = values.into_iter().collect();
     matrix(1, values.len(), values)
 }
 
-/// Numbers below one another.
+/// Returns a column of numbers.
 pub(super) fn column(values: impl IntoIterator<Item = f64>) -> Value {
     let values: Vec<f64> = values.into_iter().collect();
     matrix(values.len(), 1, values)
 }
 
-/// A matrix, given column by column.
+/// Returns a matrix from its values by columns.
 pub(super) fn matrix(rows: usize, columns: usize, values: Vec<f64>) -> Value {
     Value::Array(Array::matrix(rows, columns, values))
 }

@@ -1,5 +1,6 @@
-//! A study's corrections for other tools: programs and tables that compute them outside of this one, corrected models, and all
-//! results as variables of MATLAB. Each is an [`ExportFormat`]; the command line, the window and the documentation go by [`EXPORTERS`].
+//! A study's corrections for other tools: programs and tables that compute them elsewhere,
+//! corrected models, and all results as MATLAB variables. Each is an [`ExportFormat`]; the command
+//! line, the window and the documentation use [`EXPORTERS`].
 
 mod all_results;
 mod corrected_models;
@@ -23,26 +24,26 @@ use crate::output_set::OutputSet;
 use crate::variables::VariableFault;
 use scheduled::Scheduled;
 
-/// Something that a study's corrections can be exported as.
+/// A format for exporting a study's corrections.
 #[derive(Clone, Copy, Debug)]
 pub struct ExportFormat {
     /// Its name on the command line.
     pub name: &'static str,
-    /// The end of a file's name.
+    /// Extension of a file name.
     pub extension: &'static str,
-    /// What it is, for people.
+    /// Description for people.
     pub words: &'static str,
-    /// The options of the command line that it takes.
+    /// Accepted options of the command line.
     pub options: &'static [&'static str],
-    /// Refuses a name of a file that does not fit: a question for before the work.
+    /// Rejects an unsuitable file name, before the work.
     check_path: fn(&Path) -> Result<(), ExportFault>,
-    /// What the file contains of the correction.
+    /// Contents of the correction in the file.
     contents: fn(&Analysis, &ExportRequest) -> ExportContents,
     /// The contents of the file.
     export: for<'e> fn(&Export<'e>) -> Result<Exported<'e>, ExportFault>,
 }
 
-/// Every export, in the order of their list; the first of them before any choice.
+/// All exports, in the order of their list; the first is the default.
 pub static EXPORTERS: [ExportFormat; 9] = [
     all_results::MAT,
     programs::MATLAB,
@@ -56,7 +57,7 @@ pub static EXPORTERS: [ExportFormat; 9] = [
 ];
 
 impl ExportFormat {
-    /// The format of this name.
+    /// Returns the format with this name.
     pub fn named(name: &str) -> Option<Self> {
         EXPORTERS.into_iter().find(|format| format.name == name)
     }
@@ -74,59 +75,58 @@ impl PartialEq for ExportFormat {
     }
 }
 
-/// Which physics model of a condition is exported.
+/// Physics model of a condition to be exported.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum ExportedRole {
-    /// The one at the condition's own trim.
+    /// The model at the condition's own trim.
     #[default]
     Nominal,
-    /// The one that represents its bundle.
+    /// The model that represents its bundle.
     Representative,
-    /// The one of this name.
+    /// The model with this name.
     Named(String),
 }
 
-/// What is to be exported, and how; without any choice, nominal models under the schedule, delays in second order.
+/// Contents and options of an export; by default, nominal models under the schedule, with
+/// second-order delay approximants.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExportRequest {
-    /// As what.
     pub format: ExportFormat,
-    /// Airspeeds of a lookup table \[kt\]; none for the distinct airspeeds of the scheduled conditions.
+    /// Airspeeds of a lookup table \[kt\]; by default the distinct airspeeds of the scheduled
+    /// conditions.
     pub breakpoints_kt: Option<Vec<f64>>,
-    /// The condition whose corrected model is exported; none for every one.
+    /// Condition of the exported model; all conditions if `None`.
     pub condition: Option<ConditionId>,
-    /// Which of its models.
+    /// Model of the condition.
     pub role: ExportedRole,
-    /// Under which correction.
+    /// Correction of the model.
     pub correction: AssessedCorrection,
-    /// What its delays are approximated by.
+    /// Approximant of its delays.
     pub pade: Pade,
 }
 
-/// Where a correction comes from.
+/// Origin of a correction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExportSource {
-    /// What it is called: the name of the study.
+    /// Name of the study.
     pub name: String,
     /// SHA-256 of the dataset's file, in hexadecimal.
     pub sha256: String,
 }
 
-/// What an export is made of.
+/// Analysis, origin, request and path of an export.
 #[derive(Clone, Copy)]
 pub struct Export<'e> {
-    /// What was found.
     pub analysis: &'e Analysis,
-    /// Where it comes from.
+    /// Origin of the correction.
     pub source: &'e ExportSource,
-    /// What is asked for.
     pub request: &'e ExportRequest,
-    /// The file that it goes to.
+    /// Path of the output file.
     pub path: &'e Path,
 }
 
 impl<'e> Export<'e> {
-    /// What the leads of the schedule cost, in words, for a file that holds them as numbers.
+    /// Describes the cost of the scheduled leads, for a file that contains them as numbers.
     fn price(&self) -> Vec<String> {
         let (inputs, outputs) = self.analysis.study.dataset.names_of_channels();
         let price = self
@@ -141,7 +141,7 @@ impl<'e> Export<'e> {
             .collect()
     }
 
-    /// The schedule of the study.
+    /// Returns the schedule of the study.
     fn scheduled(&self) -> Result<Scheduled<'e>, ExportFault> {
         let schedule = self
             .analysis
@@ -164,10 +164,10 @@ impl<'e> Export<'e> {
     }
 }
 
-/// What writes the contents of a file.
+/// Writer of the contents of a file.
 type Writing<'e> = Box<dyn FnOnce(&mut dyn Write) -> io::Result<()> + 'e>;
 
-/// The contents of a file, with what is to be known of it, line by line.
+/// The contents of a file, with remarks, line by line.
 pub struct Exported<'e> {
     write: Writing<'e>,
     remarks: Vec<String>,
@@ -191,21 +191,21 @@ impl<'e> Exported<'e> {
     }
 }
 
-/// Refuses a name that does not fit what is to be exported: a question for before the work.
+/// Rejects a file name that does not suit the export, before the work.
 ///
 /// # Errors
-/// [`FileError::Export`] with what is wrong with it.
+/// [`FileError::Export`] with the reason.
 pub fn check_export(format: ExportFormat, path: &Path) -> Result<(), FileError> {
     (format.check_path)(path).map_err(|fault| FileError::export(path, fault))
 }
 
-/// What the file of a request contains of the correction.
+/// Returns the contents of the correction in the requested file.
 pub fn export_contents(analysis: &Analysis, request: &ExportRequest) -> ExportContents {
     (request.format.contents)(analysis, request)
 }
 
-/// Writes what a request asks for, and gives what is to be known of it, line by line; what it contains is told by
-/// [`export_contents`].
+/// Writes the requested export and returns remarks, line by line; [`export_contents`] describes its
+/// contents.
 pub fn write_export(
     analysis: &Analysis,
     source: &ExportSource,
@@ -226,9 +226,8 @@ pub fn write_export(
     Ok(remarks)
 }
 
-// Why something cannot be exported.
 
-/// Why something cannot be exported.
+/// Reason why an export is impossible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExportFault {
     /// A curve cannot be computed.
@@ -236,89 +235,78 @@ pub enum ExportFault {
         "the {curve} of {channel} has a number that is not finite; correct it before it is exported"
     )]
     Curve {
-        /// The channel.
         channel: String,
         /// "gain" or "delay".
         curve: &'static str,
     },
-    /// The airspeeds asked for make no table.
+    /// The requested airspeeds do not form a table.
     #[error("the airspeeds of the table must be finite, increase, and be at least one")]
     Breakpoints,
-    /// A file of MATLAB has a name that no function can have.
+    /// A MATLAB file has a name that no function can have.
     #[error(
         "MATLAB calls a function by the name of its file: a letter, then letters, digits and _, 63 at most, and neither a \
          keyword nor a name that the file uses itself; found {}",
         quoted(found)
     )]
     FunctionName {
-        /// The name of the file without its ending.
         found: String,
     },
-    /// The name of the file says none of the formats that models are written in.
+    /// The file extension is none of the model formats.
     #[error("models are written to a name that ends in .mat, .json or .npz")]
     ModelsFormat,
     /// The values cannot be written.
     #[error(transparent)]
     Variables(#[from] VariableFault),
-    /// There is no schedule to be exported.
+    /// There is no schedule to export.
     #[error(transparent)]
     Schedule(#[from] ScheduleError),
-    /// The study asks for couplings and has none: what would be exported is not what was asked for.
+    /// The study requests couplings and has none: the export would not be the requested one.
     #[error(
         "the study asks for couplings, and there are none: {why}; mend that, or set couplings to none"
     )]
     NoCouplings {
-        /// Why there are none.
         why: String,
     },
     /// A condition has no result of its own.
     #[error("condition {condition}: {why}")]
     NoResult {
-        /// The condition.
         condition: ConditionId,
-        /// Why not.
         why: String,
     },
     /// The dataset has no such condition.
     #[error("the dataset has no condition {condition}")]
     NoCondition {
-        /// The id asked for.
         condition: ConditionId,
     },
-    /// A condition has no physics model of this name.
+    /// A condition has no physics model with this name.
     #[error(
         "condition {condition} has no physics model \"{model}\"; name the condition that has it"
     )]
     NoModel {
-        /// The condition.
         condition: ConditionId,
-        /// The name asked for.
         model: String,
     },
-    /// A model is known by its response only.
+    /// A model is known only by its response.
     #[error(
         "condition {condition}, model \"{model}\": it is a measured response and has no matrices to be exported"
     )]
     NoMatrices {
-        /// The condition.
         condition: ConditionId,
-        /// The model.
         model: String,
     },
     /// A corrected model cannot be written as matrices.
     #[error("condition {condition}, model \"{model}\": {words}")]
     Model {
-        /// The condition.
         condition: ConditionId,
-        /// The model.
         model: String,
-        /// Why not; see [`CorrectedModelError`](gdcm_method::correction::corrected_model::CorrectedModelError).
+        /// For the reasons see
+        /// [`CorrectedModelError`](gdcm_method::correction::corrected_model::CorrectedModelError).
         words: String,
     },
 }
 
 impl ExportFault {
-    /// Whether it is the analysis that has not what is asked for; otherwise something else would have to be asked.
+    /// Returns whether the analysis lacks the requested content; otherwise the request must change.
     pub fn is_of_analysis(&self) -> bool {
         matches!(
             self,

@@ -1,4 +1,5 @@
-//! The schedule as a function in other programming languages: a template for each, and how it writes numbers and texts.
+//! The schedule as a function in other programming languages: a template for each, and its format
+//! of numbers and texts.
 
 use std::io;
 use std::path::Path;
@@ -16,7 +17,7 @@ use super::scheduled::{Curve, Scheduled, number};
 use super::{Export, ExportFault, ExportFormat, Exported};
 use crate::export_contents::ExportContents;
 
-/// A programming language: the template of a file, and how it writes the value of a curve.
+/// A programming language: the template of a file, and its expression for the value of a curve.
 struct Language {
     template: &'static str,
     exp: &'static str,
@@ -26,13 +27,14 @@ struct Language {
     polynomial: &'static str,
     /// Of airspeeds, values and the airspeed `a`.
     table: &'static str,
-    /// Whether a list of numbers is an array that is declared before; otherwise it stands in square brackets.
+    /// Whether a list of numbers is a previously declared array; otherwise it is written in square
+    /// brackets.
     declares_arrays: bool,
-    /// A text between quotes, where the file holds the names of channels.
+    /// Quotes a text, if the file contains the names of channels.
     text: fn(&str) -> String,
 }
 
-/// A function of MATLAB, which is called by the name of its file.
+/// A MATLAB function, called by the name of its file.
 pub(super) const MATLAB: ExportFormat = ExportFormat {
     name: "m",
     extension: "m",
@@ -55,7 +57,7 @@ pub(super) const MATLAB: ExportFormat = ExportFormat {
     },
 };
 
-/// A module of Python.
+/// A Python module.
 pub(super) const PYTHON: ExportFormat = ExportFormat {
     name: "py",
     extension: "py",
@@ -78,7 +80,7 @@ pub(super) const PYTHON: ExportFormat = ExportFormat {
     },
 };
 
-/// A header of C.
+/// A C header.
 pub(super) const C: ExportFormat = ExportFormat {
     name: "h",
     extension: "h",
@@ -113,7 +115,7 @@ impl Language {
         Ok(Exported::new(write).with(remarks))
     }
 
-    /// The text of the file; `name` is that of the file without its ending.
+    /// Returns the text of the file; `name` is the file name without its extension.
     fn text(&self, of: &Scheduled<'_>, name: &str) -> io::Result<String> {
         let airspeeds = &of.schedule.airspeeds;
         let second = of.schedule.second.as_ref().map(|term| {
@@ -163,7 +165,8 @@ impl Language {
             .map_err(io::Error::other)
     }
 
-    /// What the file contains: for each part its name and where it comes from, and what is left out, as texts of the language.
+    /// Returns the contents of the file: for each part its name and source, and the omitted parts,
+    /// as texts of the language.
     fn contents(&self, of: &Scheduled<'_>) -> Value {
         let mut parts = Vec::new();
         for (name, source) in of.contents.parts() {
@@ -176,7 +179,8 @@ impl Language {
         context! { parts, left_out }
     }
 
-    /// `M~(V)` of the airspeed `V` clamped and scaled as the couplings take it, and `K`, row by row.
+    /// Returns `M~(V)` of the airspeed `V`, clamped and scaled as for the couplings, and `K`, row
+    /// by row.
     fn couplings(&self, of: &CouplingMatrices) -> Value {
         let airspeeds = of.airspeeds();
         let (inputs, outputs) = of.feedback().shape();
@@ -229,8 +233,8 @@ impl Language {
         }
     }
 
-    /// The value of a curve at the airspeed `a`, the scaled airspeed `v` and the scaled second variable `z`, with the arrays `c0`, `c1`
-    /// and so on that it takes.
+    /// Returns the expression for the value of a curve at the airspeed `a`, the scaled airspeed `v`
+    /// and the scaled second variable `z`, with its arrays `c0`, `c1` and so on.
     fn expression(&self, curve: &Curve) -> Value {
         let mut arrays = Vec::new();
         let mut array = |numbers: &[f64]| {
@@ -284,7 +288,7 @@ impl Language {
     }
 }
 
-/// The scaled airspeed, as every language writes it.
+/// Returns the expression for the scaled airspeed, the same in every language.
 fn scaled(airspeeds: &Airspeeds) -> String {
     match airspeeds.half_range_kt {
         0.0 => number(0.0),
@@ -296,19 +300,19 @@ fn scaled(airspeeds: &Airspeeds) -> String {
     }
 }
 
-/// The name of a file without its ending.
+/// Returns a file name without its extension.
 fn stem(path: &Path) -> String {
     path.file_stem()
         .map(|stem| stem.to_string_lossy().into_owned())
         .unwrap_or_default()
 }
 
-/// What MATLAB (`iskeyword`) and GNU Octave keep for themselves, and the functions in the file.
+/// Reserved words of MATLAB (`iskeyword`) and GNU Octave, and the functions in the file.
 const KEYWORDS: &str = "break case catch classdef continue do else elseif end end_try_catch end_unwind_protect endfor \
     endfunction endif endparfor endswitch endwhile for function global if otherwise parfor persistent return spmd switch try \
     until unwind_protect unwind_protect_cleanup while gdcm_polynomial gdcm_table";
 
-/// Refuses a name that no function of a file of MATLAB can have.
+/// Rejects a name that no function in a MATLAB file can have.
 fn check_function_name(name: &str) -> Result<(), ExportFault> {
     let is_name = name.starts_with(|first: char| first.is_ascii_alphabetic())
         && name.len() <= LONGEST_NAME
@@ -323,13 +327,15 @@ fn check_function_name(name: &str) -> Result<(), ExportFault> {
     })
 }
 
-/// A text for a comment of any language: visible characters of ASCII, the signs of the program's own words by what stands for them
-/// there, all others by their numbers in Unicode, and nothing that ends or begins a comment.
+/// Escapes a text for a comment in any language: visible ASCII characters remain, special signs of
+/// the program's own texts are replaced by equivalents, all others by their Unicode numbers;
+/// nothing can end or begin a comment.
 pub(super) fn comment(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for character in text.chars() {
         match character {
-            // Two characters that begin or end comments, continue lines or are written otherwise never stand together.
+            // Two characters that begin or end comments, continue lines or are escapes never stand
+            // next to each other.
             '*' | '/' | '\\' | '?' | '%' | '{' | '}' | '"' | '\''
                 if plain.ends_with(['*', '/', '?', '%', '"', '\'']) =>
             {
@@ -347,14 +353,14 @@ pub(super) fn comment(text: &str) -> String {
             _ => plain.push_str(&format!("<U+{:04X}>", u32::from(character))),
         }
     }
-    // A line of a comment that ends in a backslash goes on in the next.
+    // A comment line that ends in a backslash continues on the next.
     if plain.ends_with('\\') {
         plain.push('.');
     }
     plain
 }
 
-/// A text between double quotes for C: bytes that are no plain characters as three octal digits.
+/// Quotes a text for C: bytes other than plain characters become three octal digits.
 fn c_text(text: &str) -> String {
     let escaped = |byte: u8| match byte {
         // A question mark could begin a trigraph.
@@ -364,7 +370,7 @@ fn c_text(text: &str) -> String {
     format!("\"{}\"", text.bytes().map(escaped).collect::<String>())
 }
 
-/// A text between double quotes for Python.
+/// Quotes a text for Python.
 fn python_text(text: &str) -> String {
     let escaped = |character: char| match character {
         '"' | '\\' => format!("\\{character}"),
@@ -374,7 +380,8 @@ fn python_text(text: &str) -> String {
     format!("\"{}\"", text.chars().map(escaped).collect::<String>())
 }
 
-// Exported programs are run by their interpreters and compilers, against the schedule itself.
+// Exported programs are run by their interpreters and compilers and compared with the schedule
+// itself.
 #[cfg(test)]
 mod tests {
     use std::process::Command;
@@ -418,7 +425,7 @@ mod tests {
                 }
             }
         }
-        // Leads, of one signed delay for all airspeeds and of one that follows them.
+        // Leads, of one signed delay for all airspeeds and of one that varies with them.
         for tau_degree in [0, 2] {
             let mut study = Study::new(embedded_example().unwrap().dataset);
             let schedule = ScheduleSettings {
@@ -432,7 +439,7 @@ mod tests {
             let analysis = engine.analyze(&study, &Unobserved).unwrap();
             analyses.push((format!("leads of degree {tau_degree}"), analysis));
         }
-        // One airspeed: the range is none.
+        // One airspeed: the range is empty.
         let mut study = Study::new(embedded_example().unwrap().dataset);
         let conditions = study.dataset.clone();
         let at = conditions.conditions()[3].flight_state().airspeed_kt;
@@ -455,7 +462,7 @@ mod tests {
         analyses
     }
 
-    /// The schedule of an analysis as a program in a language; `name` is that of its file.
+    /// Returns the schedule of an analysis as a program in a language; `name` is its file name.
     fn program(language: &str, analysis: &Analysis, name: &str) -> String {
         let source = &ExportSource {
             name: NASTY[0].to_owned(),
@@ -474,14 +481,15 @@ mod tests {
         String::from_utf8(text).unwrap()
     }
 
-    /// Names that would end a comment or a text if they were written as they are.
+    /// Names that would end a comment or a text if they were written unescaped.
     const NASTY: [&str; 3] = [
         "LAT \"x\" 'y' */ \\ %d\n%}\r*/ end",
         "δ_a ??/ /* \u{2028} ''' \"\"\" ${x}",
         "\\u{7f}\u{0}\\",
     ];
 
-    /// Fifty airspeeds \[kt\], from below the range of the example to above it, with both its ends.
+    /// Returns fifty airspeeds \[kt\], from below the range of the example to above it, including
+    /// both its ends.
     fn airspeeds() -> Vec<f64> {
         (0..48)
             .map(|index| 31.0 + f64::from(index) * 2.5)
@@ -489,7 +497,7 @@ mod tests {
             .collect()
     }
 
-    /// What the program itself says, in the order in which the programs print.
+    /// Returns the values of this program, in the order in which the exported programs print.
     fn expected(analysis: &Analysis) -> Vec<f64> {
         let schedule = analysis.schedule.as_ref().unwrap();
         let values = |airspeed: f64| {
@@ -508,7 +516,8 @@ mod tests {
     fn assert_same(words: &str, found: &[f64], expected: &[f64]) {
         assert_eq!(found.len(), expected.len(), "{words}");
         for (index, (a, b)) in found.iter().zip(expected).enumerate() {
-            // A delay that crosses zero is cut there: beside it, less than a femtosecond is nothing.
+            // A delay that crosses zero is clipped there: next to it, less than a femtosecond is
+            // negligible.
             assert!(
                 (a - b).abs() <= 1e-12 * b.abs() + 1e-16,
                 "{words}, value {index}: {a} instead of {b}"
@@ -516,7 +525,8 @@ mod tests {
         }
     }
 
-    /// Runs a program and compares what it prints; says so where it is not there.
+    /// Runs a program and compares its output; prints a message if the interpreter or compiler is
+    /// missing.
     fn assert_run(
         words: &str,
         program: &str,
@@ -723,7 +733,7 @@ mod tests {
         }
     }
 
-    /// The example with mixing and feedback, gains alone.
+    /// Returns the example with mixing and feedback, gains only.
     fn coupled() -> Analysis {
         let mut study = Study::new(embedded_example().unwrap().dataset);
         study
@@ -735,7 +745,7 @@ mod tests {
         Engine::default().analyze(&study, &Unobserved).unwrap()
     }
 
-    /// A feed-through of 6 x 4, of numbers that every language writes alike.
+    /// Returns a 6 x 4 feed-through with numbers that every language writes alike.
     fn feed_through() -> DMatrix<f64> {
         DMatrix::from_fn(6, 4, |output, input| {
             0.25 * (output as f64 - 2.0) * (input as f64 + 1.0) / 4.0
@@ -757,7 +767,8 @@ mod tests {
         )
     }
 
-    /// At each airspeed the mixing, the feedback, and the feedback closed through the feed-through, row by row.
+    /// Returns, at each airspeed, the mixing, the feedback, and the feedback closed through the
+    /// feed-through, row by row.
     fn expected_couplings(analysis: &Analysis) -> Vec<f64> {
         let matrices = analysis.fitted_couplings().unwrap().matrices();
         let feedback = matrices.feedback();
@@ -874,7 +885,8 @@ mod tests {
         }
     }
 
-    /// The example with altitude as its second variable, and what it says at fifty airspeeds and three altitudes.
+    /// Returns the example with altitude as its second variable, and its values at fifty airspeeds
+    /// and three altitudes.
     fn with_altitude(kind: ScheduleKind) -> (Analysis, Vec<f64>) {
         let mut study = Study::new(embedded_example().unwrap().dataset);
         let schedule = ScheduleSettings {
@@ -906,7 +918,7 @@ mod tests {
         (analysis, expected)
     }
 
-    /// Below the range of the example, in it, and above \[ft\].
+    /// Below, within and above the range of the example \[ft\].
     const ALTITUDES: [f64; 3] = [0.0, 4321.0, 20_000.0];
 
     #[test]
@@ -975,7 +987,7 @@ mod tests {
         }
     }
 
-    /// The example, with channels whose names are hard to write: one input and two outputs.
+    /// Returns the example with channel names that are hard to write: one input and two outputs.
     fn with_nasty_names() -> Analysis {
         let example = embedded_example().unwrap().dataset;
         let mut header = example.header();

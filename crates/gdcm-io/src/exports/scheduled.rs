@@ -1,5 +1,5 @@
-//! What a schedule says to programs and tables outside of this one: each channel's gain, delay and lead filter over airspeed, and what
-//! stands above them.
+//! A schedule for external programs and tables: each channel's gain, delay and lead filter over
+//! airspeed, and the file headings.
 
 use gdcm_method::correction::Channel;
 use gdcm_method::couplings::CouplingMatrices;
@@ -12,15 +12,15 @@ use super::programs::comment;
 use super::{ExportFault, ExportSource};
 use crate::export_contents::ExportContents;
 
-/// A schedule, with the dataset and the study that it is of.
+/// A schedule with its dataset and study.
 #[derive(Clone)]
 pub(super) struct Scheduled<'e> {
     pub(super) schedule: &'e Schedule,
     pub(super) dataset: &'e Dataset,
     pub(super) source: &'e ExportSource,
-    /// Mixing and feedback of the model, where there are any.
+    /// Mixing and feedback of the model, if any.
     pub(super) couplings: Option<&'e CouplingMatrices>,
-    /// What a file of it contains.
+    /// Contents of a file with the schedule.
     pub(super) contents: ExportContents,
 }
 
@@ -28,11 +28,11 @@ pub(super) struct Scheduled<'e> {
 pub(super) struct Curve {
     /// A polynomial in the scaled airspeed, or a table.
     pub(super) figures: Regression,
-    /// What the scaled second variable is multiplied by and added.
+    /// Coefficient of the scaled second variable, for an added term.
     pub(super) slope: Option<f64>,
     /// Whether the sum is the natural logarithm of the value.
     pub(super) of_logarithm: bool,
-    /// Where there is one, the value is cut to zero and to this table.
+    /// If present, the value is clipped between zero and this table.
     pub(super) upper: Option<Regression>,
 }
 
@@ -63,11 +63,11 @@ impl Curve {
     }
 }
 
-/// Intervals of airspeed in which a lead filter that depends on it is linear.
+/// Intervals of airspeed in which an airspeed-dependent lead filter is linear.
 const LEAD_POINTS: u32 = 100;
 
 impl Scheduled<'_> {
-    /// The gain of a channel \[-\].
+    /// Returns the gain of a channel \[-\].
     pub(super) fn gain(&self, channel: Channel) -> Curve {
         Curve {
             slope: self
@@ -80,7 +80,7 @@ impl Scheduled<'_> {
         }
     }
 
-    /// The delay of a channel \[s\]; zero where delays are not scheduled.
+    /// Returns the delay of a channel \[s\]; zero if delays are not scheduled.
     pub(super) fn delay_s(&self, channel: Channel) -> Curve {
         let (figures, upper) = match (&self.schedule.leads, &self.schedule.delays) {
             (Some(leads), _) => {
@@ -103,8 +103,8 @@ impl Scheduled<'_> {
         }
     }
 
-    /// Time constant `a` of the numerator of a channel's lead filter \[s\]: equal to `b` where there is no lead. None of a schedule
-    /// without leads.
+    /// Returns the time constant `a` of the numerator of a channel's lead filter \[s\]: equal to
+    /// `b` without a lead. `None` for a schedule without leads.
     pub(super) fn zero_s(&self, channel: Channel) -> Option<Curve> {
         let leads = self.schedule.leads.as_ref()?;
         let least = self.schedule.airspeeds.min_kt;
@@ -122,7 +122,7 @@ impl Scheduled<'_> {
         if figures.figures().len() == 1 || least == most {
             return Some(Curve::constant(at(least)));
         }
-        // The numerator that a signed delay has is no polynomial of it.
+        // The numerator for a signed delay is not a polynomial of it.
         let kt = |place: u32| least + (most - least) * f64::from(place) / f64::from(LEAD_POINTS);
         let airspeeds_kt: Vec<f64> = (0..=LEAD_POINTS).map(kt).collect();
         let values = airspeeds_kt.iter().map(|&kt| at(kt)).collect();
@@ -132,7 +132,7 @@ impl Scheduled<'_> {
         }))
     }
 
-    /// What is to be known of the schedule.
+    /// Returns the remarks on the schedule.
     pub(super) fn notes(&self) -> Vec<String> {
         let unscheduled = "delays are not scheduled in this study: they are zero here".to_owned();
         let (inputs, outputs) = self.dataset.names_of_channels();
@@ -153,7 +153,7 @@ impl Scheduled<'_> {
             .collect()
     }
 
-    /// The same, and what the curves leave out.
+    /// Returns the same remarks, and those on parts omitted from the curves.
     pub(super) fn notes_of_curves(&self) -> Vec<String> {
         let is_table = |channel| {
             self.zero_s(channel)
@@ -173,7 +173,7 @@ impl Scheduled<'_> {
             .collect()
     }
 
-    /// What a file of it is, line by line, with these notes.
+    /// Describes a file with the schedule, line by line, with these notes.
     pub(super) fn heading(&self, notes: &[String]) -> Vec<String> {
         let airspeeds = &self.schedule.airspeeds;
         let what = if self.schedule.has_delays() {
@@ -227,7 +227,7 @@ impl Scheduled<'_> {
         lines
     }
 
-    /// Refuses numbers that no program can compute with.
+    /// Rejects numbers that no program can compute with.
     pub(super) fn check(&self) -> Result<(), ExportFault> {
         let (inputs, outputs) = self.dataset.names_of_channels();
         for channel in all_channels(self.dataset) {
@@ -251,7 +251,7 @@ impl Scheduled<'_> {
     }
 }
 
-/// A finite number with 17 significant digits: it comes back to the last one in every language.
+/// Formats a finite number with 17 significant digits: every language reads back the same value.
 pub(super) fn number(value: f64) -> String {
     // Adding zero turns minus zero into zero.
     format!("{:.16e}", value + 0.0)

@@ -14,10 +14,10 @@ use gdcm_study::study::Table;
 use crate::file_error::FileError;
 use crate::output_set::OutputSet;
 
-/// The format that the end of a file's name says.
+/// Returns the format given by a file extension.
 ///
 /// # Errors
-/// [`FileError::FigureFormat`] where it says none of those that there are.
+/// [`FileError::FigureFormat`] for an unknown extension.
 pub fn figure_format(path: &Path) -> Result<FigureFormat, FileError> {
     let extension = path
         .extension()
@@ -32,10 +32,11 @@ pub fn figure_format(path: &Path) -> Result<FigureFormat, FileError> {
     })
 }
 
-/// Writes a figure to a file, in the format that its name says.
+/// Writes a figure to a file, in the format of its extension.
 ///
 /// # Errors
-/// [`FileError::FigureWithoutNumbers`] where the numbers of a figure are asked for that shows none; else what hinders the writing.
+/// [`FileError::FigureWithoutNumbers`] if CSV is requested for a figure without numbers; otherwise
+/// the error that prevents writing.
 pub fn write_figure(
     figure: &Figure,
     width: ColumnWidth,
@@ -53,7 +54,7 @@ pub fn write_figure(
     outputs.persist()
 }
 
-/// Writes a figure in a format.
+/// Writes a figure in the given format.
 pub fn write_as(
     figure: &Figure,
     width: ColumnWidth,
@@ -73,7 +74,7 @@ pub fn write_as(
 
 // Comma-separated values (RFC 4180).
 
-/// Writes records of one length below one another; each cell is a [`plain`] one.
+/// Writes records of equal length, one per line; each cell is a [`plain`] one.
 pub(super) fn write_records<R>(
     file: &mut dyn Write,
     records: impl Iterator<Item = R>,
@@ -84,7 +85,7 @@ where
 {
     let mut table = csv::Writer::from_writer(file);
     for record in records {
-        // Unpacked, so that a full disk is told as one.
+        // Unwrapped, so that a full disk is reported as such.
         let cells = record.into_iter().map(|cell| plain(cell.as_ref()));
         table
             .write_record(cells)
@@ -96,9 +97,10 @@ where
     table.flush()
 }
 
-/// A cell that no spreadsheet takes for a formula, and no terminal for a command: one that begins with `=`, `+`, `-` or `@` and is no
-/// number stands behind an apostrophe, control characters and invisible ones are spelt out. Numbers have the minus that programs read, and a
-/// dash alone is the mark of what has none. A zero has no sign.
+/// Returns a cell that no spreadsheet takes for a formula, and no terminal for a command: a text
+/// that begins with `=`, `+`, `-` or `@` and is not a number is preceded by an apostrophe; control
+/// and invisible characters are spelled out. Numbers have the ASCII minus that programs read, and a
+/// lone dash marks a missing value. A zero has no sign.
 fn plain(cell: &str) -> String {
     let number = cell.replacen('\u{2212}', "-", 1);
     if number.parse::<f64>().is_ok() {
@@ -108,8 +110,8 @@ fn plain(cell: &str) -> String {
     format!("{}{}", if is_formula { "'" } else { "" }, sanitized(cell))
 }
 
-/// Writes tables: one as headings and rows; several below one another, each under a line with its title, with an empty line between
-/// them.
+/// Writes tables: a single table as headings and rows; several one after another, each under a line
+/// with its title, separated by an empty line.
 pub(super) fn write_tables(file: &mut dyn Write, tables: &[Table]) -> io::Result<()> {
     for (index, table) in tables.iter().enumerate() {
         if tables.len() > 1 {
@@ -123,15 +125,16 @@ pub(super) fn write_tables(file: &mut dyn Write, tables: &[Table]) -> io::Result
     Ok(())
 }
 
-/// Tables as comma-separated values, to be put on the clipboard.
+/// Returns tables as comma-separated values, for the clipboard.
 pub fn csv_text(tables: &[Table]) -> String {
     let mut text = Vec::new();
-    // A vector takes whatever is written.
+    // Writing to a vector cannot fail.
     let _ = write_tables(&mut text, tables);
     String::from_utf8_lossy(&text).into_owned()
 }
 
-/// Writes tables as CSV, each its headings, then a line for each row. What exists already is kept or replaced as `outputs` says.
+/// Writes tables as CSV: the headings of each, then a line for each row. Existing files are kept or
+/// replaced according to `outputs`.
 pub fn save_tables(tables: &[Table], path: &Path, mut outputs: OutputSet) -> Result<(), FileError> {
     outputs.add(path, |file| write_tables(file, tables))?;
     outputs.persist()
@@ -147,7 +150,8 @@ mod tests {
     use super::*;
     use crate::output_set::Existing;
 
-    /// A curve of a model whose name would turn a terminal red and hide what follows.
+    /// Returns a figure with the curve of a model whose name would turn a terminal red and hide the
+    /// text that follows.
     fn named_by_codes() -> Figure {
         let name = "\u{1b}[31mred\u{9b}31m\u{202e}";
         let curve =

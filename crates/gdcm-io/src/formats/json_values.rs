@@ -1,5 +1,5 @@
-//! JSON, packed or not: datasets and models of this program, and JSON of any shape as variables. What else gzip packs is given to
-//! its own format.
+//! JSON, gzip-packed or not: datasets and models of this program, and JSON of any shape as
+//! variables. Other gzip-packed contents go to their own format.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -18,7 +18,7 @@ use crate::variables::{
     VariableFault,
 };
 
-/// JSON, and whatever is packed by gzip.
+/// JSON, and any gzip-packed file.
 pub(crate) const JSON: Importer = Importer {
     name: "JSON",
     endings: &["json", "gz"],
@@ -46,7 +46,7 @@ pub(crate) const JSON: Importer = Importer {
         budget.work(text.len() as u64, "").map_err(wrong)?;
         match format.as_deref() {
             Some("\"gdcm-dataset\"") => {
-                // The text is unpacked again.
+                // The text was packed and is unpacked again here.
                 let source = Source::of(bytes, path, budget)?;
                 let loaded = dataset_from(&source, DatasetOrigin::File(path.to_owned()), budget)?;
                 return Ok(Contents::Dataset(
@@ -106,15 +106,16 @@ enum Tree {
     Number(f64),
     Text(String),
     List(Vec<Tree>),
-    /// In the order of their names; of members of one name the last.
+    /// Sorted by name; the last of several members with the same name.
     Object(Vec<(String, Tree)>),
 }
 
-/// Reads JSON of any shape within a budget: a few bytes of text can be a list, an object or a name, each with memory of its own.
+/// Reads JSON of any shape within a budget: a few bytes of text can become a list, an object or a
+/// name, each with its own memory.
 #[derive(Clone, Copy)]
 struct TreeReader<'r> {
     budget: &'r ReadingBudget<'r>,
-    /// Why the budget ended the reading.
+    /// Set if the budget ended the reading.
     refused: &'r RefCell<Option<VariableFault>>,
 }
 
@@ -192,9 +193,9 @@ impl<'de> Visitor<'de> for TreeReader<'_> {
     }
 }
 
-/// What an allocation takes beside its bytes, and what the first of a list makes room for \[bytes\].
+/// Overhead of an allocation, and the initial capacity of a list \[bytes\].
 const ALLOCATION: usize = 64;
-/// What a value takes with its shape and one number, and where there is none \[bytes\].
+/// Memory of a value with its shape and one number, and of null \[bytes\].
 const VALUE: u64 = size_of::<Value>() as u64 + 3 * ALLOCATION as u64;
 
 fn value_of(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
@@ -218,7 +219,8 @@ fn value_of(json: Tree, budget: &ReadingBudget<'_>) -> Result<Value, VariableFau
     })
 }
 
-/// Numbers in lists are an array (row by row), texts in a list an array of texts; anything else is a cell array.
+/// Converts a list: numbers become an array (row by row), texts an array of texts, anything else a
+/// cell array.
 fn list_of(list: Vec<Tree>, budget: &ReadingBudget<'_>) -> Result<Value, VariableFault> {
     if !list.is_empty() && list.iter().all(|item| matches!(item, Tree::Text(_))) {
         budget.take(list.len() as u64, size_of::<String>() as u64, "")?;
@@ -280,7 +282,7 @@ fn numbers_of(list: &[Tree], budget: &ReadingBudget<'_>) -> Result<Option<Array>
     }))
 }
 
-/// Appends the numbers of a rectangular list; nothing where it is not one.
+/// Appends the numbers of a rectangular list; returns nothing if the list is not rectangular.
 fn flatten(
     list: &[Tree],
     shape: &[usize],

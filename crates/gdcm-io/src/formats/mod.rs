@@ -1,4 +1,5 @@
-//! Files of numbers from other programs: what a format is, the formats there are, and the reading of files and folders of them.
+//! Number files of other programs: the format interface, the list of formats, and the reading of
+//! files and folders.
 //!
 //! ```text
 //! bytes -> format, by what they begin with              (the ending of the name decides only between texts)
@@ -40,27 +41,27 @@ use crate::record_files::Columns;
 use crate::source::{kind_of, read_bytes, sha256};
 use crate::variables::{ReadingBudget, Variable, VariableFault};
 
-/// Memory that what one file holds may take \[bytes\].
+/// Memory limit for the contents of one file \[bytes\].
 pub(crate) const MOST_MEMORY: u64 = 1 << 30;
 /// Largest file \[bytes\].
 pub(crate) const LARGEST_FILE: u64 = 512 << 20;
-/// Most files that are looked at, and deepest folders inside one another.
+/// Largest number of files examined, and deepest nesting of folders.
 pub(crate) const MOST_FILES: usize = 20_000;
 pub(crate) const DEEPEST: usize = 16;
 
-/// A format of files of numbers.
+/// A file format.
 pub(crate) struct Importer {
-    /// What it is called.
     pub(crate) name: &'static str,
-    /// What the names of its files end with, in lower case.
+    /// File name endings, in lower case.
     pub(crate) endings: &'static [&'static str],
-    /// Whether the bytes of a file whose name ends so are of it.
+    /// Whether the bytes of a file with this ending have the format.
     pub(crate) recognises: fn(&[u8], &str) -> bool,
-    /// What the bytes hold; memory is taken from the budget before it is used. The path is what errors call the file.
+    /// Reads the contents of the bytes; takes memory from the budget before its use. The path names
+    /// the file in errors.
     pub(crate) read: fn(&[u8], &Path, &ReadingBudget<'_>) -> Result<Contents, FileError>,
 }
 
-/// The formats; a file is of the first that recognises it, and the last recognises any.
+/// The formats; the first that recognises a file reads it, and the last recognises any file.
 static FORMATS: [Importer; 14] = [
     NPY,
     ZIP,
@@ -78,38 +79,37 @@ static FORMATS: [Importer; 14] = [
     TEXT,
 ];
 
-/// What a file holds.
+/// Contents of a file.
 pub(crate) enum Contents {
-    /// Values under names.
+    /// Named values.
     Variables {
-        /// The values.
         variables: Vec<Variable>,
-        /// How they were read, where that is not plain.
+        /// Remarks on non-obvious readings.
         notes: Vec<String>,
-        /// Whether the first index of an array of more than two dimensions counts the matrices in it, as NumPy has it.
+        /// Whether the first index of an array of more than two dimensions counts its matrices, as
+        /// in NumPy.
         pages_first: bool,
     },
-    /// Numbers in lines: what they are depends on what is looked for.
+    /// Lines of numbers, whose meaning depends on the kind of data sought.
     Text(String),
-    /// A dataset of this program, with what of it is not known.
+    /// A dataset of this program, with remarks on unknown parts.
     Dataset(Box<Dataset>, Vec<String>),
-    /// Models of this program, with what of them is not known.
+    /// Models of this program, with remarks on unknown parts.
     Models(Vec<FoundModel>, Vec<String>),
-    /// Logs of an aircraft: records, of whatever clocks.
+    /// Aircraft logs: records with any clocks.
     Logs(Vec<Columns>),
-    /// The files of an archive.
     Archive {
         /// Its arrays, which belong together.
         variables: Vec<Variable>,
-        /// Its other files by path, each with what it holds.
+        /// Its other files by path, each with its contents.
         files: Vec<(String, Result<Contents, FileError>)>,
-        /// Files of no known kind, in words.
+        /// Descriptions of files of unknown kind.
         ignored: Vec<String>,
     },
 }
 
 impl Contents {
-    /// Arrays as NumPy and JSON have them, or why not.
+    /// Wraps row-major arrays from NumPy or JSON, or the fault.
     pub(crate) fn row_major(
         read: Result<Vec<Variable>, VariableFault>,
         path: &Path,
@@ -122,7 +122,7 @@ impl Contents {
         })
     }
 
-    /// Variables that were read, or why not.
+    /// Wraps variables, or the fault.
     pub(crate) fn variables(
         read: Result<Vec<Variable>, VariableFault>,
         path: &Path,
@@ -136,7 +136,7 @@ impl Contents {
     }
 }
 
-/// The format of bytes of a file of this name.
+/// Returns the format for the bytes of a file with this name.
 pub(crate) fn importer_of(bytes: &[u8], path: &Path) -> &'static Importer {
     let ending = ending_of(path);
     FORMATS
@@ -145,31 +145,29 @@ pub(crate) fn importer_of(bytes: &[u8], path: &Path) -> &'static Importer {
         .unwrap_or(&TEXT)
 }
 
-/// What is told while files are read, and whether to go on.
+/// Progress of reading files, and its cancellation.
 pub trait FolderProgress {
-    /// A file is about to be read: its number from 1, how many there are, its name.
+    /// Called before a file is read, with its number from 1, the number of files and its name.
     fn reading(&self, number: usize, of: usize, name: &str);
-    /// So many bytes are taken for what the file holds.
+    /// Called when memory is taken for the contents of a file.
     fn taken(&self, _bytes: u64) {}
-    /// What ends the reading once it is set.
+    /// Ends the reading once it is set.
     fn stop(&self) -> Arc<AtomicBool> {
         Arc::default()
     }
 }
 
-/// A file that was read.
+/// A file after reading.
 pub(crate) struct ImportedFile<'f> {
-    /// Its path.
     pub(crate) path: &'f Path,
-    /// Its name relative to what was asked for.
+    /// Name relative to the requested path.
     pub(crate) name: &'f str,
-    /// SHA-256 of its bytes, in lower-case hexadecimal.
+    /// SHA-256 of the bytes, in lower-case hexadecimal.
     pub(crate) sha256: String,
-    /// What it holds.
     pub(crate) contents: Contents,
 }
 
-/// Reads the bytes of a file.
+/// Imports the bytes of a file.
 pub(crate) fn import_bytes<'f>(
     bytes: &[u8],
     path: &'f Path,
@@ -185,7 +183,7 @@ pub(crate) fn import_bytes<'f>(
     })
 }
 
-/// Reads one file.
+/// Imports one file.
 pub(crate) fn import_file<'f>(
     path: &'f Path,
     name: &'f str,
@@ -194,8 +192,9 @@ pub(crate) fn import_file<'f>(
     import_bytes(&read_bytes(path, LARGEST_FILE, budget)?, path, name, budget)
 }
 
-/// Reads files and folders, folders with all that is in them, and gives each to `take`: how many there are, and why some could not be
-/// read. Where only one was asked for, that is an error.
+/// Reads files and folders recursively and passes each file to `take`; returns the number of files
+/// and the reasons why some could not be read. With a single requested file, such a reason is an
+/// error.
 pub(crate) fn import(
     paths: &[PathBuf],
     progress: &dyn FolderProgress,
@@ -222,7 +221,7 @@ pub(crate) fn import(
     Ok((files.len(), faults))
 }
 
-/// Words with the file in front that they are about, unless it stands there.
+/// Prefixes remarks with the name of their file, unless they already begin with it.
 pub(crate) fn of_file(name: &str, words: Vec<String>) -> impl Iterator<Item = String> {
     words.into_iter().map(move |words| {
         if words.starts_with(name) {
@@ -233,8 +232,8 @@ pub(crate) fn of_file(name: &str, words: Vec<String>) -> impl Iterator<Item = St
     })
 }
 
-/// The folder from which the models of these files and folders name their files: that which was given first; a file alone lies in its
-/// folder.
+/// Returns the folder to which the file names of models are relative: the first folder given, or
+/// the folder of a single file.
 pub fn sources_folder(sources: &[PathBuf]) -> &Path {
     let here = Path::new(".");
     let first = sources.first().map_or(here, PathBuf::as_path);
@@ -250,8 +249,8 @@ pub fn sources_folder(sources: &[PathBuf]) -> &Path {
     }
 }
 
-/// Files, and those of folders whose names end as those of a format, in the order of their names: their paths, and their names relative to what was asked
-/// for. What is no file is skipped with a word.
+/// Finds the requested files, and the files with known endings in folders, sorted by name: their
+/// paths, and their names relative to the requested path. Other entries are skipped with a message.
 fn files_of(
     paths: &[PathBuf],
     skipped: &mut Vec<String>,
@@ -271,7 +270,7 @@ fn files_of(
     Ok(files)
 }
 
-/// The files below a folder, in the order of their names, with their paths relative to it.
+/// Lists the files below a folder, sorted by name, with their relative paths.
 fn list(
     folder: &Path,
     root: &Path,
@@ -288,7 +287,7 @@ fn list(
     for entry in entries {
         let path = entry.path();
         let hidden = entry.file_name().to_string_lossy().starts_with('.');
-        // Links could lead in circles.
+        // Links could form cycles.
         let kind = entry.file_type().map_err(failed)?;
         if hidden || kind.is_symlink() && path.is_dir() {
             continue;
@@ -323,9 +322,9 @@ fn list(
     Ok(())
 }
 
-/// Whether a file whose ending many programs use (`.log`, `.bin`) is of none of the formats that are read.
+/// Whether a file with a widely used ending (`.log`, `.bin`) has none of the supported formats.
 fn is_other_log(path: &Path) -> bool {
-    /// Every format of these endings is known by its first bytes.
+    /// Formats with these endings are recognised by their first bytes.
     const FIRST: usize = 64;
     if !["bin", "log"].contains(&ending_of(path).as_str()) || !path.is_file() {
         return false;
@@ -336,7 +335,8 @@ fn is_other_log(path: &Path) -> bool {
     read.is_ok() && importer_of(&first, path).name == TEXT.name
 }
 
-/// Whether the name of a file ends as those of some format do; studies are no sources of models or records.
+/// Whether a file name has the ending of a known format; studies are no sources of models or
+/// records.
 pub(crate) fn is_known(path: &Path) -> bool {
     let ending = ending_of(path);
     FORMATS
@@ -345,14 +345,14 @@ pub(crate) fn is_known(path: &Path) -> bool {
         && !path.to_string_lossy().ends_with(".gdcm-study.json")
 }
 
-/// The ending of a file's name, in lower case.
+/// Returns the ending of a file name, in lower case.
 fn ending_of(path: &Path) -> String {
     path.extension()
         .map(|ending| ending.to_string_lossy().to_lowercase())
         .unwrap_or_default()
 }
 
-/// A key that sorts "c2" before "c10".
+/// Returns a sort key that puts "c2" before "c10".
 fn natural(name: &str) -> Vec<(String, u64)> {
     let mut parts = Vec::new();
     let mut text = String::new();
@@ -375,9 +375,9 @@ fn natural(name: &str) -> Vec<(String, u64)> {
     parts
 }
 
-// Files of formats that are known by their first bytes and not read: what they are, and how to save their numbers otherwise.
+// Unsupported formats recognised by their first bytes: names and export instructions.
 
-/// A format that is not read: what its files begin with, its name, and what to do.
+/// An unsupported format: signatures, name, and instructions.
 type Foreign = (&'static [&'static [u8]], &'static str, &'static str);
 
 const AS_TABLE: &str = "save it as text in columns (CSV)";
@@ -424,7 +424,7 @@ const FOREIGN: [Foreign; 13] = [
     (&[b"\xfd7zXZ"], "a file packed by xz", UNPACK),
 ];
 
-/// What other formats look like.
+/// Recognises unsupported formats.
 pub(crate) const FOREIGN_FORMAT: Importer = Importer {
     name: "a file of a format that is not read",
     endings: &["parquet", "feather", "pkl"],
@@ -458,7 +458,7 @@ mod tests {
         assert_eq!(of(b" {\"A\": 1}", "a.txt"), JSON.name);
         assert_eq!(of(b"A = [1 2];", "a.m"), LITERALS.name);
         assert_eq!(of(b"1,2\n3,4\n", "a.csv"), TEXT.name);
-        // The same text is read alike, whatever it is called.
+        // The ending does not affect how the same text is read.
         assert_eq!(of(b"% a model\nA = [1 2\n 3 4];", "a.txt"), LITERALS.name);
         assert_eq!(of(b"% omega, re, im\n1,2,3\n4,5,6\n", "a.m"), TEXT.name);
         assert_eq!(of(b"Fs = 50\nt,P\n0,1\n1,2\n", "a.txt"), TEXT.name);

@@ -12,16 +12,16 @@ use crate::formats::npy::read_npy;
 use crate::formats::{Contents, Importer, importer_of, is_known};
 use crate::variables::{ReadingBudget, Variable, VariableFault};
 
-/// The most bytes that one byte of deflate (RFC 1951) can become.
+/// Largest ratio of unpacked to packed bytes in deflate (RFC 1951).
 const LARGEST_RATIO: u64 = 1032;
 
-/// How many bytes are unpacked before the budget is asked again.
+/// Number of bytes unpacked between two checks of the budget.
 const CHUNK: u64 = 1 << 20;
 
-/// What the name of every array of NumPy ends with.
+/// Name ending of NumPy arrays.
 const ARRAY: &str = ".npy";
 
-/// Zip archives: arrays of NumPy (`.npz`), and files of any other format.
+/// Zip archives: NumPy arrays (`.npz`), and files of any other format.
 pub(crate) const ZIP: Importer = Importer {
     name: "a zip archive",
     endings: &["npz", "zip"],
@@ -31,7 +31,7 @@ pub(crate) const ZIP: Importer = Importer {
     },
 };
 
-/// The arrays and the other files of an archive; archives in archives are not read.
+/// Reads the arrays and the other files of an archive; nested archives are not read.
 pub(crate) fn read_archive(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
@@ -41,7 +41,8 @@ pub(crate) fn read_archive(
     let mut files = Vec::new();
     let mut ignored = Vec::new();
     visit_files(bytes, |file| {
-        // A few bytes in the archive's directory become a variable or a file, whatever it holds.
+        // A few bytes in the archive's directory create a variable or a file, regardless of its
+        // contents.
         budget.take(
             1,
             (size_of::<Variable>() + size_of::<Contents>() + file.path.len()) as u64,
@@ -83,17 +84,17 @@ pub(crate) fn read_archive(
     })
 }
 
-/// A file in a zip archive (APPNOTE 6.3), packed as it is.
+/// A packed file in a zip archive (APPNOTE 6.3).
 pub(super) struct ZipFile<'z, 'b> {
-    /// Its path in the archive.
+    /// Path in the archive.
     pub(super) path: &'z str,
-    /// Where it begins \[bytes\].
+    /// Offset of the file \[bytes\].
     pub(super) offset: u64,
     archive: &'z ZipSliceArchive<&'b [u8]>,
     entry: &'z ZipFileHeaderRecord<'b>,
 }
 
-/// Shows every file of an archive to `visit`, in the archive's order.
+/// Passes every file of an archive to `visit`, in archive order.
 pub(super) fn visit_files(
     bytes: &[u8],
     mut visit: impl FnMut(&ZipFile<'_, '_>) -> Result<(), VariableFault>,
@@ -121,7 +122,8 @@ pub(super) fn visit_files(
 }
 
 impl ZipFile<'_, '_> {
-    /// Unpacks the file, and no further than the archive says: a few kilobytes can unpack to gigabytes. `name` is what faults call it.
+    /// Unpacks the file up to the size given by the archive: a few kilobytes can unpack to
+    /// gigabytes. `name` is the name of the file in faults.
     pub(super) fn unpack(
         &self,
         name: &str,
@@ -164,7 +166,8 @@ impl ZipFile<'_, '_> {
     }
 }
 
-/// Reads up to the end, where the length and the check sum are compared, or one byte beyond `length`, unless the reader shall stop.
+/// Reads up to the end, where the length and the checksum are compared, or one byte beyond
+/// `length`, unless the reading is stopped.
 fn read_whole(
     reader: impl Read,
     length: u64,
@@ -183,7 +186,8 @@ fn read_whole(
     }
 }
 
-/// Why there is no archive at all: a file begun as one has lost its end, where the directory stands.
+/// Returns the fault for an unreadable archive: a file with the signature of an archive has lost
+/// its end, which holds the directory.
 fn unreadable(bytes: &[u8]) -> VariableFault {
     if bytes.starts_with(b"PK\x03\x04") {
         return VariableFault::cut_off("", bytes.len());

@@ -1,4 +1,4 @@
-//! Delays beside a model: which fields hold them, in which unit, and which only look as if they did.
+//! Delays of a model: fields that hold them, their units, and fields that only look like delays.
 
 use nalgebra::DMatrix;
 
@@ -9,12 +9,12 @@ use gdcm_model::units::number;
 use crate::recognise::record::{Field, Record, array_of, list_of, scalar_of, texts_of};
 use crate::variables::{Array, Value};
 
-/// A delay [s] without a unit in its name above which milliseconds are as likely as seconds.
+/// Delay [s] without a unit in its name above which milliseconds are as likely as seconds.
 const LONGEST_PLAIN_S: f64 = 1.0;
-/// How far rounding may take delays of single responses from a sum of two.
+/// Tolerance for delays of single responses as a sum of two delays.
 const ROUNDING: f64 = 1e-9;
 
-/// What a delay delays.
+/// The delayed signals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Delayed {
     /// Each input.
@@ -23,21 +23,21 @@ enum Delayed {
     Outputs,
     /// Each response: a matrix of outputs by inputs.
     Responses,
-    /// States inside the model.
+    /// Internal delays.
     Inside,
-    /// What its name leaves open.
+    /// Not given by the name.
     Unclear,
 }
 
-/// What the name of a delay says of its unit.
+/// Unit of a delay, from its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum DelayUnit {
     Seconds,
     Milliseconds,
     Samples,
-    /// Nothing, in the spelling of MATLAB: seconds, or samples of a discrete-time model.
+    /// No unit, in MATLAB's spelling: seconds, or samples of a discrete-time model.
     Matlab,
-    /// Nothing.
+    /// No unit.
     Unsaid,
 }
 
@@ -51,23 +51,23 @@ pub(crate) struct DelayField<'v> {
 }
 
 impl DelayField<'_> {
-    /// Whether it holds anything besides zeros.
+    /// Whether the field holds anything except zeros.
     fn says_something(&self) -> bool {
         match (self.value, array_of(self.value)) {
             (_, Some(array)) => array.re.iter().any(|delay| *delay != 0.0),
-            // A struct or a list of delays under names; texts are remarks.
+            // A struct or a list of named delays; texts are remarks.
             (Value::Struct(_) | Value::Cell(_) | Value::Object(_), None) => true,
             _ => false,
         }
     }
 }
 
-/// The fields that look like delays.
+/// Returns the fields that look like delays.
 pub(super) fn delay_fields<'v>(fields: &[Field<'v>]) -> Vec<DelayField<'v>> {
     let mut found = Vec::new();
     for &(name, value) in fields {
         if let ("Delay", Value::Struct(records)) = (name, value) {
-            // How objects of MATLAB keep their delays.
+            // Delays of MATLAB objects.
             for (inner, values) in &records.fields {
                 let delayed = match inner.as_str() {
                     "Input" => Delayed::Inputs,
@@ -97,12 +97,12 @@ pub(super) fn delay_fields<'v>(fields: &[Field<'v>]) -> Vec<DelayField<'v>> {
     found
 }
 
-/// Whether a name is that of a delay, or looks like one.
+/// Whether a name is or resembles the name of a delay.
 pub(super) fn is_delay(name: &str) -> bool {
     meaning(name).is_some()
 }
 
-/// What a name says, if it is that of a delay.
+/// Returns the meaning of a delay name.
 fn meaning(name: &str) -> Option<(Delayed, DelayUnit)> {
     let (stem, unit) = unit_at_end(name);
     let folded = folded_name(stem);
@@ -120,7 +120,7 @@ fn meaning(name: &str) -> Option<(Delayed, DelayUnit)> {
     Some((delayed, if is_matlab { DelayUnit::Matlab } else { unit }))
 }
 
-/// A name without the unit at its end, and the unit: `input_delay_ms`, `InputDelay (s)`, `inputDelayMs`.
+/// Splits a name and its trailing unit: `input_delay_ms`, `InputDelay (s)`, `inputDelayMs`.
 fn unit_at_end(name: &str) -> (&str, DelayUnit) {
     let trimmed = name.trim_end_matches(is_mark);
     if let Some((stem, last)) = trimmed.rsplit_once(is_mark) {
@@ -148,8 +148,8 @@ fn is_mark(letter: char) -> bool {
     !letter.is_alphanumeric()
 }
 
-/// Whether a folded name is one under which delays are kept, besides those that say whose they are. Delays of phase and group are
-/// curves over frequency.
+/// Whether a folded name may hold delays, besides the names with a known meaning. Phase and group
+/// delays are curves over frequency.
 fn resembles_delay(folded: &str) -> bool {
     const NAMES: [&str; 14] = [
         "tau",
@@ -171,13 +171,14 @@ fn resembles_delay(folded: &str) -> bool {
     NAMES.contains(&folded) || (folded.contains("delay") && !is_curve)
 }
 
-/// The name that a delay is to have, for whoever is asked.
+/// Names for delays, suggested in questions.
 const WAYS: &str = "call it input_delays_s or output_delays_s (one number for each channel, in s), or otherwise if it is no delay";
 
-/// Sample time and delays of a model, and how they were read where that is a convention.
+/// Returns sample time and delays of a model, with notes on the conventions applied.
 ///
 /// # Errors
-/// What looks like a delay and leaves open what it delays or in which unit: it is asked about, never dropped.
+/// A possible delay whose signals or unit are ambiguous: it becomes a question and is never
+/// dropped.
 pub(super) fn timing_of(
     record: &Record<'_>,
     outputs: usize,
@@ -212,7 +213,8 @@ pub(super) fn timing_of(
     reading.timing()
 }
 
-/// Refuses delays of a measured response, which has them in it; what only looks like one is left alone.
+/// Refuses delays beside a measured response, which already contains them; ignores fields that only
+/// resemble delays.
 pub(super) fn refuse_delays(record: &Record<'_>) -> Result<(), String> {
     let mut known = record
         .delay_fields()
@@ -227,7 +229,7 @@ pub(super) fn refuse_delays(record: &Record<'_>) -> Result<(), String> {
     }
 }
 
-/// Delays of one model while its fields are read.
+/// Delays of one model during reading.
 struct DelayReading {
     sample_time_s: Option<f64>,
     is_object: bool,
@@ -273,7 +275,7 @@ impl DelayReading {
         }
     }
 
-    /// One delay [s] for each channel of a side.
+    /// Returns one delay [s] for each channel of a side.
     fn of_channels(
         &mut self,
         field: &DelayField<'_>,
@@ -294,7 +296,7 @@ impl DelayReading {
         self.in_seconds(field, &delays)
     }
 
-    /// Delays of single responses, split into one of each input and one of each output.
+    /// Splits delays of single responses into input delays and output delays.
     fn of_responses(&mut self, field: &DelayField<'_>) -> Result<SplitDelays, String> {
         let name = field.name;
         let p = self.outputs;
@@ -322,7 +324,7 @@ impl DelayReading {
         };
         let values = self.in_seconds(field, &values)?;
         let table = DMatrix::from_column_slice(p, m, &values);
-        // The output that is delayed least has no delay of its own.
+        // The output with the smallest delay gets zero delay.
         let first = table.column(0).imin();
         let inputs: Vec<f64> = table.row(first).iter().copied().collect();
         let outputs: Vec<f64> = table
@@ -347,7 +349,7 @@ impl DelayReading {
         Ok(SplitDelays { inputs, outputs })
     }
 
-    /// Delays in seconds, where their unit is known.
+    /// Converts delays to seconds, if their unit is known.
     fn in_seconds(&mut self, field: &DelayField<'_>, delays: &[f64]) -> Result<Vec<f64>, String> {
         let name = field.name;
         let greatest = delays
@@ -407,7 +409,7 @@ impl DelayReading {
         }
     }
 
-    /// Notes what a convention says; of objects it is no convention but what they are.
+    /// Notes an applied convention; for objects the meaning is defined, not a convention.
     fn note_convention(&mut self, name: &str, words: &str) {
         if !self.is_object {
             self.notes.push(format!("{name} {words}"));
@@ -428,7 +430,7 @@ impl DelayReading {
     }
 }
 
-/// What a unit leaves open, and the name that leaves nothing open.
+/// Formulates an ambiguity, and the name that resolves it.
 fn question(name: &str, open: &str) -> String {
     format!(
         "{name}: {open}; call it {}_s and give it in s",
@@ -436,7 +438,7 @@ fn question(name: &str, open: &str) -> String {
     )
 }
 
-/// Keeps the delays of a side; another list that says otherwise is refused.
+/// Stores the delays of a side; refuses a second list with other delays.
 fn keep(kept: &mut Option<Vec<f64>>, delays: Vec<f64>, name: &str) -> Result<(), String> {
     match kept {
         Some(known)
@@ -456,7 +458,7 @@ fn keep(kept: &mut Option<Vec<f64>>, delays: Vec<f64>, name: &str) -> Result<(),
     }
 }
 
-/// The delays of a side, those of its channels and those that come of single responses; none where all are zero.
+/// Adds the channel delays of a side and those from single responses; none if all are zero.
 fn sum(own: Option<Vec<f64>>, more: Option<Vec<f64>>) -> Option<Vec<f64>> {
     let delays = match (own, more) {
         (Some(own), Some(more)) => own
@@ -488,7 +490,7 @@ fn sample_time_of(record: &Record<'_>) -> Result<Option<f64>, String> {
     }
 }
 
-/// A model whose time is not counted in seconds has other frequencies and other delays than it seems to have.
+/// Refuses a model whose time unit is not seconds, as its frequencies and delays would be wrong.
 fn refuse_other_time_units(record: &Record<'_>) -> Result<(), String> {
     let Some(texts) = record.get(&["TimeUnit"]).and_then(texts_of) else {
         return Ok(());

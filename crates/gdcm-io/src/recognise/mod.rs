@@ -1,8 +1,8 @@
-//! From variables to models: what a file holds, whatever its format.
+//! From variables to models: contents of a file in any format.
 //!
-//! A group of fields is a model by the names that the field gives them: `A`, `B`, `C`, `D`; a response over frequencies; numerators
-//! and denominators; zeros, poles and gains. Groups are structs, objects of MATLAB, the variables of a file beside one another, and
-//! all of these inside structs, cells and arrays.
+//! A group of fields is a model if it has the customary names: `A`, `B`, `C`, `D`; a response over
+//! frequencies; numerators and denominators; zeros, poles and gains. Groups are structs, MATLAB
+//! objects, the variables of a file together, and all of these inside structs, cells and arrays.
 
 mod delays;
 pub(super) mod record;
@@ -30,26 +30,26 @@ use crate::recognise::state_space::{
 };
 use crate::variables::{Array, ReadingBudget, StructArray, Value, Variable, VariableFault};
 
-/// Deepest nesting that is searched.
+/// Deepest nesting of the search.
 pub(crate) const DEEPEST: usize = 16;
-/// Most models or records of one file.
+/// Largest number of models or records in one file.
 pub(crate) const MOST_FOUND: usize = 10_000;
-/// Most variables that are told where nothing was found.
+/// Largest number of variables listed if nothing is found.
 const MOST_TOLD: usize = 20;
 
-/// Steps of work that looking at a field takes: it is compared with all names that are known.
+/// Work steps for examining a field, which is compared with all known names.
 const STEPS: u64 = 64;
 
-/// What was found among variables: models, or records.
+/// Results of a search among variables: models or records.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Found<T> {
-    /// The models or records; their sources name the variable only.
+    /// The models or records; their sources give only the variable.
     pub(crate) items: Vec<T>,
-    /// What looks like one but cannot be taken, with its place and why.
+    /// Candidates that cannot be used, with place and reason.
     pub(crate) faults: Vec<String>,
-    /// What is none, in words.
+    /// Descriptions of contents that are not candidates.
     pub(crate) ignored: Vec<String>,
-    /// Names of the variables beside and inside what was found that were not used.
+    /// Names of unused variables beside and inside the results.
     pub(crate) unused: Vec<String>,
 }
 
@@ -64,10 +64,12 @@ impl<T> Default for Found<T> {
     }
 }
 
-/// What the fields of a record are, under the name of a variable: nothing where they are none of what is looked for.
+/// Recognises the fields of a record, given the name of the variable; `None` if they are not of the
+/// kind sought.
 type Recognise<'r, T> = &'r dyn Fn(&Record<'_>, &str) -> Option<Vec<Result<T, String>>>;
 
-/// Everything that `recognise` knows among variables: first what they are together, then each by itself, from outside in.
+/// Finds everything that `recognise` accepts among variables: first all variables together, then
+/// each variable, from outside in.
 pub(crate) fn search<T>(
     variables: &[Variable],
     budget: &ReadingBudget<'_>,
@@ -109,14 +111,14 @@ struct Search<'r, T> {
 }
 
 impl<T> Search<'_, T> {
-    /// Takes what fields are, if they are known; gives whether they are.
+    /// Adds the results from the fields of a record; returns whether the fields are recognised.
     fn take(&mut self, record: &Record<'_>, variable: &str) -> Result<bool, VariableFault> {
         self.budget
             .work(STEPS * record.fields().count() as u64, variable)?;
         let Some(items) = (self.recognise)(record, variable) else {
             return Ok(false);
         };
-        // What is found holds a copy of its numbers.
+        // Each result holds a copy of its numbers.
         for (_, value) in record.fields() {
             if let Value::Array(array) = value {
                 self.budget.take(array.len() as u64, 16, variable)?;
@@ -126,7 +128,8 @@ impl<T> Search<'_, T> {
         Ok(true)
     }
 
-    /// Looks in a value, and in what it holds; `outer` is the record that it is a field of. Gives whether anything was found.
+    /// Searches a value and its contents; `outer` is the record with this field. Returns whether
+    /// anything was found.
     fn descend<'v>(
         &mut self,
         name: &str,
@@ -166,7 +169,7 @@ impl<T> Search<'_, T> {
         }
     }
 
-    /// Notes variables that were not used.
+    /// Notes unused variables.
     fn note_unused(&mut self, of: &str, names: &[String]) -> Result<(), VariableFault> {
         for name in names {
             let name = if of.is_empty() {
@@ -262,8 +265,8 @@ impl<T> Found<T> {
     }
 }
 
-/// Every model among the variables of a file. Where the shapes do not tell which index of an array counts its matrices,
-/// `pages_first` does.
+/// Finds every model among the variables of a file. `pages_first` decides which index of an array
+/// counts its matrices if the shapes leave it open.
 pub(crate) fn recognise(
     variables: &[Variable],
     pages_first: bool,
@@ -290,7 +293,7 @@ pub(crate) fn recognise(
     Ok(found)
 }
 
-/// A place in an array as that of all of its entries: "models(3).mass" is "models(:).mass".
+/// Replaces the indices in a path by colons: "models(3).mass" becomes "models(:).mass".
 fn without_indices(name: &str) -> String {
     let mut text = String::with_capacity(name.len());
     let mut is_inside = false;
@@ -309,7 +312,7 @@ fn without_indices(name: &str) -> String {
     text
 }
 
-/// What says of what kind a file is, and nothing of its models.
+/// Variables that describe the file, not its models.
 const SILENT: [&str; 5] = [
     "format",
     "version",
@@ -318,7 +321,7 @@ const SILENT: [&str; 5] = [
     "__globals__",
 ];
 
-/// The models that fields are, if they are some.
+/// Returns the models in the fields of a record, if there are any.
 fn model_of(
     record: &Record<'_>,
     variable: &str,
@@ -335,7 +338,7 @@ fn model_of(
     }
 }
 
-/// Matrices of several models beside one another: `A_nom, B_nom, ...`, `A1, B1, ...`.
+/// Finds models in matrices with common suffixes: `A_nom, B_nom, ...`, `A1, B1, ...`.
 fn suffixed(
     variables: &[Variable],
     model_of: Recognise<'_, FoundModel>,
@@ -344,7 +347,7 @@ fn suffixed(
 ) -> Result<Found<FoundModel>, VariableFault> {
     let mut found = Found::default();
     let letters = ["A", "B", "C", "D", "E"];
-    // Of variables with the same name the first counts.
+    // The first of several variables with the same name counts.
     let by_name: HashMap<&str, &Value> = variables
         .iter()
         .rev()
@@ -365,7 +368,7 @@ fn suffixed(
         };
         let matrices: Vec<(&str, &Value)> = letters.iter().filter_map(matrix).collect();
         if matrices.len() >= 3 && is_state_space(&Record::of_fields(matrices.iter().copied())) {
-            // Labels beside them are of all.
+            // Labels beside the matrices apply to all models.
             budget.work(STEPS * variables.len() as u64, "")?;
             let labels = variables
                 .iter()
@@ -393,7 +396,7 @@ fn suffixed(
     Ok(found)
 }
 
-/// Names of delays of one of several models beside one another: `InputDelay_nom` beside `A_nom`.
+/// Returns names of delays with the suffix of one model: `InputDelay_nom` beside `A_nom`.
 fn delays_with_suffix<'v>(
     variables: &'v [Variable],
     suffixes: &BTreeSet<&str>,
@@ -409,9 +412,9 @@ fn delays_with_suffix<'v>(
         .collect()
 }
 
-// Models by their responses over frequencies.
+// Models given by frequency responses.
 
-/// Those of python-control are `frdata` and, before, `fresp`.
+/// python-control uses `frdata` and, in earlier versions, `fresp`.
 const RESPONSES: &[&str] = &[
     "ResponseData",
     "Response",
@@ -422,9 +425,9 @@ const RESPONSES: &[&str] = &[
     "resp",
     "frf",
 ];
-/// Names of frequencies in rad/s.
+/// Names for frequencies in rad/s.
 const RADIANS: &[&str] = &["omega", "omega_rad_s", "w", "freq_rad_s", "frequency_rad_s"];
-/// Names that leave open what the unit is.
+/// Names for frequencies in an unspecified unit.
 const FREQUENCIES: &[&str] = &["Frequency", "freq", "frequencies", "f"];
 const HERTZ: &[&str] = &["f_hz", "freq_hz", "frequency_hz"];
 const UNITS: &[&str] = &["FrequencyUnit", "FreqUnits", "Units", "frequency_unit"];
@@ -436,10 +439,11 @@ const COHERENCES: &[&str] = &[
     "gamma_squared",
     "Cxy",
 ];
-/// γ or γ², which programs both call so.
+/// Names that programs use for both γ and γ².
 const GAMMAS: &[&str] = &["gamma", "γ"];
 
-/// Whether fields are those of a frequency response: complex numbers, or real and imaginary parts, beside frequencies.
+/// Whether fields are a frequency response: complex numbers, or real and imaginary parts, with
+/// frequencies.
 pub(super) fn is_response(record: &Record<'_>) -> bool {
     let frequencies = record
         .find(RADIANS)
@@ -467,7 +471,7 @@ fn parts<'v>(record: &Record<'v>) -> Option<(&'v Array, &'v Array)> {
     Some(parts)
 }
 
-/// The measured response in `record`.
+/// Reads the measured response in `record`.
 pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel, String> {
     refuse_delays(record)?;
     let (omega, hertz) = omega_of(record)?;
@@ -550,7 +554,7 @@ pub(super) fn response(record: &Record<'_>, variable: &str) -> Result<FoundModel
     })
 }
 
-/// Frequencies \[rad/s\], and whether they stood in Hz.
+/// Returns the frequencies \[rad/s\], and whether they were in Hz.
 fn omega_of(record: &Record<'_>) -> Result<(Vec<f64>, bool), String> {
     let unit = record
         .get(UNITS)
@@ -560,7 +564,7 @@ fn omega_of(record: &Record<'_>) -> Result<(Vec<f64>, bool), String> {
     let of_frequency =
         PhysicalUnit::of(&unit).filter(|unit| unit.dimension == Dimension::Frequency);
     let of_rate = PhysicalUnit::of(&unit).filter(|unit| unit.name.starts_with("rad/"));
-    // MATLAB's objects and python-control's are in rad/s where they do not say.
+    // Objects of MATLAB and python-control use rad/s by default.
     let is_known = record.class.is_some() || record.get(&["frdata", "fresp"]).is_some();
     let (field, is_hertz) = match (
         record.find(RADIANS),
@@ -604,8 +608,9 @@ fn omega_of(record: &Record<'_>) -> Result<(Vec<f64>, bool), String> {
     ))
 }
 
-/// Outputs and inputs of an array that runs over `count` frequencies with its last index, or as some of NumPy with its first; and how
-/// far apart the elements of the next output, input and frequency are. A single response may lie in a row or a column.
+/// Finds the numbers of outputs and inputs of an array with `count` frequencies along its last
+/// index, or along its first as in NumPy, and the strides of outputs, inputs and frequencies. A
+/// single response may be a row or a column.
 fn channels(shape: &[usize], count: usize) -> Result<(usize, usize, [usize; 3]), String> {
     match *shape {
         [outputs, inputs, last] if last == count => {
@@ -628,7 +633,7 @@ fn channels(shape: &[usize], count: usize) -> Result<(usize, usize, [usize; 3]),
     }
 }
 
-/// From elements so far apart to the last index running fastest.
+/// Reorders elements with these strides so that the last index is fastest.
 fn in_order(
     values: &[f64],
     (outputs, inputs, count): (usize, usize, usize),
@@ -1216,7 +1221,7 @@ mod tests {
 
     #[test]
     fn a_response_of_several_channels_is_put_in_order() {
-        // Two outputs, one input, three frequencies: the first index runs fastest.
+        // Two outputs, one input, three frequencies: the first index is fastest.
         let response = Array {
             shape: vec![2, 1, 3],
             kind: ElementKind::Float,

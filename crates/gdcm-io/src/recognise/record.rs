@@ -1,4 +1,4 @@
-//! Fields under names, wherever they stand: in a struct, in an object, in a file.
+//! Named fields in a struct, an object or a file.
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -16,14 +16,16 @@ use gdcm_model::units::number;
 use crate::recognise::delays::{DelayField, delay_fields};
 use crate::variables::{Array, StructArray, Value, Variable};
 
-/// Parts in which objects of MATLAB and GNU Octave keep what other files have beside the rest.
+/// Inner parts in which objects of MATLAB and GNU Octave store fields that other files store
+/// directly.
 const INNER_PARTS: [&str; 4] = ["data", "structure", "lti", RESPONSE_PART];
-/// Where a model of this program has its measured response.
+/// Field of this program's models that holds the measured response.
 const RESPONSE_PART: &str = "frequencyresponse";
-/// Deepest of these parts inside one another.
+/// Deepest nesting of inner parts.
 const DEEPEST_PART: usize = 3;
 
-/// The first field of each name; made when a record is first asked, for one may have as many fields as a file has bytes.
+/// The first field of each name; built on the first query, as a record may have as many fields as a
+/// file has bytes.
 #[derive(Clone, Debug, Default)]
 struct Index<'v> {
     exact: HashMap<&'v str, Field<'v>>,
@@ -31,7 +33,7 @@ struct Index<'v> {
     folded: HashMap<String, Field<'v>>,
 }
 
-/// A value under its name.
+/// A named value.
 pub(crate) type Field<'v> = (&'v str, &'v Value);
 
 /// Fields that belong together.
@@ -39,22 +41,22 @@ pub(crate) type Field<'v> = (&'v str, &'v Value);
 pub(crate) struct Record<'v> {
     fields: Vec<Field<'v>>,
     index: OnceCell<Index<'v>>,
-    /// Names of the fields that were used, and what of a struct among them was not.
+    /// Names of the used fields; `unused_inside` lists unused fields of the structs among them.
     used: RefCell<BTreeSet<&'v str>>,
     unused_inside: RefCell<Vec<String>>,
     delays: OnceCell<Vec<DelayField<'v>>>,
-    /// The record around the one that this lies in: what it says holds for every model inside.
+    /// The enclosing record, whose statements apply to every model inside.
     outer: Option<Rc<Record<'v>>>,
-    /// Whether the fields are those of several models, beside one another.
+    /// Whether the fields belong to several models.
     is_shared: bool,
-    /// The class, where it is an object.
+    /// The class of an object.
     pub(crate) class: Option<&'v str>,
-    /// Whether it is a struct or an object, and not the variables of a file.
+    /// Whether the record is a struct or an object, not the variables of a file.
     pub(crate) stands_alone: bool,
 }
 
 impl<'v> Record<'v> {
-    /// The variables of a file.
+    /// Creates a record from the variables of a file.
     pub(crate) fn of_variables(variables: &'v [Variable]) -> Self {
         Self::of_fields(
             variables
@@ -63,7 +65,7 @@ impl<'v> Record<'v> {
         )
     }
 
-    /// Values under names that stand beside others.
+    /// Creates a record from named values beside other values.
     pub(crate) fn of_fields(fields: impl Iterator<Item = (&'v str, &'v Value)>) -> Self {
         Self {
             fields: fields.collect(),
@@ -71,8 +73,8 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// One record of a struct array. Of an object also what lies in its inner parts, the `page`-th where they are arrays: objects of
-    /// MATLAB keep their numbers in `Data_`.
+    /// Creates a record from one element of a struct array, including the inner parts of an object
+    /// (page `page` where they are arrays): MATLAB objects keep their numbers in `Data_`.
     pub(crate) fn of_struct(
         records: &'v StructArray,
         index: usize,
@@ -94,7 +96,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// The same fields, inside another record.
+    /// Places the record inside another record.
     pub(super) fn inside(self, outer: &Rc<Record<'v>>) -> Self {
         Self {
             outer: Some(Rc::clone(outer)),
@@ -102,7 +104,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// The same fields, of which some are those of several models.
+    /// Marks the fields as shared by several models.
     pub(super) fn shared(self) -> Self {
         Self {
             is_shared: true,
@@ -110,7 +112,8 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Number of models that an object is an array of: each has a record of numbers of its own.
+    /// Returns the number of models in an object array, in which each model has a record of
+    /// numbers.
     pub(crate) fn pages(records: &StructArray, index: usize) -> usize {
         let data = fields_of(records, index)
             .into_iter()
@@ -121,40 +124,40 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// The field of the first of these names that there is, which is used from now on: as it is written, else without case and
-    /// underscores.
+    /// Returns the first existing field with one of these names and marks it as used: exact names
+    /// first, then names without case and underscores.
     pub(crate) fn get(&self, names: &[&str]) -> Option<&'v Value> {
         let (name, value) = self.find(names)?;
         self.use_field(name);
         Some(value)
     }
 
-    /// The same field with its name, which is not used by that.
+    /// Finds the same field with its name, without marking it as used.
     pub(crate) fn find(&self, names: &[&str]) -> Option<Field<'v>> {
         let exact = names.iter().find_map(|name| self.index().exact.get(name));
         let loose = |name: &&str| self.index().folded.get(&folded_name(name));
         exact.or_else(|| names.iter().find_map(loose)).copied()
     }
 
-    /// The field of this very name, which is used from now on.
+    /// Returns the field with exactly this name and marks it as used.
     pub(crate) fn exact(&self, name: &str) -> Option<&'v Value> {
         let (name, value) = *self.index().exact.get(name)?;
         self.use_field(name);
         Some(value)
     }
 
-    /// The field of this very name, which is not used by that.
+    /// Returns the field with exactly this name, without marking it as used.
     pub(super) fn peek(&self, name: &str) -> Option<&'v Value> {
         self.index().exact.get(name).map(|(_, value)| *value)
     }
 
-    /// The value of a field, which is used from now on.
+    /// Returns the value of a field and marks it as used.
     pub(super) fn used(&self, (name, value): Field<'v>) -> &'v Value {
         self.use_field(name);
         value
     }
 
-    /// Notes that a field is used.
+    /// Marks a field as used.
     pub(super) fn use_field(&self, name: &'v str) {
         self.used.borrow_mut().insert(name);
     }
@@ -164,7 +167,7 @@ impl<'v> Record<'v> {
         self.used.borrow().contains(name)
     }
 
-    /// Notes fields of a struct among the fields that were not used: "trim.theta_deg".
+    /// Notes fields of a struct as unused: "trim.theta_deg".
     fn note_unused_inside(&self, names: impl Iterator<Item = String>) {
         let mut unused = self.unused_inside.borrow_mut();
         for name in names {
@@ -174,7 +177,7 @@ impl<'v> Record<'v> {
         }
     }
 
-    /// Names of the fields that were not used. Objects keep much that is nobody's numbers, and list nothing.
+    /// Returns the names of the unused fields; none for objects, which store much internal data.
     pub(super) fn unused(&self) -> Vec<String> {
         if self.class.is_some() {
             return Vec::new();
@@ -189,12 +192,12 @@ impl<'v> Record<'v> {
             .collect()
     }
 
-    /// The fields that look like delays.
+    /// Returns the fields that look like delays.
     pub(super) fn delay_fields(&self) -> &[DelayField<'v>] {
         self.delays.get_or_init(|| delay_fields(&self.fields))
     }
 
-    /// This record and those around it, from inside out.
+    /// Returns this record and the enclosing records, from inside out.
     pub(super) fn with_outer(&self) -> impl Iterator<Item = &Record<'v>> {
         std::iter::successors(Some(self), |record| record.outer.as_deref())
     }
@@ -213,7 +216,7 @@ impl<'v> Record<'v> {
         })
     }
 
-    /// Names and values, in order.
+    /// Returns names and values, in order.
     pub(crate) fn fields(&self) -> impl Iterator<Item = (&'v str, &'v Value)> + '_ {
         self.fields.iter().copied()
     }
@@ -226,7 +229,7 @@ fn fields_of(records: &StructArray, index: usize) -> Vec<(&str, &Value)> {
         .collect()
 }
 
-/// Appends what lies in the inner parts of an object, and in theirs; what stands outside goes first.
+/// Appends the fields of an object's inner parts, recursively; outer fields come first.
 fn add_inner<'v>(fields: &mut Vec<(&'v str, &'v Value)>, page: usize, deeper: usize) {
     if deeper == 0 {
         return;
@@ -247,7 +250,7 @@ fn add_inner<'v>(fields: &mut Vec<(&'v str, &'v Value)>, page: usize, deeper: us
     }
 }
 
-// Names, units and facts beside the numbers of a model.
+// Names, units and flight conditions that accompany a model.
 
 const INPUT_NAMES: &[&str] = &[
     "InputName",
@@ -283,7 +286,7 @@ const STATE_NAMES: &[&str] = &[
     "xnames",
 ];
 
-/// Texts in a value: an array of texts, a cell array of them.
+/// Returns the texts in a value: an array of texts, or a cell array of them.
 pub(crate) fn texts_of(value: &Value) -> Option<Vec<String>> {
     let trimmed = |text: &String| text.trim().to_owned();
     match value {
@@ -298,17 +301,17 @@ pub(crate) fn texts_of(value: &Value) -> Option<Vec<String>> {
     }
 }
 
-/// The inputs of a model of `count`.
+/// Returns the labels of the `count` inputs of a model.
 pub(super) fn inputs_of(record: &Record<'_>, count: usize) -> Result<Vec<ChannelLabel>, String> {
     labels(record, ChannelSide::Input, count)
 }
 
-/// The outputs of a model of `count`.
+/// Returns the labels of the `count` outputs of a model.
 pub(super) fn outputs_of(record: &Record<'_>, count: usize) -> Result<Vec<ChannelLabel>, String> {
     labels(record, ChannelSide::Output, count)
 }
 
-/// Names of the states, where there are as many as states.
+/// Returns the names of the states, if there is a name for each state.
 pub(super) fn states_of(record: &Record<'_>, order: usize) -> Vec<String> {
     let names = record
         .get(STATE_NAMES)
@@ -321,10 +324,12 @@ pub(super) fn states_of(record: &Record<'_>, order: usize) -> Vec<String> {
     }
 }
 
-/// Labels of the `count` channels of a side: those beside the model, else those of the record around it that fit.
+/// Returns the labels of the `count` channels of a side: those beside the model, or fitting ones
+/// from the enclosing record.
 ///
 /// # Errors
-/// A list beside the model that names another number of channels, or one without an order: its channels are never taken by position.
+/// A list beside the model with another number of channels, or an unordered list: channels are
+/// never assigned by position.
 fn labels(
     record: &Record<'_>,
     side: ChannelSide,
@@ -342,7 +347,8 @@ fn labels(
     Ok(labels)
 }
 
-/// The list of names, or of units, that stands under the first of `keys` in a record or around it; empty where one is not said.
+/// Returns the list of names, or of units, under the first existing key in a record or its
+/// enclosing records; empty for missing entries.
 fn list_of_labels(
     record: &Record<'_>,
     keys: &[&str],
@@ -377,12 +383,12 @@ fn list_of_labels(
     Ok(None)
 }
 
-/// Fields of an object that is a channel.
+/// Fields with the name of a channel object.
 const LABEL_NAMES: &[&str] = &["name", "label", "id", "channel"];
 const LABEL_UNITS: &[&str] = &["unit", "units"];
 
-/// The labels in a value, as texts: texts, or objects with a name and a unit, as the channels of a dataset are; nothing where it is
-/// numbers.
+/// Returns the labels in a value as texts: texts, or objects with a name and a unit, such as the
+/// channels of a dataset; nothing for numbers.
 fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String> {
     if let Some(texts) = texts_of(value) {
         return Ok(Some(texts));
@@ -440,7 +446,7 @@ fn label_texts(field: &str, value: &Value) -> Result<Option<Vec<String>>, String
     }
 }
 
-/// A label as engineers write it: "P", "P [deg/s]", "P (deg/s)".
+/// Parses a label: "P", "P [deg/s]", "P (deg/s)".
 pub(crate) fn label_of(text: &str) -> ChannelLabel {
     let text = text.trim();
     for (open, close) in [('[', ']'), ('(', ')')] {
@@ -463,16 +469,17 @@ pub(crate) fn label_of(text: &str) -> ChannelLabel {
     }
 }
 
-/// What beside a model says about its flight condition: read from the page of an array of models that it is, 1 of 1 by itself.
+/// Position of a model in an array of models, for reading its flight condition from lists; index 0
+/// of 1 for a single model.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Page {
-    /// From 0.
+    /// Counted from 0.
     pub(super) index: usize,
     pub(super) count: usize,
 }
 
 impl Page {
-    /// That of a model by itself.
+    /// Page of a single model.
     pub(super) const ONLY: Self = Self { index: 0, count: 1 };
 }
 
@@ -480,22 +487,23 @@ const CONDITIONS: &[&str] = &["condition", "condition_id", "fc"];
 const AIRSPEEDS: &[&str] = &["airspeed_kt", "V_kt", "airspeed_knots", "speed_kt", "KTAS"];
 const ALTITUDES: &[&str] = &["altitude_ft", "alt_ft", "h_ft"];
 const MASSES: &[&str] = &["mass_kg", "m_kg"];
-/// Structs that hold such facts.
+/// Structs with the flight condition.
 const FACTS: [&[&str]; 4] = [
     &["trim"],
     &["flight_condition"],
     &["flight_state"],
     &["condition"],
 ];
-/// A struct of the offsets of the trim, by coordinate.
+/// Struct of trim offsets, by coordinate.
 const OFFSETS: &[&str] = &["perturbation", "trim_offset", "trim_offsets"];
-/// What the name of a single offset begins with: `by_roll_deg`.
+/// Prefix of a single offset: `by_roll_deg`.
 const OFFSET: &str = "by_";
 
-/// What stands beside a model, and around it, about its flight condition.
+/// Returns the flight condition given beside a model and in its enclosing records.
 ///
 /// # Errors
-/// A list of another length than there are models, and a number beside the model that is not the one around it.
+/// A list whose length differs from the number of models, and a number that contradicts an
+/// enclosing record.
 pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String> {
     let condition =
         fact(record, CONDITIONS, page)?.filter(|id| id.fract() == 0.0 && id.abs() < 1e9);
@@ -509,7 +517,7 @@ pub(super) fn facts_of(record: &Record<'_>, page: Page) -> Result<Facts, String>
     })
 }
 
-/// A number of the flight condition, wherever it stands beside a model or around it.
+/// Returns a number of the flight condition, given beside a model or in an enclosing record.
 fn fact(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
     let mut known: Option<f64> = None;
     for (level, record) in record.with_outer().enumerate() {
@@ -534,7 +542,7 @@ fn fact(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, 
     Ok(known)
 }
 
-/// The number of a field, or that of the page in a list.
+/// Returns the number in a field, or the entry of the page in a list.
 fn figure(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>, String> {
     let Some((name, value)) = record.find(names) else {
         return Ok(None);
@@ -562,7 +570,8 @@ fn figure(record: &Record<'_>, names: &[&str], page: Page) -> Result<Option<f64>
     Ok(Some(value))
 }
 
-/// The number of a field of a struct that describes the flight condition: `trim.airspeed_kt`, `condition.id`.
+/// Returns a number from a struct that describes the flight condition: `trim.airspeed_kt`,
+/// `condition.id`.
 fn figure_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, String> {
     for keys in FACTS {
         let Some((key, Value::Struct(records))) = record.find(keys) else {
@@ -594,7 +603,7 @@ fn figure_inside(record: &Record<'_>, names: &[&str]) -> Result<Option<f64>, Str
     Ok(None)
 }
 
-/// The name beside a model; a name beside several models is that of none.
+/// Returns the name beside a model; a single name beside several models applies to none of them.
 fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
     let (key, value) = record.find(&["name"]).filter(|_| !record.is_shared)?;
     let texts = texts_of(value)?;
@@ -610,7 +619,8 @@ fn name_beside(record: &Record<'_>, page: Page) -> Option<String> {
     Some(name.clone())
 }
 
-/// What a model is, as far as the fields beside it and around it say: its role, the offsets of its trim, its method.
+/// Returns the origin of a model, as far as the fields in its record and the enclosing records give
+/// it: role, trim offsets, method.
 pub(super) fn origin_of(record: &Record<'_>) -> Origin {
     let text = |names: &[&str]| -> Option<String> {
         for record in record.with_outer() {
@@ -625,7 +635,7 @@ pub(super) fn origin_of(record: &Record<'_>) -> Origin {
         None
     };
     let role = text(&["role"]).and_then(|word| RowRole::of(&word.to_lowercase()));
-    // Objects of identified models; of others nothing is known.
+    // Classes of identified models begin with "id"; other classes imply no origin.
     let is_identified = record.class.is_some_and(|class| class.starts_with("id"));
     let perturbation = Some(offsets_of(record)).filter(|offsets| !offsets.is_empty());
     match role {
@@ -643,7 +653,7 @@ pub(super) fn origin_of(record: &Record<'_>) -> Origin {
     }
 }
 
-/// The offsets of the trim, by coordinate.
+/// Returns the trim offsets, by coordinate.
 fn offsets_of(record: &Record<'_>) -> BTreeMap<String, f64> {
     let mut offsets = BTreeMap::new();
     for record in record.with_outer() {
@@ -671,14 +681,15 @@ fn offsets_of(record: &Record<'_>) -> BTreeMap<String, f64> {
     offsets
 }
 
-// Numbers out of values.
+// Conversion of values to numbers.
 
-/// The numbers that a value stands for: itself, or the value of a parameter of an identified model.
+/// Returns the numbers of a value: the value itself, or the value of a parameter of an identified
+/// model.
 pub(super) fn array_of(value: &Value) -> Option<&Array> {
     match value {
         Value::Array(array) => Some(array),
         Value::Object(object) => {
-            // The polynomials of GNU Octave's transfer functions are objects too.
+            // GNU Octave's transfer functions also store polynomials as objects.
             let values = ["Value", "Value_", "poly"]
                 .iter()
                 .find_map(|name| object.records.field(name))?;
@@ -691,7 +702,7 @@ pub(super) fn array_of(value: &Value) -> Option<&Array> {
     }
 }
 
-/// A real matrix of finite numbers.
+/// Converts a value to a real matrix of finite numbers.
 pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, String> {
     let array = array_of(value).ok_or_else(|| {
         format!(
@@ -708,7 +719,8 @@ pub(super) fn matrix_of(name: &str, value: &Value) -> Result<DMatrix<f64>, Strin
     page_of(name, array, 0, false)
 }
 
-/// Number of matrices in an array, and the rows and columns of each; which index counts them, `pages_first` says.
+/// Returns the number of matrices in an array, and their rows and columns; `pages_first` decides
+/// which index counts them.
 pub(super) fn pages_of(array: &Array, pages_first: bool) -> (usize, [usize; 2]) {
     let side = |axis: usize| array.shape.get(axis).copied().unwrap_or(0);
     match array.shape.len() {
@@ -717,7 +729,7 @@ pub(super) fn pages_of(array: &Array, pages_first: bool) -> (usize, [usize; 2]) 
     }
 }
 
-/// One matrix of an array of matrices.
+/// Extracts one matrix from an array of matrices.
 pub(super) fn page_of(
     name: &str,
     array: &Array,
@@ -745,7 +757,7 @@ pub(super) fn page_of(
         .take(rows * columns)
         .copied()
         .collect();
-    // There are sides enough and no numbers where one behind them is 0.
+    // A later side of length 0 leaves an array of this size without numbers.
     if values.len() != rows * columns {
         return Err(format!(
             "{name}: expected a matrix, found an array without numbers"
@@ -765,7 +777,7 @@ pub(super) fn page_of(
     Ok(DMatrix::from_column_slice(rows, columns, &values))
 }
 
-/// One real finite number.
+/// Converts a value to one real finite number.
 pub(super) fn scalar_of(value: &Value) -> Option<f64> {
     let array = array_of(value)?;
     match array.re.as_slice() {
@@ -774,7 +786,7 @@ pub(super) fn scalar_of(value: &Value) -> Option<f64> {
     }
 }
 
-/// Numbers in a row or a column.
+/// Converts a row or a column to a list of numbers.
 pub(super) fn list_of(name: &str, value: &Value) -> Result<Vec<f64>, String> {
     let array = array_of(value)
         .ok_or_else(|| format!("{name}: expected numbers, found {}", value.words()))?;
@@ -788,7 +800,7 @@ pub(super) fn list_of(name: &str, value: &Value) -> Result<Vec<f64>, String> {
     }
 }
 
-/// Complex numbers in a row or a column.
+/// Converts a row or a column to a list of complex numbers.
 pub(super) fn complex_list_of(name: &str, value: &Value) -> Result<Vec<Complex<f64>>, String> {
     let re = list_of(name, value)?;
     let im = array_of(value)

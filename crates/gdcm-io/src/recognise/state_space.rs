@@ -1,4 +1,4 @@
-//! Models by their matrices.
+//! Models given by matrices or transfer functions.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -17,7 +17,8 @@ use crate::recognise::record::{
 };
 use crate::variables::{CellArray, Value};
 
-/// Whether fields are those of a state-space model: the matrices A and B, by their very names, large or small.
+/// Whether fields are a state-space model: the matrices A, B and C with these names, in a struct or
+/// an object also in lower case.
 pub(super) fn is_state_space(record: &Record<'_>) -> bool {
     let has = |large: &str, small: &str| {
         let value = record
@@ -28,7 +29,8 @@ pub(super) fn is_state_space(record: &Record<'_>) -> bool {
     has("A", "a") && has("B", "b") && has("C", "c")
 }
 
-/// The model of the matrices in `record`, or each of an array of them: `A(:,:,k)` of MATLAB, `A[k,:,:]` of NumPy.
+/// Reads the model from the matrices in `record`, or each model of an array: `A(:,:,k)` in MATLAB,
+/// `A[k,:,:]` in NumPy.
 pub(super) fn state_spaces(
     record: &Record<'_>,
     variable: &str,
@@ -48,7 +50,7 @@ pub(super) fn state_spaces(
             matrix_of(name, value)
         })];
     }
-    // Which index counts the models shows where the others fit one another.
+    // The index that counts the models is the one for which the other indices fit together.
     let fits = |first: bool| {
         let (pages, of_a) = pages_of(a, first);
         let (of_pages, of_b) = pages_of(b, first);
@@ -76,7 +78,7 @@ pub(super) fn state_spaces(
             &format!("{variable}{place}"),
             Page { index: page, count },
             &|name, value| match array_of(value) {
-                // A matrix that all of them share.
+                // A matrix shared by all models.
                 Some(array) if array.shape.len() < 3 => page_of(name, array, 0, false),
                 Some(array) if page < pages_of(array, first).0 => page_of(name, array, page, first),
                 _ => Err(format!(
@@ -135,7 +137,7 @@ fn one(
     Ok(model)
 }
 
-/// The model of these matrices, with the labels that stand beside them.
+/// Builds the model from its matrices and the labels beside them.
 pub(super) fn found(
     record: &Record<'_>,
     variable: &str,
@@ -165,7 +167,7 @@ pub(super) fn found(
     })
 }
 
-/// Refuses more of something than a model of a dataset can have of states, before there is a matrix of so many rows and columns.
+/// Refuses a count above the largest number of states, before matrices of this size are allocated.
 fn at_most(count: usize, of: &str, place: &str) -> Result<(), String> {
     match count > MOST_STATES {
         true => Err(format!(
@@ -207,12 +209,12 @@ fn check_shapes(
     }
 }
 
-// Models with a matrix E in front of the derivatives.
+// Descriptor models with a matrix E.
 
-/// Condition of E from which `E^-1` has lost most digits.
+/// Condition number of E above which `E^-1` has lost most digits.
 const WORST_CONDITION: f64 = 1e12;
 
-/// `E^-1 A` and `E^-1 B` of `E x' = A x + B u` (M2a).
+/// Computes `E^-1 A` and `E^-1 B` of `E x' = A x + B u` (M2a).
 pub(super) fn solved(
     e: DMatrix<f64>,
     a: DMatrix<f64>,
@@ -251,9 +253,9 @@ pub(super) fn solved(
     }
 }
 
-// Models by numerators and denominators, or by zeros, poles and gains.
+// Models given by numerators and denominators, or by zeros, poles and gains.
 
-/// Whether fields are those of transfer functions.
+/// Whether fields are transfer functions.
 pub(super) fn is_transfer_function(record: &Record<'_>) -> bool {
     polynomials(record).is_some() || factors(record).is_some()
 }
@@ -271,7 +273,7 @@ fn factors<'v>(record: &Record<'v>) -> Option<(&'v Value, &'v Value, &'v Value)>
     Some((record.used(zeros), record.used(poles), record.used(gains)))
 }
 
-/// One response as a fraction of polynomials, highest power first; the denominator begins with 1.
+/// A rational transfer function, highest power first; the denominator is monic.
 #[derive(Clone, Debug, PartialEq)]
 struct Fraction {
     numerator: Vec<f64>,
@@ -279,7 +281,8 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// The fraction in lowest form of leading coefficients; refused where it is not proper.
+    /// Creates the fraction without leading zeros and with a monic denominator; refuses an improper
+    /// fraction.
     fn new(numerator: &[f64], denominator: &[f64], place: &str) -> Result<Self, String> {
         let strip = |polynomial: &[f64]| -> Vec<f64> {
             let first = polynomial
@@ -315,7 +318,7 @@ impl Fraction {
         self.denominator.len() - 1
     }
 
-    /// The numerator, filled up with zeros to the length of the denominator.
+    /// Returns the numerator, padded with zeros to the length of the denominator.
     fn padded(&self) -> Vec<f64> {
         let mut padded = vec![0.0; self.denominator.len() - self.numerator.len()];
         padded.extend(&self.numerator);
@@ -323,7 +326,8 @@ impl Fraction {
     }
 }
 
-/// The state-space model of the transfer functions in `record`: each response in controllable canonical form, side by side.
+/// Returns the state-space model of the transfer functions in `record`: each response in
+/// controllable canonical form, in parallel.
 ///
 /// ```text
 /// H(s) = d + (c_1 s^(n-1) + ... + c_n) / (s^n + a_1 s^(n-1) + ... + a_n)
@@ -367,14 +371,14 @@ pub(super) fn transfer_function(record: &Record<'_>, variable: &str) -> Result<F
     Ok(model)
 }
 
-/// The fractions, first index running fastest, and the numbers of outputs and inputs.
+/// Returns the fractions, first index fastest, and the numbers of outputs and inputs.
 fn fractions_of(record: &Record<'_>) -> Result<(Vec<Fraction>, usize, usize), String> {
     if let Some((numerators, denominators)) = polynomials(record) {
         let (numerators, outputs, inputs) = cells(numerators);
         let (denominators, ..) = cells(denominators);
         let fraction = |(index, numerator): (usize, &&Value)| {
             let place = format!("response {}", index + 1);
-            // One denominator may stand for all.
+            // A single denominator may apply to all responses.
             let denominator = denominators
                 .get(index)
                 .or(denominators.first())
@@ -420,7 +424,8 @@ fn fractions_of(record: &Record<'_>) -> Result<(Vec<Fraction>, usize, usize), St
     Ok((fractions, outputs, inputs))
 }
 
-/// The values of a cell array, and its rows and columns; a value by itself is one of one.
+/// Returns the values of a cell array, and its rows and columns; a single value counts as a 1 x 1
+/// cell array.
 fn cells(value: &Value) -> (Vec<&Value>, usize, usize) {
     match value {
         Value::Cell(CellArray { shape, values }) => {
@@ -435,7 +440,8 @@ fn cells(value: &Value) -> (Vec<&Value>, usize, usize) {
     }
 }
 
-/// The polynomial with these roots, highest power first; conjugate pairs leave it real.
+/// Returns the real polynomial with these roots, highest power first; complex roots come in
+/// conjugate pairs.
 fn polynomial(roots: &[Complex<f64>]) -> Vec<f64> {
     let mut coefficients = vec![Complex::new(1.0, 0.0)];
     for root in roots {
@@ -510,7 +516,7 @@ mod transfer_function_tests {
         let model = transfer_function(&Record::of_variables(&variables), "g").unwrap();
         let s = Complex::new(0.3, 1.7);
         let expected = (s * s * 2.0 + s * 3.0 + 4.0) / (s * s * 2.0 + s * 5.0 + 7.0);
-        // A few roundings of numbers of order one.
+        // A few rounding errors for numbers of order 1.
         assert!((response(&model, s) - expected).norm() < 1e-14);
     }
 

@@ -1,4 +1,4 @@
-//! Flight records in files of whatever format: tables of text, MATLAB, NumPy, JSON, and archives of them.
+//! Flight records in files of any format: text tables, MATLAB, NumPy, JSON, and archives of them.
 //!
 //! ```text
 //! bytes -> format, by what they begin with
@@ -32,25 +32,25 @@ use crate::record_files::record_columns::{
 use crate::study_file::relative_folder;
 use crate::variables::{ReadingBudget, Variable, VariableFault};
 
-/// Most records of one file.
+/// Largest number of records in one file.
 pub(crate) const MOST_RECORDS: usize = 1000;
-/// What was found in files of records.
+/// Results of reading record files.
 #[derive(Clone, Debug, Default)]
 pub struct FoundRecords {
-    /// The records, in the order of their files.
+    /// The records, in file order.
     pub tables: Vec<RecordTable>,
-    /// What could not be read, each with its place and why.
+    /// Unreadable parts, each with place and reason.
     pub faults: Vec<String>,
-    /// What is no record, in words.
+    /// Descriptions of contents that are not records.
     pub ignored: Vec<String>,
-    /// Number of files that were read.
+    /// Number of files read.
     pub files: usize,
-    /// The files asked for by name that could not be read, or not all that is in them.
+    /// The explicitly requested files that could not be read completely.
     pub unread: Vec<PathBuf>,
 }
 
-/// The records of files and folders, folders with all that is in them. A file that cannot be read is a fault, and the rest is read;
-/// where only one was asked for, it is an error.
+/// Reads the records of files and folders, recursively. A file that cannot be read is a fault, and
+/// the others are read; with a single requested file it is an error.
 pub fn read_records(
     paths: &[PathBuf],
     progress: &dyn FolderProgress,
@@ -79,7 +79,7 @@ pub fn read_records(
     })
 }
 
-/// The records in the bytes of a file of this name, within a budget.
+/// Reads the records in the bytes of a file with this name, within a budget.
 pub fn records_of_bytes(
     bytes: &[u8],
     name: &str,
@@ -93,11 +93,11 @@ pub fn records_of_bytes(
     Ok(found)
 }
 
-/// Records of a file again, which is read once and within a budget: those that a dataset calls by these variables; none is the only
-/// one.
+/// Reloads records of a file, which is read once and within a budget: the records that a dataset
+/// identifies by these variables; `None` selects the only record.
 ///
 /// # Errors
-/// Those of reading; of a record that the file does not hold [`FileError::NoRecord`].
+/// Errors from reading; [`FileError::NoRecord`] for a record that the file does not hold.
 pub fn load_records(
     path: &Path,
     variables: &[Option<&str>],
@@ -136,7 +136,7 @@ pub fn load_records(
     Ok(variables.iter().map(record).collect())
 }
 
-/// Whoever stops one reader stops that of a folder too.
+/// Forwards cancellation only.
 struct Stopped<'s>(&'s Arc<AtomicBool>);
 
 impl FolderProgress for Stopped<'_> {
@@ -211,7 +211,7 @@ impl FoundRecords {
                     }
                     self.faults.append(&mut found.faults);
                     self.ignored.append(&mut found.ignored);
-                    // A file in the archive is what a variable is in others.
+                    // Inside an archive, the file path becomes part of the variable.
                     for mut table in found.tables {
                         let variable = table
                             .source
@@ -254,7 +254,7 @@ impl FoundRecords {
         self.ignored.extend(of_file(name, found.ignored));
     }
 
-    /// Adds a table, its records apart.
+    /// Adds a table, split into its records.
     fn add(&mut self, table: RecordTable) {
         let table = table.side_by_side();
         let separation = Separation::proposed(&table);
@@ -262,24 +262,23 @@ impl FoundRecords {
     }
 }
 
-/// Columns that belong together, before it is known of which file they are.
+/// Columns that belong together, before their file is known.
 pub(crate) struct Columns {
-    /// Where they lie in the file ("rec(2)"); empty where they are all of it.
+    /// Their place in the file ("rec(2)"); empty if they are the whole file.
     pub(crate) variable: String,
-    /// They.
     pub(crate) columns: Vec<RecordColumn>,
-    /// Whether the file names them.
+    /// Whether the columns have names in the file.
     pub(crate) named: bool,
-    /// Sample time \[s\], where the file says it.
+    /// Sample time \[s\], if the file gives it.
     pub(crate) sample_time_s: Option<f64>,
-    /// How they were read.
+    /// Remarks on the reading.
     pub(crate) notes: Vec<String>,
-    /// What the system that logged them was at, when.
+    /// Modes of the logging system over time.
     pub(crate) modes: Vec<ModeSpan>,
 }
 
 impl Columns {
-    /// Columns with names, of which nothing else is known.
+    /// Creates named columns without further information.
     pub(crate) fn new(variable: String, columns: Vec<RecordColumn>) -> Self {
         Self {
             variable,
@@ -291,7 +290,7 @@ impl Columns {
         }
     }
 
-    /// The record of these columns in a file.
+    /// Returns the record of these columns in a file.
     fn of_file(self, name: &str, sha256: &str) -> RecordTable {
         let file = name.rsplit('/').next().unwrap_or(name);
         let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
@@ -323,7 +322,8 @@ impl Columns {
     }
 }
 
-/// The columns of a text; where these change on the way, of every part that is long enough to be a record.
+/// Reads the columns of a text; if they change on the way, of every part that is long enough for a
+/// record.
 fn of_text(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Columns>, VariableFault> {
     let first = match of_whole_text(text, budget) {
         Err(fault @ (VariableFault::Line { .. } | VariableFault::Format { .. })) => fault,
@@ -359,7 +359,7 @@ fn of_text(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Columns>, Varia
     }
 }
 
-/// The columns of one table: of one with words or times of the clock among its numbers, with numbers in their place.
+/// Reads the columns of one table; words and clock times among its numbers are replaced by numbers.
 fn of_whole_text(text: &str, budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
     let first = match read_table(text, budget) {
         Err(fault @ (VariableFault::Line { .. } | VariableFault::Format { .. })) => fault,
@@ -368,13 +368,13 @@ fn of_whole_text(text: &str, budget: &ReadingBudget<'_>) -> Result<Columns, Vari
     let Some(NumberedText { text, notes }) = numbered_words(text, budget)? else {
         return Err(first);
     };
-    // What is wrong in the text as it stands says more than what is wrong in this one.
+    // The fault of the original text is more useful than the fault of the converted text.
     let mut columns = of_table(read_table(&text, budget).map_err(|_| first)?);
     columns.notes.extend(notes);
     Ok(columns)
 }
 
-/// The columns of a table of text.
+/// Returns the columns of a text table.
 fn of_table(table: TextTable) -> Columns {
     let TextTable {
         names,
@@ -406,7 +406,7 @@ fn of_table(table: TextTable) -> Columns {
     }
 }
 
-/// Columns without a first line that counts them: 1, 2, 3, …
+/// Removes a first line that numbers the columns: 1, 2, 3, …
 fn without_numbers(mut columns: Vec<Vec<f64>>, notes: &mut Vec<String>) -> Vec<Vec<f64>> {
     let counts = columns
         .iter()
@@ -422,17 +422,17 @@ fn without_numbers(mut columns: Vec<Vec<f64>>, notes: &mut Vec<String>) -> Vec<V
     columns
 }
 
-// The records of the embedded example.
+// Records of the embedded example.
 
-/// The records of conditions 3 and 10 of the example: simulated sweeps and validation, one CSV each.
+/// Records of conditions 3 and 10 of the example: simulated sweeps and validation, a CSV file each.
 const ARCHIVE: &[u8] = include_bytes!("../../../../assets/example-records-3-and-10.zip");
-/// What errors call them.
+/// Name of the archive in errors.
 const NAME: &str = "(embedded example records).zip";
 
-/// The conditions of the example whose records are inside the program.
+/// Conditions of the example with embedded records.
 pub const EXAMPLE_RECORD_CONDITIONS: [i64; 2] = [3, 10];
 
-/// The records of a condition of the example: none but of [`EXAMPLE_RECORD_CONDITIONS`].
+/// Returns the records of a condition of the example, for [`EXAMPLE_RECORD_CONDITIONS`] only.
 pub fn example_records(condition: i64) -> Result<Vec<RecordTable>, FileError> {
     if !EXAMPLE_RECORD_CONDITIONS.contains(&condition) {
         return Ok(Vec::new());
@@ -444,7 +444,7 @@ pub fn example_records(condition: i64) -> Result<Vec<RecordTable>, FileError> {
     Ok(found.tables.into_iter().filter(is_of).collect())
 }
 
-/// Every record among the variables of a file.
+/// Finds every record among the variables of a file.
 pub(super) fn search_records(
     variables: &[Variable],
     budget: &ReadingBudget<'_>,
@@ -463,13 +463,14 @@ pub(super) fn search_records(
     })
 }
 
-/// What a dataset at `dataset` says of a record, its file relative to the dataset's; `asked` are the files and folders that were read.
+/// Returns the entry for a record in the dataset file `dataset`, with the record's file relative to
+/// the dataset; `asked` are the requested files and folders.
 pub fn relative_entry(
     mut entry: ConditionRecord,
     asked: &[PathBuf],
     dataset: &Path,
 ) -> ConditionRecord {
-    // A file by itself, or below the folder that was asked for.
+    // A single file, or a file below the requested folder.
     let place = asked.iter().find_map(|path| {
         let own = path
             .file_name()
@@ -481,7 +482,7 @@ pub fn relative_entry(
             Some(below).filter(|_| path.is_dir())
         }
     });
-    // Topics of a folder whose files were given one by one.
+    // Topics of a folder whose files were requested individually.
     let together = || {
         asked
             .first()
@@ -562,7 +563,8 @@ mod tests {
         }
     }
 
-    /// The record of a table, by the layout proposed; of columns without names it is said which is which, and that "az" is up.
+    /// Returns the flight record of a table with the proposed layout; columns without names are
+    /// assigned explicitly, and "az" is positive up.
     fn flight(table: &RecordTable) -> gdcm_model::simulation::FlightRecord {
         let mut channels = channels();
         let rules = channels.inputs.iter_mut().chain(&mut channels.outputs);
@@ -577,12 +579,12 @@ mod tests {
         proposal.layout.flight_record(table, &channels).unwrap()
     }
 
-    /// Asserts that a record holds what `make_files.py` wrote, to so many digits behind the point.
+    /// Asserts that a record holds the data of `make_files.py`, to this number of decimals.
     fn assert_record(table: &RecordTable, digits: i32) {
         let record = flight(table);
         let samples = record.time_s.len();
         let near = |value: f64, expected: f64| {
-            // Half a unit of the last digit written, and the rounding of a division.
+            // Half a unit of the last decimal, and the rounding of a division.
             assert!(
                 (value - expected).abs() < 0.5 * 10_f64.powi(-digits) + 1e-12,
                 "{}: {value} {expected}",
@@ -869,7 +871,7 @@ mod tests {
         .unwrap()
     }
 
-    /// A timetable of two variables over these row times, as MATLAB saves it.
+    /// A timetable of two variables with these row times, as saved by MATLAB.
     fn timetable(row_times: Value) -> Value {
         let data = CellArray {
             shape: vec![1, 2],
@@ -1064,7 +1066,7 @@ mod tests {
         }
     }
 
-    // Logs of aircraft, and topics in files of their own.
+    // Aircraft logs, and topics in separate files.
 
     fn sides(inputs: &[&str], outputs: &[&str]) -> RecordChannels {
         let rules = |names: &[&str]| names.iter().map(|name| ChannelRule::named(*name)).collect();
@@ -1098,7 +1100,7 @@ mod tests {
             record.layout.outputs.iter().map(unit).collect::<Vec<_>>(),
             ["rad/s", "rad/s", "rad/s", "m/s^2"]
         );
-        // The acceleration is logged 20 times a second, the rest 50 times.
+        // The acceleration is logged at 20 Hz, the other signals at 50 Hz.
         assert!(
             notes
                 .iter()
@@ -1146,7 +1148,7 @@ mod tests {
             .windows(2)
             .map(|pair| pair[1] - pair[0])
             .collect();
-        // Every sixteenth turn of the controller, which turns once in two samples of 125 µs.
+        // Every sixteenth controller cycle, one of which takes two samples of 125 µs.
         assert!(
             steps
                 .iter()
@@ -1191,7 +1193,8 @@ mod tests {
         );
         let first = record.flight.unwrap();
         assert!(record.problems.is_empty() && first.time_s.len() > 900);
-        // A dataset names the folder and what its tables make together; they are found so again.
+        // A dataset names the folder and the combination of its tables; both identify the records
+        // again.
         let again = load_records(
             folder.path(),
             &[Some(RecordTable::TOPICS)],
@@ -1228,7 +1231,8 @@ mod tests {
 
     #[test]
     fn fdata_of_sidpac_is_read_with_the_names_of_its_columns() {
-        // SIDPAC keeps flight data in the columns of fdata, and their names with units, one a row, in varlab.
+        // SIDPAC stores flight data in the columns of fdata, and their names with units in the rows
+        // of varlab.
         let rows = 80;
         let column = |of: fn(f64) -> f64| (0..rows).map(move |row| of(f64::from(row)));
         let values: Vec<f64> = column(|k| 0.02 * k)

@@ -1,4 +1,4 @@
-//! Vectors and matrices of one length beside one another, as columns.
+//! Columns from vectors and matrices of equal length.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ use crate::recognise::record::{Record, label_of, texts_of};
 use crate::record_files::Columns;
 use crate::variables::{Array, StructArray, Value};
 
-/// Fewer samples than these beside a time are no record, and fewer than those without one.
+/// Smallest number of samples of a record with a time, and (`FEWEST`) without a time.
 const FEWEST_TIMED: usize = 20;
 const FEWEST: usize = 50;
-/// Names of matrices of inputs and of outputs, plain.
+/// Plain names of input and output matrices.
 const INPUTS: [&str; 9] = [
     "u",
     "in",
@@ -54,7 +54,7 @@ const OUTPUT_NAMES: [&str; 6] = [
 ];
 const INPUT_UNITS: [&str; 4] = ["inputunit", "inputunits", "inunit", "uunits"];
 const OUTPUT_UNITS: [&str; 4] = ["outputunit", "outputunits", "outunit", "yunits"];
-/// Names of what names, and gives the units of, the columns of a matrix that stands alone.
+/// Names of fields with the column names, and (`UNITS`) the column units, of a single matrix.
 const NAMES: [&str; 10] = [
     "names",
     "channels",
@@ -69,13 +69,14 @@ const NAMES: [&str; 10] = [
 ];
 const UNITS: [&str; 3] = ["units", "columnunits", "channelunits"];
 
-/// Samples under one name: how many, and in how many columns, the samples of a column behind one another.
+/// Samples of one field: the number of rows, and the values of each column.
 pub(super) struct Samples {
     pub(super) rows: usize,
     pub(super) values: Vec<Vec<f64>>,
 }
 
-/// The real numbers of a value, a vector as one column; a row for each sample where there are `rows`, else the longer side.
+/// Returns the real numbers of a value, a vector as one column; a row for each sample if `rows` is
+/// given, otherwise along the longer side.
 pub(super) fn samples_of(value: &Value, rows: Option<usize>) -> Option<Samples> {
     let array = match value {
         Value::Array(array) => array,
@@ -119,7 +120,7 @@ fn strided(array: &Array, from: usize, step: usize) -> Vec<f64> {
     array.re.iter().skip(from).step_by(step).copied().collect()
 }
 
-/// Single numbers in cells, as JSON with "null" among numbers is read.
+/// Reads single numbers in cells, the form of JSON lists with "null" among numbers.
 fn of_cells(cells: &[Value]) -> Option<Samples> {
     let number = |value: &Value| match value {
         Value::Array(array) if array.len() <= 1 => {
@@ -134,7 +135,8 @@ fn of_cells(cells: &[Value]) -> Option<Samples> {
     })
 }
 
-/// The record that fields are, if they are one: arrays of one length, the time's or the most frequent one's.
+/// Returns the record in the fields, if there is one: arrays of one length, which is that of the
+/// time or the most frequent length.
 pub(super) fn columns_of(record: &Record<'_>, variable: &str) -> Option<Columns> {
     let is_model = ["A", "B", "C"]
         .iter()
@@ -189,7 +191,7 @@ pub(super) fn columns_of(record: &Record<'_>, variable: &str) -> Option<Columns>
             left_out.join(", ")
         ));
     }
-    // One matrix without labels has a name, its columns have none.
+    // A single matrix without labels is named, but its columns are not.
     let named = labelled || vectors > 0 || matrices > 1;
     if !named {
         columns
@@ -205,7 +207,7 @@ pub(super) fn columns_of(record: &Record<'_>, variable: &str) -> Option<Columns>
     })
 }
 
-/// The number of samples, and whether it is that of a time.
+/// Returns the number of samples, and whether it is the length of a time vector.
 fn length(record: &Record<'_>) -> Option<(usize, bool)> {
     let vector =
         |value: &Value| samples_of(value, None).filter(|samples| samples.values.len() == 1);
@@ -228,7 +230,7 @@ fn length(record: &Record<'_>) -> Option<(usize, bool)> {
             *columns_by_length.entry(samples.rows).or_default() += samples.values.len();
         }
     }
-    // Of two lengths with as many columns, the longer.
+    // The longer of two lengths with as many columns.
     let best = columns_by_length
         .into_iter()
         .max_by_key(|(rows, columns)| (*columns, *rows));
@@ -258,7 +260,7 @@ fn sample_time(record: &Record<'_>) -> Option<f64> {
         .filter(|step| step.is_finite())
 }
 
-/// Columns of one name, numbered where there are several.
+/// Returns columns of one name, numbered if there are several.
 fn side_by_side(name: &str, values: Vec<Vec<f64>>) -> impl Iterator<Item = RecordColumn> + use<> {
     let name = name.to_owned();
     let is_one = values.len() == 1;
@@ -272,7 +274,7 @@ fn side_by_side(name: &str, values: Vec<Vec<f64>>) -> impl Iterator<Item = Recor
     })
 }
 
-/// Names, units and the side of the columns of one field.
+/// Names, units and side of the columns of one field.
 struct Labels {
     names: Option<Vec<String>>,
     units: Option<Vec<String>>,
@@ -291,7 +293,7 @@ impl Labels {
                 .filter(|texts| texts.len() == count)
         };
         let name = folded_name(field);
-        // One column called u is as likely a speed.
+        // A single column called u may be a speed.
         let is_side =
             |names: &[&str]| names.contains(&name.as_str()) && (count > 1 || name.len() > 1);
         let own = [
@@ -355,7 +357,7 @@ impl Labels {
     }
 }
 
-/// What Simulink logs as a structure with time: `time`, and `signals` with `values` and `label` each.
+/// Reads Simulink's structure with time: `time`, and `signals` with `values` and `label` each.
 pub(super) fn simulink_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     let time = samples_of(record.get(&["time"])?, None)?;
     let Some(Value::Struct(signals)) = record.get(&["signals"]) else {
@@ -393,17 +395,18 @@ pub(super) fn simulink_columns(record: &Record<'_>, variable: &str) -> Option<Co
 
 // Data of MATLAB's and Octave's identification tools.
 //
-// An `iddata` object has, under these names or with an underscore behind them, `OutputData` and `InputData` (a matrix, or a cell for
-// each experiment), `Ts` or `SamplingInstants`, and names and units; Octave's control package calls them `y`, `u`, `tsam`, `outname`,
-// `inname`. A struct with the same fields is taken too.
+// An `iddata` object has, under these names or with a trailing underscore, `OutputData` and
+// `InputData` (a matrix, or a cell for each experiment), `Ts` or `SamplingInstants`, and names and
+// units; Octave's control package calls them `y`, `u`, `tsam`, `outname`, `inname`. A struct with
+// the same fields is also accepted.
 
-/// What one side is called in both.
+/// Field names of one side in both tools.
 struct Side {
     side: ChannelSide,
     data: [&'static str; 2],
     names: [&'static str; 2],
     units: [&'static str; 2],
-    /// What its columns are called where they have no names.
+    /// Letter for the names of unnamed columns.
     letter: char,
 }
 
@@ -422,13 +425,13 @@ const IDDATA_OUTPUTS: Side = Side {
     letter: 'y',
 };
 
-/// Whether fields are those of identification data.
+/// Whether fields are identification data.
 pub(super) fn is_iddata(record: &Record<'_>) -> bool {
     let both = record.get(&["OutputData"]).is_some() && record.get(&["InputData"]).is_some();
     record.class == Some("iddata") || both
 }
 
-/// A record for each experiment.
+/// Returns a record for each experiment.
 pub(super) fn experiments(record: &Record<'_>, variable: &str) -> Result<Vec<Columns>, String> {
     let domain = texts(record, &["Domain"]).and_then(|texts| texts.into_iter().next());
     if domain.is_some_and(|domain| domain.to_lowercase().starts_with('f')) {
@@ -523,7 +526,7 @@ fn texts(record: &Record<'_>, names: &[&str]) -> Option<Vec<String>> {
     record.get(names).and_then(texts_of)
 }
 
-/// The values of the experiments: those of a cell, or the only one.
+/// Returns the values of the experiments: those of a cell, or a single value.
 fn parts(value: &Value) -> Vec<&Value> {
     match value {
         Value::Cell(cell) => cell.values.iter().collect(),
@@ -541,13 +544,15 @@ fn part_of<'v>(record: &Record<'v>, names: &[&str], index: usize) -> Option<&'v 
 
 // MATLAB's timetables and tables.
 //
-// A timetable is saved as a struct `any` with `data` (a cell for each variable), `varNames`, `varUnits` and `rowTimes`: a `duration`
-// (`millis`), a `datetime` (`data`, ms since 1970), or `origin` with `stepSize` or `sampleRate`. A table has `data`, `varnames` and
-// `props.VariableUnits`. Source: files of MATLAB R2017a to R2024a as the mat-io project describes them.
+// A timetable is saved as a struct `any` with `data` (a cell for each variable), `varNames`,
+// `varUnits` and `rowTimes`: a `duration` (`millis`), a `datetime` (`data`, ms since 1970), or
+// `origin` with `stepSize` or `sampleRate`. A table has `data`, `varnames` and
+// `props.VariableUnits`. Source: files of MATLAB R2017a to R2024a as the mat-io project describes
+// them.
 
 const MILLISECOND: f64 = 1e-3;
 
-/// The columns of a timetable or a table, if the object is one.
+/// Reads the columns of a timetable or a table, if the object is one.
 pub(super) fn timetable_columns(record: &Record<'_>, variable: &str) -> Option<Columns> {
     match record.class? {
         "timetable" => {
@@ -607,7 +612,7 @@ fn inner(value: &Value) -> Option<Record<'_>> {
     Some(Record::of_struct(records, 0, None, 0))
 }
 
-/// Columns of numbers of the length of the first; variables of other kinds are left out.
+/// Returns the numeric columns with the length of the first; omits variables of other kinds.
 fn columns(data: &[Value], names: &[String], units: Option<&[String]>) -> Vec<RecordColumn> {
     let mut columns: Vec<RecordColumn> = Vec::new();
     for (index, (value, name)) in data.iter().zip(names).enumerate() {
@@ -629,11 +634,11 @@ fn columns(data: &[Value], names: &[String], units: Option<&[String]>) -> Vec<Re
     columns
 }
 
-/// When the rows of a timetable were taken.
+/// Sample times of the rows of a timetable.
 enum RowTimes {
-    /// At these times \[s\], of the clock or not.
+    /// Time stamps \[s\], with the note for clock times.
     Stamps(Vec<f64>, Option<String>),
-    /// One each so many seconds.
+    /// Constant sample time \[s\].
     Step(f64),
 }
 
@@ -651,7 +656,7 @@ fn row_times(value: &Value) -> Option<RowTimes> {
     {
         let clock = clock.values.into_iter().next()?;
         let start = clock.iter().copied().find(|ms| ms.is_finite())?;
-        // Taken off before the factor: a clock of milliseconds since 1970 has few digits left.
+        // Subtracted before scaling: milliseconds since 1970 leave few digits.
         let seconds = clock.iter().map(|ms| (ms - start) * MILLISECOND).collect();
         return Some(RowTimes::Stamps(
             seconds,
@@ -684,7 +689,7 @@ fn row_times(value: &Value) -> Option<RowTimes> {
     step_s.map(RowTimes::Step)
 }
 
-/// The milliseconds of a `duration`.
+/// Returns the milliseconds of a `duration`.
 fn millis_of(value: &Value) -> Option<Vec<f64>> {
     samples_of(inner(value)?.get(&["millis"])?, None)?
         .values

@@ -1,5 +1,5 @@
-//! What the scheduled correction is worth, how sure the results are (M13), and what the couplings of the physics models mean, are worth and
-//! cost (M16).
+//! Value of the scheduled correction, uncertainty of the results (M13), and meaning, value and cost
+//! of the couplings of the physics models (M16).
 
 use std::sync::Arc;
 
@@ -21,10 +21,10 @@ use gdcm_study::study::{Analysis, AssessmentTable, Engine, Table};
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, PAIRS_DRAWN, Page};
 
-/// The analysis with how sure its figures are.
+/// Returns the analysis with confidence intervals.
 ///
 /// # Errors
-/// [`Cancelled`] soon after `progress` says so.
+/// [`Cancelled`] soon after `progress` requests it.
 pub(super) fn with_bars(
     analysis: &Analysis,
     engine: &mut Engine,
@@ -40,7 +40,7 @@ pub(super) fn with_bars(
     })
 }
 
-/// Adds the section on the uncertainty, where bars are there.
+/// Adds the section on the uncertainty, if confidence intervals are available.
 pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
     let Some(uncertainty) = &analysis.uncertainty else {
         return;
@@ -87,7 +87,7 @@ pub(super) fn add_uncertainty(page: &mut Page, analysis: &Analysis) {
 
 /// Responses in one figure, in four rows.
 const IN_A_FIGURE: usize = 12;
-/// Conditions side by side in a table that fits a sheet.
+/// Conditions side by side in a table that fits on a page.
 const CONDITIONS: usize = 12;
 
 /// Adds the section on the assessment.
@@ -135,7 +135,7 @@ pub(super) fn add_assessment(page: &mut Page, analysis: &Analysis) {
     }
 }
 
-/// The words with a capital letter first; a symbol stays the symbol that it is ("α of the gains").
+/// Capitalises the first letter; a leading symbol is unchanged ("α of the gains").
 pub(super) fn capital(words: &str) -> String {
     let mut capital = words.to_owned();
     if let Some(first) = capital.get_mut(..1) {
@@ -169,7 +169,7 @@ fn add_figures(
     }
 }
 
-/// ΔJ of every response in every condition, as many conditions side by side as fit.
+/// Adds ΔJ of every response in every condition, as many conditions side by side as fit.
 fn add_tables(
     page: &mut Page,
     analysis: &Analysis,
@@ -213,7 +213,7 @@ fn add_tables(
     page.list(missing);
 }
 
-/// J before and after, and the parts of its change, of every condition and response.
+/// Tabulates J before and after, and the parts of its change, for every condition and response.
 fn parts_table(analysis: &Analysis, found: &AssessmentTable, pairs: &[Pair]) -> Table {
     let columns = [
         "condition",
@@ -249,13 +249,13 @@ fn parts_table(analysis: &Analysis, found: &AssessmentTable, pairs: &[Pair]) -> 
     table
 }
 
-/// Columns of a matrix that fit a sheet.
+/// Columns of a matrix that fit on a page.
 const MATRIX_COLUMNS: usize = 8;
 
-/// The analysis with what its couplings are worth, where it has any.
+/// Returns the analysis with the value of its couplings, if it has any.
 ///
 /// # Errors
-/// [`Cancelled`] soon after `progress` says so.
+/// [`Cancelled`] soon after `progress` requests it.
 pub(super) fn with_couplings(
     analysis: Analysis,
     engine: &mut Engine,
@@ -273,7 +273,7 @@ pub(super) fn with_couplings(
     })
 }
 
-/// Adds the section, where couplings are asked for.
+/// Adds the section on couplings, if they are requested.
 pub(super) fn add_couplings(page: &mut Page, analysis: &Analysis) {
     if analysis.couplings.is_none() {
         return;

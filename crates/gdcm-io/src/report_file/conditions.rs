@@ -1,4 +1,4 @@
-//! Each condition: its representatives, its gains and delays, what they rest on, and its plots.
+//! Each condition: its representatives, its gains and delays with their basis, and its plots.
 
 use std::collections::BTreeSet;
 
@@ -23,7 +23,8 @@ use gdcm_study::study::{Analysis, ConditionAnalysis, Engine, Study, Table};
 use super::Unobtrusive;
 use super::page::{CONDITIONS_DRAWN, MODELS_SHOWN, PAIRS_DRAWN, PAIRS_LISTED, Page, names};
 
-/// Adds the section on the conditions: representatives, gains and delays, what they rest on, and plots of each.
+/// Adds the section on the conditions: representatives, gains and delays with their basis, and
+/// plots of each.
 pub(super) fn add(
     page: &mut Page,
     analysis: &Analysis,
@@ -106,7 +107,7 @@ fn add_result(page: &mut Page, analysis: &Analysis, result: &ConditionAnalysis) 
         .for_each(|kind| add_models(page, study, result, kind));
 }
 
-/// How sure the gains are, in a word.
+/// Returns the proof status of the gains in a word.
 pub(super) fn proof_word(result: &ConditionAnalysis) -> &'static str {
     match result.gains.proof.outcome {
         Outcome::Proven { .. } => "global optimum",
@@ -186,7 +187,7 @@ fn flight_words(condition: &Condition) -> String {
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// How many models of a bundle are kept, and which of them represents it.
+/// Describes the number of kept models in a bundle, and its representative.
 fn representative(analysis: &Analysis, result: &ConditionAnalysis, kind: BundleKind) -> String {
     let choice = analysis.study.choice(result.condition.id()).bundle(kind);
     let name = result.representative_name(kind);
@@ -244,7 +245,7 @@ const RESPONSE_COLUMNS: [&str; 11] = [
     "ΔJ phase",
 ];
 
-/// Adds the table of the responses, and why some of them have no G and no D.
+/// Adds the table of the responses, and the reasons why some of them have no G and no D.
 fn add_responses(page: &mut Page, study: &Study, result: &ConditionAnalysis) {
     let all: Vec<Pair> = study.dataset.on_axis().pairs().collect();
     let measuring = study.dataset.measuring_pairs();
@@ -307,7 +308,7 @@ fn response_cells(study: &Study, result: &ConditionAnalysis, pair: Pair) -> [Str
     ]
 }
 
-/// A sentence for each reason why responses have no G and no D.
+/// Returns a sentence for each reason why responses have no G and no D.
 fn undefined(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
     for (pair, why) in result.comparison.undefined.iter() {
@@ -325,7 +326,7 @@ fn undefined(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     reasons.into_iter().map(sentence).collect()
 }
 
-/// Adds the table of a bundle's models; of a long bundle, of those that matter most.
+/// Adds the table of a bundle's models; for a long bundle, of the most important ones.
 fn add_models(page: &mut Page, study: &Study, result: &ConditionAnalysis, kind: BundleKind) {
     let models = result.condition.bundle(kind);
     let shown = models_shown(study, result, kind);
@@ -405,7 +406,7 @@ fn kept_word(
 /// Responses side by side in one figure, in two rows at most.
 const IN_A_FIGURE: usize = 10;
 
-/// Adds the responses that matter, what the fit sees of them, every response, and the poles.
+/// Adds plots of the important responses, their errors in the fit, all responses, and the poles.
 fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSource<'_>) {
     let id = source.curves.condition.id();
     let measuring: Vec<Pair> = source.study.dataset.measuring_pairs().marked().collect();
@@ -465,7 +466,8 @@ fn add_plots(page: &mut Page, result: &ConditionAnalysis, source: &ConditionSour
     }
 }
 
-/// Lines across narrow frames with their names alone ("G", "UB"): what they are at stands in the tables.
+/// Reduces labels of lines across narrow frames to their names ("G", "UB"): their values are in the
+/// tables.
 fn without_values(mut figure: Figure) -> Figure {
     let panels = figure.plots.iter_mut().flat_map(|plot| &mut plot.panels);
     for mark in panels.flat_map(|panel| &mut panel.marks) {
@@ -476,7 +478,7 @@ fn without_values(mut figure: Figure) -> Figure {
     figure
 }
 
-/// " on axis" where some responses are; all of them measure a model otherwise.
+/// Returns " on axis" if responses are marked as such; otherwise all of them measure a model.
 fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
     if source.study.dataset.on_axis().marked().next().is_some() {
         " on axis"
@@ -485,8 +487,9 @@ fn on_axis_words(source: &ConditionSource<'_>) -> &'static str {
     }
 }
 
-/// The models of a bundle that are listed and drawn, by their places: all of a short one; of a long one the representative, the nominal
-/// and the suggested ones, the rejected ones, then the others, evenly over the bundle.
+/// Returns the indices of the models of a bundle that are listed and drawn: all of a short one; of
+/// a long one the representative, the nominal and the suggested ones, the rejected ones, then the
+/// others, evenly over the bundle.
 fn models_shown(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> BTreeSet<usize> {
     let models = result.condition.bundle(kind);
     if models.len() <= MODELS_SHOWN {
@@ -513,7 +516,7 @@ fn models_shown(study: &Study, result: &ConditionAnalysis, kind: BundleKind) -> 
     shown
 }
 
-/// The models of a condition that are not drawn.
+/// Returns the models of a condition that are not drawn.
 fn models_hidden(study: &Study, result: &ConditionAnalysis) -> BTreeSet<ModelId> {
     let of_bundle = |kind: BundleKind| {
         let shown = models_shown(study, result, kind);

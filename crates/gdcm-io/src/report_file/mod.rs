@@ -1,4 +1,5 @@
-//! The report of a study: one file in HTML that needs nothing else and prints on A4 and letter. The same study makes the same bytes.
+//! The report of a study: a single HTML file without external resources that prints on A4 and
+//! letter. The same study makes the same bytes.
 
 mod assessment;
 mod conditions;
@@ -24,22 +25,22 @@ pub use study::assessment_sentence;
 
 const PROGRAM: &str = concat!("gdcm ", env!("CARGO_PKG_VERSION"));
 
-/// What a report says of the files that a study is made of.
+/// Information in a report on the files of a study.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReportSource {
-    /// The name of the study's file; none of a study that is not saved.
+    /// Name of the study's file; `None` for a study that is not saved.
     pub study: Option<String>,
-    /// The name of the dataset's file, or what stands for it.
+    /// Name of the dataset's file, or its replacement.
     pub dataset: String,
     /// SHA-256 of that file, in hexadecimal.
     pub sha256: String,
-    /// What is odd about it.
+    /// Its oddities.
     pub cautions: Vec<String>,
 }
 
 impl ReportSource {
-    /// The files of a study: its dataset, and its own where it has one. They are named without their folders, so that the report
-    /// is the same wherever they are.
+    /// Creates the information on the files of a study: its dataset, and its own file if any. They
+    /// are named without their folders, so that the report does not depend on their location.
     pub fn of(loaded: &LoadedDataset, study: Option<&Path>) -> Self {
         let study = study
             .and_then(Path::file_name)
@@ -54,21 +55,22 @@ impl ReportSource {
     }
 }
 
-/// What a report is about.
+/// Subject of a report.
 #[derive(Clone, Copy, Debug)]
 pub struct ReportSubject<'a> {
-    /// The analysis, with the requirements of its study.
+    /// With the requirements of its study.
     pub analysis: &'a Analysis,
-    /// What its models answer to flight records, where there are some.
+    /// Responses of its models to flight records, if available.
     pub histories: Option<&'a TimeHistories>,
-    /// The poles that were identified.
+    /// The identified poles.
     pub known: &'a KnownPoles,
 }
 
-/// The report of an analysis; `engine` has the responses that are drawn. Each condition is a step of the progress.
+/// Creates the report of an analysis; `engine` provides the responses to be drawn. Each condition
+/// is a step of the progress.
 ///
 /// # Errors
-/// [`Cancelled`] soon after `progress` says so.
+/// [`Cancelled`] soon after `progress` requests it.
 pub fn report(
     subject: ReportSubject<'_>,
     source: &ReportSource,
@@ -116,7 +118,7 @@ pub fn report(
     ))
 }
 
-/// Tells whether the report is still wanted, and nothing of the steps within one of its own.
+/// Forwards cancellation only, not the progress of inner steps.
 struct Unobtrusive<'a>(&'a dyn Progress);
 
 impl Progress for Unobtrusive<'_> {

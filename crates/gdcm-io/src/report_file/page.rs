@@ -1,5 +1,5 @@
-//! A page that is written from top to bottom: numbered sections, tables and figures, and the list of what it holds; in markup that is
-//! HTML and well-formed XML at once.
+//! A page written from top to bottom: numbered sections, tables and figures, and a table of
+//! contents; in markup that is both HTML and well-formed XML.
 
 use gdcm_model::message_text::sanitized;
 use gdcm_plot::figure::drawing::Drawing;
@@ -7,18 +7,19 @@ use gdcm_plot::figure::{ColumnWidth, Figure};
 use gdcm_plot::paper::{escaped, inline_svg};
 use gdcm_study::study::Table;
 
-/// Conditions that have figures; all have tables.
+/// Maximum number of conditions with figures; all have tables.
 pub(super) const CONDITIONS_DRAWN: usize = 60;
-/// Responses of a kind that have figures.
+/// Maximum number of responses of a kind with figures.
 pub(super) const PAIRS_DRAWN: usize = 40;
-/// Responses that a table of all of them may have; beyond, it has the on-axis and the held ones.
+/// Maximum number of responses in a table of all; beyond, it lists the on-axis and the constrained
+/// ones.
 pub(super) const PAIRS_LISTED: usize = 48;
-/// Models of a bundle that are listed and drawn.
+/// Maximum number of models of a bundle that are listed and drawn.
 pub(super) const MODELS_SHOWN: usize = 40;
-/// Names in a sentence.
+/// Maximum number of names in a sentence.
 pub(super) const NAMES_SHOWN: usize = 12;
 
-/// Names with commas; of many, the first, and how many more there are.
+/// Lists names with commas; for many, the first ones and the number of the others.
 pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
     let shown = all
         .iter()
@@ -32,20 +33,20 @@ pub(super) fn names<S: AsRef<str>>(all: &[S]) -> String {
     }
 }
 
-/// How far a line of a figure may be from the points that it stands for \[pt\]: less than the finest line is wide, so that it
-/// cannot be seen, and a quarter of the file.
+/// Maximum distance of a line in a figure from its original points \[pt\]: less than the width of
+/// the thinnest line, hence invisible, and a quarter of the file size.
 const TOLERANCE_PT: f64 = 0.1;
-/// Rows of a table; beyond, a file of results is the place to look.
+/// Maximum number of rows of a table; beyond, see the result files.
 const ROWS: usize = 1000;
-/// A table of no more rows is not parted.
+/// A table of no more rows is not split between pages.
 const ROWS_ON_A_SHEET: usize = 30;
-/// Letters of a text that stands in one line.
+/// Maximum number of letters of a text that stays on one line.
 const SHORT: usize = 24;
 const STYLE: &str = include_str!("style.css");
-/// Nothing is fetched and nothing is run, whatever a page might hold.
+/// Nothing is fetched and nothing is run, whatever the content of a page.
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'";
 
-/// A heading, as the contents list it.
+/// A heading in the table of contents.
 struct Heading {
     number: String,
     title: String,
@@ -70,7 +71,7 @@ impl Page {
         self.heading("h2", self.section.to_string(), title);
     }
 
-    /// Begins a part of a section.
+    /// Begins a subsection.
     pub(super) fn subsection(&mut self, title: &str) {
         self.subsection += 1;
         self.heading("h3", format!("{}.{}", self.section, self.subsection), title);
@@ -87,22 +88,22 @@ impl Page {
         });
     }
 
-    /// A heading within a part, which the contents do not list.
+    /// Adds a heading within a subsection, which the table of contents omits.
     pub(super) fn heading_within(&mut self, title: &str) {
         self.body.push_str(&element("h4", title));
     }
 
-    /// A paragraph.
+    /// Adds a paragraph.
     pub(super) fn paragraph(&mut self, text: &str) {
         self.body.push_str(&element("p", text));
     }
 
-    /// A list; nothing where it is empty.
+    /// Adds a list; nothing if it is empty.
     pub(super) fn list(&mut self, items: impl IntoIterator<Item = impl AsRef<str>>) {
         self.list_of("", items);
     }
 
-    /// A list in small letters, of what only some will read.
+    /// Adds a list in small print, for details of interest to few readers.
     pub(super) fn fine_list(&mut self, items: impl IntoIterator<Item = impl AsRef<str>>) {
         self.list_of(" class=\"fine\"", items);
     }
@@ -117,7 +118,7 @@ impl Page {
         }
     }
 
-    /// What is known of one thing: names at the left, what they are at the right.
+    /// Adds facts about a subject: names at the left, values at the right.
     pub(super) fn facts<'a>(&mut self, facts: impl IntoIterator<Item = (&'a str, String)>) {
         self.body.push_str("<table class=\"facts\"><tbody>\n");
         for (name, value) in facts {
@@ -130,7 +131,8 @@ impl Page {
         self.body.push_str("</tbody></table>\n");
     }
 
-    /// A table under its title; its headings stand again on every sheet that it goes on to. Nothing where it has no rows.
+    /// Adds a table under its title; its headings are repeated on every page. Nothing is added
+    /// without rows.
     pub(super) fn table(&mut self, table: &Table) {
         if table.rows.is_empty() {
             return;
@@ -170,12 +172,12 @@ impl Page {
         }
     }
 
-    /// A table of which as many columns stand side by side as fit, each time behind the first.
+    /// Adds a table with as many columns side by side as fit, each time after the first.
     pub(super) fn wide_table(&mut self, table: &Table, columns: usize) {
         self.wide_table_behind(table, 1, columns);
     }
 
-    /// The same behind the first `heads` columns.
+    /// Adds a wide table with `heads` leading columns repeated.
     pub(super) fn wide_table_behind(&mut self, table: &Table, heads: usize, columns: usize) {
         for from in (heads..table.columns.len()).step_by(columns) {
             let part = |cells: &[String]| {
@@ -192,7 +194,7 @@ impl Page {
         }
     }
 
-    /// A figure under its number, with these words in place of its own title and caption.
+    /// Adds a figure under its number, with this title and caption instead of its own.
     pub(super) fn figure(&mut self, figure: &Figure, title: &str, caption: &str) {
         self.figures += 1;
         let bare = Figure {
@@ -213,12 +215,12 @@ impl Page {
         ));
     }
 
-    /// Markup of the program itself.
+    /// Adds fixed markup of the program itself.
     pub(super) fn fixed(&mut self, markup: &'static str) {
         self.body.push_str(markup);
     }
 
-    /// The whole page under a title, which `lines` stand below.
+    /// Finishes the page with a title and the `lines` below it.
     pub(super) fn finish(self, title: &str, lines: &[String]) -> String {
         let below: String = lines
             .iter()
@@ -254,7 +256,7 @@ impl Page {
     }
 }
 
-/// Whether a column is one of figures, or of words so short that they stand in one line.
+/// Returns the class of a column: numbers, or texts short enough to stay on one line.
 fn class_of(table: &Table, column: usize) -> &'static str {
     let is_short = table
         .rows
@@ -267,17 +269,17 @@ fn class_of(table: &Table, column: usize) -> &'static str {
     }
 }
 
-/// Words from wherever they come as a page takes them: nothing in them is markup, nothing in them is invisible.
+/// Escapes text from any source for a page: it contains no markup and no invisible characters.
 fn words(text: &str) -> String {
     escaped(&sanitized(text))
 }
 
-/// An element with these words in it.
+/// Returns an element with this text.
 fn element(tag: &str, text: &str) -> String {
     format!("<{tag}>{}</{tag}>\n", words(text))
 }
 
-/// An element of a class with these words in it.
+/// Returns an element of a class with this text.
 fn classed(tag: &str, class: &str, text: &str) -> String {
     format!("<{tag} class=\"{class}\">{}</{tag}>\n", words(text))
 }

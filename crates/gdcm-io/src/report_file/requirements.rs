@@ -1,4 +1,4 @@
-//! What a qualification asks of the models (M17): the numbers of `gdcm requirements`.
+//! Requirements of a qualification on the models (M17): the numbers of `gdcm requirements`.
 
 use std::collections::BTreeMap;
 
@@ -14,13 +14,13 @@ use gdcm_study::study::{Engine, Study, Table};
 use super::page::Page;
 use super::{ReportSubject, Unobtrusive};
 
-/// Columns of a table that fit a sheet.
+/// Columns of a table that fit on a page.
 const COLUMNS: usize = 9;
 
-/// Adds the section on the requirements; with the answers to flight records where there are some.
+/// Adds the section on the requirements; with the responses to flight records if available.
 ///
 /// # Errors
-/// [`Cancelled`] soon after `progress` says so.
+/// [`Cancelled`] soon after `progress` requests it.
 pub(super) fn add_requirements(
     page: &mut Page,
     ReportSubject {
@@ -67,7 +67,8 @@ pub(super) fn add_requirements(
     Ok(())
 }
 
-/// Bandwidth and phase delay of the responses that have one of them, and why others have none.
+/// Adds bandwidth and phase delay of the responses for which either is defined, and the reasons why
+/// others have none.
 fn add_bandwidth(page: &mut Page, requirements: &Requirements, study: &Study) {
     let dataset = &study.dataset;
     page.subsection("Bandwidth and phase delay");
@@ -115,7 +116,7 @@ fn add_modes(page: &mut Page, requirements: &Requirements) {
         .for_each(|id| page.wide_table(&requirements.mode_table(id), COLUMNS));
 }
 
-/// Time histories within tolerances, and what is not compared.
+/// Adds time histories within tolerances, and those that are not compared.
 fn add_histories(page: &mut Page, histories: &TimeHistories) {
     page.subsection("Time histories");
     let source = match histories.tolerance_table.source() {
@@ -143,7 +144,7 @@ fn add_histories(page: &mut Page, histories: &TimeHistories) {
     ));
 }
 
-/// The tolerances asked for.
+/// Tabulates the requested tolerances.
 fn tolerance_table(histories: &TimeHistories) -> Table {
     let mut table = Table::new(
         "Tolerances",
@@ -170,7 +171,7 @@ fn tolerance_table(histories: &TimeHistories) -> Table {
     table
 }
 
-/// Words, each once behind the conditions that they are of.
+/// Returns distinct texts, each after the conditions to which it applies.
 fn by_words(said: impl Iterator<Item = (Option<ConditionId>, String)>) -> Vec<String> {
     let mut grouped: BTreeMap<String, Vec<ConditionId>> = BTreeMap::new();
     for (condition, words) in said {

@@ -17,10 +17,10 @@ use super::study::schedule_words;
 const IN_A_FIGURE: usize = 12;
 /// Responses in one figure, in two rows.
 const PAIRS_IN_A_FIGURE: usize = 10;
-/// Columns of figures of a table that fits a sheet.
+/// Value columns of a table that fits on a page.
 const COLUMNS: usize = 10;
 
-/// Adds the section.
+/// Adds the section on the schedule.
 pub(super) fn add_schedule(page: &mut Page, analysis: &Analysis) {
     page.section("Channels and schedule");
     page.subsection("Channels over the conditions");
@@ -125,7 +125,7 @@ fn add_airspeed(page: &mut Page, analysis: &Analysis, schedule: &Schedule, chann
     }
 }
 
-/// The conditions that have a result and are left out of the schedule by hand.
+/// Returns the conditions with a result that are excluded from the schedule by hand.
 fn not_scheduled(analysis: &Analysis) -> Vec<String> {
     let scheduled: Vec<ConditionId> = analysis.scheduled();
     let all = analysis
@@ -139,7 +139,7 @@ fn not_scheduled(analysis: &Analysis) -> Vec<String> {
         .collect()
 }
 
-/// The responses that measure a model, and those held.
+/// Returns the responses that measure a model, and the constrained ones.
 fn shown_pairs(study: &Study) -> Vec<Pair> {
     let measuring = study.dataset.measuring_pairs();
     let shown = measuring.map(|pair, measures| *measures || study.settings.constrained[pair]);
@@ -170,7 +170,8 @@ fn add_coefficients(
     page.wide_table(&table, COLUMNS);
 }
 
-/// The scheduled gains, net gains and, where they are scheduled, delays at the airspeeds of the conditions.
+/// Adds the scheduled gains, net gains and, if scheduled, delays at the airspeeds of the
+/// conditions.
 fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     let dataset = &analysis.study.dataset;
     let (inputs, outputs) = dataset.names_of_channels();
@@ -223,7 +224,7 @@ fn add_gains(page: &mut Page, analysis: &Analysis, schedule: &Schedule) {
     }
 }
 
-/// Tables with a row for each airspeed, as many as it takes for all columns to fit.
+/// Adds tables with a row for each airspeed, as many as needed for all columns to fit.
 fn add_over_airspeed(
     page: &mut Page,
     schedule: &Schedule,

@@ -1,4 +1,5 @@
-//! The study as a whole: what came of it, its settings, where the numbers come from, and the models that are left out.
+//! The study as a whole: its results, its settings, the sources of its numbers, and the excluded
+//! models.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +20,7 @@ use super::conditions::proof_word;
 use super::page::{NAMES_SHOWN, Page, names};
 use super::{PROGRAM, ReportSource};
 
-/// What came of the study, at a glance.
+/// Adds a summary of the results.
 pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     page.section("Summary");
     let conditions = analysis.study.dataset.conditions();
@@ -48,7 +49,7 @@ pub(super) fn add_summary(page: &mut Page, analysis: &Analysis) {
     page.table(&condition_table(analysis));
 }
 
-/// What the schedule is worth for the nominal models, in a sentence.
+/// Describes the value of the schedule for the nominal models in a sentence.
 pub fn assessment_sentence(analysis: &Analysis) -> String {
     let dataset = &analysis.study.dataset;
     let measuring = dataset.measuring_pairs();
@@ -118,7 +119,7 @@ fn kept(study: &Study, condition: &Condition, kind: BundleKind) -> String {
     format!("{kept} of {}", models.len())
 }
 
-/// Held gains and held delays that are matched, of how many.
+/// Returns the numbers of matched gains and delays among the constrained ones.
 fn matched(result: &ConditionAnalysis) -> [String; 2] {
     let held = result.held().marked().count();
     let of = |unmatched: usize| format!("{} of {held}", held.saturating_sub(unmatched));
@@ -128,7 +129,8 @@ fn matched(result: &ConditionAnalysis) -> [String; 2] {
     ]
 }
 
-/// Adds the section on the settings: which responses are held and ignored, then every setting that has an effect.
+/// Adds the section on the settings: constrained and ignored responses, then every setting that has
+/// an effect.
 pub(super) fn add_settings(page: &mut Page, study: &Study) {
     page.section("Settings");
     let settings = &study.settings;
@@ -168,7 +170,7 @@ pub(super) fn add_settings(page: &mut Page, study: &Study) {
     );
 }
 
-/// The form of a schedule in words.
+/// Describes the form of a schedule.
 pub(super) fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree} in airspeed"),
@@ -228,7 +230,7 @@ pub(super) fn add_files(page: &mut Page, study: &Study, source: &ReportSource) {
     );
 }
 
-/// Adds the section on the files of the models, where any is known.
+/// Adds the section on the source files of the models, if any is known.
 pub(super) fn add_models(page: &mut Page, study: &Study) {
     let mut models: BTreeMap<[String; 5], Vec<String>> = BTreeMap::new();
     let mut unknown = 0;
@@ -288,7 +290,8 @@ fn source_cells(source: &Provenance) -> [String; 5] {
 
 const NO_REASON: &str = "no reason was given";
 
-/// The models that take no part: rejected ones with the analyst's reasons, those set aside, and those that are suspected.
+/// Adds the models without influence: rejected ones with the analyst's reasons, those set aside,
+/// and the suspected ones.
 pub(super) fn add_left_out(page: &mut Page, analysis: &Analysis) {
     page.section("Models left out");
     let rejected = rejected_table(analysis);
@@ -327,7 +330,7 @@ fn rejected_table(analysis: &Analysis) -> Table {
     table
 }
 
-/// A row for each rejected model; of many without a reason the last are counted.
+/// Adds a row for each rejected model; among many without a reason, the last are only counted.
 fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, table: &mut Table) {
     let study = &analysis.study;
     let id = |name: &str| ModelId::new(condition.id(), kind, name);
@@ -369,7 +372,8 @@ fn rejected_rows(analysis: &Analysis, condition: &Condition, kind: BundleKind, t
     }
 }
 
-/// What is set aside in a condition, what is suspected and kept all the same, and what was pinned.
+/// Describes the models of a condition that are set aside, those suspected but kept, and the pinned
+/// ones.
 fn left_out_lines(analysis: &Analysis, condition: &Condition) -> Vec<String> {
     let study = &analysis.study;
     let id = condition.id();

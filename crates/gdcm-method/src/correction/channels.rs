@@ -1,5 +1,5 @@
-//! The channels of a correction: which there are, what they are called, something of each; and one gain and one delay or lead for each
-//! (M10, M11, M15), with what they make of a response.
+//! Channels of a correction, their names and values for each channel; one gain and one delay or
+//! lead for each (M10, M11, M15), and their effect on a response.
 
 use std::ops::Index;
 
@@ -11,9 +11,7 @@ use super::leads::ChannelLeads;
 /// One channel: an input or an output, each with a gain and a delay of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Channel {
-    /// The input of this index.
     Input(usize),
-    /// The output of this index.
     Output(usize),
 }
 
@@ -30,12 +28,12 @@ impl Channel {
         [Self::Output(pair.output), Self::Input(pair.input)]
     }
 
-    /// Whether a response goes through the channel.
+    /// Whether the response uses the channel.
     pub fn is_of(self, pair: Pair) -> bool {
         Self::of(pair).contains(&self)
     }
 
-    /// The channel's name, or its number (from 1) where the list of names is too short.
+    /// Name of the channel, or its number (from 1) where the list of names is too short.
     pub fn name(self, inputs: &[String], outputs: &[String]) -> String {
         let (names, index, kind) = match self {
             Channel::Input(index) => (inputs, index, "input"),
@@ -52,20 +50,20 @@ impl Channel {
         Self::all(dataset.inputs().len(), dataset.outputs().len())
     }
 
-    /// The channel's name in a dataset.
+    /// Name of the channel in a dataset.
     pub fn name_in(self, dataset: &Dataset) -> String {
         let (inputs, outputs) = dataset.names_of_channels();
         self.name(&inputs, &outputs)
     }
 }
 
-/// The response in words: "PED → NY".
+/// Name of the response: "PED → NY".
 pub fn pair_name(pair: Pair, inputs: &[String], outputs: &[String]) -> String {
     let [output, input] = Channel::of(pair).map(|channel| channel.name(inputs, outputs));
     format!("{input} → {output}")
 }
 
-/// Several responses in words: "A, B and C".
+/// Names of several responses: "A, B and C".
 pub fn pair_names(pairs: &[Pair], inputs: &[String], outputs: &[String]) -> String {
     let names: Vec<String> = pairs
         .iter()
@@ -78,22 +76,22 @@ pub fn pair_names(pairs: &[Pair], inputs: &[String], outputs: &[String]) -> Stri
     }
 }
 
-/// Something of each channel.
+/// One value for each channel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Channels<T> {
-    /// Of each input, m values.
+    /// Values of the inputs, m.
     pub inputs: Vec<T>,
-    /// Of each output, p values.
+    /// Values of the outputs, p.
     pub outputs: Vec<T>,
 }
 
 impl<T> Channels<T> {
-    /// What `of` says of each channel, the inputs first.
+    /// Calls `of` for each channel, the inputs first.
     pub fn from_fn(inputs: usize, outputs: usize, of: impl FnMut(Channel) -> T) -> Self {
         Self::split(Channel::all(inputs, outputs).map(of).collect(), inputs)
     }
 
-    /// `all` is of the inputs, then of the outputs.
+    /// Splits a list of the inputs' values followed by the outputs'.
     fn split(mut all: Vec<T>, inputs: usize) -> Self {
         let outputs = all.split_off(inputs);
         Self {
@@ -102,7 +100,7 @@ impl<T> Channels<T> {
         }
     }
 
-    /// What `of` makes of each channel's.
+    /// Applies `of` to the value of each channel.
     pub fn map<U>(&self, mut of: impl FnMut(Channel, &T) -> U) -> Channels<U> {
         Channels::split(
             self.iter()
@@ -112,7 +110,7 @@ impl<T> Channels<T> {
         )
     }
 
-    /// As [`Channels::map`], up to the first that fails.
+    /// Like [`Channels::map`], but stops at the first failure.
     pub fn try_map<U, E>(
         &self,
         mut of: impl FnMut(Channel, &T) -> Result<U, E>,
@@ -124,7 +122,7 @@ impl<T> Channels<T> {
         Ok(Channels::split(all, self.inputs.len()))
     }
 
-    /// What a channel has; none where there is no such channel.
+    /// Value of a channel; `None` where there is no such channel.
     pub fn get(&self, channel: Channel) -> Option<&T> {
         match channel {
             Channel::Input(input) => self.inputs.get(input),
@@ -132,7 +130,7 @@ impl<T> Channels<T> {
         }
     }
 
-    /// Each channel with what it has, the inputs first.
+    /// Each channel with its value, the inputs first.
     pub fn iter(&self) -> impl Iterator<Item = (Channel, &T)> {
         Channel::all(self.inputs.len(), self.outputs.len())
             .zip(self.inputs.iter().chain(&self.outputs))
@@ -161,13 +159,13 @@ pub struct ChannelCorrection {
     pub input_delays_s: Vec<f64>,
     /// Delay of each output channel \[s\], p values.
     pub output_delays_s: Vec<f64>,
-    /// Signed delays, of which the delays above are the positive part, and the filters of the negative ones; none where leads are
-    /// not asked for (M15).
+    /// Signed delays, whose positive parts are the delays above, and the filters of the negative
+    /// ones; `None` where leads are not requested (M15).
     pub leads: Option<ChannelLeads>,
 }
 
 impl ChannelCorrection {
-    /// These gains with these delays \[s\].
+    /// Correction by these gains and delays \[s\].
     pub fn of_delays(gains: Channels<f64>, delays_s: Channels<f64>) -> Self {
         Self {
             input_gains: gains.inputs,
@@ -178,7 +176,7 @@ impl ChannelCorrection {
         }
     }
 
-    /// These gains with signed delays (M15).
+    /// Correction by these gains and signed delays (M15).
     pub fn of_leads(gains: Channels<f64>, leads: ChannelLeads) -> Self {
         let delays_s = leads.delays_s();
         Self {
@@ -226,17 +224,18 @@ impl ChannelCorrection {
         self.channels(|channel| self.delay_s(channel))
     }
 
-    /// What `of` says of each channel.
+    /// Calls `of` for each channel.
     pub fn channels<T>(&self, of: impl FnMut(Channel) -> T) -> Channels<T> {
         Channels::from_fn(self.input_gains.len(), self.output_gains.len(), of)
     }
 
-    /// The lead filter of a channel, where it has one (M15).
+    /// Lead filter of a channel, if it has one (M15).
     pub fn lead(&self, channel: Channel) -> Option<LeadFilter> {
         self.leads.as_ref()?.filters()[channel]
     }
 
-    /// The same without its lead filters: its gains and what is positive of its delays.
+    /// Returns the correction without its lead filters: its gains and the positive parts of its
+    /// delays.
     pub fn without_leads(self) -> Self {
         Self {
             leads: None,
@@ -244,14 +243,15 @@ impl ChannelCorrection {
         }
     }
 
-    /// What the correction multiplies a response by; `None` where its net gain is not positive (a schedule of `k` itself can give
-    /// that).
+    /// Factor that the correction applies to a response; `None` where its net gain is not positive
+    /// (possible in a schedule of `k` itself).
     pub fn on(&self, pair: Pair) -> Option<GainDelay> {
         let leads = Channel::of(pair).map(|channel| self.lead(channel));
         Some(self.without_leads_on(pair)?.led(leads))
     }
 
-    /// As [`ChannelCorrection::on`], without the lead filters: what is left to do where those have done their part.
+    /// Like [`ChannelCorrection::on`], without the lead filters: the remaining factor after the
+    /// filters are applied.
     pub fn without_leads_on(&self, pair: Pair) -> Option<GainDelay> {
         let gain = self.net_gain(pair);
         let delay_s = self.output_delays_s[pair.output] + self.input_delays_s[pair.input];

@@ -1,4 +1,5 @@
-//! The channels that held products tie together, and what the held entries can be held at (stage 1).
+//! Channels tied together by constrained products, and the feasible targets of the constrained
+//! entries (stage 1).
 
 use gdcm_model::dataset::Pair;
 
@@ -6,24 +7,22 @@ use super::problem::Problem;
 use crate::correction::branch_and_bound::objective::Objective;
 use crate::correction::branch_and_bound::term::{Function, Rounded, Term};
 
-/// What is asked of the channels: sums of coordinates over the held entries, in a box.
+/// Constraints on the channels: sums of coordinates over the constrained entries, in a box.
 ///
-/// The channels are *nodes* here, the inputs first: an input's value is its coordinate, an output's is minus its coordinate, so that a
-/// held entry asks for a difference of two nodes.
+/// The channels are *nodes* here, the inputs first: an input's value is its coordinate, an output's
+/// is minus its coordinate, so that a constrained entry prescribes a difference of two nodes.
 #[derive(Clone, Debug)]
 pub(crate) struct Held {
-    /// Number of output channels.
     pub(crate) outputs: usize,
-    /// Number of input channels.
     pub(crate) inputs: usize,
-    /// Each held entry with the sum of its delta.
+    /// Each constrained entry with its delta as a sum of coordinates.
     pub(crate) entries: Vec<(Pair, f64)>,
     /// Least and greatest value of every channel.
     pub(crate) range: (f64, f64),
 }
 
 impl Held {
-    /// What a problem asks.
+    /// Constraints of `problem`.
     pub(crate) fn of(problem: &Problem) -> Self {
         let coordinate = problem.coordinate();
         Self {
@@ -42,7 +41,7 @@ impl Held {
         self.inputs + self.outputs
     }
 
-    /// The input's and the output's node of an entry.
+    /// Nodes of an entry's input and output.
     pub(crate) fn nodes_of(&self, pair: Pair) -> (usize, usize) {
         (pair.input, self.inputs + pair.output)
     }
@@ -58,18 +57,18 @@ impl Held {
     }
 }
 
-/// Where a node sits in its component.
+/// Position of a node in its component.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
-    /// Index of the component.
     pub(crate) component: usize,
-    /// Value of the node where the component's scale is 0. Its rounding is that of the held sums on the way from the component's first
-    /// node, and of the ends of the component's scale.
+    /// Value of the node where the component's scale is 0. Its rounding is the rounding of the
+    /// constrained sums on the way from the component's first node, and of the ends of the
+    /// component's scale.
     pub(crate) offset: Rounded,
 }
 
 impl Placement {
-    /// Where the node at the other end of a held entry sits, `by` away.
+    /// Position of the node at the other end of a constrained entry, at the distance `by`.
     fn across(self, by: f64) -> Self {
         // A logarithm, or a time in another unit, is rounded once.
         let mut offset = Rounded {
@@ -81,30 +80,32 @@ impl Placement {
     }
 }
 
-/// The connected components of the bipartite graph of the held entries, one free scale each (M8, structure).
+/// Connected components of the bipartite graph of the constrained entries, one free scale each (M8,
+/// structure).
 ///
-/// With the scale `s` of its component a node has the value `offset + s`, so that what a held entry asks for does not depend on `s`: in
-/// logarithms of gains, or in delays. A channel in no held entry is a component of its own.
+/// With the scale `s` of its component a node has the value `offset + s`, so that the sum of a
+/// constrained entry does not depend on `s`: in logarithms of gains, or in delays. A channel
+/// without a constrained entry is a component of its own.
 #[derive(Clone, Debug)]
 pub(crate) struct Components {
     /// The inputs, then the outputs.
     nodes: Vec<Placement>,
-    /// Number of inputs.
     inputs: usize,
     /// Least scale of each component that keeps its channels inside the box.
     pub(crate) lower: Vec<f64>,
     /// Greatest scale of each component that keeps its channels inside the box.
     pub(crate) upper: Vec<f64>,
-    /// How far each component is from being possible: the worst disagreement of a loop, or what the box lacks.
+    /// Infeasibility of each component: the worst disagreement of a loop, or the width that the box
+    /// lacks.
     strain: Vec<f64>,
 }
 
-/// Strain below which a component counts as possible as asked: well below the 1e-8 of M8, and its product's error stays
-/// below 1e-9.
+/// Strain below which a component counts as feasible: well below the 1e-8 of M8, so that the error
+/// of its product stays below 1e-9.
 pub(crate) const STRAIN: f64 = 1e-9;
 
 impl Components {
-    /// The components of the held entries.
+    /// Components of the constrained entries.
     pub(crate) fn new(held: &Held) -> Self {
         let mut placed: Vec<Option<Placement>> = vec![None; held.nodes()];
         let mut count = 0;
@@ -141,17 +142,17 @@ impl Components {
         self.lower.len()
     }
 
-    /// The nodes of the inputs, and those of the outputs.
+    /// Nodes of the inputs and of the outputs.
     pub(crate) fn sides(&self) -> (&[Placement], &[Placement]) {
         self.nodes.split_at(self.inputs)
     }
 
-    /// The sum that two channels of one component have at every scale.
+    /// Sum of two channels of one component, the same at every scale.
     pub(crate) fn sum(&self, pair: Pair) -> f64 {
         self.nodes[pair.input].offset.value - self.nodes[self.inputs + pair.output].offset.value
     }
 
-    /// Whether everything can be held as asked.
+    /// Whether every entry can be constrained to its delta.
     pub(crate) fn are_possible(&self) -> bool {
         self.strain.iter().all(|strain| *strain <= STRAIN)
     }
@@ -160,16 +161,18 @@ impl Components {
     pub(crate) fn channels(&self, scales: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let value = |node: &Placement| node.offset.value + scales[node.component];
         let (inputs, outputs) = self.sides();
-        // From zero, so that no zero is a negative one.
+        // Subtracted from zero, so that no zero is negative.
         (
             inputs.iter().map(value).collect(),
             outputs.iter().map(|node| 0.0 - value(node)).collect(),
         )
     }
 
-    /// Moves every scale's zero to the middle of its interval: no channel is then far outside the box at scale 0.
+    /// Moves every scale's zero to the middle of its interval, so that no channel is far outside
+    /// the box at scale 0.
     fn centre(&mut self, (low, high): (f64, f64)) {
-        // A scale at its end differs from the exact one by the rounding of `low` or `high`, and of what is taken from it.
+        // A scale at its end differs from the exact value by the rounding of `low` or `high`, and
+        // of the offset subtracted from it.
         let error = 2.0 * f64::EPSILON * low.abs().max(high.abs());
         for node in &mut self.nodes {
             let middle = 0.5 * (self.lower[node.component] + self.upper[node.component]);
@@ -180,7 +183,7 @@ impl Components {
         }
     }
 
-    /// The interval of each scale; where the box leaves none, the middle of what is lacking.
+    /// Sets the interval of each scale; an empty interval is replaced by its midpoint.
     fn close_box(&mut self, held: &Held) {
         self.lower.fill(f64::NEG_INFINITY);
         self.upper.fill(f64::INFINITY);
@@ -202,7 +205,7 @@ impl Components {
     }
 }
 
-/// Places everything that held entries tie to what is placed, along a spanning tree.
+/// Places every node that constrained entries tie to a placed node, along a spanning tree.
 fn spread(placed: &mut [Option<Placement>], held: &Held) {
     let mut grown = true;
     while grown {
@@ -219,21 +222,23 @@ fn spread(placed: &mut [Option<Placement>], held: &Held) {
     }
 }
 
-/// The sums nearest to those asked for that the box and the loops allow.
+/// Feasible sums nearest to the prescribed sums, subject to the box and the loops.
 #[derive(Clone, Debug)]
 pub(crate) struct Reached {
-    /// Each held entry with its target, in the order asked.
+    /// Each constrained entry with its target, in the order of `entries`.
     pub(crate) targets: Vec<(Pair, f64)>,
-    /// Components of the held entries at their targets.
+    /// Components of the constrained entries at their targets.
     pub(crate) components: Components,
-    /// A point of the box that reaches the targets, a value for each node. Only where something is out of reach.
+    /// A point of the box that reaches the targets, a value for each node; only where an entry is
+    /// infeasible.
     pub(crate) point: Option<Vec<f64>>,
 }
 
-/// Finds the targets: `min sum (x_o + y_i - delta)^2` over the held entries, in the box (M8, reachability; M9).
+/// Finds the targets: `min sum (x_o + y_i - delta)^2` over the constrained entries, in the box (M8,
+/// reachability; M9).
 ///
-/// Components that are possible as asked keep what is asked, exactly. `minimise` returns the minimum of a sum of squares over
-/// a box; it is only called where something is out of reach.
+/// Feasible components keep the prescribed sums exactly. `minimise` returns the minimum of a sum of
+/// squares over a box; it is only called where an entry is infeasible.
 pub(crate) fn reach<E>(
     held: &Held,
     minimise: impl FnOnce(&Objective) -> Result<Vec<f64>, E>,

@@ -1,4 +1,5 @@
-//! Why held entries cannot all be held: which of them and which bounds are in each other's way, and what would let all be held.
+//! Conflicts: constrained entries and bounds that exclude one another, and changes that make all
+//! constraints feasible.
 
 use std::collections::{BTreeSet, VecDeque};
 
@@ -10,64 +11,66 @@ use super::components::{Components, Held, Placement, Reached, STRAIN};
 use super::problem::{Bounds, Problem, Quantity, three_digits};
 use crate::correction::branch_and_bound::search::{Effort, SearchStopped};
 
-/// A smallest set of held entries and bounds that cannot hold together: without any one of them the rest can.
+/// A minimal infeasible set of constrained entries and bounds: without any one of them the rest is
+/// feasible.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conflict {
-    /// What is held: gains, or delays or signed delays in seconds.
+    /// Constrained quantity: gains, or delays or signed delays in seconds.
     pub quantity: Quantity,
-    /// The held entries: freeing any one of them resolves the conflict.
+    /// The constrained entries: releasing any one of them resolves the conflict.
     pub entries: Vec<Pair>,
-    /// The bounds as they are.
+    /// The present bounds.
     pub bounds: Bounds,
-    /// What is in the way.
     pub kind: ConflictKind,
 }
 
-/// How held entries and bounds exclude one another. Bounds that would do are rounded to three digits so that they still do.
+/// Kind of conflict between constrained entries and bounds. Suggested bounds are rounded to three
+/// digits so that they still suffice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ConflictKind {
-    /// The entries fix what two channels have together above what the upper bound allows both.
+    /// The entries prescribe a net value of two channels above the value that the upper bound
+    /// allows.
     AboveUpper {
-        /// The two channels.
         channels: (Channel, Channel),
-        /// The product of gains, or the sum of delays, that the entries ask for.
+        /// Product of gains, or sum of delays, prescribed by the entries.
         asked: f64,
-        /// Least upper bound that would do.
+        /// Least sufficient upper bound.
         upper: f64,
     },
-    /// The entries fix what two channels have together below what the lower bound allows both: of delays, phase lead.
+    /// The entries prescribe a net value of two channels below the value that the lower bound
+    /// allows: for delays, phase lead.
     BelowLower {
-        /// The two channels.
         channels: (Channel, Channel),
-        /// The product of gains, or the (negative) sum of delays, that the entries ask for.
+        /// Product of gains, or (negative) sum of delays, prescribed by the entries.
         asked: f64,
-        /// Greatest lower bound that would do; none for delays.
+        /// Greatest sufficient lower bound; `None` for delays.
         lower: Option<f64>,
     },
-    /// The entries fix the ratio of two gains, or the difference of two delays, above what the bounds allow.
+    /// The entries prescribe a ratio of two gains, or a difference of two delays, above the range
+    /// that the bounds allow.
     TooFarApart {
         /// The channel with the greater value.
         greater: Channel,
         /// The channel with the lesser value.
         lesser: Channel,
-        /// The ratio or the difference that the entries ask for.
+        /// Ratio or difference prescribed by the entries.
         asked: f64,
-        /// Least upper bound that would do with the lower bound as it is.
+        /// Least sufficient upper bound with the present lower bound.
         upper: f64,
-        /// Greatest lower bound that would do with the upper bound as it is; none for delays.
+        /// Greatest sufficient lower bound with the present upper bound; `None` for delays.
         lower: Option<f64>,
     },
-    /// The entries form a loop, and what they ask for disagrees: no bound helps.
+    /// The entries form a loop with contradictory targets: no bound helps.
     Loop {
-        /// By how many dB the product round the loop misses 1, or by how many seconds the sum misses 0.
+        /// Deviation of the loop's product from 1 in dB, or of its sum from 0 in seconds.
         mismatch: f64,
     },
-    /// The entries cannot all be held; rounding hides which of them are to blame.
+    /// The entries are infeasible together; rounding hides which of them are the cause.
     Unclear,
 }
 
 impl Conflict {
-    /// The channels whose bounds are in the way; none of a loop.
+    /// Channels whose bounds take part in the conflict; none for a loop.
     pub fn channels(&self) -> Vec<Channel> {
         match self.kind {
             ConflictKind::AboveUpper { channels, .. }
@@ -81,7 +84,7 @@ impl Conflict {
         }
     }
 
-    /// Whether a lone entry asks for phase lead, which says everything.
+    /// Whether the conflict is a single entry that asks for phase lead.
     pub fn is_lone_lead(&self) -> bool {
         self.quantity == Quantity::Delay
             && self.entries.len() == 1
@@ -93,7 +96,7 @@ impl Conflict {
         matches!(self.kind, ConflictKind::Loop { mismatch } if mismatch.abs() <= tolerance)
     }
 
-    /// What the entries of a loop agree or disagree in, and by how much, in words.
+    /// Describes the sense and the size of a loop's mismatch.
     fn mismatch_words(&self, mismatch: f64) -> (&'static str, String) {
         if self.quantity.is_gain() {
             ("ratios", format!("{} dB", telling(mismatch.abs(), 1)))
@@ -105,7 +108,7 @@ impl Conflict {
         }
     }
 
-    /// A loop that agrees within the tolerance, in words.
+    /// Describes a loop that agrees within the tolerance.
     pub fn agreement_words(&self, inputs: &[String], outputs: &[String]) -> String {
         let ConflictKind::Loop { mismatch } = self.kind else {
             return String::new();
@@ -117,7 +120,7 @@ impl Conflict {
         )
     }
 
-    /// The conflict and what would resolve it, in words.
+    /// Describes the conflict and its possible resolutions.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let entries = pair_names(&self.entries, inputs, outputs);
         let (cannot, release) = match self.entries.len() {
@@ -142,7 +145,8 @@ impl Conflict {
         }
     }
 
-    /// Which bounds are in the way and what they would have to be, up to the word before what else would do.
+    /// Describes the limiting bounds and their sufficient values, up to the word before the
+    /// alternatives.
     fn bounds_words(&self, inputs: &[String], outputs: &[String]) -> String {
         const HELP: &str = "a larger R_max or a smaller n gives more";
         let name = |channel: Channel| {
@@ -294,7 +298,8 @@ impl Conflict {
     }
 }
 
-/// One held entry that stage 1 had to pull: it asks that `s_to - s_from` be at least `weight`, and gets less.
+/// A constrained entry that stage 1 missed: it requires `s_to - s_from` to be at least `weight`,
+/// and gets less.
 #[derive(Clone, Copy)]
 struct Pull {
     from: usize,
@@ -304,7 +309,7 @@ struct Pull {
 }
 
 impl Pull {
-    /// The same entry asked the other way round: it is an equation.
+    /// The same entry in the opposite direction: the constraint is an equality.
     fn reversed(&self) -> Self {
         Self {
             from: self.to,
@@ -315,12 +320,14 @@ impl Pull {
     }
 }
 
-/// The smallest clash behind each entry that stage 1 missed by more than `tolerance`, with repeats.
+/// Finds the smallest conflict behind each entry that stage 1 missed by more than `tolerance`, with
+/// duplicates.
 ///
-/// Stage 1 is a least squares problem, so the misses are a flow: what pulls at a channel is passed on by another missed entry or
-/// is stopped by an active bound. Every path of the flow from bound to bound, and every loop of it, is a set that
-/// cannot hold, and every missed entry is on one (Farkas). Where a part of that set cannot hold by itself, that part is the
-/// clash, and the entry's own miss is the compromise with it.
+/// Stage 1 is a least squares problem, so the misses are a flow: the pull on a channel is passed on
+/// by another missed entry or is stopped by an active bound. Every path of the flow from bound to
+/// bound, and every loop of it, is an infeasible set, and every missed entry is on one (Farkas).
+/// Where a part of that set is infeasible by itself, that part is the conflict, and the entry's own
+/// miss is the compromise with it.
 pub(crate) fn clashes(
     problem: &Problem,
     held: &Held,
@@ -358,7 +365,7 @@ impl<'a> Flow<'a> {
         for (&(pair, delta), (_, target)) in held.entries.iter().zip(&reached.targets) {
             let (input, output) = held.nodes_of(pair);
             let missing = delta - target;
-            // Below this a miss is the rounding of stage 1.
+            // A miss below this is the rounding of stage 1.
             if missing.abs() <= 1e-11 * (1.0 + delta.abs()) {
                 continue;
             }
@@ -391,7 +398,8 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// The shorter of the shortest loop and the shortest path from bound to bound through `pull`; a bound counts like an entry.
+    /// Returns the shorter of the shortest loop and the shortest path from bound to bound through
+    /// `pull`; a bound counts like an entry.
     fn smallest_through(&self, pull: &Pull) -> Option<Conflict> {
         let around = self.shortest(pull.to, |node| node == pull.from, false);
         let onward = self.shortest(pull.to, |node| self.at_upper[node], false);
@@ -433,8 +441,8 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// The shortest run of the pulls, less than all of them, that the bounds of its two ends do not allow. Runs may begin at the
-    /// first `round` pulls and go on past the last into the first ones again.
+    /// Returns the shortest proper run of the pulls that the bounds of its two ends do not allow.
+    /// Runs may begin at the first `round` pulls and continue past the last into the first again.
     fn smallest_part(&self, pulls: &[Pull], round: usize) -> Option<Conflict> {
         let count = pulls.len();
         (1..count).find_map(|length| {
@@ -452,7 +460,8 @@ impl<'a> Flow<'a> {
         })
     }
 
-    /// Whether the run needs more than there is between the least value of its first node and the greatest of its last.
+    /// Whether the run needs more than the difference between the least value of its first node and
+    /// the greatest value of its last.
     fn is_impossible(&self, run: &[Pull]) -> bool {
         let (Some(first), Some(last)) = (run.first(), run.last()) else {
             return false;
@@ -461,7 +470,7 @@ impl<'a> Flow<'a> {
         needed - (self.held.ends(last.to).1 - self.held.ends(first.from).0) > STRAIN
     }
 
-    /// The clash of a path from a node at its least value to one at its greatest.
+    /// Conflict of a path from a node at its least value to a node at its greatest.
     fn clash(&self, path: &[Pull]) -> Conflict {
         let needed: f64 = path.iter().map(|pull| pull.weight).sum();
         let start = path.first().map_or(0, |pull| pull.from);
@@ -521,7 +530,8 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Fewest pulls from `start` along (or against) their direction to a node that `ends`, in the order walked.
+    /// Returns the shortest sequence of pulls from `start` along (or against) their direction to a
+    /// node that satisfies `ends`, in the order walked.
     fn shortest(
         &self,
         start: usize,
@@ -558,21 +568,24 @@ impl<'a> Flow<'a> {
     }
 }
 
-/// Single changes after which every held entry can be held at its delta; empty where it takes several.
+/// Single changes that each make all constrained entries feasible at their delta; empty where
+/// several changes are needed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Remedy {
-    /// What is held: gains, or delays in seconds.
+    /// Constrained quantity: gains, or delays in seconds.
     pub quantity: Quantity,
-    /// Least upper bound that does, the lower one as it is, rounded up to three digits.
+    /// Least sufficient upper bound with the present lower bound, rounded up to three digits.
     pub upper: Option<f64>,
-    /// Greatest lower bound that does, the upper one as it is, rounded down to three digits; none for delays.
+    /// Greatest sufficient lower bound with the present upper bound, rounded down to three digits;
+    /// `None` for delays.
     pub lower: Option<f64>,
-    /// The held entries of which each, freed alone, does.
+    /// The constrained entries of which each is sufficient when released alone.
     pub free: Vec<Pair>,
 }
 
 impl Remedy {
-    /// The remedy for `held`, the held entries of `problem` that have these conflicts; none where there is no conflict.
+    /// Finds the remedy for `held`, the constrained entries of `problem` with these conflicts;
+    /// `None` where there is no conflict.
     pub(crate) fn new(
         problem: &Problem,
         held: &Held,
@@ -590,7 +603,7 @@ impl Remedy {
             .collect();
         let mut free = Vec::new();
         for pair in suspects {
-            // Each channel is placed by a walk along the held entries.
+            // Each channel is placed by a walk along the constrained entries.
             effort.spend((held.nodes() * held.entries.len()) as u64 / 8);
             effort.check()?;
             let others = held
@@ -609,7 +622,7 @@ impl Remedy {
             }
         }
         let [lower, upper] = range_that_does(held);
-        // A bound that is not the obstacle stays as it is.
+        // A bound that is not the obstacle stays unchanged.
         let upper = upper.map(|upper| {
             three_digits(coordinate.value(upper), f64::ceil).max(problem.bounds.upper)
         });
@@ -624,7 +637,7 @@ impl Remedy {
         }))
     }
 
-    /// The remedies in words; empty where there is none.
+    /// Describes the remedies; empty where there is none.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let unit = if self.quantity.is_gain() { "" } else { " s" };
         let upper = self
@@ -646,8 +659,8 @@ impl Remedy {
     }
 }
 
-/// The greatest lower and the least upper end of every channel's range that would do, each with the other as it is, in coordinates; none
-/// where a loop of held entries does not lead back to where it began.
+/// Greatest lower and least upper end of the channels' range that suffice, each with the other end
+/// unchanged, in coordinates; `None` where a loop of constrained entries does not close.
 fn range_that_does(held: &Held) -> [Option<f64>; 2] {
     let (low, high) = held.range;
     let components = Components::new(held);
@@ -663,7 +676,7 @@ fn range_that_does(held: &Held) -> [Option<f64>; 2] {
     let mut lowest = f64::INFINITY;
     let mut highest = f64::NEG_INFINITY;
     for component in 0..components.count() {
-        // A component without inputs or outputs is a single channel, which is always possible.
+        // A component without inputs or outputs is a single channel, which is always feasible.
         let ends = ends_of(inputs, component).zip(ends_of(outputs, component));
         let Some(((least_input, most_input), (least_output, most_output))) = ends else {
             continue;

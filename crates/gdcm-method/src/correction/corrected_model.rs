@@ -1,4 +1,5 @@
-//! A corrected model as matrices (M10), its delays by rational functions where it must have states.
+//! A corrected model as matrices (M10), with delays replaced by rational functions where states are
+//! required.
 
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
 
@@ -10,25 +11,29 @@ use gdcm_model::units::number;
 
 use super::channels::{Channel, ChannelCorrection, Channels};
 
-/// How far a delay may lie from a whole number of samples: parts of one. Delays that were computed are rounded.
+/// Tolerance, in samples, of a delay from a whole number of samples. Computed delays are rounded.
 const SAMPLE_TOLERANCE: f64 = 1e-6;
 
-/// A delay \[s\] below which there is none: what is left of rounding would make states of enormous entries. At 12 rad/s it turns the
-/// phase by less than a millionth of a degree.
+/// Delay \[s\] below which a delay counts as zero: rounding residues would give states with
+/// enormous entries. At 12 rad/s it changes the phase by less than a millionth of a degree.
 const LEAST_DELAY_S: f64 = 1e-9;
 
-/// `M_O H M_I` without delays: those of the correction and of the model itself have become states (M10, M2a).
+/// `M_O H M_I` without delays: the delays of the correction and of the model itself have become
+/// states (M10, M2a).
 ///
-/// In continuous time each delayed channel has the states of a Pade approximant, in discrete time one for each sample, exactly.
-/// Gains are exact, and so in continuous time are lead filters (M15.3); in discrete time these follow Tustin's rule. A channel without
-/// either adds no state. States of the inputs come first, then the model's, then the outputs'.
+/// In continuous time each delayed channel has the states of a Pade approximant, in discrete time
+/// one state for each sample, exactly. Gains are exact, and so are lead filters in continuous time
+/// (M15.3); in discrete time these follow Tustin's rule. A channel without delay and lead adds no
+/// state. States of the inputs come first, then the model's, then the outputs'.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectedModel {
     /// Four matrices; no delays.
     pub model: StateSpace,
-    /// How many states hold the delay of each channel: those of the inputs are before the model's own, of the outputs after them.
+    /// Number of delay states of each channel: those of the inputs precede the model's own, those
+    /// of the outputs follow them.
     pub delay_states: Channels<usize>,
-    /// How many states the lead filter of each channel has: of the inputs before all others, of the outputs after all others.
+    /// Number of lead filter states of each channel: those of the inputs precede all others, those
+    /// of the outputs follow all others.
     pub lead_states: Channels<usize>,
     leads: Channels<Option<LeadFilter>>,
     sample_time_s: Option<f64>,
@@ -36,13 +41,12 @@ pub struct CorrectedModel {
     pade: Pade,
 }
 
-/// Why a corrected model cannot be written as matrices.
+/// Reason why a corrected model has no matrices.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", self.words(&[], &[]))]
 pub enum CorrectedModelError {
-    /// A delay of a discrete-time model takes parts of a sample.
+    /// A delay of a discrete-time model is not a whole number of samples.
     PartOfSample {
-        /// The channel.
         channel: Channel,
         /// Its delay \[s\].
         delay_s: f64,
@@ -51,14 +55,14 @@ pub enum CorrectedModelError {
     },
     /// A lead filter is too fast for the sample time.
     SlowSamples {
-        /// Its sample time \[s\].
+        /// Sample time \[s\].
         sample_time_s: f64,
-        /// The longest sample time that does \[s\].
+        /// Longest admissible sample time \[s\].
         longest_s: f64,
     },
-    /// The delays would become more states than a model may have.
+    /// The delays need more states than a model may have.
     TooManyStates {
-        /// How many.
+        /// Number of states needed.
         states: usize,
     },
     /// A product is not finite.
@@ -66,7 +70,7 @@ pub enum CorrectedModelError {
 }
 
 impl CorrectedModelError {
-    /// The reason in words; channels have these names.
+    /// Describes the error with these channel names.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         match self {
             Self::PartOfSample {
@@ -77,7 +81,7 @@ impl CorrectedModelError {
                 "the delay of {}, {} s, is {} samples of {} s; in discrete time only whole samples are exact",
                 channel.name(inputs, outputs),
                 number(*delay_s),
-                // Digits enough to tell it from a whole number, none of rounding.
+                // Enough digits to distinguish it from a whole number, none from rounding.
                 number((delay_s / sample_time_s * 1e6).round() / 1e6),
                 number(*sample_time_s)
             ),
@@ -100,11 +104,11 @@ impl CorrectedModelError {
 }
 
 impl CorrectedModel {
-    /// The model under a correction, delays of continuous time by `pade`.
+    /// Applies a correction to the model, with continuous-time delays approximated by `pade`.
     ///
     /// # Errors
-    /// [`CorrectedModelError`] where a discrete-time delay is no whole number of samples, or states or numbers become too many or
-    /// too large.
+    /// [`CorrectedModelError`] where a discrete-time delay is not a whole number of samples, or
+    /// states or numbers become too many or too large.
     pub fn of(
         model: &StateSpace,
         correction: &ChannelCorrection,
@@ -156,11 +160,12 @@ impl CorrectedModel {
         })
     }
 
-    /// The greatest phase error \[rad\] of its responses at `omega` \[rad/s\]: what the approximated delays lag too little, or what
-    /// Tustin's rule takes from the lead filters of a discrete-time model.
+    /// Greatest phase error \[rad\] of its responses at `omega` \[rad/s\]: the missing lag of the
+    /// approximated delays, or the phase that Tustin's rule removes from the lead filters of a
+    /// discrete-time model.
     pub fn phase_error(&self, omega: f64) -> f64 {
         if let Some(sample_time_s) = self.sample_time_s {
-            // What the rule makes of omega.
+            // Frequency warped by Tustin's rule.
             let warped = (0.5 * omega * sample_time_s).tan() * 2.0 / sample_time_s;
             let error = |filter: &LeadFilter| (filter.phase(warped) - filter.phase(omega)).abs();
             let greatest = |filters: &[Option<LeadFilter>]| {
@@ -168,14 +173,15 @@ impl CorrectedModel {
             };
             return greatest(&self.leads.inputs) + greatest(&self.leads.outputs);
         }
-        // The error grows with the delay, and that of a response is the sum of its two channels'.
+        // The error grows with the delay, and the error of a response is the sum over its two
+        // channels.
         let longest = |delays_s: &[f64]| delays_s.iter().copied().fold(0.0, f64::max);
         let error = |delays_s: &[f64]| self.pade.phase_error(omega * longest(delays_s));
         error(&self.delays_s.inputs) + error(&self.delays_s.outputs)
     }
 }
 
-/// The delay of a channel \[s\]: the correction's and the model's own.
+/// Delay of a channel \[s\]: the correction's plus the model's own.
 fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) -> f64 {
     let (own_s, at) = match channel {
         Channel::Input(at) => (&timing.input_delays_s, at),
@@ -194,7 +200,7 @@ fn delay_s(channel: Channel, correction: &ChannelCorrection, timing: &Timing) ->
     }
 }
 
-/// The delay of a channel as states.
+/// State-space model of a channel's delay.
 fn delay_model(
     channel: Channel,
     delay_s: f64,
@@ -216,7 +222,7 @@ fn delay_model(
             sample_time_s,
         });
     }
-    // Refused before it takes memory.
+    // Rejected before memory is allocated.
     if samples > MOST_STATES as f64 {
         return Err(CorrectedModelError::TooManyStates {
             states: samples as usize,
@@ -225,7 +231,7 @@ fn delay_model(
     Ok(ChannelModel::samples(samples as usize))
 }
 
-/// The lead filter of a channel as states.
+/// State-space model of a channel's lead filter.
 fn lead_model(
     filter: Option<LeadFilter>,
     sample_time_s: Option<f64>,
@@ -251,7 +257,7 @@ struct Blocks {
 }
 
 impl Blocks {
-    /// A model between the gains of its channels, without any delay.
+    /// The model with the channels' gains, without any delay.
     fn of_gained(model: &StateSpace, correction: &ChannelCorrection) -> Self {
         let mut blocks = Self {
             a: model.a().clone(),
@@ -270,7 +276,7 @@ impl Blocks {
         blocks
     }
 
-    /// Channels beside one another, each with its own delay.
+    /// Parallel channels as one block-diagonal system, each with its own delay.
     fn block_diagonal(channels: &[ChannelModel]) -> Self {
         let states = channels.iter().map(ChannelModel::order).sum();
         let count = channels.len();
@@ -301,7 +307,8 @@ impl Blocks {
         blocks
     }
 
-    /// The series connection: what comes out of these goes into `next`. These states come first.
+    /// Series connection: the outputs of this system drive `next`. The states of this system come
+    /// first.
     fn then(&self, next: &Self) -> Self {
         let first = self.a.nrows();
         let second = next.a.nrows();
@@ -327,16 +334,18 @@ impl Blocks {
     }
 }
 
-/// Highest order of an approximation that is offered.
+/// Highest order of approximation offered.
 pub const HIGHEST_PADE_ORDER: usize = 8;
 
-/// The Pade approximant `[N/N]` of `e^(-tau s)`: of all rational functions of this order the one that agrees in most derivatives at
-/// `s = 0`. Its magnitude is 1 at every frequency; it is the phase that it misses.
+/// Pade approximant `[N/N]` of `e^(-tau s)`: among all rational functions of this order it agrees
+/// in the most derivatives at `s = 0`. Its magnitude is 1 at every frequency; its error is in the
+/// phase only.
 ///
-/// With `z = tau s / 2` it is `(1 - t) / (1 + t)`, where `t` is the N-th convergent of Lambert's continued fraction
-/// `tanh z = z / (1 + z^2 / (3 + z^2 / (5 + ...)))`. The fraction, read as a ladder of integrators, is a state-space model whose
-/// Gramians of controllability and observability are both the identity, whatever the order and the delay: no order of magnitude
-/// parts its entries from one another.
+/// With `z = tau s / 2` it is `(1 - t) / (1 + t)`, where `t` is the N-th convergent of Lambert's
+/// continued fraction `tanh z = z / (1 + z^2 / (3 + z^2 / (5 + ...)))`. The fraction, read as a
+/// ladder of integrators, is a state-space model whose controllability and observability Gramians
+/// are both the identity, whatever the order and the delay, so its entries are of similar
+/// magnitude.
 ///
 /// Source: NIST Digital Library of Mathematical Functions, 4.39.1 (Lambert's fraction).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -345,30 +354,30 @@ pub struct Pade {
 }
 
 impl Default for Pade {
-    /// Of second order: at `omega tau = 1` it misses less than a tenth of a degree.
+    /// Second order: at `omega tau = 1` the phase error is less than a tenth of a degree.
     fn default() -> Self {
         Self { order: 2 }
     }
 }
 
 impl Pade {
-    /// The approximant of this order, where that is from 1 to [`HIGHEST_PADE_ORDER`].
+    /// Returns the approximant of this order, if it is from 1 to [`HIGHEST_PADE_ORDER`].
     pub fn new(order: usize) -> Option<Self> {
         (1..=HIGHEST_PADE_ORDER)
             .contains(&order)
             .then_some(Self { order })
     }
 
-    /// Its order `N`, the number of its states.
+    /// Order `N`, the number of states.
     pub fn order(self) -> usize {
         self.order
     }
 
-    /// The approximant of a positive delay \[s\] as states.
+    /// Returns the state-space model of the approximant of a positive delay \[s\].
     ///
-    /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)` and `S` of 1 above and -1 below the diagonal. With
-    /// `R = S + e_1 e_1'` and `K = L^(-1/2) R L^(-1/2)` this gives `A = -(2/tau) K^-1`, `B = 2/sqrt(tau) K^-1 e_1`,
-    /// `C = 2/sqrt(tau) e_1' K^-1`, `D = (-1)^N`.
+    /// The ladder is `t = e_1' (L/z + S)^-1 e_1` with `L = diag(1, 3, 5, ...)` and `S` with 1 above
+    /// and -1 below the diagonal. With `R = S + e_1 e_1'` and `K = L^(-1/2) R L^(-1/2)` this gives
+    /// `A = -(2/tau) K^-1`, `B = 2/sqrt(tau) K^-1 e_1`, `C = 2/sqrt(tau) e_1' K^-1`, `D = (-1)^N`.
     pub fn model(self, delay_s: f64) -> ChannelModel {
         let root = |place: usize| ((2 * place + 1) as f64).sqrt();
         let inverse =
@@ -388,9 +397,9 @@ impl Pade {
         }
     }
 
-    /// An entry of `R^-1`, which is 1, 0 or -1: R is solved from its ends inwards.
+    /// Entry of `R^-1`, which is 1, 0 or -1: R is solved from its ends inwards.
     fn ladder_inverse(self, row: usize, column: usize) -> f64 {
-        // Whether a place, counted from 1, is even or odd as the order is.
+        // Whether a place, counted from 1, has the parity of the order.
         let is_of_order = |place: usize| (place + 1) % 2 == self.order % 2;
         match (is_of_order(row), is_of_order(column)) {
             (true, true) => 1.0,
@@ -400,10 +409,12 @@ impl Pade {
         }
     }
 
-    /// By how much \[rad\] the approximant lags less than the delay, at `angle = omega tau`: `angle - 2 arg theta_N(j angle / 2)`.
+    /// Missing lag \[rad\] of the approximant at `angle = omega tau`: `angle - 2 arg theta_N(j
+    /// angle / 2)`.
     ///
-    /// `theta_n = (2n - 1) theta_(n-1) + z^2 theta_(n-2)`, the reverse Bessel polynomials, are its denominators. The ratio of two
-    /// that follow one another lies above the real axis, so that their angles add up without a turn too many.
+    /// The denominators are the reverse Bessel polynomials, `theta_n = (2n - 1) theta_(n-1) + z^2
+    /// theta_(n-2)`. The ratio of two consecutive polynomials lies above the real axis, so that
+    /// their angles add up without an extra turn.
     pub fn phase_error(self, angle: f64) -> f64 {
         let z = Complex::new(0.0, 0.5 * angle);
         let mut ratio = 1.0 + z;
@@ -416,7 +427,7 @@ impl Pade {
     }
 }
 
-/// A delay or a lead filter of one channel as a state-space model of one input and one output.
+/// A delay or a lead filter of one channel as a state-space model with one input and one output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelModel {
     /// System matrix, n x n.
@@ -425,12 +436,12 @@ pub struct ChannelModel {
     pub b: DVector<f64>,
     /// Output row, n values.
     pub c: RowDVector<f64>,
-    /// Feed-through.
     pub d: f64,
 }
 
 impl ChannelModel {
-    /// `z^-count`, exactly: `count` states, each of which holds the one before it for one sample. Of no sample it is `y = u`.
+    /// `z^-count`, exactly: `count` states, each of which delays the previous state by one sample.
+    /// With `count = 0` it is `y = u`.
     pub fn samples(count: usize) -> Self {
         Self {
             a: DMatrix::from_fn(count, count, |row, column| f64::from(row == column + 1)),
@@ -440,9 +451,10 @@ impl ChannelModel {
         }
     }
 
-    /// A lead filter in continuous time, exactly (M15.3): with `w1 = 1 / a`, `w2 = 1 / b` of second order `A = [0 1; -w2^2 -sqrt(2)
-    /// w2]`, `B = [0; 1]`, `C = [R (w1^2 - w2^2)  R sqrt(2) (w1 - w2)]`, `D = R`, of first order `A = -w2`, `B = 1`, `C = R (w1 -
-    /// w2)`, `D = R`.
+    /// State-space model of a lead filter in continuous time, exactly (M15.3). With `w1 = 1 / a`,
+    /// `w2 = 1 / b`, the second order has `A = [0 1; -w2^2 -sqrt(2) w2]`, `B = [0; 1]`, `C = [R
+    /// (w1^2 - w2^2)  R sqrt(2) (w1 - w2)]`, `D = R`; the first order has `A = -w2`, `B = 1`, `C =
+    /// R (w1 - w2)`, `D = R`.
     pub fn lead(filter: LeadFilter) -> Self {
         const ROOT: f64 = std::f64::consts::SQRT_2;
         let w1 = filter.zero_rad_s();
@@ -464,8 +476,10 @@ impl ChannelModel {
         }
     }
 
-    /// The lead filter in discrete time of this sample time \[s\], by Tustin's rule `s = 2 (z - 1) / (T (z + 1))`: with `M = (I - A
-    /// T/2)^-1` it is `M (I + A T/2)`, `T M B`, `C M`, `D + C M B T/2`. None where `T` puts a pole of the filter on that of the rule.
+    /// State-space model of the lead filter in discrete time with this sample time \[s\], by
+    /// Tustin's rule `s = 2 (z - 1) / (T (z + 1))`: with `M = (I - A T/2)^-1` it is `M (I + A
+    /// T/2)`, `T M B`, `C M`, `D + C M B T/2`. `None` where `T` puts a pole of the filter on the
+    /// pole of the rule.
     pub fn sampled_lead(filter: LeadFilter, sample_time_s: f64) -> Option<Self> {
         let Self { a, b, c, d } = Self::lead(filter);
         let one = DMatrix::identity(a.nrows(), a.nrows());
@@ -494,7 +508,7 @@ mod tests {
     use super::super::leads::{ChannelLeads, LeadDesign, LeadSettings};
     use super::*;
 
-    /// Two inputs, two outputs, three states; poles of 1 to 5 rad/s.
+    /// Two inputs, two outputs, three states; poles from 1 to 5 rad/s.
     fn plant() -> StateSpace {
         let a = DMatrix::from_row_slice(3, 3, &[-0.8, 2.0, 0.1, -1.5, -1.0, 0.3, 0.2, -0.4, -5.0]);
         let b = DMatrix::from_row_slice(3, 2, &[1.0, 0.2, 0.0, 1.0, 0.5, -0.3]);
@@ -518,7 +532,8 @@ mod tests {
         }
     }
 
-    /// The gain, the model's response and a factor for the delays of each channel, compared with the matrices.
+    /// Compares the matrices with the product of the gains, the model's response and a factor for
+    /// the delays of each channel.
     fn assert_response(
         corrected: &CorrectedModel,
         plant: &StateSpace,
@@ -554,7 +569,7 @@ mod tests {
             );
             assert_eq!(states, ([order, 0].as_slice(), [0, order].as_slice()));
             assert_eq!(corrected.model.order(), 3 + 2 * order);
-            // Of magnitude 1; its lag is that of the delay less the error.
+            // Magnitude 1; the lag is the delay's less the error.
             let delay = |omega: f64, delay_s: f64| {
                 let angle = omega * delay_s;
                 Complex::new(0.0, pade.phase_error(angle) - angle).exp()
@@ -636,7 +651,8 @@ mod tests {
         );
     }
 
-    /// The plant's correction with a lead of 30 ms on the first input and of 50 ms on the second output.
+    /// The plant's correction with a lead of 30 ms on the first input and 50 ms on the second
+    /// output.
     fn led(order: LeadOrder) -> ChannelCorrection {
         let grid = FrequencyGrid::logarithmic(Band::new(0.5, 12.0).unwrap(), 50);
         let design = LeadDesign::new(
@@ -715,7 +731,8 @@ mod tests {
         };
         let correction = led(LeadOrder::Second);
         let corrected = CorrectedModel::of(&sampled(0.01), &correction, Pade::default()).unwrap();
-        // 36 rad/s and a step of 10 ms: less than a quarter of a degree a channel at 12 rad/s.
+        // 36 rad/s and a step of 10 ms: less than a quarter of a degree for each channel at 12
+        // rad/s.
         assert!(
             (0.01..0.5).contains(&corrected.phase_error(12.0).to_degrees()),
             "{}",
@@ -728,7 +745,8 @@ mod tests {
         );
     }
 
-    /// The approximant by its polynomials: `P(-x) / P(x)`, `P(x) = sum of (2N - k)! / (k! (N - k)!) x^k`.
+    /// The approximant by its polynomials: `P(-x) / P(x)`, `P(x) = sum of (2N - k)! / (k! (N - k)!)
+    /// x^k`.
     fn by_polynomials(order: usize, x: Complex<f64>) -> Complex<f64> {
         let factorial = |n: usize| (1..=n).map(|k| k as f64).product::<f64>();
         let coefficient =
@@ -792,7 +810,7 @@ mod tests {
             let pade = Pade::new(order).unwrap();
             let mut followed = 0.0;
             let mut before = Complex::from(1.0);
-            // Steps far below a half turn, up to where the approximant has long stopped to lag.
+            // Steps far below half a turn, up to where the approximant has long stopped lagging.
             for step in 1..=4000 {
                 let angle = f64::from(step) * 0.01;
                 let error = by_polynomials(order, Complex::new(0.0, angle))

@@ -1,5 +1,5 @@
-//! Delta gain and delta delay: what one gain and one delay of a response would have to be, eq. (5), (9); and the bounds that their
-//! spread over the band gives to the channels (M7).
+//! Delta gain and delta delay, the single gain and delay that a response needs, eq. (5), (9); and
+//! the channel bounds from their spread over the band (M7).
 
 use serde::{Deserialize, Serialize};
 
@@ -11,14 +11,14 @@ use gdcm_model::units::db_to_ratio;
 use super::GainBounds;
 use crate::fidelity::{CoherenceWeights, Mismatch};
 
-/// Which models G is taken from; D is always that of the representatives.
+/// Source models of G; D always comes from the representatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum GainSource {
     /// The two representatives (the paper).
     #[default]
     #[serde(rename = "representatives")]
     Representatives,
-    /// Every pair of a kept physics and a kept identified model: `G = exp(mean of ln G)`.
+    /// Every pair of a kept physics model and a kept identified model: `G = exp(mean of ln G)`.
     #[serde(rename = "mean")]
     MeanOfPairs,
 }
@@ -33,22 +33,25 @@ impl GainSource {
     }
 }
 
-/// `G = median |H_ref| / |H_sim|` and `D = median Delta phi(H_sim, H_ref) / omega` of every response (M6), and its band delay (M15.2).
+/// `G = median |H_ref| / |H_sim|` and `D = median Delta phi(H_sim, H_ref) / omega` of every
+/// response (M6), and its band delay (M15.2).
 ///
-/// `None` where the ratio is zero or not finite at some frequency, or where none counts. The medians are weighted where the
-/// reference is measured with coherence (M4a).
+/// `None` where the ratio is zero or not finite at some frequency, or where no frequency counts.
+/// The medians are weighted where the reference is measured with coherence (M4a).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Delta {
     /// G, `[output, input]`, dimensionless.
     pub gain: PairTable<Option<f64>>,
-    /// D, `[output, input]` \[s\]; positive where the physics model leads, so that delay must be added.
+    /// D, `[output, input]` \[s\]; positive where the physics model leads, so that delay must be
+    /// added.
     pub delay_s: PairTable<Option<f64>>,
-    /// Band delay, `[output, input]` \[s\]: the straight line of least squares through the missing phase (M15.2).
+    /// Band delay, `[output, input]` \[s\]: least squares straight line through the missing phase
+    /// (M15.2).
     pub band_delay_s: PairTable<Option<f64>>,
 }
 
 impl Delta {
-    /// G and D of the mismatch of two representatives.
+    /// Computes G and D from the mismatch of two representatives.
     pub fn of(mismatch: &PairTable<Option<Mismatch>>, omega: &[f64]) -> Self {
         let phases =
             mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.phase_difference(omega)));
@@ -74,8 +77,9 @@ pub fn delta_gains(mismatch: &PairTable<Option<Mismatch>>) -> PairTable<Option<f
     mismatch.map(|_, entry| entry.as_ref().map(|entry| entry.median(&mut ratios(entry))))
 }
 
-/// `sum W omega phase / sum W omega^2` \[s\] of a phase \[rad\] at each frequency \[rad/s\]: the delay that leaves the least phase in
-/// the mean of squares (M15.2). Linear in the phase; W = 1 where there are no weights.
+/// `sum W omega phase / sum W omega^2` \[s\] for a phase \[rad\] at each frequency \[rad/s\]: the
+/// delay that minimises the mean square of the remaining phase (M15.2). Linear in the phase; W = 1
+/// without weights.
 pub(crate) fn band_delay_s(
     phase: impl Iterator<Item = f64>,
     omega: &[f64],
@@ -91,11 +95,12 @@ pub(crate) fn band_delay_s(
     moment / square
 }
 
-/// A ratio beyond this (1e50 and 1e-50), of which the objective cannot take the square, counts as infinite or zero (M6).
+/// Ratios beyond this (1e50 and 1e-50), whose squares the objective cannot represent, count as
+/// infinite or zero (M6).
 pub const LARGEST_GAIN_DB: f64 = 1000.0;
 
-/// The mismatch of every response that both models have and whose ratio is finite and not zero, at the frequencies that count:
-/// all where `counted` is none (M4a).
+/// Mismatch of every response that both models have and whose ratio is finite and not zero, at the
+/// frequencies that count: all where `counted` is `None` (M4a).
 pub fn mismatch_table(
     simulated: &PolarResponse,
     reference: &PolarResponse,
@@ -132,7 +137,7 @@ fn delays(phase: &[f64], omega: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// The mismatches that are pooled: those marked in `measuring`, or all where none of the marked is defined.
+/// The pooled mismatches: those marked in `measuring`, or all where none of the marked is defined.
 fn pooled<'a>(
     mismatch: &'a PairTable<Option<Mismatch>>,
     measuring: &PairTable<bool>,
@@ -149,7 +154,8 @@ fn pooled<'a>(
     pairs.into_iter().filter_map(|pair| mismatch[pair].as_ref())
 }
 
-/// `LB = min(1, q-quantile)`, `UB = max(1, (1-q)-quantile)` of `|H_ref| / |H_sim|` pooled over frequency and pairs.
+/// `LB = min(1, q-quantile)`, `UB = max(1, (1-q)-quantile)` of `|H_ref| / |H_sim|` pooled over
+/// frequency and pairs.
 pub fn gain_bounds(
     mismatch: &PairTable<Option<Mismatch>>,
     measuring: &PairTable<bool>,

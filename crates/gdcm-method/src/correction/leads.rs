@@ -1,6 +1,6 @@
-//! Lead filters: from a signed delay to the filter that gives it (M15.3), those of all channels (M15.5), and what they cost: where a
-//! corrected model ends to be valid, and the gain that the filters add above (M15.6). Whoever tells the price, on the screen or in a
-//! file, takes it from here.
+//! Lead filters: the filter of a signed delay (M15.3), the filters of all channels (M15.5), and
+//! their cost: the frequency above which a corrected model is no longer valid, and the gain that
+//! the filters add above it (M15.6). Screens and files take the cost from here.
 
 use std::sync::{Arc, OnceLock};
 
@@ -13,10 +13,9 @@ use gdcm_model::units::{number, signed};
 use super::channels::{Channel, Channels};
 use super::delta::band_delay_s;
 
-/// What the lead filters of all channels have in common.
+/// Settings shared by the lead filters of all channels.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LeadSettings {
-    /// Order of the filters.
     pub order: LeadOrder,
     /// `n`: the lag time constant is `b = 1 / (n omega_B)`, `omega_B` the top of the band.
     #[serde(rename = "n")]
@@ -37,7 +36,7 @@ impl Default for LeadSettings {
     }
 }
 
-/// The lead filters that a band allows: of each signed delay below zero there is exactly one (M15.3).
+/// The lead filters that a band allows: exactly one for each signed delay below zero (M15.3).
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDesign {
     settings: LeadSettings,
@@ -57,7 +56,7 @@ impl LeadDesign {
         design
     }
 
-    /// What the filters have in common.
+    /// Settings shared by the filters.
     pub fn settings(&self) -> LeadSettings {
         self.settings
     }
@@ -91,13 +90,13 @@ impl LeadDesign {
         self.lower_s
     }
 
-    /// The filter of a lead time \[s\].
+    /// Returns the filter of a lead time \[s\].
     pub fn filter_of(&self, lead_s: f64) -> LeadFilter {
         LeadFilter::new(self.settings.order, lead_s, self.lag_s())
     }
 
-    /// `d(l) = - sum omega arg L / sum omega^2` \[s\], the band delay of the filter of lead time `l` (M15.2): 0 at 0, strictly
-    /// falling.
+    /// `d(l) = - sum omega arg L / sum omega^2` \[s\], the band delay of the filter of lead time
+    /// `l` (M15.2): 0 at 0, strictly falling.
     pub fn band_delay_s(&self, lead_s: f64) -> f64 {
         let filter = self.filter_of(lead_s);
         -band_delay_s(
@@ -107,8 +106,8 @@ impl LeadDesign {
         )
     }
 
-    /// `-d d(l) / d l`, dimensionless: with `x = a omega` it is `(1 + x^2) / (1 + x^4)` in the mean, of first order
-    /// `1 / (1 + x^2)`.
+    /// `-d d(l) / d l`, dimensionless: with `x = a omega` the mean of `(1 + x^2) / (1 + x^4)`, or
+    /// of `1 / (1 + x^2)` for the first order.
     fn falling(&self, lead_s: f64) -> f64 {
         let a = self.filter_of(lead_s).zero_s;
         let of = |omega: f64| {
@@ -121,12 +120,14 @@ impl LeadDesign {
         band_delay_s(self.omega.iter().map(|&omega| of(omega)), &self.omega, None)
     }
 
-    /// The filter of a signed delay below zero, none of any other. What no filter reaches gets the filter of `R_max`.
+    /// Returns the filter of a negative signed delay, otherwise `None`. A signed delay below the
+    /// bound gets the filter of `R_max`.
     pub fn filter(&self, tau_s: f64) -> Option<LeadFilter> {
         (tau_s < 0.0).then(|| self.filter_of(self.lead_s(tau_s)))
     }
 
-    /// The lead time `l` with `d(l) = tau` \[s\], to 1e-14 of it; `l_max` of a `tau` below the bound.
+    /// The lead time `l` with `d(l) = tau` \[s\], to 1e-14 of it; `l_max` of a `tau` below the
+    /// bound.
     ///
     /// ```text
     /// low, high = 0, l_max;  l = tau / d'(0), cut to them
@@ -136,7 +137,8 @@ impl LeadDesign {
     ///     l = l';  end where it changed by less than 1e-9 of itself: Newton's error is then the square of that
     /// ```
     ///
-    /// Newton's method kept inside a bracket (Press et al., "Numerical Recipes", 3rd ed. 2007, 9.4).
+    /// Newton's method kept inside a bracket (Press et al., "Numerical Recipes", 3rd ed. 2007,
+    /// 9.4).
     pub fn lead_s(&self, tau_s: f64) -> f64 {
         const STEPS: usize = 100;
         const SMALL: f64 = 1e-9;
@@ -172,12 +174,13 @@ impl LeadDesign {
     }
 }
 
-/// One signed delay for each channel: a pure delay where positive, a lead filter where negative (M15.5).
+/// One signed delay for each channel: a pure delay where positive, a lead filter where negative
+/// (M15.5).
 ///
-/// Filters, and their curves over the band, are computed when they are first asked for, once for all clones.
+/// Filters, and their curves over the band, are computed on first use, once for all clones.
 #[derive(Clone, Debug)]
 pub struct ChannelLeads {
-    /// Which filter a signed delay has.
+    /// Design that gives the filter of a signed delay.
     pub design: Arc<LeadDesign>,
     /// Signed delay of each channel \[s\].
     pub taus_s: Channels<f64>,
@@ -186,7 +189,7 @@ pub struct ChannelLeads {
 }
 
 impl PartialEq for ChannelLeads {
-    /// What is computed of them follows.
+    /// Cached filters follow from these two fields.
     fn eq(&self, other: &Self) -> bool {
         (&self.taus_s, &self.design) == (&other.taus_s, &other.design)
     }
@@ -203,18 +206,19 @@ impl ChannelLeads {
         }
     }
 
-    /// The lead filter of each channel; none where its signed delay is not negative.
+    /// Lead filter of each channel; `None` where its signed delay is not negative.
     pub fn filters(&self) -> &Channels<Option<LeadFilter>> {
         self.filters
             .get_or_init(|| self.taus_s.map(|_, &tau_s| self.design.filter(tau_s)))
     }
 
-    /// The part of each signed delay that is a pure delay \[s\].
+    /// Pure delay of each channel \[s\], the positive part of its signed delay.
     pub fn delays_s(&self) -> Channels<f64> {
         self.taus_s.map(|_, tau_s| tau_s.max(0.0))
     }
 
-    /// What the filters of a response's two channels do to it at each frequency of the design's band; nothing where neither has one.
+    /// Effect of the filters of a response's two channels at each frequency of the design's band;
+    /// `None` where neither has a filter.
     pub fn curve(&self, pair: Pair) -> Option<LeadCurve> {
         let of_filter = |filter: LeadFilter| LeadCurve::of(filter, self.design.omega());
         let curves = self
@@ -256,22 +260,23 @@ impl LeadCurve {
     }
 }
 
-/// Multiple of the band's top at which the gain above the band is told (M15.6).
+/// Multiple of the band's top at which the gain above the band is reported (M15.6).
 pub const ABOVE_BAND: f64 = 10.0;
-/// What is no gain in a tenth of a decibel.
+/// Gain that counts as zero when rounded to a tenth of a decibel.
 const NOTHING_DB: f64 = 0.05;
 
-/// Where a model with leads ends to be valid, and the gain at ten times that.
+/// Validity limit of a model with leads, and the gain at ten times that frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadPrice {
     /// Top of the band \[rad/s\]: above it the corrected model is not valid.
     pub limit_rad_s: f64,
-    /// `20 log10 |L|` at [`LeadPrice::above_rad_s`] of each channel \[dB\]; 0 of a channel without a filter.
+    /// `20 log10 |L|` at [`LeadPrice::above_rad_s`] for each channel \[dB\]; 0 for a channel
+    /// without a filter.
     pub gains_db: Channels<f64>,
 }
 
 impl LeadPrice {
-    /// The price of these leads; none where no channel has a filter.
+    /// Computes the price of these leads; `None` where no channel has a filter.
     pub fn of(leads: &ChannelLeads) -> Option<Self> {
         let limit_rad_s = leads.design.band_top_rad_s();
         let gain_db = |filter: LeadFilter| filter.magnitude_db(ABOVE_BAND * limit_rad_s);
@@ -282,7 +287,8 @@ impl LeadPrice {
         })
     }
 
-    /// The greater of both in every channel: of a schedule, whose leads follow the airspeed.
+    /// Returns the greater of both gains for each channel, as needed by a schedule whose leads
+    /// follow the airspeed.
     #[must_use]
     pub fn or_more(self, other: &Self) -> Self {
         let gains_db = self
@@ -296,7 +302,7 @@ impl LeadPrice {
         ABOVE_BAND * self.limit_rad_s
     }
 
-    /// What the filters of a response's two channels add there \[dB\].
+    /// Gain \[dB\] that the filters of a response's two channels add at `above_rad_s`.
     pub fn of_pair_db(&self, pair: Pair) -> f64 {
         Channel::of(pair)
             .map(|channel| self.gains_db[channel])
@@ -309,8 +315,9 @@ impl LeadPrice {
         format!("not valid above {} rad/s", number(self.limit_rad_s))
     }
 
-    /// The limit, and what each channel with a filter adds: "not valid above 12 rad/s: at 120 rad/s the leads add +9.1 dB on LON, +11.3
-    /// dB on LAT; a response gets that of its input and of its output".
+    /// Describes the limit and the gain of each channel with a filter: "not valid above 12 rad/s:
+    /// at 120 rad/s the leads add +9.1 dB on LON, +11.3 dB on LAT; a response gets that of its
+    /// input and of its output".
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let with_gain = self
             .gains_db
@@ -336,7 +343,7 @@ impl LeadPrice {
         )
     }
 
-    /// "+18.9 dB at 120 rad/s" of a response; none where its channels add nothing.
+    /// Added gain of a response: "+18.9 dB at 120 rad/s"; `None` where its channels add nothing.
     pub fn pair_words(&self, pair: Pair) -> Option<String> {
         let gain_db = self.of_pair_db(pair);
         (gain_db > NOTHING_DB).then(|| {
@@ -391,8 +398,10 @@ mod tests {
             let design = design(if second { LeadOrder::Second } else { LeadOrder::First }, pole);
             let tau_s = share * design.lower_s();
             let lead_s = design.lead_s(tau_s);
-            // Rounding of a sum of 200 phases, whose errors may all have one sign: 200 times 2.2e-16, and the same of what divides it. Of a
-            // lead far below the lag b of its filter the difference a - b has lost digits: 2.2e-16 b, against a lead of share times b or so.
+            // Rounding of a sum of 200 phases, whose errors may all have the same sign: 200 times
+            // 2.2e-16, and the same for the divisor. For a lead far below the lag b of its filter
+            // the difference a - b has lost digits: 2.2e-16 b, against a lead of about share times
+            // b.
             let tolerance = 1e-13 + 1e-15 / share;
             prop_assert!((design.band_delay_s(lead_s) / tau_s - 1.0).abs() < tolerance, "{tau_s}");
         }
@@ -422,7 +431,7 @@ mod tests {
         };
         let of = |channel: Channel| leads.filters()[channel].expect("a lead").at(120.0).norm();
         let expected = 20.0 * (of(Channel::Input(0)) * of(Channel::Output(0))).log10();
-        // Roundings of a response against the closed form of its magnitude.
+        // Rounding of a response against the closed form of its magnitude.
         assert!(
             (price.of_pair_db(pair) - expected).abs() < 1e-9,
             "{price:?}"

@@ -1,9 +1,12 @@
 //! From two models to one gain and one delay or lead for each channel (M6 to M10, M15).
 //!
-//! [`Delta`](delta::Delta) says what each response would want; [`solve`] minimises eq. (7) or the convex eq. (11), in logarithms of gains or in
-//! seconds, with a proof of the global minimum; signed delays of M15 are
-//! a convex program of the same kind, whose negative ones [`LeadDesign`](leads::LeadDesign) makes into filters. It explains what cannot be held and what would help; [`sensitivities`](sensitivity::sensitivities) and
-//! [`toggles`](sensitivity::toggles) tell what each held entry costs. Tables are `[output, input]`, gains are ratios, delays are seconds.
+//! [`Delta`](delta::Delta) gives the gain and delay that each response needs; [`solve`] minimises
+//! eq. (7) or the convex eq. (11), in logarithms of gains or in seconds, with a proof of the global
+//! minimum. The signed delays of M15 are a convex program of the same kind;
+//! [`LeadDesign`](leads::LeadDesign) turns the negative ones into filters. `solve` also explains
+//! infeasible constraints and their remedies; [`sensitivities`](sensitivity::sensitivities) and
+//! [`toggles`](sensitivity::toggles) give the cost of each constrained entry. Tables are `[output,
+//! input]`, gains are ratios, delays are seconds.
 
 pub mod branch_and_bound;
 pub mod channels;

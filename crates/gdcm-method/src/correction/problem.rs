@@ -1,5 +1,5 @@
-//! What the channels are asked to do: the quantity (a gain, a delay or a signed delay) that each has, and the objective as a function
-//! of it.
+//! The problem of the channel values: the quantity (a gain, a delay or a signed delay) of each
+//! channel, and the objective as a function of it.
 
 use std::fmt;
 
@@ -14,14 +14,12 @@ use crate::correction::branch_and_bound::term::{
     Exponential, Function, ProductEntry, Rounded, SquareEntry, Term, quadratic_terms,
 };
 
-/// Least and greatest value of every channel (M7): gains `0 < lower <= upper`, delays \[s\] `lower = 0`, signed delays \[s\]
-/// `lower <= 0 <= upper` (M15.4).
+/// Least and greatest value of every channel (M7): gains `0 < lower <= upper`, delays \[s\] with
+/// `lower` zero, signed delays \[s\] `lower <= 0 <= upper` (M15.4).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "[f64; 2]", into = "[f64; 2]")]
 pub struct Bounds {
-    /// Least value.
     pub lower: f64,
-    /// Greatest value.
     pub upper: f64,
 }
 
@@ -37,34 +35,36 @@ impl From<Bounds> for [f64; 2] {
     }
 }
 
-/// Mismatch of a loop of held delays that counts as agreement \[s\]: half of the last digit in which delays are told.
+/// Mismatch of a loop of constrained delays that counts as agreement \[s\]: half of the last
+/// displayed digit of delays.
 pub const DELAY_AGREEMENT_S: f64 = 5e-5;
 
-/// The gains (eq. (7), M8), the delays \[s\] (eq. (11), M9) or the signed delays \[s\] (M15.4) that a condition's correction is to have.
+/// Problem of the gains (eq. (7), M8), the delays \[s\] (eq. (11), M9) or the signed delays \[s\]
+/// (M15.4) of a condition's correction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// What is asked for.
     pub quantity: Quantity,
-    /// Delta gain `G` or delta delay `D` of each response, p x m; `None` where the response has none: it is left out of the
-    /// objective.
+    /// Delta gain `G` or delta delay `D` of each response, p x m; an entry with `None` is left out
+    /// of the objective.
     pub delta: PairTable<Option<f64>>,
-    /// Entries at which the two channels together are to be held at their delta, p x m.
+    /// Entries whose net value is constrained to their delta, p x m.
     pub constrained: PairTable<bool>,
     /// Entries that count in the objective (`w = 1`), p x m.
     pub fitted: PairTable<bool>,
     /// Bounds of every channel.
     pub bounds: Bounds,
-    /// Weight of the departure of the output gains from 1, of the output delays, or of all signed delays; `alpha = 0` stands for the
-    /// limit `alpha -> 0+`.
+    /// Weight of the departure of the output gains from 1, of the output delays, or of all signed
+    /// delays; `alpha = 0` means the limit `alpha -> 0+`.
     pub alpha: f64,
-    /// Greatest mismatch of a loop of held entries that counts as agreement: dB of gain, or seconds of delay.
+    /// Greatest mismatch of a loop of constrained entries that counts as agreement: dB of gain, or
+    /// seconds of delay.
     pub agreement: f64,
 }
 
-/// Why gains or delays cannot be computed.
+/// Reason why gains or delays cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProblemError {
-    /// A table has another shape than the deltas.
+    /// The shape of a table differs from the shape of the deltas.
     #[error(
         "the table of {table} entries has {} outputs and {} inputs, but the {quantity}s have {} and {}",
         found.0,
@@ -73,60 +73,54 @@ pub enum ProblemError {
         expected.1
     )]
     Shape {
-        /// What is asked for.
         quantity: Quantity,
-        /// Which table.
         table: &'static str,
-        /// Its numbers of outputs and inputs.
+        /// Numbers of outputs and inputs of the table.
         found: (usize, usize),
-        /// Those of the deltas.
+        /// Numbers of outputs and inputs of the deltas.
         expected: (usize, usize),
     },
-    /// A held entry has no delta.
+    /// A constrained entry has no delta.
     #[error("the response of output {} to input {} has no delta {quantity}, so its {quantity} cannot be held", pair.output + 1, pair.input + 1)]
     ConstrainedUndefined {
-        /// What is asked for.
         quantity: Quantity,
-        /// The entry.
+        /// Constrained entry without a delta.
         pair: Pair,
     },
-    /// A delta gain is not a positive number that can be squared.
+    /// A delta gain is not a positive number with a representable square.
     #[error("the delta gain of output {} and input {} is {gain}; it must lie between 1e-50 and 1e50", pair.output + 1, pair.input + 1)]
     Gain {
-        /// The entry.
         pair: Pair,
-        /// Its delta gain.
+        /// Delta gain (ratio).
         gain: f64,
     },
-    /// A delta delay is not a time.
+    /// A delta delay is not a valid time.
     #[error("the delta delay of output {} and input {} is {delay_s} s; it must be a number below 1e50 s", pair.output + 1, pair.input + 1)]
     Delay {
-        /// The entry.
         pair: Pair,
-        /// Its delta delay.
+        /// Delta delay \[s\].
         delay_s: f64,
     },
-    /// The bounds are not those of the quantity ([`Bounds`]).
+    /// The bounds are not valid for the quantity ([`Bounds`]).
     #[error("{}", bounds_words(*quantity, bounds.lower, bounds.upper))]
     Bounds {
-        /// What is asked for.
         quantity: Quantity,
-        /// The bounds.
+        /// The rejected bounds.
         bounds: Bounds,
     },
     /// `alpha` is negative or not a number.
     #[error("alpha is {alpha}; it must be a number from 0 to 1e12")]
     Alpha {
-        /// The weight.
+        /// The rejected weight.
         alpha: f64,
     },
     /// The quadratic program of the delays was not solved.
     #[error("the quadratic program of the delays was not solved: {reason}")]
     Program {
-        /// What the solver says.
+        /// Status reported by the solver.
         reason: String,
     },
-    /// The search was told to stop.
+    /// The search was stopped from outside.
     #[error("the search for the best answer was stopped")]
     Stopped,
 }
@@ -154,14 +148,15 @@ impl From<SearchStopped> for ProblemError {
     }
 }
 
-/// Delta gains outside of this range overflow when squared and summed.
+/// Delta gains outside this range overflow when squared and summed.
 const GAINS: std::ops::RangeInclusive<f64> = 1e-50..=1e50;
 
-/// Bounds outside of this range (180 dB) overflow in the products of the search for a proof.
+/// Bounds outside this range (180 dB) overflow in the products of the search for a proof.
 const GAIN_BOUNDS: std::ops::RangeInclusive<f64> = 1e-9..=1e9;
 
 impl Problem {
-    /// The problem of equation (7) that fits every entry: `alpha = 1`, the paper's objective, loops held to the last digit.
+    /// Problem of equation (7) that fits every entry: `alpha = 1`, the paper's objective, no
+    /// tolerance on loops.
     pub fn gains(
         delta: PairTable<Option<f64>>,
         constrained: PairTable<bool>,
@@ -180,7 +175,7 @@ impl Problem {
         }
     }
 
-    /// The problem of equation (11) that fits every entry, with `alpha = 1`; all times in seconds.
+    /// Problem of equation (11) that fits every entry, with `alpha = 1`; all times in seconds.
     pub fn delays(
         delta_s: PairTable<Option<f64>>,
         constrained: PairTable<bool>,
@@ -196,7 +191,7 @@ impl Problem {
         }
     }
 
-    /// The convex program of M15.4 that fits every entry, with `alpha = 1`; all times in seconds.
+    /// Convex program of M15.4 that fits every entry, with `alpha = 1`; all times in seconds.
     pub fn signed_delays(
         delta_s: PairTable<Option<f64>>,
         constrained: PairTable<bool>,
@@ -208,7 +203,7 @@ impl Problem {
         }
     }
 
-    /// Checks shapes and figures.
+    /// Checks shapes and values.
     ///
     /// # Errors
     /// The first [`ProblemError`] found.
@@ -264,7 +259,8 @@ impl Problem {
         }
     }
 
-    /// The objective at these channels (inputs m, outputs p): of squared ratios, of squared dB, or in s².
+    /// Objective at these channel values (inputs m, outputs p): in squared ratios, in squared dB,
+    /// or in s².
     pub fn objective_at(&self, inputs: &[f64], outputs: &[f64]) -> f64 {
         let miss = |(pair, delta): (Pair, f64)| {
             self.quantity
@@ -291,15 +287,16 @@ impl Problem {
         fitted.filter_map(|(pair, delta)| delta.map(|delta| (pair, delta)))
     }
 
-    /// The held entries, with their delta.
+    /// The constrained entries, with their delta.
     pub(crate) fn held_entries(&self) -> impl Iterator<Item = (Pair, f64)> + '_ {
         self.constrained
             .marked()
             .filter_map(|pair| self.delta[pair].map(|delta| (pair, delta)))
     }
 
-    /// The coordinate in which the held entries are sums. Delays are homogeneous: in units of the greatest time of the problem
-    /// (one second where every time is 0) every figure is of order 1.
+    /// Coordinate in which the constrained entries are sums. Delays are homogeneous: in units of
+    /// the greatest time of the problem (one second where every time is 0) every number is of order
+    /// 1.
     pub(crate) fn coordinate(&self) -> Coordinate {
         if let Quantity::Gain(_) = self.quantity {
             return Coordinate::Logarithm;
@@ -309,7 +306,7 @@ impl Problem {
             .iter()
             .filter_map(|(_, delay)| *delay)
             .fold(0.0_f64, |most, delay| most.max(delay.abs()));
-        // A bound far above what any channel could be asked for says nothing about the size of the answer.
+        // A bound far above any channel's possible target does not indicate the size of the answer.
         let unit_s = if asked > 0.0 {
             asked
         } else {
@@ -327,7 +324,8 @@ impl Problem {
         let high = coordinate.of(self.bounds.upper);
         match coordinate {
             Coordinate::Logarithm => (low, high),
-            // No path of held entries asks a channel for more than one unit each: a bound above that never acts.
+            // No path of constrained entries asks a channel for more than one unit each: a bound
+            // above that never acts.
             Coordinate::Time { .. } => {
                 let most = (self.delta.outputs() + self.delta.inputs()) as f64;
                 (low.max(-most), high.min(most))
@@ -336,43 +334,44 @@ impl Problem {
     }
 }
 
-/// What "close to G" means.
+/// Measure of the distance between `k_o k_i` and G.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum GainObjective {
     /// `sum w (G - k_o k_i)^2 + alpha sum (k_o - 1)^2`, equation (7) of the paper.
     #[default]
     #[serde(rename = "ratio")]
     Ratio,
-    /// `sum w (20 log10 G - 20 log10 k_o k_i)^2 + alpha sum (20 log10 k_o)^2`: errors up and down count alike, and an entry with
-    /// a large `G` counts no more than another. Convex.
+    /// `sum w (20 log10 G - 20 log10 k_o k_i)^2 + alpha sum (20 log10 k_o)^2`: errors up and down
+    /// count alike, and an entry with a large `G` counts no more than another. Convex.
     #[serde(rename = "dB")]
     Decibel,
 }
 
-/// What is asked of the channels. Of two channels gains multiply and delays add.
+/// Quantity of the channels. The gains of two channels multiply, and delays add.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Gains, dimensionless, compared as the objective says (equation (7), M8).
     Gain(GainObjective),
     /// Delays in seconds (equation (11), M9).
     Delay,
-    /// Signed delays in seconds, of which a negative one is a lead; both sides are regularised (M15.4).
+    /// Signed delays in seconds, of which a negative one is a lead; both sides are regularised
+    /// (M15.4).
     SignedDelay,
 }
 
-/// dB in a natural logarithm.
+/// dB per unit of natural logarithm.
 const DECIBEL: f64 = 20.0 / std::f64::consts::LN_10;
 
-/// `(20 / ln 10)^2`: squared dB in a squared natural logarithm.
+/// `(20 / ln 10)^2`: squared dB per unit of squared natural logarithm.
 pub(crate) const SQUARED_DECIBEL: f64 = DECIBEL * DECIBEL;
 
 impl Quantity {
-    /// Whether it is gains, and not delays of either kind.
+    /// Whether the quantity is a gain.
     pub fn is_gain(self) -> bool {
         matches!(self, Self::Gain(_))
     }
 
-    /// The value of a channel that changes nothing: a gain of 1, a delay of 0.
+    /// Value of a channel without effect: a gain of 1, a delay of 0.
     pub(crate) fn neutral(self) -> f64 {
         if self.is_gain() { 1.0 } else { 0.0 }
     }
@@ -382,7 +381,7 @@ impl Quantity {
         self == Quantity::SignedDelay
     }
 
-    /// Whether its lower bound can be moved: a delay's is 0.
+    /// Whether the lower bound is adjustable: a delay's is fixed at 0.
     pub(crate) fn has_lower_bound(self) -> bool {
         self != Quantity::Delay
     }
@@ -396,7 +395,7 @@ impl Quantity {
         }
     }
 
-    /// What an entry misses, whose square the objective sums: a ratio, dB or seconds.
+    /// Residual of an entry, whose square the objective sums: a ratio, dB or seconds.
     pub(crate) fn miss(self, delta: f64, output: f64, input: f64) -> f64 {
         match self {
             Quantity::Gain(GainObjective::Ratio) => delta - output * input,
@@ -405,7 +404,7 @@ impl Quantity {
         }
     }
 
-    /// Slope of the squared miss in the logarithm of a gain or in a delay.
+    /// Slope of the squared residual in the logarithm of a gain or in a delay.
     pub(crate) fn slope(self, delta: f64, output: f64, input: f64) -> f64 {
         let net = self.net(output, input);
         match self {
@@ -415,7 +414,7 @@ impl Quantity {
         }
     }
 
-    /// A difference of logarithms in dB, of delays in seconds.
+    /// Difference of logarithms in dB, of delays in seconds.
     pub(crate) fn difference(self, difference: f64, coordinate: Coordinate) -> f64 {
         if self.is_gain() {
             difference * DECIBEL
@@ -424,7 +423,7 @@ impl Quantity {
         }
     }
 
-    /// A slope for each dB or for each millisecond, from one for each unit of the logarithm or each second.
+    /// Converts a slope per unit of the logarithm or per second to one per dB or per millisecond.
     pub(crate) fn per_unit(self, slope: f64) -> f64 {
         if self.is_gain() {
             slope / DECIBEL
@@ -433,7 +432,7 @@ impl Quantity {
         }
     }
 
-    /// The symbol of a channel's value.
+    /// Symbol of a channel's value.
     pub(crate) fn symbol(self) -> &'static str {
         if self.is_gain() { "k" } else { "tau" }
     }
@@ -449,17 +448,17 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// The coordinate in which what two channels have together is a sum.
+/// Coordinate in which the net value of two channels is a sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Coordinate {
-    /// The natural logarithm of a gain.
+    /// Natural logarithm of a gain.
     Logarithm,
-    /// A delay in this unit.
+    /// Delay in this unit.
     Time { unit_s: f64 },
 }
 
 impl Coordinate {
-    /// The coordinate of a gain or of a delay in seconds.
+    /// Coordinate of a gain or of a delay in seconds.
     pub(crate) fn of(self, value: f64) -> f64 {
         match self {
             Coordinate::Logarithm => value.ln(),
@@ -467,7 +466,7 @@ impl Coordinate {
         }
     }
 
-    /// The gain or the delay in seconds at a coordinate.
+    /// Gain or delay in seconds at a coordinate.
     pub(crate) fn value(self, coordinate: f64) -> f64 {
         match self {
             Coordinate::Logarithm => coordinate.exp(),
@@ -475,7 +474,7 @@ impl Coordinate {
         }
     }
 
-    /// An objective in this coordinate as one of gains, or in s².
+    /// Converts an objective from this coordinate to the objective of gains, or to s².
     pub(crate) fn objective(self, objective: f64) -> f64 {
         match self {
             Coordinate::Logarithm => objective,
@@ -484,13 +483,14 @@ impl Coordinate {
     }
 }
 
-/// The number of three significant digits next to `value` on the side to which `round` rounds.
+/// Rounds `value` to three significant digits in the direction of `round`.
 pub(crate) fn three_digits(value: f64, round: fn(f64) -> f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
     }
     let exponent = value.abs().log10().floor() as i32 - 2;
-    // A value that is three digits up to rounding stays as it is. Negative powers are divided by: 1.87 is 187 / 100 exactly.
+    // A value of three digits up to rounding stays as it is. Negative powers of ten are applied by
+    // division: 187 / 100 is 1.87 exactly.
     let digits = if exponent < 0 {
         value * 10f64.powi(-exponent)
     } else {
@@ -509,7 +509,7 @@ pub(crate) fn three_digits(value: f64, round: fn(f64) -> f64) -> f64 {
     }
 }
 
-/// The objective of `problem` over the scales of `components`, in the problem's coordinate.
+/// Objective of `problem` over the scales of `components`, in the problem's coordinate.
 pub(crate) fn objective(problem: &Problem, components: &Components) -> Objective {
     let ground = components.count();
     let quantity = problem.quantity;
@@ -573,7 +573,8 @@ pub(crate) fn objective(problem: &Problem, components: &Components) -> Objective
     }
 }
 
-/// One term for each two scales that share an entry: `forward` holds the entries whose input has the greater index.
+/// One term for each two scales that share an entry: `forward` contains the entries whose input has
+/// the greater index.
 fn ratio_terms(entries: &[SquareEntry], scales: usize) -> (Vec<Term>, Rounded) {
     let mut groups: Vec<Vec<ProductEntry>> = vec![Vec::new(); scales * scales];
     let mut constant = Rounded::default();
@@ -611,9 +612,10 @@ fn ratio_terms(entries: &[SquareEntry], scales: usize) -> (Vec<Term>, Rounded) {
     (terms, constant)
 }
 
-/// The objective below which rounding decides, not the search, in the problem's coordinate: a billionth of the objective without
-/// any correction (the rounding of a sum of squares grows with the root of what the squares are taken of), and for the outputs,
-/// known to their rounding, its square.
+/// Objective below which rounding decides, not the search, in the problem's coordinate: a billionth
+/// of the objective without any correction (the rounding of a sum of squares grows with the root of
+/// what the squares are taken of), and for the outputs, known to their rounding, the square of that
+/// rounding.
 pub(crate) fn floor(problem: &Problem) -> f64 {
     let coordinate = problem.coordinate();
     let square = |delta: f64| match problem.quantity {

@@ -1,4 +1,5 @@
-//! What each held entry and each active bound costs at the answer: its multiplier, and what holding or freeing it would change.
+//! Cost of each constrained entry and each active bound at the solution: its multiplier, and the
+//! change from constraining or releasing it.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,46 +12,45 @@ use super::solve::{Outcome, Solution, solve};
 use crate::correction::branch_and_bound::objective::pieces;
 use crate::correction::branch_and_bound::search::ProofBudget;
 
-/// Something that keeps the channels from a lower objective.
+/// A constraint that keeps the channels from a lower objective.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ActiveConstraint {
-    /// An entry held at its target.
+    /// An entry constrained to its target.
     Held(Pair),
     /// A channel on its lower bound; a delay that would have to be negative.
     LowerBound(Channel),
-    /// A channel on its upper bound.
     UpperBound(Channel),
 }
 
-/// The multiplier of one restraint.
+/// Multiplier of one active constraint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensitivity {
-    /// What is restrained.
     pub quantity: Quantity,
-    /// The restraint.
     pub restraint: ActiveConstraint,
-    /// Change of the least objective for each dB or ms by which what is held, or the bound, is raised (to first order).
+    /// Change of the least objective for each dB or ms by which the constrained value or the bound
+    /// is raised (to first order).
     pub per_unit: f64,
-    /// The same as a share of the objective; 0 where the objective is 0.
+    /// `per_unit` as a share of the objective; 0 where the objective is 0.
     pub share_per_unit: f64,
 }
 
 impl Sensitivity {
-    /// The change that the words are about \[dB or ms\]: 1, or a tenth, a hundredth, … of it, so that the slope is extrapolated to
-    /// less than half of the objective, which cannot fall by more than all of it.
+    /// Step used in the description \[dB or ms\]: 1, or a tenth, a hundredth, … of it, so that the
+    /// slope is extrapolated to less than half of the objective, which cannot fall by more than all
+    /// of it.
     pub fn step(&self) -> f64 {
         const MOST_SHARE: f64 = 0.5;
-        /// A nanosecond or a millionth of a decibel is the least that is spoken of.
+        /// The least step is a nanosecond or a millionth of a decibel.
         const MOST_POWERS: i32 = 6;
         let share = self.share_per_unit.abs();
         let power = (0..MOST_POWERS).find(|&power| share * 10_f64.powi(-power) <= MOST_SHARE);
         10_f64.powi(-power.unwrap_or(MOST_POWERS))
     }
 
-    /// The sensitivity in words.
+    /// Describes the sensitivity.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let step = self.step();
-        // An objective next to nothing is all gone before the least step ends.
+        // An objective close to zero is used up before the least step ends.
         let percent = (100.0 * step * self.share_per_unit.abs()).min(100.0);
         let step = number(step);
         let gain = self.quantity.is_gain();
@@ -96,7 +96,8 @@ impl Sensitivity {
     }
 }
 
-/// The sensitivity of every held entry and of every bound that acts, the most expensive first.
+/// Computes the sensitivity of every constrained entry and of every active bound, the most
+/// expensive first.
 ///
 /// `solution` is the solution of `problem` ([`super::solve`]).
 pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity> {
@@ -125,7 +126,7 @@ pub fn sensitivities(problem: &Problem, solution: &Solution) -> Vec<Sensitivity>
     let of_bounds = channels
         .filter(|(_, slope)| *slope != 0.0)
         .map(|(channel, slope)| {
-            // The objective falls as the upper bound is raised, or the lower one lowered.
+            // The objective falls as the upper bound is raised, or the lower bound lowered.
             let bound = if slope < 0.0 {
                 ActiveConstraint::UpperBound
             } else {
@@ -165,11 +166,12 @@ fn slopes(problem: &Problem, solution: &Solution) -> Vec<f64> {
     slopes
 }
 
-/// How far an answer is from what Karush, Kuhn and Tucker ask of a minimum: the greatest slope of the objective along which
-/// channels could still move together, inside the bounds and with the held entries held. For a convex problem zero is a proof.
+/// Karush-Kuhn-Tucker residual of a solution: the greatest slope of the objective along which
+/// channels could still move together, inside the bounds and with the entries constrained. For a
+/// convex problem zero is a proof.
 ///
-/// In the objective's unit for each unit of the channels: for delays s² / s. `solution` is the solution of `problem`
-/// ([`super::solve`]).
+/// In the objective's unit per unit of the channels: for delays s² / s. `solution` is the solution
+/// of `problem` ([`super::solve`]).
 pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
     let minimum = Restrained::of(problem, solution);
     let pushes = minimum
@@ -181,15 +183,14 @@ pub fn kkt_residual(problem: &Problem, solution: &Solution) -> f64 {
         .fold(0.0, |most, (push, _)| most.max(push.abs()))
 }
 
-/// A minimum seen from its channels: inputs first, then outputs.
+/// A minimum as a function of its channels: inputs first, then outputs.
 struct Restrained {
-    /// Number of input channels.
     inputs: usize,
     /// Slope of the objective in each channel's value.
     slopes: Vec<f64>,
     /// Whether each channel is on its lower and on its upper bound.
     at_bounds: Vec<(bool, bool)>,
-    /// The held entries: sums of an input's and an output's value.
+    /// The constrained entries: sums of an input's and an output's value.
     held: Vec<Pair>,
 }
 
@@ -216,7 +217,7 @@ impl Restrained {
         }
     }
 
-    /// The channels that held entries tie together.
+    /// Groups of channels tied together by constrained entries.
     fn pieces(&self) -> Vec<Vec<usize>> {
         pieces(
             self.slopes.len(),
@@ -226,18 +227,20 @@ impl Restrained {
         )
     }
 
-    /// 1 of an input, -1 of an output: an output falls where the inputs tied to it rise.
+    /// 1 for an input, -1 for an output: an output falls where the inputs tied to it rise.
     fn sign(&self, channel: usize) -> f64 {
         if channel < self.inputs { 1.0 } else { -1.0 }
     }
 
-    /// The slope of the objective along which a piece of tied channels moves, and the channels whose bounds stop it.
+    /// Slope of the objective along the common movement of a piece of tied channels, and the
+    /// channels whose bounds stop it.
     fn push(&self, piece: &[usize]) -> (f64, Vec<usize>) {
         let push: f64 = piece
             .iter()
             .map(|&channel| self.sign(channel) * self.slopes[channel])
             .sum();
-        // The piece would move against the slope: an input on its upper bound stops a rise, an output on its lower one too.
+        // The piece would move against the slope: an input on its upper bound stops a rise, and so
+        // does an output on its lower bound.
         let stops = |channel: &&usize| {
             let rises = self.sign(**channel) * push < 0.0;
             if rises {
@@ -250,11 +253,12 @@ impl Restrained {
     }
 }
 
-/// Solves `slopes + sum of multipliers = 0`: what pushes a piece of tied channels against a bound is borne by the channels that
-/// are on that bound, in equal parts; the held entries carry the rest, in a loop with the least squares.
+/// Solves `slopes + sum of multipliers = 0`: the slope that pushes a piece of tied channels against
+/// a bound is divided equally among the channels on that bound; the constrained entries carry the
+/// rest, in a loop with the least squares.
 ///
-/// That is the change of the least objective with the sum at which each held entry is held, and with the bound that each channel is
-/// on (0 where none acts).
+/// The multipliers are the derivatives of the least objective with respect to the target of each
+/// constrained entry and to the active bound of each channel (0 where none is active).
 fn multipliers(minimum: &Restrained) -> (Vec<f64>, Vec<f64>) {
     let channels = minimum.slopes.len();
     let mut bounds = vec![0.0; channels];
@@ -278,8 +282,9 @@ fn multipliers(minimum: &Restrained) -> (Vec<f64>, Vec<f64>) {
     let held = if minimum.held.is_empty() {
         Vec::new()
     } else {
-        // Squared, the singular values are the Laplacian's of a bipartite graph of n channels: 0, or at least 4 / n^2 (Mohar,
-        // "Eigenvalues, diameter and mean distance in graphs", 1991). This is half of that root.
+        // The squared singular values are the Laplacian's of a bipartite graph of n channels: 0, or
+        // at least 4 / n^2 (Mohar, "Eigenvalues, diameter and mean distance in graphs", 1991). The
+        // tolerance is half of that root.
         let solved = ties.svd(true, true).solve(&left, 1.0 / channels as f64);
         solved
             .map(|held| held.iter().copied().collect())
@@ -288,27 +293,27 @@ fn multipliers(minimum: &Restrained) -> (Vec<f64>, Vec<f64>) {
     (held, bounds)
 }
 
-/// The answer with one entry held that is free now, or freed that is held now.
+/// The solution with one free entry constrained, or one constrained entry released.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Toggle {
-    /// The entry.
     pub pair: Pair,
-    /// Whether it is held now.
+    /// Whether it is constrained now.
     pub held_now: bool,
-    /// The least objective without the toggle.
+    /// Least objective without the toggle.
     pub before: f64,
-    /// The least objective after it.
+    /// Least objective with the toggle.
     pub after: f64,
-    /// How many held entries cannot be matched after it.
+    /// Number of constrained entries that are infeasible with the toggle.
     pub unmatched_after: usize,
-    /// Whether the entry itself can be matched, if the toggle holds it.
+    /// Whether the entry itself is feasible, if the toggle constrains it.
     pub matched_after: bool,
     /// Whether the objective after the toggle is proven.
     pub outcome: Outcome,
 }
 
 impl Toggle {
-    /// Change of the objective as a share of the objective now; infinite where that is 0 and something changes.
+    /// Change of the objective as a share of the present objective; infinite where that is 0 and
+    /// something changes.
     pub fn share(&self) -> f64 {
         let change = self.after - self.before;
         if change == 0.0 {
@@ -318,10 +323,10 @@ impl Toggle {
         }
     }
 
-    /// The cost in words: what is held costs something, what is free would.
+    /// Describes the cost: a constrained entry has a cost, a free entry would have it.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         let pair = pair_name(self.pair, inputs, outputs);
-        // Without the sum, no change would read -0.0.
+        // Without the added zero, no change would read -0.0.
         let percent = 100.0 * self.share() + 0.0;
         match (self.held_now, self.matched_after) {
             (true, _) if self.after <= self.before => {
@@ -347,13 +352,14 @@ impl Toggle {
     }
 }
 
-/// Solves `problem` with every entry that has a delta toggled in turn, row by row, until `stop` says so.
+/// Solves `problem` with every entry that has a delta toggled in turn, row by row, until `stop`
+/// returns true.
 ///
-/// The table for the matrix of entries: to be computed in the background of the live answer `solution`. A shorter list than
-/// entries means that it was stopped.
+/// The result is the table for the matrix of entries, to be computed in the background of the live
+/// solution `solution`. A list shorter than the entries means that it was stopped.
 ///
 /// # Errors
-/// As [`solve`].
+/// See [`solve`].
 pub fn toggles(
     problem: &Problem,
     solution: &Solution,

@@ -1,5 +1,5 @@
-//! The solution of equations (7) and (11), and of the program of signed delays (M15.4), with the convex quadratic program: the gains or
-//! delays found, and how sure they are.
+//! Solution of equations (7) and (11), and of the program of signed delays (M15.4), with the convex
+//! quadratic program: the gains or delays, and their proof of optimality.
 
 use gdcm_model::dataset::{Pair, PairTable};
 use gdcm_model::response::curve_values::mean;
@@ -19,19 +19,20 @@ use crate::correction::branch_and_bound::search::{
     Effort, Limit, Minima, ProofBudget, SearchStopped, search,
 };
 
-/// Whether the answer is known to be the best there is.
+/// Whether the solution is known to be the global minimum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// No channels inside the bounds that hold the targets are better by more than the relative gap, which is at most 1e-9.
+    /// No feasible channels are better by more than the relative gap, which is at most 1e-9.
     Proven {
         /// `(objective - lower bound) / objective`.
         gap: f64,
     },
-    /// The search ended first: better ones may exist, but none better by more than the relative gap.
+    /// The search ended first: better solutions may exist, but none better by more than the
+    /// relative gap.
     NotProven {
         /// `(objective - lower bound) / objective`.
         gap: f64,
-        /// What ended the search.
+        /// Limit that ended the search.
         limit: Limit,
     },
 }
@@ -44,7 +45,7 @@ impl Outcome {
         }
     }
 
-    /// The outcome in words.
+    /// Describes the outcome.
     pub fn words(self) -> String {
         match self {
             Outcome::Proven { .. } => {
@@ -69,55 +70,54 @@ impl Outcome {
 /// One local minimum of the objective.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LocalMinimum {
-    /// Value of each input channel.
     pub inputs: Vec<f64>,
-    /// Value of each output channel.
     pub outputs: Vec<f64>,
-    /// The objective there.
+    /// Objective at the minimum.
     pub objective: f64,
 }
 
-/// What is known of the least objective besides its value.
+/// Proof of the least objective.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
-    /// No channels inside the bounds that hold the targets have a lower objective.
+    /// Lower bound of the objective over all channels inside the bounds that meet the targets.
     pub lower_bound: f64,
-    /// Whether that is a proof. The gap is relative to the objective, or to a billionth of `sum w G^2` where the objective is
-    /// smaller: below that, rounding decides.
+    /// Whether the bound is a proof. The gap is relative to the objective, or to a billionth of
+    /// `sum w G^2` where the objective is smaller: below that, rounding decides.
     pub outcome: Outcome,
-    /// Nodes visited by the search.
     pub nodes: usize,
-    /// Distinct local minima within 1 % of the objective, best first; the first is the answer.
+    /// Distinct local minima within 1 % of the objective, best first; the first is the solution.
     pub local_minima: Vec<LocalMinimum>,
-    /// Whether the search has shown that there is no other local minimum within 1 %.
+    /// Whether the search has excluded any other local minimum within 1 %.
     pub all_minima: bool,
 }
 
-/// A held entry that the bounds or the other held entries do not allow.
+/// A constrained entry made infeasible by the bounds or by the other constrained entries.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unmatched {
-    /// What is held: a gain, or a delay or a signed delay in seconds.
+    /// Constrained quantity: a gain, or a delay or a signed delay in seconds.
     pub quantity: Quantity,
-    /// The entry.
     pub pair: Pair,
-    /// Its delta gain `G` or delta delay `D`; a negative `D` asks for phase lead.
+    /// Delta gain `G` or delta delay `D`; a negative `D` asks for phase lead.
     pub delta: f64,
-    /// The product or the sum at which it is held instead.
+    /// Product or sum to which the entry is constrained instead.
     pub target: f64,
-    /// What it gets too much: `20 log10 (target / delta)` dB of gain, negative where the correction is too weak; or
-    /// `target - delta` seconds of delay, the lead that would be needed besides.
+    /// Excess over the delta: `20 log10 (target / delta)` dB of gain, negative where the correction
+    /// is too weak; or `target - delta` seconds of delay, the additional lead that would be needed.
     pub excess: f64,
-    /// What is in the way; where the entry is not part of it, its miss is the compromise with those that are.
+    /// The conflict; where the entry is not part of it, its miss is the compromise with the entries
+    /// that are.
     pub why: Conflict,
 }
 
 impl Unmatched {
-    /// Phase error in degrees that a missed delay leaves at `omega` rad/s: the reference less the corrected model.
+    /// Phase error in degrees that a missed delay leaves at `omega` rad/s: the reference less the
+    /// corrected model.
     pub fn phase_left_deg(&self, omega: f64) -> f64 {
         (self.delta - self.target).to_degrees() * -omega
     }
 
-    /// The miss in words; of a delay with the phase that remains at `omega_top`, the top of the band in rad/s.
+    /// Describes the miss; for a delay with the remaining phase at `omega_top`, the top of the band
+    /// in rad/s.
     pub fn words(&self, omega_top: f64, inputs: &[String], outputs: &[String]) -> String {
         let pair = pair_name(self.pair, inputs, outputs);
         if let Quantity::Gain(_) = self.quantity {
@@ -154,31 +154,35 @@ impl Unmatched {
     }
 }
 
-/// The channel gains of equation (7), the channel delays of equation (11) or the signed delays of M15.4 in seconds, with the proof.
+/// The channel gains of equation (7), the channel delays of equation (11) or the signed delays of
+/// M15.4 in seconds, with the proof.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solution {
-    /// What was minimised.
     pub quantity: Quantity,
     /// Value of each input channel, m.
     pub inputs: Vec<f64>,
     /// Value of each output channel, p.
     pub outputs: Vec<f64>,
-    /// The objective: of squared ratios, of squared dB, or in s².
+    /// The objective: in squared ratios, in squared dB, or in s².
     pub objective: f64,
-    /// How sure that is.
     pub proof: Proof,
-    /// Product or sum at which each held entry is held, p x m: its delta where that is possible (M8 and M9, stage 1).
+    /// Product or sum to which each entry is constrained, p x m: its delta where that is feasible
+    /// (M8 and M9, stage 1).
     pub targets: PairTable<Option<f64>>,
-    /// Whether every held entry is held at its delta, within 1e-8 of its logarithm, or of the greatest delay in the problem (or a
-    /// nanosecond, where that is more); or within the tolerance of [`Problem::agreement`](super::problem::Problem::agreement) where a loop of entries asks for it.
+    /// Whether every constrained entry meets its delta, within 1e-8 of its logarithm, or of the
+    /// greatest delay in the problem (or a nanosecond, where that is more); or within the tolerance
+    /// of [`Problem::agreement`](super::problem::Problem::agreement) where a loop of entries
+    /// requires it.
     pub matched: bool,
-    /// The entries that are not.
+    /// The constrained entries that miss their delta.
     pub unmatched: Vec<Unmatched>,
-    /// The loops of held entries that disagree by no more than the tolerance: each is held at the nearest that agrees.
+    /// The loops of constrained entries that disagree by no more than the tolerance: each is
+    /// constrained to the nearest consistent values.
     pub agreeing: Vec<Conflict>,
-    /// Each set of held entries and bounds that cannot hold together, once; loops first, then by number of entries.
+    /// Each infeasible set of constrained entries and bounds, without duplicates; loops first, then
+    /// by number of entries.
     pub conflicts: Vec<Conflict>,
-    /// The single changes that would let every held entry be held, where some cannot.
+    /// Single changes that would make every constrained entry feasible, where some are not.
     pub remedy: Option<Remedy>,
 }
 
@@ -192,15 +196,16 @@ impl Solution {
     }
 }
 
-/// Residual in natural logarithms, or as a fraction of the greatest delay in the problem, below which a held entry counts as
-/// matched (M8).
+/// Residual in natural logarithms, or as a fraction of the greatest delay in the problem, below
+/// which a constrained entry counts as matched (M8).
 const MATCHED: f64 = 1e-8;
 
-/// Residual \[s\] below which a held delay counts as matched, however small the delays of the problem are: what rounding leaves of
-/// two equal phases is no delay. At the highest frequency of a band, 1e5 rad/s, it is 0.006 degrees.
+/// Residual \[s\] below which a constrained delay counts as matched, however small the delays of
+/// the problem are: the rounding difference of two equal phases is not a delay. At the highest
+/// frequency of a band, 1e5 rad/s, it is 0.006 degrees.
 const MATCHED_DELAY_S: f64 = 1e-9;
 
-/// Residual in the coordinate of a problem below which a held entry counts as matched.
+/// Residual in the coordinate of a problem below which a constrained entry counts as matched.
 fn matched_within(coordinate: Coordinate) -> f64 {
     match coordinate {
         Coordinate::Logarithm => MATCHED,
@@ -208,11 +213,11 @@ fn matched_within(coordinate: Coordinate) -> f64 {
     }
 }
 
-/// Finds the channel gains (equation (7), M8), delays (equation (11), M9) or signed delays (M15.4) of least objective, with a proof that no others are
-/// better.
+/// Finds the channel gains (equation (7), M8), delays (equation (11), M9) or signed delays (M15.4)
+/// with the least objective, with a proof that no others are better.
 ///
-/// Entries that the bounds or their own loops do not allow are held at the nearest products or sums that are possible (least
-/// squares in logarithms, or in seconds), and reported.
+/// Entries that the bounds or their own loops make infeasible are constrained to the nearest
+/// feasible products or sums (least squares in logarithms, or in seconds), and reported.
 ///
 /// ```
 /// use gdcm_method::correction::{Bounds, Outcome, Problem, ProofBudget, solve};
@@ -229,8 +234,8 @@ fn matched_within(coordinate: Coordinate) -> f64 {
 /// ```
 ///
 /// # Errors
-/// [`ProblemError`] where the problem is not well posed ([`Problem::check`]), and [`ProblemError::Stopped`] as soon as `stop`,
-/// asked every half millisecond or so, says so.
+/// [`ProblemError`] where the problem is not well posed ([`Problem::check`]), and
+/// [`ProblemError::Stopped`] as soon as `stop`, polled about every half millisecond, returns true.
 pub fn solve(
     problem: &Problem,
     budget: ProofBudget,
@@ -287,7 +292,8 @@ pub fn solve(
     })
 }
 
-/// Where Newton's method begins: of delays next to the minimum, which it then reaches exactly, bounds and all.
+/// Start of Newton's method: for delays next to the minimum, which it then reaches exactly, with
+/// the active bounds.
 fn start(objective: &Objective, quantity: Quantity) -> Result<Vec<f64>, ProblemError> {
     if quantity.is_gain() {
         Ok(objective.nearest_to_zero())
@@ -296,7 +302,7 @@ fn start(objective: &Objective, quantity: Quantity) -> Result<Vec<f64>, ProblemE
     }
 }
 
-/// The minimum of a sum of squares.
+/// Minimum of a sum of squares.
 fn minimise(
     objective: &Objective,
     quantity: Quantity,
@@ -309,8 +315,9 @@ fn minimise(
     Ok(scales)
 }
 
-/// The limit `alpha -> 0+`: a free common scale goes where the outputs are nearest to a gain of 1 or to no delay (the inputs,
-/// where there is no output); of signed delays where the sum of all their squares is least.
+/// The limit `alpha -> 0+`: sets a free common scale where the outputs are nearest to a gain of 1
+/// or to zero delay (the inputs, where there is no output); for signed delays where the sum of all
+/// their squares is least.
 fn settle(quantity: Quantity, components: &Components, objective: &Objective, scales: &mut [f64]) {
     objective.shift_floating_pieces(scales, |piece, scales| {
         let (inputs, outputs) = components.channels(scales);
@@ -342,7 +349,8 @@ fn settle(quantity: Quantity, components: &Components, objective: &Objective, sc
     });
 }
 
-/// Gains or delays of the inputs and of the outputs at these scales, exactly on the bounds they reach.
+/// Gains or delays of the inputs and of the outputs at these scales, exactly on the bounds they
+/// reach.
 fn channels_at(problem: &Problem, components: &Components, scales: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let bounds = problem.bounds;
     let coordinate = problem.coordinate();
@@ -366,7 +374,7 @@ fn channels_at(problem: &Problem, components: &Components, scales: &[f64]) -> (V
     )
 }
 
-/// What the search found, in gains or delays.
+/// Converts the result of the search to gains or delays.
 fn proof(problem: &Problem, components: &Components, found: Minima) -> Proof {
     let minimum = |(scales, _): &(Vec<f64>, f64)| {
         let (inputs, outputs) = channels_at(problem, components, scales);
@@ -398,7 +406,7 @@ fn proof(problem: &Problem, components: &Components, found: Minima) -> Proof {
     }
 }
 
-/// The held entries that stage 1 could not match, each with what is in the way.
+/// The constrained entries that stage 1 could not match, each with its conflict.
 fn misses(
     problem: &Problem,
     held: &Held,
@@ -440,7 +448,7 @@ fn misses(
     Ok(missed.collect())
 }
 
-/// What is held, the entries of loops that count as agreeing at their targets.
+/// The constraints, with the entries of agreeing loops at their targets.
 fn settled_loops(held: &Held, reached: &Reached, agreeing: &[Unmatched]) -> Held {
     let is_settled = |pair: Pair| agreeing.iter().any(|miss| miss.pair == pair);
     let entries = held.entries.iter().zip(&reached.targets);
@@ -451,7 +459,7 @@ fn settled_loops(held: &Held, reached: &Reached, agreeing: &[Unmatched]) -> Held
     }
 }
 
-/// The distinct conflicts behind the misses.
+/// Distinct conflicts behind the misses.
 fn conflicts_of(unmatched: &[Unmatched]) -> Vec<Conflict> {
     let mut conflicts: Vec<Conflict> = Vec::new();
     for miss in unmatched {
@@ -475,10 +483,12 @@ fn conflicts_of(unmatched: &[Unmatched]) -> Vec<Conflict> {
     conflicts
 }
 
-/// A point within about 1e-9 of the minimum of a sum of squares over its box, by clarabel's interior point.
+/// Returns a point within about 1e-9 of the minimum of a sum of squares over its box, by clarabel's
+/// interior point method.
 ///
 /// # Errors
-/// [`ProblemError::Program`] where clarabel does not report the problem as solved ("almost solved" is not).
+/// [`ProblemError::Program`] where clarabel does not report the problem as solved ("almost solved"
+/// is not).
 pub(crate) fn interior_point(objective: &Objective) -> Result<Vec<f64>, ProblemError> {
     let mut scales = objective.lower.clone();
     let free: Vec<usize> = (0..objective.scales())
@@ -493,7 +503,8 @@ pub(crate) fn interior_point(objective: &Objective) -> Result<Vec<f64>, ProblemE
     Ok(scales)
 }
 
-/// `min s' P s / 2 + q' s` over `lower <= s <= upper` of the free scales; the others stay where they are.
+/// `min s' P s / 2 + q' s` over `lower <= s <= upper` of the free scales; the others stay where
+/// they are.
 fn solve_program(objective: &Objective, free: &[usize]) -> Result<Vec<f64>, ProblemError> {
     let size = free.len();
     let scales = objective.scales();

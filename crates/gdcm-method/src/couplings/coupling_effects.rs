@@ -1,5 +1,6 @@
-//! What mixing and feedback do (M16.4): how large their entries are in what the pilot knows, percent of a stick and degrees of
-//! swashplate phase; how near the loop is to ringing, and what it does above the band; how they move the poles of a physics model.
+//! Effects of mixing and feedback (M16.4): the size of their entries in pilot units (percent of
+//! stick, degrees of swashplate phase), the distance of the loop from ringing, its action above the
+//! band, and the poles of a physics model that they move.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -13,26 +14,27 @@ use super::problem::CouplingProblem;
 use crate::correction::Pade;
 use crate::fidelity::{ModeTrack, mode_tracks};
 
-/// What an entry of `K` takes of the stick, where it takes most.
+/// Peak share of the stick used by an entry of `K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeedbackShare {
-    /// The input that takes.
+    /// The input that receives the feedback.
     pub input: usize,
     /// The output that is fed back.
     pub output: usize,
-    /// `K_input,output`: units of the input for each unit of the output.
+    /// `K_input,output`, in input units per output unit.
     pub entry: f64,
-    /// `|K_ij| |R'_jl|`, over 1: how much of the input one unit of the input `moved` makes.
+    /// `|K_ij| |R'_jl|`, over 1: units of this input per unit of the input `moved`.
     pub share: f64,
-    /// The input `l` that is moved where the share is largest.
+    /// The moved input `l` with the largest share.
     pub moved: usize,
-    /// The condition where it is largest.
+    /// The condition with the largest share.
     pub condition: ConditionId,
-    /// The frequency where it is largest \[rad/s\].
+    /// The frequency with the largest share \[rad/s\].
     pub omega_rad_s: f64,
 }
 
-/// The share of every entry of `K`, the largest first; none of an output of which flight tells nothing.
+/// Returns the share of every entry of `K`, largest first; no entry for an output without flight
+/// data.
 pub fn feedback_shares(
     problem: &CouplingProblem,
     couplings: &CouplingMatrices,
@@ -62,8 +64,8 @@ pub fn feedback_shares(
     shares
 }
 
-/// The largest `|R'_jl|` of one output over all inputs, conditions and frequencies, and the first input, condition and frequency
-/// \[rad/s\] that have it.
+/// Returns the largest `|R'_jl|` of one output over all inputs, conditions and frequencies, with
+/// the first input, condition and frequency \[rad/s\] that attain it.
 fn largest_response(
     problem: &CouplingProblem,
     output: usize,
@@ -89,20 +91,21 @@ fn largest_response(
     largest
 }
 
-/// One entry of `M~` off its diagonal.
+/// An off-diagonal entry of `M~`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MixingShare {
-    /// The input that takes.
+    /// The input that receives the share.
     pub to: usize,
-    /// The input that is taken of.
+    /// The input that the share comes from.
     pub from: usize,
     /// `M~_to,from`, over 1.
     pub share: f64,
-    /// `atan M~_to,from` \[deg\], where both are cyclic inputs.
+    /// `atan M~_to,from` \[deg\] where both inputs are cyclic.
     pub swashplate_phase_deg: Option<f64>,
 }
 
-/// The entries of a normalised mixing off its diagonal, the largest first; `cyclic` are the two cyclic inputs.
+/// Returns the off-diagonal entries of a normalised mixing, largest first; `cyclic` are the two
+/// cyclic inputs.
 pub fn mixing_shares(
     normalised_mixing: &DMatrix<f64>,
     cyclic: Option<[usize; 2]>,
@@ -124,8 +127,9 @@ pub fn mixing_shares(
     shares
 }
 
-/// The two cyclic inputs: those whose only on-axis response is that of a rate; none where they are not two. A pedal has a lateral
-/// acceleration beside its rate, or is a third: then nothing is told of a swashplate.
+/// Returns the two cyclic inputs: those whose only on-axis response is a rate. `None` unless
+/// exactly two qualify: a pedal has an on-axis lateral acceleration beside its rate, or would be
+/// the third; no swashplate phase is reported then.
 pub fn cyclic_inputs(
     on_axis: &PairTable<bool>,
     is_rate: impl Fn(usize) -> bool,
@@ -142,20 +146,21 @@ pub fn cyclic_inputs(
     found.try_into().ok()
 }
 
-/// The least singular value of `I - K H` over some frequencies.
+/// The smallest singular value of `I - K H` over a set of frequencies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopMargin {
-    /// The least: 1 of no feedback, 0 where a pole of the closed loop is at `j omega`.
+    /// The smallest singular value: 1 without feedback, 0 where a closed-loop pole is at `j omega`.
     pub least: f64,
-    /// Where it is \[rad/s\].
+    /// Its frequency \[rad/s\].
     pub omega_rad_s: f64,
 }
 
 impl LoopMargin {
-    /// Under this the loop is close to ringing.
+    /// Threshold below which the loop is close to ringing.
     pub const CAUTION: f64 = 0.5;
 
-    /// The least of these singular values at `omega` \[rad/s\]; none where no value is finite.
+    /// Returns the smallest of these singular values at `omega` \[rad/s\]; `None` if no value is
+    /// finite.
     pub fn of(singular_values: &[f64], omega: &[f64]) -> Option<Self> {
         let known = singular_values
             .iter()
@@ -165,15 +170,16 @@ impl LoopMargin {
         Some(Self { least, omega_rad_s })
     }
 
-    /// Whether it is a caution.
+    /// Whether the margin deserves a caution.
     pub fn is_close_to_ringing(&self) -> bool {
         self.least < Self::CAUTION
     }
 }
 
 impl CouplingMatrices {
-    /// The least singular value of `I - K H` (m x m, at the sticks, where all channels have one unit) at each frequency of `H`; not a
-    /// number where `H` lacks a response of an output that is fed back.
+    /// Returns the smallest singular value of `I - K H` (m x m, at the inputs, where all channels
+    /// share one unit) at each frequency of `H`; NaN where `H` lacks a response of an output that
+    /// is fed back.
     pub fn least_singular_values(&self, physics: &FrequencyResponse) -> Vec<f64> {
         let points = physics.curve(Pair::new(0, 0)).len();
         (0..points)
@@ -185,7 +191,7 @@ impl CouplingMatrices {
         let (inputs, outputs) = self.feedback().shape();
         let fed = |input: usize, of: usize| -> Complex<f64> {
             let terms = (0..outputs).map(|output| (self.feedback()[(input, output)], output));
-            // A response that is not fed back need not be there.
+            // A response that is not fed back may be missing.
             let terms = terms.filter(|(entry, _)| *entry != 0.0);
             terms
                 .map(|(entry, output)| physics.curve(Pair::new(output, of))[k] * entry)
@@ -202,8 +208,8 @@ impl CouplingMatrices {
     }
 }
 
-/// `20 log10 |H~ - H| / |H|` of each response at the `k`-th frequency, p x m; none where one is not finite or `H` is zero,
-/// minus infinity where nothing changes.
+/// Returns `20 log10 |H~ - H| / |H|` of each response at the `k`-th frequency, p x m; `None` where
+/// a value is not finite or `H` is zero, minus infinity where nothing changes.
 pub fn relative_change_db(
     physics: &FrequencyResponse,
     coupled: &FrequencyResponse,
@@ -217,44 +223,44 @@ pub fn relative_change_db(
     })
 }
 
-/// One pole of the coupled model and the one of the physics model in whose place it is; of a conjugate pair one.
+/// A pole of the coupled model and its match in the physics model; one entry per conjugate pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoleShift {
-    /// Before \[rad/s\]; none where the coupled model has states more (the delays inside its loop).
+    /// Pole of the physics model \[rad/s\]; `None` for the extra states of the coupled model (the
+    /// delays inside its loop).
     pub before: Option<Complex<f64>>,
-    /// After \[rad/s\].
+    /// Pole of the coupled model \[rad/s\].
     pub after: Complex<f64>,
 }
 
-/// Why the poles of a coupled model are not known.
+/// Reasons why the poles of a coupled model are unavailable.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PoleShiftError {
-    /// There is no coupled model.
     #[error(transparent)]
     Model(#[from] CoupledModelError),
-    /// No eigenvalues can be computed.
     #[error(transparent)]
     Modes(#[from] ModesError),
 }
 
 impl PoleShift {
-    /// How far the pole moved \[rad/s\].
+    /// Returns the distance between the two poles \[rad/s\].
     pub fn distance_rad_s(&self) -> Option<f64> {
         self.before.map(|before| (self.after - before).norm())
     }
 
-    /// Whether it has a positive real part that it did not have before.
+    /// Whether coupling moved the pole into the right half-plane.
     pub fn is_newly_unstable(&self) -> bool {
         self.after.re > 0.0 && self.before.is_none_or(|before| before.re <= 0.0)
     }
 }
 
 impl CouplingMatrices {
-    /// Every pole of a physics model with mixing and feedback, rising in `|lambda|`, matched to those without so that the sum of the
-    /// distances is least; of discrete time as `s = ln z / T`.
+    /// Returns every pole of a physics model with mixing and feedback, in ascending `|lambda|`,
+    /// matched to the poles without coupling so that the sum of distances is smallest.
+    /// Discrete-time poles are converted by `s = ln z / T`.
     ///
     /// # Errors
-    /// [`PoleShiftError`] where there is no coupled model, or no eigenvalues.
+    /// [`PoleShiftError`] if there is no coupled model or no eigenvalues.
     pub fn pole_shifts(
         &self,
         physics: &StateSpace,
@@ -314,7 +320,7 @@ mod tests {
             ),
             (6, 2, 1, None)
         );
-        // M16.4: 4.7 % are 2.7 degrees.
+        // M16.4: 4.7 % corresponds to 2.7 degrees.
         assert!(
             (shares[1].swashplate_phase_deg.unwrap() - 2.7).abs() < 0.05
                 && shares[1].share == 0.047

@@ -1,6 +1,7 @@
-//! A mixing of the inputs and a feedback of the outputs, and what they make of a frequency response and of a model (M16.3).
+//! Input mixing and output feedback, and their effect on a frequency response and on a model
+//! (M16.3).
 //!
-//! A loop of outputs to inputs is closed around a response frequency by frequency:
+//! The output-to-input loop is closed around a response frequency by frequency:
 //!
 //! ```text
 //! F = (I - H K)^-1 H = H (I - K H)^-1: of the two inverses the one of m x m
@@ -10,7 +11,8 @@
 //! 3  for each column j from the last: divided by T_jj; the columns k < j lose T_jk times it
 //! ```
 //!
-//! Gaussian elimination with partial pivoting, on columns: Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 3.4.
+//! Gaussian elimination with partial pivoting, on columns: Golub & Van Loan, "Matrix Computations",
+//! 4th ed. 2013, 3.4.
 
 use nalgebra::{Complex, DMatrix, Dyn, LU};
 
@@ -34,7 +36,7 @@ pub struct CouplingMatrices {
 }
 
 impl CouplingMatrices {
-    /// `M = I`, `K = 0`, of m inputs and p outputs.
+    /// Returns `M = I`, `K = 0` for m inputs and p outputs.
     pub fn none(airspeeds: Airspeeds, inputs: usize, outputs: usize) -> Self {
         let unit = |to: usize, from: usize| if to == from { 1.0 } else { 0.0 };
         let polynomial = |entry: usize| Regression::Polynomial {
@@ -47,8 +49,8 @@ impl CouplingMatrices {
         }
     }
 
-    /// The same with the unknowns at these values, of each entry of `M` every power of the airspeed from 0 on; what is not among the
-    /// unknowns is 0.
+    /// Returns a copy with these values for the unknowns: for each entry of `M` every power of the
+    /// airspeed from 0 up. Entries that are not among the unknowns are 0.
     #[must_use]
     pub fn with(&self, unknowns: &[Unknown], values: &[f64]) -> Self {
         let (inputs, outputs) = self.feedback.shape();
@@ -68,10 +70,10 @@ impl CouplingMatrices {
         }
     }
 
-    /// Whether every input goes through the mixing with its own sign at the airspeeds of the conditions.
+    /// Checks that the mixing keeps the sign of every input at the airspeeds of the conditions.
     ///
     /// # Errors
-    /// [`CouplingError::ReversedInput`] of the first that does not.
+    /// [`CouplingError::ReversedInput`] for the first input that is reversed.
     pub(super) fn check(&self) -> Result<(), CouplingError> {
         for &airspeed_kt in &self.airspeeds.values_kt {
             let diagonal = self.mixing(airspeed_kt).diagonal();
@@ -89,17 +91,17 @@ impl CouplingMatrices {
         Ok(())
     }
 
-    /// The airspeeds of the conditions that they were fitted to.
+    /// Returns the airspeeds of the fitted conditions.
     pub fn airspeeds(&self) -> &Airspeeds {
         &self.airspeeds
     }
 
-    /// `M_to,from` over the scaled airspeed of [`CouplingMatrices::airspeeds`].
+    /// Returns `M_to,from` over the scaled airspeed of [`CouplingMatrices::airspeeds`].
     pub fn mixing_curve(&self, to: usize, from: usize) -> &Regression {
         &self.mixing[to * self.feedback.nrows() + from]
     }
 
-    /// `M(V)`, m x m, `[to, from]`; outside the conditions' airspeeds that of the nearer end.
+    /// Returns `M(V)`, m x m, `[to, from]`, constant beyond the range of the conditions' airspeeds.
     pub fn mixing(&self, airspeed_kt: f64) -> DMatrix<f64> {
         let inputs = self.feedback.nrows();
         DMatrix::from_fn(inputs, inputs, |to, from| {
@@ -107,7 +109,8 @@ impl CouplingMatrices {
         })
     }
 
-    /// `M~(V) = M(V) diag(M(V))^-1`, m x m: ones on the diagonal, so that the level stays with the channels.
+    /// Returns `M~(V) = M(V) diag(M(V))^-1`, m x m: ones on the diagonal, since the gain level
+    /// belongs to the channels.
     pub fn normalised_mixing(&self, airspeed_kt: f64) -> DMatrix<f64> {
         let mixing = self.mixing(airspeed_kt);
         DMatrix::from_fn(mixing.nrows(), mixing.ncols(), |to, from| {
@@ -119,15 +122,15 @@ impl CouplingMatrices {
         })
     }
 
-    /// `K`, m x p, `[input, output]`: units of the input for each unit of the output.
+    /// Returns `K`, m x p, `[input, output]`, in input units per output unit.
     pub fn feedback(&self) -> &DMatrix<f64> {
         &self.feedback
     }
 
-    /// `H~ = (I - H K)^-1 H M~(V)` at every frequency of `H`, p x m.
+    /// Computes `H~ = (I - H K)^-1 H M~(V)` at every frequency of `H`, p x m.
     ///
-    /// Not finite where `I - H K` is singular, or `H` lacks a response of an output that is fed back; an output of which `H` lacks a
-    /// response and that is not fed back has none.
+    /// Not finite where `I - H K` is singular or `H` lacks a response of an output that is fed
+    /// back. An output with a missing response that is not fed back stays without a response.
     #[must_use]
     pub fn response(&self, physics: &FrequencyResponse, airspeed_kt: f64) -> FrequencyResponse {
         let inputs = physics.inputs();
@@ -153,8 +156,8 @@ impl CouplingMatrices {
         FrequencyResponse::new(coupled)
     }
 
-    /// `H` at a frequency, column by column; returns the outputs that lack a response and are not fed back, which stand as zeros: they
-    /// change nothing of the others.
+    /// Writes `H` at one frequency, column by column; returns the outputs that lack a response and
+    /// are not fed back. Their values are zeros, which do not affect the other outputs.
     fn fill(
         &self,
         physics: &FrequencyResponse,
@@ -186,7 +189,7 @@ impl CouplingMatrices {
     }
 }
 
-/// Closes `u = u' + K y` around responses of p outputs and m inputs; keeps the room that it takes.
+/// Closes `u = u' + K y` around responses of p outputs and m inputs; reuses its work memory.
 pub(super) struct ClosedLoop<'a> {
     /// `K`, m x p.
     feedback: &'a DMatrix<f64>,
@@ -196,7 +199,7 @@ pub(super) struct ClosedLoop<'a> {
 }
 
 impl<'a> ClosedLoop<'a> {
-    /// The loop of a feedback `K`, m x p.
+    /// Creates the loop of a feedback `K`, m x p.
     pub(super) fn new(feedback: &'a DMatrix<f64>) -> Self {
         let inputs = feedback.nrows();
         let is_open = feedback.iter().all(|entry| *entry == 0.0);
@@ -207,7 +210,8 @@ impl<'a> ClosedLoop<'a> {
         }
     }
 
-    /// Makes `H` (p x m, column by column) into `F = (I - H K)^-1 H`; false where that is not finite.
+    /// Replaces `H` (p x m, column by column) by `F = (I - H K)^-1 H`; returns false if the result
+    /// is not finite.
     pub(super) fn close(&mut self, response: &mut [Complex<f64>]) -> bool {
         if self.is_open {
             return response.iter().all(|value| value.is_finite());
@@ -217,7 +221,7 @@ impl<'a> ClosedLoop<'a> {
         (0..inputs).all(|column| self.eliminate(column, response)) && self.substitute_back(response)
     }
 
-    /// `T = I - K H`.
+    /// Computes `T = I - K H`.
     fn return_difference(&mut self, response: &[Complex<f64>]) {
         let (inputs, outputs) = self.feedback.shape();
         for (column, of_input) in response.chunks_exact(outputs).enumerate() {
@@ -233,7 +237,7 @@ impl<'a> ClosedLoop<'a> {
         }
     }
 
-    /// Takes row `at` out of the columns after column `at`; false where there is no pivot.
+    /// Eliminates row `at` from the columns after column `at`; returns false without a pivot.
     fn eliminate(&mut self, at: usize, response: &mut [Complex<f64>]) -> bool {
         let (inputs, outputs) = self.feedback.shape();
         let size = |column: &usize| self.difference[column * inputs + at].norm_sqr();
@@ -257,7 +261,7 @@ impl<'a> ClosedLoop<'a> {
         is_usable
     }
 
-    /// Makes the triangular `T` the identity; false where a value is not finite.
+    /// Reduces the triangular `T` to the identity; returns false if a value is not finite.
     fn substitute_back(&mut self, response: &mut [Complex<f64>]) -> bool {
         let (inputs, outputs) = self.feedback.shape();
         for column in (0..inputs).rev() {
@@ -274,7 +278,7 @@ impl<'a> ClosedLoop<'a> {
     }
 }
 
-/// Takes `factor` times column `of` from column `from`; columns of `rows` entries.
+/// Subtracts `factor` times column `of` from column `from`; columns of `rows` entries.
 fn subtract(
     columns: &mut [Complex<f64>],
     rows: usize,
@@ -290,10 +294,10 @@ fn subtract(
 /// Condition number of `I - D K` beyond which a loop through the feed-through is refused.
 const WORST_CONDITION: f64 = 1e6;
 
-/// Why mixing and feedback cannot be put on a model as matrices.
+/// Reasons why mixing and feedback cannot be applied to a model as matrices.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CoupledModelError {
-    /// The loop through the feed-through cannot be closed.
+    /// The algebraic loop through the feed-through cannot be closed.
     #[error(
         "the feedback through its feed-through cannot be computed with: the condition number of I − D K is {}, and at most \
          {WORST_CONDITION:e} is allowed",
@@ -303,17 +307,17 @@ pub enum CoupledModelError {
         /// Condition number of `I - D K`; infinite where it is singular.
         condition_number: f64,
     },
-    /// It has other channels than the couplings.
+    /// The channels of the model differ from those of the couplings.
     #[error(
         "it has {} outputs and {} inputs, and the couplings are of {} and {}", found.0, found.1, expected.0, expected.1
     )]
     Channels {
-        /// Its outputs and inputs.
+        /// Numbers of outputs and inputs of the model.
         found: (usize, usize),
-        /// Outputs and inputs of the couplings.
+        /// Numbers of outputs and inputs of the couplings.
         expected: (usize, usize),
     },
-    /// The delays of its channels, which stand inside the loop, cannot become states.
+    /// The channel delays inside the loop cannot become states.
     #[error(transparent)]
     Delays(#[from] CorrectedModelError),
     /// A product is not finite.
@@ -322,7 +326,7 @@ pub enum CoupledModelError {
 }
 
 impl CoupledModelError {
-    /// Why, in words that name the channels.
+    /// Returns the reason with channel names.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         match self {
             Self::Delays(error) => error.words(inputs, outputs),
@@ -332,8 +336,9 @@ impl CoupledModelError {
 }
 
 impl CouplingMatrices {
-    /// The physics model with mixing and feedback, in continuous or discrete time; delays of its channels, which stand inside the loop,
-    /// are states first: `pade` approximants, or whole samples.
+    /// Builds the physics model with mixing and feedback, in continuous or discrete time. Channel
+    /// delays, which lie inside the loop, become states first: Padé approximants `pade`, or whole
+    /// samples.
     ///
     /// ```text
     /// K~ = K (I - D K)^-1
@@ -342,8 +347,8 @@ impl CouplingMatrices {
     /// ```
     ///
     /// # Errors
-    /// [`CoupledModelError`] where the condition number of `I - D K` is over 1e6, the channels are others, or delays or numbers are not
-    /// those of a model.
+    /// [`CoupledModelError`] if the condition number of `I - D K` exceeds 1e6, the channels differ,
+    /// the delays cannot become states, or a product is not finite.
     pub fn model(
         &self,
         physics: &StateSpace,
@@ -377,7 +382,7 @@ impl CouplingMatrices {
     }
 }
 
-/// `I - D K` with its factors.
+/// Returns `I - D K` with its factors.
 fn algebraic_loop(
     d: &DMatrix<f64>,
     k: &DMatrix<f64>,
@@ -385,14 +390,14 @@ fn algebraic_loop(
     let difference = DMatrix::identity(d.nrows(), d.nrows()) - d * k;
     let singular = difference.clone().svd(false, false).singular_values;
     let condition_number = singular.max() / singular.min();
-    // Not a number, too, where D K overflows.
+    // True for NaN as well, where D K overflows.
     if !condition_number.le(&WORST_CONDITION) {
         return Err(CoupledModelError::AlgebraicLoop { condition_number });
     }
     Ok(difference.lu())
 }
 
-/// The model with the delays of its channels as states.
+/// Returns the model with its channel delays as states.
 ///
 /// # Errors
 /// A Padé approximant with more states than a model may have.
@@ -429,7 +434,7 @@ mod tests {
         assert!(ClosedLoop::new(&k).close(&mut f));
         let loop_gain = &h * k.map(Complex::from);
         let expected = (DMatrix::identity(3, 3) - loop_gain).try_inverse().unwrap() * &h;
-        // Two eliminations of matrices of a condition number below ten.
+        // Two eliminations with condition numbers below ten.
         assert!(
             f.iter()
                 .zip(&expected)

@@ -1,5 +1,5 @@
-//! The fit of mixing and feedback to all conditions at once (M16.2); without each condition in turn, and the error bars that this
-//! gives (M16.4).
+//! Fit of mixing and feedback to all conditions at once (M16.2), leave-one-out fits, and the error
+//! bars derived from them (M16.4).
 //!
 //! ```text
 //! sd^2 = (n - 1) / n sum_c (theta_(-c) - mean theta_(-c))^2,   half-width = t(n - 1) sd
@@ -19,35 +19,36 @@ use super::problem::{CouplingError, CouplingProblem, Unknown};
 use super::weighted_condition::WeightedCondition;
 use crate::uncertainty::student_quantile;
 
-/// The couplings of a problem, and how they were found.
+/// The fitted couplings of a problem and a record of the fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingFit {
-    /// Mixing and feedback.
     pub matrices: CouplingMatrices,
-    /// What was fitted.
+    /// The fitted unknowns.
     pub unknowns: Vec<Unknown>,
-    /// Every unknown after each solve.
+    /// Values of the unknowns after each solve.
     pub coefficients: Vec<Vec<f64>>,
-    /// The proof of the last solve, a convex problem of one optimum: the largest residual of its normal equations over their largest
-    /// right side.
+    /// Optimality check of the last solve, a convex problem with one optimum: the largest residual
+    /// of the normal equations over the largest right side.
     pub residual: f64,
-    /// The outputs that cannot be fed back, for some input has no response of them in any condition.
+    /// Outputs that cannot be fed back, because some input has no response of them in any
+    /// condition.
     pub not_fed_back: Vec<usize>,
-    /// The unknowns of which no response says anything: they are as without couplings.
+    /// Unknowns that no response determines; they keep their uncoupled values.
     pub undetermined: Vec<Unknown>,
 }
 
-/// Memory that the blocks of several conditions may take at once \[bytes\].
+/// Memory limit for the blocks of conditions computed in parallel \[bytes\].
 const BLOCK_MEMORY: usize = 256 << 20;
 
-/// Fits the couplings of a problem: five weighted linear least-squares problems, one after the other (M16.2).
+/// Fits the couplings of a problem by five successive weighted linear least-squares problems
+/// (M16.2).
 ///
-/// The same to the last bit whoever carries out its pieces. `progress` is told of every condition of every pass, and asked every few
-/// frequencies whether to go on.
+/// The result is identical to the last bit, however its pieces are scheduled. `progress` is
+/// notified of every condition of every pass, and polled every few frequencies for cancellation.
 ///
 /// # Errors
-/// [`CouplingError`] where tables do not fit together, no response counts, the loop of a pass is singular, the unknowns cannot be told
-/// apart, or `progress` is cancelled.
+/// [`CouplingError`] if tables do not fit together, no response has a weight, the loop of a pass is
+/// singular, the unknowns cannot be told apart, or `progress` is cancelled.
 pub fn fit_couplings(
     problem: &CouplingProblem,
     executor: &dyn Executor,
@@ -71,7 +72,7 @@ pub fn fit_couplings(
         fed_back: &fed_back,
         layout: UnknownLayout::new(&unknowns, problem.inputs(), &fed_back),
         shares: Shares::new(progress),
-        // The solution of a pass counts as one condition more.
+        // The solution of a pass counts as one more condition.
         share: 1.0 / (solves * (conditions.len() + 1)) as f64,
     };
     let mut matrices = CouplingMatrices::none(airspeeds, problem.inputs(), problem.outputs());
@@ -103,23 +104,24 @@ pub fn fit_couplings(
     })
 }
 
-/// The step that a fit reports.
+/// Name of the step in progress reports.
 const FITTING: &str = "mixing and feedback";
 
-/// What the passes of a fit have in common.
+/// Shared data of the passes of a fit.
 struct Fitting<'a> {
     conditions: &'a [WeightedCondition<'a>],
     fed_back: &'a [usize],
     layout: UnknownLayout,
     shares: Shares<'a>,
-    /// What a condition of a pass is of the whole.
+    /// Share of one condition of one pass in the whole fit.
     share: f64,
 }
 
 impl Fitting<'_> {
-    /// The normal equations of the pass after these couplings.
+    /// Returns the normal equations of the pass that follows these couplings.
     ///
-    /// So many conditions are carried out side by side as there is memory for their blocks; they are added in their order.
+    /// As many conditions run in parallel as memory permits for their blocks; they are added in
+    /// order.
     fn equations(
         &self,
         last: &CouplingMatrices,
@@ -149,22 +151,23 @@ impl Fitting<'_> {
     }
 }
 
-/// Conditions below which there are no error bars.
+/// Fewest conditions for error bars.
 pub const LEAST_CONDITIONS: usize = 3;
 
 /// The fit without one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeftOutFit {
-    /// The condition that is left out.
+    /// The omitted condition.
     pub condition: ConditionId,
-    /// The fit to all others.
+    /// The fit to all other conditions.
     pub fit: CouplingFit,
 }
 
-/// The couplings without each condition in turn, in the order of the conditions; each is a piece of work of its own.
-///
+/// Fits the couplings without each condition in turn, in the order of the conditions; the fits are
+/// independent tasks.
 /// # Errors
-/// [`CouplingError::TooFewConditions`] of fewer than three, and as [`fit_couplings`].
+/// [`CouplingError::TooFewConditions`] for fewer than three conditions, and the errors of
+/// [`fit_couplings`].
 pub fn left_out_fits(
     problem: &CouplingProblem,
     executor: &dyn Executor,
@@ -199,19 +202,20 @@ fn check_count(found: usize) -> Result<(), CouplingError> {
 /// Half-widths of the error bars of mixing and feedback.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingBars {
-    /// Of `M~` at one airspeed, m x m; 0 on its diagonal, which is 1.
+    /// Half-widths for `M~` at one airspeed, m x m; 0 on its diagonal, which is 1.
     pub mixing: DMatrix<f64>,
-    /// Of `K`, m x p.
+    /// Half-widths for `K`, m x p.
     pub feedback: DMatrix<f64>,
-    /// Student's quantile: a half-width over its standard deviation.
+    /// Student's quantile: the ratio of half-width to standard deviation.
     pub quantile: f64,
 }
 
 impl CouplingBars {
-    /// The bars of a level, Student's quantile of `n - 1` times the jackknife's standard deviation; those of the mixing at `airspeed_kt`.
+    /// Computes the error bars at a confidence level: Student's quantile with `n - 1` degrees of
+    /// freedom times the jackknife standard deviation; the mixing is evaluated at `airspeed_kt`.
     ///
     /// # Errors
-    /// [`CouplingError::TooFewConditions`] of fewer than three.
+    /// [`CouplingError::TooFewConditions`] for fewer than three.
     pub fn of(fits: &[LeftOutFit], airspeed_kt: f64, level: f64) -> Result<Self, CouplingError> {
         check_count(fits.len())?;
         let quantile = student_quantile(level, fits.len() as f64 - 1.0);
@@ -228,7 +232,8 @@ impl CouplingBars {
     }
 }
 
-/// Standard deviation of each entry by the jackknife, of the matrices without each condition; at least one.
+/// Computes the jackknife standard deviation of each entry from the leave-one-out matrices; at
+/// least one is needed.
 fn jackknife(without: &[DMatrix<f64>]) -> DMatrix<f64> {
     let count = without.len() as f64;
     let (rows, columns) = without[0].shape();

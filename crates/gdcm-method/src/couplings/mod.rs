@@ -1,5 +1,5 @@
-//! Couplings and modes that channels cannot reach (M16): one mixing of the inputs and one feedback of outputs to inputs, the same for
-//! all flight conditions, found by linear least squares.
+//! Couplings and modes that channels cannot reach (M16): one input mixing and one output-to-input
+//! feedback, common to all flight conditions, fitted by linear least squares.
 //!
 //! ```text
 //! y = H (u' + K y),  u' = M~ u,  so that  H~ = (I - H K)^-1 H M~
@@ -16,9 +16,11 @@
 //! 10  H~, its state space, its poles, the least singular value of I - K H
 //! ```
 //!
-//! M16; the jackknife: B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans", SIAM 1982, chapter 3.
+//! M16; the jackknife: B. Efron, "The Jackknife, the Bootstrap and Other Resampling Plans", SIAM
+//! 1982, chapter 3.
 //!
-//! Index order `[output, input]` of responses, `[to, from]` of `M` (input, input) and of `K` (input, output); omega in rad/s.
+//! Index order: `[output, input]` for responses, `[to, from]` for `M` (input, input) and for `K`
+//! (input, output); omega in rad/s.
 
 pub mod coupling_effects;
 pub mod coupling_matrices;

@@ -1,18 +1,21 @@
-//! The normal equations of one pass, put together from small blocks, and their solution (M16.2).
+//! The normal equations of one pass, assembled from small blocks, and their solution (M16.2).
 //!
-//! In input column i of the equations every unknown has the column `F[:,j]` times a number: `v^k` for `M_ji`, `R'_oi` for `K_jo`. With
-//! `t = (1, R'_oi ...)` and `P = F^H q^2 F`, m x m, the blocks are
+//! In input column i of the equations every unknown has the column `F[:,j]` times a number: `v^k`
+//! for `M_ji`, `R'_oi` for `K_jo`. With `t = (1, R'_oi ...)` and `P = F^H q^2 F`, m x m, the blocks
+//! are
 //!
 //! ```text
 //! G[(a, j), (b, l)] = Re conj(t_a) t_b P_jl = Re(conj(t_a) t_b) Re P_jl - Im(conj(t_a) t_b) Im P_jl
 //! b[(a, j)] = Re conj(t_a) z_j,    z = F^H q^2 (S R')[:,i],
 //! ```
 //!
-//! summed over the frequencies of a condition. Over many frequencies the sums of `Re conj(t_a) t_b Re P_jl` and of
-//! `Im conj(t_a) t_b Im P_jl` are two matrix products, and `P_lj = conj P_jl` halves them. No row of the design is kept.
+//! summed over the frequencies of a condition. Over many frequencies the sums of `Re conj(t_a) t_b
+//! Re P_jl` and of `Im conj(t_a) t_b Im P_jl` are two matrix products, and `P_lj = conj P_jl`
+//! halves the work. No row of the design matrix is kept.
 //!
-//! A `M_ji` has a column in the equations of input i alone, a `K_jo` in those of every input. The normal matrix is therefore an arrow:
-//! a block for each input, and a border for K, whose part is summed over inputs before anything is put in its place:
+//! An `M_ji` has a column only in the equations of input i, a `K_jo` in those of every input. The
+//! normal matrix is therefore an arrow: a block for each input and a border for K, whose part is
+//! summed over inputs before anything is substituted:
 //!
 //! ```text
 //! [ A_1            B_1 ]   [ M_1 ]   [ b_1 ]        1  A_i = L_i L_i^T,  W_i = L_i^-1 B_i,  y_i = L_i^-1 b_i  of every input i
@@ -21,8 +24,8 @@
 //! [ B_1^T ... B_m^T C  ]   [ K   ]   [ b_K ]
 //! ```
 //!
-//! Cholesky's factors by blocks: Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 4.2.9. The airspeed `v` is the same at all
-//! frequencies of a condition and comes in afterwards.
+//! Block Cholesky factorisation: Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 4.2.9. The
+//! airspeed `v` is the same at all frequencies of a condition and enters afterwards.
 
 use nalgebra::{Cholesky, Complex, DMatrix, DMatrixView, DVector, Dyn};
 
@@ -32,29 +35,31 @@ use super::coupling_matrices::{ClosedLoop, CouplingMatrices};
 use super::problem::{CouplingError, Unknown};
 use super::weighted_condition::WeightedCondition;
 
-/// Frequencies whose products are summed at once: their factors stay in the processor's cache.
+/// Frequencies whose products are summed at once, so that their factors stay in the processor
+/// cache.
 const CHUNK: usize = 64;
 
-/// Number of pairs `a <= b` of `count` things.
+/// Returns the number of pairs `a <= b` of `count` items.
 fn pair_count(count: usize) -> usize {
     count * (count + 1) / 2
 }
 
-/// Place of the pair `a <= b` of `count` things, row by row.
+/// Returns the index of the pair `a <= b` of `count` items, row by row.
 fn pair_place(a: usize, b: usize, count: usize) -> usize {
     a * count - a * a.saturating_sub(1) / 2 + b - a
 }
 
-/// Where the unknowns stand in the equations: the entries of `M` by the input whose column they are in, then those of `K`.
+/// Positions of the unknowns in the equations: the entries of `M` by input column, then the entries
+/// of `K`.
 pub(super) struct UnknownLayout {
-    /// Of each input i the unknowns of `M_ji`.
+    /// The unknowns `M_ji` of each input i.
     mixing: Vec<Vec<MixingPlace>>,
     feedback: Vec<FeedbackPlace>,
 }
 
 /// An unknown of `M_ji`.
 struct MixingPlace {
-    /// Place among the unknowns.
+    /// Index among the unknowns.
     place: usize,
     /// The input j.
     to: usize,
@@ -64,16 +69,17 @@ struct MixingPlace {
 
 /// An unknown `K_jo`.
 struct FeedbackPlace {
-    /// Place among the unknowns.
+    /// Index among the unknowns.
     place: usize,
     /// The input j.
     input: usize,
-    /// Place of the output o among those fed back.
+    /// Index of the output o among those fed back.
     number: usize,
 }
 
 impl UnknownLayout {
-    /// The layout of these unknowns of so many inputs; `fed_back` are the outputs of which `K` has a column.
+    /// Creates the layout of these unknowns for `inputs` inputs; `fed_back` are the outputs with a
+    /// column in `K`.
     pub(super) fn new(unknowns: &[Unknown], inputs: usize, fed_back: &[usize]) -> Self {
         let mut layout = Self {
             mixing: (0..inputs).map(|_| Vec::new()).collect(),
@@ -109,17 +115,18 @@ struct LastPass<'a> {
     mixing: DMatrix<f64>,
     /// `K`, m x p.
     feedback: &'a DMatrix<f64>,
-    /// The outputs of which `K` has a column.
+    /// The outputs with a column in `K`.
     fed_back: &'a [usize],
 }
 
-/// Sums over frequencies of `Re conj(t_a) t_b P_jl`: a row for each pair of numbers `t`, a column for each pair `j <= l` of inputs.
+/// Sums over frequencies of `Re conj(t_a) t_b P_jl`: a row for each pair of numbers `t`, a column
+/// for each pair `j <= l` of inputs.
 #[derive(Clone)]
 struct Products {
     inputs: usize,
-    /// Sums of the product of the real parts.
+    /// Sums of the products of the real parts.
     real: DMatrix<f64>,
-    /// Sums of the product of the imaginary parts.
+    /// Sums of the products of the imaginary parts.
     imaginary: DMatrix<f64>,
 }
 
@@ -133,7 +140,7 @@ impl Products {
         }
     }
 
-    /// The sum of one pair of numbers for inputs j, l in any order.
+    /// Returns the sum of one pair of numbers for inputs j, l in any order.
     fn entry(&self, row: usize, j: usize, l: usize) -> f64 {
         if j <= l {
             let column = pair_place(j, l, self.inputs);
@@ -144,7 +151,8 @@ impl Products {
         }
     }
 
-    /// Adds the products of the frequencies in a chunk, whose pairs of numbers are the rows from `first` on.
+    /// Adds the products of the frequencies in a chunk; its pairs of numbers are the rows from
+    /// `first` on.
     fn add(&mut self, chunk: &Chunk, first: usize) {
         let (rows, columns) = self.real.shape();
         if rows == 0 || chunk.filled == 0 {
@@ -155,7 +163,7 @@ impl Products {
             (&mut self.imaginary, &chunk.t_im, &chunk.p_im),
         ] {
             let numbers = numbers.view((first, 0), (rows, chunk.filled));
-            // The transpose, read where it lies.
+            // The transpose, read without copying.
             let weighted = DMatrixView::from_slice_with_strides(
                 weighted.as_slice(),
                 chunk.filled,
@@ -168,9 +176,9 @@ impl Products {
     }
 }
 
-/// What one condition adds to the normal equations.
+/// Contribution of one condition to the normal equations.
 pub(super) struct ConditionBlocks {
-    /// The parts in which unknowns of M are, one for each input column.
+    /// The blocks with unknowns of M, one for each input column.
     columns: Vec<ColumnBlocks>,
     /// The pairs of two unknowns of K, summed over the input columns.
     feedback: Products,
@@ -178,7 +186,7 @@ pub(super) struct ConditionBlocks {
     right: DMatrix<f64>,
 }
 
-/// The unknowns of M of one input column among themselves, and with those of K.
+/// The unknowns of M in one input column, among themselves and with those of K.
 #[derive(Clone)]
 struct ColumnBlocks {
     /// A row for each number `t_b` beside `t_0 = 1`.
@@ -197,7 +205,7 @@ struct Chunk {
     p_im: DMatrix<f64>,
 }
 
-/// Room for what stands at one frequency.
+/// Work memory for one frequency.
 struct Scratch {
     coupled: Vec<Complex<f64>>,
     target: Vec<Complex<f64>>,
@@ -217,11 +225,12 @@ struct Closed {
 }
 
 impl ConditionBlocks {
-    /// The blocks of a condition, where the last pass left these couplings; `fed_back` are the outputs of which `K` has a column.
+    /// Computes the blocks of a condition for the couplings of the last pass; `fed_back` are the
+    /// outputs with a column in `K`.
     ///
     /// # Errors
-    /// [`CouplingError::SingularLoop`] where `I - K H` has no inverse at a frequency that counts, [`CouplingError::Cancelled`] where
-    /// `progress` says so.
+    /// [`CouplingError::SingularLoop`] if `I - K H` has no inverse at a frequency that counts,
+    /// [`CouplingError::Cancelled`] if `progress` is cancelled.
     pub(super) fn new(
         condition: &WeightedCondition<'_>,
         last: &CouplingMatrices,
@@ -288,7 +297,7 @@ impl ConditionBlocks {
         }
     }
 
-    /// Memory that the blocks of a condition take \[bytes\].
+    /// Returns the memory for the blocks of a condition \[bytes\].
     pub(super) fn bytes(inputs: usize, fed_back: usize) -> usize {
         let rows = inputs * (fed_back + 1) + pair_count(fed_back);
         2 * std::mem::size_of::<f64>() * rows * pair_count(inputs)
@@ -336,7 +345,7 @@ impl Chunk {
         }
     }
 
-    /// The next column of each, from the numbers `t` and from `F` with its weights.
+    /// Appends the next column of each factor, from the numbers `t` and from `F` with its weights.
     fn push(&mut self, t: &[Complex<f64>], at: &Closed, squared: &[f64]) {
         let pairs = self.t_re.nrows();
         let inputs = at.re.len() / squared.len();
@@ -397,7 +406,7 @@ impl Scratch {
         }
     }
 
-    /// The input column of `H_c = F M`.
+    /// Computes the input column of `H_c = F M`.
     fn mix(&mut self, f: &[Complex<f64>], last: &LastPass<'_>, input: usize) {
         self.coupled.fill(Complex::new(0.0, 0.0));
         for (of_input, factor) in f
@@ -410,7 +419,8 @@ impl Scratch {
         }
     }
 
-    /// `t` and `z` of an input column of `R'`, and the factors of its products. `S R' = R' + F K R'`, for `S = I + F K`.
+    /// Computes `t` and `z` of an input column of `R'`, and the factors of its products.
+    /// Since `S = I + F K`, the product `S R'` is `R' + F K R'`.
     fn weigh(
         &mut self,
         at: &Closed,
@@ -456,7 +466,7 @@ pub(super) struct NormalEquations<'a> {
 
 /// The rows of the unknowns of M of one input.
 struct ColumnEquations {
-    /// Their columns.
+    /// The columns of these unknowns.
     block: DMatrix<f64>,
     /// The columns of the unknowns of K.
     border: DMatrix<f64>,
@@ -465,16 +475,17 @@ struct ColumnEquations {
 
 /// The optimum of one pass.
 pub(super) struct PassOptimum {
-    /// `theta`, one for each unknown.
+    /// `theta`, one value per unknown.
     pub(super) coefficients: DVector<f64>,
-    /// Largest residual of the normal equations over the largest right side, each divided by the root of its diagonal entry.
+    /// Largest residual of the normal equations over the largest right side, each divided by the
+    /// root of its diagonal entry.
     pub(super) residual: f64,
-    /// The unknowns (by place) of which the responses say nothing: they stay as without couplings.
+    /// Indices of the unknowns that no response determines; they keep their uncoupled values.
     pub(super) undetermined: Vec<usize>,
 }
 
 impl<'a> NormalEquations<'a> {
-    /// Nothing added yet.
+    /// Creates empty equations.
     pub(super) fn zeros(layout: &'a UnknownLayout, inputs: usize, fed_back: usize) -> Self {
         let column = |mixing: &Vec<MixingPlace>| ColumnEquations {
             block: DMatrix::zeros(mixing.len(), mixing.len()),
@@ -489,7 +500,7 @@ impl<'a> NormalEquations<'a> {
         }
     }
 
-    /// Adds a condition of scaled airspeed `v`.
+    /// Adds a condition with scaled airspeed `v`.
     pub(super) fn add(&mut self, blocks: &ConditionBlocks, v: f64) {
         for ((equations, column), mixing) in self
             .columns
@@ -515,7 +526,7 @@ impl<'a> NormalEquations<'a> {
         self.right += &blocks.right;
     }
 
-    /// The entry of the normal matrix of two unknowns of K.
+    /// Returns the entry of the normal matrix for two unknowns of K.
     fn feedback_entry(&self, row: &FeedbackPlace, column: &FeedbackPlace) -> f64 {
         let fed_back = self.right.nrows();
         if row.number <= column.number {
@@ -533,12 +544,13 @@ impl<'a> NormalEquations<'a> {
         }
     }
 
-    /// The optimum, drawn to no couplings by `ridge`.
+    /// Returns the optimum, regularised towards no couplings by `ridge`.
     ///
-    /// Rows and columns are divided by the root of the diagonal first: the entries of `K` differ in unit.
+    /// Rows and columns are first divided by the root of the diagonal, because the entries of `K`
+    /// differ in unit.
     ///
     /// # Errors
-    /// [`CouplingError::SingularNormalMatrix`] where there are no Cholesky factors.
+    /// [`CouplingError::SingularNormalMatrix`] without Cholesky factors.
     pub(super) fn solve(
         &self,
         unknowns: &[Unknown],
@@ -578,7 +590,7 @@ impl<'a> NormalEquations<'a> {
         })
     }
 
-    /// The equations with the roots of the diagonal divided out, and drawn to no couplings.
+    /// Returns the equations scaled to a unit diagonal and regularised towards no couplings.
     fn scaled(&self, scaling: &Scaling<'_>) -> ScaledEquations {
         let place_of_feedback = |column: usize| self.layout.feedback[column].place;
         let columns = self
@@ -630,7 +642,8 @@ impl<'a> NormalEquations<'a> {
     }
 }
 
-/// The factors that make the diagonal of the normal matrix one, and what draws the unknowns to no couplings.
+/// Factors that scale the diagonal of the normal matrix to one, and the regularisation towards no
+/// couplings.
 struct Scaling<'a> {
     unknowns: &'a [Unknown],
     ridge: f64,
@@ -656,7 +669,7 @@ impl<'a> Scaling<'a> {
         }
     }
 
-    /// What is added to the diagonal.
+    /// Returns the regularisation term on the diagonal.
     fn draw(&self, place: usize) -> f64 {
         if self.is_determined[place] {
             self.ridge
@@ -665,7 +678,7 @@ impl<'a> Scaling<'a> {
         }
     }
 
-    /// The right side `b`, scaled and drawn.
+    /// Returns the right side `b`, scaled and regularised.
     fn right(&self, place: usize, right: f64) -> f64 {
         let scale = self.scale[place];
         scale * right + self.draw(place) * self.unknowns[place].uncoupled() / scale
@@ -689,12 +702,12 @@ struct ScaledEquations {
 
 /// The scaled unknowns.
 struct ScaledSolution {
-    /// Those of M, input by input.
+    /// The unknowns of M, input by input.
     mixing: Vec<DVector<f64>>,
     feedback: DVector<f64>,
 }
 
-/// What is known of one input before the unknowns of K are.
+/// Elimination results of one input, before the unknowns of K are known.
 struct EliminatedColumn {
     /// `L_i`.
     factors: Cholesky<f64, Dyn>,
@@ -705,7 +718,7 @@ struct EliminatedColumn {
 }
 
 impl ScaledEquations {
-    /// The steps 1 to 3 of the box above; none where there are no Cholesky factors.
+    /// Performs steps 1 to 3 of the box above; `None` without Cholesky factors.
     fn solve(&self) -> Option<ScaledSolution> {
         let mut corner = self.corner.clone();
         let mut right = self.right.clone();
@@ -730,7 +743,7 @@ impl ScaledEquations {
         Some(ScaledSolution { mixing, feedback })
     }
 
-    /// Largest residual over the largest right side.
+    /// Returns the largest residual over the largest right side.
     fn residual(&self, solution: &ScaledSolution) -> f64 {
         let mut largest = 0.0_f64;
         let mut most_right = self.right.amax();
@@ -759,7 +772,7 @@ impl EliminatedColumn {
         })
     }
 
-    /// The unknowns of M, once those of K are known.
+    /// Solves for the unknowns of M, given those of K.
     fn substitute(&self, feedback: &DVector<f64>) -> Option<DVector<f64>> {
         let left = &self.right - &self.border * feedback;
         self.factors.l_dirty().tr_solve_lower_triangular(&left)

@@ -1,5 +1,5 @@
-//! What couplings are fitted to (M16.1): the entries of the mixing and of the feedback, and the flight response without the delays and
-//! leads of its channels, with how well it is known (M16.2).
+//! Data of the coupling fit (M16.1): the entries of mixing and feedback, and the flight response
+//! without the delays and leads of its channels, with its uncertainty (M16.2).
 
 use std::f64::consts::LN_10;
 use std::sync::Arc;
@@ -19,7 +19,7 @@ use crate::fidelity::CoherenceWeights;
 use crate::schedule::Airspeeds;
 use crate::uncertainty::spread::Measurement;
 
-/// Which couplings are put at the inputs of a physics model.
+/// Couplings applied at the inputs of a physics model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum CouplingKind {
     /// A mixing `M` of the inputs.
@@ -39,48 +39,48 @@ impl CouplingKind {
 /// One flight condition of the fit: its representatives on the frequencies of the band.
 #[derive(Clone, Debug)]
 pub struct CouplingCondition {
-    /// Which it is.
     pub id: ConditionId,
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// `H`, p x m: the physics representative, not finite where it has no response.
+    /// `H`, p x m: the physics representative, not finite where a response is missing.
     pub physics: Arc<FrequencyResponse>,
-    /// `R'`, p x m: the identified representative without the channels' delays and leads, see [`self::without_channels`]; not finite
-    /// where it has no response.
+    /// `R'`, p x m: the identified representative without the channels' delays and leads, see
+    /// [`self::without_channels`]; not finite where a response is missing.
     pub flight: FrequencyResponse,
-    /// The responses that both representatives have (M6, M6a); the others have weight 0.
+    /// Responses available in both representatives (M6, M6a); the others have weight 0.
     pub usable: PairTable<bool>,
-    /// Standard deviation of the identified model's `ln H`, one value for each frequency, see [`self::response_deviation`]; none: 0.
+    /// Standard deviation of the identified model's `ln H`, one value per frequency, see
+    /// [`self::response_deviation`]; `None` counts as 0.
     pub deviation: Option<PairTable<Vec<f64>>>,
-    /// Frequencies that count by the coherence of the identified representative, and how much (M4a); none: all alike.
+    /// Frequencies and weights by the coherence of the identified representative (M4a); `None`: all
+    /// weigh the same.
     pub coherence: Option<PairTable<CoherenceWeights>>,
 }
 
-/// What couplings are fitted to: those conditions that are analysed and not held out, and have both representatives.
+/// The coupling fit's data: the analysed conditions with both representatives, without those
+/// reserved for validation.
 #[derive(Clone, Debug)]
 pub struct CouplingProblem {
-    /// Which couplings.
     pub kind: CouplingKind,
-    /// The frequencies of every response \[rad/s\], rising.
+    /// The common frequencies of all responses \[rad/s\], ascending.
     pub omega: Arc<[f64]>,
     /// The on-axis responses, which weigh twice.
     pub on_axis: PairTable<bool>,
-    /// The conditions.
     pub conditions: Vec<CouplingCondition>,
-    /// How it is fitted.
     pub options: CouplingOptions,
 }
 
-/// How couplings are fitted (M16.2).
+/// Settings of the coupling fit (M16.2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingOptions {
-    /// `rho`: how strongly the entries are drawn to M = I, K = 0, as a share of what the responses say of each.
+    /// `rho`: strength of the regularisation towards M = I, K = 0, relative to the information in
+    /// the responses about each entry.
     pub ridge: f64,
-    /// Number of linear least-squares problems, one after the other.
+    /// Number of successive linear least-squares problems.
     pub solves: usize,
     /// Highest power of the scaled airspeed in the diagonal of `M`.
     pub degree: usize,
-    /// Airspeeds within this of the next one \[kt\] are one (M11b).
+    /// Airspeeds closer than this to the next \[kt\] are treated as equal (M11b).
     pub airspeed_tolerance_kt: f64,
 }
 
@@ -96,27 +96,27 @@ impl Default for CouplingOptions {
 }
 
 impl CouplingProblem {
-    /// Number of outputs, `p`.
+    /// Returns the number of outputs, `p`.
     pub fn outputs(&self) -> usize {
         self.on_axis.outputs()
     }
 
-    /// Number of inputs, `m`.
+    /// Returns the number of inputs, `m`.
     pub fn inputs(&self) -> usize {
         self.on_axis.inputs()
     }
 
-    /// The same without one condition.
+    /// Returns the problem without one condition.
     pub fn without(&self, place: usize) -> Self {
         let mut others = self.clone();
         others.conditions.remove(place);
         others
     }
 
-    /// The airspeeds of the conditions, centred and scaled.
+    /// Returns the airspeeds of the conditions, centred and scaled.
     ///
     /// # Errors
-    /// [`CouplingError::NothingToFit`] where there is no condition.
+    /// [`CouplingError::NothingToFit`] if there is no condition.
     pub(super) fn airspeeds(&self) -> Result<Airspeeds, CouplingError> {
         let airspeeds_kt = self
             .conditions
@@ -127,10 +127,12 @@ impl CouplingProblem {
         airspeeds.ok_or(CouplingError::NothingToFit { conditions: 0 })
     }
 
-    /// The outputs of which `K` has a column: all that the feedback can use, none of a mixing alone.
+    /// Returns the outputs with a column in `K`: all that the feedback can use, none for a mixing
+    /// alone.
     ///
-    /// An input column of the equations needs the flight response of every such output. An output that some input would have at no
-    /// frequency of no condition is therefore left out, and so is one that the physics models do not have.
+    /// An input column of the equations needs the flight response of every such output. An output
+    /// that would be missing for some input at all frequencies of all conditions is therefore left
+    /// out, and so is an output missing from the physics models.
     pub(super) fn fed_back(&self) -> Vec<usize> {
         if !self.kind.feeds_back() {
             return Vec::new();
@@ -148,12 +150,13 @@ impl CouplingProblem {
             .collect()
     }
 
-    /// Whether flight tells anything of an input.
+    /// Whether flight data exist for an input.
     fn has_data(&self, input: usize) -> bool {
         (0..self.outputs()).any(|output| self.is_known(Pair::new(output, input)))
     }
 
-    /// Whether a response of flight is known at some frequency at which the physics model has all responses of its output.
+    /// Whether a flight response is known at some frequency at which the physics model has all
+    /// responses of its output.
     fn is_known(&self, pair: Pair) -> bool {
         self.conditions.iter().any(|condition| {
             let has_row = |k: usize| {
@@ -166,10 +169,10 @@ impl CouplingProblem {
         })
     }
 
-    /// Whether every table has a value for each response and frequency.
+    /// Checks that every table has a value for each response and frequency.
     ///
     /// # Errors
-    /// [`CouplingError::Shape`] of the first that has not.
+    /// [`CouplingError::Shape`] for the first table of another shape.
     pub(super) fn check(&self) -> Result<(), CouplingError> {
         let expected @ [.., points] = [self.outputs(), self.inputs(), self.omega.len()];
         for condition in &self.conditions {
@@ -197,8 +200,8 @@ impl CouplingProblem {
     }
 }
 
-/// Outputs, inputs and frequencies of a table: as many of these as `expected` where every curve has them, else as many as the first that
-/// has not.
+/// Returns outputs, inputs and frequencies of a table: `expected` frequencies if every curve has
+/// them, otherwise the number in the first curve that differs.
 fn shape_of<T>(curves: &PairTable<Vec<T>>, expected: usize) -> [usize; 3] {
     let other = curves
         .iter()
@@ -207,21 +210,21 @@ fn shape_of<T>(curves: &PairTable<Vec<T>>, expected: usize) -> [usize; 3] {
     [curves.outputs(), curves.inputs(), other.unwrap_or(expected)]
 }
 
-/// One number that is fitted.
+/// A fitted unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Unknown {
-    /// Coefficient of `v^power` in `M_to,from`: what of input `from` goes to input `to`.
+    /// Coefficient of `v^power` in `M_to,from`: the share of input `from` that goes to input `to`.
     Mixing {
-        /// The input that takes.
+        /// The receiving input.
         to: usize,
-        /// The input that is taken of.
+        /// The source input.
         from: usize,
         /// Power of the scaled airspeed: 0 off the diagonal.
         power: usize,
     },
-    /// `K_input,output`: what of an output goes to an input.
+    /// `K_input,output`: feedback from an output to an input.
     Feedback {
-        /// The input that takes.
+        /// The receiving input.
         input: usize,
         /// The output that is fed back.
         output: usize,
@@ -229,7 +232,7 @@ pub enum Unknown {
 }
 
 impl Unknown {
-    /// What it is without any coupling: M = I, K = 0.
+    /// Returns the value without any coupling: M = I, K = 0.
     pub fn uncoupled(self) -> f64 {
         match self {
             Self::Mixing { to, from, power: 0 } if to == from => 1.0,
@@ -237,8 +240,9 @@ impl Unknown {
         }
     }
 
-    /// Every unknown of a problem, row by row of `M`, then of `K`: the diagonal of `M` is a polynomial of degree
-    /// `min(degree, distinct airspeeds - 1)`, everything else a constant (M16.1).
+    /// Lists every unknown of a problem, row by row of `M`, then of `K`: the diagonal of `M` is a
+    /// polynomial of degree `min(degree, distinct airspeeds - 1)`, everything else a constant
+    /// (M16.1).
     pub(super) fn all(
         problem: &CouplingProblem,
         airspeeds: &Airspeeds,
@@ -263,10 +267,10 @@ impl Unknown {
     }
 }
 
-/// Why no couplings can be found (M16.2).
+/// Reasons why no couplings can be fitted (M16.2).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CouplingError {
-    /// There is no condition, or none has a response that both representatives have.
+    /// There is no condition, or no response is available in both representatives.
     #[error(
         "no response of the {conditions} conditions is known of both the physics model and flight"
     )]
@@ -274,15 +278,14 @@ pub enum CouplingError {
         /// Number of conditions.
         conditions: usize,
     },
-    /// Too few conditions for what is asked.
+    /// Too few conditions for the request.
     #[error("error bars need at least {needed} conditions, and there are {found}")]
     TooFewConditions {
-        /// How many it takes.
+        /// Smallest sufficient number of conditions.
         needed: usize,
-        /// How many there are.
         found: usize,
     },
-    /// A condition's table has another shape than the others.
+    /// A table of a condition has another shape than expected.
     #[error(
         "condition {condition}: expected {} x {} responses at {} frequencies in every table, found {} x {} at {}",
         expected[0],
@@ -293,7 +296,6 @@ pub enum CouplingError {
         found[2]
     )]
     Shape {
-        /// The condition.
         condition: ConditionId,
         /// Outputs, inputs and frequencies expected.
         expected: [usize; 3],
@@ -306,7 +308,6 @@ pub enum CouplingError {
         number(*omega_rad_s)
     )]
     SingularLoop {
-        /// The condition.
         condition: ConditionId,
         /// The frequency \[rad/s\].
         omega_rad_s: f64,
@@ -319,7 +320,7 @@ pub enum CouplingError {
         /// Number of unknowns.
         unknowns: usize,
     },
-    /// The mixing takes an input away or turns it around.
+    /// The mixing removes an input or reverses its sign.
     #[error(
         "the mixing multiplies input {input} by {} at {} kt, and only a positive number is a correction",
         telling(*factor, 3),
@@ -330,16 +331,15 @@ pub enum CouplingError {
         input: usize,
         /// The airspeed \[kt\].
         airspeed_kt: f64,
-        /// `M_ii` there.
+        /// `M_ii` at that airspeed.
         factor: f64,
     },
-    /// The work was stopped.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
 impl CouplingError {
-    /// Why, in words that name the input.
+    /// Returns the reason with the name of the input.
     pub fn words(&self, inputs: &[String]) -> String {
         match self {
             Self::ReversedInput { input, .. } => {
@@ -352,7 +352,8 @@ impl CouplingError {
     }
 }
 
-/// The mean signed delay of each channel \[s\] over the conditions; none of no condition.
+/// Returns the mean signed delay of each channel \[s\] over the conditions; `None` without
+/// conditions.
 pub fn mean_delays_s(conditions: &[Channels<f64>]) -> Option<Channels<f64>> {
     let count = conditions.len() as f64;
     let sum_s = |channel: Channel| {
@@ -364,10 +365,11 @@ pub fn mean_delays_s(conditions: &[Channels<f64>]) -> Option<Channels<f64>> {
     Some(conditions.first()?.map(|channel, _| sum_s(channel) / count))
 }
 
-/// `R' = L_o^-1 R L_i^-1`, p x m on `omega` \[rad/s\]: what mixing and feedback are to give.
+/// Computes `R' = L_o^-1 R L_i^-1`, p x m on `omega` \[rad/s\]: the response that mixing and
+/// feedback have to reproduce.
 ///
-/// `L = e^(-j omega tau)` of a signed delay `tau` \[s\], or of a negative one the lead filter that `design` has for it (M15); without a
-/// design the first of any.
+/// `L = e^(-j omega tau)` for a signed delay `tau` \[s\], or the lead filter that `design` provides
+/// for a negative one (M15); without a design the exponential for any delay.
 #[must_use]
 pub fn without_channels(
     flight: &FrequencyResponse,
@@ -396,8 +398,9 @@ pub fn without_channels(
     }))
 }
 
-/// Standard deviation of `ln H` that a model's bands tell, p x m curves on `omega` \[rad/s\]:
-/// `sd^2 = 1/2 ((sd_dB ln 10 / 20)^2 + (sd_deg pi / 180)^2)`, linear in `ln omega`, beyond the bands that of their end (M16.2).
+/// Returns the standard deviation of `ln H` from a model's bands, p x m curves on `omega`
+/// \[rad/s\]: `sd^2 = 1/2 ((sd_dB ln 10 / 20)^2 + (sd_deg pi / 180)^2)`, linear in `ln omega`,
+/// constant beyond the ends of the bands (M16.2).
 pub fn response_deviation(bands: &ModelBands, omega: &[f64]) -> PairTable<Vec<f64>> {
     let on_grid = |values: &[f64]| interpolate_values(bands.omega(), values, omega);
     bands.sd_db().map(|pair, sd_db| {
@@ -410,8 +413,8 @@ pub fn response_deviation(bands: &ModelBands, omega: &[f64]) -> PairTable<Vec<f6
     })
 }
 
-/// Standard deviation of `ln H` that coherence `gamma^2` tells, p x m curves (M13.2):
-/// `C sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`.
+/// Returns the standard deviation of `ln H` from the coherence `gamma^2`, p x m curves (M13.2): `C
+/// sqrt(1 - gamma^2) / (|gamma| sqrt(2 n_d))`.
 pub fn coherence_deviation(
     coherence: &PairTable<Vec<f64>>,
     measurement: &Measurement,

@@ -1,5 +1,6 @@
-//! Mixing and feedback against known answers by independent numpy code (`tests/data/reference/mixing.json`), what holds of any, what a fit
-//! does not depend on, and what couplings do where a representative lacks a response (M16).
+//! Mixing and feedback against known answers from independent numpy code
+//! (`tests/data/reference/mixing.json`), general properties, invariances of the fit, and the
+//! behaviour with missing responses (M16).
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, LazyLock, Mutex};
@@ -54,7 +55,7 @@ fn response(value: &Value) -> FrequencyResponse {
     }))
 }
 
-/// The made-up aircraft of three outputs and two inputs, `flight` its flight responses.
+/// The synthetic aircraft with three outputs and two inputs; `flight` names its flight responses.
 fn made_up(flight: &str, options: CouplingOptions) -> CouplingProblem {
     let toy = &REFERENCE["toy"];
     let omega: Arc<[f64]> = numbers(&toy["omega_rad_s"]).into();
@@ -265,7 +266,8 @@ fn the_matrices_have_the_response_of_the_loop() {
         sample_time_s,
         ..Timing::default()
     };
-    // The same numbers as those of a sampled model: stable, for its poles are within the unit circle after a scaling by 0.5.
+    // The same matrices as a sampled model: stable, since scaling by 0.5 puts the poles inside the
+    // unit circle.
     let slow = small_aircraft();
     let sampled = StateSpace::new(
         slow.a() * 0.5,
@@ -281,7 +283,7 @@ fn the_matrices_have_the_response_of_the_loop() {
             &response_of(&coupled),
             &small_couplings().response(&response_of(&physics), 60.0),
         );
-        // Two ways of some dozen operations with numbers of about one.
+        // Two orders of a dozen operations with numbers near one.
         assert!(miss < 1e-12, "{miss:e}");
     }
 }
@@ -328,7 +330,7 @@ fn delays_of_channels_stand_inside_the_loop() {
         &response_of(&coupled),
         &small_couplings().response(&response_of(&physics), 60.0),
     );
-    // Approximants of sixth order of delays of 0.03 s up to 8 rad/s.
+    // Sixth-order approximants of 0.03 s delays, up to 8 rad/s.
     assert!(miss < 1e-10, "{miss:e}");
 }
 
@@ -382,7 +384,8 @@ fn a_pole_that_the_loop_makes_unstable_is_told() {
     );
 }
 
-/// Columns and weights of the last pass, one complex row for each response and frequency, with nothing left out by structure.
+/// Columns and weights of the last pass, one complex row per response and frequency, without using
+/// structure.
 struct DenseProblem {
     columns: Vec<Vec<Complex<f64>>>,
     target: Vec<Complex<f64>>,
@@ -486,7 +489,7 @@ fn the_gradient_of_the_weighted_problem_vanishes() {
     assert!(found.residual < 1e-14);
 }
 
-/// The problem with its channels in another order: `outputs[new]` and `inputs[new]` are the old places.
+/// The problem with reordered channels: `outputs[new]` and `inputs[new]` are the old indices.
 fn permuted(problem: &CouplingProblem, outputs: &[usize], inputs: &[usize]) -> CouplingProblem {
     let old = |pair: Pair| Pair::new(outputs[pair.output], inputs[pair.input]);
     fn moved<T: Clone>(table: &PairTable<T>, old: &impl Fn(Pair) -> Pair) -> PairTable<T> {
@@ -543,7 +546,7 @@ fn bars_need_three_conditions_and_are_those_of_the_jackknife() {
         .collect();
     let mean = entries.iter().sum::<f64>() / 4.0;
     let square: f64 = entries.iter().map(|entry| (entry - mean).powi(2)).sum();
-    // Student's quantile of 3 degrees of freedom at 0.95, from tables.
+    // Student's quantile with 3 degrees of freedom at 0.95, from tables.
     assert!((bars.feedback[(1, 2)] / (2.353_363 * (0.75 * square).sqrt()) - 1.0).abs() < 1e-6);
     assert_eq!((bars.mixing[(0, 0)], bars.mixing[(1, 1)]), (0.0, 0.0));
     let mut two = disturbed();
@@ -556,7 +559,7 @@ fn bars_need_three_conditions_and_are_those_of_the_jackknife() {
             found: 2
         }
     );
-    // Two airspeeds bear a straight line.
+    // Two airspeeds allow a straight line.
     assert_eq!(fit(&two).unknowns.len(), 12);
 }
 
@@ -589,7 +592,7 @@ fn a_fit_without_any_response_and_tables_of_another_shape_are_refused() {
     ));
 }
 
-/// Wants the work to end.
+/// Cancels immediately.
 struct Impatient;
 
 impl Progress for Impatient {
@@ -610,7 +613,7 @@ fn work_that_is_no_longer_wanted_ends() {
     assert!(left_out_fits(&disturbed(), &Sequential, &Impatient).is_err());
 }
 
-/// Keeps what it hears, and wants the work to end after so many questions.
+/// Records progress reports, and cancels after a given number of polls.
 struct Listener {
     questions_left: AtomicUsize,
     heard: Mutex<Vec<usize>>,
@@ -679,7 +682,7 @@ fn the_fits_without_each_condition_are_reported_step_by_step() {
     );
 }
 
-/// The problem with outputs and inputs in other units: so many of the new ones to one of the old.
+/// The problem with outputs and inputs in other units; the factors are new units per old unit.
 fn in_other_units(problem: &CouplingProblem, outputs: &[f64], inputs: &[f64]) -> CouplingProblem {
     let scaled = |of: &FrequencyResponse| {
         let scale = |pair: Pair| outputs[pair.output] / inputs[pair.input];
@@ -696,7 +699,8 @@ fn in_other_units(problem: &CouplingProblem, outputs: &[f64], inputs: &[f64]) ->
     problem
 }
 
-/// The disturbed aircraft, its flight replaced by that of its physics models with couplings of ones on the diagonal of M.
+/// The disturbed aircraft with flight responses generated from its physics models and couplings
+/// with a unit diagonal of M.
 fn flown_with(mixing: &DMatrix<f64>, share: &DMatrix<f64>) -> (CouplingProblem, DMatrix<f64>) {
     let mut problem = disturbed();
     let largest = |output: usize| {
@@ -734,7 +738,7 @@ proptest! {
         let scaled = fit(&in_other_units(&disturbed(), &outputs, &inputs));
         for (to, from) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let [a, b] = [&found, &scaled].map(|of| of.matrices.mixing(70.0)[(to, from)]);
-            // Roundings of five solves, whose normal matrices have condition numbers of some 1e4 once scaled.
+            // Rounding errors of five solves with scaled condition numbers near 1e4.
             prop_assert!((a * inputs[to] / inputs[from] - b).abs() < 1e-9 * b.abs().max(1e-3));
         }
         for (input, output) in (0..2).flat_map(|input| (0..3).map(move |output| (input, output))) {
@@ -752,7 +756,8 @@ proptest! {
         let mixing = DMatrix::from_row_slice(2, 2, &[1.0, mixed[0], mixed[1], 1.0]);
         let (problem, feedback) = flown_with(&mixing, &DMatrix::from_row_slice(2, 3, &share));
         let found = fit(&problem).matrices;
-        // The ridge of 1e-9, times how much worse the least known entry is known than the best.
+        // The ridge of 1e-9, times the information ratio between the best and the least known
+        // entry.
         prop_assert!((found.normalised_mixing(70.0) - &mixing).amax() < 1e-5, "{found:?}");
         prop_assert!((found.feedback() - &feedback).amax() < 1e-5 * feedback.amax().max(1.0), "{found:?}");
     }
@@ -780,7 +785,7 @@ fn without(response: &FrequencyResponse, lacks: impl Fn(Pair, usize) -> bool) ->
     }))
 }
 
-/// The disturbed aircraft with its first two outputs alone.
+/// The disturbed aircraft with only its first two outputs.
 fn two_outputs() -> CouplingProblem {
     let mut smaller = disturbed();
     let first_two = |response: &FrequencyResponse| {
@@ -832,7 +837,8 @@ fn an_output_that_one_side_lacks_everywhere_is_not_fed_back_and_changes_nothing_
 fn an_input_column_is_skipped_where_flight_lacks_an_output_that_is_fed_back() {
     let mut lacking = disturbed();
     let mut unusable = disturbed();
-    // The first condition lacks one response; the same as if none of that input counted there.
+    // The first condition lacks one response; the result equals that without this input in this
+    // condition.
     lacking.conditions[0].flight = without(&lacking.conditions[0].flight, |pair, _| {
         pair == Pair::new(2, 1)
     });
@@ -906,7 +912,7 @@ fn what_was_not_measured_coherently_does_not_count() {
         .flatten()
         .zip(expected.coefficients.iter().flatten())
     {
-        // One weight for all that counts changes nothing but roundings.
+        // A common weight changes only rounding errors.
         assert!((found - expected).abs() < 1e-12);
     }
 }
@@ -944,7 +950,8 @@ fn a_response_that_a_physics_model_lacks_is_lacking_once_coupled_and_only_what_d
     );
 }
 
-/// A synthetic problem of as many inputs as outputs, each response a lag of its own, flown with small couplings.
+/// A synthetic problem with as many inputs as outputs; each response is a different lag, flown with
+/// small couplings.
 fn many_channels(channels: usize, conditions: usize, points: usize) -> CouplingProblem {
     let mut state = 88_172_645_463_325_252_u64;
     let mut random = move || {

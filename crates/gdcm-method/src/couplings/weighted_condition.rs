@@ -1,4 +1,4 @@
-//! A condition of the fit laid out frequency by frequency, and what each response counts there (M16.2).
+//! A condition of the fit arranged by frequency, with the weight of each response (M16.2).
 
 use nalgebra::Complex;
 
@@ -7,24 +7,23 @@ use gdcm_model::dataset::{ConditionId, Pair, PairTable};
 use super::problem::{CouplingCondition, CouplingProblem};
 use crate::fidelity::summand;
 
-/// Weight of an on-axis response beside the others, `w_p`.
+/// Weight of an on-axis response relative to the others, `w_p`.
 const ON_AXIS: f64 = 2.0;
-/// Standard deviation of `ln H` from which a response counts clearly less.
+/// Standard deviation of `ln H` from which the weight of a response drops clearly.
 const DEVIATION: f64 = 0.06;
 /// `e s` from which a frequency counts as an outlier.
 const OUTLIER: f64 = 10.0;
-/// What of a weight does not change from pass to pass.
+/// The factors of a weight that stay the same in all passes.
 #[derive(Clone, Copy, Debug, Default)]
 struct FixedWeight {
-    /// `s = w_p / sqrt(1 + (sd / 0.06)^2)`; 0 where the response does not count.
+    /// `s = w_p / sqrt(1 + (sd / 0.06)^2)`; 0 for a response without weight.
     s: f64,
-    /// `W` of the coherence (M4a), of which `w_gamma` is the root: the squares weigh `W`.
+    /// `W` of the coherence (M4a); `w_gamma` is its root, so the squares weigh `W`.
     coherence: f64,
 }
 
-/// One condition, its values one input column after the other at each frequency.
+/// One condition; at each frequency its values are stored input column by input column.
 pub(super) struct WeightedCondition<'a> {
-    /// The condition.
     pub(super) id: ConditionId,
     /// True airspeed \[kt\].
     pub(super) airspeed_kt: f64,
@@ -38,10 +37,11 @@ pub(super) struct WeightedCondition<'a> {
 }
 
 impl<'a> WeightedCondition<'a> {
-    /// A condition of a problem whose feedback takes the outputs `fed_back`.
+    /// Creates a condition of a problem with feedback of the outputs `fed_back`.
     ///
-    /// What a representative lacks has weight 0 and the value 0. Where flight lacks a response that is fed back its input column does
-    /// not count, where the physics model lacks one its frequency does not: the value 0 is then never used.
+    /// A missing value has weight 0 and value 0. If flight lacks a response that is fed back, its
+    /// input column has weight 0; if the physics model lacks one, the whole frequency has weight 0.
+    /// The value 0 is then never used.
     pub(super) fn new(
         problem: &'a CouplingProblem,
         condition: &CouplingCondition,
@@ -78,22 +78,22 @@ impl<'a> WeightedCondition<'a> {
         }
     }
 
-    /// Number of outputs, `p`.
+    /// Returns the number of outputs, `p`.
     pub(super) fn outputs(&self) -> usize {
         self.outputs
     }
 
-    /// Number of inputs, `m`.
+    /// Returns the number of inputs, `m`.
     pub(super) fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// Whether any response counts anywhere.
+    /// Whether any response has a weight.
     pub(super) fn counts(&self) -> bool {
         self.weights.iter().any(|weight| weight.s > 0.0)
     }
 
-    /// Whether any response counts at a frequency.
+    /// Whether any response has a weight at a frequency.
     pub(super) fn counts_at(&self, k: usize) -> bool {
         let size = self.inputs * self.outputs;
         self.weights[k * size..][..size]
@@ -101,18 +101,19 @@ impl<'a> WeightedCondition<'a> {
             .any(|weight| weight.s > 0.0)
     }
 
-    /// `H` at a frequency, p x m, column by column.
+    /// Returns `H` at a frequency, p x m, column by column.
     pub(super) fn physics(&self, k: usize) -> &[Complex<f64>] {
         let size = self.inputs * self.outputs;
         &self.physics[k * size..][..size]
     }
 
-    /// The column of an input of `R'` at a frequency, p values.
+    /// Returns the column of one input of `R'` at a frequency, p values.
     pub(super) fn flight(&self, k: usize, input: usize) -> &[Complex<f64>] {
         &self.flight[(k * self.inputs + input) * self.outputs..][..self.outputs]
     }
 
-    /// `q^2` of each output of an input column at a frequency, where the last pass has `H_c = coupled`; false where none counts.
+    /// Computes `q^2` of each output of an input column at a frequency, given `H_c = coupled` of
+    /// the last pass; returns false if every weight is zero.
     ///
     /// ```text
     /// q^2 = s^2 W / max(|R'|, |H_c| / 2)^2 / (1 + (e s / 10)^2)^(1/2),   e^2: the summand of J (M4)
@@ -148,7 +149,7 @@ impl FixedWeight {
         let error = summand(db, deg);
         let robust = (1.0 + error * (self.s / OUTLIER).powi(2)).sqrt();
         let squared = self.s * self.s * self.coherence / of_flight.max(0.25 * of_coupled) / robust;
-        // A value of zero has no decibels, and beyond the largest numbers there is nothing to compare.
+        // A zero value has no decibels, and an overflow cannot be compared.
         if squared.is_finite() { squared } else { 0.0 }
     }
 }

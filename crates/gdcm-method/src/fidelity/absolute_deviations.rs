@@ -1,25 +1,25 @@
-//! Linear fits of least absolute deviations, with weights that are not negative, by the vertices of the fit and the edges between
-//! them.
+//! Linear least-absolute-deviations fits with non-negative weights, by a search over the vertices
+//! of the fit and the edges between them.
 
 use nalgebra::{DMatrix, DVector};
 
 use gdcm_numerics::{CscMatrix, DefaultSettings, convex_program};
 
-/// Why there is no fit.
+/// Reasons for a missing fit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
-    /// The linear program did not end at its optimum.
+    /// The linear program did not reach its optimum.
     #[error("the fit of least absolute deviations ended with {status}")]
     NotSolved {
-        /// The solver's own word.
+        /// Status reported by the solver.
         status: String,
     },
-    /// It was cancelled.
     #[error("the fit of least absolute deviations was cancelled")]
     Cancelled,
 }
 
-/// `argmin sum_i |x_i w - y_i|` over `w >= 0`; of equally good vertices the one of least `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
+/// Minimises `sum_i |x_i w - y_i|` over `w >= 0`; among equally good vertices, returns the one with
+/// the smallest `sum_i (sqrt(x_i w) - sqrt(y_i))^2`.
 ///
 /// ```text
 /// 1  vertex <- that of the constraints x_i w = y_i, w_k = 0 which the fit of least squares meets best
@@ -30,8 +30,9 @@ pub enum FitError {
 ///    min sum t,  -t <= x w - y <= t,  w >= 0  is solved, and 2 and 3 go on from the vertex nearest to its solution
 /// ```
 ///
-/// The simplex method of Barrodale and Roberts (SIAM J. Numer. Anal. 10(5), 1973): exact, and the same on every machine.
-/// `x` and `y` must not be negative. It ends without a result at the first vertex at which it is `cancelled`.
+/// The simplex method of Barrodale and Roberts (SIAM J. Numer. Anal. 10(5), 1973): exact, and
+/// identical on every machine. `x` and `y` must not be negative. The search ends without a result
+/// at the first vertex at which it is `cancelled`.
 pub fn least_absolute_deviations(
     x: &[Vec<f64>],
     y: &[f64],
@@ -62,13 +63,13 @@ pub fn least_absolute_deviations(
         .collect())
 }
 
-/// Goes along descending edges to the optimum, then over all equally good vertices.
+/// Follows descending edges to the optimum, then compares all equally good vertices.
 fn best_vertex(
     fit: &Fit<'_>,
     start: Vertex,
     cancelled: &dyn Fn() -> bool,
 ) -> Result<Vertex, FitError> {
-    /// Far more than the vertices of a face in a few unknowns; only a bound on time.
+    /// Far more than the vertices of a face with few unknowns; limits only the run time.
     const MOST_VERTICES: usize = 300;
     let misfit = |vertex: &Vertex| fit.squared_root_deviations(&vertex.weights);
     let mut best = start.clone();
@@ -100,7 +101,7 @@ fn best_vertex(
     Ok(best)
 }
 
-/// The linear program `min sum t` subject to `x w - t <= y`, `-x w - t <= -y`, `w >= 0`.
+/// Solves the linear program `min sum t` subject to `x w - t <= y`, `-x w - t <= -y`, `w >= 0`.
 fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Vec<f64>, FitError> {
     let rows = x.len();
     let mut i = Vec::new();
@@ -133,7 +134,7 @@ fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Ve
         .into_iter()
         .chain(vec![1.0; rows])
         .collect();
-    // Close enough that the nearest vertex is an optimal one, or one edge from it.
+    // Tight enough that the nearest vertex is optimal or one edge from an optimal vertex.
     let settings = DefaultSettings {
         verbose: false,
         tol_gap_abs: 1e-11,
@@ -148,12 +149,13 @@ fn solve_linear_program(x: &[Vec<f64>], y: &[f64], unknowns: usize) -> Result<Ve
         .map_err(|status| FitError::NotSolved { status })
 }
 
-/// A deviation or a weight below this is zero; the right-hand sides are scaled to at most 1.
+/// Deviations and weights below this count as zero; the right-hand sides are scaled to at most 1.
 const ZERO: f64 = 1e-11;
-/// A change of the sum of deviations along an edge below this part of what it could be is none.
+/// Relative change of the sum of deviations along an edge below which the edge counts as flat.
 const FLAT: f64 = 1e-10;
 
-/// The constraints `x_i w = y_i` and `w_k = 0`, of which as many meet in a vertex as there are unknowns.
+/// The constraints `x_i w = y_i` and `w_k = 0`; a vertex is the intersection of as many constraints
+/// as there are unknowns.
 struct Fit<'a> {
     /// Row by row.
     x: Vec<f64>,
@@ -164,22 +166,22 @@ struct Fit<'a> {
 /// A vertex: its weights, and the constraints that meet in it.
 #[derive(Clone, Debug)]
 struct Vertex {
-    /// The weights, none below zero but for rounding.
+    /// The weights, non-negative up to rounding.
     weights: Vec<f64>,
     /// Indices of the constraints: rows first, then weights.
     basis: Vec<usize>,
 }
 
-/// Where the edges of a vertex lead.
+/// Destinations of the edges of a vertex.
 enum Neighbours {
-    /// To the end of an edge along which the deviations become less.
+    /// End of an edge along which the deviations decrease.
     Better(Vertex),
-    /// To the ends of the edges along which they stay the same.
+    /// Ends of the edges along which the deviations stay the same.
     Equal(Vec<Vertex>),
 }
 
 impl<'a> Fit<'a> {
-    /// The constraints of the fit of `y` by `x`.
+    /// Creates the constraints of the fit of `y` by `x`.
     fn new(x: &[Vec<f64>], y: &'a [f64]) -> Self {
         Self {
             x: x.concat(),
@@ -196,7 +198,7 @@ impl<'a> Fit<'a> {
         &self.x[row * self.unknowns..(row + 1) * self.unknowns]
     }
 
-    /// Left-hand side of a constraint at, or its change along, `w`.
+    /// Returns the left-hand side of a constraint at `w`, or its change along a direction `w`.
     fn left(&self, constraint: usize, w: &[f64]) -> f64 {
         if self.is_weight(constraint) {
             return w[constraint - self.y.len()];
@@ -216,7 +218,7 @@ impl<'a> Fit<'a> {
         constraint >= self.y.len()
     }
 
-    /// The left-hand sides of some constraints: a row of `x`, or one of the identity.
+    /// Returns the left-hand sides of some constraints: rows of `x` or of the identity.
     fn matrix(&self, constraints: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(
             constraints.len(),
@@ -235,7 +237,8 @@ impl<'a> Fit<'a> {
             .sum()
     }
 
-    /// The weights of least squares, those below zero set to zero: not far from the vertex sought.
+    /// Returns the least-squares weights with negative values set to zero: close to the optimal
+    /// vertex.
     fn least_squares(&self) -> Vec<f64> {
         let x = DMatrix::from_row_slice(self.y.len(), self.unknowns, &self.x);
         let normal = x.tr_mul(&x).cholesky();
@@ -254,14 +257,14 @@ impl<'a> Fit<'a> {
     }
 }
 
-/// A way out of a vertex.
+/// An edge that leaves a vertex.
 struct Edge {
-    /// Which of the vertex's constraints is given up.
+    /// Position of the released constraint in the vertex's basis.
     leaving: usize,
     direction: Vec<f64>,
-    /// Rate at which the sum of deviations changes along it.
+    /// Rate of change of the sum of deviations along the edge.
     slope: f64,
-    /// The most that it could change.
+    /// Largest possible magnitude of that rate.
     scale: f64,
 }
 
@@ -275,17 +278,17 @@ impl Edge {
     }
 }
 
-/// Where an edge meets the place of a constraint.
+/// Intersection of an edge with a constraint.
 struct Crossing {
     constraint: usize,
-    /// How far along the edge.
+    /// Distance along the edge.
     step: f64,
-    /// By how much the rate changes there, halved.
+    /// Half the change of the rate at this intersection.
     change: f64,
 }
 
-/// The constraint of the first crossing at which the doubled changes so far come to `rise`: a weighted median, found by halving
-/// what is left rather than by sorting it.
+/// Returns the constraint of the first crossing at which the doubled accumulated changes reach
+/// `rise`: a weighted median, found by bisection rather than by sorting.
 fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
     let by_step = |a: &Crossing, b: &Crossing| {
         a.step
@@ -314,7 +317,8 @@ fn crossing_at(mut crossings: Vec<Crossing>, rise: f64) -> Option<usize> {
 }
 
 impl Vertex {
-    /// The vertex of the constraints that `weights` fulfils best; `None` where they make none, or one with a negative weight.
+    /// Returns the vertex of the constraints that `weights` satisfies best; `None` if they define
+    /// no vertex, or one with a negative weight.
     fn nearest(fit: &Fit<'_>, weights: &[f64]) -> Option<Self> {
         let deviation = |constraint: usize| (fit.deviation(constraint, weights).abs(), constraint);
         let mut order: Vec<(f64, usize)> = (0..fit.count()).map(deviation).collect();
@@ -322,7 +326,8 @@ impl Vertex {
         let mut basis = Vec::new();
         for (_, constraint) in order {
             basis.push(constraint);
-            // Offsets are scaled to 1 at most: a smaller singular value means a constraint that repeats the others.
+            // Offsets are scaled to at most 1: a smaller singular value means a redundant
+            // constraint.
             if fit.matrix(&basis).rank(1e-6) < basis.len() {
                 basis.pop();
             }
@@ -333,7 +338,7 @@ impl Vertex {
         Self::of(fit, basis)
     }
 
-    /// The vertex in which every weight is zero.
+    /// Returns the vertex with all weights zero.
     fn origin(fit: &Fit<'_>) -> Self {
         let basis = (fit.y.len()..fit.count()).collect();
         Self {
@@ -358,7 +363,7 @@ impl Vertex {
             .then_some(Self { weights, basis })
     }
 
-    /// Whether two vertices are one place.
+    /// Whether two vertices coincide.
     fn is_at(&self, other: &Self) -> bool {
         self.weights
             .iter()
@@ -366,8 +371,9 @@ impl Vertex {
             .all(|(a, b)| (a - b).abs() <= ZERO)
     }
 
-    /// The vertices at the ends of this one's edges, where the deviations do not grow on the way: of those that fall the
-    /// steepest (in many rows the first that falls at all would lead there in ten times the steps).
+    /// Returns the vertices at the ends of the edges along which the deviations do not grow. Among
+    /// descending edges it takes the steepest: with many rows, the first descending edge would need
+    /// ten times as many steps.
     fn neighbours(&self, fit: &Fit<'_>) -> Neighbours {
         let deviations = self.all_deviations(fit);
         let mut edges = self.edges(fit, &deviations);
@@ -382,7 +388,8 @@ impl Vertex {
         Neighbours::Equal(equal)
     }
 
-    /// The edges that leave this vertex: one constraint is given up, to either side; a weight only upwards.
+    /// Returns the edges of this vertex: one constraint is released, in either direction; a weight
+    /// only upwards.
     fn edges(&self, fit: &Fit<'_>, deviations: &[f64]) -> Vec<Edge> {
         let Some(inverse) = fit.matrix(&self.basis).try_inverse() else {
             return Vec::new();
@@ -409,7 +416,7 @@ impl Vertex {
         edges
     }
 
-    /// Deviation of each constraint, those that meet here exactly zero.
+    /// Returns the deviation of each constraint, exactly zero for those that meet here.
     fn all_deviations(&self, fit: &Fit<'_>) -> Vec<f64> {
         let mut deviations: Vec<f64> = (0..fit.count())
             .map(|constraint| fit.deviation(constraint, &self.weights))
@@ -420,10 +427,10 @@ impl Vertex {
         deviations
     }
 
-    /// The vertex along an edge at which the sum of deviations stops falling.
+    /// Returns the vertex along an edge at which the sum of deviations stops falling.
     ///
-    /// Each row whose deviation changes its sign on the way adds twice its change to the rate; a weight that reaches zero ends
-    /// the edge.
+    /// Each row whose deviation changes sign along the edge adds twice its change to the rate; a
+    /// weight that reaches zero ends the edge.
     fn end_of_edge(&self, fit: &Fit<'_>, edge: &Edge, deviations: &[f64]) -> Option<Self> {
         let met = deviations
             .iter()
@@ -432,7 +439,7 @@ impl Vertex {
         let met = met.filter_map(|(constraint, deviation)| {
             let slope = fit.left(constraint, &edge.direction);
             let step = -deviation / slope;
-            // A weight ends the edge, however the rate stands.
+            // A weight ends the edge, whatever the rate.
             let change = if fit.is_weight(constraint) {
                 f64::INFINITY
             } else {
@@ -450,16 +457,18 @@ impl Vertex {
         Self::of(fit, basis)
     }
 
-    /// Whether more constraints meet in this vertex than it takes: then its edges may not show every way down.
+    /// Whether more constraints meet in this vertex than it needs; its edges may then miss a
+    /// descent direction.
     fn is_degenerate(&self, fit: &Fit<'_>) -> bool {
         let meet = |constraint: &usize| fit.deviation(*constraint, &self.weights).abs() <= ZERO;
         (0..fit.count()).filter(meet).count() > fit.unknowns
     }
 }
 
-/// Rates at which the sum of deviations changes along `direction` and against it, and the most it could change.
+/// Returns the rates of change of the sum of deviations along `direction` and against it, and their
+/// largest possible magnitude.
 fn slopes(fit: &Fit<'_>, deviations: &[f64], direction: &[f64]) -> ([f64; 2], f64) {
-    // A deviation of zero grows either way.
+    // A zero deviation grows in either direction.
     let mut growing = 0.0;
     let mut signed = 0.0;
     let mut scale = 0.0;
@@ -481,14 +490,14 @@ mod tests {
 
     #[test]
     fn least_absolute_deviations_ignore_an_outlying_row() {
-        // y = 2 x1 + 3 x2, one row far off: the exact weights come back.
+        // y = 2 x1 + 3 x2 with one outlier: the fit recovers the exact weights.
         let x: Vec<Vec<f64>> = (0..9)
             .map(|k| vec![f64::from(k % 3), f64::from(k / 3)])
             .collect();
         let mut y: Vec<f64> = x.iter().map(|x| 2.0 * x[0] + 3.0 * x[1]).collect();
         y[8] = 100.0;
         let weights = least_absolute_deviations(&x, &y, &|| false).unwrap();
-        // A vertex is solved for, not iterated to: a few roundings of numbers up to 100.
+        // A vertex is solved for directly: a few rounding errors of numbers up to 100.
         assert!((weights[0] - 2.0).abs() < 1e-12 && (weights[1] - 3.0).abs() < 1e-12);
     }
 
@@ -535,8 +544,9 @@ mod tests {
 
     #[test]
     fn of_equally_good_vertices_the_one_nearest_in_square_roots_is_taken() {
-        // Every w from 4 to 9 is a median of these. Square roots 0, 2, 3, 4: from 2 the squares add to 9, from 3 to 11;
-        // square roots 1, 2, 3, 5: from 2 they add to 11, from 3 to 9. (A vertex is solved for: a few roundings.)
+        // Every w from 4 to 9 is a median of these. Square roots 0, 2, 3, 4: from 2 the squares add
+        // to 9, from 3 to 11; square roots 1, 2, 3, 5: from 2 they add to 11, from 3 to 9. (The
+        // tolerance covers a few rounding errors.)
         let fit = |y: &[f64]| {
             let x = [vec![1.0], vec![1.0], vec![1.0], vec![1.0]];
             least_absolute_deviations(&x, y, &|| false).unwrap()[0]

@@ -16,15 +16,16 @@ const PHASE_WEIGHT: f64 = 0.0175;
 /// J up to which a model is acceptable.
 pub const ACCEPTABLE: f64 = 100.0;
 
-/// Factor before both parts of J.
+/// Common factor of both parts of J.
 const COST_SCALE: f64 = 20.0;
 
-/// What J averages over frequency, at one of them: `20 (W_g e_dB^2 + W_p e_deg^2)` (M4).
+/// Returns the term of J averaged over frequency, at one frequency: `20 (W_g e_dB^2 + W_p e_deg^2)`
+/// (M4).
 pub fn summand(error_db: f64, error_deg: f64) -> f64 {
     COST_SCALE * (MAGNITUDE_WEIGHT * error_db * error_db + PHASE_WEIGHT * error_deg * error_deg)
 }
 
-/// How squared errors are averaged over frequency.
+/// Averages of the squared errors over frequency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CostAverage {
@@ -40,7 +41,7 @@ impl CostAverage {
             (CostAverage::Median, None) => median(squares),
             (CostAverage::Mean, None) => mean(squares),
             (CostAverage::Median, Some(weights)) => weighted_median(squares, weights),
-            // Over the number of frequencies, not over the sum of weights: Tischler's form.
+            // Divided by the number of frequencies, not by the sum of weights: Tischler's form.
             (CostAverage::Mean, Some(weights)) => {
                 squares
                     .iter_mut()
@@ -52,7 +53,7 @@ impl CostAverage {
     }
 }
 
-/// The two parts of J; `J = J_mag + J_phase` (M4). With weights the average is a weighted one (M4a).
+/// The two parts of J; `J = J_mag + J_phase` (M4). With weights the average is weighted (M4a).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
     /// `J_mag = 20 W_g average(e_dB^2)`.
@@ -62,8 +63,8 @@ pub struct Cost {
 }
 
 impl Cost {
-    /// J of the magnitude errors \[dB\] and the phase errors \[rad\], one of each for each frequency; `weights` likewise, where
-    /// not all frequencies count alike.
+    /// Computes J from the magnitude errors \[dB\] and the phase errors \[rad\], one of each per
+    /// frequency; `weights` likewise, unless all frequencies weigh the same.
     ///
     /// `scratch` is overwritten.
     pub fn of(
@@ -82,12 +83,12 @@ impl Cost {
         Self { magnitude, phase }
     }
 
-    /// What the averages of the squared errors are multiplied by, `20 W_g` and `20 W_p`, in words.
+    /// Returns the factors of the averaged squared errors, `20 W_g` and `20 W_p`, as text.
     pub fn factors() -> [String; 2] {
         [MAGNITUDE_WEIGHT, PHASE_WEIGHT].map(|weight| format!("{COST_SCALE} · {weight}"))
     }
 
-    /// The averages of the squared errors \[dB^2, deg^2\].
+    /// Returns the averages of the squared errors \[dB^2, deg^2\].
     pub fn averages(self) -> [f64; 2] {
         [
             self.magnitude / (COST_SCALE * MAGNITUDE_WEIGHT),
@@ -95,17 +96,18 @@ impl Cost {
         ]
     }
 
-    /// `J = J_mag + J_phase`.
+    /// Returns `J = J_mag + J_phase`.
     pub fn total(self) -> f64 {
         self.magnitude + self.phase
     }
 }
 
-/// J of `simulated` against `reference`, on the same frequencies:
-/// `J = 20 / N sum_k (W_g e_dB,k^2 + W_p e_deg,k^2)` (M4, M5).
+/// Computes J of `simulated` against `reference`, on the same frequencies: `J = 20 / N sum_k (W_g
+/// e_dB,k^2 + W_p e_deg,k^2)` (M4, M5).
 ///
-/// It is [`super::mismatch::Mismatch::cost`] with the mean, without gain or delay: distances within a bundle of `n` models take
-/// `n (n - 1) / 2` of these for each response, and a dozen operations for each frequency.
+/// Equals [`super::mismatch::Mismatch::cost`] with the mean, without gain or delay. Separate for
+/// speed: distances within a bundle of `n` models evaluate it `n (n - 1) / 2` times per response, a
+/// dozen operations per frequency.
 pub(super) fn mean_cost(simulated: &PolarCurve, reference: &PolarCurve) -> f64 {
     let [magnitude, phase] = Arch::new().dispatch(SquaredDifferences {
         simulated,
@@ -116,8 +118,8 @@ pub(super) fn mean_cost(simulated: &PolarCurve, reference: &PolarCurve) -> f64 {
         * (MAGNITUDE_WEIGHT * magnitude + PHASE_WEIGHT * squared_degrees)
 }
 
-/// The sums over the frequencies of the squared differences of two curves, as many frequencies at once as the processor's
-/// vectors hold: of the magnitudes \[dB^2\], and of the principal values of the phases \[rad^2\].
+/// Sums over the frequencies of the squared differences of two curves, vectorised (SIMD): the
+/// magnitudes \[dB^2\] and the principal values of the phases \[rad^2\].
 struct SquaredDifferences<'a> {
     simulated: &'a PolarCurve,
     reference: &'a PolarCurve,
@@ -146,7 +148,7 @@ impl WithSimd for SquaredDifferences<'_> {
             .chunks(S::F64_LANES)
             .zip(reference.phase.chunks(S::F64_LANES))
         {
-            // Lanes past the end hold zero, which adds nothing.
+            // Lanes past the end are zero and add nothing.
             let error = principal(
                 simd,
                 simd.sub_f64s(simd.partial_load_f64s(a), simd.partial_load_f64s(b)),
@@ -157,7 +159,7 @@ impl WithSimd for SquaredDifferences<'_> {
     }
 }
 
-/// The principal value in (-pi, pi] of a difference of two.
+/// Returns the principal value in (-pi, pi] of a phase difference of two principal values.
 #[inline(always)]
 fn principal<S: Simd>(simd: S, difference: S::f64s) -> S::f64s {
     let turn = simd.splat_f64s(TAU);
@@ -182,7 +184,7 @@ mod tests {
             &mut Vec::new(),
         );
         assert_eq!(cost.magnitude, 80.0);
-        // 20 * 0.0175 * (18 / pi)^2, by hand: 11.48966...; a few roundings.
+        // 20 * 0.0175 * (18 / pi)^2, by hand: 11.48966...; a few rounding errors.
         assert!((cost.phase - 0.35 * (18.0 / std::f64::consts::PI).powi(2)).abs() < 1e-12);
     }
 
@@ -214,7 +216,8 @@ mod tests {
             )
             .total()
         };
-        // 20 / 3 (0.5 + 9 + 1); half of the weight of 1.75 is passed at the last of the squares 1, 4, 9.
+        // 20 / 3 (0.5 + 9 + 1); among the squares 1, 4, 9 half of the total weight of 1.75 is
+        // exceeded at the last.
         assert!((cost(CostAverage::Mean) - 70.0).abs() < 1e-13);
         assert_eq!(cost(CostAverage::Median), 180.0);
     }

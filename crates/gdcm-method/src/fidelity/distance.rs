@@ -1,4 +1,5 @@
-//! Distances between the models of a bundle, the model that stands for it, and models on the far side of a discontinuity (M5).
+//! Distances between the models of a bundle, its representative, and models beyond a discontinuity
+//! (M5).
 
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,18 +12,20 @@ use super::absolute_deviations::{FitError, least_absolute_deviations};
 use super::cost::{Cost, CostAverage, mean_cost};
 use super::mismatch::{CoherenceWeights, Mismatch};
 
-/// Which responses measure distance in a bundle, and what each model lacks of them (M5b).
+/// The responses that measure distance in a bundle, and those that each model lacks (M5b).
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredPairs {
-    /// The marked responses that at least one model has.
+    /// The marked responses available in at least one model.
     pub compared: Vec<Pair>,
-    /// Those of them that each model lacks: zero or not finite somewhere in the band. A model that lacks any is *set aside*: it
-    /// takes no part in distances, suggestions and representatives.
+    /// Compared responses that each model lacks: zero or not finite somewhere in the band. A model
+    /// that lacks any is *set aside*: it takes no part in distances, suggestions and
+    /// representatives.
     pub lacks: Vec<Vec<Pair>>,
 }
 
 impl MeasuredPairs {
-    /// What the models of a bundle have and lack of the responses marked in `measuring`.
+    /// Finds the available and the missing responses of the models of a bundle among those marked
+    /// in `measuring`.
     pub fn of(responses: &[PolarResponse], measuring: &PairTable<bool>) -> Self {
         let some_has = |pair: &Pair| {
             responses
@@ -41,7 +44,7 @@ impl MeasuredPairs {
         Self { compared, lacks }
     }
 
-    /// Indices of the models that are not set aside, in bundle order.
+    /// Returns the indices of the models that are not set aside, in bundle order.
     pub fn compared_models(&self) -> Vec<usize> {
         (0..self.lacks.len())
             .filter(|&model| !self.is_set_aside(model))
@@ -54,21 +57,22 @@ impl MeasuredPairs {
     }
 }
 
-/// The distance of every two models of a bundle (M5):
-/// `d(a, b) = sqrt(mean over the measuring pairs of J(a against b))`, J with the mean over frequency.
+/// The distance of every two models of a bundle (M5): `d(a, b) = sqrt(mean over the measuring pairs
+/// of J(a against b))`, J with the mean over frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BundleDistance {
     measured: MeasuredPairs,
     /// Number of models that are not set aside.
     count: usize,
-    /// Place of each model among them.
+    /// Position of each model among them; `None` if set aside.
     places: Vec<Option<usize>>,
     /// Upper triangle by rows, without the models set aside: d(0,1), d(0,2), ..., d(1,2), ...
     distances: Vec<f64>,
 }
 
 impl BundleDistance {
-    /// The distances of which row `a` are those of [`distances_from`] the `a`-th model that is not set aside.
+    /// Creates the table from rows: row `a` is [`distances_from`] the `a`-th model that is not set
+    /// aside.
     pub fn from_rows(rows: Vec<Vec<f64>>, measured: MeasuredPairs) -> Self {
         let count = rows.len();
         let mut places = vec![None; measured.lacks.len()];
@@ -83,7 +87,7 @@ impl BundleDistance {
         }
     }
 
-    /// `d(a, b)`, zero where `a = b`; `None` where one of them is set aside.
+    /// Returns `d(a, b)`, zero for `a = b`; `None` if either model is set aside.
     pub fn between(&self, a: usize, b: usize) -> Option<f64> {
         let a = self.places[a]?;
         let b = self.places[b]?;
@@ -97,23 +101,23 @@ impl BundleDistance {
             .copied()
     }
 
-    /// What was compared, and which models are set aside.
+    /// Returns the compared responses and the missing ones of each model.
     pub fn measured(&self) -> &MeasuredPairs {
         &self.measured
     }
 }
 
-/// A model of a bundle as distances compare it.
+/// A model of a bundle as the distance compares it.
 #[derive(Clone, Copy, Debug)]
 pub struct ComparedModel<'a> {
-    /// Its responses.
     pub responses: &'a PolarResponse,
-    /// Which frequencies of each count, where it is measured with coherence (M4a).
+    /// Weights of the frequencies of each response, if measured with coherence (M4a).
     pub coherence_weights: Option<&'a PairTable<CoherenceWeights>>,
 }
 
 impl ComparedModel<'_> {
-    /// J with this model as the reference, by its coherence; none where it says nothing.
+    /// Computes J with this model as the reference, weighted by its coherence; `None` without
+    /// weighted frequencies.
     fn cost_as_reference(&self, a: &PolarCurve, b: &PolarCurve, pair: Pair) -> Option<f64> {
         let mismatch =
             Mismatch::new(a, b).coherence_weighted(Some(&self.coherence_weights?[pair]))?;
@@ -132,11 +136,13 @@ impl ComparedModel<'_> {
     }
 }
 
-/// The distances of one model from each of the models after it: independent pieces of work for a large bundle.
+/// Computes the distances of one model from each of the models after it: independent tasks for a
+/// large bundle.
 ///
-/// J is weighted by the coherence of the model that is compared with (M4a). In a bundle either may be that: where one of the two
-/// has coherence, J is the mean of both ways, so that a distance does not depend on the order of the models. A response of which
-/// no frequency counts is compared over all of them, for models that were hardly measured must not look alike.
+/// J is weighted by the coherence of the reference model (M4a), and in a bundle either model can be
+/// the reference: if one of the two has coherence, J is the mean of both directions, so that a
+/// distance does not depend on the order of the models. A response without any weighted frequency
+/// is compared over all frequencies, because poorly measured models must not look alike.
 pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair]) -> Vec<f64> {
     let of_pair = |b: &ComparedModel<'_>, pair: Pair| {
         let from = models[a].responses.curves()[pair].as_ref()?;
@@ -155,19 +161,21 @@ pub fn distances_from(a: usize, models: &[ComparedModel<'_>], compared: &[Pair])
     models[a + 1..].iter().map(distance).collect()
 }
 
-/// The medoid of the models kept, or the one the analyst pinned, with every kept model's score (M5).
+/// The medoid of the accepted models, or the model pinned by the analyst, with the score of every
+/// accepted model (M5).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Representative {
     /// Index of the representative in the bundle.
     pub model: usize,
-    /// `s_a = mean over b != a of d(a, b)` over the kept models; `None` for one rejected or set aside. Zero for the only one
-    /// kept.
+    /// `s_a = mean over b != a of d(a, b)` over the accepted models; `None` for a model that is
+    /// rejected or set aside. Zero for a single accepted model.
     pub scores: Vec<Option<f64>>,
 }
 
 impl Representative {
-    /// The kept model of least score (ties: the first in file order), or `pinned`; `None` where every model is rejected or set
-    /// aside. A pinned model that is set aside does not count.
+    /// Returns the accepted model with the smallest score (ties: the first in file order), or
+    /// `pinned`; `None` if every model is rejected or set aside. A pinned model that is set aside
+    /// is ignored.
     pub fn of(
         distance: &BundleDistance,
         rejected: &BTreeSet<usize>,
@@ -195,30 +203,32 @@ impl Representative {
 
 /// Discontinuity ratio above which a model is suggested as an outlier.
 pub const SUGGESTION_RATIO: f64 = 2.5;
-/// Fewest models of a bundle in which outliers are looked for.
+/// Fewest models of a bundle for the outlier search.
 const LEAST_MODELS: usize = 5;
 
-/// How much faster than the perturbation explains each model of a physics bundle differs from the others.
+/// Ratio of each physics model's distance from the others to the distance explained by its
+/// perturbation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Discontinuity {
-    /// `r_a`, one for each model: near 1 in a smooth bundle. `None` for a model set aside, and where no pair has a fitted distance.
+    /// `r_a`, one per model: near 1 in a smooth bundle. `None` for a model set aside, and if no
+    /// pair has a fitted distance.
     pub ratios: Vec<Option<f64>>,
-    /// What the fit explains distance by, one for each coordinate in which some model is perturbed.
+    /// Weights of the fit, one for each perturbed coordinate.
     pub weights: Vec<CoordinateWeight>,
 }
 
-/// What one coordinate of the perturbation explains of the squared distance.
+/// Contribution of one perturbation coordinate to the squared distance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoordinateWeight {
     /// Name of the coordinate ("airspeed_kt").
     pub name: String,
-    /// Its largest magnitude in the bundle, by which it is divided.
+    /// Its largest magnitude in the bundle, used as the scale.
     pub largest: f64,
     /// `w_k`.
     pub weight: f64,
 }
 
-/// Why no discontinuity ratio could be had.
+/// Reasons for a missing discontinuity ratio.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DiscontinuityError {
     /// The bundle is too small for a fit.
@@ -226,32 +236,32 @@ pub enum DiscontinuityError {
         "outliers are suggested from {LEAST_MODELS} physics models on, this bundle has {found}"
     )]
     TooFewModels {
-        /// Number of models.
+        /// Number of models in the bundle.
         found: usize,
     },
-    /// A model does not say at which trim it was linearised.
+    /// A model does not state the trim of its linearisation.
     #[error("outliers cannot be suggested: model \"{model}\" gives no perturbation")]
     NoPerturbation {
-        /// The model's name.
+        /// Name of the model.
         model: String,
     },
     /// All models were linearised at the same trim.
     #[error("outliers cannot be suggested: every perturbation is zero")]
     AllZero,
-    /// There is no fit.
     #[error("outliers cannot be suggested: {0}")]
     Fit(#[from] FitError),
 }
 
 impl Discontinuity {
-    /// Ratios of a whole bundle, whatever is rejected, as if the models set aside were not there; `perturbations` are the models'
-    /// names and trim offsets in bundle order.
+    /// Computes the ratios of a whole bundle, including rejected models but not those set aside;
+    /// `perturbations` are the models' names and trim offsets in bundle order.
     ///
-    /// Each coordinate is divided by its largest magnitude. The fit `d(a,b)^2 ~ sum_k w_k (p_ak - p_bk)^2`, `w >= 0`, is the
-    /// least in absolute deviations over all pairs (of equally good ones, the one whose fitted distances come nearest to the
-    /// distances in least squares); `r_ab = d(a,b) / sqrt(fitted)`, `r_a = median over b of r_ab`, pairs of zero fitted
-    /// distance skipped. A coordinate that a model does not name counts as zero. The fit, over half a million pairs of a thousand
-    /// models, ends without a result once it is `cancelled`.
+    /// Each coordinate is divided by its largest magnitude. The fit `d(a,b)^2 ~ sum_k w_k (p_ak -
+    /// p_bk)^2`, `w >= 0`, minimises the absolute deviations over all pairs (ties: the fit whose
+    /// fitted distances are closest to the distances in least squares); `r_ab = d(a,b) /
+    /// sqrt(fitted)`, `r_a = median over b of r_ab`; pairs with zero fitted distance are skipped. A
+    /// coordinate missing from a model counts as zero. The fit, over half a million pairs for a
+    /// thousand models, ends without a result once it is `cancelled`.
     pub fn of(
         distance: &BundleDistance,
         perturbations: &[(&str, Option<&BTreeMap<String, f64>>)],
@@ -304,7 +314,8 @@ impl Discontinuity {
         })
     }
 
-    /// `sqrt(sum_k w_k (p_ak - p_bk)^2)` of two trims: the distance that their perturbations explain.
+    /// Returns `sqrt(sum_k w_k (p_ak - p_bk)^2)` for two trims: the distance explained by their
+    /// perturbations.
     pub fn fitted_distance(&self, a: &BTreeMap<String, f64>, b: &BTreeMap<String, f64>) -> f64 {
         let at = |of: &BTreeMap<String, f64>, name: &str| of.get(name).copied().unwrap_or_default();
         let square = |of: &CoordinateWeight| {
@@ -313,7 +324,7 @@ impl Discontinuity {
         self.weights.iter().map(square).sum::<f64>().sqrt()
     }
 
-    /// Models whose ratio exceeds [`SUGGESTION_RATIO`], in bundle order.
+    /// Returns the models whose ratio exceeds [`SUGGESTION_RATIO`], in bundle order.
     pub fn suggested(&self) -> Vec<usize> {
         let above =
             |model: &usize| self.ratios[*model].is_some_and(|ratio| ratio > SUGGESTION_RATIO);
@@ -325,7 +336,7 @@ fn model_pairs(models: usize) -> impl Iterator<Item = (usize, usize)> {
     (0..models).flat_map(move |a| (a + 1..models).map(move |b| (a, b)))
 }
 
-/// The largest magnitude of each coordinate, and the coordinates of each model divided by them.
+/// The largest magnitude of each coordinate, and each model's coordinates divided by it.
 type Coordinates<'a> = (BTreeMap<&'a str, f64>, Vec<Vec<f64>>);
 
 fn scaled_coordinates<'a>(
@@ -376,7 +387,7 @@ mod tests {
 
     use super::*;
 
-    /// A response of 1 but for the upper half of the band, where it is `upper`, of this coherence there.
+    /// A response equal to 1, except in the upper half of the band: `upper`, with this coherence.
     fn measured(upper: f64, coherence: f64) -> Dynamics {
         let table = |low: f64, high: f64| PairTable::filled(1, 1, vec![low, low, high, high]);
         let coherence = Some(table(1.0, coherence));
@@ -423,7 +434,7 @@ mod tests {
         };
         assert_eq!(weighed, turned, "whichever comes first");
         assert!(weighed > 0.0 && weighed < apart);
-        // Half of J at the weight 0.879 of the one, and none of it by the other.
+        // One direction contributes half of J at the weight 0.879, the other nothing.
         assert!(
             (weighed / apart - (0.5 * super::super::mismatch::coherence_weight(0.9)).sqrt()).abs()
                 < 0.01

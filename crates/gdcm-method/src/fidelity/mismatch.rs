@@ -1,4 +1,5 @@
-//! How one response differs from its reference, frequency by frequency, and how much each frequency weighs (M4a).
+//! Mismatch of a response and its reference, frequency by frequency, with the weight of each
+//! frequency (M4a).
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,23 +12,23 @@ use gdcm_model::response::{GainDelay, median, wrap};
 
 use super::cost::{Cost, CostAverage};
 
-/// What a gain and a delay have to act upon: the difference of a simulated response from its reference.
+/// Difference of a simulated response from its reference, to be reduced by a gain and a delay.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
     /// `|H_sim|_dB - |H_ref|_dB` at each frequency.
     pub magnitude_db: Vec<f64>,
     /// Principal value of `arg(H_sim conj H_ref)` \[rad\] at each frequency.
     pub phase: Vec<f64>,
-    /// At which frequencies those stand and what each counts, where the reference's coherence says so (M4a); otherwise they stand
-    /// at each frequency of the grid and count alike.
+    /// Weighted frequencies of the errors, if given by the reference's coherence (M4a); otherwise
+    /// the errors cover the whole grid with equal weights.
     pub coherence_weights: Option<CoherenceWeights>,
-    /// Angle \[rad\], a multiple of 2 pi, that `Delta phi` is shifted by once its turns are decided on: none of the
-    /// representatives' (M13.1).
+    /// Angle \[rad\], a multiple of 2 pi, that is added to `Delta phi` after phase unwrapping; zero
+    /// for the representatives (M13.1).
     pub turn: f64,
 }
 
 impl Mismatch {
-    /// The difference of `simulated` from `reference`, on the same frequencies.
+    /// Computes the difference of `simulated` from `reference`, on the same frequencies.
     pub fn new(simulated: &PolarCurve, reference: &PolarCurve) -> Self {
         let differences = |a: &[f64], b: &[f64], of: fn(f64) -> f64| {
             a.iter().zip(b).map(|(a, b)| of(a - b)).collect()
@@ -44,8 +45,8 @@ impl Mismatch {
         }
     }
 
-    /// What is left of it at the frequencies that count, as if there were no others: all, where coherence does not say; none
-    /// where none counts (M4a).
+    /// Restricts the difference to the weighted frequencies: all of them without coherence; `None`
+    /// if no frequency has a weight (M4a).
     pub fn coherence_weighted(self, coherence_weights: Option<&CoherenceWeights>) -> Option<Self> {
         let Some(coherence_weights) = coherence_weights else {
             return Some(self);
@@ -60,14 +61,14 @@ impl Mismatch {
         })
     }
 
-    /// The frequencies \[rad/s\] at which it stands: all of the grid, or those that count.
+    /// Returns the frequencies \[rad/s\] of the errors: the whole grid or the weighted ones.
     pub fn omega<'a>(&'a self, grid: &'a [f64]) -> &'a [f64] {
         self.coherence_weights
             .as_ref()
             .map_or(grid, |weights| &weights.omega)
     }
 
-    /// The median of a figure of each frequency, weighted where not all count alike (M6, M4a).
+    /// Returns the median over frequency, weighted if the frequencies have weights (M6, M4a).
     pub fn median(&self, values: &mut [f64]) -> f64 {
         match self.weights() {
             None => median(values),
@@ -75,7 +76,8 @@ impl Mismatch {
         }
     }
 
-    /// A figure of each frequency at which it stands, in its place on a grid of `points`; not a number where none counts.
+    /// Spreads values at the frequencies of the errors over a grid of `points`; NaN at frequencies
+    /// without weight.
     pub fn on_grid(&self, values: Vec<f64>, points: usize) -> Vec<f64> {
         match &self.coherence_weights {
             None => values,
@@ -83,15 +85,16 @@ impl Mismatch {
         }
     }
 
-    /// What each frequency at which it stands counts, where not all count alike (M4a).
+    /// Returns the weight of each frequency, unless all weigh the same (M4a).
     pub fn weights(&self) -> Option<&[f64]> {
         self.coherence_weights
             .as_ref()
             .map(|weights| weights.weights.as_slice())
     }
 
-    /// J after a correction of the simulated response (M4, M10). The correction takes `omega tau` from the phase, of which the
-    /// principal value counts: a zero passed on the other side of the axis must not cost a whole turn.
+    /// Computes J after a correction of the simulated response (M4, M10). The correction removes
+    /// `omega tau` from the phase, and the principal value is used: a zero passed on the other side
+    /// of the axis must not cost a whole turn.
     pub fn cost(&self, omega: &[f64], correction: GainDelay, average: CostAverage) -> Cost {
         let omega = self.omega(omega);
         let phase = correction.phases(&self.phase, omega).map(wrap);
@@ -105,8 +108,8 @@ impl Mismatch {
         )
     }
 
-    /// What is left of it after the simulated response has been multiplied by a factor of these magnitudes \[dB\] and phases \[rad\]
-    /// at each frequency of the grid (M15.5).
+    /// Returns the remaining difference after multiplying the simulated response by a factor with
+    /// these magnitudes \[dB\] and phases \[rad\] at each frequency of the grid (M15.5).
     pub fn multiplied(&self, magnitude_db: &[f64], phase: &[f64]) -> Self {
         let weights = self.coherence_weights.as_ref();
         let on = |own: &[f64], factor: &[f64], of: fn(f64) -> f64| -> Vec<f64> {
@@ -126,20 +129,22 @@ impl Mismatch {
         }
     }
 
-    /// Whether the unwrapped `Delta phi` of M3 leaves half a turn somewhere, so that M6b decides on the turns.
+    /// Whether the unwrapped `Delta phi` of M3 exceeds half a turn somewhere, so that M6b chooses
+    /// the turns.
     pub fn leaves_half_a_turn(&self) -> bool {
         self.unwrapped().iter().any(|phase| phase.abs() > PI)
     }
 
-    /// `Delta phi(sim, ref)` \[rad\] of M3.
+    /// Returns `Delta phi(sim, ref)` \[rad\] by M3.
     fn unwrapped(&self) -> Vec<f64> {
         let mut phase = self.phase.clone();
         centred_unwrap(&mut phase, &mut Vec::new());
         phase
     }
 
-    /// `Delta phi(sim, ref)` \[rad\] as a delay takes it from `omega`: that of M3 where it stays within half a turn, else at
-    /// each frequency the turn nearest to the pure delay that fits best (M6b).
+    /// Returns `Delta phi(sim, ref)` \[rad\], whose slope over `omega` is the delay: by M3 if it
+    /// stays within half a turn, otherwise at each frequency the turn nearest to the best-fitting
+    /// pure delay (M6b).
     pub fn phase_difference(&self, omega: &[f64]) -> Vec<f64> {
         let mut phase = self.unwrapped();
         let omega = self.omega(omega);
@@ -155,20 +160,21 @@ impl Mismatch {
         phase
     }
 
-    /// Median \[rad\] of `Delta phi` over the frequencies at which it stands.
+    /// Returns the median \[rad\] of `Delta phi` over its frequencies.
     pub fn median_phase(&self, omega: &[f64]) -> f64 {
         median(&mut self.phase_difference(omega))
     }
 
-    /// The same difference, its phase shifted by whole turns so that its median is the nearest to `median_phase` \[rad\]: that of
-    /// a swapped pair beside the representatives' (M13.1).
+    /// Shifts the phase by whole turns so that its median is nearest to `median_phase` \[rad\]:
+    /// aligns a swapped pair with the representatives (M13.1).
     pub fn align_branch(mut self, omega: &[f64], median_phase: f64) -> Self {
         self.turn += TAU * ((median_phase - self.median_phase(omega)) / TAU).round();
         self
     }
 }
 
-/// The delay \[s\] among -0.600, -0.599 ... 0.600 of the greatest `L = sum cos(phase - omega delay)`, the first if equal (M6b).
+/// Returns the delay \[s\] among -0.600, -0.599 ... 0.600 with the largest `L = sum cos(phase -
+/// omega delay)`, the first of equal ones (M6b).
 ///
 /// ```text
 /// 1  L at every 16th delay
@@ -189,7 +195,7 @@ fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
         coarse.len(),
     );
     let greatest = known.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    // Half a coarse step away; a part of 1e-9 is more than what rounding makes of the sums.
+    // Half a coarse step away; a relative 1e-9 exceeds the rounding error of the sums.
     let rise = delay_s(COARSE / 2) * omega.iter().map(|omega| omega.abs()).sum::<f64>()
         + 1e-9 * phase.len() as f64;
     let mut best = (f64::NEG_INFINITY, 0.0);
@@ -210,9 +216,10 @@ fn nearest_pure_delay_s(phase: &[f64], omega: &[f64]) -> f64 {
     best.1
 }
 
-/// `sum cos(phase - omega delay)` at so many delays from `first_s` \[s\] on, each `step_s` later.
+/// Computes `sum cos(phase - omega delay)` for `count` delays from `first_s` \[s\] on, `step_s`
+/// apart.
 fn likenesses(phase: &[f64], omega: &[f64], [first_s, step_s]: [f64; 2], count: usize) -> Vec<f64> {
-    // Turned on from one delay to the next: a sum of cosines takes a dozen times as long.
+    // Rotated from one delay to the next: a sum of cosines takes a dozen times as long.
     let turned = |(phase, omega): (&f64, &f64)| Complex::from_polar(1.0, phase - omega * first_s);
     let mut left: Vec<Complex<f64>> = phase.iter().zip(omega).map(turned).collect();
     let turns: Vec<Complex<f64>> = omega
@@ -229,25 +236,27 @@ fn likenesses(phase: &[f64], omega: &[f64], [first_s, step_s]: [f64; 2], count: 
     found
 }
 
-/// The frequencies of one response at which its coherence says that it was measured, each with its weight.
+/// The frequencies of one response with sufficient coherence, each with its weight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoherenceWeights {
-    /// Places on the grid, rising.
+    /// Indices on the grid, ascending.
     places: Vec<usize>,
-    /// The frequencies that count \[rad/s\].
+    /// The weighted frequencies \[rad/s\].
     pub omega: Vec<f64>,
     /// `W` at each of them.
     pub weights: Vec<f64>,
 }
 
-/// `W = [1.58 (1 - e^(-gamma^2))]^2` of a coherence `gamma^2` from 0 to 1 (Tischler & Remple, "Aircraft and Rotorcraft System
-/// Identification", 2nd ed. 2012, chapter 11): 0.9975 of 1, 0.508 of 0.6.
+/// Returns `W = [1.58 (1 - e^(-gamma^2))]^2` for a coherence `gamma^2` from 0 to 1 (Tischler &
+/// Remple, "Aircraft and Rotorcraft System Identification", 2nd ed. 2012, chapter 11): 0.9975 at 1,
+/// 0.508 at 0.6.
 pub fn coherence_weight(coherence: f64) -> f64 {
     (1.58 * (1.0 - (-coherence).exp())).powi(2)
 }
 
 impl CoherenceWeights {
-    /// Those `omega` \[rad/s\] whose coherence is not under `threshold` and that lie in the response's valid band.
+    /// Selects the frequencies of `omega` \[rad/s\] with a coherence of at least `threshold` in the
+    /// valid band of the response.
     pub fn of(
         omega: &[f64],
         coherence: &[f64],
@@ -263,7 +272,7 @@ impl CoherenceWeights {
             |omega: f64| valid_band.is_none_or(|[low, high]| (low..=high).contains(&omega));
         for (place, (&omega, &coherence)) in omega.iter().zip(coherence).enumerate() {
             let weight = coherence_weight(coherence);
-            // A weight of zero would count in N' and nowhere else.
+            // A zero weight would count in N' and nowhere else.
             if coherence >= threshold && weight > 0.0 && is_valid(omega) {
                 coherence_weights.places.push(place);
                 coherence_weights.omega.push(omega);
@@ -273,7 +282,8 @@ impl CoherenceWeights {
         coherence_weights
     }
 
-    /// Those of every response of a model; none where it has no coherence, so that all frequencies count alike.
+    /// Returns the weights of every response of a model; `None` without coherence, so that all
+    /// frequencies weigh the same.
     pub fn of_model(
         dynamics: &Dynamics,
         omega: &[f64],
@@ -290,7 +300,7 @@ impl CoherenceWeights {
         )
     }
 
-    /// What stands at these frequencies in their places among `points` of the grid, not a number elsewhere.
+    /// Spreads values at these frequencies over a grid of `points`, NaN elsewhere.
     pub fn spread(&self, values: &[f64], points: usize) -> Vec<f64> {
         let mut spread = vec![f64::NAN; points];
         self.places
@@ -300,7 +310,7 @@ impl CoherenceWeights {
         spread
     }
 
-    /// What stands at these frequencies, of one value for each of the grid.
+    /// Picks the values at these frequencies from one value per grid point.
     pub(super) fn pick(&self, values: &[f64]) -> Vec<f64> {
         self.places.iter().map(|&place| values[place]).collect()
     }
@@ -357,7 +367,7 @@ mod tests {
 
     #[test]
     fn a_zero_passed_on_the_other_side_costs_no_turn_and_leaves_the_delay_of_the_others() {
-        // 70 ms of lag, and from 2 rad/s on a turn to the other side within a few frequencies.
+        // 70 ms of lag, and from 2 rad/s a turn in the other direction within a few frequencies.
         let omega: Vec<f64> = (1..=120).map(|k| 0.1 * f64::from(k)).collect();
         let turn = |omega: f64| TAU / (1.0 + (-40.0 * (omega - 2.0)).exp());
         let phase = omega
@@ -371,7 +381,7 @@ mod tests {
             turn: 0.0,
         };
         let cost = mismatch.cost(&omega, GainDelay::new(1.0, -0.07), CostAverage::Median);
-        // Squares of what is left of the turn at 6 rad/s: e^-160.
+        // Squares of the remainder of the turn at 6 rad/s: e^-160.
         assert!(cost.phase < 1e-20, "{cost:?}");
         let delays = mismatch
             .phase_difference(&omega)
@@ -386,7 +396,7 @@ mod tests {
     fn frequencies_that_do_not_count_move_neither_the_cost_nor_the_branch() {
         let omega: Vec<f64> = (1..=240).map(|k| 0.1 * f64::from(k)).collect();
         let mut reference = curve(1.0, 0.3, &omega);
-        // From 5 to 8 rad/s nothing but noise was measured.
+        // Only noise from 5 to 8 rad/s.
         for (k, phase) in reference.phase.iter_mut().enumerate().take(80).skip(50) {
             *phase = wrap(2.3 * (k * k) as f64);
             reference.magnitude_db[k] = 40.0;
@@ -428,7 +438,7 @@ mod tests {
                 };
                 let greatest = (-600..=600).map(|step| likeness(1e-3 * f64::from(step))).fold(f64::NEG_INFINITY, f64::max);
                 let found = nearest_pure_delay_s(&phase, &omega);
-                // Sums of at most 60 cosines, of angles of some hundreds, differ in their last digits.
+                // Sums of at most 60 cosines of angles of some hundreds differ in the last digits.
                 proptest::prop_assert!(likeness(found) >= greatest - 1e-10, "{} s", found);
             }
         }
@@ -440,7 +450,7 @@ mod tests {
         for delay_s in [-0.6, -0.4375, 0.31, 0.6] {
             let mismatch = Mismatch::new(&curve(0.0, 0.0, &omega), &curve(0.0, delay_s, &omega));
             let phase = mismatch.phase_difference(&omega);
-            // A handful of roundings of angles up to 0.6 * 24 rad.
+            // A few rounding errors of angles up to 0.6 * 24 rad.
             assert!(
                 phase
                     .iter()

@@ -1,5 +1,5 @@
-//! How well models agree: the cost J, the distance of two models, the representative of a bundle, outliers (M4, M5); modes from
-//! model to model, and what a pilot does not notice.
+//! Agreement of models: the cost J, distances, the representative of a bundle, outliers (M4, M5);
+//! mode tracks across models, and unnoticeable added dynamics.
 
 pub mod absolute_deviations;
 pub mod cost;

@@ -1,6 +1,6 @@
-//! A mode followed from model to model of a bundle, and the models at which it jumps.
+//! A mode followed across the models of a bundle, and the models at which it jumps.
 //!
-//! Which of some things goes with which of others, at the least total cost.
+//! The matching is an assignment problem with the smallest total cost.
 //!
 //! ```text
 //! 1  potentials u_i of the rows, v_j of the columns, with u_i + v_j <= c_ij, equal where i goes with j
@@ -9,39 +9,40 @@
 //! 4     along the path back to i each row takes the column that it was reached by
 //! ```
 //!
-//! Kuhn, "The Hungarian method for the assignment problem", Naval Research Logistics Quarterly 2, 1955, with shortest
-//! augmenting paths: Jonker & Volgenant, Computing 38, 1987. O(rows^2 columns).
+//! Kuhn, "The Hungarian method for the assignment problem", Naval Research Logistics Quarterly 2,
+//! 1955, with shortest augmenting paths: Jonker & Volgenant, Computing 38, 1987. O(rows^2 columns).
 
 use nalgebra::Complex;
 
 use gdcm_model::response::{Mode, median};
 
-/// How many times the spread of its track a pole has to be from the middle to jump: a smooth track over perturbations to both
-/// sides ends at two to three.
+/// Distance of a jump from the centre, in spreads of the track: a smooth track over perturbations
+/// to both sides ends at two to three.
 const JUMP_SPREADS: f64 = 5.0;
-/// Least distance of a jump \[rad/s\]: below it the slowest mode of a helicopter does not change the response in any band.
+/// Smallest distance of a jump \[rad/s\]: a smaller shift of a helicopter's slowest mode changes
+/// the response in no band.
 const LEAST_JUMP_RAD_S: f64 = 0.05;
 
-/// One mode of the reference model and the modes that the other models have in its place.
+/// A mode of the reference model and its matches in the other models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeTrack {
     /// Its index among the modes of the reference model.
     pub reference: usize,
-    /// The mode of each model in its place, by index among that model's; none where the model has fewer poles.
+    /// Index of the matched mode of each model; `None` if the model has fewer poles.
     pub modes: Vec<Option<usize>>,
-    /// The middle of the poles \[rad/s\]: the median of the real parts and that of the imaginary parts.
+    /// Centre of the poles \[rad/s\]: the medians of the real parts and of the imaginary parts.
     pub centre: Complex<f64>,
-    /// Median of the distances from the middle \[rad/s\].
+    /// Median distance from the centre \[rad/s\].
     pub spread_rad_s: f64,
-    /// The models whose pole is farther from the middle than 5 spreads, and than 0.05 rad/s.
+    /// Models whose pole is farther from the centre than 5 spreads and than 0.05 rad/s.
     pub jumps: Vec<usize>,
 }
 
-/// The track of each mode of `models[reference]`, in its order; of a conjugate pair one, unless a model has two poles that are
-/// no pair in its place.
+/// Returns the track of each mode of `models[reference]`, in its order; a conjugate pair has one
+/// track, unless a model matches it with two poles that are not a pair.
 ///
-/// Each model's poles are matched to those of the reference so that the sum of the distances in the s-plane is least
-/// (an assignment problem). There are none where the reference has no modes.
+/// Each model's poles are matched to those of the reference with the smallest sum of distances in
+/// the s-plane (an assignment problem). No tracks if the reference has no modes.
 pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
     let Some(of_reference) = models.get(reference).copied() else {
         return Vec::new();
@@ -85,7 +86,7 @@ pub fn mode_tracks(models: &[&[Mode]], reference: usize) -> Vec<ModeTrack> {
         .collect()
 }
 
-/// The mode of `model` in the place of each of `reference`.
+/// Returns the match in `model` of each mode of `reference`.
 fn matched(reference: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
     let distance = |a: usize, b: usize| (reference[a].pole - model[b].pole).norm();
     if reference.len() <= model.len() {
@@ -104,8 +105,8 @@ fn matched(reference: &[Mode], model: &[Mode]) -> Vec<Option<usize>> {
     places
 }
 
-/// The column of each row, each column taken once at most, with the least total cost; there are at least as many columns as
-/// rows, and all costs are finite.
+/// Assigns a different column to each row with the smallest total cost; needs at least as many
+/// columns as rows, and finite costs.
 pub(crate) fn least_total(
     rows: usize,
     columns: usize,
@@ -125,7 +126,7 @@ pub(crate) fn least_total(
     column_of
 }
 
-/// Gives `new` a column, the rows that have one already others where that costs less.
+/// Assigns a column to `new`, and reassigns earlier rows where that costs less.
 fn augment(
     new: usize,
     cost: &impl Fn(usize, usize) -> f64,
@@ -134,7 +135,7 @@ fn augment(
 ) {
     let columns = row_of.len();
     let mut distance = vec![f64::INFINITY; columns];
-    // The column before on the way from the new row; none where that is the row itself.
+    // The previous column on the path from the new row; `None` at the row itself.
     let mut before: Vec<Option<usize>> = vec![None; columns];
     let mut in_tree = vec![false; columns];
     let mut at = None;
@@ -197,7 +198,7 @@ mod tests {
         .unwrap()
     }
 
-    /// A lag of `rate` and an oscillator of `frequency` damped 0.2.
+    /// A lag with `rate` and an oscillator with `frequency` and damping 0.2.
     fn lag_and_oscillator(rate: f64, frequency: f64) -> Vec<Mode> {
         let stiffness = -frequency * frequency;
         let damping = -0.4 * frequency;
@@ -206,7 +207,7 @@ mod tests {
 
     #[test]
     fn a_mode_that_jumps_at_one_trim_is_seen_and_the_others_are_not() {
-        // The lag passes the oscillator in size: by size alone they would be taken for one another.
+        // The lag exceeds the oscillator in modulus: matching by modulus alone would confuse them.
         let bundle: Vec<Vec<Mode>> = (0..9)
             .map(|k| {
                 let step = f64::from(k - 4);
@@ -269,7 +270,7 @@ mod assignment_tests {
 
     use super::*;
 
-    /// The least total over every assignment, one after the other.
+    /// The smallest total over every assignment, by exhaustive search.
     fn tried_out(costs: &[Vec<f64>], row: usize, taken: &mut Vec<usize>) -> f64 {
         if row == costs.len() {
             return 0.0;
@@ -287,7 +288,7 @@ mod assignment_tests {
 
     #[test]
     fn the_nearest_is_not_taken_where_the_total_suffers() {
-        // Row 0 is nearest to column 0, and so is row 1, which has nothing else near.
+        // Both rows are nearest to column 0, and row 1 has no other column nearby.
         let costs = [[1.0, 2.0, 9.0], [1.0, 9.0, 9.0]];
         assert_eq!(least_total(2, 3, |row, column| costs[row][column]), [1, 0]);
         assert_eq!(least_total(0, 3, |_, _| 0.0), [0; 0]);
@@ -303,7 +304,7 @@ mod assignment_tests {
             distinct.dedup();
             prop_assert_eq!(distinct.len(), rows);
             let total: f64 = columns.iter().enumerate().map(|(row, &column)| costs[row][column]).sum();
-            // Sums of five in another order.
+            // Sums of five terms in another order.
             prop_assert!((total - tried_out(&costs, 0, &mut Vec::new())).abs() < 1e-13);
         }
     }

@@ -1,6 +1,7 @@
-//! Envelopes of maximum unnoticeable added dynamics: what a pilot does not notice (MIL-STD-1797A, appendix A, 4.2.1.2).
+//! Envelopes of maximum unnoticeable added dynamics (MUAD; MIL-STD-1797A, appendix A, 4.2.1.2).
 //!
-//! Dynamics added to an aircraft's response go unnoticed while magnitude and phase of the added factor stay inside
+//! Pilots do not notice dynamics added to an aircraft's response while the magnitude and phase of
+//! the added factor stay inside
 //!
 //! ```text
 //! upper magnitude  (3.16 s^2 + 31.61 s + 22.79) / (s^2 + 27.14 s + 1.84)
@@ -9,9 +10,10 @@
 //! lower phase      (475.32 s^2 + 184100 s + 29456.1) / (s^2 + 11.66 s + 0.0389) e^(-0.0072 s)
 //! ```
 //!
-//! Wood & Hodgkinson, "Definition of acceptable levels of mismatch for equivalent systems of augmented CTOL aircraft", MDC
-//! A6792, 1980. Some codes leave out the delays or round the coefficients (0.095, 4.95, 29460, 0.039): differences below 0.02 dB
-//! and 0.005 deg, and the delays.
+//! Wood & Hodgkinson, "Definition of acceptable levels of mismatch for equivalent systems of
+//! augmented CTOL aircraft", MDC A6792, 1980. Some codes omit the delays or round the coefficients
+//! (0.095, 4.95, 29460, 0.039): the rounding changes less than 0.02 dB and 0.005 deg, the omission
+//! the phase of the delays.
 
 use nalgebra::Complex;
 
@@ -56,7 +58,8 @@ impl Factor {
         ratio_to_db(self.ratio(omega).norm())
     }
 
-    /// The delay turns by a few degrees, the ratio by less than half a turn: the principal value is the phase.
+    /// The delay contributes a few degrees, the ratio less than half a turn: the principal value is
+    /// the phase.
     fn phase_deg(&self, omega: f64) -> f64 {
         (self.ratio(omega).arg() - omega * self.delay_s).to_degrees()
     }
@@ -65,14 +68,15 @@ impl Factor {
 /// The envelopes at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Muad {
-    /// Least and greatest magnitude of the added dynamics \[dB\].
+    /// Lower and upper magnitude of the added dynamics \[dB\].
     pub magnitude_db: [f64; 2],
-    /// Least and greatest phase of the added dynamics \[deg\].
+    /// Lower and upper phase of the added dynamics \[deg\].
     pub phase_deg: [f64; 2],
 }
 
 impl Muad {
-    /// The envelopes at `omega` \[rad/s\], greater than zero. They come from trials between 0.1 and some 10 rad/s.
+    /// Evaluates the envelopes at `omega` \[rad/s\], greater than zero. The underlying trials range
+    /// from 0.1 to about 10 rad/s.
     pub fn at(omega: f64) -> Self {
         Self {
             magnitude_db: [
@@ -83,7 +87,8 @@ impl Muad {
         }
     }
 
-    /// How far an error is outside \[dB and deg\], negative inside: the distance to the nearer envelope.
+    /// Returns the distance of an error to the nearer envelope \[dB and deg\], positive outside,
+    /// negative inside.
     fn outside(&self, error_db: f64, error_deg: f64) -> [f64; 2] {
         let beyond = |[least, most]: [f64; 2], error: f64| (least - error).max(error - most);
         [
@@ -93,10 +98,12 @@ impl Muad {
     }
 }
 
-/// Where a mismatch, model over reference, leaves an envelope: ranges of `omega` \[rad/s\], rising and apart.
+/// Returns the ranges of `omega` \[rad/s\] in which a mismatch, model over reference, leaves an
+/// envelope: ascending and disjoint.
 ///
-/// The errors \[dB\] and \[deg\] stand at the rising frequencies `omega`; the phase error is its value near zero. Between two
-/// frequencies the distance from the envelope is linear in `ln omega`.
+/// The errors \[dB\] and \[deg\] are given at the ascending frequencies `omega`; the phase error is
+/// its value near zero. Between two frequencies the distance from the envelope is linear in `ln
+/// omega`.
 pub fn leaves(omega: &[f64], error_db: &[f64], error_deg: &[f64]) -> Vec<(f64, f64)> {
     let errors = error_db.iter().zip(error_deg);
     let outside: Vec<[f64; 2]> = omega
@@ -166,7 +173,7 @@ mod tests {
         let ranges = leaves(&omega, &[2.0; 201], &[0.0; 201]);
         assert_eq!(ranges.len(), 1);
         for end in [ranges[0].0, ranges[0].1] {
-            // The envelope turns by some 1e-4 dB from linear between two frequencies.
+            // The envelope deviates by about 1e-4 dB from linear between two frequencies.
             assert!(
                 (Muad::at(end).magnitude_db[1] - 2.0).abs() < 1e-3,
                 "{ranges:?}"

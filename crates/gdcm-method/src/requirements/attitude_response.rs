@@ -1,5 +1,5 @@
-//! The attitude that an input makes, over frequency: `Theta(j omega)`, from which bandwidth and phase delay are read (M17.1);
-//! and a model's response on the frequencies that are searched for crossings, kept for all that is read from it.
+//! The attitude response to an input, `Theta(j omega)`, from which bandwidth and phase delay are
+//! read (M17.1), and a model's response sampled once on the frequencies of the crossing search.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -13,21 +13,22 @@ use gdcm_model::response::frequency_response::log_spaced;
 use gdcm_model::response::{FrequencyResponse, GainDelay, PreparedModel, wrap};
 use gdcm_model::units::{number, ratio_to_db};
 
-/// Frequencies on which sign changes are looked for.
+/// Number of frequencies searched for sign changes.
 const SEARCH_POINTS: usize = 400;
-/// Models are searched from the lower end of the band over this to its upper end times this.
+/// The search for a model extends from the lower band end over this to the upper band end times
+/// this.
 const SEARCH_BEYOND_BAND: f64 = 4.0;
 
-/// What an output is of an attitude.
+/// Relation of an output to an attitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AttitudeOutput {
-    /// Its rate: deg/s, rad/s.
+    /// Angular rate: deg/s, rad/s.
     Rate,
-    /// The attitude itself: deg, rad.
+    /// Attitude: deg, rad.
     Attitude,
 }
 
-/// Why a response has no attitude to read a bandwidth from.
+/// Reasons why a response has no attitude to read a bandwidth from.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AttitudeResponseError {
     /// The output is neither a rate nor an attitude.
@@ -39,24 +40,23 @@ pub enum AttitudeResponseError {
     NotAnAttitude {
         /// Name of the output.
         output: String,
-        /// Its unit.
         unit: String,
     },
-    /// There are no two neighbouring frequencies at which the response is finite and not zero.
+    /// No two neighbouring frequencies have a finite nonzero response.
     #[error("there is no response between {} and {} rad/s", number(*from), number(*to))]
     NoResponse {
-        /// Lowest frequency asked for \[rad/s\].
+        /// Lowest requested frequency \[rad/s\].
         from: f64,
-        /// Highest frequency asked for \[rad/s\].
+        /// Highest requested frequency \[rad/s\].
         to: f64,
     },
 }
 
 impl AttitudeOutput {
-    /// What the unit of an output says that it is.
+    /// Classifies an output by its unit.
     ///
     /// # Errors
-    /// [`AttitudeResponseError::NotAnAttitude`] of any other unit.
+    /// [`AttitudeResponseError::NotAnAttitude`] for any other unit.
     pub fn of(output: &Channel) -> Result<Self, AttitudeResponseError> {
         match PhysicalUnit::of(&output.unit).map(|unit| unit.name) {
             Some("deg/s" | "rad/s") => Ok(Self::Rate),
@@ -68,7 +68,7 @@ impl AttitudeOutput {
         }
     }
 
-    /// What `H` is multiplied by to become the attitude: `1/(j omega)` of a rate.
+    /// Returns the factor from `H` to the attitude: `1/(j omega)` for a rate.
     fn factor(self, omega: f64) -> Complex<f64> {
         match self {
             Self::Rate => Complex::new(0.0, -1.0 / omega),
@@ -77,10 +77,11 @@ impl AttitudeOutput {
     }
 }
 
-/// A response at any frequencies \[rad/s\]; not a number where it is not known.
+/// A response evaluated at any frequencies \[rad/s\]; NaN where it is unknown.
 pub type ResponseAt<'a> = dyn Fn(&[f64]) -> Vec<Complex<f64>> + 'a;
 
-/// The frequencies \[rad/s\] on which a model is searched for crossings: 400, logarithmic, of `band / 4` to `4 band`.
+/// Returns the frequencies \[rad/s\] of the crossing search for a model: 400, logarithmic, from
+/// `band / 4` to `4 band`.
 pub fn search_frequencies(band: Band) -> Vec<f64> {
     log_spaced(
         band.min() / SEARCH_BEYOND_BAND,
@@ -89,32 +90,34 @@ pub fn search_frequencies(band: Band) -> Vec<f64> {
     )
 }
 
-/// `Theta(j omega)`: magnitude and continuous phase on a grid, and between.
+/// `Theta(j omega)`: magnitude and continuous phase on a grid and between its points.
 ///
-/// Of a rate response H it is `H / (j omega)`. The phase is continuous, and lies in (-270, 90] deg at the lowest frequency of the band:
-/// below it, where no records say anything, slow and unstable modes turn a physics model's phase by whole turns.
+/// For a rate response H it is `H / (j omega)`. The phase is continuous, and lies in (-270, 90] deg
+/// at the lowest frequency of the band: below it, where records carry no information, slow and
+/// unstable modes turn a physics model's phase by whole turns.
 pub struct AttitudeResponse<'a> {
     response: &'a ResponseAt<'a>,
-    /// What many points in a row are read from.
+    /// Source for sequences of many points.
     samples: &'a ResponseAt<'a>,
     output: AttitudeOutput,
-    /// The frequencies \[rad/s\] of the grid at which it is known, rising; at least two.
+    /// Grid frequencies \[rad/s\] with a known response, ascending; at least two.
     pub(super) omega: Vec<f64>,
-    /// `20 log10 |Theta|` on the grid, up to a constant that the units make.
+    /// `20 log10 |Theta|` on the grid, up to a constant that depends on the units.
     pub(super) magnitude_db: Vec<f64>,
     /// Continuous phase \[rad\] on the grid.
     pub(super) phase: Vec<f64>,
-    /// Index of the lowest frequency of the band on the grid, at which the branch of the phase is decided.
+    /// Grid index of the lowest frequency of the band, which fixes the branch of the phase.
     pub(super) lowest_of_band: usize,
 }
 
 impl<'a> AttitudeResponse<'a> {
-    /// The attitude that `response` makes of an output, searched on the rising frequencies `omega` \[rad/s\]: [`search_frequencies`]
-    /// of a model, its own frequencies of a measured response. It ends where the response first has no value. The branch of the
-    /// phase is decided at the first of them in `band`.
+    /// Creates the attitude response of an output from `response`, searched on the ascending
+    /// frequencies `omega` \[rad/s\]: [`search_frequencies`] for a model, its own frequencies for a
+    /// measured response. It ends at the first missing value. The branch of the phase is chosen at
+    /// the first frequency in `band`.
     ///
     /// # Errors
-    /// [`AttitudeResponseError::NoResponse`] where no two neighbouring frequencies have a value.
+    /// [`AttitudeResponseError::NoResponse`] if no two neighbouring frequencies have a value.
     pub fn new(
         response: &'a ResponseAt<'a>,
         output: AttitudeOutput,
@@ -159,34 +162,38 @@ impl<'a> AttitudeResponse<'a> {
         })
     }
 
-    /// The same response, of which many points in a row are read from samples of it.
+    /// Uses `samples` of the response to read sequences of many points.
     #[must_use]
     pub fn sampled_by(self, samples: &'a ResponseAt<'a>) -> Self {
         Self { samples, ..self }
     }
 
-    /// The phase \[deg\] at the lowest frequency of the band where it speaks for a stick or an output that counts the other way round:
-    /// within 45 deg of +90 deg, where an attitude that follows its stick has 0 to -90 deg. Bandwidths are then wrong.
+    /// Returns the phase \[deg\] at the lowest frequency of the band if it indicates an input or an
+    /// output with reversed sign: within 45 deg of +90 deg, where an attitude that follows its
+    /// input has 0 to -90 deg. The bandwidths are then wrong.
     pub fn reversed_phase_deg(&self) -> Option<f64> {
         let phase_deg = self.phase[self.lowest_of_band].to_degrees();
         let is_reversed = !(-225.0..=45.0).contains(&phase_deg);
         is_reversed.then_some(phase_deg)
     }
 
-    /// Magnitude \[dB\] at `omega` \[rad/s\]; none where there is no response.
+    /// Returns the magnitude \[dB\] at `omega` \[rad/s\]; `None` without a response.
     pub fn magnitude_db_at(&self, omega: f64) -> Option<f64> {
         polar(self.response, self.output, &[omega])[0].map(|(magnitude_db, _)| magnitude_db)
     }
 
-    /// Phase \[rad\] at `omega` \[rad/s\] on the branch of the grid around it; none outside the grid or where there is no response.
+    /// Returns the phase \[rad\] at `omega` \[rad/s\] on the branch of the surrounding grid; `None`
+    /// outside the grid or without a response.
     pub fn phase_at(&self, omega: f64) -> Option<f64> {
         let near = between(&self.omega, &self.phase, omega)?;
         let (_, principal) = polar(self.response, self.output, &[omega])[0]?;
         Some(near + wrap(principal - near))
     }
 
-    /// Phases \[rad\] at the rising frequencies `omega` \[rad/s\], unwrapped from `first`, that of the first of them; none where one
-    /// has no response. The grid may end before them. The last is that of the response itself, those before it may be of its samples.
+    /// Returns the phases \[rad\] at the ascending frequencies `omega` \[rad/s\], unwrapped from
+    /// `first`, the phase at the first of them; `None` if a response is missing. The frequencies
+    /// may extend beyond the grid. The last phase is read from the response itself, the others from
+    /// its samples, if any.
     pub fn phases_from(&self, first: f64, omega: &[f64]) -> Option<Vec<f64>> {
         let (last, before) = omega.split_last()?;
         let mut found = polar(self.samples, self.output, before);
@@ -202,7 +209,8 @@ impl<'a> AttitudeResponse<'a> {
     }
 }
 
-/// Magnitude \[dB\] and principal phase \[rad\] of the attitude; none where it is zero or not finite.
+/// Returns magnitude \[dB\] and principal phase \[rad\] of the attitude; `None` where it is zero or
+/// not finite.
 fn polar(
     response: &ResponseAt<'_>,
     output: AttitudeOutput,
@@ -218,18 +226,18 @@ fn polar(
         .collect()
 }
 
-/// A model with its response on the search frequencies and on to twice the highest, at equal ratios: a phase delay needs
-/// `2 omega_180`.
+/// A model with its response on the search frequencies and, at equal ratios, up to twice the
+/// highest: a phase delay needs `2 omega_180`.
 pub struct SampledModel {
     prepared: PreparedModel,
     omega: Vec<f64>,
     values: FrequencyResponse,
-    /// Number of the search frequencies.
+    /// Number of search frequencies.
     searched: usize,
 }
 
 impl SampledModel {
-    /// Samples a model that is searched in and about `band`.
+    /// Samples a model for a search in and around `band`.
     pub fn of(dynamics: &Dynamics, band: Band) -> Self {
         let prepared = PreparedModel::of(dynamics);
         let mut omega = search_frequencies(band);
@@ -237,7 +245,7 @@ impl SampledModel {
         let highest = omega[omega.len() - 1];
         let ratio = omega[1] / omega[0];
         let beyond = std::iter::successors(Some(highest * ratio), |omega| Some(omega * ratio));
-        // One more than needed, for the interpolation to have a neighbour.
+        // One more than needed, as a neighbour for the interpolation.
         omega.extend(beyond.take(1 + (2f64.ln() / ratio.ln()).ceil() as usize));
         let values = prepared.at(&omega);
         Self {
@@ -248,7 +256,7 @@ impl SampledModel {
         }
     }
 
-    /// Its response under `correction`, exact at any frequency (M2, M10).
+    /// Returns the response under `correction`, exact at any frequency (M2, M10).
     pub fn exact(
         &self,
         pair: Pair,
@@ -269,7 +277,8 @@ impl SampledModel {
         }
     }
 
-    /// The same, between the samples by the cubic through four of them over ln omega; not a number outside.
+    /// Returns the same response, interpolated between the samples by a cubic over ln omega; NaN
+    /// outside.
     pub fn interpolated(
         &self,
         pair: Pair,
@@ -291,7 +300,7 @@ impl SampledModel {
     }
 }
 
-/// The cubic through four values at 0, 1, 2, 3 (Lagrange).
+/// Evaluates the cubic through four values at 0, 1, 2, 3 (Lagrange).
 fn cubic(values: &[Complex<f64>], at: f64) -> Complex<f64> {
     let [a, b, c, d] = [at, at - 1.0, at - 2.0, at - 3.0];
     values[0] * (-b * c * d / 6.0) + values[1] * (a * c * d / 2.0) - values[2] * (a * b * d / 2.0)

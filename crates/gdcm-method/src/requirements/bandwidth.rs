@@ -11,10 +11,11 @@
 //! 7  above: least-squares line of Phi over omega; tau_p = what it loses from omega_180 to 2 omega_180, over 2 omega_180
 //! ```
 //!
-//! ADS-33E-PRF, "Handling qualities requirements for military rotorcraft", 2000, 3.3.2.1 and figure 4; MIL-DTL-32742.
+//! ADS-33E-PRF, "Handling qualities requirements for military rotorcraft", 2000, 3.3.2.1 and figure
+//! 4; MIL-DTL-32742.
 //!
-//! How sure bandwidth and phase delay are (M17.1): to first order, of the standard deviations that a response carries (M14), or of the
-//! other models of the bundles (M13).
+//! Uncertainty of bandwidth and phase delay (M17.1): to first order from the standard deviations of
+//! a response (M14), or from the other models of the bundles (M13).
 //!
 //! ```text
 //! phase crossing:  sd = sd_phase / |d phase / d omega|
@@ -22,8 +23,9 @@
 //! phase delay:     sd = sqrt(sd_phase(omega_180)^2 + sd_phase(2 omega_180)^2) / (2 omega_180)
 //! ```
 //!
-//! Errors at frequencies apart are taken as independent of one another. Those of neighbours are not: a phase delay that is read from the
-//! line of least squares has the deviation of the two ends too, for independent errors all along the line would make it as small as there are
+//! Errors at distant frequencies are taken as independent, errors at neighbouring frequencies are
+//! not: a phase delay read from the least-squares line also has the deviation of its two ends,
+//! because independent errors along the line would make it arbitrarily small with the number of
 //! points.
 
 use std::f64::consts::PI;
@@ -47,78 +49,79 @@ const GAIN_MARGIN_DB: f64 = 6.0;
 const NEUTRAL_DEG: f64 = -180.0;
 /// Phase of `omega_phase` \[deg\]: a margin of 45 deg.
 const PHASE_MARGIN_DEG: f64 = -135.0;
-/// Points on which the phase between `omega_180` and `2 omega_180` is judged.
+/// Points used to judge the phase between `omega_180` and `2 omega_180`.
 const LINE_POINTS: usize = 400;
-/// Departure \[deg\] from its chord up to which the phase is straight.
+/// Departure \[deg\] from its chord up to which the phase counts as straight.
 const STRAIGHT_DEG: f64 = 10.0;
 
-/// How an axis answers to its stick.
+/// Response type of an axis to its inceptor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CommandType {
-    /// The stick commands a rate.
+    /// The inceptor commands a rate.
     #[default]
     Rate,
-    /// The stick commands an attitude (attitude command, attitude hold).
+    /// The inceptor commands an attitude (attitude command, attitude hold).
     Attitude,
 }
 
-/// What becomes of numbers that rest on a response above the band that was identified.
+/// Treatment of values that rest on a response above the identified band.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AboveBand {
-    /// They are given, and said to rest on the model.
+    /// Returned, and marked as resting on the model.
     #[default]
     Marked,
-    /// They are refused: lead filters are no model of the aircraft there (M15).
+    /// Refused: lead filters do not represent the aircraft there (M15).
     Refused,
 }
 
-/// What a bandwidth is asked with.
+/// Settings of the bandwidth evaluation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandwidthSettings {
-    /// How the axis answers.
     pub command: CommandType,
-    /// The identified band, or that of the measured response \[rad/s\].
+    /// The identified band, or the band of the measured response \[rad/s\].
     pub band: Band,
-    /// What becomes of numbers above it.
+    /// Treatment of values above it.
     pub above_band: AboveBand,
 }
 
-/// A number of a response, how sure it is, and what it rests on.
+/// A value read from a response, with its uncertainty and the frequencies that it rests on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
-    /// The number: \[rad/s\] or \[s\].
+    /// The value: \[rad/s\] or \[s\].
     pub value: f64,
-    /// Its standard deviation to first order, of the band that the response carries (M14); none where it carries none there.
+    /// Standard deviation to first order, from the band of the response (M14); `None` without a
+    /// band there.
     pub deviation: Option<f64>,
-    /// The lowest and the highest frequency \[rad/s\] that it was read from.
+    /// Lowest and highest frequency \[rad/s\] that the value was read from.
     pub read_at: [f64; 2],
-    /// Whether it rests on the model above the band.
+    /// Whether the value rests on the model above the band.
     pub rests_above_band: bool,
-    /// Whether it rests on the model below the band.
+    /// Whether the value rests on the model below the band.
     pub rests_below_band: bool,
 }
 
-/// Why a response lacks a number.
+/// Reasons for a missing value.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NoMetric {
-    /// The phase falls through the level nowhere.
+    /// The phase never falls through the level.
     #[error("no crossing of {} deg up to {} rad/s", number(*level_deg), number(*up_to))]
     NoCrossing {
-        /// The phase that is asked for \[deg\].
+        /// The requested phase \[deg\].
         level_deg: f64,
         /// Highest frequency searched \[rad/s\].
         up_to: f64,
     },
-    /// The phase is below the level at the lowest frequency of the band, and falls through it nowhere below.
+    /// The phase is below the level at the lowest frequency of the band, and never falls through it
+    /// below the band.
     #[error("no crossing of {} deg: the phase is below it from {from:.3} rad/s on", number(*level_deg))]
     BelowFromStart {
-        /// The phase that is asked for \[deg\].
+        /// The requested phase \[deg\].
         level_deg: f64,
         /// Lowest frequency of the band \[rad/s\].
         from: f64,
     },
-    /// Nowhere below `omega_180` is the magnitude 6 dB above that at `omega_180`.
+    /// The magnitude nowhere below `omega_180` exceeds that at `omega_180` by 6 dB.
     #[error("no crossing of 6 dB above the magnitude at {omega_180:.3} rad/s down to {} rad/s", number(*down_to))]
     NoGainCrossing {
         /// Frequency of -180 deg \[rad/s\].
@@ -126,31 +129,31 @@ pub enum NoMetric {
         /// Lowest frequency searched \[rad/s\].
         down_to: f64,
     },
-    /// The response ends before a frequency that the number needs.
+    /// The response ends before a frequency that the value needs.
     #[error("the response has no value at {needed:.3} rad/s, twice the frequency of -180 deg")]
     ResponseEnds {
         /// `2 omega_180` \[rad/s\].
         needed: f64,
     },
-    /// The number rests on lead filters above the band.
+    /// The value rests on lead filters above the band.
     #[error("rests on the leads above the band: {needed:.3} rad/s, beyond {} rad/s", number(*top))]
     AboveBand {
-        /// Highest frequency that it needs \[rad/s\].
+        /// Highest frequency that the value needs \[rad/s\].
         needed: f64,
-        /// Top of the band, `omega_B` \[rad/s\].
+        /// Upper end of the band, `omega_B` \[rad/s\].
         top: f64,
     },
 }
 
-/// Which margin is the bandwidth.
+/// The margin that sets the bandwidth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BandwidthRule {
     /// The phase margin of 45 deg.
     Phase,
-    /// The gain margin of 6 dB: it comes first.
+    /// The gain margin of 6 dB, which occurs first.
     Gain,
-    /// The phase margin, the gain margin not being known: the bandwidth is at most this.
+    /// The phase margin, with an unknown gain margin: an upper bound of the bandwidth.
     PhaseGainUnknown,
 }
 
@@ -161,17 +164,18 @@ pub struct PhaseLine {
     pub departure_deg: f64,
     /// `-(Phi(2 omega_180) + pi) / (2 omega_180)` \[s\].
     pub two_points_s: f64,
-    /// Half the slope of the least-squares line, with its sign changed \[s\].
+    /// Half the negative slope of the least-squares line \[s\].
     pub least_squares_s: f64,
 }
 
 impl PhaseLine {
-    /// Whether the two points say it all: the departure is at most 10 deg.
+    /// Whether the two points suffice: the departure is at most 10 deg.
     pub fn is_straight(&self) -> bool {
         self.departure_deg <= STRAIGHT_DEG
     }
 
-    /// The phase delay \[s\]: of the two points where the phase is straight, else of the line.
+    /// Returns the phase delay \[s\]: from the two points if the phase is straight, otherwise from
+    /// the least-squares line.
     pub fn phase_delay_s(&self) -> f64 {
         if self.is_straight() {
             self.two_points_s
@@ -192,16 +196,17 @@ pub struct Bandwidth {
     pub omega_gain: Result<Metric, NoMetric>,
     /// The bandwidth \[rad/s\].
     pub omega_bw: Result<Metric, NoMetric>,
-    /// Which margin it is; none where there is no bandwidth.
+    /// The margin that sets the bandwidth; `None` without a bandwidth.
     pub rule: Option<BandwidthRule>,
     /// Phase delay \[s\].
     pub phase_delay_s: Result<Metric, NoMetric>,
-    /// The phase that it was read from; none where there is no phase delay.
+    /// The phase data behind it; `None` without a phase delay.
     pub phase_line: Option<PhaseLine>,
 }
 
 impl Bandwidth {
-    /// Bandwidth and phase delay of `attitude`, with standard deviations where its band is known.
+    /// Computes bandwidth and phase delay of `attitude`, with standard deviations where its band is
+    /// known.
     pub fn of(
         attitude: &AttitudeResponse<'_>,
         settings: &BandwidthSettings,
@@ -228,13 +233,14 @@ impl Bandwidth {
         }
     }
 
-    /// Whether the gain margin comes before the phase margin: the standard warns of it, whatever the bandwidth is.
+    /// Whether the gain margin occurs before the phase margin: the standard warns about it for
+    /// every response type.
     pub fn is_gain_limited(&self) -> bool {
         matches!((&self.omega_gain, &self.omega_phase), (Ok(gain), Ok(phase)) if gain.value < phase.value)
     }
 }
 
-/// A response, and what is asked of it.
+/// A response with the settings of its evaluation.
 struct Reading<'a> {
     attitude: &'a AttitudeResponse<'a>,
     settings: &'a BandwidthSettings,
@@ -242,7 +248,7 @@ struct Reading<'a> {
 }
 
 impl Reading<'_> {
-    /// A number read from these frequencies, or why there is none.
+    /// Returns the value read from these frequencies, or the reason why it is unavailable.
     fn metric(
         &self,
         value: f64,
@@ -268,7 +274,8 @@ impl Reading<'_> {
         })
     }
 
-    /// The frequency at which the phase falls through a level: of the band the lowest, unless it has fallen through below and stayed there.
+    /// Returns the frequency at which the phase falls through a level: the lowest in the band,
+    /// unless the phase has fallen through below the band and stayed there.
     fn phase_crossing(&self, level_deg: f64) -> Result<Metric, NoMetric> {
         let omega = &self.attitude.omega;
         let phase = &self.attitude.phase;
@@ -302,7 +309,8 @@ impl Reading<'_> {
         )
     }
 
-    /// The greatest frequency below `omega_180` at which the magnitude is 6 dB above that at `omega_180`.
+    /// Returns the highest frequency below `omega_180` at which the magnitude exceeds that at
+    /// `omega_180` by 6 dB.
     fn gain_crossing(&self, omega_180: Metric) -> Result<Metric, NoMetric> {
         let grid = &self.attitude.omega;
         let top = omega_180.value;
@@ -313,7 +321,8 @@ impl Reading<'_> {
         let level = self.attitude.magnitude_db_at(top).ok_or(none)? + GAIN_MARGIN_DB;
         let below = grid.partition_point(|omega| *omega < top);
         let is_above = |k: usize| self.attitude.magnitude_db[k] >= level;
-        // The magnitude at omega_180 itself is below the level: the first grid point above it, from the top, brackets the crossing.
+        // The magnitude at omega_180 itself is below the level: the first grid point above the
+        // level, counted from the top, brackets the crossing.
         let k = (0..below).rev().find(|&k| is_above(k)).ok_or(none)?;
         let upper = if k + 1 < below { grid[k + 1] } else { top };
         let excess = |omega: f64| {
@@ -330,7 +339,7 @@ impl Reading<'_> {
         )
     }
 
-    /// The bandwidth, and which margin it is.
+    /// Returns the bandwidth and the margin that sets it.
     fn bandwidth(
         &self,
         phase: Result<Metric, NoMetric>,
@@ -346,7 +355,7 @@ impl Reading<'_> {
                 } else {
                     (phase, BandwidthRule::Phase)
                 };
-                // That the other margin comes later was read from its frequencies too.
+                // The comparison with the other margin also used its frequencies.
                 let read_at = [phase.read_at[0].min(gain.read_at[0]), gain.read_at[1]];
                 (
                     self.metric(least.value, read_at, least.deviation),
@@ -354,7 +363,8 @@ impl Reading<'_> {
                 )
             }
             (CommandType::Rate, Ok(phase), Err(why)) => match omega_180 {
-                // The gain margin is 6 dB nowhere above the lowest frequency, so the bandwidth lies below it.
+                // No 6 dB gain margin exists above the lowest frequency, so the bandwidth lies
+                // below it.
                 Ok(_) => (Err(why), None),
                 Err(_) => (Ok(phase), Some(BandwidthRule::PhaseGainUnknown)),
             },
@@ -362,7 +372,7 @@ impl Reading<'_> {
         (bandwidth, rule.filter(|_| bandwidth.is_ok()))
     }
 
-    /// The phase delay, and the phase that it is read from.
+    /// Returns the phase delay and the phase data behind it.
     fn phase_delay(&self, omega_180: Metric) -> Result<(Metric, PhaseLine), NoMetric> {
         let from = omega_180.value;
         let to = 2.0 * omega_180.value;
@@ -384,7 +394,7 @@ impl Reading<'_> {
     }
 }
 
-/// The root of `value` between two frequencies, positive at the upper and not at the lower.
+/// Finds the root of `value` between two frequencies, positive at the upper and not at the lower.
 ///
 /// ```text
 /// 1  [a, b] brackets the root, a the newest point; c is the point given up last
@@ -392,10 +402,10 @@ impl Reading<'_> {
 /// 3  no step closer to an end than the tolerance, so that both ends close in
 /// ```
 ///
-/// T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without using
-/// derivatives", *Advances in Engineering Software* 28, 1997.
+/// T. R. Chandrupatla, "A new hybrid quadratic/bisection algorithm for finding the zero of a
+/// nonlinear function without using derivatives", *Advances in Engineering Software* 28, 1997.
 fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> f64 {
-    // Where there is no value, the root is taken to lie above.
+    // A missing value is treated as negative: the root then lies above.
     let sided = |omega: f64| value(omega).filter(|value| !value.is_nan()).unwrap_or(-1.0);
     let mut a = (high, sided(high));
     let mut b = (low, sided(low));
@@ -427,7 +437,7 @@ fn root_between([low, high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> f6
     }
 }
 
-/// The largest distance \[rad\] of a phase from the line between its ends.
+/// Returns the largest distance \[rad\] of a phase from the line between its ends.
 fn chord_departure(omega: &[f64], phase: &[f64]) -> f64 {
     let last = omega.len() - 1;
     let slope = (phase[last] - phase[0]) / (omega[last] - omega[0]);
@@ -437,7 +447,7 @@ fn chord_departure(omega: &[f64], phase: &[f64]) -> f64 {
     omega.iter().zip(phase).map(departure).fold(0.0, f64::max)
 }
 
-/// The slope \[s\] of the least-squares line of `phase` over `omega`.
+/// Returns the slope \[s\] of the least-squares line of `phase` over `omega`.
 fn slope(omega: &[f64], phase: &[f64]) -> f64 {
     let centre = mean(omega);
     let level = mean(phase);
@@ -456,18 +466,16 @@ fn slope(omega: &[f64], phase: &[f64]) -> f64 {
 /// Half the step of a difference quotient, relative to the frequency.
 const HALF_STEP: f64 = 1e-4;
 
-/// The band of one response of an identified model, linear in log omega and none outside its frequencies (M14): how sure what is read
-/// from the response is.
+/// The band of one response of an identified model, linear in log omega and undefined outside its
+/// frequencies (M14); the source of standard deviations for values read from the response.
 #[derive(Clone, Copy, Debug)]
 pub struct PairBand<'a> {
-    /// The bands of the model.
     pub bands: &'a ModelBands,
-    /// The response.
     pub pair: Pair,
 }
 
 impl PairBand<'_> {
-    /// Standard deviation of the magnitude \[dB\] at `omega` \[rad/s\].
+    /// Returns the standard deviation of the magnitude \[dB\] at `omega` \[rad/s\].
     fn magnitude_db(&self, omega: f64) -> Option<f64> {
         between(
             self.bands.omega(),
@@ -476,7 +484,7 @@ impl PairBand<'_> {
         )
     }
 
-    /// Standard deviation of the phase \[rad\] at `omega` \[rad/s\].
+    /// Returns the standard deviation of the phase \[rad\] at `omega` \[rad/s\].
     fn phase(&self, omega: f64) -> Option<f64> {
         between(
             self.bands.omega(),
@@ -486,13 +494,14 @@ impl PairBand<'_> {
         .map(f64::to_radians)
     }
 
-    /// Of a frequency \[rad/s\] at which the phase crosses a level.
+    /// Returns the standard deviation of a frequency \[rad/s\] at which the phase crosses a level.
     fn of_phase_crossing(&self, attitude: &AttitudeResponse<'_>, omega: f64) -> Option<f64> {
         let slope = difference_quotient(omega, |omega| attitude.phase_at(omega))?;
         Some(self.phase(omega)? / slope.abs())
     }
 
-    /// Of the frequency \[rad/s\] at which the magnitude is 6 dB above that at `omega_180`.
+    /// Returns the standard deviation of the frequency \[rad/s\] at which the magnitude exceeds
+    /// that at `omega_180` by 6 dB.
     fn of_gain_crossing(
         &self,
         attitude: &AttitudeResponse<'_>,
@@ -509,7 +518,7 @@ impl PairBand<'_> {
         Some(level / slope(omega)?.abs())
     }
 
-    /// Of the phase delay \[s\].
+    /// Returns the standard deviation of the phase delay \[s\].
     fn of_phase_delay(&self, omega_180: f64) -> Option<f64> {
         let twice = 2.0 * omega_180;
         Some(self.phase(omega_180)?.hypot(self.phase(twice)?) / twice)
@@ -523,8 +532,9 @@ fn difference_quotient(omega: f64, value: impl Fn(f64) -> Option<f64>) -> Option
     (slope != 0.0).then_some(slope)
 }
 
-/// The bar of a number of the representatives, of what it is with each other physics model and with each other identified model in
-/// place of theirs (M13.1, M13.3); none where a swapped pair lacks the number. The number is not negative.
+/// Computes the error bar of a value of the representatives from its values with each other physics
+/// model and each other identified model substituted (M13.1, M13.3); `None` entries are swapped
+/// pairs without the value. The value is not negative.
 pub fn substitution_bar(value: f64, physics: &[Option<f64>], identified: &[Option<f64>]) -> Bar {
     let part = |others: &[Option<f64>]| {
         let changes: Vec<f64> = others.iter().flatten().map(|other| other - value).collect();
@@ -576,7 +586,7 @@ mod tests {
         }
     }
 
-    /// Of a rate response, which is `s` times an attitude.
+    /// Evaluates a rate response, `s` times the given attitude.
     fn of_attitude(
         attitude: impl Fn(Complex<f64>) -> Complex<f64>,
         settings: &BandwidthSettings,
@@ -749,7 +759,8 @@ mod tests {
 
     #[test]
     fn slow_modes_below_the_band_move_neither_branch_nor_crossings() {
-        // An unstable phugoid of 0.2 rad/s turns the phase by a turn below the band, and a pair of zeros near it back.
+        // An unstable phugoid of 0.2 rad/s turns the phase by a turn below the band, and a nearby
+        // pair of zeros turns it back.
         let [.., short] = attitudes();
         let turned =
             |s: Complex<f64>| short(s) * (s * s + 0.1 * s + 0.03) / (s * s - 0.04 * s + 0.04);
@@ -758,15 +769,16 @@ mod tests {
         let found = of_attitude(turned, &rate);
         assert!((value(found.omega_180) / value(plain.omega_180) - 1.0).abs() < 0.1);
         assert!((value(found.omega_bw) / value(plain.omega_bw) - 1.0).abs() < 0.2);
-        // A phase that dips through -135 deg below the band only has its crossing within.
+        // A phase that dips through -135 deg only below the band has its crossing within the band.
         let dips =
             |s: Complex<f64>| short(s) * (s * s + 0.001 * s + 0.04) / (s * s + 0.001 * s + 0.0225);
         assert!(value(of_attitude(dips, &settings(CommandType::Rate)).omega_phase) > 1.9);
-        // A slow aircraft crosses below the band and stays there.
+        // A slow aircraft crosses below the band and stays below the level.
         let slow = of_attitude(|s| 1.0 / (s * (s + 0.2)), &settings(CommandType::Rate));
         let omega_phase = slow.omega_phase.unwrap();
         assert!((omega_phase.value - 0.2).abs() < 1e-10 && omega_phase.rests_below_band);
-        // Also where a lightly damped pair of zeros and poles at some 1.5 rad/s lifts the phase for a while, so that it falls through once more.
+        // The same if a lightly damped pair of zeros and poles near 1.5 rad/s lifts the phase for a
+        // while, so that it falls through once more.
         let lifted = |s: Complex<f64>| {
             (s * s + 0.002 * s + 1.96) / (s * s + 0.002 * s + 2.56) / (s * (s + 0.2))
         };
@@ -801,7 +813,7 @@ mod tests {
 
     #[test]
     fn a_magnitude_that_is_nowhere_6_db_higher_has_no_gain_margin_and_no_bandwidth() {
-        // A flat magnitude: the delay alone turns the phase.
+        // A flat magnitude: only the delay turns the phase.
         let delay = |s: Complex<f64>| (-0.2 * s).exp();
         let found = of_attitude(delay, &settings(CommandType::Rate));
         assert!(matches!(
@@ -816,13 +828,13 @@ mod tests {
                 .ends_with("down to 0.125 rad/s")
         );
         let commanded = of_attitude(delay, &settings(CommandType::Attitude));
-        // -135 deg of 0.2 s.
+        // -135 deg with a delay of 0.2 s.
         assert!((value(commanded.omega_bw) - 0.75 * PI / 0.2).abs() < 1e-9);
     }
 
     #[test]
     fn what_lies_above_the_band_is_said_to_rest_on_the_model_or_refused_with_leads() {
-        // omega_180 8 rad/s: 16 is above the band.
+        // omega_180 is 8 rad/s: 16 is above the band.
         let attitude = |s: Complex<f64>| (-PI / 16.0 * s).exp() / s;
         let marked = of_attitude(attitude, &settings(CommandType::Rate));
         assert!(
@@ -844,7 +856,7 @@ mod tests {
             words,
             "rests on the leads above the band: 16.000 rad/s, beyond 12 rad/s"
         );
-        // omega_180 15.7 rad/s: what the gain margin is rests on the model, and the bandwidth with it.
+        // omega_180 is 15.7 rad/s: the gain margin rests on the model, and so does the bandwidth.
         let fast = |s: Complex<f64>| (-0.1 * s).exp() / s;
         assert!(
             of_attitude(fast, &settings(CommandType::Rate))
@@ -930,7 +942,8 @@ mod tests {
 
     #[test]
     fn a_model_and_its_correction_are_taken_exactly() {
-        // 5 / (s + 3) is the rate of the third known answer without its servo; 60 ms of delay are the correction's and the model's.
+        // 5 / (s + 3) is the rate of the third known answer without its servo; the 60 ms of delay
+        // come from the correction and the model.
         let lag =
             StateSpace::new(dmatrix![-3.0], dmatrix![5.0], dmatrix![1.0], dmatrix![0.0]).unwrap();
         let timing = Timing {
@@ -969,7 +982,7 @@ mod tests {
             (near.omega_gain, found.omega_gain),
             (near.phase_delay_s, found.phase_delay_s),
         ] {
-            // Of four points 1.5 % apart: the fourth power of that, times what the delay turns the phase by.
+            // Four points 1.5 % apart: the fourth power of that, times the phase of the delay.
             let apart = (value(near) / value(exact) - 1.0).abs();
             assert!(apart > 0.0 && apart < 1e-7, "{apart}");
         }
@@ -980,7 +993,7 @@ mod tests {
         let [.., short] = attitudes();
         let sd_deg = 0.3;
         let sd_db = 0.05;
-        // Nowhere but about omega_180 does the phase err; nowhere but about omega_gain does the magnitude.
+        // The phase is uncertain only around omega_180, the magnitude only around omega_gain.
         let frequencies = log_spaced(0.1, 48.0, 400);
         let bands = |sd_db: f64, sd_deg: f64| {
             let table = |value: f64| PairTable::filled(1, 1, vec![value; frequencies.len()]);
@@ -1025,7 +1038,7 @@ mod tests {
         ] as [fn(&Bandwidth) -> _; 3]
         {
             let deviation = metric(&middle).unwrap().deviation.unwrap();
-            // First order: what is left is the curvature of the phase over 0.3 deg.
+            // First order: the remainder is the curvature of the phase over 0.3 deg.
             assert!(
                 (deviation / half(metric) - 1.0).abs() < 1e-2,
                 "{deviation} {}",
@@ -1037,7 +1050,8 @@ mod tests {
         assert!((middle.phase_delay_s.unwrap().deviation.unwrap() / expected - 1.0).abs() < 1e-12);
         let magnitude_only = of(0.0, &bands(sd_db, 0.0));
         assert_eq!(magnitude_only.omega_180.unwrap().deviation, Some(0.0));
-        // At 2.4 rad/s |Theta| falls by some 20 dB a decade and more: 0.05 sqrt(2) dB are below a hundredth of the frequency.
+        // At 2.4 rad/s |Theta| falls by about 20 dB a decade and more: 0.05 sqrt(2) dB are below a
+        // hundredth of the frequency.
         let deviation = magnitude_only.omega_gain.unwrap().deviation.unwrap();
         assert!(
             deviation > 0.0 && deviation < 0.01 * value(magnitude_only.omega_gain),
@@ -1106,7 +1120,8 @@ mod tests {
         fn a_pure_delay_adds_exactly_half_of_itself_to_the_phase_delay_of_a_straight_phase(
             delay_s in 0.04_f64..0.3, more_s in 0.0_f64..0.3,
         ) {
-            // 1/s and a delay: the phase is straight. It loses pi/2 to omega_180 and as much again to twice that.
+            // 1/s and a delay: the phase is straight. It loses pi/2 up to omega_180 and as much
+            // again up to twice that.
             let of = |delay_s: f64| of_attitude(move |s| (-delay_s * s).exp() / s, &settings(CommandType::Rate));
             let less = of(delay_s);
             let more = of(delay_s + more_s);

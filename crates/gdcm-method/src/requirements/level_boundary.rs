@@ -1,59 +1,56 @@
-//! Boundaries of handling-qualities levels over bandwidth and phase delay, from the engineer's file (M17.1).
+//! Boundaries of handling-qualities levels over bandwidth and phase delay, read from a user file
+//! (M17.1).
 //!
-//! None is built in: they depend on the mission task element and the category (ADS-33E-PRF, figures 5, 6, 11 and 12).
+//! None is built in, because they depend on the mission task element and the category (ADS-33E-PRF,
+//! figures 5, 6, 11 and 12).
 
 use serde::{Deserialize, Serialize};
 
 use gdcm_model::message_text::quoted;
 use gdcm_model::units::number;
 
-/// One boundary: a line of points in the plane of bandwidth and phase delay.
+/// One boundary: a polyline in the plane of bandwidth and phase delay.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LevelBoundary {
     /// Its name ("Level 1").
     pub name: String,
-    /// The output that it is drawn for ("P").
+    /// The output that it applies to ("P").
     pub axis: String,
-    /// Bandwidth \[rad/s\] and phase delay \[s\] of each point, in the order in which they are joined; at least two.
+    /// Bandwidth \[rad/s\] and phase delay \[s\] of each point, in drawing order; at least two.
     pub points: Vec<[f64; 2]>,
 }
 
-/// The boundaries of a file, `[{"name": "Level 1", "axis": "P", "points": [[omega, tau], ...]}]`; each is checked as it is read.
+/// The boundaries of a file, `[{"name": "Level 1", "axis": "P", "points": [[omega, tau], ...]}]`;
+/// each is checked on reading.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<LevelBoundary>")]
 pub struct LevelBoundaries(Vec<LevelBoundary>);
 
-/// Why boundaries cannot be drawn.
+/// Reasons why boundaries cannot be drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LevelBoundaryError {
-    /// A boundary has no name.
     #[error("boundary {entry}: expected a name, found none")]
     NoName {
-        /// Which, counted from 1.
+        /// Counted from 1.
         entry: usize,
     },
-    /// A boundary has no axis.
     #[error(
         "boundary {entry}, {}: expected the name of an output as its axis, found none",
         quoted(name)
     )]
     NoAxis {
-        /// Which, counted from 1.
+        /// Counted from 1.
         entry: usize,
-        /// Its name.
         name: String,
     },
-    /// A boundary has fewer than two points.
     #[error(
         "boundary {entry}, {}: expected at least 2 points, found {found}",
         quoted(name)
     )]
     TooFewPoints {
-        /// Which, counted from 1.
+        /// Counted from 1.
         entry: usize,
-        /// Its name.
         name: String,
-        /// How many it has.
         found: usize,
     },
     /// A point is not finite, or negative.
@@ -62,13 +59,11 @@ pub enum LevelBoundaryError {
         quoted(name), number(found[0]), number(found[1])
     )]
     Point {
-        /// Which, counted from 1.
+        /// Counted from 1.
         entry: usize,
-        /// Its name.
         name: String,
-        /// Which point, counted from 1.
+        /// Counted from 1.
         point: usize,
-        /// What stands there.
         found: [f64; 2],
     },
 }
@@ -116,17 +111,17 @@ impl TryFrom<Vec<LevelBoundary>> for LevelBoundaries {
 }
 
 impl LevelBoundaries {
-    /// All of them, in the order of the file.
+    /// Returns all boundaries, in file order.
     pub fn all(&self) -> &[LevelBoundary] {
         &self.0
     }
 
-    /// Those of one axis, named as the dataset names its output.
+    /// Returns the boundaries of one axis, named as the dataset names its output.
     pub fn of_axis<'a>(&'a self, axis: &'a str) -> impl Iterator<Item = &'a LevelBoundary> {
         self.0.iter().filter(move |boundary| boundary.axis == axis)
     }
 
-    /// Axes of the file that are no outputs of the dataset, each once.
+    /// Returns the axes of the file that are not outputs of the dataset, without duplicates.
     pub fn unknown_axes(&self, outputs: &[String]) -> Vec<&str> {
         let mut unknown: Vec<&str> = Vec::new();
         for boundary in self

@@ -1,8 +1,10 @@
-//! What a qualification asks of a model (M17): bandwidth and phase delay, time histories within tolerances, modes, summary costs.
+//! Qualification criteria for a model (M17): bandwidth and phase delay, time histories within
+//! tolerances, modes, summary costs.
 //!
-//! J says how far two models are apart; whoever accepts a simulator or a flight control law asks other questions. Each is answered
-//! of one model here; nothing of it changes a correction. Times in s, frequencies in rad/s, angles inside in rad. A response is taken
-//! exactly (models) or interpolated inside its frequencies (measured); nothing is extrapolated.
+//! J measures the distance of two models; acceptance of a simulator or a flight control law needs
+//! other criteria. Each is evaluated here for one model and never changes a correction. Times in s,
+//! frequencies in rad/s, internal angles in rad. A response is evaluated exactly (models) or
+//! interpolated inside its frequencies (measured), never extrapolated.
 //!
 //! | file | answers | standard |
 //! |---|---|---|
@@ -29,7 +31,7 @@ pub use mode_name::{ModeName, NamedBy};
 pub use test_input::{TestInput, TestInputShape};
 pub use tolerance::{RecordCheck, Tolerance, ToleranceTable};
 
-/// The first of some named numbers that is not finite, or not above zero.
+/// Returns the first named number that is not finite, or not above zero.
 fn not_positive<const N: usize>(
     values: [(&'static str, Option<f64>); N],
 ) -> Option<(&'static str, f64)> {
@@ -39,13 +41,13 @@ fn not_positive<const N: usize>(
         .find_map(|(name, value)| Some((name, value.filter(is_wrong)?)))
 }
 
-/// Known answers of M17, by independent code.
+/// Known answers of M17, from independent code.
 #[cfg(test)]
 mod known_answers {
     use nalgebra::Complex;
     use serde_json::Value;
 
-    /// The whole file.
+    /// Reads the whole file.
     pub(super) fn answers() -> Value {
         serde_json::from_str(include_str!(
             "../../../../tests/data/reference/requirements.json"
@@ -53,12 +55,12 @@ mod known_answers {
         .unwrap()
     }
 
-    /// A number of a case.
+    /// Returns a number of a case.
     pub(super) fn number(case: &Value, name: &str) -> f64 {
         case[name].as_f64().unwrap()
     }
 
-    /// The attitude response of each case, as its words say it.
+    /// The attitude response of each case, as its description defines it.
     pub(super) fn attitudes() -> [fn(Complex<f64>) -> Complex<f64>; 4] {
         fn second_order(
             gain: f64,

@@ -1,4 +1,4 @@
-//! The modes of models against those identified from flight, within tolerances that are in the engineer's hands (M17.3).
+//! Modes of models against those identified from flight, with user-defined tolerances (M17.3).
 //!
 //! ```text
 //! 1  pair the modes of every model with those of the identified one by distance and shape (mode_pairing)
@@ -26,31 +26,31 @@ use super::mode_name::{ModeName, NamedBy};
 use super::mode_pairing::{ModePair, mode_pairs, single_modes};
 use super::not_positive;
 
-/// Distance, as a part of the pole's modulus, within which an estimate is that of a pole: the same model written otherwise.
+/// Relative distance within which an estimate matches a pole: the same model in another notation.
 const SAME_POLE: f64 = 1e-3;
 
-/// The modes of a model, and the names of its states where it has some.
+/// The modes of a model, with the names of its states if available.
 #[derive(Clone, Copy, Debug)]
 pub struct ModelModes<'a> {
-    /// Its modes.
     pub modes: &'a [Mode],
-    /// Name of each state; empty where they are not named.
+    /// Name of each state; empty without names.
     pub states: &'a [String],
 }
 
-/// What is asked of a mode, or the standard deviations of that.
+/// The compared values of a mode, or their standard deviations.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ModeValues {
-    /// Period \[s\]; none where it does not oscillate.
+    /// Period \[s\]; `None` for a mode that does not oscillate.
     pub period_s: Option<f64>,
-    /// Time to half amplitude \[s\], negative where it grows: time to double. None where it does neither.
+    /// Time to half amplitude \[s\], negative for a growing mode: time to double. `None` for a
+    /// constant amplitude.
     pub time_to_half_s: Option<f64>,
-    /// Damping ratio; none of a pole at zero.
+    /// Damping ratio; `None` for a pole at zero.
     pub damping_ratio: Option<f64>,
 }
 
 impl ModeValues {
-    /// Of a mode.
+    /// Computes the values of a mode.
     pub fn of(mode: &Mode) -> Self {
         Self {
             period_s: mode.oscillates().then(|| TAU / mode.pole.im.abs()),
@@ -59,7 +59,8 @@ impl ModeValues {
         }
     }
 
-    /// The standard deviations of a mode's values, to first order of those of its pole (M14.5).
+    /// Computes the standard deviations of a mode's values, to first order in those of its pole
+    /// (M14.5).
     pub fn deviation(mode: &Mode, pole: &PoleEstimate) -> Self {
         let values = Self::of(mode);
         let re = mode.pole.re.abs();
@@ -76,7 +77,7 @@ impl ModeValues {
     }
 }
 
-/// What is said of a mode of a model.
+/// Verdict on a mode of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ModeVerdict {
@@ -86,49 +87,50 @@ pub enum ModeVerdict {
     Outside,
     /// Flight does not determine the mode to within the tolerance.
     NotDetermined,
-    /// The table has no tolerance for it.
+    /// The table has no tolerance for the mode.
     NoTolerance,
-    /// Unpaired: the model has no mode within the distance and the likeness of a pair.
+    /// Unpaired: the model has no mode within the distance and likeness limits of a pair.
     NotPaired,
 }
 
-/// A mode of one model in the place of a flown one.
+/// A model's counterpart of a flown mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComparedMode {
     /// Its index among the model's modes.
     pub mode: usize,
     /// Its pole \[rad/s\].
     pub pole: Complex<f64>,
-    /// Its period, time to half amplitude and damping ratio.
     pub values: ModeValues,
 }
 
-/// One flown mode and those of the models in its place.
+/// A flown mode and its counterparts in the models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeRow {
-    /// What it is called; none where neither states nor frequency say it.
+    /// Its name; `None` if neither states nor frequency determine it.
     pub name: Option<ModeName>,
-    /// What it is named by.
     pub named_by: NamedBy,
     /// The mode of the identified model.
     pub flown: ComparedMode,
-    /// How sure that is; none where the identification is not known.
+    /// Standard deviations of the flown values; `None` if the identification result is unavailable.
     pub deviation: Option<ModeValues>,
-    /// Whether flight determines it: not below the band, and its standard deviations within the tolerance where both are known.
+    /// Whether flight determines the mode: not below the band, and its standard deviations within
+    /// the tolerance if both are known.
     pub is_determined: bool,
-    /// The tolerance, where the table has one.
+    /// The tolerance, if the table has one.
     pub tolerance: Option<ModeTolerance>,
-    /// The mode of each model in its place; none where it has none.
+    /// The counterpart in each model; `None` for an unpaired mode.
     pub models: Vec<Option<ComparedMode>>,
-    /// What is said of each model.
+    /// The verdict on each model.
     pub verdicts: Vec<ModeVerdict>,
 }
 
-/// The modes of `models` against those of the identified model `flown`, by rising frequency; of a conjugate pair one row. `estimates`
-/// are its poles as the identification knows them; empty where it does not. Nothing where it has no modes (a measured response).
+/// Compares the modes of `models` with those of the identified model `flown`, in ascending
+/// frequency; a conjugate pair makes one row. `estimates` are the flown poles with the uncertainty
+/// of the identification; empty if unavailable. Returns no rows if the flown model has no modes (a
+/// measured response).
 ///
-/// A row is named by the first model with named states that has a mode in its place. No two rows have the same name: the one that is
-/// surest of it keeps it.
+/// A row takes its name from the first model with named states and a counterpart. No two rows have
+/// the same name: the row with the surest match keeps it.
 pub fn compare_modes(
     flown: ModelModes<'_>,
     models: &[ModelModes<'_>],
@@ -189,17 +191,18 @@ pub fn compare_modes(
     namings.into_iter().enumerate().map(row).collect()
 }
 
-/// What a row is called, and how doubtful that is.
+/// The name of a row, and its doubt.
 #[derive(Clone, Copy, Debug)]
 struct Naming {
     name: Option<ModeName>,
     named_by: NamedBy,
-    /// Cost of the pair whose states name it; infinite where it is named by its frequency.
+    /// Cost of the pair whose states give the name; infinite for a name by frequency.
     doubt: f64,
 }
 
 impl Naming {
-    /// The name that the first of `places` with named states gives to the mode, else that of the flown mode by itself.
+    /// Returns the name by the first of `places` with named states, otherwise the name of the flown
+    /// mode itself.
     fn of<'a>(flown: &Mode, places: impl Iterator<Item = (ModelModes<'a>, ModePair)>) -> Self {
         for (model, pair) in places {
             if let (name, NamedBy::States) = ModeName::of(&model.modes[pair.mode], model.states) {
@@ -219,7 +222,8 @@ impl Naming {
     }
 }
 
-/// Takes a name away from every row but the one that is surest of it; of equally sure ones the slowest keeps it.
+/// Removes a duplicate name from all rows except the surest; of equally sure rows the slowest keeps
+/// it.
 fn keep_surest_names(namings: &mut [Naming]) {
     let mut by_doubt: Vec<usize> = (0..namings.len()).collect();
     by_doubt.sort_by(|&a, &b| namings[a].doubt.total_cmp(&namings[b].doubt));
@@ -261,7 +265,7 @@ fn compared(mode: &Mode, at: usize) -> ComparedMode {
     }
 }
 
-/// The estimate of a mode's pole.
+/// Returns the estimate of a mode's pole.
 fn estimate_of<'a>(mode: &Mode, estimates: &'a [PoleEstimate]) -> Option<&'a PoleEstimate> {
     let distance = |estimate: &PoleEstimate| (estimate.pole - mode.pole).norm();
     let nearest = estimates
@@ -270,28 +274,30 @@ fn estimate_of<'a>(mode: &Mode, estimates: &'a [PoleEstimate]) -> Option<&'a Pol
     (distance(nearest) <= SAME_POLE * mode.frequency_rad_s).then_some(nearest)
 }
 
-/// One row of the table: the period, and of amplitude and damping one.
+/// One row of the table: a tolerance of the period, and alternative tolerances of amplitude and
+/// damping.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModeTolerance {
-    /// What the source calls it ("long term").
+    /// Name in the source ("long term").
     pub response: String,
-    /// The modes that it is of.
+    /// The modes that the row applies to.
     pub modes: Vec<ModeName>,
-    /// Part of the flown period.
+    /// Relative to the flown period.
     pub period: f64,
-    /// The same in seconds, the wider of the two; none where only the part holds.
+    /// Tolerance of the period \[s\], used if it is the wider of the two; `None` if only the
+    /// relative one applies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub period_s: Option<f64>,
-    /// Part of the flown time to half or double amplitude.
+    /// Relative to the flown time to half or double amplitude.
     pub amplitude_time: f64,
-    /// Difference of the damping ratio.
+    /// Absolute difference of the damping ratio.
     pub damping_ratio: f64,
     /// Entry of the source ("2.c.3.a").
     #[serde(default)]
     pub entry: String,
 }
 
-/// The table of tolerances of modes; each row is checked as it is read.
+/// The table of mode tolerances; each row is checked on reading.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<ModeTolerance>")]
 pub struct ModeToleranceTable(Vec<ModeTolerance>);
@@ -300,23 +306,24 @@ pub struct ModeToleranceTable(Vec<ModeTolerance>);
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("tolerance of modes {row}, {}: expected {name} above zero, found {}", quoted(response), number(*found))]
 pub struct ModeToleranceError {
-    /// Which row, counted from 1.
+    /// Row number, counted from 1.
     pub row: usize,
-    /// What it is of.
+    /// Response of the row.
     pub response: String,
     /// `period`, `period_s`, `amplitude_time` or `damping_ratio`.
     pub name: &'static str,
-    /// What stands there.
+    /// The value found.
     pub found: f64,
 }
 
 impl ModeTolerance {
-    /// The tolerance of the period \[s\] about a flown one.
+    /// Returns the tolerance of the period \[s\] around a flown period.
     pub fn of_period_s(&self, period_s: f64) -> f64 {
         (self.period * period_s).max(self.period_s.unwrap_or(0.0))
     }
 
-    /// Whether `model` is within the tolerance about `flown`: period, and time to half or double amplitude or damping ratio.
+    /// Whether `model` is within the tolerance around `flown`: the period, and either the time to
+    /// half or double amplitude or the damping ratio.
     pub fn holds(&self, flown: &ModeValues, model: &ModeValues) -> bool {
         let differs = |of: fn(&ModeValues) -> Option<f64>| {
             Some(((of(model)? - of(flown)?).abs(), of(flown)?.abs()))
@@ -330,7 +337,7 @@ impl ModeTolerance {
         period && (amplitude || damping)
     }
 
-    /// Whether the flown mode is known to within the tolerance itself.
+    /// Whether the flown mode itself is known to within the tolerance.
     pub fn is_known(&self, flown: &ModeValues, deviation: &ModeValues) -> bool {
         let within = |of: fn(&ModeValues) -> Option<f64>, most: f64| {
             of(deviation).is_some_and(|sd| sd <= most)
@@ -366,12 +373,12 @@ impl ModeTolerance {
 }
 
 impl ModeToleranceTable {
-    /// Its rows.
+    /// Returns the rows.
     pub fn rows(&self) -> &[ModeTolerance] {
         &self.0
     }
 
-    /// The row of a mode, where it has one.
+    /// Returns the row of a mode, if any.
     pub fn of(&self, mode: ModeName) -> Option<&ModeTolerance> {
         self.0.iter().find(|row| row.modes.contains(&mode))
     }
@@ -389,7 +396,8 @@ impl TryFrom<Vec<ModeTolerance>> for ModeToleranceTable {
 }
 
 impl Default for ModeToleranceTable {
-    /// 14 CFR part 60, appendix C, table C2A, 2.c.3.a (long-term response) and 2.d.3.a (lateral-directional oscillations).
+    /// Returns the tolerances of 14 CFR part 60, appendix C, table C2A, 2.c.3.a (long-term
+    /// response) and 2.d.3.a (lateral-directional oscillations).
     fn default() -> Self {
         let row = |response: &str, mode, period_s, entry: &str| ModeTolerance {
             response: response.to_owned(),
@@ -447,7 +455,7 @@ mod tests {
         ModelModes { modes, states: &[] }
     }
 
-    /// Verdict of a Dutch roll against a flown one of -0.4 + 2j.
+    /// The verdict on a Dutch roll against a flown one at -0.4 + 2j.
     fn verdict(re: f64, im: f64, estimates: &[PoleEstimate]) -> ModeVerdict {
         let flown = pair(-0.4, 2.0);
         let model = pair(re, im);
@@ -491,7 +499,8 @@ mod tests {
     #[test]
     fn a_mode_is_within_where_its_period_and_amplitude_or_damping_are() {
         assert_eq!(verdict(-0.4, 2.0, &[]), ModeVerdict::Within);
-        // 3.14 s and 0.5 s more: 1.7255 rad/s. The damping ratio differs by 0.03, the time to half not at all.
+        // 3.14 s and 0.5 s more: 1.7255 rad/s. The damping ratio differs by 0.03, the time to half
+        // not at all.
         assert_eq!(verdict(-0.4, 1.73, &[]), ModeVerdict::Within);
         assert_eq!(verdict(-0.4, 1.72, &[]), ModeVerdict::Outside);
         // Time to half 15 % off; the damping ratio by 0.0195 or by 0.029.
@@ -510,7 +519,8 @@ mod tests {
             verdict(-0.4, 2.0, &[estimate(0.01, 0.01)]),
             ModeVerdict::Within
         );
-        // A period of 3.14 s to 0.31 s is within 0.5 s; time to half to 25 %, damping to 0.045.
+        // A standard deviation of the period of 0.31 s is within 0.5 s; time to half to 25 %,
+        // damping to 0.045.
         assert_eq!(
             verdict(-0.4, 2.0, &[estimate(0.1, 0.2)]),
             ModeVerdict::NotDetermined
@@ -625,7 +635,8 @@ mod tests {
 
     #[test]
     fn a_mode_is_named_once_and_a_fast_flown_pole_is_no_phugoid() {
-        // An overdamped flown pole, and a physics phugoid of two poles: they were two rows named phugoid.
+        // An overdamped flown pole, and a physics phugoid with two real poles: these were once two
+        // rows named phugoid.
         let flown = of(dmatrix![-0.26, 0.0; 0.0, -2.8]);
         let physics = pair(-0.26, 0.1);
         let states = ["u".to_owned(), "theta".to_owned()];
@@ -652,7 +663,7 @@ mod tests {
             ),
         ];
         assert_eq!(found, expected);
-        // Of two flown poles with a partner of the same name the nearer one keeps it.
+        // Of two flown poles whose partners have the same name the nearer one keeps it.
         let split = of(dmatrix![-0.26, 0.0; 0.0, -0.6]);
         let physics = ModelModes {
             modes: &split,

@@ -1,4 +1,4 @@
-//! What the modes of a helicopter are called (M17.3).
+//! Names of the modes of a helicopter (M17.3).
 //!
 //! ```text
 //! where states are named: sum the participations of states of a kind
@@ -18,9 +18,9 @@ use serde::{Deserialize, Serialize};
 
 use gdcm_model::response::Mode;
 
-/// Share of the cyclic flap from which a mode is one of the rotor.
+/// Participation of the cyclic flap above which a mode belongs to the rotor.
 const FLAP_SHARE: f64 = 0.4;
-/// Share of the fuselage below which a mode is of actuators, sensors or inflow.
+/// Participation of the fuselage below which a mode belongs to actuators, sensors or inflow.
 const FUSELAGE_SHARE: f64 = 0.3;
 /// Frequency \[rad/s\] below which a flapping mode is the regressing one.
 const FASTEST_REGRESSING_RAD_S: f64 = 25.0;
@@ -64,18 +64,18 @@ impl fmt::Display for ModeName {
     }
 }
 
-/// What a mode is named by.
+/// Basis of a mode's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NamedBy {
-    /// The states that take part in it.
+    /// The participation of states.
     States,
-    /// Its frequency and damping alone.
+    /// Frequency and damping only.
     Frequency,
 }
 
-/// What a state of a model is of by its name ("q \[rad/s\]", "theta", "b1c_dot", "a (lon flap)"): a body axis' usual letter, an attitude, or
-/// "flap" of the cyclic flap; none of any other.
+/// Returns the kind of a state by its name ("q \[rad/s\]", "theta", "b1c_dot", "a (lon flap)"): the
+/// usual letter of a body axis, an attitude, or "flap" for the cyclic flap; `None` for any other.
 fn state_kind(name: &str) -> Option<&'static str> {
     let lower = name.to_lowercase();
     if lower.contains("flap") {
@@ -104,8 +104,9 @@ fn state_kind(name: &str) -> Option<&'static str> {
 }
 
 impl ModeName {
-    /// The name of a mode of a model: by the states that take part where `states` names them, else by frequency and damping. None
-    /// where that does not say it, or a pole cannot be told from another of named states: actuators of one make are such.
+    /// Names a mode of a model: by the participation of states if `states` names them, otherwise by
+    /// frequency and damping. `None` if this is inconclusive, or if a pole of named states cannot
+    /// be separated from another, as for identical actuators.
     pub fn of(mode: &Mode, states: &[String]) -> (Option<Self>, NamedBy) {
         if states.is_empty() {
             return (Self::by_frequency(mode), NamedBy::Frequency);
@@ -140,7 +141,7 @@ impl ModeName {
             return None;
         }
         match (longitudinal > lateral, mode.oscillates()) {
-            // Of two real poles too, into which the oscillation can split.
+            // Also for two real poles, into which the oscillation can split.
             (true, _) if share(&["u", "theta"]) > share(&["w", "q"]) => Some(Self::Phugoid),
             (true, true) => Some(Self::ShortPeriod),
             (true, false) if share(&["q"]) > share(&["w"]) => Some(Self::PitchSubsidence),
@@ -151,7 +152,7 @@ impl ModeName {
         }
     }
 
-    /// By frequency \[rad/s\] and damping alone, as helicopters have them; no more than a guess.
+    /// Guesses a name from frequency \[rad/s\] and damping, as typical for helicopters.
     fn by_frequency(mode: &Mode) -> Option<Self> {
         let damping = mode.damping_ratio?;
         match (mode.oscillates(), mode.frequency_rad_s) {
@@ -200,7 +201,8 @@ mod tests {
     #[test]
     fn modes_are_named_by_the_states_that_take_part() {
         use ModeName::*;
-        // Blocks that do not touch: a slow pair of u and theta, one of w and q, a lag of p, one of phi.
+        // Decoupled blocks: a slow pair of u and theta, a pair of w and q, a lag of p, a lag of
+        // phi.
         let a = dmatrix![
             0.0, -0.1, 0.0, 0.0, 0.0, 0.0;
             0.1, 0.0, 0.0, 0.0, 0.0, 0.0;
@@ -227,7 +229,8 @@ mod tests {
             named(pair(), &["act_lon", "act_lon_dot"])[0],
             (None, NamedBy::States)
         );
-        // Two of one make cannot be told apart; their frequency says nothing where their states are known.
+        // Two identical actuators cannot be told apart; frequency is not used when the states are
+        // known.
         let twice = dmatrix![-6.0, 5.0, 1.0, 0.0; -5.0, -6.0, 0.0, 1.0; 0.0, 0.0, -6.0, 5.0; 0.0, 0.0, -5.0, -6.0];
         assert_eq!(
             named(twice, &["act_lon", "act_lon_dot", "act_lat", "act_lat_dot"])[0],

@@ -1,4 +1,5 @@
-//! Which mode of a model corresponds to which flown mode: near in the s-plane and of a like shape over the outputs (M17.3).
+//! Pairing of the modes of a model with flown modes: close in the s-plane and similar in shape over
+//! the outputs (M17.3).
 //!
 //! ```text
 //! 1  of a conjugate pair the pole above the real axis: one mode
@@ -8,9 +9,10 @@
 //! 4  a pair has d <= 1/2 and c >= 1/2; the sum of d + 1 - c is least, an unpaired flown mode counting 1
 //! ```
 //!
-//! `omega_min` is the lower end of the band: below it flight tells poles apart by their difference only. `c` is the modal assurance
-//! criterion, 1 for equal shapes and 0 for orthogonal ones: Allemang & Brown, "A correlation coefficient for modal vector analysis",
-//! Proc. 1st International Modal Analysis Conference, 1982. Assignment: see `fidelity/mode_tracks.rs`.
+//! `omega_min` is the lower end of the band: below it flight resolves poles only by their absolute
+//! difference. `c` is the modal assurance criterion, 1 for equal shapes and 0 for orthogonal
+//! shapes: Allemang & Brown, "A correlation coefficient for modal vector analysis", Proc. 1st
+//! International Modal Analysis Conference, 1982. Assignment: see `fidelity/mode_tracks.rs`.
 
 use nalgebra::Complex;
 
@@ -18,32 +20,33 @@ use gdcm_model::response::Mode;
 
 use crate::fidelity::mode_tracks::least_total;
 
-/// Distance in the s-plane beyond which two modes are no pair, as a part of the larger modulus.
+/// Largest distance of a pair in the s-plane, relative to the larger modulus.
 pub const LARGEST_PAIR_DISTANCE: f64 = 0.5;
-/// Likeness of the residues over the outputs below which two modes are no pair.
+/// Smallest likeness of a pair: of its residues over the outputs.
 pub const LEAST_PAIR_LIKENESS: f64 = 0.5;
-/// What a flown mode without a partner counts: as much as the worst pair.
+/// Cost of a flown mode without a partner: the same as the worst pair.
 const UNPAIRED_COST: f64 = LARGEST_PAIR_DISTANCE + 1.0 - LEAST_PAIR_LIKENESS;
-/// What two modes cost that are no pair: more than any number of unpaired modes.
+/// Cost of two modes that cannot be a pair: more than any number of unpaired modes.
 const BARRED_COST: f64 = 1e9;
 
-/// A mode of a model in the place of a flown one.
+/// A model's counterpart of a flown mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ModePair {
     /// Index among the model's modes.
     pub(super) mode: usize,
-    /// `d + 1 - c`: 0 for the same pole and the same shape, at most 1.
+    /// `d + 1 - c`: 0 for equal poles and shapes, at most 1.
     pub(super) cost: f64,
 }
 
-/// One mode of each conjugate pair, by index.
+/// Returns the index of one mode of each conjugate pair.
 pub(super) fn single_modes(modes: &[Mode]) -> Vec<usize> {
     (0..modes.len())
         .filter(|&index| modes[index].pole.im >= 0.0)
         .collect()
 }
 
-/// The partner among `model` of each of [`single_modes`] of `flown`; none where it is unpaired. No mode is a partner twice.
+/// Returns the partner among `model` of each of [`single_modes`] of `flown`; `None` if unpaired. No
+/// mode is a partner twice.
 pub(super) fn mode_pairs(
     flown: &[Mode],
     model: &[Mode],
@@ -58,7 +61,7 @@ pub(super) fn mode_pairs(
         };
         pair_cost(&flown[rows[row]], &model[mode], &scales, least_rad_s).unwrap_or(BARRED_COST)
     };
-    // Each flown mode has a column of its own besides: to be unpaired.
+    // Each flown mode has an additional column, which leaves it unpaired.
     let assigned = least_total(rows.len(), columns.len() + rows.len(), cost);
     let pair = |(row, column): (usize, usize)| {
         let mode = *columns.get(column)?;
@@ -68,14 +71,14 @@ pub(super) fn mode_pairs(
     assigned.into_iter().enumerate().map(pair).collect()
 }
 
-/// `d + 1 - c` of two modes; none where they are no pair.
+/// Returns `d + 1 - c` of two modes; `None` if they cannot be a pair.
 fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Option<f64> {
     let largest = flown
         .frequency_rad_s
         .max(model.frequency_rad_s)
         .max(least_rad_s);
     let distance = (flown.pole - model.pole).norm() / largest;
-    // Where a shape is not known, the distance decides.
+    // The distance decides if a shape is unknown.
     let likeness = likeness(flown, model, scales).unwrap_or(LEAST_PAIR_LIKENESS);
     let is_pair = distance <= LARGEST_PAIR_DISTANCE && likeness >= LEAST_PAIR_LIKENESS;
     if is_pair {
@@ -85,7 +88,7 @@ fn pair_cost(flown: &Mode, model: &Mode, scales: &[f64], least_rad_s: f64) -> Op
     }
 }
 
-/// `s_i` of each output; zero where no flown mode reaches it.
+/// Returns `s_i` of each output; zero if no flown mode reaches it.
 fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
     let mut squares: Vec<f64> = Vec::new();
     for mode in flown {
@@ -98,7 +101,7 @@ fn output_scales(flown: &[Mode], least_rad_s: f64) -> Vec<f64> {
     squares.into_iter().map(f64::sqrt).collect()
 }
 
-/// `c` of two modes; none where one of them has no known shape, or no flown mode reaches any output.
+/// Returns `c` of two modes; `None` if one shape is unknown, or no flown mode reaches any output.
 fn likeness(flown: &Mode, model: &Mode, scales: &[f64]) -> Option<f64> {
     let [of_flown, of_model] = [flown, model].map(|mode| mode.residues.as_deref());
     let mut product = Complex::from(0.0);
@@ -115,7 +118,7 @@ fn likeness(flown: &Mode, model: &Mode, scales: &[f64]) -> Option<f64> {
         }
     }
     let likeness = product.norm_sqr() / (squares[0] * squares[1]);
-    // A mode that no input moves, or no output shows, is like no other.
+    // A mode that no input excites or no output observes resembles no other.
     is_reached.then(|| if likeness.is_finite() { likeness } else { 0.0 })
 }
 
@@ -128,7 +131,7 @@ mod tests {
 
     use super::*;
 
-    /// The modes of lags `-rate`, each seen by the outputs as its row says.
+    /// The modes of lags `-rate`, with their output shapes by row.
     fn lags(rates: &[f64], shapes: &[[f64; 2]]) -> Vec<Mode> {
         let n = rates.len();
         let a = DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(
@@ -154,7 +157,7 @@ mod tests {
         let roll = [1.0, 0.0];
         let pitch = [0.0, 1.0];
         let flown = lags(&[2.0, 3.0], &[pitch, roll]);
-        // By distance alone the first would go with the first.
+        // By distance alone the first would be paired with the first.
         assert_eq!(
             partners(&flown, &lags(&[2.1, 2.9], &[roll, pitch])),
             [Some(1), Some(0)]
@@ -206,7 +209,7 @@ mod tests {
             partners(&lags(&[2.0], &shape), &lags(&[0.99], &shape)),
             [None]
         );
-        // Below the band by its lower end, 0.5 rad/s.
+        // Below the band, relative to its lower end, 0.5 rad/s.
         assert_eq!(
             partners(&lags(&[0.2], &shape), &lags(&[0.01], &shape)),
             [Some(0)]

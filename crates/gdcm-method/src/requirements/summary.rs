@@ -1,5 +1,5 @@
-//! Summary costs of one model of one condition (M17.4): mean J, weighted rms in time, Theil's coefficients, share of the band inside
-//! the MUAD envelopes.
+//! Summary costs of one model of one condition (M17.4): mean J, weighted rms error in time, Theil's
+//! coefficients, and the share of the band inside the MUAD envelopes.
 //!
 //! ```text
 //! J:      mean over the on-axis responses, and over all, of J_mag + J_phase after the correction (M4)
@@ -8,8 +8,8 @@
 //! MUAD:   1 - sum ln(b/a) / ln(omega_N/omega_1) over the ranges (a, b) in which the error leaves an envelope
 //! ```
 //!
-//! Tischler & Remple, "Aircraft and Rotorcraft System Identification", 2nd ed. 2012, 14.3 (J_rms and its weights); MIL-STD-1797A,
-//! appendix A, 4.2.1.2 (MUAD).
+//! Tischler & Remple, "Aircraft and Rotorcraft System Identification", 2nd ed. 2012, 14.3 (J_rms
+//! and its weights); MIL-STD-1797A, appendix A, 4.2.1.2 (MUAD).
 
 use gdcm_model::assembly::PhysicalUnit;
 use gdcm_model::assembly::physical_unit::{Dimension, conversion_factor};
@@ -20,17 +20,17 @@ use gdcm_model::simulation::{Validation, ValidationWindow};
 
 use crate::fidelity::{CostAverage, Mismatch, leaves};
 
-/// A mean over the on-axis responses, and over all.
+/// Means over the on-axis responses and over all responses.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OnAxisAndAll {
-    /// Over the on-axis responses; none where none of them is defined.
+    /// Over the on-axis responses; `None` if none is defined.
     pub on_axis: Option<f64>,
-    /// Over all responses; none where none is defined.
+    /// Over all responses; `None` if none is defined.
     pub all: Option<f64>,
 }
 
 impl OnAxisAndAll {
-    /// The means of what is defined.
+    /// Averages the defined values.
     pub fn of(values: &PairTable<Option<f64>>, on_axis: &PairTable<bool>) -> Self {
         let mean_of = |counts: &dyn Fn(Pair) -> bool| {
             let counted = values.iter().filter(|(pair, _)| counts(*pair));
@@ -49,12 +49,13 @@ impl OnAxisAndAll {
 pub struct RmsCost {
     /// `J_rms` \[deg, deg/s, ft/s, ft/s^2\].
     pub value: f64,
-    /// Outputs that have no weight, by index: their units are none of angles, speeds and accelerations.
+    /// Indices of outputs without a weight: their units are not angles, speeds or accelerations.
     pub left_out: Vec<usize>,
 }
 
 impl RmsCost {
-    /// Over all samples of `windows`; none where there are no samples, or no output has a weight.
+    /// Computes the cost over all samples of `windows`; `None` without samples, or if no output has
+    /// a weight.
     pub fn of(windows: &[ValidationWindow], outputs: &[Channel]) -> Option<Self> {
         let weights: Vec<Option<f64>> = outputs.iter().map(|output| factor(&output.unit)).collect();
         let counted: Vec<(usize, f64)> = weights
@@ -85,7 +86,7 @@ impl RmsCost {
     }
 }
 
-/// How many deg, deg/s, ft/s or ft/s^2 one of a unit is; none of any other unit.
+/// Returns the factor from a unit to deg, deg/s, ft/s or ft/s^2; `None` for any other unit.
 fn factor(unit: &str) -> Option<f64> {
     let counted = match PhysicalUnit::of(unit)?.dimension {
         Dimension::Angle => "deg",
@@ -97,8 +98,8 @@ fn factor(unit: &str) -> Option<f64> {
     conversion_factor(unit, counted)
 }
 
-/// Share of the band, in `ln omega`, in which the error of a response stays inside both MUAD envelopes, after `correction`; none where
-/// it stands at fewer than two frequencies.
+/// Returns the share of the band, in `ln omega`, in which the error of a response stays inside both
+/// MUAD envelopes after `correction`; `None` with fewer than two frequencies.
 pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> Option<f64> {
     let omega = mismatch.omega(omega);
     let (&first, &last) = omega
@@ -119,20 +120,20 @@ pub fn muad_share(mismatch: &Mismatch, omega: &[f64], correction: GainDelay) -> 
     Some((1.0 - outside / (last / first).ln()).clamp(0.0, 1.0))
 }
 
-/// What the summary costs of a model are made of.
+/// Inputs of a model's summary costs.
 #[derive(Clone, Copy)]
 pub struct SummarySource<'a> {
-    /// Difference of the model's responses from those of the identified representative; none where they are not compared.
+    /// Difference of the model's responses from those of the identified representative; `None`
+    /// where they are not compared.
     pub mismatch: &'a PairTable<Option<Mismatch>>,
-    /// What its correction multiplies each response by; none where it has no positive net gain.
+    /// Correction of each response; `None` without a positive net gain.
     pub correction: &'a dyn Fn(Pair) -> Option<GainDelay>,
-    /// The on-axis responses.
     pub on_axis: &'a PairTable<bool>,
-    /// Frequencies of the band \[rad/s\], rising.
+    /// Frequencies of the band \[rad/s\], ascending.
     pub omega: &'a [f64],
-    /// How J averages over them.
+    /// Average over frequency in J.
     pub average: CostAverage,
-    /// The model against a record in time, where there is one.
+    /// The model against a record in time, if any.
     pub validation: Option<&'a Validation>,
     /// Outputs of the dataset.
     pub outputs: &'a [Channel],
@@ -141,18 +142,18 @@ pub struct SummarySource<'a> {
 /// The summary costs of one model of one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Mean J.
     pub cost: OnAxisAndAll,
-    /// `J_rms`; none without a record.
+    /// `J_rms`; `None` without a record.
     pub rms: Option<RmsCost>,
-    /// Theil's coefficient of each output, 0 to 1; empty without a record, none of an output that does not move.
+    /// Theil's coefficient of each output, 0 to 1; empty without a record, `None` for a constant
+    /// output.
     pub theil: Vec<Option<f64>>,
     /// Mean share of the band inside MUAD, 0 to 1.
     pub muad: OnAxisAndAll,
 }
 
 impl Summary {
-    /// The summary costs of a model.
+    /// Computes the summary costs of a model.
     pub fn of(source: &SummarySource<'_>) -> Self {
         let SummarySource {
             mismatch,
@@ -223,7 +224,7 @@ mod tests {
 
     #[test]
     fn a_degree_counts_as_a_foot_a_second_squared() {
-        // Errors of 3 deg/s and of 1 ft/s^2 in both samples; the force has no weight.
+        // Errors of 3 deg/s and 1 ft/s^2 in both samples; the force has no weight.
         let windows = [window(
             &[3.0, -3.0, 0.3048, 0.0, 9.0, 9.0],
             &[0.0, 0.0, 0.0, 0.3048, 0.0, 0.0],
@@ -267,7 +268,7 @@ mod tests {
 
     #[test]
     fn the_share_inside_is_that_of_the_band_in_log_frequency() {
-        // 2 dB leave the upper magnitude between some 2 and 6 rad/s (muad.rs).
+        // 2 dB exceed the upper magnitude between about 2 and 6 rad/s (muad.rs).
         let omega = omega();
         let two_db = mismatch(2.0, 0.0);
         let ranges = leaves(&omega, &[2.0; 200], &[0.0; 200]);
@@ -281,7 +282,7 @@ mod tests {
             muad_share(&mismatch(60.0, 0.0), &omega, GainDelay::NONE),
             Some(0.0)
         );
-        // A delay of a quarter of a second that the correction takes off, turns and all.
+        // A delay of a quarter of a second, removed by the correction including its whole turns.
         let lead = mismatch(0.0, -0.25);
         let share = muad_share(&lead, &omega, GainDelay::NONE).unwrap();
         assert!(share < 0.5, "{share}");

@@ -1,4 +1,4 @@
-//! Inputs of tests: steps and doublets, and what models answer to them (M17.2).
+//! Test inputs (steps and doublets), and the responses of models to them (M17.2).
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -7,60 +7,55 @@ use gdcm_model::dataset::StateSpace;
 use gdcm_model::simulation::FirstOrderHold;
 use gdcm_model::units::number;
 
-/// The course of an input over time.
+/// Time history of a test input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TestInputShape {
-    /// All of its size for all of its duration.
+    /// Constant over the duration.
     Step,
-    /// Its size for the first half of its duration, the opposite for the second.
+    /// Positive for the first half of the duration, negative for the second.
     Doublet,
 }
 
-/// A test: one stick moved from its trim, and back.
+/// A test: one input moved from its trim, and back.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "TestInputText")]
 pub struct TestInput {
-    /// Its course.
     pub shape: TestInputShape,
-    /// Its size, in the unit of the input that is moved.
+    /// Amplitude, in the unit of the input that is moved.
     pub size: f64,
-    /// How long it lasts \[s\].
+    /// Duration \[s\].
     pub duration_s: f64,
 }
 
-/// Why a model has no answer to a test.
+/// Reasons why a model has no response to a test.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TestInputError {
-    /// There is no such input.
     #[error("the model has {inputs} inputs, none of number {}", input + 1)]
     NoInput {
-        /// Index of the input that is asked for.
+        /// Index of the requested input.
         input: usize,
-        /// How many there are.
         inputs: usize,
     },
-    /// Size or duration is not a number, or the duration is none.
+    /// Size or duration is not a number, or the duration is zero.
     #[error("test input: expected a size, and a duration above 0 s up to {LONGEST_S} s; found {} and {} s", number(*size), number(*duration_s))]
     Numbers {
-        /// The size.
         size: f64,
-        /// The duration \[s\].
+        /// Duration \[s\].
         duration_s: f64,
     },
-    /// The model acts in discrete time, or delays its channels by more than its states say.
+    /// The model is in discrete time, or has channel delays beyond its states.
     #[error("the model is not of continuous time without delays: write its delays as states first")]
     Timing,
-    /// What the model answers is not finite.
     #[error("the model cannot be simulated: its answer is not finite")]
     NotFinite,
 }
 
-/// No test lasts longer \[s\].
+/// Longest duration of a test \[s\].
 const LONGEST_S: f64 = 600.0;
 
 impl Default for TestInput {
-    /// A step of one unit of the stick, held for two seconds.
+    /// Returns a step of one unit that lasts two seconds.
     fn default() -> Self {
         Self {
             shape: TestInputShape::Step,
@@ -70,7 +65,7 @@ impl Default for TestInput {
     }
 }
 
-/// A test as it stands in a file.
+/// A test in its file format.
 #[derive(Deserialize)]
 struct TestInputText {
     shape: TestInputShape,
@@ -98,7 +93,7 @@ impl TryFrom<TestInputText> for TestInput {
 }
 
 impl TestInput {
-    /// The test, where its numbers are some.
+    /// Returns the test if its numbers are valid.
     ///
     /// # Errors
     /// [`TestInputError::Numbers`].
@@ -114,9 +109,9 @@ impl TestInput {
         }
     }
 
-    /// The input at `t = 0, dt, ...`, `samples` of them.
+    /// Returns the input at `t = 0, dt, ...`, `samples` values.
     pub fn signal(&self, sample_time_s: f64, samples: usize) -> Vec<f64> {
-        // A millionth of a sample is rounding.
+        // A millionth of a sample covers rounding.
         let before = |n: usize, end_s: f64| (n as f64 + 1e-6) * sample_time_s < end_s;
         let at = |n: usize| match self.shape {
             _ if !before(n, self.duration_s) => 0.0,
@@ -126,11 +121,12 @@ impl TestInput {
         (0..samples).map(at).collect()
     }
 
-    /// The outputs of `model` from rest, samples x outputs: the input is there from the first sample on, and later changes within
-    /// one sample time \[s\].
+    /// Simulates the outputs of `model` from rest, samples x outputs: the input acts from the first
+    /// sample on, and later changes take one sample time \[s\].
     ///
     /// # Errors
-    /// [`TestInputError`] where there is no such input, the numbers are none, or the model cannot be simulated.
+    /// [`TestInputError`] if there is no such input, its numbers are invalid, or the model cannot
+    /// be simulated.
     pub fn answer(
         &self,
         model: &StateSpace,
@@ -207,7 +203,7 @@ mod tests {
             .answer(&lag(), 1, 0.1, 10)
             .unwrap();
         for (n, y) in answer.iter().enumerate() {
-            // 10 / 2 (1 - e^(-2 t)); rounding of ten steps.
+            // 10 / 2 (1 - e^(-2 t)); rounding errors of ten steps.
             let expected = 5.0 * (1.0 - (-0.2 * n as f64).exp());
             assert!((y - expected).abs() < 1e-13, "{n}: {y} {expected}");
         }

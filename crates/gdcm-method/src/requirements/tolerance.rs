@@ -1,7 +1,8 @@
-//! A simulated time history within the tolerance about the flown one, by a table in the engineer's hands (M17.2).
+//! Simulated time histories within tolerances around flight, by a user-defined table (M17.2).
 //!
-//! The default of that table is of 14 CFR part 60, appendix C, table C2A, "Full flight simulator (FFS) objective tests", whose entries CS-FSTD(H)
-//! has too. It is no qualification: the tests of that table are steps and doublets at given conditions.
+//! The default table follows 14 CFR part 60, appendix C, table C2A, "Full flight simulator (FFS)
+//! objective tests", whose entries also appear in CS-FSTD(H). The check is not a qualification: the
+//! tests of that table are steps and doublets at given conditions.
 //!
 //! ```text
 //! 1  attitudes: theta_n = theta_(n-1) + dt (q_(n-1) + q_n) / 2 from the start of the manoeuvre, flown and simulated alike
@@ -10,7 +11,8 @@
 //! 4  share inside, largest e_n and its time; trend: sign of the correlation of y^ and y about their means
 //! ```
 //!
-//! 14 CFR part 60, appendix C, table C2A. Integrals of body rates are attitudes for small angles only.
+//! 14 CFR part 60, appendix C, table C2A. Integrals of body rates are attitudes for small angles
+//! only.
 
 use nalgebra::{DMatrix, Vector3};
 use serde::{Deserialize, Serialize};
@@ -25,7 +27,7 @@ use gdcm_model::units::number;
 
 use super::not_positive;
 
-/// Where the default table comes from.
+/// Source of the default table.
 const DEFAULT_SOURCE: &str = "14 CFR part 60, appendix C, table C2A; CS-FSTD(H)";
 /// Relative tolerance of the default table.
 const TEN_PERCENT: Option<f64> = Some(0.1);
@@ -33,18 +35,19 @@ const TEN_PERCENT: Option<f64> = Some(0.1);
 /// One row of the table: `|simulated - flown| <= max(absolute, relative |flown - flown at the start|)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tolerance {
-    /// What is compared, for people ("bank angle").
+    /// Quantity, as displayed ("bank angle").
     pub quantity: String,
-    /// The output that it is read from, as the dataset names it ("P").
+    /// The output that it is read from, as named in the dataset ("P").
     pub channel: String,
-    /// Whether it is the integral of that output: an attitude, from its rate.
+    /// Whether the output is integrated: an attitude, from its rate.
     #[serde(default)]
     pub integrated: bool,
     /// The absolute tolerance, in `unit`.
     pub absolute: f64,
     /// Unit of the absolute tolerance ("deg").
     pub unit: String,
-    /// The tolerance as a part of the change from the start of the manoeuvre; none where only the absolute one holds.
+    /// The tolerance relative to the change from the start of the manoeuvre; `None` if only the
+    /// absolute one applies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub relative: Option<f64>,
     /// Entries of the source ("2.b.3.b, 2.d.1").
@@ -52,7 +55,7 @@ pub struct Tolerance {
     pub entry: String,
 }
 
-/// The table of tolerances; each row is checked as it is read.
+/// The table of tolerances; each row is checked on reading.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ToleranceRows")]
 pub struct ToleranceTable {
@@ -61,7 +64,7 @@ pub struct ToleranceTable {
     rows: Vec<Tolerance>,
 }
 
-/// The table as it stands in a file.
+/// The table in its file format.
 #[derive(Deserialize)]
 struct ToleranceRows {
     #[serde(default)]
@@ -69,45 +72,40 @@ struct ToleranceRows {
     tolerances: Vec<Tolerance>,
 }
 
-/// Why a tolerance cannot be applied.
+/// Reasons why a tolerance cannot be applied.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ToleranceError {
-    /// A row names no channel.
     #[error(
         "tolerance {row}, {}: expected the name of an output as its channel, found none",
         quoted(quantity)
     )]
     NoChannelName {
-        /// Which, counted from 1.
+        /// Counted from 1.
         row: usize,
-        /// What it is of.
         quantity: String,
     },
     /// A tolerance is not finite, or not above zero.
     #[error("tolerance {row}, {}: expected {name} above zero, found {}", quoted(quantity), number(*found))]
     NotPositive {
-        /// Which, counted from 1.
+        /// Counted from 1.
         row: usize,
-        /// What it is of.
         quantity: String,
         /// `absolute` or `relative`.
         name: &'static str,
-        /// What stands there.
         found: f64,
     },
-    /// The dataset has no such output.
     #[error(
         "{} is not compared: there is no output {}",
         quoted(quantity),
         quoted(channel)
     )]
     NoChannel {
-        /// What was to be compared.
+        /// The quantity to compare.
         quantity: String,
         /// The output that it needs.
         channel: String,
     },
-    /// An attitude is asked of an output that is no rate.
+    /// The integral of an output that is not a rate.
     #[error(
         "{} is not compared: it is the integral of a rate, and {} in {} is none (deg/s, rad/s)",
         quoted(quantity),
@@ -115,14 +113,12 @@ pub enum ToleranceError {
         quoted(unit)
     )]
     NotARate {
-        /// What was to be compared.
+        /// The quantity to compare.
         quantity: String,
-        /// The output.
         channel: String,
-        /// Its unit.
         unit: String,
     },
-    /// The unit of the tolerance is not one of the output.
+    /// The unit of the tolerance does not fit the output.
     #[error(
         "{} is not compared: a tolerance in {} does not fit {} in {}",
         quoted(quantity),
@@ -131,9 +127,8 @@ pub enum ToleranceError {
         quoted(of_channel)
     )]
     Unit {
-        /// What was to be compared.
+        /// The quantity to compare.
         quantity: String,
-        /// The output.
         channel: String,
         /// Unit of the tolerance.
         unit: String,
@@ -142,18 +137,18 @@ pub enum ToleranceError {
     },
 }
 
-/// A tolerance in the units of the output that it is applied to.
+/// A tolerance in the units of its output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelTolerance {
     /// Index of the output.
     pub output: usize,
-    /// Whether its integral is compared.
+    /// Whether the integral of the output is compared.
     pub integrated: bool,
     /// The absolute tolerance, in `unit`.
     pub absolute: f64,
-    /// The relative tolerance; zero where only the absolute one holds.
+    /// The relative tolerance; zero if only the absolute one applies.
     pub relative: f64,
-    /// Unit of what is compared: that of the output, or of its integral.
+    /// Unit of the compared quantity: the output or its integral.
     pub unit: String,
 }
 
@@ -180,7 +175,7 @@ impl Tolerance {
         }
     }
 
-    /// "±10 % or ±3 deg/s".
+    /// Returns text such as "±10 % or ±3 deg/s".
     pub fn words(&self) -> String {
         let relative = self.relative.map_or_else(String::new, |part| {
             format!("±{} % or ", number(100.0 * part))
@@ -188,10 +183,11 @@ impl Tolerance {
         format!("{relative}±{} {}", number(self.absolute), self.unit)
     }
 
-    /// The tolerance in the units of the dataset's output.
+    /// Converts the tolerance to the units of the dataset's output.
     ///
     /// # Errors
-    /// [`ToleranceError`] where there is no such output, it is no rate whose integral is an attitude, or units do not fit.
+    /// [`ToleranceError`] if there is no such output, an integrated output is not a rate, or units
+    /// do not fit.
     pub fn of_outputs(&self, outputs: &[Channel]) -> Result<ChannelTolerance, ToleranceError> {
         let quantity = self.quantity.clone();
         let channel = self.channel.clone();
@@ -233,7 +229,7 @@ impl Tolerance {
     }
 }
 
-/// The unit of the integral over time of an angular rate; none of anything else.
+/// Returns the unit of the time integral of an angular rate; `None` for any other unit.
 fn integral_unit(rate: &str) -> Option<&'static str> {
     let unit = PhysicalUnit::of(rate).filter(|unit| unit.dimension == Dimension::AngularRate)?;
     ["deg", "rad"]
@@ -242,10 +238,11 @@ fn integral_unit(rate: &str) -> Option<&'static str> {
 }
 
 impl ToleranceTable {
-    /// A table of `source`.
+    /// Creates a table with its source.
     ///
     /// # Errors
-    /// [`ToleranceError`] with its row where a row names no channel, or a tolerance is not above zero.
+    /// [`ToleranceError`] with the row number if a row names no channel, or a tolerance is not
+    /// above zero.
     pub fn new(source: impl Into<String>, rows: Vec<Tolerance>) -> Result<Self, ToleranceError> {
         rows.iter()
             .enumerate()
@@ -256,12 +253,12 @@ impl ToleranceTable {
         })
     }
 
-    /// Where it comes from.
+    /// Returns the source of the table.
     pub fn source(&self) -> &str {
         &self.source
     }
 
-    /// Its rows.
+    /// Returns the rows.
     pub fn rows(&self) -> &[Tolerance] {
         &self.rows
     }
@@ -276,7 +273,8 @@ impl TryFrom<ToleranceRows> for ToleranceTable {
 }
 
 impl Default for ToleranceTable {
-    /// 14 CFR part 60, appendix C, table C2A: hover and low speed (2.b), longitudinal (2.c), lateral and directional (2.d).
+    /// Returns the tolerances of 14 CFR part 60, appendix C, table C2A: hover and low speed (2.b),
+    /// longitudinal (2.c), lateral and directional (2.d).
     fn default() -> Self {
         let row = |quantity: &str,
                    channel: &str,
@@ -357,13 +355,12 @@ impl Default for ToleranceTable {
     }
 }
 
-/// Why a manoeuvre cannot be compared.
+/// Reasons why a manoeuvre cannot be compared.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ToleranceCheckError {
-    /// There is nothing to compare.
     #[error("there are no samples to compare")]
     NoSamples,
-    /// There are not as many simulated samples as flown ones.
+    /// The numbers of simulated and flown samples differ.
     #[error("expected as many simulated samples as flown ones, {flown}, found {simulated}")]
     Lengths {
         /// Number of flown samples.
@@ -379,7 +376,6 @@ pub enum ToleranceCheckError {
         /// Its time \[s\].
         time_s: f64,
     },
-    /// The windows have no such output.
     #[error("there is no output number {} in the record", output + 1)]
     NoOutput {
         /// Index of the output.
@@ -394,23 +390,24 @@ pub struct ToleranceCheck {
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,
-    /// What was flown, as compared: integrated where the tolerance is of an attitude.
+    /// Flown samples as compared: integrated if the tolerance applies to an attitude.
     pub flown: Vec<f64>,
-    /// What the model answers, as compared.
+    /// Simulated samples as compared.
     pub simulated: Vec<f64>,
-    /// Half-width of the corridor about flight at each sample.
+    /// Half-width of the corridor around flight at each sample.
     pub width: Vec<f64>,
-    /// Samples inside.
+    /// Number of samples inside the corridor.
     pub inside: usize,
-    /// The largest distance beyond the corridor; negative where all samples are inside.
+    /// The largest distance beyond the corridor; negative if all samples are inside.
     pub largest_excess: f64,
-    /// When that is \[s\].
+    /// Time of the largest excess \[s\].
     pub largest_excess_at_s: f64,
     /// The [`moments`] of its samples.
     trend: Vector3<f64>,
 }
 
-/// What a correlation is made of: the sums of the squares of flown and of simulated samples about their means, and of their products.
+/// Returns the terms of a correlation: the sums of squares of flown and of simulated samples about
+/// their means, and the sum of their products.
 fn moments(flown: &[f64], simulated: &[f64]) -> Vector3<f64> {
     let flown_mean = mean(flown);
     let simulated_mean = mean(simulated);
@@ -428,10 +425,11 @@ fn correlation(moments: Vector3<f64>) -> Option<f64> {
 }
 
 impl ToleranceCheck {
-    /// One output over one window of a record, which is a manoeuvre of its own, against `tolerance`.
+    /// Checks one output over one window of a record, a manoeuvre of its own, against `tolerance`.
     ///
     /// # Errors
-    /// [`ToleranceCheckError`] where there is no such output, there are no samples, not as many of both, or one is not finite.
+    /// [`ToleranceCheckError`] if there is no such output, there are no samples, their numbers
+    /// differ, or a sample is not finite.
     pub fn of(
         window: &ValidationWindow,
         tolerance: &ChannelTolerance,
@@ -477,7 +475,7 @@ impl ToleranceCheck {
         };
         let width: Vec<f64> = flown.iter().map(wider).collect();
         let excess: Vec<f64> = excesses(&flown, &simulated, &width).collect();
-        // The first of equal ones.
+        // The first of equal maxima.
         let (largest, &largest_excess) = excess
             .iter()
             .enumerate()
@@ -497,23 +495,24 @@ impl ToleranceCheck {
         })
     }
 
-    /// Number of samples compared; at least one.
+    /// Returns the number of compared samples; at least one.
     pub fn samples(&self) -> usize {
         self.flown.len()
     }
 
-    /// Share of the samples that are inside, from 0 to 1.
+    /// Returns the share of samples inside the corridor, from 0 to 1.
     pub fn share_inside(&self) -> f64 {
         self.inside as f64 / self.samples() as f64
     }
 
-    /// Correlation of simulated and flown about their means; none where one of them does not move. Off the axis its sign is the
-    /// trend that is asked for: correct where it is positive.
+    /// Returns the correlation of simulated and flown samples about their means; `None` if either
+    /// is constant. For off-axis outputs a positive sign is the correct trend.
     pub fn correlation(&self) -> Option<f64> {
         correlation(self.trend)
     }
 
-    /// The parts of time \[s\] in which samples are outside: from the first to the last of each.
+    /// Returns the intervals of time \[s\] with samples outside, each from its first to its last
+    /// sample.
     pub fn outside(&self) -> Vec<[f64; 2]> {
         let mut parts: Vec<[f64; 2]> = Vec::new();
         let mut was_outside = false;
@@ -543,7 +542,7 @@ fn excesses<'a>(
         .map(|((flown, simulated), width)| (simulated - flown).abs() - width)
 }
 
-/// The integral over time from the first sample, by the trapezoidal rule; there is at least one sample.
+/// Integrates over time from the first sample by the trapezoidal rule; needs at least one sample.
 fn integral(samples: &[f64], sample_time_s: f64) -> Vec<f64> {
     let mut sum = 0.0;
     let step = |pair: &[f64]| {
@@ -554,20 +553,21 @@ fn integral(samples: &[f64], sample_time_s: f64) -> Vec<f64> {
     std::iter::once(0.0).chain(later).collect()
 }
 
-/// One output over all windows of a record, each of which begins with an estimated state of its own (M14, 6).
+/// One output over all windows of a record, each with an estimated initial state of its own (M14,
+/// 6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordCheck {
-    /// Which record, counted from 0.
+    /// Record index, counted from 0.
     pub record: usize,
-    /// The windows, in time; at least one.
+    /// The windows in time order; at least one.
     pub windows: Vec<ToleranceCheck>,
 }
 
 impl RecordCheck {
-    /// The records of `windows`, each against `tolerance`; every window is a manoeuvre of its own.
+    /// Checks the records of `windows` against `tolerance`; every window is a manoeuvre of its own.
     ///
     /// # Errors
-    /// [`ToleranceCheckError`] of the first window that cannot be compared.
+    /// [`ToleranceCheckError`] for the first window that cannot be compared.
     pub fn of_windows(
         windows: &[ValidationWindow],
         tolerance: &ChannelTolerance,
@@ -586,7 +586,7 @@ impl RecordCheck {
         Ok(records)
     }
 
-    /// Share of the samples that are inside, from 0 to 1.
+    /// Returns the share of samples inside the corridor, from 0 to 1.
     pub fn share_inside(&self) -> f64 {
         let inside: usize = self.windows.iter().map(|window| window.inside).sum();
         inside as f64
@@ -597,14 +597,15 @@ impl RecordCheck {
                 .sum::<usize>() as f64
     }
 
-    /// The window in which the excess is largest.
+    /// Returns the window with the largest excess.
     pub fn worst(&self) -> Option<&ToleranceCheck> {
         self.windows
             .iter()
             .max_by(|a, b| a.largest_excess.total_cmp(&b.largest_excess))
     }
 
-    /// Correlation of simulated and flown, each about its mean in its window; none where one of them does not move.
+    /// Returns the correlation of simulated and flown samples, each about its mean in its window;
+    /// `None` if either is constant.
     pub fn correlation(&self) -> Option<f64> {
         correlation(self.windows.iter().map(|window| window.trend).sum())
     }
@@ -652,7 +653,7 @@ mod tests {
         ToleranceCheck::of(&window, tolerance)
     }
 
-    /// The made-up record of the known answers.
+    /// The synthetic record of the known answers.
     fn made_up() -> (Vec<f64>, Vec<f64>) {
         let time = || (0..500).map(|n| SAMPLE_TIME_S * f64::from(n));
         let flown = time().map(|t| 8.0 * (0.9 * t).sin() + 2.0).collect();

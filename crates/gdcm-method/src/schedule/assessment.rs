@@ -1,5 +1,5 @@
-//! What speaks for one form or degree of the schedule or another: what it misses, and what it would have said of a condition
-//! that it has not seen (M11, M15.5); and what a correction is worth, J before and after (M12).
+//! Assessment of the forms and degrees of a schedule: residuals and leave-one-condition-out errors
+//! (M11, M15.5); and the benefit of a correction, J before and after (M12).
 
 use gdcm_model::dataset::{Pair, PairTable};
 
@@ -9,7 +9,7 @@ use super::{
 use crate::correction::ChannelCorrection;
 use crate::fidelity::{Cost, CostAverage, Mismatch};
 
-/// Every form that a schedule can have: polynomials from the mean to the cubic, and the table.
+/// All forms of a schedule: polynomials from the mean to the cubic, and the table.
 pub const SCHEDULE_KINDS: [ScheduleKind; 5] = [
     ScheduleKind::Polynomial { degree: 0 },
     ScheduleKind::Polynomial { degree: 1 },
@@ -18,7 +18,7 @@ pub const SCHEDULE_KINDS: [ScheduleKind; 5] = [
     ScheduleKind::Table,
 ];
 
-/// How far a condition's own gain is from the scheduled one.
+/// Distance of a condition's own gain from the scheduled gain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Residual {
     /// `ln k - ln k_scheduled`.
@@ -28,7 +28,7 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// The residual of a gain; `None` where the scheduled gain is not positive.
+    /// Residual of a gain; `None` where the scheduled gain is not positive.
     fn of(own: f64, scheduled: f64) -> Option<Self> {
         (scheduled > 0.0).then(|| {
             let ln = (own / scheduled).ln();
@@ -40,22 +40,24 @@ impl Residual {
     }
 }
 
-/// What one form of the schedule makes of one gain. The lists are in the order of the conditions.
+/// Residuals of one gain under one form of the schedule. The lists are in the order of the
+/// conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitResiduals {
-    /// Residual of each condition; none where the scheduled gain is not positive.
+    /// Residual of each condition; `None` where the scheduled gain is not positive.
     pub residuals: Vec<Option<Residual>>,
-    /// The same of the schedule that is made without that condition; none of the only one.
+    /// Residual against the schedule made without that condition; `None` for the only condition.
     pub left_out: Vec<Option<Residual>>,
 }
 
 impl FitResiduals {
-    /// Root of the mean squared residual of `ln k`; none where a residual is missing.
+    /// Root mean square residual of `ln k`; `None` where a residual is missing.
     pub fn rms_ln(&self) -> Option<f64> {
         rms(&self.residuals)
     }
 
-    /// Leave-one-condition-out error: the same of the schedules that have not seen the condition.
+    /// Leave-one-condition-out error: root mean square over the schedules made without the
+    /// condition.
     pub fn left_out_rms_ln(&self) -> Option<f64> {
         rms(&self.left_out)
     }
@@ -69,19 +71,19 @@ fn rms(residuals: &[Option<Residual>]) -> Option<f64> {
     (!residuals.is_empty()).then(|| (sum / residuals.len() as f64).sqrt())
 }
 
-/// What one form of the schedule makes of every channel and every response.
+/// Residuals of every response under one form of the schedule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormFit {
-    /// The form asked for.
     pub kind: ScheduleKind,
-    /// Degree of the polynomial, which may be less than was asked for (M11b); none of a table.
+    /// Degree of the polynomial, possibly less than requested (M11b); `None` for a table.
     pub degree: Option<usize>,
-    /// Net gain of each response, `k_o k_i`.
+    /// Residuals of each response's net gain, `k_o k_i`.
     pub pairs: PairTable<FitResiduals>,
 }
 
 impl FormFit {
-    /// Leave-one-condition-out error of `ln k_o k_i`, root mean square over these responses; none where one is missing.
+    /// Leave-one-condition-out error of `ln k_o k_i`, root mean square over these responses; `None`
+    /// where one is missing.
     pub fn left_out_rms_ln(&self, pairs: impl IntoIterator<Item = Pair>) -> Option<f64> {
         let squares = pairs
             .into_iter()
@@ -91,27 +93,28 @@ impl FormFit {
     }
 }
 
-/// How well every form of a schedule fits.
+/// Fit of every form of a schedule.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FormComparison {
     /// Airspeed of each condition \[kt\], in the order of the lists of residuals.
     pub airspeeds_kt: Vec<f64>,
-    /// Each form of [`SCHEDULE_KINDS`], in that order.
+    /// Fits in the order of [`SCHEDULE_KINDS`].
     pub kinds: Vec<FormFit>,
 }
 
 impl FormComparison {
-    /// How well one form fits.
+    /// Fit of one form.
     pub fn of(&self, kind: ScheduleKind) -> Option<&FormFit> {
         self.kinds.iter().find(|form| form.kind == kind)
     }
 }
 
-/// Residuals and leave-one-condition-out errors (M11) of every form of the schedule of these conditions; `settings` says what
-/// is regressed and which airspeeds are one.
+/// Computes residuals and leave-one-condition-out errors (M11) of every form of the schedule of
+/// these conditions; `settings` gives the regressed quantity and the tolerance of the airspeed
+/// clusters.
 ///
-/// A condition is left out together with nothing else: what the schedule of the others says at its airspeed, beyond their
-/// range the end value, is compared with its own gain.
+/// Conditions are left out one at a time: the schedule of the others, evaluated at the omitted
+/// airspeed (beyond their range the end value), is compared with the condition's own gain.
 ///
 /// # Errors
 /// [`ScheduleError::NoCondition`] where there is no condition.
@@ -166,7 +169,8 @@ pub fn compare_forms(
     })
 }
 
-/// What the schedule says at each condition, and what that of the others says there.
+/// Values of the schedule at each condition, and values there of the schedule made from the other
+/// conditions.
 struct Predicted {
     degree: Option<usize>,
     scheduled: Vec<ChannelCorrection>,
@@ -196,16 +200,17 @@ impl Predicted {
     }
 }
 
-/// How far a schedule of signed delays is from those of the conditions: roots of mean squares \[s\].
+/// Distance of a schedule of signed delays from the conditions' own: root mean squares \[s\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadFit {
     /// Over all conditions.
     pub rms_s: f64,
-    /// Over what the schedule of the others says of each condition; none where those are none.
+    /// Over the predictions for each condition by the schedule of the others; `None` where there
+    /// are no others.
     pub left_out_rms_s: Option<f64>,
 }
 
-/// What one degree makes of the signed delays.
+/// Fit of the signed delays by one degree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadDegreeFit {
     /// Degree of the polynomial in airspeed.
@@ -214,7 +219,8 @@ pub struct LeadDegreeFit {
     pub pairs: PairTable<LeadFit>,
 }
 
-/// How well each degree fits, from 0 to [`HIGHEST_DEGREE`]; none at all where the conditions' corrections have no leads.
+/// Computes the fit of each degree, from 0 to [`HIGHEST_DEGREE`]; empty where the conditions'
+/// corrections have no leads.
 pub fn compare_lead_degrees(
     points: &[ScheduledPoint<'_>],
     settings: ScheduleSettings,
@@ -223,7 +229,7 @@ pub fn compare_lead_degrees(
         return Vec::new();
     }
     let of_degree = |tau_degree| {
-        // The signed delays go by airspeed alone, whatever is made of the gains.
+        // The signed delays depend on airspeed alone, whatever the form of the gains.
         let kind = ScheduleKind::Polynomial { degree: 0 };
         let settings = ScheduleSettings {
             kind,
@@ -257,10 +263,10 @@ pub fn compare_lead_degrees(
     (0..=HIGHEST_DEGREE).filter_map(of_degree).collect()
 }
 
-/// J of one response before and after a correction; negative changes are better.
+/// J of one response before and after a correction; a negative change is an improvement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CostChange {
-    /// J of the physics model as it is.
+    /// J of the physics model without correction.
     pub uncorrected: Cost,
     /// J of the corrected physics model.
     pub corrected: Cost,
@@ -283,9 +289,11 @@ impl CostChange {
     }
 }
 
-/// J of every response of a model before and after `correction`, against the model it was compared with in `mismatch`.
+/// Computes J of every response of a model before and after `correction`, against the model it was
+/// compared with in `mismatch`.
 ///
-/// `None` where a response is not defined, or where its net gain is not positive (a schedule of `k` itself can give that).
+/// `None` where a response is not defined, or where its net gain is not positive (possible in a
+/// schedule of `k` itself).
 pub fn assess(
     mismatch: &PairTable<Option<Mismatch>>,
     uncorrected: &PairTable<Option<Cost>>,
@@ -302,8 +310,8 @@ pub fn assess(
     })
 }
 
-/// J of every response of a model after `correction`, against the model it was compared with in `mismatch`; none where [`assess`]
-/// has none.
+/// Computes J of every response of a model after `correction`, against the model it was compared
+/// with in `mismatch`; `None` in the same cases as [`assess`].
 pub fn corrected_cost(
     mismatch: &PairTable<Option<Mismatch>>,
     correction: &ChannelCorrection,
@@ -315,7 +323,8 @@ pub fn corrected_cost(
     })
 }
 
-/// J of one response of a model after `correction`; none where its net gain is not positive.
+/// Computes J of one response of a model after `correction`; `None` where its net gain is not
+/// positive.
 pub fn corrected_cost_on(
     mismatch: &Mismatch,
     correction: &ChannelCorrection,
@@ -372,7 +381,8 @@ mod tests {
         assert!(
             of(1).rms_ln().unwrap() > 0.01 && of(0).rms_ln().unwrap() > of(1).rms_ln().unwrap()
         );
-        // Inside; beyond the range of the others the end value holds, whatever the degree.
+        // Inside the range; beyond the range of the others the end value applies, whatever the
+        // degree.
         assert!(of(2).left_out[2].unwrap().ln.abs() < 1e-14);
         let step = gains[4] / gains[3];
         assert!((of(2).left_out[4].unwrap().ln - step.ln()).abs() < 1e-14);
@@ -463,10 +473,11 @@ mod lead_tests {
         let points = points(&[60.0, 90.0, 120.0], &corrections, 0.02);
         let found = compare_lead_degrees(&points, ScheduleSettings::default());
         assert_eq!(found.len(), 1 + HIGHEST_DEGREE);
-        // The mean of the others misses by 3/2 of what the mean of all misses.
+        // The mean of the others misses by 3/2 of the residual from the mean of all.
         let mean = &found[0].pairs[Pair::new(0, 0)];
         assert!((mean.left_out_rms_s.unwrap() / mean.rms_s - 1.5).abs() < 1e-12);
-        // The output's is the same everywhere, so that the sum is missed like the input's: sqrt((40^2 + 10^2 + 50^2) / 3) / 3 ms.
+        // The output's signed delay is the same everywhere, so that the sum is missed like the
+        // input's: sqrt((40^2 + 10^2 + 50^2) / 3) / 3 ms.
         assert!((mean.rms_s - 0.0042_f64.sqrt() / 3.0 / 3_f64.sqrt()).abs() < 1e-12);
         assert!(
             found[2].pairs[Pair::new(0, 0)].rms_s < 1e-15,

@@ -1,4 +1,5 @@
-//! One correction for all airspeeds, signed delays included, what speaks for it, and what it is worth (M11, M12, M15.5).
+//! One correction for all airspeeds, signed delays included, its assessment, and its benefit (M11,
+//! M12, M15.5).
 
 pub mod assessment;
 pub mod regression;
@@ -27,7 +28,7 @@ use crate::correction::{Channel, ChannelCorrection, Channels, LeadPrice};
 use regression::design;
 use second_variable::SecondTerm;
 
-/// Places between two airspeeds at which a schedule is looked at.
+/// Number of steps over the airspeed range at which a schedule is inspected.
 const STEPS: u32 = 100;
 
 /// Highest degree of a polynomial schedule (M11).
@@ -39,22 +40,21 @@ pub const DEFAULT_TOLERANCE_KT: f64 = 2.0;
 /// The form of the schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ScheduleKind {
-    /// A polynomial of least squares.
+    /// A least squares polynomial.
     Polynomial {
         /// Degree, 0 to [`HIGHEST_DEGREE`].
         degree: usize,
     },
-    /// A lookup table: the mean of each cluster of airspeeds, linear between.
+    /// A lookup table: the mean of each cluster of airspeeds, with linear interpolation.
     Table,
 }
 
-/// What is regressed on airspeed.
+/// Quantity regressed on airspeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum ScheduledQuantity {
     /// `ln k`: the product of two channels' regressions is the regression of their product.
     #[serde(rename = "ln k")]
     LnGain,
-    /// `k` itself.
     #[serde(rename = "k")]
     Gain,
 }
@@ -62,11 +62,12 @@ pub enum ScheduledQuantity {
 /// Net delay \[s\] of a constrained response above which delays are scheduled automatically (M11).
 pub const NOTABLE_DELAY_S: f64 = 5e-4;
 
-/// Whether the schedule has delays beside gains (M11).
+/// Whether the schedule has delays besides gains (M11).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DelayScheduling {
-    /// Where a constrained response has a net delay above [`NOTABLE_DELAY_S`] in a scheduled condition.
+    /// Where a constrained response has a net delay above [`NOTABLE_DELAY_S`] in a scheduled
+    /// condition.
     #[default]
     Automatic,
     /// In every study.
@@ -76,7 +77,7 @@ pub enum DelayScheduling {
 }
 
 impl From<bool> for DelayScheduling {
-    /// The value that a flag of an older program stands for.
+    /// Value of the flag of older program versions.
     fn from(flag: bool) -> Self {
         if flag { Self::Always } else { Self::Never }
     }
@@ -88,7 +89,7 @@ impl<'de> Deserialize<'de> for DelayScheduling {
     }
 }
 
-/// Reads a word, or the flag of an older program.
+/// Reads a word, or the flag of older program versions.
 struct DelaySchedulingVisitor;
 
 impl Visitor<'_> for DelaySchedulingVisitor {
@@ -112,27 +113,26 @@ impl Visitor<'_> for DelaySchedulingVisitor {
     }
 }
 
-/// How channel gains are scheduled.
+/// Settings of the schedule of the channel gains.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "ScheduleEntry", into = "ScheduleEntry")]
 pub struct ScheduleSettings {
-    /// The form.
     pub kind: ScheduleKind,
-    /// What is regressed.
     pub quantity: ScheduledQuantity,
-    /// Whether this schedule has delays too: what [`DelayScheduling`] comes to in the conditions at hand. In the settings of a
-    /// study it is what older programs read, `true` where delays are always scheduled.
+    /// Whether this schedule has delays too: the outcome of [`DelayScheduling`] for the conditions
+    /// at hand. In the settings of a study, older program versions read this field; it is `true`
+    /// where delays are always scheduled.
     pub delays: bool,
-    /// Degree of the polynomial of signed delays, where leads are asked for, 0 to [`HIGHEST_DEGREE`]: servo, sensor and computing
-    /// lags do not depend on airspeed (M15.5).
+    /// Degree of the polynomial of signed delays, where leads are requested, 0 to
+    /// [`HIGHEST_DEGREE`]: servo, sensor and computing lags do not depend on airspeed (M15.5).
     pub tau_degree: usize,
-    /// Airspeeds this close to the next one are one cluster \[kt\] (M11b).
+    /// Airspeeds within this distance of the next higher one form a cluster \[kt\] (M11b).
     pub airspeed_tolerance_kt: f64,
-    /// Variable whose effect on the gains is scheduled beside that of airspeed (M13.7).
+    /// Variable whose effect on the gains is scheduled besides the effect of airspeed (M13.7).
     pub second: Option<SecondVariable>,
 }
 
-/// [`ScheduleSettings`] in files, where the degree stands beside the form.
+/// [`ScheduleSettings`] in files, where the degree is a field next to the form.
 #[derive(Serialize, Deserialize)]
 struct ScheduleEntry {
     kind: FormEntry,
@@ -177,7 +177,7 @@ impl TryFrom<ScheduleEntry> for ScheduleSettings {
                     "degree: expected a whole number from 0 to {HIGHEST_DEGREE}, found {degree}"
                 ));
             }
-            // As serde itself says it, so that readers tell it alike.
+            // Same wording as serde's own error, so that readers treat it alike.
             (FormEntry::Polynomial, None) => return Err("missing field `degree`".to_owned()),
         };
         let ScheduleEntry {
@@ -238,7 +238,7 @@ impl Default for ScheduleSettings {
     }
 }
 
-/// One condition's optimum, as the schedule takes it.
+/// One condition's optimum, as input to the schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScheduledPoint<'a> {
     /// True airspeed \[kt\].
@@ -247,26 +247,24 @@ pub struct ScheduledPoint<'a> {
     pub correction: &'a ChannelCorrection,
     /// The condition's upper bound of the delays \[s\].
     pub delay_upper_s: f64,
-    /// The condition's value of the second variable, where there is one.
+    /// The condition's value of the second variable, if any.
     pub second: Option<f64>,
 }
 
-/// Every channel's gain (and delay, where asked for) as a function of airspeed.
+/// Every channel's gain (and delay, where requested) as a function of airspeed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schedule {
-    /// How it was made.
     pub settings: ScheduleSettings,
-    /// The airspeeds it was made from.
+    /// Airspeeds of the conditions.
     pub airspeeds: Airspeeds,
     /// Regression of each channel's gain, or of its logarithm.
     pub gains: Channels<Regression>,
-    /// What the second variable adds to each of them, where there is one.
+    /// Contribution of the second variable to each regression, if any.
     pub second: Option<SecondTerm>,
     /// Delays as functions of airspeed, where delays are scheduled.
     pub delays: Option<DelaySchedule>,
     /// Signed delays as functions of airspeed, where the conditions' corrections have leads (M15).
     pub leads: Option<LeadSchedule>,
-    /// What has to be known about it.
     pub cautions: Vec<ScheduleCaution>,
 }
 
@@ -275,56 +273,56 @@ pub struct Schedule {
 pub struct DelaySchedule {
     /// Regression of each channel's delay \[s\].
     pub taus_s: Channels<Regression>,
-    /// The conditions' upper bounds \[s\], linear between them: no scheduled delay is above.
+    /// The conditions' upper bounds \[s\], interpolated linearly: no scheduled delay exceeds them.
     pub upper_s: Regression,
 }
 
-/// What has to be known about a schedule.
+/// Cautions about a schedule.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ScheduleCaution {
-    /// The degree asked for takes more airspeeds than there are (M11b).
+    /// The requested degree needs more airspeeds than there are (M11b).
     DegreeLowered {
-        /// Degree asked for.
+        /// Requested degree.
         asked: usize,
-        /// Clusters of airspeeds.
+        /// Number of clusters of airspeeds.
         clusters: usize,
     },
-    /// A gain leaves the range of the conditions' gains by more than half its width, between two clusters (M11b).
+    /// A gain leaves the range of the conditions' gains by more than half its width, between two
+    /// clusters (M11b).
     Overshoot {
-        /// The channel.
         channel: Channel,
         /// Mean airspeeds of the clusters on either side \[kt\].
         between_kt: [f64; 2],
-        /// Where it is farthest out \[kt\].
+        /// Airspeed of the largest excursion \[kt\].
         airspeed_kt: f64,
-        /// The gain there.
+        /// Gain at that airspeed.
         gain: f64,
         /// Least and greatest of the conditions' gains.
         range: [f64; 2],
     },
-    /// A channel's signed delay in one condition is far from that of the others, or of another sign (M15.6).
+    /// A channel's signed delay in one condition is far from the others, or has another sign
+    /// (M15.6).
     SignedDelayApart {
-        /// The channel.
         channel: Channel,
-        /// The condition.
         condition: ConditionId,
-        /// Its signed delay there \[s\].
+        /// Signed delay in this condition \[s\].
         tau_s: f64,
-        /// The mean of it in the other conditions \[s\].
+        /// Mean signed delay in the other conditions \[s\].
         elsewhere_s: f64,
     },
-    /// A gain is not positive somewhere between, which only a regression of `k` itself can give.
+    /// A gain is not positive at some intermediate airspeed, possible only in a regression of `k`
+    /// itself.
     NotPositive,
-    /// The scheduled correction leaves a condition with much more J than its own correction does (M12).
+    /// The scheduled correction gives a condition much more J than its own correction does (M12).
     CostsMore(ScheduledCost),
 }
 
 /// Mean J of the on-axis responses of one physics model of a condition (M12).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduledCost {
-    /// The condition.
     pub condition: ConditionId,
-    /// Name of the physics model: the nominal one, or the representative where that is rejected.
+    /// Name of the physics model: the nominal one, or the representative where the nominal one is
+    /// rejected.
     pub model: String,
     /// J under the schedule.
     pub scheduled: f64,
@@ -333,9 +331,9 @@ pub struct ScheduledCost {
 }
 
 impl ScheduledCost {
-    /// Scheduled J over own J above which the schedule is cautioned about.
+    /// Ratio of scheduled J to own J that triggers a caution.
     const NOTABLE_RATIO: f64 = 2.0;
-    /// Scheduled J below which nothing is said: 1 is 0.2 dB.
+    /// Scheduled J below which no caution is raised: 1 is 0.2 dB.
     const LEAST_NOTABLE: f64 = 1.0;
 
     /// Whether the scheduled J is more than twice the condition's own.
@@ -345,7 +343,8 @@ impl ScheduledCost {
 }
 
 impl ScheduleCaution {
-    /// Whether it is of interest in a condition: what the schedule costs in one condition is not in another.
+    /// Whether the caution applies to a condition: the cost of the schedule in one condition does
+    /// not concern another.
     pub fn concerns(&self, condition: ConditionId) -> bool {
         match self {
             ScheduleCaution::CostsMore(cost) => cost.condition == condition,
@@ -353,7 +352,7 @@ impl ScheduleCaution {
         }
     }
 
-    /// Its code in files.
+    /// Code of the caution in files.
     pub fn code(&self) -> &'static str {
         match self {
             ScheduleCaution::DegreeLowered { .. } => "degree-lowered",
@@ -364,7 +363,7 @@ impl ScheduleCaution {
         }
     }
 
-    /// The caution in words; channels have these names.
+    /// Describes the caution with these channel names.
     pub fn words(&self, inputs: &[String], outputs: &[String]) -> String {
         match self {
             ScheduleCaution::DegreeLowered { asked, clusters } => format!(
@@ -410,16 +409,17 @@ impl ScheduleCaution {
     }
 }
 
-/// Why there is no schedule.
+/// Reason why there is no schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScheduleError {
     /// No condition was chosen, or none could be solved.
     #[error("no schedule: no condition that could be solved is chosen for it")]
     NoCondition,
-    /// A condition does not say the second variable.
+    /// A condition has no value of the second variable.
     #[error("no schedule with {0}: a condition that is chosen for it does not say its {0}")]
     NoSecondValue(SecondVariable),
-    /// The second variable is a function of airspeed in these conditions, or the same in all of them.
+    /// The second variable is a function of airspeed in these conditions, or the same in all of
+    /// them.
     #[error(
         "no schedule with {0}: these conditions cannot tell its effect and that of airspeed apart"
     )]
@@ -427,7 +427,7 @@ pub enum ScheduleError {
 }
 
 impl Schedule {
-    /// The schedule of these conditions' corrections.
+    /// Fits the schedule of these conditions' corrections and checks it between them.
     pub fn of(
         points: &[ScheduledPoint<'_>],
         settings: ScheduleSettings,
@@ -437,7 +437,7 @@ impl Schedule {
         Ok(schedule)
     }
 
-    /// [`Schedule::of`] without a look between the conditions.
+    /// Like [`Schedule::of`], but without checks between the conditions.
     pub(super) fn fitted(
         points: &[ScheduledPoint<'_>],
         settings: ScheduleSettings,
@@ -507,7 +507,8 @@ impl Schedule {
         self.delays.is_some() || self.leads.is_some()
     }
 
-    /// What the scheduled leads cost: of each channel the most over the airspeeds. None of a schedule without lead filters.
+    /// Price of the scheduled leads: for each channel the maximum over the airspeeds. `None` for a
+    /// schedule without lead filters.
     pub fn lead_price(&self) -> Option<LeadPrice> {
         let leads = self.leads.as_ref()?;
         let steps = if leads.degree() == 0 { 0 } else { STEPS };
@@ -516,13 +517,13 @@ impl Schedule {
         prices.reduce(|most, other| most.or_more(&other))
     }
 
-    /// One of the places \[kt\] between the least and the greatest airspeed at which the schedule is looked at.
+    /// Airspeed \[kt\] of an inspection step between the least and the greatest airspeed.
     fn step_kt(&self, step: u32) -> f64 {
         let part = f64::from(step) / f64::from(STEPS);
         self.airspeeds.min_kt + part * (self.airspeeds.max_kt - self.airspeeds.min_kt)
     }
 
-    /// Degree of the polynomial, which may be less than was asked for; `None` for a table.
+    /// Degree of the polynomial, possibly less than requested; `None` for a table.
     pub fn degree(&self) -> Option<usize> {
         match self.settings.kind {
             ScheduleKind::Polynomial { degree } => {
@@ -532,7 +533,8 @@ impl Schedule {
         }
     }
 
-    /// Whether it is nothing to go by between the conditions: a gain overshoots there, or is not positive.
+    /// Whether interpolation between the conditions is unreliable: a gain overshoots there, or is
+    /// not positive.
     pub fn interpolation_fails(&self) -> bool {
         let fails = |caution: &ScheduleCaution| {
             matches!(
@@ -567,7 +569,8 @@ impl Schedule {
         cautions
     }
 
-    /// Where a channel's gain is farthest outside the range of the conditions' gains, between two clusters.
+    /// Finds the point where a channel's gain is farthest outside the range of the conditions'
+    /// gains, between two clusters.
     fn overshoot(
         &self,
         points: &[ScheduledPoint<'_>],
@@ -577,7 +580,7 @@ impl Schedule {
         let range = gains.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], gain| {
             [least.min(gain), most.max(gain)]
         });
-        // Where all gains are one, rounding is no overshoot.
+        // Where all gains are equal, rounding is no overshoot.
         let mut farthest = 0.5 * (range[1] - range[0]) + 1e-9 * range[1];
         let mut found = None;
         let clusters = self.airspeeds.clusters_kt();
@@ -603,15 +606,16 @@ impl Schedule {
         found
     }
 
-    /// The scheduled correction at an airspeed \[kt\]; outside the conditions' range the end value holds.
+    /// Evaluates the scheduled correction at an airspeed \[kt\]; outside the conditions' range the
+    /// end value applies.
     ///
-    /// Scheduled delays are cut to their bounds: from zero to the conditions' upper bounds, linear between them. A second variable
-    /// is in the middle of its range.
+    /// Scheduled delays are limited to their bounds: from zero to the conditions' upper bounds,
+    /// interpolated linearly. A second variable is in the middle of its range.
     pub fn at(&self, airspeed_kt: f64) -> ChannelCorrection {
         self.evaluate(airspeed_kt, None)
     }
 
-    /// The scheduled correction at the airspeed and the second variable of a condition.
+    /// Evaluates the scheduled correction at the airspeed and the second variable of a condition.
     pub fn at_state(&self, state: &FlightState) -> ChannelCorrection {
         self.evaluate(
             state.airspeed_kt,
@@ -621,7 +625,8 @@ impl Schedule {
         )
     }
 
-    /// As [`Schedule::at`], at a value of the second variable; beyond the range of the conditions' the end value holds.
+    /// Like [`Schedule::at`], at a value of the second variable; beyond the conditions' range the
+    /// end value applies.
     pub fn evaluate(&self, airspeed_kt: f64, second: Option<f64>) -> ChannelCorrection {
         let scaled = self
             .second
@@ -650,22 +655,23 @@ impl Schedule {
     }
 }
 
-/// Every channel's signed delay as a function of airspeed: sums of regressions are the regression of sums, so the net lead of
-/// every response is scheduled exactly.
+/// Every channel's signed delay as a function of airspeed: the sum of two regressions is the
+/// regression of the sum, so the net lead of every response is scheduled exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadSchedule {
-    /// Which filter a signed delay has.
+    /// Design that gives the filter of a signed delay.
     pub design: Arc<LeadDesign>,
     /// Regression of each channel's signed delay \[s\].
     pub taus_s: Channels<Regression>,
     /// The widest of the conditions' bounds \[s\]: no scheduled signed delay is outside.
     pub bounds_s: [f64; 2],
-    /// The same for all airspeeds, where it is: its filters are computed once.
+    /// Leads that are the same for all airspeeds, if they are, so that the filters are computed
+    /// once.
     constant: Option<ChannelLeads>,
 }
 
 impl LeadSchedule {
-    /// The schedule of these conditions' signed delays; none where one of them has none.
+    /// Fits the schedule of these conditions' signed delays; `None` where a condition has none.
     pub(super) fn of(
         points: &[ScheduledPoint<'_>],
         airspeeds: &Airspeeds,
@@ -712,7 +718,7 @@ impl LeadSchedule {
         degrees.max().unwrap_or(0)
     }
 
-    /// The signed delays at an airspeed \[kt\], cut to the bounds.
+    /// Signed delays at an airspeed \[kt\], limited to the bounds.
     pub fn at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> ChannelLeads {
         self.constant
             .clone()
@@ -775,7 +781,7 @@ mod tests {
         let direct = Regression::polynomial(&schedule.airspeeds, &products, 2);
         for airspeed in [40.0, 88.0, 140.0] {
             let product = schedule.at(airspeed).net_gain(Pair::new(0, 0));
-            // Linear least squares in different order of rounding.
+            // Linear least squares with another order of rounding.
             assert!((product / direct.at(&schedule.airspeeds, airspeed).exp() - 1.0).abs() < 1e-13);
         }
     }
@@ -872,7 +878,8 @@ mod tests {
     }
     #[test]
     fn a_scheduled_delay_stays_within_the_bounds_of_the_conditions() {
-        // Delays of 0, 0, 30 and 30 ms: a cubic through them swings to both sides. Bounds of 10, 20, 30 and 30 ms.
+        // Delays of 0, 0, 30 and 30 ms: a cubic through them swings to both sides. Bounds of 10,
+        // 20, 30 and 30 ms.
         let delays_s = [0.0, 0.0, 0.03, 0.03];
         let corrections = delays_s.map(|delay| ChannelCorrection {
             input_delays_s: vec![delay],
@@ -966,7 +973,7 @@ mod lead_schedule_tests {
                 .collect();
             let direct = Regression::polynomial(&airspeeds, &sums, degree);
             let at = schedule.at(&airspeeds, 93.0);
-            // Least squares in another order of rounding.
+            // Least squares with another order of rounding.
             assert!(
                 (at.taus_s.inputs[0] + at.taus_s.outputs[0] - direct.at(&airspeeds, 93.0)).abs()
                     < 1e-15

@@ -1,11 +1,12 @@
-//! The regression of a channel's value over airspeed: its columns, and its coefficients channel by channel.
+//! Regression of a channel's value on airspeed: its columns, and its coefficients for each channel.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::{LeadSchedule, Schedule, ScheduleKind, ScheduledQuantity};
 use crate::correction::Channel;
 
-/// The airspeeds of the scheduled conditions, centred and scaled: `v = (V - mean V) / (half the range of V)` (M11).
+/// The airspeeds of the scheduled conditions, centred and scaled: `v = (V - mean V) / (half the
+/// range of V)` (M11).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Airspeeds {
     /// Airspeed of each condition \[kt\].
@@ -18,12 +19,14 @@ pub struct Airspeeds {
     pub min_kt: f64,
     /// Largest airspeed \[kt\].
     pub max_kt: f64,
-    /// Conditions (by place) whose airspeeds lie within the tolerance of the next one, rising in airspeed (M11b).
+    /// Conditions (by index) whose airspeeds lie within the tolerance of the next one, rising in
+    /// airspeed (M11b).
     pub clusters: Vec<Vec<usize>>,
 }
 
 impl Airspeeds {
-    /// The airspeeds \[kt\] of at least one condition, those within `tolerance_kt` of the next one taken together.
+    /// Groups the airspeeds \[kt\] of at least one condition into clusters, each within
+    /// `tolerance_kt` of the next; `None` without conditions.
     pub fn new(values_kt: Vec<f64>, tolerance_kt: f64) -> Option<Self> {
         let mut rising: Vec<usize> = (0..values_kt.len()).collect();
         rising.sort_by(|&a, &b| values_kt[a].total_cmp(&values_kt[b]));
@@ -45,7 +48,7 @@ impl Airspeeds {
         })
     }
 
-    /// The scaled airspeed `v`; outside the conditions' range, that of the nearer end. Zero where there is no range.
+    /// The scaled airspeed `v`, limited to the conditions' range; zero where there is no range.
     pub fn scaled(&self, airspeed_kt: f64) -> f64 {
         if self.half_range_kt == 0.0 {
             return 0.0;
@@ -58,7 +61,7 @@ impl Airspeeds {
         self.cluster_means(&self.values_kt)
     }
 
-    /// The mean of the conditions' figures in each cluster.
+    /// Mean of the conditions' values in each cluster.
     fn cluster_means(&self, figures: &[f64]) -> Vec<f64> {
         let mean = |cluster: &Vec<usize>| {
             let first = figures[cluster[0]];
@@ -74,7 +77,7 @@ impl Airspeeds {
     }
 }
 
-/// A function of airspeed fitted to one figure of each condition.
+/// A function of airspeed fitted to one value of each condition.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Regression {
     /// `c_0 + c_1 v + c_2 v^2 + ...` in the scaled airspeed, lowest power first.
@@ -86,18 +89,19 @@ pub enum Regression {
     Table {
         /// Mean airspeed of each cluster \[kt\], rising.
         airspeeds_kt: Vec<f64>,
-        /// Mean figure of each.
+        /// Mean value of each cluster.
         values: Vec<f64>,
     },
 }
 
 impl Regression {
-    /// The polynomial of least squares; its degree is at most the number of clusters less one.
+    /// Fits a polynomial by least squares; its degree is at most the number of clusters less one.
     pub fn polynomial(airspeeds: &Airspeeds, figures: &[f64], degree: usize) -> Self {
         let degree = degree.min(airspeeds.clusters.len().saturating_sub(1));
         let rows = design(airspeeds, ScheduleKind::Polynomial { degree });
         let qr = DMatrix::from_fn(rows.len(), degree + 1, |row, power| rows[row][power]).qr();
-        // Full column rank: at least as many distinct v in [-1, 1] as there are columns, so R has no zero on its diagonal.
+        // Full column rank: at least as many distinct v in [-1, 1] as there are columns, so R has
+        // no zero on its diagonal.
         let projected = qr.q().transpose() * DVector::from_column_slice(figures);
         let coefficients = qr
             .r()
@@ -108,7 +112,7 @@ impl Regression {
         }
     }
 
-    /// The mean figure of each cluster of airspeeds.
+    /// Computes the mean value of each cluster of airspeeds.
     pub fn table(airspeeds: &Airspeeds, figures: &[f64]) -> Self {
         Self::Table {
             airspeeds_kt: airspeeds.clusters_kt(),
@@ -116,7 +120,7 @@ impl Regression {
         }
     }
 
-    /// Its coefficients, lowest power first, or the figures of its table.
+    /// The coefficients, lowest power first, or the values of the table.
     pub fn figures(&self) -> &[f64] {
         match self {
             Regression::Polynomial { coefficients } => coefficients,
@@ -124,7 +128,7 @@ impl Regression {
         }
     }
 
-    /// The figure at an airspeed \[kt\]; outside the conditions' range the end value holds.
+    /// Value at an airspeed \[kt\]; outside the conditions' range the end value applies.
     pub fn at(&self, airspeeds: &Airspeeds, airspeed_kt: f64) -> f64 {
         match self {
             Regression::Polynomial { coefficients } => {
@@ -146,8 +150,8 @@ impl Regression {
 }
 
 impl Schedule {
-    /// The design matrix `X` of its regression: a row for each of its conditions, in their order. A table's columns are
-    /// indicators of its clusters.
+    /// Design matrix `X` of the regression: a row for each condition, in their order. A table's
+    /// columns are indicators of its clusters.
     pub fn design(&self) -> Vec<Vec<f64>> {
         let mut rows = self.airspeed_design();
         if let Some(term) = &self.second {
@@ -158,13 +162,13 @@ impl Schedule {
         rows
     }
 
-    /// The columns of that which are functions of airspeed.
+    /// The columns of the design matrix that are functions of airspeed.
     pub fn airspeed_design(&self) -> Vec<Vec<f64>> {
         design(&self.airspeeds, self.settings.kind)
     }
 
-    /// The row of an airspeed \[kt\] that need not be a condition's; outside the conditions' range that of the nearer end. A second
-    /// variable is in the middle of its range.
+    /// Row of the design matrix for any airspeed \[kt\]; outside the conditions' range the row of
+    /// the nearer end. A second variable is in the middle of its range.
     pub fn design_row(&self, airspeed_kt: f64) -> Vec<f64> {
         let mut row = match self.degree() {
             Some(degree) => powers(self.airspeeds.scaled(airspeed_kt), degree),
@@ -177,7 +181,7 @@ impl Schedule {
     }
 }
 
-/// The columns of a form of the schedule, a row for each condition.
+/// The columns for a form of the schedule, a row for each condition.
 pub(super) fn design(airspeeds: &Airspeeds, kind: ScheduleKind) -> Vec<Vec<f64>> {
     match kind {
         ScheduleKind::Polynomial { degree } => {
@@ -210,7 +214,8 @@ fn indicators(airspeeds: &Airspeeds) -> Vec<Vec<f64>> {
     (0..airspeeds.values_kt.len()).map(row).collect()
 }
 
-/// The rising places on either side of `x` and how far between them it lies; the end place and 0 beyond them.
+/// Indices of the rising places on either side of `x` and the fraction of the way between them; the
+/// end index and 0 beyond the ends.
 fn bracket(places: &[f64], x: f64) -> (usize, usize, f64) {
     let after = places.partition_point(|&place| place < x);
     let end = places.len() - 1;
@@ -224,7 +229,7 @@ fn bracket(places: &[f64], x: f64) -> (usize, usize, f64) {
     )
 }
 
-/// The share of each of these rising places in the linear interpolation at `x`.
+/// Weight of each of these rising places in the linear interpolation at `x`.
 fn between(places: &[f64], x: f64) -> Vec<f64> {
     let mut row = vec![0.0; places.len()];
     let (before, after, fraction) = bracket(places, x);
@@ -233,37 +238,38 @@ fn between(places: &[f64], x: f64) -> Vec<f64> {
     row
 }
 
-/// Conditions (by place) whose airspeeds \[kt\] lie within `tolerance_kt` of the next one: a row of indicators for each condition.
+/// Clusters of conditions whose airspeeds \[kt\] lie within `tolerance_kt` of the next one: a row
+/// of indicators for each condition.
 pub fn airspeed_indicators(airspeeds_kt: Vec<f64>, tolerance_kt: f64) -> Vec<Vec<f64>> {
     Airspeeds::new(airspeeds_kt, tolerance_kt)
         .map(|airspeeds| indicators(&airspeeds))
         .unwrap_or_default()
 }
 
-/// The figures of one channel.
+/// The coefficients or values of one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoefficientRow {
-    /// The channel.
     pub channel: Channel,
-    /// What is scheduled with its channel: "ln k_LON", "k_Q", "τ_PED \[s\]".
+    /// Name of the scheduled value with its channel: "ln k_LON", "k_Q", "τ_PED \[s\]".
     pub name: String,
-    /// A figure for each column of the table.
+    /// One value for each column of the table.
     pub figures: Vec<f64>,
 }
 
-/// The coefficients of a polynomial schedule in the scaled airspeed, or the figures of a table (M11).
+/// The coefficients of a polynomial schedule in the scaled airspeed, or the values of a table
+/// (M11).
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoefficientTable {
-    /// What each figure is multiplied by ("1", "v", "v²", "v³"), or the airspeed of each ("60.0 kt").
+    /// Factor of each coefficient ("1", "v", "v²", "v³"), or airspeed of each value ("60.0 kt").
     pub columns: Vec<String>,
     /// Inputs, then outputs; gains, then delays where they are scheduled.
     pub rows: Vec<CoefficientRow>,
-    /// What `v` is: "v = (V − 92.3 kt) / 47.5 kt"; empty for a table.
+    /// Definition of `v`: "v = (V − 92.3 kt) / 47.5 kt"; empty for a table.
     pub scale: String,
 }
 
 impl Schedule {
-    /// The figures that it is made of; channels have these names.
+    /// Tabulates the coefficients or values of the schedule with these channel names.
     pub fn coefficients(&self, inputs: &[String], outputs: &[String]) -> CoefficientTable {
         const POWERS: [&str; 4] = ["1", "v", "v²", "v³"];
         let (columns, scale): (Vec<String>, String) = match self.degree() {
@@ -301,14 +307,14 @@ impl Schedule {
                 channel,
                 name: format!("{symbol}_{}{unit}", channel.name(inputs, outputs)),
                 figures: match (self.degree(), regression) {
-                    // Signed delays are a polynomial beside a table of gains.
+                    // Signed delays are a polynomial besides a table of gains.
                     (None, Regression::Polynomial { .. }) => self
                         .airspeeds
                         .clusters_kt()
                         .iter()
                         .map(|&kt| regression.at(&self.airspeeds, kt))
                         .collect(),
-                    // The power of which there is none has the coefficient 0.
+                    // A missing power has the coefficient 0.
                     _ => {
                         let none = std::iter::repeat(0.0);
                         let figures = regression.figures().iter().copied().chain(none);

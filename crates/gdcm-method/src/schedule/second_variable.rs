@@ -1,4 +1,5 @@
-//! A variable besides airspeed, and what it adds to a schedule (M11 with one more column, M13.7).
+//! A variable besides airspeed, and its contribution to a schedule (M11 with one more column,
+//! M13.7).
 
 use std::fmt;
 
@@ -10,7 +11,8 @@ use gdcm_model::dataset::condition::FlightState;
 use super::ScheduleError;
 use crate::correction::Channels;
 
-/// A column of which less than this is left beside the others is a combination of them.
+/// Relative residual of a column after projection on the others below which it counts as their
+/// linear combination.
 const DEPENDENT: f64 = 1e-9;
 
 /// A variable besides airspeed.
@@ -24,7 +26,7 @@ pub enum SecondVariable {
 }
 
 impl SecondVariable {
-    /// Both, in the order in which they are told.
+    /// Both, in the order of presentation.
     pub const BOTH: [Self; 2] = [Self::Altitude, Self::Mass];
 
     /// "altitude", "mass".
@@ -43,7 +45,7 @@ impl SecondVariable {
         }
     }
 
-    /// The number that a condition carries: altitude \[ft\] or mass \[kg\].
+    /// Value in a condition: altitude \[ft\] or mass \[kg\].
     pub fn value(self, state: &FlightState) -> Option<f64> {
         match self {
             Self::Altitude => state.altitude_ft,
@@ -58,7 +60,8 @@ impl SecondVariable {
         }
     }
 
-    /// A number for each condition: what they carry, or -1 and 1 for two different labels; none where they carry neither.
+    /// One number for each condition: the values, or -1 and 1 for two different labels; `None`
+    /// where the conditions have neither.
     pub fn values(self, states: &[&FlightState]) -> Option<Vec<f64>> {
         let numbers: Option<Vec<f64>> = states.iter().map(|state| self.value(state)).collect();
         numbers.or_else(|| {
@@ -81,25 +84,25 @@ impl fmt::Display for SecondVariable {
     }
 }
 
-/// What a second variable `z`, scaled to -1 to 1 over its range, adds to the figure of each channel: `gamma z`.
+/// Contribution of a second variable `z`, scaled to -1 to 1 over its range, to the value of each
+/// channel: `gamma z`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondTerm {
-    /// The variable.
     pub variable: SecondVariable,
-    /// Least and greatest value of the conditions.
+    /// Least and greatest value over the conditions.
     pub range: [f64; 2],
     /// Scaled value of each condition.
     pub scaled: Vec<f64>,
-    /// `gamma` of each channel's gain, or of its logarithm.
+    /// `gamma` for each channel's gain, or for its logarithm.
     pub slopes: Channels<f64>,
 }
 
 impl SecondTerm {
-    /// The term of these values, one for each condition, beside the columns of airspeed: coefficients of least squares of the
-    /// figures of each channel.
+    /// Fits the term to these values, one for each condition, besides the columns of airspeed:
+    /// least squares coefficients of the values of each channel.
     ///
     /// # Errors
-    /// [`ScheduleError::NotToldApart`] where the values are a combination of those columns.
+    /// [`ScheduleError::NotToldApart`] where the values are a linear combination of those columns.
     pub(super) fn of(
         variable: SecondVariable,
         values: Vec<f64>,
@@ -117,7 +120,7 @@ impl SecondTerm {
             .qr()
             .q();
         let whole = DVector::from_column_slice(&scaled);
-        // The scaled values less what the columns of airspeed make of them.
+        // Residual of the scaled values after projection on the columns of airspeed.
         let beside = &whole - &q * (q.transpose() * &whole);
         if greatest <= least || beside.norm() <= DEPENDENT * whole.norm() {
             return Err(ScheduleError::NotToldApart(variable));
@@ -133,7 +136,7 @@ impl SecondTerm {
         })
     }
 
-    /// A value of the variable on the scale from -1 to 1; beyond the range of the conditions' the end holds.
+    /// Scales a value of the variable to -1 to 1; beyond the conditions' range the end applies.
     pub fn scale(&self, value: f64) -> f64 {
         scaled(value.clamp(self.range[0], self.range[1]), self.range)
     }
@@ -143,7 +146,7 @@ impl SecondTerm {
         0.5 * (self.range[0] + self.range[1])
     }
 
-    /// Half of that range.
+    /// Half of the range of the conditions' values.
     pub fn half_range(&self) -> f64 {
         0.5 * (self.range[1] - self.range[0])
     }

@@ -1,4 +1,4 @@
-//! Models found in files, the rules about them, and what both make.
+//! Assembly of models found in files into one dataset, under the engineer's rules.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -22,25 +22,24 @@ use crate::dataset::unchecked_dataset::{
 use crate::dataset::{Channel, ConditionId, Dataset};
 use crate::units::number;
 
-/// One model, and what it is to be.
+/// One model with its role, channel names and channel matches.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// The model as its file gave it.
+    /// The model as read from its file.
     pub found: FoundModel,
-    /// What it is to be.
     pub row: Row,
-    /// What its inputs and outputs are called: by the rules, by the file, or by the file's name.
+    /// Names of its inputs and outputs: from the rules, the file, or the file's name.
     pub labels: [Vec<ChannelLabel>; 2],
     /// Its inputs in the dataset's order.
     pub inputs: ChannelMatch,
     /// Its outputs in the dataset's order.
     pub outputs: ChannelMatch,
-    /// The sample time that is said of it \[s\], as the file has none; 0 of a continuous-time model.
+    /// Sample time \[s\] from the rules where the file has none; 0 for a continuous-time model.
     pub sample_time_s: Option<f64>,
 }
 
 impl Part {
-    /// The sides whose channels have no names in the file.
+    /// Returns the sides whose channels have no names in the file.
     pub fn sides_by_position(&self) -> Vec<ChannelSide> {
         let sides = [ChannelSide::Input, ChannelSide::Output];
         sides
@@ -50,23 +49,22 @@ impl Part {
     }
 }
 
-/// Models whose channels were taken by their position, because their files have no names for them.
+/// Models whose channels were matched by position, because their files do not name them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssemblyCaution {
-    /// The sides.
     pub sides: Vec<ChannelSide>,
-    /// The models, by their places among those found.
+    /// Indices of the models among those found.
     pub parts: Vec<usize>,
 }
 
 impl AssemblyCaution {
-    /// Its stable name.
+    /// Returns a stable code.
     pub fn code(&self) -> &'static str {
         "channels-by-position"
     }
 }
 
-/// Models found in files, and what the rules make of them.
+/// Models found in files, with the rules applied to them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly {
     rules: Rules,
@@ -75,14 +73,14 @@ pub struct Assembly {
 }
 
 impl Default for Assembly {
-    /// One without models.
+    /// Returns an assembly without models.
     fn default() -> Self {
         Self::new(Vec::new(), Rules::default())
     }
 }
 
 impl Assembly {
-    /// What `rules` make of `models`.
+    /// Applies `rules` to `models`.
     pub fn new(models: Vec<FoundModel>, rules: Rules) -> Self {
         let rows = proposed_rows(&models, &rules);
         let with_row = models.into_iter().zip(rows);
@@ -98,7 +96,7 @@ impl Assembly {
         assembly
     }
 
-    /// The same models under other rules.
+    /// Returns the same models under other rules.
     pub fn with_rules(&self, rules: Rules) -> Self {
         Self::new(
             self.parts.iter().map(|part| part.found.clone()).collect(),
@@ -106,22 +104,22 @@ impl Assembly {
         )
     }
 
-    /// The rules.
+    /// Returns the rules.
     pub fn rules(&self) -> &Rules {
         &self.rules
     }
 
-    /// The models, in the order in which they were found.
+    /// Returns the models in the order in which they were found.
     pub fn parts(&self) -> &[Part] {
         &self.parts
     }
 
-    /// What is still to be said; nothing where the dataset can be made.
+    /// Returns the open problems; empty where the dataset can be built.
     pub fn problems(&self) -> &[Problem] {
         &self.problems
     }
 
-    /// A problem in words, with the model that has it.
+    /// Describes a problem, with the name of its model.
     pub fn words(&self, problem: &Problem) -> String {
         let option = problem
             .option()
@@ -132,7 +130,8 @@ impl Assembly {
         }
     }
 
-    /// The problems in words, those of many models once: with the first model that has it, and how many others do.
+    /// Lists the problems in words. A problem shared by many models appears once, with the first
+    /// model and the number of others.
     pub fn told(&self) -> Vec<(Option<usize>, String)> {
         let mut kinds: Vec<(&Problem, usize)> = Vec::new();
         for problem in &self.problems {
@@ -154,8 +153,8 @@ impl Assembly {
         kinds.into_iter().map(words).collect()
     }
 
-    /// The dataset; none while there are problems. Models and flight records name their files with `folder` before them, which
-    /// leads to the files from where the dataset is to lie.
+    /// Returns the dataset, or `None` while there are problems. File names of models and flight
+    /// records are prefixed with `folder`, the path from the dataset's folder to the files.
     pub fn dataset(&self, folder: &str) -> Option<Dataset> {
         if !self.problems.is_empty() {
             return None;
@@ -178,7 +177,7 @@ impl Assembly {
         draft.checked().ok().map(|(dataset, _)| dataset)
     }
 
-    /// The conditions that have no identified model, in the order of their ids.
+    /// Returns the conditions without an identified model, ordered by id.
     pub fn without_reference(&self) -> Vec<i64> {
         let mut conditions = by_condition(&self.parts);
         conditions.retain(|_, parts| {
@@ -189,7 +188,7 @@ impl Assembly {
         conditions.into_keys().collect()
     }
 
-    /// The models that are taken.
+    /// Returns the models that are not left out.
     fn taken(&self) -> impl Iterator<Item = (usize, &Part)> {
         self.parts
             .iter()
@@ -239,7 +238,8 @@ impl Assembly {
         problems
     }
 
-    /// What the file of a model says otherwise than its names, as far as the rules do not settle it.
+    /// Returns the contradictions between the file of a model and its names, as far as the rules do
+    /// not settle them.
     fn name_contradictions(&self, part: &Part) -> Vec<ProblemKind> {
         let said = self.rules.rows.get(&part.found.key());
         let mut problems = Vec::new();
@@ -260,7 +260,7 @@ impl Assembly {
         problems
     }
 
-    /// What is to be looked at though the dataset can be made.
+    /// Returns points to review although the dataset can be built.
     pub fn cautions(&self) -> Vec<AssemblyCaution> {
         let mut cautions: Vec<AssemblyCaution> = Vec::new();
         for (index, part) in self.taken() {
@@ -279,9 +279,9 @@ impl Assembly {
         cautions
     }
 
-    /// A caution in words.
+    /// Describes a caution.
     pub fn caution_words(&self, caution: &AssemblyCaution) -> String {
-        /// Files that are named.
+        /// Number of files listed by name.
         const NAMED: usize = 3;
         let keys = caution
             .parts
@@ -368,7 +368,7 @@ fn part_of(found: FoundModel, row: Row, rules: &Rules) -> Part {
         .problem
         .filter(|_| of_inputs.is_none() || of_outputs.is_none())
     {
-        // It says why the channels below match nothing.
+        // This problem explains why the channels below match nothing.
         let is_unmatched =
             |kind: &ProblemKind| matches!(kind, ProblemKind::ResponseUnmatched { .. });
         inputs.problems.retain(|kind| !is_unmatched(kind));
@@ -390,9 +390,11 @@ fn part_of(found: FoundModel, row: Row, rules: &Rules) -> Part {
     }
 }
 
-// The unchecked dataset of models that are said to be what, each in the channels and units of the dataset.
+// Builds an unchecked dataset from models with known roles, each in the channels and units of the
+// dataset.
 
-/// The draft that the parts make; those that are left out, or of which condition or role are not said, are not in it.
+/// Builds the draft from the parts; models that are left out, or without a condition or role, are
+/// skipped.
 pub(super) fn merged(rules: &Rules, parts: &[Part]) -> DatasetDraft {
     let channel = |rule: &ChannelRule| Channel::new(rule.name.clone(), rule.unit.clone());
     DatasetDraft {
@@ -409,7 +411,7 @@ pub(super) fn merged(rules: &Rules, parts: &[Part]) -> DatasetDraft {
     }
 }
 
-/// The models that are taken, each with its place among all, by their conditions.
+/// Groups the models in use by condition, each with its index among all models.
 fn by_condition(parts: &[Part]) -> BTreeMap<i64, Vec<(usize, &Part)>> {
     let mut conditions: BTreeMap<i64, Vec<(usize, &Part)>> = BTreeMap::new();
     for (index, part) in parts
@@ -462,8 +464,8 @@ fn condition_of(id: i64, parts: &[(usize, &Part)], rules: &Rules) -> ConditionDr
     }
 }
 
-/// The flight records that the files of the models name, once each, as the file says it that says which pieces are used; of different
-/// ones of one name the later gets a number.
+/// Returns the flight records named by the models' files, once each. Where files differ, the record
+/// that lists the pieces in use wins; a different record with a name already in use gets a number.
 fn records_of(parts: &[&Part]) -> Vec<ConditionRecord> {
     let mut records: Vec<ConditionRecord> = Vec::new();
     let mut known: Vec<(&String, &String, &Option<String>)> = Vec::new();
@@ -503,7 +505,7 @@ fn condition_name(state: &FlightState) -> String {
     parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
-/// Coordinates that others of the bundle name are at rest in this model.
+/// Builds a physics model; coordinates named by other models of the bundle have offset zero here.
 fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> ModelDraft {
     let offset = |coordinate: &&String| {
         let offset = part
@@ -526,7 +528,7 @@ fn physics_model(part: &Part, coordinates: &BTreeSet<&String>) -> ModelDraft {
     }
 }
 
-/// Measured responses of one name are one model.
+/// Builds the identified models; measured responses with the same name form one model.
 fn identified_models(parts: &[&Part], rules: &Rules) -> Vec<ModelDraft> {
     let mut models: Vec<ModelDraft> = Vec::new();
     for part in parts {
@@ -548,7 +550,8 @@ fn identified_models(parts: &[&Part], rules: &Rules) -> Vec<ModelDraft> {
     models
 }
 
-/// Notes the responses that no file of a measured model gives; where all are given over all frequencies, valid bands say nothing.
+/// Lists the responses that no file of a measured model provides in its source note; where all are
+/// given at all frequencies, the valid bands are dropped as redundant.
 fn note_unmeasured(model: &mut ModelDraft, rules: &Rules) {
     let Some(response) = &mut model.response else {
         return;
@@ -593,10 +596,10 @@ fn identified_origin(part: &Part) -> Origin {
     }
 }
 
-/// The valid band of a response that was not measured \[rad/s\]: no frequency lies in it.
+/// Valid band of a response that was not measured \[rad/s\]: contains no frequency.
 const NOT_MEASURED: [f64; 2] = [0.0, 0.0];
 
-/// The valid bands of a response; the whole of its frequencies where it has none.
+/// Returns the valid bands of a response, or its full frequency range where it has none.
 fn bands_or_whole(response: &ResponseDraft) -> ResponseArray {
     let [outputs, inputs, _] = response.re.shape;
     let last = response.omega.last().copied().unwrap_or(0.0);
@@ -607,7 +610,7 @@ fn bands_or_whole(response: &ResponseDraft) -> ResponseArray {
     response.valid_bands.clone().unwrap_or_else(whole)
 }
 
-/// Puts the responses that `response` has, and the earlier model has not, into it.
+/// Copies the responses that `response` has and the earlier model lacks into the earlier model.
 fn join(earlier: &mut ModelDraft, response: &ResponseDraft, part: &Part) {
     let Some(into) = &mut earlier.response else {
         return;
@@ -647,7 +650,7 @@ fn join(earlier: &mut ModelDraft, response: &ResponseDraft, part: &Part) {
     }
 }
 
-/// A part without coherence is trusted as it is where others have one.
+/// Joins the coherence; a part without coherence is fully trusted where others have one.
 fn join_coherence(
     into: &mut ResponseDraft,
     response: &ResponseDraft,
@@ -668,7 +671,7 @@ fn join_coherence(
     }
 }
 
-/// The model in the dataset's channels and units, and what was done to it.
+/// Converts the model to the dataset's channels and units, and notes the conversions.
 fn model_of(part: &Part) -> ModelDraft {
     let mut model = converted(&part.found.draft, &part.inputs.uses, &part.outputs.uses);
     model.name.clone_from(&part.row.name);
@@ -703,8 +706,9 @@ fn model_of(part: &Part) -> ModelDraft {
     model
 }
 
-/// The model with the dataset's channels in the dataset's order and units, `H'_oi = f_o H_oi / f_i`; the same numbers, bit for bit,
-/// where nothing is converted. Channels that are missing respond to nothing.
+/// Returns the model with the dataset's channels in the dataset's order and units,
+/// `H'_oi = f_o H_oi / f_i`; bitwise the same numbers where nothing is converted. Missing channels
+/// have zero response.
 pub(super) fn converted(
     model: &ModelDraft,
     inputs: &[Option<ChannelUse>],
@@ -714,7 +718,7 @@ pub(super) fn converted(
     let table = |array: &ResponseArray, convert: bool| picked(array, (inputs, outputs), convert);
     let is_whole = inputs.iter().chain(outputs).all(Option::is_some);
     let response = model.response.as_ref().map(|response| {
-        // A response that was not measured is valid nowhere: its zeros are no numbers of the model.
+        // A response that was not measured has an empty valid band: its zeros are not model values.
         let valid_bands = if is_whole {
             response.valid_bands.clone()
         } else {
@@ -745,7 +749,7 @@ pub(super) fn converted(
     let b = b.as_ref().map(|b| columns(b, inputs));
     let c = c.as_ref().map(|c| rows(c, outputs));
     let d = d.as_ref().map(|d| rows(&columns(d, inputs), outputs));
-    // A factor moves a curve in decibels and leaves the width of its band.
+    // A factor shifts a curve in decibels and leaves its standard deviation unchanged.
     let bands = model.bands.as_ref().map(|bands| BandsDraft {
         omega: bands.omega.clone(),
         sd_db: table(&bands.sd_db, false),
@@ -770,7 +774,7 @@ fn chosen(delays: &[f64], uses: &[Option<ChannelUse>]) -> Vec<f64> {
     uses.iter().map(delay).collect()
 }
 
-/// The columns of inputs, each over its factor.
+/// Picks the columns of the inputs, each divided by its factor.
 fn columns(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f64> {
     DMatrix::from_fn(matrix.nrows(), uses.len(), |row, column| {
         match &uses[column] {
@@ -782,7 +786,7 @@ fn columns(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f64> {
     })
 }
 
-/// The rows of outputs, each times its factor.
+/// Picks the rows of the outputs, each multiplied by its factor.
 fn rows(matrix: &DMatrix<f64>, uses: &[Option<ChannelUse>]) -> DMatrix<f64> {
     DMatrix::from_fn(uses.len(), matrix.ncols(), |row, column| match &uses[row] {
         Some(used) if used.index < matrix.nrows() => {
@@ -800,7 +804,7 @@ fn scaled(value: f64, times: f64, over: f64) -> f64 {
     }
 }
 
-/// The table of the dataset's channels, converted or as it is; zero where a channel is missing.
+/// Picks the dataset's channels, converted or unchanged; zero where a channel is missing.
 fn picked(
     array: &ResponseArray,
     (inputs, outputs): (&[Option<ChannelUse>], &[Option<ChannelUse>]),
@@ -887,7 +891,7 @@ mod tests {
         assert_eq!(same, model);
     }
 
-    /// A measured response of 2 outputs and 1 input at 2 frequencies.
+    /// A measured response with 2 outputs and 1 input at 2 frequencies.
     fn measured(values: &[f64]) -> ModelDraft {
         let array = |values: &[f64]| ResponseArray {
             shape: [values.len() / 2, 1, 2],
@@ -982,7 +986,7 @@ mod tests {
         assert!(codes(["c1/frf_q_lon.csv", "c1/frf_r_ped.csv"]).contains(&"response-unmatched"));
     }
 
-    /// A model of one input and one output in a file, with matrices.
+    /// A model with one input and one output in a file, with matrices.
     fn found(file: &str, variable: Option<&str>, facts: Facts) -> FoundModel {
         let scalar = |value: f64| Some(DMatrix::from_element(1, 1, value));
         let source = Provenance {

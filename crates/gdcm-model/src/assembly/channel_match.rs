@@ -1,4 +1,4 @@
-//! Which channel of a file is which of the dataset, and what its numbers are multiplied by.
+//! Matching of file channels to dataset channels, and the factors between them.
 
 use super::declarations::DeclaredChannels;
 use super::found_model::ChannelLabel;
@@ -8,32 +8,32 @@ use super::rules::ChannelRule;
 use crate::dataset::channel::ChannelSide;
 use crate::units::number;
 
-/// A channel of the file that becomes one of the dataset.
+/// A file channel that maps to a dataset channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelUse {
     /// Index in the file.
     pub index: usize,
-    /// How many of the dataset's units one of the file's is; below zero where the file has the other sign.
+    /// Dataset units per file unit; negative where the file has the opposite sign.
     pub factor: f64,
-    /// The conversion in words, where there is one: "rad/s → deg/s"; or that the unit was said for all files.
+    /// Description of the conversion, if any ("rad/s → deg/s"), or a note that the unit was
+    /// declared for all files.
     pub words: Option<String>,
 }
 
-/// The channels of one side of a model, in the dataset's order.
+/// The channels on one side of a model, in the dataset's order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChannelMatch {
-    /// One for each channel of the dataset; none where it is missing.
+    /// One entry per channel of the dataset; `None` where it is missing.
     pub uses: Vec<Option<ChannelUse>>,
-    /// What is missing or not clear.
     pub problems: Vec<ProblemKind>,
-    /// What was taken without a word in the file.
+    /// Assumptions made where the file is silent.
     pub notes: Vec<String>,
-    /// Whether the channels have no names in the file, and were taken in the order of the dataset.
+    /// Whether the channels have no names in the file and were matched in the dataset's order.
     pub by_position: bool,
 }
 
 impl ChannelMatch {
-    /// Matches the channels of one side; `partial` lets channels be missing, but not all of them.
+    /// Matches the channels of one side; with `partial`, some channels may be missing, but not all.
     pub fn of(
         side: ChannelSide,
         labels: &[ChannelLabel],
@@ -94,7 +94,8 @@ impl ChannelMatch {
         found
     }
 
-    /// The channel of the file that is `rule`'s: of its very name, or else one that the field, or the rule, calls the same.
+    /// Finds the file channel for `rule`: an exact name match, or a synonym from the field or the
+    /// rule.
     fn find(
         &mut self,
         side: ChannelSide,
@@ -111,7 +112,7 @@ impl ChannelMatch {
         };
         let is_alias = |is_it: &dyn Fn(&str) -> bool| rule.aliases.iter().any(|alias| is_it(alias));
         let plain = |name: &str| SignedName::of(name).name;
-        // The very name goes before one with marks of a sign, and that before what the field calls the same.
+        // Order of preference: exact name, name with sign marks, synonym from the field.
         let ways: [&dyn Fn(&str) -> bool; 4] = [
             &|name| name == rule.name,
             &|name| is_alias(&|alias| alias == name),
@@ -163,7 +164,8 @@ impl ChannelMatch {
         }
     }
 
-    /// The channel with the sign that is said, or that its name says; where neither says it, it is asked.
+    /// Returns the channel with its declared sign, or the sign implied by its name; reports a
+    /// problem where neither gives one.
     fn signed(
         &mut self,
         used: ChannelUse,
@@ -283,7 +285,7 @@ impl ChannelMatch {
     }
 }
 
-/// A measured response none of whose channels on a side is one of the dataset.
+/// Builds the problem of a measured response with no dataset channel on one side.
 fn unmatched(side: ChannelSide, labels: &[ChannelLabel], rules: &[ChannelRule]) -> ProblemKind {
     let found: Vec<&str> = labels
         .iter()
@@ -297,10 +299,10 @@ fn unmatched(side: ChannelSide, labels: &[ChannelLabel], rules: &[ChannelRule]) 
     }
 }
 
-// Names of channels, of the time and of the sample time, however files write them.
+// Names of channels, time and sample time in the spellings that files use.
 
-/// What each channel is called, all folded (see [`folded_name`]), the first name standing for the others; those such as "elevyoke1" are a
-/// flight simulator's. A name stands in one row only.
+/// Synonyms of each channel, folded (see [`folded_name`]); the first name of a row is canonical.
+/// Names such as "elevyoke1" come from a flight simulator. A name appears in one row only.
 const ALIASES: [&str; 16] = [
     "lon long longitudinal longcyc cyclong dlon deltalon dlong deltalong db deltab de deltae xb xlon b1s theta1s \
      pitchstick elevator loncyc lonstick longstick loncyclic cycliclon longitudinalcyclic longitudinalstick elevyoke1",
@@ -322,15 +324,16 @@ const ALIASES: [&str; 16] = [
     "psi yaw heading yawangle",
 ];
 
-/// The first rows of the names of the field are those of inputs.
+/// Number of leading rows with names of inputs.
 pub(super) const FIELD_INPUTS: usize = 4;
 
-/// The names of each channel that the field has names for, folded.
+/// Returns the folded names of each channel known in the field.
 pub(super) fn field_names() -> impl Iterator<Item = std::str::Split<'static, char>> {
     ALIASES.iter().map(|row| row.split(' '))
 }
 
-/// A name without case, marks and blanks, Greek letters spelt out: "δ_a" is "deltaa", "Sample_Time" is "sampletime".
+/// Folds a name: no case, marks or blanks, Greek letters spelt out. "δ_a" becomes "deltaa",
+/// "Sample_Time" becomes "sampletime".
 pub fn folded_name(name: &str) -> String {
     let mut words = String::with_capacity(name.len());
     for letter in name.chars().flat_map(char::to_lowercase) {
@@ -347,7 +350,7 @@ pub fn folded_name(name: &str) -> String {
     words
 }
 
-/// The name that stands for all that call the same channel.
+/// Returns the canonical name of a channel.
 pub(super) fn canonical(name: &str) -> String {
     let name = folded_name(name);
     let first = field_names()
@@ -356,29 +359,29 @@ pub(super) fn canonical(name: &str) -> String {
     first.map_or_else(|| name.clone(), str::to_owned)
 }
 
-/// Whether two names call the same channel: the same but for case and marks, or names that the field uses for one another.
+/// Returns whether two names denote the same channel: equal but for case and marks, or synonyms in
+/// the field.
 pub fn same_channel(a: &str, b: &str) -> bool {
     a == b || canonical(a) == canonical(b)
 }
 
-/// Names of the acceleration along the z axis by the axis, which points down in some programs and up in others; those of the load
-/// factor, which is positive up.
+/// Names of the acceleration along the z axis, which points down in some programs and up in others;
+/// and names of the load factor, which is positive up.
 const ALONG_Z: [&str; 5] = ["az", "azb", "accz", "verticalacceleration", "vertaccel"];
 const LOAD_FACTOR: [&str; 4] = ["nz", "loadfactor", "normalacceleration", "gloadnorml"];
 
-/// A name and the marks of its sign: `-az`, `az (down)`, `az[+down]`.
+/// A name and its sign marks: `-az`, `az (down)`, `az[+down]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SignedName {
-    /// The name without the marks.
     pub name: String,
-    /// Whether a minus stands before it.
+    /// Whether a minus precedes it.
     pub minus: bool,
-    /// 1 where it is said to be positive up, right or forward, -1 where it is the other way round.
+    /// 1 where declared positive up, right or forward, -1 for the opposite direction.
     pub direction: Option<f64>,
 }
 
 impl SignedName {
-    /// Reads the marks of a name.
+    /// Parses the sign marks of a name.
     pub fn of(text: &str) -> Self {
         let text = text.trim();
         let begins_name = |rest: &str| {
@@ -414,7 +417,7 @@ impl SignedName {
         }
     }
 
-    /// The direction that is said, or that the name stands for.
+    /// Returns the declared direction, or the one implied by the name.
     fn known_direction(&self) -> Option<f64> {
         self.direction.or(LOAD_FACTOR
             .contains(&folded_name(&self.name).as_str())
@@ -422,7 +425,8 @@ impl SignedName {
     }
 }
 
-/// What "down", "+down", "positive down", "-up" say: 1 where it is positive up, right or forward, -1 where it is the other way round.
+/// Parses a direction mark such as "down", "+down", "positive down", "-up": 1 where positive up,
+/// right or forward, -1 for the opposite direction.
 pub fn direction_of(mark: &str) -> Option<f64> {
     let mark = mark.trim().to_lowercase();
     let (sign, word) = match mark.strip_prefix(['-', '\u{2212}']) {
@@ -445,11 +449,11 @@ pub fn direction_of(mark: &str) -> Option<f64> {
     }
 }
 
-/// What the numbers of a channel that a file calls `label` are multiplied by to be those of a channel called `channel`: 1 or -1; none
+/// Returns the factor, 1 or -1, from a file channel `label` to a dataset channel `channel`; `None`
 /// where the names leave it open.
 ///
-/// A minus is the sign. Where a direction is said, that of the other has to be known too: a load factor is positive up. `az` and `NZ`
-/// are the same but for a sign that neither says.
+/// A minus is the sign. Where one direction is given, the other must be known too: a load factor is
+/// positive up. `az` and `NZ` are the same but for a sign that neither gives.
 pub fn sign_between(label: &str, channel: &str) -> Option<f64> {
     if label.trim() == channel.trim() {
         return Some(1.0);
@@ -480,7 +484,7 @@ pub fn sign_between(label: &str, channel: &str) -> Option<f64> {
     }
 }
 
-/// Names of the time between two samples \[s\], as they are usually written.
+/// Usual names of the sample time \[s\].
 pub const SAMPLE_TIME_NAMES: [&str; 7] = [
     "Ts",
     "dt",
@@ -491,8 +495,8 @@ pub const SAMPLE_TIME_NAMES: [&str; 7] = [
     "Tsample",
 ];
 
-/// How surely a name is that of the time of samples, 0 the surest; none where it is not. A unit of time at its end says nothing more:
-/// `time_s`, `t [ms]`.
+/// Ranks how likely a name denotes the time of samples, 0 the most likely; `None` where it does
+/// not. A trailing unit of time does not change the rank: `time_s`, `t [ms]`.
 pub fn time_name_rank(name: &str) -> Option<u8> {
     let words: Vec<String> = name
         .split(|c: char| !c.is_alphanumeric())
@@ -527,7 +531,7 @@ mod tests {
     use crate::assembly::declarations::ChannelDeclarations;
     use crate::assembly::rules::UnitRule;
 
-    /// The channels of one side under rules that declare nothing else.
+    /// Matches the channels of one side under rules without other declarations.
     fn matched(
         side: ChannelSide,
         labels: &[ChannelLabel],

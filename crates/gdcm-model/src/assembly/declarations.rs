@@ -1,4 +1,5 @@
-//! Units, factors and signs that the engineer declares for channels, and the models that a declaration holds for.
+//! Units, factors and signs that the engineer declares for channels, and the models to which a
+//! declaration applies.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -8,14 +9,13 @@ use serde::{Deserialize, Serialize};
 use super::found_model::{FoundModel, RowRole};
 use super::rules::{Signs, UnitRule};
 
-/// Units, factors and signs of channels, by their names in the dataset. They go before what files say.
+/// Units, factors and signs of channels, by dataset name. They take precedence over the files.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(default)]
 pub struct ChannelDeclarations {
-    /// Units in the files.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub units: BTreeMap<String, String>,
-    /// How many of the dataset's units one of the file's is, negative where the sign is the other one.
+    /// Dataset units per file unit; negative for the opposite sign.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub factors: BTreeMap<String, f64>,
     /// 1 or -1.
@@ -24,7 +24,8 @@ pub struct ChannelDeclarations {
 }
 
 impl ChannelDeclarations {
-    /// Puts what `other` declares in the place of what is declared of the same channels here: a unit replaces a factor, a factor a unit.
+    /// Overrides the declarations of the same channels with those of `other`: a unit replaces a
+    /// factor, a factor a unit.
     pub fn override_by(&mut self, other: &Self) {
         for (channel, unit) in &other.units {
             self.factors.remove(channel);
@@ -42,7 +43,7 @@ impl ChannelDeclarations {
         );
     }
 
-    /// Calls a channel otherwise.
+    /// Renames a channel.
     pub(super) fn rename(&mut self, old: &str, new: &str) {
         rename_key(&mut self.units, old, new);
         rename_key(&mut self.factors, old, new);
@@ -50,14 +51,14 @@ impl ChannelDeclarations {
     }
 }
 
-/// Moves what is said under one name under another.
+/// Moves the entry of one key to another.
 pub(super) fn rename_key<T>(map: &mut BTreeMap<String, T>, old: &str, new: &str) {
     if let Some(value) = map.remove(old) {
         map.insert(new.to_owned(), value);
     }
 }
 
-/// The models that a declaration holds for, by the words of rules and of the command line.
+/// The models to which a declaration applies, in the syntax of rules and command line.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(from = "String", into = "String")]
 pub enum FileScope {
@@ -100,7 +101,7 @@ impl fmt::Display for FileScope {
 }
 
 impl FileScope {
-    /// The scope of a role.
+    /// Returns the scope of a role.
     pub fn of_role(role: RowRole) -> Self {
         match role {
             RowRole::Nominal | RowRole::Perturbed => Self::Physics,
@@ -108,7 +109,7 @@ impl FileScope {
         }
     }
 
-    /// How narrow the scope is: a narrower one goes before a wider one.
+    /// Returns the specificity of the scope: a narrower scope takes precedence over a wider one.
     fn rank(&self, found: &FoundModel) -> u8 {
         match self {
             Self::All => 0,
@@ -118,7 +119,7 @@ impl FileScope {
         }
     }
 
-    /// Whether a model, in a role, is within the scope.
+    /// Returns whether a model, in a role, is within the scope.
     pub fn holds(&self, found: &FoundModel, role: Option<RowRole>) -> bool {
         match self {
             Self::All => true,
@@ -130,17 +131,17 @@ impl FileScope {
     }
 }
 
-/// Declarations, and the models that they hold for.
+/// Declarations with the models to which they apply.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct ScopedDeclarations {
     /// The models: `all`, `physics`, `identified`, a file, or a pattern of folders.
     pub of: FileScope,
-    /// What is declared of their channels.
     #[serde(flatten)]
     pub channels: ChannelDeclarations,
 }
 
-/// What holds of a model, wide scopes first, later declarations of the same width after earlier ones.
+/// Returns the declarations that apply to a model, wide scopes first; for the same width, later
+/// declarations after earlier ones.
 pub(super) fn declared_of<'d>(
     declarations: &'d [ScopedDeclarations],
     found: &FoundModel,
@@ -154,25 +155,26 @@ pub(super) fn declared_of<'d>(
     holding
 }
 
-/// All that the rules say of the units and signs of the channels of one model.
+/// All declarations of units and signs for the channels of one model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DeclaredChannels<'r> {
-    /// Conversions that units alone do not give.
+    /// Conversions that units alone do not determine.
     pub conversions: &'r [UnitRule],
-    /// Units, factors and signs that hold of the model.
     pub channels: ChannelDeclarations,
 }
 
 impl DeclaredChannels<'_> {
-    /// The declared sign of a channel; 1 where a factor is declared, which has its own.
+    /// Returns the declared sign of a channel; 1 where a factor is declared, which includes its
+    /// sign.
     pub fn sign_of(&self, channel: &str) -> Option<f64> {
         let of_factor = self.channels.factors.get(channel).map(|_| 1.0);
         self.channels.signs.get(channel).copied().or(of_factor)
     }
 }
 
-/// Whether a pattern matches a file, or a folder that it lies in. `*` stands for any letters within a name, `?` for one; a pattern
-/// without a stroke is tried on every name of the path, another one on the path from its beginning.
+/// Returns whether a pattern matches a file or one of its parent folders. `*` matches any
+/// characters within a name, `?` exactly one; a pattern without a slash is tried on every name of
+/// the path, any other on the path from its beginning.
 fn matches_path(pattern: &str, file: &str) -> bool {
     let pattern = pattern.trim_end_matches('/');
     let mut names = file.split('/');
@@ -184,7 +186,8 @@ fn matches_path(pattern: &str, file: &str) -> bool {
         .all(|part| names.next().is_some_and(|name| matches_name(part, name)))
 }
 
-/// Whether a pattern matches a whole name. Goes back to the last star only, so that the time grows with the product of the lengths.
+/// Returns whether a pattern matches a whole name. Backtracks to the last star only, so the time
+/// grows with the product of the lengths.
 fn matches_name(pattern: &str, name: &str) -> bool {
     let pattern: Vec<char> = pattern.chars().collect();
     let name: Vec<char> = name.chars().collect();

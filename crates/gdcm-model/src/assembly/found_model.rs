@@ -1,4 +1,5 @@
-//! A model as some file gave it, what it is to be in the dataset, and the rules proposed where none were made yet.
+//! A model as read from a file, its role in the dataset, and the rules proposed where none exist
+//! yet.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -16,17 +17,17 @@ use crate::dataset::model::Origin;
 use crate::dataset::unchecked_dataset::{ModelDraft, ResponseDraft};
 use crate::units::number;
 
-/// What a file says of one channel.
+/// Name and unit of one channel as given by a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ChannelLabel {
-    /// Its name; none where the file has none.
+    /// `None` where the file gives none.
     pub name: Option<String>,
-    /// Its unit; none where the file has none.
+    /// `None` where the file gives none.
     pub unit: Option<String>,
 }
 
 impl ChannelLabel {
-    /// A channel of this name, without a unit.
+    /// Returns a label with this name and no unit.
     pub fn named(name: impl Into<String>) -> Self {
         Self {
             name: Some(name.into()),
@@ -35,10 +36,9 @@ impl ChannelLabel {
     }
 }
 
-/// What a file says about the flight condition of a model.
+/// Facts about the flight condition of a model from its file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Facts {
-    /// Number of the condition.
     pub condition: Option<i64>,
     /// True airspeed \[kt\].
     pub airspeed_kt: Option<f64>,
@@ -46,31 +46,29 @@ pub struct Facts {
     pub altitude_ft: Option<f64>,
     /// Mass \[kg\].
     pub mass_kg: Option<f64>,
-    /// Name of the model in its bundle.
     pub name: Option<String>,
-    /// Whether a dataset of this program says all this: names of files and folders do not contradict it then.
+    /// Whether these facts come from a dataset of this program: names of files and folders then do
+    /// not contradict them.
     pub is_of_dataset: bool,
-    /// Its flight records, their files relative to what was asked for.
+    /// Its flight records, with files relative to the requested path.
     pub records: Vec<ConditionRecord>,
 }
 
-/// A model as some file gave it: its channels are the file's, in the file's order and units.
+/// A model as read from a file: channels in the file's order and units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundModel {
-    /// Its numbers, timing, states and provenance. Its name is the variable's; its origin says nothing yet.
+    /// Numbers, timing, states and provenance. The name is the variable's; the origin is not set
+    /// yet.
     pub draft: ModelDraft,
-    /// Its inputs.
     pub inputs: Vec<ChannelLabel>,
-    /// Its outputs.
     pub outputs: Vec<ChannelLabel>,
-    /// What the file says about its flight condition.
     pub facts: Facts,
-    /// How it was recognised, and what was left out, in words.
+    /// How it was recognised and which parts were skipped, in words.
     pub notes: Vec<String>,
 }
 
 impl FoundModel {
-    /// The file that it comes from; empty where it comes from none.
+    /// Returns its source file; empty where there is none.
     pub fn file(&self) -> &str {
         self.draft
             .source
@@ -79,7 +77,7 @@ impl FoundModel {
             .unwrap_or_default()
     }
 
-    /// The variable in the file; empty where the file holds one model without a name.
+    /// Returns the variable in the file; empty where the file holds one unnamed model.
     pub fn variable(&self) -> &str {
         self.draft
             .source
@@ -88,7 +86,7 @@ impl FoundModel {
             .unwrap_or_default()
     }
 
-    /// What it is called in messages and in rules: "c03/roll+5.mat#sys".
+    /// Returns its key in messages and rules: "c03/roll+5.mat#sys".
     pub fn key(&self) -> String {
         match self.variable() {
             "" => self.file().to_owned(),
@@ -96,8 +94,8 @@ impl FoundModel {
         }
     }
 
-    /// What its channels are called. Where the file says nothing of the channels of one measured response, its variable does, or else
-    /// its name, as far as they name channels that are known.
+    /// Returns the channel names. Where the file gives none for a single measured response, they
+    /// come from the variable, or else from the file name, as far as those name known channels.
     pub fn labels_with_name(&self, known: KnownChannels<'_>) -> NamedLabels {
         let mut named = NamedLabels {
             labels: [self.inputs.clone(), self.outputs.clone()],
@@ -117,7 +115,7 @@ impl FoundModel {
             }
             match ResponseName::find(text, known) {
                 Ok(found) => {
-                    // A channel of the field that the dataset does not have is not replaced by another.
+                    // A known channel that the dataset lacks is not replaced by another.
                     let of_field =
                         ResponseName::find(text, KnownChannels::Field).unwrap_or_default();
                     let input = found.input.or(of_field.input);
@@ -140,18 +138,19 @@ impl FoundModel {
         named
     }
 
-    /// The same model, its channels named by its file's name where only that says what they are, as far as the field has names for them.
+    /// Names the channels from the file name where nothing else does, as far as the names are known
+    /// in the field.
     pub fn with_names_of_file(mut self) -> Self {
         [self.inputs, self.outputs] = self.labels_with_name(KnownChannels::Field).labels;
         self
     }
 
-    /// The measured response, where it is one.
+    /// Returns the measured response, if there is one.
     pub fn response(&self) -> Option<&ResponseDraft> {
         self.draft.response.as_ref()
     }
 
-    /// "39 states, 4 x 6", "measured, 120 frequencies, 1 x 1".
+    /// Describes the model: "39 states, 4 x 6", "measured, 120 frequencies, 1 x 1".
     pub fn words(&self) -> String {
         let channels = format!("{} in, {} out", self.inputs.len(), self.outputs.len());
         let timing = self.draft.timing.words();
@@ -171,12 +170,11 @@ impl FoundModel {
     }
 }
 
-/// What the channels of a model are called, and what is not clear in the name that says it.
+/// Channel names of a model, with the problem where the name that provides them is ambiguous.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedLabels {
-    /// Inputs and outputs.
     pub labels: [Vec<ChannelLabel>; 2],
-    /// Why the name of the file or of the variable does not say it.
+    /// Why the name of the file or of the variable does not give the channels.
     pub problem: Option<ProblemKind>,
 }
 
@@ -184,7 +182,7 @@ pub struct NamedLabels {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RowRole {
-    /// The physics model at the condition's own trim.
+    /// The physics model at the condition's trim.
     Nominal,
     /// A physics model at a perturbed trim.
     Perturbed,
@@ -193,10 +191,10 @@ pub enum RowRole {
 }
 
 impl RowRole {
-    /// Every role.
+    /// All roles.
     pub const ALL: [Self; 3] = [Self::Nominal, Self::Perturbed, Self::Identified];
 
-    /// Its word in files and tables.
+    /// Returns its keyword in files and tables.
     pub fn word(self) -> &'static str {
         match self {
             Self::Nominal => "nominal",
@@ -205,62 +203,54 @@ impl RowRole {
         }
     }
 
-    /// The role of a word.
+    /// Parses a role keyword.
     pub fn of(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|role| role.word() == word)
     }
 }
 
-/// What one model is to be in the dataset, as far as it is known.
+/// The place of one model in the dataset, as far as known.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Row {
-    /// Whether it is left out.
     pub left_out: bool,
-    /// Number of its condition.
     pub condition: Option<i64>,
-    /// Its role.
     pub role: Option<RowRole>,
     /// Its name in its bundle.
     pub name: String,
     /// True airspeed of the condition \[kt\].
     pub airspeed_kt: Option<f64>,
-    /// Altitude class.
     pub altitude: Option<String>,
     /// Altitude \[ft\].
     pub altitude_ft: Option<f64>,
-    /// Weight class.
     pub weight: Option<String>,
     /// Mass \[kg\].
     pub mass_kg: Option<f64>,
-    /// Identification method.
     pub method: Option<String>,
     /// Offsets of the trim, by coordinate ("roll_deg").
     pub perturbation: BTreeMap<String, f64>,
-    /// Parts of its name that say how the trim differs and are not understood.
+    /// Parts of its name that look like a trim offset and are not understood.
     pub unread: Vec<String>,
-    /// What its file says otherwise than the names of the file and its folders.
+    /// Values in the file that contradict the names of the file and its folders.
     pub contradictions: Vec<NameContradiction>,
 }
 
-/// A number that a file says otherwise than the names of the file and its folders do.
+/// A number in a file that contradicts the names of the file and its folders.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NameContradiction {
-    /// What it is of, as the rules call it: "airspeed_kt".
+    /// The quantity, by its name in the rules: "airspeed_kt".
     pub field: String,
-    /// In the file.
     pub of_file: f64,
-    /// In the names.
     pub of_name: f64,
 }
 
 impl Row {
-    /// "45 kt"; none where it is not said.
+    /// Formats the airspeed: "45 kt"; `None` where unknown.
     pub fn airspeed_words(&self) -> Option<String> {
         self.airspeed_kt
             .map(|airspeed| format!("{} kt", number(airspeed)))
     }
 
-    /// "high", or else "2000 ft"; nothing where neither is said.
+    /// Formats the altitude: "high", or else "2000 ft"; empty where unknown.
     pub fn altitude_words(&self) -> String {
         self.altitude
             .clone()
@@ -268,7 +258,7 @@ impl Row {
             .unwrap_or_default()
     }
 
-    /// "low", or else "6600 kg"; nothing where neither is said.
+    /// Formats the weight: "low", or else "6600 kg"; empty where unknown.
     pub fn weight_words(&self) -> String {
         self.weight
             .clone()
@@ -277,7 +267,7 @@ impl Row {
     }
 }
 
-/// The responses that matter in a helicopter, output and input (the paper's Table 2).
+/// On-axis responses of a helicopter, output and input (the paper's Table 2).
 const ON_AXIS: [(&str, &str); 5] = [
     ("P", "LAT"),
     ("Q", "LON"),
@@ -286,15 +276,17 @@ const ON_AXIS: [(&str, &str); 5] = [
     ("NZ", "COL"),
 ];
 
-/// Whether a response is one of those that matter in a helicopter, by the names of its output and its input.
+/// Returns whether a response is on-axis for a helicopter, by the names of its output and its
+/// input.
 pub fn standard_on_axis(output: &str, input: &str) -> bool {
     ON_AXIS.iter().any(|(of_output, of_input)| {
         same_channel(output, of_output) && same_channel(input, of_input)
     })
 }
 
-/// Rules with the channels that the models have, by their own names and units, the standard patterns, and the on-axis responses of
-/// a helicopter as far as there are such channels. What the files do not say stays open.
+/// Proposes rules: the models' channels with their names and units, the standard patterns, and the
+/// on-axis responses of a helicopter among these channels. Anything the files do not determine
+/// stays open.
 pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
     let models: Vec<LabelledModel<'_>> = models.iter().map(LabelledModel::of).collect();
     let inputs = channels(&models, ChannelSide::Input);
@@ -318,7 +310,7 @@ pub fn proposed_rules(name: &str, models: &[FoundModel]) -> Rules {
     }
 }
 
-/// A model and what its channels are called, by the file or by its name.
+/// A model and its channel names, from the file or from its name.
 struct LabelledModel<'m> {
     found: &'m FoundModel,
     labels: [Vec<ChannelLabel>; 2],
@@ -337,7 +329,7 @@ impl<'m> LabelledModel<'m> {
         side.of(inputs, outputs)
     }
 
-    /// Whether the file itself names a channel of a side.
+    /// Returns whether the file itself names a channel of a side.
     fn names_itself(&self, side: ChannelSide) -> bool {
         side.of(&self.found.inputs, &self.found.outputs)
             .iter()
@@ -345,7 +337,8 @@ impl<'m> LabelledModel<'m> {
     }
 }
 
-/// Channels with names of their own, in the order of the model that has most of them; those of other models that it lacks behind.
+/// Returns the named channels in the order of the model with the most of them; channels it lacks
+/// follow.
 fn channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule> {
     let named = |model: &LabelledModel<'_>| {
         model
@@ -355,7 +348,7 @@ fn channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule>
             .count()
     };
     let mut order: Vec<&LabelledModel<'_>> = models.iter().collect();
-    // Names of files say less than what stands in files.
+    // File names are weaker evidence than file contents.
     order.sort_by_key(|model| (std::cmp::Reverse(named(model)), !model.names_itself(side)));
     let first_is_measured = order
         .first()
@@ -363,11 +356,12 @@ fn channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule>
     let mut channels: Vec<ChannelRule> = Vec::new();
     let mut units: Vec<ProposedUnits> = Vec::new();
     for model in order {
-        // Models with matrices have all channels of the dataset; measured responses may have one each.
+        // Models with matrices have all channels of the dataset; measured responses may have a
+        // single one.
         let is_open =
             channels.is_empty() || (model.found.response().is_some() && first_is_measured);
         for label in model.labels(side) {
-            // The dataset's channel has the name without the marks of a sign.
+            // The dataset's channel has the name without its sign marks.
             let Some(name) = label.name.as_ref().map(|name| SignedName::of(name).name) else {
                 continue;
             };
@@ -390,7 +384,8 @@ fn channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule>
     for (channel, units) in channels.iter_mut().zip(units) {
         channel.unit = units.of_most_files();
     }
-    // Matrices without names have all channels of the dataset, whatever a measured response beside them is called.
+    // Matrices without names have all channels of the dataset, whatever the name of a measured
+    // response beside them.
     let all_unnamed = models
         .iter()
         .filter(|model| model.found.response().is_none())
@@ -407,7 +402,7 @@ fn channels(models: &[LabelledModel<'_>], side: ChannelSide) -> Vec<ChannelRule>
     channels
 }
 
-/// The units that files give a channel, each with its files.
+/// The units that files give for a channel, each with its files.
 #[derive(Default)]
 struct ProposedUnits<'m> {
     units: Vec<(&'m str, BTreeSet<&'m str>)>,
@@ -426,7 +421,8 @@ impl<'m> ProposedUnits<'m> {
         }
     }
 
-    /// The unit of most files, the first of those of as many; empty where no file says one.
+    /// Returns the unit used by most files, the first in case of a tie; empty where no file gives
+    /// one.
     fn of_most_files(&self) -> String {
         let most = self.units.iter().map(|(_, files)| files.len()).max();
         let unit = self
@@ -437,7 +433,7 @@ impl<'m> ProposedUnits<'m> {
     }
 }
 
-/// What names, contents and rules say of each model.
+/// Proposes a row for each model from names, contents and rules.
 pub(super) fn proposed_rows(models: &[FoundModel], rules: &Rules) -> Vec<Row> {
     let mut rows: Vec<Row> = models
         .iter()
@@ -477,7 +473,7 @@ fn proposed_row(model: &FoundModel, all: &[FoundModel], rules: &Rules) -> Row {
         pattern.read(&name, &mut of_name);
     }
     row.contradictions = contradictions_of_name(model, all, &of_name);
-    // What else a hyphen and a number may be ("rev-3") is not asked about.
+    // Other uses of a hyphen and a number ("rev-3") raise no question.
     if offsets.is_empty() && !row.perturbation.is_empty() {
         row.unread = unread_offsets(name.rsplit('/').next().unwrap_or(&name), &rules.patterns);
     }
@@ -498,7 +494,8 @@ fn proposed_row(model: &FoundModel, all: &[FoundModel], rules: &Rules) -> Row {
     row
 }
 
-/// The role of a physics model that the file itself says. That of a model of which nothing is known is no perturbed one.
+/// Returns the role of a physics model given by the file itself. A model without facts also has the
+/// origin "perturbed", which then gives no role.
 fn role_of(model: &FoundModel) -> Option<RowRole> {
     match &model.draft.origin {
         Origin::Nominal { .. } => Some(RowRole::Nominal),
@@ -507,7 +504,7 @@ fn role_of(model: &FoundModel) -> Option<RowRole> {
     }
 }
 
-/// The offsets of the trim that the file itself says.
+/// Returns the trim offsets that the file itself gives.
 fn offsets_of(origin: &Origin) -> BTreeMap<String, f64> {
     match origin {
         Origin::Nominal { perturbation } | Origin::Perturbed { perturbation } => {
@@ -517,8 +514,9 @@ fn offsets_of(origin: &Origin) -> BTreeMap<String, f64> {
     }
 }
 
-/// What a file says otherwise than its name and its folders. A name is rounded: airspeeds differ by more than 1 kt then, the rest by more
-/// than a hundredth. The name of a file with models of several airspeeds says none of them.
+/// Compares a file's values with its name and folder. Names are rounded: airspeeds differ by more
+/// than 1 kt, other values by more than 1 %. The name of a file with models at several airspeeds
+/// gives none of them.
 fn contradictions_of_name(
     model: &FoundModel,
     all: &[FoundModel],
@@ -571,7 +569,8 @@ fn hundredth(value: Option<f64>) -> f64 {
     0.01 * value.unwrap_or(0.0).abs()
 }
 
-/// The contradiction of a number in the file and one in its names, where they differ by more than a tolerance.
+/// Returns the contradiction between a number in the file and one in its names where they differ by
+/// more than a tolerance.
 fn contradiction(
     field: &str,
     of_file: Option<f64>,
@@ -590,7 +589,7 @@ fn contradiction(
     })
 }
 
-/// Whether a file holds models of several airspeeds, and so of several conditions.
+/// Returns whether a file holds models at several airspeeds, hence several conditions.
 fn has_several_airspeeds(models: &[FoundModel], file: &str) -> bool {
     let mut airspeeds = models
         .iter()
@@ -600,8 +599,8 @@ fn has_several_airspeeds(models: &[FoundModel], file: &str) -> bool {
     airspeeds.any(|airspeed| Some(airspeed) != first)
 }
 
-/// The file's name without its folder; the variable beside it where the file holds several models; "measured" of a response that
-/// is one part of a model.
+/// Returns the default name: the file's name without its folder, with the variable where the file
+/// holds several models; "measured" for a response that is one part of a model.
 fn usual_name(model: &FoundModel, all: &[FoundModel], rules: &Rules, path: &str) -> String {
     let is_part =
         model.inputs.len() * model.outputs.len() < rules.inputs.len() * rules.outputs.len();
@@ -633,8 +632,8 @@ fn without_extension(file: &str) -> String {
         .into_owned()
 }
 
-/// Where no name says a number, each folder is a condition, in the order of their names; where one file holds models of several
-/// airspeeds, each airspeed is one, from the least on.
+/// Numbers the conditions where no name does: one per folder in alphabetical order; where one file
+/// holds models at several airspeeds, one per airspeed in ascending order.
 fn number_conditions(models: &[FoundModel], rows: &mut [Row]) {
     if rows.iter().any(|row| row.condition.is_some()) {
         return;
@@ -659,7 +658,8 @@ fn number_conditions(models: &[FoundModel], rows: &mut [Row]) {
     }
 }
 
-/// Each airspeed, with its altitude and mass, is a condition, from the least on; models without an airspeed stay without one.
+/// Numbers the distinct airspeeds, with altitude and mass, in ascending order; models without an
+/// airspeed get no condition.
 fn number_airspeeds(rows: &mut [Row]) {
     let mut states: Vec<[f64; 3]> = rows.iter().filter_map(state_of).collect();
     states.sort_by(|one, other| one.partial_cmp(other).unwrap_or(std::cmp::Ordering::Equal));
@@ -670,7 +670,7 @@ fn number_airspeeds(rows: &mut [Row]) {
     }
 }
 
-/// Airspeed, altitude and mass; below all others where the latter are not said.
+/// Returns airspeed, altitude and mass; unknown altitude and mass sort before all others.
 fn state_of(row: &Row) -> Option<[f64; 3]> {
     Some([
         row.airspeed_kt?,
@@ -679,7 +679,7 @@ fn state_of(row: &Row) -> Option<[f64; 3]> {
     ])
 }
 
-/// The only physics model of a condition at no perturbed trim is nominal.
+/// Proposes the nominal role for the only physics model of a condition without a trim perturbation.
 fn propose_nominal(rows: &mut [Row]) {
     let conditions: BTreeSet<i64> = rows.iter().filter_map(|row| row.condition).collect();
     for condition in conditions {

@@ -1,4 +1,4 @@
-//! From the models of many files to one dataset: what each is, which channel is which, in which unit.
+//! Assembly of many model files into one dataset: roles, channel matches and units.
 //!
 //! ```text
 //! files -> found models (io)     -> rows: what names and contents propose, as the rules say it otherwise

@@ -1,27 +1,19 @@
-//! Units of measurement, and the factor from one to another.
+//! Units of measurement and the factors between them.
 
 use std::f64::consts::{PI, TAU};
 
-/// What a unit measures.
+/// The physical dimension of a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dimension {
-    /// Angle.
     Angle,
-    /// Angle over time.
     AngularRate,
-    /// Angle over time squared.
     AngularAcceleration,
-    /// Length.
     Length,
-    /// Length over time.
     Speed,
-    /// Length over time squared.
     Acceleration,
-    /// A part of a whole, such as of the travel of a stick.
+    /// A fraction, such as a fraction of stick travel.
     Part,
-    /// Force.
     Force,
-    /// Time.
     Time,
     /// Cycles over time.
     Frequency,
@@ -29,10 +21,10 @@ pub enum Dimension {
     Level,
 }
 
-/// A unit: what it measures, and how many of the dimension's own units (rad, m, N, s, Hz, dB, 1 and what they make) it is.
+/// A unit: its dimension and its size in the dimension's base unit (rad, m, N, s, Hz, dB, 1 and
+/// their combinations).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PhysicalUnit {
-    /// What it measures.
     pub dimension: Dimension,
     /// Its size in rad, rad/s, rad/s^2, m, m/s, m/s^2, 1, N, s, Hz or dB.
     pub size: f64,
@@ -40,16 +32,17 @@ pub struct PhysicalUnit {
     pub name: &'static str,
 }
 
-/// Metres in a foot (international yard and pound agreement, 1959).
+/// Metres per foot (international yard and pound agreement, 1959).
 const FOOT: f64 = 0.3048;
 /// Standard gravity \[m/s^2\] (CGPM 1901).
 const GRAVITY: f64 = 9.806_65;
-/// Metres per second in a knot.
+/// Metres per second per knot.
 const KNOT: f64 = 1852.0 / 3600.0;
-/// Newtons in a pound-force.
+/// Newtons per pound-force.
 const POUND_FORCE: f64 = 4.448_221_615_260_5;
 
-/// Every unit that is known (`rps` is not: it is radians to some and revolutions to others): its dimension, its size, and its spellings as [`folded_unit`] leaves them, the usual one first.
+/// All known units (without `rps`, which means radians to some and revolutions to others):
+/// dimension, size, and spellings as returned by [`folded_unit`], the usual one first.
 const UNITS: &[(Dimension, f64, &[&str])] = {
     use Dimension::*;
     &[
@@ -110,10 +103,12 @@ const UNITS: &[(Dimension, f64, &[&str])] = {
 };
 
 impl PhysicalUnit {
-    /// The unit that a text spells, however engineers write it: "deg/s", "°/sec", "dps", "ft/s^2", "g", "% of stick", "msec".
+    /// Parses a unit in any common spelling: "deg/s", "°/sec", "dps", "ft/s^2", "g", "% of stick",
+    /// "msec".
     pub fn of(text: &str) -> Option<Self> {
         let spelled = |text: &str| UNITS.iter().find(|(_, _, names)| names.contains(&text));
-        // Most are spelt as usual: of each column of each record this is asked for many units.
+        // Most units have the usual spelling; this runs for many units on each column of each
+        // record.
         let (dimension, size, names) = spelled(text).or_else(|| spelled(&folded_unit(text)))?;
         Some(Self {
             dimension: *dimension,
@@ -123,7 +118,7 @@ impl PhysicalUnit {
     }
 }
 
-/// A unit without case, blanks, brackets and other ways of writing the same.
+/// Folds a unit: no case, blanks, brackets or alternative spellings.
 fn folded_unit(text: &str) -> String {
     let text = text
         .trim()
@@ -157,7 +152,7 @@ fn folded_unit(text: &str) -> String {
         ("inches", "inch"),
         ("knots", "knot"),
     ];
-    // "percent" is a word of its own.
+    // "percent" is a separate word.
     if matches!(text.as_str(), "percent" | "percentage") {
         return "percent".to_owned();
     }
@@ -165,7 +160,8 @@ fn folded_unit(text: &str) -> String {
         .fold(text, |text, (from, to)| text.replace(from, to))
 }
 
-/// How many of `to` one of `from` is; none where either is unknown or they measure different things. 1 exactly for the same unit.
+/// Returns the number of `to` units per `from` unit; `None` where either is unknown or their
+/// dimensions differ. Exactly 1 for the same unit.
 pub fn conversion_factor(from: &str, to: &str) -> Option<f64> {
     if from.trim() == to.trim() {
         return Some(1.0);

@@ -1,4 +1,4 @@
-//! What is still to be said before the files are a dataset.
+//! Open questions and contradictions that keep the files from forming a dataset.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,10 +11,10 @@ use super::rules::{ChannelRule, Rules};
 use crate::dataset::channel::ChannelSide;
 use crate::dataset::unchecked_dataset::ResponseDraft;
 
-/// What is missing or contradicts itself.
+/// A missing or contradictory fact.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProblemKind {
-    /// No model is taken.
+    /// Every model is left out.
     #[error("no model is included; add files that hold models")]
     NoModels,
     /// The dataset has no inputs, or no outputs.
@@ -23,7 +23,7 @@ pub enum ProblemKind {
     /// A channel of the dataset has no unit.
     #[error("{0}: choose a unit")]
     NoUnit(String),
-    /// Files that do not say the unit of a channel.
+    /// Files that do not give the unit of a channel.
     #[error("{0}: choose the unit that it has in files that do not say one")]
     UnitOfFile(String),
     /// A unit that cannot be converted.
@@ -31,84 +31,72 @@ pub enum ProblemKind {
         "{channel} has the unit \"{from}\" in the file and \"{to}\" in the dataset: there is no factor from one to the other; enter one"
     )]
     Conversion {
-        /// The channel of the dataset.
         channel: String,
-        /// The file's unit.
         from: String,
-        /// The dataset's unit.
         to: String,
     },
     /// A channel that the model does not have.
     #[error("the model has no {side} {channel}; it has {found}")]
     NoChannel {
-        /// Input or output.
         side: ChannelSide,
-        /// The channel of the dataset.
         channel: String,
-        /// What the file has, in words.
+        /// Channels of the file, in words.
         found: String,
     },
-    /// A channel that the file calls by a name which leaves the sign open.
+    /// A channel whose name in the file leaves the sign open.
     #[error(
         "{channel} is called {found} in the file, which can be positive the other way: say its sign, 1 or -1 (\"signs\" in the rules)"
     )]
     Sign {
-        /// The channel of the dataset.
         channel: String,
         /// Its name in the file.
         found: String,
     },
-    /// A model that looks like one of discrete time, and has no sample time.
+    /// A model that looks discrete-time but has no sample time.
     #[error(
         "all its poles lie inside the unit circle and {near} of {poles} near 1, as those of a discrete-time model do, and it has no \
          sample time: enter it in s, or 0 of a continuous-time model (--sample-time)"
     )]
     NoSampleTime {
-        /// Poles near 1.
         near: usize,
-        /// All.
+        /// Number of all poles.
         poles: usize,
     },
-    /// A part of the name that says how the trim differs and is not understood.
+    /// A part of the name that looks like a trim offset and is not understood.
     #[error("\"{0}\" in its name is not understood: say how its trim differs")]
     TrimPart(String),
-    /// Two channels of the model are called the same.
+    /// Two channels of the model match the same dataset channel.
     #[error("two {side}s of the model can be {channel}: {found}; say which")]
     AmbiguousChannel {
-        /// Input or output.
         side: ChannelSide,
-        /// The channel of the dataset.
         channel: String,
-        /// Their names.
         found: String,
     },
-    /// Channels without names, and another number of them than the dataset has.
+    /// Channels without names whose number differs from the dataset's.
     #[error(
         "the model has {found} {side}s without names, the dataset has {expected}; say their names"
     )]
     Unnamed {
-        /// Input or output.
         side: ChannelSide,
-        /// How many the dataset has.
+        /// Number in the dataset.
         expected: usize,
-        /// How many the model has.
+        /// Number in the model.
         found: usize,
     },
-    /// A measured response none of whose channels is one of the dataset.
+    /// A measured response none of whose channels is in the dataset.
     #[error(
         "no {side} of the measured response is one of the dataset ({known}): {}. Say it in its headings, \"mag Q/LON [dB]\" (--headings, or \
          \"headings\" in the rules), or in the rules: under \"models\", \"inputs\": [\"LON\"], \"outputs\": [\"Q\"]; or leave it out",
         if found.is_empty() { "neither the file nor its name says one".to_owned() } else { format!("it has {found}") }
     )]
     ResponseUnmatched {
-        /// Input or output.
         side: ChannelSide,
-        /// The channels that the file names; empty where it names none.
+        /// The channels named by the file; empty where it names none.
         found: String,
-        /// The channels of the dataset.
         known: String,
     },
-    /// A measured response whose channels only the name of its file or variable says, and that not clearly.
+    /// A measured response whose channels appear only in the name of its file or variable,
+    /// ambiguously.
     #[error(
         "the name \"{name}\" does not say one output and one input: {error}. Say them in the headings, \"mag Q/LON [dB]\" (--headings, or \
          \"headings\" in the rules), or in the rules: under \"models\", \"inputs\": [\"LON\"], \"outputs\": [\"Q\"]"
@@ -116,7 +104,6 @@ pub enum ProblemKind {
     ResponseName {
         /// The name of the file or of the variable.
         name: String,
-        /// What is not clear.
         error: ResponseNameError,
     },
     /// Two files give the same response of one measured model.
@@ -125,110 +112,96 @@ pub enum ProblemKind {
          model of its own then"
     )]
     ResponseTwice {
-        /// The output.
         output: String,
-        /// The input.
         input: String,
-        /// The name of the model.
         name: String,
-        /// The other file.
         first: String,
     },
-    /// More or fewer names are said of a model's channels than it has.
+    /// The number of declared channel names differs from the number of the model's channels.
     #[error(
         "{said} names are said for the {found} {side}s of the model; say one for each, in the file's order"
     )]
     Names {
-        /// Input or output.
         side: ChannelSide,
-        /// How many names.
+        /// Number of names.
         said: usize,
-        /// How many channels.
+        /// Number of channels.
         found: usize,
     },
-    /// The condition is not said.
+    /// The condition is unknown.
     #[error("choose its condition")]
     NoCondition,
-    /// The role is not said.
+    /// The role is unknown.
     #[error("choose its role: nominal, perturbed or identified")]
     NoRole,
-    /// The airspeed is not said.
+    /// The airspeed is unknown.
     #[error("enter the airspeed of its condition")]
     NoAirspeed,
     /// Rows of one condition contradict one another.
     #[error("condition {condition}: {field} is {first} and {second}; one condition has one")]
     Contradiction {
-        /// The condition.
         condition: i64,
-        /// What.
+        /// The contradictory field.
         field: &'static str,
-        /// In one row.
+        /// Value in one row.
         first: String,
-        /// In another.
+        /// Value in another row.
         second: String,
     },
-    /// A file says otherwise than its name and its folders.
+    /// A file contradicts its name and its folders.
     #[error(
         "its {field} is {} in the file and {} in the names of the file and its folders: correct one, or say which holds (\"{field}\" \
          under \"models\" in the rules)", crate::units::number(*of_file), crate::units::number(*of_name)
     )]
     NameContradiction {
-        /// The number, as the rules call it.
+        /// The quantity, by its name in the rules.
         field: String,
-        /// In the file.
         of_file: f64,
-        /// In the names.
         of_name: f64,
     },
     /// A condition without a nominal model, or with several.
     #[error("condition {condition} has {found} nominal models; it needs exactly one")]
     Nominal {
-        /// The condition.
         condition: i64,
-        /// How many it has.
+        /// Number of nominal models.
         found: usize,
     },
-    /// Two models of a bundle have one name.
+    /// Two models of a bundle share a name.
     #[error("the name \"{name}\" stands twice among the {bundle} models of condition {condition}")]
     Name {
-        /// The condition.
         condition: i64,
         /// "physics" or "identified".
         bundle: &'static str,
-        /// The name.
         name: String,
     },
-    /// A physics model is measured data.
+    /// A physics model given as measured data.
     #[error("a {} model needs matrices; this is measured data", .0.word())]
     MeasuredPhysics(RowRole),
-    /// Measured parts of one model are on different frequencies.
+    /// Measured parts of one model have different frequency grids.
     #[error(
         "measured responses of one model must be at the same frequencies; {first} has {} and {second} has {}. Estimate them at the same ones, \
          or give one of them another name: it is a model of its own then",
         grid_words(*first_grid), grid_words(*second_grid)
     )]
     Grids {
-        /// One file.
         first: String,
-        /// How many frequencies it has, the lowest and the highest \[rad/s\].
+        /// Number of frequencies, the lowest and the highest \[rad/s\].
         first_grid: (usize, [f64; 2]),
-        /// The other file.
         second: String,
-        /// Its frequencies.
         second_grid: (usize, [f64; 2]),
     },
-    /// What the dataset itself refuses.
+    /// A fault found by the checks of the dataset.
     #[error("{0}")]
     Dataset(String),
 }
 
-/// "40 from 0.3 to 12.3 rad/s".
+/// Formats a frequency grid: "40 from 0.3 to 12.3 rad/s".
 fn grid_words((count, [lowest, highest]): (usize, [f64; 2])) -> String {
     format!("{count} from {lowest:.1} to {highest:.1} rad/s")
 }
 
 impl ProblemKind {
-    /// A stable name of the kind, for scripts and tests.
+    /// Returns a stable code of the kind, for scripts and tests.
     pub fn code(&self) -> &'static str {
         match self {
             Self::NoModels => "no-models",
@@ -259,7 +232,8 @@ impl ProblemKind {
         }
     }
 
-    /// The channel that is asked about, and the option of `gdcm assemble` that answers, without the models that it is for.
+    /// Returns the channel in question and the option of `gdcm assemble` that answers it, without
+    /// the scope.
     fn question(&self) -> Option<Question> {
         let (channel, option, value) = match self {
             Self::Sign { channel, .. } => (channel, "--sign", "-1"),
@@ -275,7 +249,7 @@ impl ProblemKind {
     }
 }
 
-/// A question about a channel that an option answers.
+/// A question about a channel that a command-line option answers.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Question {
     channel: String,
@@ -283,19 +257,19 @@ struct Question {
     value: &'static str,
 }
 
-/// A problem, and the model that has it.
+/// A problem with its model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// Index of the model; none of a problem of the whole.
+    /// Index of the model; `None` for a problem of the whole dataset.
     pub part: Option<usize>,
-    /// What it is.
     pub kind: ProblemKind,
-    /// The models that ask the same question of a channel, and no others; none where no option answers it.
+    /// Scope covering exactly the models that raise the same question about a channel; `None` where
+    /// no option answers it.
     pub scope: Option<FileScope>,
 }
 
 impl Problem {
-    /// A problem of the whole.
+    /// Creates a problem of the whole dataset.
     pub fn of_all(kind: ProblemKind) -> Self {
         Self {
             part: None,
@@ -304,7 +278,7 @@ impl Problem {
         }
     }
 
-    /// A problem of one model.
+    /// Creates a problem of one model.
     pub fn of(part: usize, kind: ProblemKind) -> Self {
         Self {
             part: Some(part),
@@ -313,7 +287,8 @@ impl Problem {
         }
     }
 
-    /// The option of `gdcm assemble` that answers the question for the models that ask it: "--sign NZ=-1:identified".
+    /// Returns the option of `gdcm assemble` that answers the question for the models that raise
+    /// it: "--sign NZ=-1:identified".
     pub fn option(&self) -> Option<String> {
         let Question {
             channel,
@@ -331,8 +306,8 @@ impl Problem {
     }
 }
 
-/// Says of each question about a channel which models ask it: all, those of a role, or this one file. Models without the channel do not
-/// count.
+/// Determines for each question about a channel which models raise it: all, those of a role, or a
+/// single file. Models without the channel do not count.
 pub(super) fn find_scopes(problems: &mut [Problem], parts: &[Part], rules: &Rules) {
     let mut asking: BTreeMap<Question, BTreeSet<usize>> = BTreeMap::new();
     for problem in problems.iter() {
@@ -411,17 +386,19 @@ pub(super) fn row_problems(part: &Part) -> Vec<ProblemKind> {
     problems
 }
 
-/// Asks for the sample time of a model without one whose poles lie as those of discrete time do: all inside the unit circle, or as
-/// little outside as an unstable mode of a helicopter is, and half of them or more (and at least two) near 1. In continuous time the
-/// latter grow within a second.
+/// Reports a missing sample time for a model whose poles look discrete-time: all inside the unit
+/// circle, or as little outside as an unstable helicopter mode would be, and at least half of them
+/// (and at least two) near 1. In continuous time, poles near 1 would grow within a second.
 fn missing_sample_time(part: &Part) -> Option<ProblemKind> {
-    /// Real part of a pole near 1, and the magnitude of one that is outside by little.
+    /// Real part from which a pole counts as near 1, and largest magnitude of a pole slightly
+    /// outside.
     const NEAR: f64 = 0.5;
     const OUTSIDE: f64 = 1.05;
     let a = part.found.draft.matrices[0]
         .as_ref()
         .filter(|a| a.is_square() && a.iter().all(|entry| entry.is_finite()))?;
-    // The sum of such poles is positive, that of a damped model in continuous time is not: it costs nothing to know.
+    // Cheap test first: the sum of such poles is positive, that of a damped continuous-time model
+    // is not.
     if part.found.draft.timing.sample_time_s.is_some() || a.nrows() < 2 || a.trace() <= 0.0 {
         return None;
     }
@@ -465,7 +442,7 @@ pub(super) fn problems_of_condition(
     problems
 }
 
-/// A field of a flight condition: its name, and what a row says of it.
+/// A field of a flight condition: its name and its value in a row.
 type Field<'f> = (&'static str, &'f dyn Fn(&Row) -> Option<String>);
 
 fn contradictions(condition: i64, parts: &[(usize, &Part)]) -> Vec<ProblemKind> {
@@ -491,7 +468,8 @@ fn contradictions(condition: i64, parts: &[(usize, &Part)]) -> Vec<ProblemKind> 
     fields.into_iter().filter_map(contradiction).collect()
 }
 
-/// Names that stand twice in a bundle; measured responses of one name are parts of one model.
+/// Returns duplicate names in a bundle; measured responses with the same name are parts of one
+/// model.
 fn name_problems(condition: i64, parts: &[(usize, &Part)], rules: &Rules) -> Vec<Problem> {
     let mut seen: BTreeMap<(bool, &str), Vec<&Part>> = BTreeMap::new();
     let mut problems = Vec::new();
@@ -540,7 +518,7 @@ fn name_problems(condition: i64, parts: &[(usize, &Part)], rules: &Rules) -> Vec
     problems
 }
 
-/// The first response that a part of a measured model has and an earlier one too.
+/// Returns the first response that a part of a measured model and an earlier part both have.
 fn twice_measured(part: &Part, earlier: &[&Part], rules: &Rules) -> Option<ProblemKind> {
     for (output, of_output) in rules.outputs.iter().enumerate() {
         for (input, of_input) in rules.inputs.iter().enumerate() {

@@ -1,4 +1,5 @@
-//! Output and input of a response out of the name of its file or variable: `frf_q_delta_lon`, `roll_rate per lat_cyclic run 2`.
+//! Output and input of a response from the name of its file or variable: `frf_q_delta_lon`,
+//! `roll_rate per lat_cyclic run 2`.
 
 use std::collections::BTreeSet;
 
@@ -8,12 +9,13 @@ use super::channel_match::{
 use super::physical_unit::{Dimension, PhysicalUnit};
 use super::rules::ChannelRule;
 
-/// Most words of a text that are put together to the name of one channel.
+/// Maximum number of words combined into the name of one channel.
 const LONGEST_NAME: usize = 4;
-/// Most words of a text that are looked at.
+/// Maximum number of words considered in a text.
 const MOST_WORDS: usize = 64;
 
-/// Words that say what a file holds, and nothing of its channels. Words of other numbers and units say nothing either.
+/// Words that describe the content of a file but none of its channels. Words with other numbers and
+/// units are ignored too.
 const NO_CHANNEL: [&str; 44] = [
     "frf",
     "fr",
@@ -61,7 +63,7 @@ const NO_CHANNEL: [&str; 44] = [
     "file",
 ];
 
-/// Words that make another channel of the one beside them: the derivative of q is not q.
+/// Words that turn an adjacent channel into a different one: the derivative of q is not q.
 const CHANGES_CHANNEL: [&str; 23] = [
     "dot",
     "ddot",
@@ -88,7 +90,7 @@ const CHANGES_CHANNEL: [&str; 23] = [
     "delta",
 ];
 
-/// An output and an input, each in the words of the text, as far as the text names them.
+/// An output and an input in the words of the text, as far as the text names them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ResponseName {
     /// The output: "q", "roll_rate".
@@ -105,13 +107,11 @@ pub enum ResponseNameError {
     Several {
         /// "output" or "input".
         side: &'static str,
-        /// Their names in the text.
         found: String,
     },
-    /// A word beside a channel that may make another channel of it.
+    /// A word beside a channel that may turn it into a different channel.
     #[error("\"{word}\" beside {channel} may make another channel of it")]
     OtherChannel {
-        /// The word.
         word: String,
         /// The channel in the words of the text.
         channel: String,
@@ -121,18 +121,16 @@ pub enum ResponseNameError {
 /// The channels that a text may name.
 #[derive(Clone, Copy, Debug)]
 pub enum KnownChannels<'r> {
-    /// Those of a dataset, by their names and aliases and by the names that the field uses for them.
+    /// The channels of a dataset, by their names, aliases and synonyms in the field.
     Dataset {
-        /// Inputs.
         inputs: &'r [ChannelRule],
-        /// Outputs.
         outputs: &'r [ChannelRule],
     },
-    /// Those that the field has a name for.
+    /// All channels with a name in the field.
     Field,
 }
 
-/// The names of the known channels that stand for all that call the same.
+/// The canonical names of the known channels.
 enum KnownNames {
     Dataset {
         inputs: BTreeSet<String>,
@@ -159,7 +157,7 @@ impl KnownNames {
         }
     }
 
-    /// Whether a name is that of an output, and of an input.
+    /// Returns whether a name denotes an output, and whether it denotes an input.
     fn sides(&self, name: &str) -> Sides {
         match self {
             Self::Dataset { inputs, outputs } => {
@@ -181,16 +179,16 @@ impl KnownNames {
     }
 }
 
-/// On which sides there is a channel of a name.
+/// The sides that have a channel of a given name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Sides {
     output: bool,
     input: bool,
 }
 
-/// A channel named by some words of a text.
+/// A channel named by one or more words of a text.
 struct NamedChannel<'t> {
-    /// Index of its first word, and of the one after its last.
+    /// Half-open range of word indices.
     words: std::ops::Range<usize>,
     text: &'t str,
     sides: Sides,
@@ -201,10 +199,12 @@ impl ResponseName {
     ///
     /// 1. Split the text into words.
     /// 2. From the left, take the longest run of words that together name a known channel.
-    /// 3. Of names that can be both, the output stands before the input, or behind it where "to" stands between them.
+    /// 3. A name that fits both sides is read as "output input", or as "input to output" where "to"
+    ///    separates them.
     ///
     /// # Errors
-    /// Where the text names several outputs or inputs, or where a word beside a channel may make another one of it.
+    /// The text names several outputs or inputs, or a word beside a channel may turn it into a
+    /// different one.
     pub fn find(text: &str, known: KnownChannels<'_>) -> Result<Self, ResponseNameError> {
         let words = words_of(text);
         let named = named_channels(text, &words, &KnownNames::of(known));
@@ -256,7 +256,7 @@ impl ResponseName {
             .collect();
         let inputs: Vec<&NamedChannel<'_>> =
             named.iter().filter(|channel| channel.sides.input).collect();
-        // A name that can be both is what the others leave open.
+        // A name that fits both sides takes the side left open by the others.
         let only = |side: &'static str,
                     of_side: &[&NamedChannel<'_>],
                     is_other: fn(Sides) -> bool| {
@@ -285,7 +285,7 @@ impl ResponseName {
     }
 }
 
-/// A word and the place in the text where it begins.
+/// A word and its start position in the text.
 struct Word<'t> {
     start: usize,
     text: &'t str,
@@ -343,7 +343,8 @@ fn named_channels<'t>(
     named
 }
 
-/// Whether a word is a number, a unit with or without one, or one of those that say what a file holds: "run2", "60kt", "v2".
+/// Returns whether a word is a number, a unit with or without a number, or a description of the
+/// file's content: "run2", "60kt", "v2".
 fn says_no_channel(word: &str) -> bool {
     let word = word.to_lowercase();
     let plain = word.trim_matches(|letter: char| letter.is_ascii_digit());

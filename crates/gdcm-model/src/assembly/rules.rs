@@ -1,4 +1,5 @@
-//! What the engineer says about the files of a folder: all that assembling depends on besides the files.
+//! The engineer's rules for the files of a folder: everything that assembly depends on besides the
+//! files.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -14,24 +15,23 @@ use crate::dataset::channel::ChannelSide;
 use crate::message_text::{quoted, sanitized, shortened};
 use crate::whole_number::whole_or_none;
 
-/// A channel of the dataset, and what files that do not say call its unit.
+/// A channel of the dataset, with its unit in files that give none.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize, Serialize)]
 pub struct ChannelRule {
-    /// Its name in the dataset.
     pub name: String,
-    /// Its unit in the dataset; empty where it is still to be said.
+    /// Its unit in the dataset; empty while unknown.
     #[serde(default)]
     pub unit: String,
-    /// Further names by which files call it; with a minus before it one whose sign is the other.
+    /// Further names in files; a leading minus marks the opposite sign.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub aliases: Vec<String>,
-    /// The unit that it has in files that do not say; none where that is still to be said.
+    /// Unit in files that give none; `None` while unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unit_in_files: Option<String>,
 }
 
 impl ChannelRule {
-    /// A channel whose unit is still to be said.
+    /// Creates a channel with an unknown unit.
     pub fn named(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -40,82 +40,73 @@ impl ChannelRule {
     }
 }
 
-/// A conversion that units alone do not give, such as inches of a stick to percent of its travel.
+/// A conversion that units alone do not determine, such as inches of stick to percent of travel.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct UnitRule {
-    /// The channel of the dataset.
     pub channel: String,
-    /// The unit in files.
     pub from: String,
-    /// How many of the dataset's units one of these is.
+    /// Dataset units per unit `from`.
     pub factor: f64,
 }
 
-/// What channels are multiplied by, 1 or -1, by their names in the dataset.
+/// Sign factors of channels, 1 or -1, by dataset name.
 pub type Signs = BTreeMap<String, f64>;
 
-/// What the engineer says otherwise than names and contents propose, of one model.
+/// The engineer's overrides of the proposals for one model.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, Serialize)]
 #[serde(default)]
 pub struct RowRule {
-    /// Whether it is left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub left_out: Option<bool>,
-    /// Number of its condition.
     #[serde(
         skip_serializing_if = "Option::is_none",
         deserialize_with = "whole_or_none"
     )]
     pub condition: Option<i64>,
-    /// Its role.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub role: Option<RowRole>,
-    /// Its name in its bundle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// True airspeed of the condition \[kt\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub airspeed_kt: Option<f64>,
-    /// Altitude class.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub altitude: Option<String>,
     /// Altitude \[ft\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub altitude_ft: Option<f64>,
-    /// Weight class.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub weight: Option<String>,
     /// Mass \[kg\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_kg: Option<f64>,
-    /// Identification method.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub method: Option<String>,
-    /// Offsets of the trim; all of them, where any is given.
+    /// Trim offsets; replaces all proposed ones where any is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub perturbation: Option<BTreeMap<String, f64>>,
-    /// Names of its inputs in its own order, where the file has none or wrong ones.
+    /// Names of its inputs in the file's order, where the file has none or wrong ones.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub inputs: Option<Vec<String>>,
-    /// Names of its outputs in its own order.
+    /// Names of its outputs in the file's order.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outputs: Option<Vec<String>>,
-    /// Signs of its channels, by their names in the dataset.
+    /// By dataset name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub signs: Option<Signs>,
-    /// Units of its channels, by their names in the dataset, whatever the file says.
+    /// By dataset name; overrides the file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub units: Option<BTreeMap<String, String>>,
-    /// Factors of its channels, by their names in the dataset: how many of the dataset's units one of the file's is.
+    /// Dataset units per file unit, by dataset name.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub factors: Option<BTreeMap<String, f64>>,
-    /// Its sample time \[s\], where the file has none; 0 of a continuous-time model.
+    /// Sample time \[s\] where the file has none; 0 for a continuous-time model.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample_time_s: Option<f64>,
 }
 
 impl RowRule {
-    /// Whether it says a number of which a file and its names say different ones.
+    /// Returns whether the rule gives a value for a field on which a file and its names disagree.
     pub(super) fn settles(&self, field: &str) -> bool {
         match field {
             "condition" => self.condition.is_some(),
@@ -126,7 +117,7 @@ impl RowRule {
         }
     }
 
-    /// Puts what is said here in the place of what was proposed.
+    /// Overrides the proposals in `row` with the values given here.
     pub fn apply(&self, row: &mut Row) {
         fn put<T: Clone>(said: &Option<T>, place: &mut Option<T>) {
             if said.is_some() {
@@ -151,7 +142,7 @@ impl RowRule {
         }
     }
 
-    /// Units, factors and signs of its channels.
+    /// Returns the units, factors and signs of its channels.
     pub fn declarations(&self) -> ChannelDeclarations {
         ChannelDeclarations {
             units: self.units.clone().unwrap_or_default(),
@@ -160,7 +151,7 @@ impl RowRule {
         }
     }
 
-    /// Puts what is declared of its channels in the place of what was declared of the same channels.
+    /// Overrides earlier declarations of the same channels.
     pub fn declare(&mut self, declared: &ChannelDeclarations) {
         let mut all = self.declarations();
         all.override_by(declared);
@@ -170,15 +161,14 @@ impl RowRule {
     }
 }
 
-/// Headings of the columns of tables, by file: "omega \[rad/s\]", "mag P/LAT \[dB\]".
+/// Column headings of tables, by file: "omega \[rad/s\]", "mag P/LAT \[dB\]".
 pub type Headings = BTreeMap<String, Vec<String>>;
 
-/// What the engineer says about the files of a folder.
+/// The engineer's rules for the files of a folder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rules {
-    /// Name of the dataset.
     pub name: String,
-    /// What it is and where it comes from.
+    /// Content and source of the data.
     pub description: String,
     /// Inputs of the dataset, in its order.
     pub inputs: Vec<ChannelRule>,
@@ -188,21 +178,22 @@ pub struct Rules {
     pub on_axis: Vec<(String, String)>,
     /// Lower and upper end of the band of comparison \[rad/s\].
     pub band: (f64, f64),
-    /// How names of folders, files and variables are read; what an earlier one finds stands.
+    /// Patterns for the names of folders, files and variables; earlier ones take precedence.
     pub patterns: Vec<NamePattern>,
-    /// Conversions that units alone do not give.
+    /// Conversions that units alone do not determine.
     pub units: Vec<UnitRule>,
-    /// Signs of channels in all files, in place of what their names say.
+    /// Signs of channels in all files; override the channel names.
     pub signs: Signs,
-    /// Signs of channels in the models of a role, "identified" or "physics", which go before those of all files.
+    /// Signs of channels in the models of a role, "identified" or "physics"; override the signs for
+    /// all files.
     pub role_signs: BTreeMap<String, Signs>,
-    /// Units, factors and signs of channels in the models of a role, of folders, or of a file.
+    /// Units, factors and signs of channels for a role, a folder or a file.
     pub declarations: Vec<ScopedDeclarations>,
-    /// Sample time of models without one \[s\], 0 of continuous-time models; none where it is asked for.
+    /// Sample time \[s\] of models without one, 0 for continuous-time models; `None` asks for it.
     pub sample_time_s: Option<f64>,
-    /// What the columns of tables hold, in place of their own headings: what a file of columns is read by.
+    /// Column headings of tables; replace the headings in the files.
     pub headings: Headings,
-    /// What is said of single models, by [`super::found_model::FoundModel::key`].
+    /// Overrides for single models, by [`super::found_model::FoundModel::key`].
     pub rows: BTreeMap<String, RowRule>,
 }
 
@@ -214,7 +205,7 @@ impl Default for Rules {
             inputs: Vec::new(),
             outputs: Vec::new(),
             on_axis: Vec::new(),
-            // Where the rigid-body responses of helicopters are compared.
+            // Usual band of comparison for the rigid-body responses of helicopters.
             band: (0.5, 12.0),
             patterns: standard_patterns().to_vec(),
             units: Vec::new(),
@@ -229,13 +220,14 @@ impl Default for Rules {
 }
 
 impl Rules {
-    /// The inputs or the outputs of the dataset.
+    /// Returns the inputs or the outputs of the dataset.
     pub fn channels_mut(&mut self, side: ChannelSide) -> &mut Vec<ChannelRule> {
         side.of(&mut self.inputs, &mut self.outputs)
     }
 
-    /// Calls a channel of the dataset otherwise. Files call it as before; what was said of it, on-axis responses, conversions and signs,
-    /// is said of the new name, and a response that matters in a helicopter by its new name is marked.
+    /// Renames a channel of the dataset. The old name becomes an alias for files; on-axis
+    /// responses, conversions and signs move to the new name, and a response that is on-axis for a
+    /// helicopter under its new name is marked.
     pub fn rename(&mut self, side: ChannelSide, index: usize, name: String) {
         let Some(channel) = self.channels_mut(side).get_mut(index) else {
             return;
@@ -291,8 +283,8 @@ impl Rules {
         }
     }
 
-    /// Units, factors and signs that hold of the channels of a model: those of one file go before those of a folder, these before those
-    /// of a role, and these before those of all.
+    /// Returns the units, factors and signs that apply to the channels of a model: a file takes
+    /// precedence over a folder, a folder over a role, and a role over all models.
     pub fn declared(&self, found: &FoundModel, role: Option<RowRole>) -> DeclaredChannels<'_> {
         let with_signs = |of: FileScope, signs: &Signs| ScopedDeclarations {
             of,
@@ -319,8 +311,9 @@ impl Rules {
         }
     }
 
-    /// Declares units, factors and signs in the place of what was declared of the same channels of the same models. Signs of all
-    /// models and of a role are kept in [`Self::signs`] and [`Self::role_signs`].
+    /// Declares units, factors and signs, overriding earlier declarations of the same channels and
+    /// models. Signs for all models and for a role are kept in [`Self::signs`] and
+    /// [`Self::role_signs`].
     pub fn declare(&mut self, of: FileScope, declared: &ChannelDeclarations) {
         let signs = declared
             .signs
@@ -346,7 +339,7 @@ impl Rules {
         }
     }
 
-    /// The declarations of some models, to be added to.
+    /// Returns the declarations for a scope for modification, and adds them where missing.
     pub fn declarations_mut(&mut self, of: FileScope) -> &mut ChannelDeclarations {
         let index = match self
             .declarations
@@ -366,34 +359,34 @@ impl Rules {
     }
 }
 
-/// Longest pattern, and memory that one may take once it is compiled \[bytes\].
+/// Maximum length of a pattern, and maximum memory of a compiled pattern \[bytes\].
 const LONGEST: usize = 1000;
 const MOST_MEMORY: usize = 1 << 20;
 
-/// How names are read: a regular expression whose named groups say what they hold.
+/// Pattern for names: a regular expression whose named groups identify the values.
 ///
 /// | group | holds |
 /// |---|---|
-/// | `condition`, `airspeed_kt`, `altitude`, `altitude_ft`, `weight`, `mass_kg`, `method`, `name` | that |
-/// | `by_roll_deg`, `by_airspeed_kt`, `by_...` | the offset of the trim in the coordinate `roll_deg`, ... (`+5`, `-5`, `p5`, `m5`) |
-/// | `nominal`, `perturbed`, `identified` | anything: the role is this |
+/// | `condition`, `airspeed_kt`, `altitude`, `altitude_ft` | the value of this name |
+/// | `weight`, `mass_kg`, `method`, `name` | the value of this name |
+/// | `by_roll_deg`, `by_...` | trim offset in `roll_deg`, ... (`+5`, `-5`, `p5`, `m5`) |
+/// | `nominal`, `perturbed`, `identified` | any text; sets this role |
 #[derive(Clone, Debug)]
 pub struct NamePattern {
     regex: Regex,
 }
 
-/// Why a text is no pattern.
+/// Why a text is not a valid pattern.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PatternError {
-    /// It is no regular expression.
+    /// Not a regular expression.
     #[error("{} is no regular expression: {}", quoted(pattern), shortened(&sanitized(reason)))]
     Syntax {
-        /// The text.
         pattern: String,
-        /// What is wrong with it.
+        /// The parser's message.
         reason: String,
     },
-    /// A group has a name that says nothing.
+    /// A group has an unknown name.
     #[error(
         "{}: a group is named {}; groups are condition, airspeed_kt, altitude, altitude_ft, weight, mass_kg, method, name, nominal, \
          perturbed, identified, or by_ and a coordinate such as roll_deg",
@@ -401,20 +394,19 @@ pub enum PatternError {
         quoted(group)
     )]
     Group {
-        /// The text.
         pattern: String,
-        /// The group's name.
+        /// The unknown name.
         group: String,
     },
 }
 
-/// What groups are named, besides those of offsets.
+/// Group names, besides those of offsets.
 const GROUPS: &str = "condition airspeed_kt altitude altitude_ft weight mass_kg method name nominal perturbed identified";
-/// What a group of an offset begins with.
+/// Prefix of the group names of offsets.
 const OFFSET: &str = "by_";
 
 impl NamePattern {
-    /// The pattern that a text spells; case makes no difference.
+    /// Compiles a pattern; case-insensitive.
     pub fn new(pattern: &str) -> Result<Self, PatternError> {
         let wrong = |reason: String| PatternError::Syntax {
             pattern: pattern.to_owned(),
@@ -450,12 +442,12 @@ impl NamePattern {
         }
     }
 
-    /// The text that spells it.
+    /// Returns the source text.
     pub fn as_str(&self) -> &str {
         self.regex.as_str()
     }
 
-    /// Puts what a name says into the fields of a row that are still empty.
+    /// Fills the empty fields of a row with the values found in a name.
     pub fn read(&self, name: &str, row: &mut Row) {
         for found in self.regex.captures_iter(name) {
             for group in self.regex.capture_names().flatten() {
@@ -467,9 +459,9 @@ impl NamePattern {
     }
 }
 
-/// The parts of a name that say an offset of the trim, as "dPHI+5" does, and that none of the patterns reads.
+/// Returns the parts of a name that look like a trim offset ("dPHI+5") and that no pattern reads.
 pub fn unread_offsets(name: &str, patterns: &[NamePattern]) -> Vec<String> {
-    // A word, a sign and a number, which ends where a unit or the next part begins.
+    // A word, a sign and a number; ends at a unit or at the next part.
     let Ok(offset) = Regex::new(r"[A-Za-z]+[_ ]?[+-]\d+(?:\.\d+)?") else {
         return Vec::new();
     };
@@ -521,7 +513,7 @@ fn put(group: &str, text: &str, row: &mut Row) {
     }
 }
 
-/// `+5`, `-5`, `p5`, `m5`, `plus5`, `minus2.5`.
+/// Parses a signed offset: `+5`, `-5`, `p5`, `m5`, `plus5`, `minus2.5`.
 fn offset(text: &str) -> Option<f64> {
     let text = text.to_lowercase();
     let signs = [
@@ -546,12 +538,13 @@ impl PartialEq for NamePattern {
     }
 }
 
-/// How names are usually read: `c03_045kt_high/roll+5`, `cond 3/V-10kt`, `120kt_low_heavy/flight`.
+/// Returns the patterns for common names: `c03_045kt_high/roll+5`, `cond 3/V-10kt`,
+/// `120kt_low_heavy/flight`.
 pub fn standard_patterns() -> &'static [NamePattern] {
     &STANDARD
 }
 
-/// Compiled once: every record asks for them.
+/// Compiled once, because every record needs them.
 static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(|| {
     const SIGNED: &str = r"(?:[+-]|p|m|plus|minus)[_ ]?\d+(?:\.\d+)?";
     let offset = |words: &str, coordinate: &str| {
@@ -577,7 +570,7 @@ static STANDARD: LazyLock<Vec<NamePattern>> = LazyLock::new(|| {
             .to_owned(),
         r"(?:^|[/_ #.-])(?<perturbed>perturbed|pert)\d*(?:[/_ .#(-]|$)".to_owned(),
     ];
-    // Each is tried by a test: none is left out here.
+    // A test compiles each pattern: none is skipped here.
     texts
         .iter()
         .filter_map(|text| NamePattern::new(text).ok())
@@ -742,7 +735,7 @@ mod tests {
         assert_eq!(row.condition, Some(7));
         let unknown = NamePattern::new("(?<speed>\\d+)").unwrap_err();
         assert!(unknown.to_string().contains("\"speed\""), "{unknown}");
-        // However long a text is, and whatever stands in it, its message is a line.
+        // However long the text and whatever it contains, the message is a single line.
         for wrong in [
             "(".to_owned(),
             "(?<cond\u{7f}ition>a)".to_owned(),

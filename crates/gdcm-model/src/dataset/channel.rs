@@ -1,4 +1,4 @@
-//! Channels of the helicopter, one response of a dataset, and a table with one entry for each response.
+//! Channels of the helicopter, a response of a dataset, and a table with one entry per response.
 
 use std::fmt;
 use std::ops::{Index, IndexMut};
@@ -8,19 +8,19 @@ use serde::{Deserialize, Serialize};
 use crate::message_text::quoted;
 use crate::whole_number::whole;
 
-/// An input (a control position) or an output (a measured motion), as the dataset names it.
+/// An input (a control position) or an output (a measured motion).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Channel {
     /// Short name, unique among the inputs or among the outputs ("LON", "NY").
     pub name: String,
-    /// Unit as the dataset writes it ("%", "deg/s").
+    /// Unit in the dataset's spelling ("%", "deg/s").
     pub unit: String,
-    /// What the channel is and which way is positive.
+    /// Meaning of the channel and its positive direction.
     pub description: String,
 }
 
 impl Channel {
-    /// A channel with a name and a unit, and no description.
+    /// Creates a channel with a name and a unit, and no description.
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -30,7 +30,7 @@ impl Channel {
     }
 }
 
-/// One response: from an input channel to an output channel.
+/// A response from an input channel to an output channel.
 ///
 /// The index order is `[output, input]` everywhere (M1).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -42,13 +42,13 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// The response of output channel `output` to input channel `input`.
+    /// Creates the response of output channel `output` to input channel `input`.
     pub fn new(output: usize, input: usize) -> Self {
         Self { output, input }
     }
 }
 
-/// A table with one entry for each response: `p` rows (outputs) by `m` columns (inputs).
+/// A table with one entry per response: `p` rows (outputs) by `m` columns (inputs).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairTable<T> {
     outputs: usize,
@@ -57,7 +57,7 @@ pub struct PairTable<T> {
 }
 
 impl<T> PairTable<T> {
-    /// The table whose entry of each response is `entry(pair)`.
+    /// Creates the table with entry `entry(pair)` for each response.
     pub fn from_fn(outputs: usize, inputs: usize, mut entry: impl FnMut(Pair) -> T) -> Self {
         let entries = pairs(outputs, inputs).map(&mut entry).collect();
         Self {
@@ -67,17 +67,17 @@ impl<T> PairTable<T> {
         }
     }
 
-    /// Number of output channels, `p`.
+    /// Returns the number of output channels, `p`.
     pub fn outputs(&self) -> usize {
         self.outputs
     }
 
-    /// Number of input channels, `m`.
+    /// Returns the number of input channels, `m`.
     pub fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// Where the entry of a response stands.
+    /// Returns the index of a response's entry.
     fn place(&self, pair: Pair) -> usize {
         let outputs = self.outputs;
         let inputs = self.inputs;
@@ -88,27 +88,27 @@ impl<T> PairTable<T> {
         pair.output * inputs + pair.input
     }
 
-    /// The entry of a response; `None` where the table has no such response.
+    /// Returns the entry of a response; `None` where the table has no such response.
     pub fn get(&self, pair: Pair) -> Option<&T> {
         (pair.output < self.outputs() && pair.input < self.inputs()).then(|| &self[pair])
     }
 
-    /// Every response, row by row.
+    /// Iterates over the responses, row by row.
     pub fn pairs(&self) -> impl Iterator<Item = Pair> + use<T> {
         pairs(self.outputs, self.inputs)
     }
 
-    /// Every response with its entry, row by row.
+    /// Iterates over the responses with their entries, row by row.
     pub fn iter(&self) -> impl Iterator<Item = (Pair, &T)> {
         self.pairs().zip(&self.entries)
     }
 
-    /// Every response with its entry to change, row by row.
+    /// Iterates over the responses with mutable entries, row by row.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = (Pair, &mut T)> {
         self.pairs().zip(&mut self.entries)
     }
 
-    /// The table of `f(pair, entry)`.
+    /// Returns the table with entries `f(pair, entry)`.
     pub fn map<U>(&self, mut f: impl FnMut(Pair, &T) -> U) -> PairTable<U> {
         PairTable::from_fn(self.outputs, self.inputs, |pair| f(pair, &self[pair]))
     }
@@ -119,7 +119,7 @@ fn pairs(outputs: usize, inputs: usize) -> impl Iterator<Item = Pair> {
 }
 
 impl<T: Clone> PairTable<T> {
-    /// The table with the same entry everywhere.
+    /// Creates a table with the same entry everywhere.
     pub fn filled(outputs: usize, inputs: usize, entry: T) -> Self {
         Self {
             outputs,
@@ -130,7 +130,7 @@ impl<T: Clone> PairTable<T> {
 }
 
 impl PairTable<bool> {
-    /// The responses marked `true`, row by row.
+    /// Iterates over the responses marked `true`, row by row.
     pub fn marked(&self) -> impl Iterator<Item = Pair> + '_ {
         self.iter()
             .filter(|(_, marked)| **marked)
@@ -153,7 +153,7 @@ impl<T> IndexMut<Pair> for PairTable<T> {
     }
 }
 
-/// Whether a channel goes into the aircraft or comes out of it.
+/// Whether a channel is an input or an output of the aircraft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ChannelSide {
@@ -164,7 +164,7 @@ pub enum ChannelSide {
 }
 
 impl ChannelSide {
-    /// What is of this side, out of what is of the inputs and what is of the outputs.
+    /// Returns `inputs` or `outputs`, according to the side.
     pub fn of<T>(self, inputs: T, outputs: T) -> T {
         match self {
             Self::Input => inputs,
@@ -179,41 +179,40 @@ impl std::fmt::Display for ChannelSide {
     }
 }
 
-// What conditions and models are called, whatever their order in a file, and where in a dataset something stands.
+// Identifiers of conditions and models that do not depend on their order in a file, and locations
+// in a dataset.
 
-/// A condition of a dataset that is being read.
+/// A condition of a dataset during reading.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConditionPlace {
-    /// Its position, counted from 1.
+    /// Position, counted from 1.
     pub position: usize,
-    /// Its id, where that can be read.
+    /// Its id, where readable.
     pub id: Option<i64>,
 }
 
-/// A model of a dataset that is being read.
+/// A model of a dataset during reading.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ModelPlace {
-    /// Which bundle of the condition.
     pub bundle: BundleKind,
-    /// Its position in the bundle, counted from 1.
+    /// Position in the bundle, counted from 1.
     pub position: usize,
-    /// Its name, where that can be read.
+    /// Its name, where readable.
     pub name: Option<String>,
 }
 
-/// Where something stands: the condition, the model, and the entry (matrix, row, column), each where it applies.
+/// A location in a dataset: condition, model, and entry (matrix, row, column), each where
+/// applicable.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Location {
-    /// The condition.
     pub condition: Option<ConditionPlace>,
-    /// The model.
     pub model: Option<ModelPlace>,
     /// The entry, in words; empty for the whole.
     pub entry: String,
 }
 
 impl Location {
-    /// A place in words: "on-axis pair 3".
+    /// Creates a location from words: "on-axis pair 3".
     pub fn entry(words: impl Into<String>) -> Self {
         Self {
             entry: words.into(),
@@ -221,7 +220,7 @@ impl Location {
         }
     }
 
-    /// A condition; `position` counts from 1.
+    /// Creates the location of a condition; `position` counts from 1.
     pub fn condition(position: usize, id: i64) -> Self {
         Self {
             condition: Some(ConditionPlace {
@@ -232,7 +231,7 @@ impl Location {
         }
     }
 
-    /// A model of this condition; `position` counts from 1.
+    /// Creates the location of a model in this condition; `position` counts from 1.
     pub fn model(&self, bundle: BundleKind, position: usize, name: &str) -> Self {
         let model = Some(ModelPlace {
             bundle,
@@ -246,7 +245,7 @@ impl Location {
         }
     }
 
-    /// An entry of this condition or model.
+    /// Creates the location of an entry in this condition or model.
     pub fn at(&self, words: impl Into<String>) -> Self {
         Self {
             entry: words.into(),
@@ -254,7 +253,7 @@ impl Location {
         }
     }
 
-    /// The place followed by a colon and a space; nothing for the file as a whole.
+    /// Returns the location followed by a colon and a space; empty for the file as a whole.
     pub fn before(&self) -> String {
         let words = self.to_string();
         if words.is_empty() {
@@ -290,7 +289,7 @@ impl fmt::Display for Location {
     }
 }
 
-/// Which of a condition's two bundles.
+/// One of the two bundles of a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum BundleKind {
     /// The physics models: one nominal, the others at perturbed trims.
@@ -303,7 +302,7 @@ impl BundleKind {
     /// Both bundles, the physics models first.
     pub const BOTH: [BundleKind; 2] = [BundleKind::Physics, BundleKind::Identified];
 
-    /// Which of two things is of this bundle.
+    /// Returns `physics` or `identified`, according to the bundle.
     pub fn pick<T>(self, physics: T, identified: T) -> T {
         match self {
             BundleKind::Physics => physics,
@@ -321,7 +320,7 @@ impl fmt::Display for BundleKind {
     }
 }
 
-/// A flight condition: the id that its dataset gives it.
+/// Identity of a flight condition: its id in the dataset.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize,
 )]
@@ -333,19 +332,17 @@ impl fmt::Display for ConditionId {
     }
 }
 
-/// A model of a dataset: it stays the same model when others are added, removed, replaced or put in another order.
+/// Identity of a model in a dataset, unaffected when others are added, removed, replaced or
+/// reordered.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ModelId {
-    /// Its condition.
     pub condition: ConditionId,
-    /// Its bundle in that condition.
     pub bundle: BundleKind,
-    /// Its name in that bundle.
     pub name: String,
 }
 
 impl ModelId {
-    /// The model of this name in a bundle of a condition.
+    /// Creates the identity of the model with this name in a bundle of a condition.
     pub fn new(condition: ConditionId, bundle: BundleKind, name: impl Into<String>) -> Self {
         Self {
             condition,

@@ -1,4 +1,4 @@
-//! One flight condition with its two bundles of models, and the flight records that it comes from.
+//! One flight condition with its two bundles of models and its flight records.
 
 use std::collections::BTreeMap;
 
@@ -8,12 +8,11 @@ use super::channel::{BundleKind, ConditionId};
 use super::model::Model;
 use crate::units::number;
 
-/// What describes a flight condition, besides its models.
+/// Description of a flight condition, without its models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightState {
-    /// Identity in the dataset ("condition 10").
     pub id: ConditionId,
-    /// Name for people.
+    /// Display name.
     pub name: String,
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
@@ -28,7 +27,7 @@ pub struct FlightState {
 }
 
 impl FlightState {
-    /// A condition of which no more is said than its airspeed \[kt\], named by its id.
+    /// Creates a condition with only an airspeed \[kt\], named after its id.
     pub fn at(id: ConditionId, airspeed_kt: f64) -> Self {
         let name = format!("condition {id}");
         Self {
@@ -43,9 +42,10 @@ impl FlightState {
     }
 }
 
-/// One flight condition: a bundle of physics models, exactly one of them nominal, a bundle of identified models, and the flight
-/// records that these come from, where the dataset says so. Without identified models the condition has no reference yet: it is
-/// valid, and has no result ([`Condition::has_reference`]).
+/// One flight condition: a bundle of physics models, exactly one of them nominal, a bundle of
+/// identified models, and their flight records, where the dataset lists them. A condition without
+/// identified models has no reference yet: it is valid, but gives no result
+/// ([`Condition::has_reference`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Condition {
     flight_state: FlightState,
@@ -53,24 +53,24 @@ pub struct Condition {
     bundles: [Vec<Model>; 2],
     nominal: usize,
     records: Vec<ConditionRecord>,
-    /// Indices of the physics and of the identified models in the order of their names: a list of a thousand models asks for each by name.
+    /// Indices of the physics and identified models, sorted by name, because a list of a thousand
+    /// models looks up each one by name.
     by_name: [Vec<usize>; 2],
 }
 
-/// Why two bundles are not a condition.
+/// Why two bundles do not form a condition.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConditionError {
-    /// A figure of the flight state is not finite, or an airspeed is negative.
+    /// A value of the flight state is not finite, or an airspeed is negative.
     #[error("{field}: expected a finite number{bound}, found {}", number(*value))]
     FlightState {
-        /// The figure with its unit.
+        /// The quantity with its unit.
         field: &'static str,
-        /// " not below zero" where that is required.
+        /// " not below zero" where required.
         bound: &'static str,
-        /// What stands there.
         value: f64,
     },
-    /// The physics bundle holds no model, or no identified models are to stand in the place of others.
+    /// The physics bundle is empty, or the replacement for the identified bundle is.
     #[error("the {0} bundle: expected at least one model, found none")]
     EmptyBundle(BundleKind),
     /// Two models of a bundle share a name.
@@ -78,21 +78,19 @@ pub enum ConditionError {
         "the {bundle} bundle: the name \"{name}\" stands twice (models {first} and {second}); names must differ"
     )]
     DuplicateName {
-        /// Which.
         bundle: BundleKind,
-        /// The name.
         name: String,
         /// First model, counted from 1.
         first: usize,
         /// Second model, counted from 1.
         second: usize,
     },
-    /// A bundle of physics models has no nominal model, or several.
+    /// The physics bundle has no nominal model, or several.
     #[error("the physics bundle: expected exactly one nominal model, found {found}{names}")]
     Nominal {
-        /// How many there are.
+        /// Number of nominal models.
         found: usize,
-        /// Their names, in parentheses, where there are several.
+        /// Their names in parentheses, where there are several.
         names: String,
     },
     /// Two records share a name.
@@ -100,31 +98,28 @@ pub enum ConditionError {
         "records: the name \"{name}\" stands twice (records {first} and {second}); names must differ"
     )]
     DuplicateRecord {
-        /// The name.
         name: String,
         /// First record, counted from 1.
         first: usize,
         /// Second record, counted from 1.
         second: usize,
     },
-    /// A sample time, or the time of a piece, cannot be that of a record.
+    /// A sample time or the time of a piece is out of range.
     #[error("record \"{name}\" (number {position}), {field}: expected {expected}, found {}", number(*value))]
     Record {
-        /// The record's name.
         name: String,
-        /// Which record, counted from 1.
+        /// Position of the record, counted from 1.
         position: usize,
-        /// The figure.
+        /// The quantity.
         field: &'static str,
-        /// What may stand there.
+        /// The permitted values.
         expected: &'static str,
-        /// What stands there.
         value: f64,
     },
 }
 
 impl Condition {
-    /// The condition with these models, in file order.
+    /// Creates a condition with these models, in file order.
     pub fn new(
         flight_state: FlightState,
         physics: Vec<Model>,
@@ -157,7 +152,7 @@ impl Condition {
         }
     }
 
-    /// The same condition with these flight records, in file order.
+    /// Returns the same condition with these flight records, in file order.
     ///
     /// # Errors
     /// [`ConditionError::DuplicateRecord`] and [`ConditionError::Record`].
@@ -167,12 +162,13 @@ impl Condition {
         Ok(self)
     }
 
-    /// The same condition with these models for its identified bundle, and these flight records, each in place of the one of its
-    /// name, or else of the same samples of the same file, or behind the others. A record of which parts come is no longer used, for
+    /// Returns the same condition with these models as its identified bundle, and these flight
+    /// records. A record replaces the one with the same name, or else the one with the same samples
+    /// of the same file, or is appended. A record whose parts are added is no longer used, since
     /// evidence counts once.
     ///
     /// # Errors
-    /// Those of [`Condition::new`] and [`Condition::with_records`].
+    /// The errors of [`Condition::new`] and [`Condition::with_records`].
     pub fn with_identified(
         &self,
         models: Vec<Model>,
@@ -195,32 +191,32 @@ impl Condition {
         Self::new(self.flight_state.clone(), self.bundles[0].clone(), models)?.with_records(kept)
     }
 
-    /// The flight records, in file order; none where the dataset names none.
+    /// Returns the flight records in file order; empty where the dataset lists none.
     pub fn records(&self) -> &[ConditionRecord] {
         &self.records
     }
 
-    /// What describes the condition, besides its models.
+    /// Returns the description of the condition, without its models.
     pub fn flight_state(&self) -> &FlightState {
         &self.flight_state
     }
 
-    /// Identity in the dataset.
+    /// Returns the identity in the dataset.
     pub fn id(&self) -> ConditionId {
         self.flight_state.id
     }
 
-    /// The models of one bundle, in file order.
+    /// Returns the models of one bundle, in file order.
     pub fn bundle(&self, kind: BundleKind) -> &[Model] {
         &self.bundles[kind as usize]
     }
 
-    /// Whether the condition has identified models for its physics models to be compared with.
+    /// Returns whether the condition has identified models as a reference for its physics models.
     pub fn has_reference(&self) -> bool {
         !self.bundle(BundleKind::Identified).is_empty()
     }
 
-    /// Position of the model of this name in its bundle, in file order.
+    /// Returns the position of the named model in its bundle, in file order.
     pub fn position(&self, kind: BundleKind, name: &str) -> Option<usize> {
         let models = self.bundle(kind);
         let order = &self.by_name[kind as usize];
@@ -230,12 +226,12 @@ impl Condition {
         Some(order[place])
     }
 
-    /// The model of a bundle of this name.
+    /// Returns the named model of a bundle.
     pub fn model(&self, kind: BundleKind, name: &str) -> Option<&Model> {
         Some(&self.bundle(kind)[self.position(kind, name)?])
     }
 
-    /// Index of the nominal model in the physics bundle.
+    /// Returns the index of the nominal model in the physics bundle.
     pub fn nominal(&self) -> usize {
         self.nominal
     }
@@ -267,7 +263,8 @@ fn check_flight_state(state: &FlightState) -> Result<(), ConditionError> {
     Ok(())
 }
 
-/// An identified bundle may be empty: models are identified once there are flight records.
+/// Checks a bundle. An identified bundle may be empty: models can be identified later from flight
+/// records.
 fn check_bundle(bundle: BundleKind, models: &[Model]) -> Result<(), ConditionError> {
     if models.is_empty() && bundle == BundleKind::Physics {
         return Err(ConditionError::EmptyBundle(bundle));
@@ -341,7 +338,7 @@ fn names_of(models: &[Model], indices: &[usize]) -> String {
     if indices.is_empty() {
         return String::new();
     }
-    /// Enough to see what went wrong.
+    /// Enough names to find the mistake.
     const SHOWN: usize = 5;
     let names: Vec<&str> = indices
         .iter()
@@ -357,22 +354,21 @@ fn names_of(models: &[Model], indices: &[usize]) -> String {
     format!(" ({}{more})", names.join(", "))
 }
 
-/// The manoeuvre that a record is of.
+/// The manoeuvre of a record.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum RecordKind {
     /// A frequency sweep.
     Sweep,
-    /// Several sines at once.
+    /// A sum of sines.
     Multisine,
-    /// Steps of three, two, one and one units of time, or doublets.
+    /// A 3-2-1-1 input (steps of three, two, one and one time units), or doublets.
     ThreeTwoOneOne,
-    /// Anything else.
     #[default]
     Other,
 }
 
 impl RecordKind {
-    /// Every kind.
+    /// All kinds.
     pub const ALL: [Self; 4] = [
         Self::Sweep,
         Self::Multisine,
@@ -380,7 +376,7 @@ impl RecordKind {
         Self::Other,
     ];
 
-    /// Its word in files and tables.
+    /// Returns its keyword in files and tables.
     pub fn word(self) -> &'static str {
         match self {
             Self::Sweep => "sweep",
@@ -390,57 +386,59 @@ impl RecordKind {
         }
     }
 
-    /// The kind of a word.
+    /// Parses a keyword.
     pub fn of(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.word() == word)
     }
 }
 
-/// A flight record of a condition: not its samples, but which file holds them and what is done with them.
+/// Reference to a flight record of a condition: the file that holds its samples, and how they are
+/// used.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConditionRecord {
     /// Name, unique in the condition.
     pub name: String,
-    /// The file, relative to the dataset's.
+    /// Path relative to the dataset's file.
     pub file: String,
-    /// Which record of the file, or which variable; none where the file holds one.
+    /// Name of the record or variable in the file; `None` where the file holds a single record.
     pub variable: Option<String>,
     /// SHA-256 of the file, in hexadecimal.
     pub sha256: Option<String>,
-    /// The manoeuvre.
     pub kind: RecordKind,
-    /// Whether it is kept from identification, to validate what comes of it.
+    /// Whether it is withheld from identification for validation.
     pub held_out: bool,
-    /// Whether anything is done with it at all.
+    /// Whether it is used for anything.
     pub used: bool,
-    /// Sample time \[s\], once it is known.
+    /// Sample time \[s\], once known.
     pub sample_time_s: Option<f64>,
-    /// First and last time \[s\] of each piece that is used, on the record's clock; none for all of it.
+    /// First and last time \[s\] of each piece in use, on the record's clock; empty for the whole
+    /// record.
     pub used_s: Vec<[f64; 2]>,
-    /// First and last time \[s\] of the part of what the file holds that is this record, on its clock; none for all of it.
+    /// First and last time \[s\] of this record within the file's samples, on the file's clock;
+    /// `None` for the whole file.
     pub part_s: Option<[f64; 2]>,
-    /// What is put right in it alone, by channel.
+    /// Corrections specific to this record, by channel.
     pub remedies: BTreeMap<String, ChannelRemedy>,
 }
 
-/// What is put right of a channel in one record alone, where that contradicts the others (M14.16).
+/// Correction of a channel in a single record that contradicts the others (M14.16).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ChannelRemedy {
-    /// How much later than in the other records it is logged \[s\]: taken out.
+    /// Extra logging delay relative to the other records \[s\], to be removed.
     pub delay_s: f64,
-    /// What its samples are multiplied by besides the factor of its unit.
+    /// Factor on its samples, in addition to the unit conversion.
     pub factor: f64,
 }
 
 impl ChannelRemedy {
-    /// The channel as it was logged.
+    /// No correction.
     pub const NONE: Self = Self {
         delay_s: 0.0,
         factor: 1.0,
     };
 
-    /// One after the other.
+    /// Combines two corrections, `next` applied after `self`.
     #[must_use]
     pub fn then(self, next: Self) -> Self {
         Self {
@@ -457,7 +455,8 @@ impl Default for ChannelRemedy {
 }
 
 impl ConditionRecord {
-    /// Whether both are of the same record of the same file. The folders of their files may be said from different places.
+    /// Returns whether both refer to the same record of the same file. Folders are ignored, because
+    /// the paths may be relative to different places.
     fn is_of_same_source(&self, other: &ConditionRecord) -> bool {
         let name = |record: &Self| record.file.rsplit('/').next().map(str::to_owned);
         let differ = self
@@ -468,17 +467,17 @@ impl ConditionRecord {
         name(self) == name(other) && self.variable == other.variable && !differ
     }
 
-    /// Whether both are the same samples, under whatever names.
+    /// Returns whether both refer to the same samples, under any name.
     fn is_same_as(&self, other: &ConditionRecord) -> bool {
         self.part_s == other.part_s && self.is_of_same_source(other)
     }
 
-    /// Whether it is a part of what another record is all of.
+    /// Returns whether it is a part of the full record `whole`.
     fn is_part_of(&self, whole: &ConditionRecord) -> bool {
         self.part_s.is_some() && whole.part_s.is_none() && self.is_of_same_source(whole)
     }
 
-    /// A record that is used, of an unknown manoeuvre.
+    /// Creates a record in use, with an unknown manoeuvre.
     pub fn new(name: impl Into<String>, file: impl Into<String>) -> Self {
         Self {
             name: name.into(),

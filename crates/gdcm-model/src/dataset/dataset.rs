@@ -1,4 +1,4 @@
-//! The whole of what the engineer loads, and the frequency band over which models are compared.
+//! The complete dataset, and the frequency band for the comparison of models.
 
 use std::sync::Arc;
 
@@ -11,14 +11,14 @@ use crate::units::number;
 
 /// Channels, on-axis responses, the default band, and the flight conditions with their models (M1).
 ///
-/// Checked once, here: every model of every condition has `p` outputs and `m` inputs.
+/// Checked once at construction: every model of every condition has `p` outputs and `m` inputs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dataset {
     header: DatasetHeader,
     conditions: Vec<Arc<Condition>>,
 }
 
-/// Why channels and conditions are not a dataset.
+/// Why channels and conditions do not form a dataset.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DatasetError {
     /// There are no inputs, no outputs or no conditions.
@@ -29,7 +29,6 @@ pub enum DatasetError {
     DuplicateChannel {
         /// `inputs` or `outputs`.
         list: &'static str,
-        /// The name.
         name: String,
     },
     /// Two conditions share an id.
@@ -37,57 +36,54 @@ pub enum DatasetError {
         "conditions: the id {id} stands twice (conditions number {first} and {second}); ids must differ"
     )]
     DuplicateId {
-        /// The id.
         id: ConditionId,
         /// First condition, counted from 1.
         first: usize,
         /// Second condition, counted from 1.
         second: usize,
     },
-    /// The on-axis table has another shape than the channels.
+    /// The on-axis table does not match the number of channels.
     #[error("on_axis: expected a {} x {} table, found {} x {}", expected.0, expected.1, found.0, found.1)]
     OnAxisShape {
-        /// Number of output and of input channels.
+        /// Number of output and input channels.
         expected: (usize, usize),
         /// Rows and columns found.
         found: (usize, usize),
     },
-    /// A model has another number of outputs or inputs than there are channels.
+    /// A model has the wrong number of outputs or inputs.
     #[error(
         "condition {condition}, model \"{model}\": expected {} outputs x {} inputs, found {} x {}",
         expected.0, expected.1, found.0, found.1
     )]
     ModelShape {
-        /// The condition's id.
         condition: ConditionId,
-        /// The model's name.
         model: String,
-        /// Number of output and of input channels.
+        /// Number of output and input channels.
         expected: (usize, usize),
         /// Outputs and inputs of the model.
         found: (usize, usize),
     },
 }
 
-/// What describes a dataset, besides its conditions.
+/// Description of a dataset, without its conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DatasetHeader {
-    /// Name for people.
+    /// Display name.
     pub name: String,
-    /// What the data are and where they come from.
+    /// Content and source of the data.
     pub description: String,
     /// Input channels, in order.
     pub inputs: Vec<Channel>,
     /// Output channels, in order.
     pub outputs: Vec<Channel>,
-    /// Which responses matter (the paper's Table 2).
+    /// On-axis responses (the paper's Table 2).
     pub on_axis: PairTable<bool>,
     /// Default band of comparison.
     pub band: Band,
 }
 
 impl Dataset {
-    /// The dataset of these conditions, in file order.
+    /// Creates a dataset of these conditions, in file order.
     pub fn new(header: DatasetHeader, conditions: Vec<Condition>) -> Result<Self, DatasetError> {
         check_channels("inputs", &header.inputs)?;
         check_channels("outputs", &header.outputs)?;
@@ -103,42 +99,42 @@ impl Dataset {
         })
     }
 
-    /// What describes the dataset, besides its conditions.
+    /// Returns the description of the dataset, without its conditions.
     pub fn header(&self) -> DatasetHeader {
         self.header.clone()
     }
 
-    /// Name for people.
+    /// Returns the display name.
     pub fn name(&self) -> &str {
         &self.header.name
     }
 
-    /// What the data are and where they come from.
+    /// Returns the content and source of the data.
     pub fn description(&self) -> &str {
         &self.header.description
     }
 
-    /// Input channels, in order.
+    /// Returns the input channels, in order.
     pub fn inputs(&self) -> &[Channel] {
         &self.header.inputs
     }
 
-    /// Output channels, in order.
+    /// Returns the output channels, in order.
     pub fn outputs(&self) -> &[Channel] {
         &self.header.outputs
     }
 
-    /// Which responses matter (the paper's Table 2).
+    /// Returns the on-axis responses (the paper's Table 2).
     pub fn on_axis(&self) -> &PairTable<bool> {
         &self.header.on_axis
     }
 
-    /// Default band of comparison.
+    /// Returns the default band of comparison.
     pub fn band(&self) -> Band {
         self.header.band
     }
 
-    /// Airspeeds of the slowest and of the fastest condition \[kt\].
+    /// Returns the airspeeds of the slowest and the fastest condition \[kt\].
     pub fn airspeed_range_kt(&self) -> (f64, f64) {
         let airspeeds = self
             .conditions
@@ -149,17 +145,17 @@ impl Dataset {
         })
     }
 
-    /// Conditions, in file order.
+    /// Returns the conditions, in file order.
     pub fn conditions(&self) -> &[Arc<Condition>] {
         &self.conditions
     }
 
-    /// The ids of the conditions, in file order.
+    /// Returns the ids of the conditions, in file order.
     pub fn ids(&self) -> impl Iterator<Item = ConditionId> {
         self.conditions.iter().map(|condition| condition.id())
     }
 
-    /// The conditions without identified models, in file order: they have no reference to be compared with.
+    /// Returns the conditions without identified models, hence without a reference, in file order.
     pub fn without_reference(&self) -> Vec<ConditionId> {
         self.conditions
             .iter()
@@ -168,14 +164,14 @@ impl Dataset {
             .collect()
     }
 
-    /// One condition.
+    /// Returns the condition with this id.
     pub fn condition(&self, id: ConditionId) -> Option<&Arc<Condition>> {
         self.conditions
             .iter()
             .find(|condition| condition.id() == id)
     }
 
-    /// The same dataset with this condition in place of the one of its id.
+    /// Returns the same dataset with this condition replacing the one with its id.
     ///
     /// # Errors
     /// [`DatasetError::ModelShape`].
@@ -197,7 +193,7 @@ impl Dataset {
         })
     }
 
-    /// Whether any identified model is measured with coherence.
+    /// Returns whether any identified model is measured with coherence.
     pub fn has_coherence(&self) -> bool {
         let has = |model: &Model| matches!(&model.dynamics, Dynamics::Measured(response) if response.coherence().is_some());
         self.conditions
@@ -205,12 +201,12 @@ impl Dataset {
             .any(|condition| condition.bundle(BundleKind::Identified).iter().any(has))
     }
 
-    /// One model.
+    /// Returns the model with this identity.
     pub fn model(&self, id: &ModelId) -> Option<&Model> {
         self.condition(id.condition)?.model(id.bundle, &id.name)
     }
 
-    /// A response in words, input first: "LON → Q".
+    /// Names a response, input first: "LON → Q".
     pub fn pair_name(&self, pair: Pair) -> String {
         format!(
             "{} → {}",
@@ -218,7 +214,7 @@ impl Dataset {
         )
     }
 
-    /// Names of the inputs and of the outputs.
+    /// Returns the names of the inputs and of the outputs.
     pub fn names_of_channels(&self) -> (Vec<String>, Vec<String>) {
         let names = |channels: &[Channel]| {
             channels
@@ -229,7 +225,7 @@ impl Dataset {
         (names(&self.header.inputs), names(&self.header.outputs))
     }
 
-    /// The names of a response's channels, output first.
+    /// Returns the names of a response's channels, output first.
     pub fn channel_names(&self, pair: Pair) -> (String, String) {
         (
             self.header.outputs[pair.output].name.clone(),
@@ -237,7 +233,7 @@ impl Dataset {
         )
     }
 
-    /// The response of the named output to the named input.
+    /// Returns the response of the named output to the named input.
     pub fn find_pair(&self, output: &str, input: &str) -> Option<Pair> {
         let output = self
             .header
@@ -252,7 +248,8 @@ impl Dataset {
         Some(Pair { output, input })
     }
 
-    /// The pairs that measure a model: the on-axis ones, or all where none is (M5, M7).
+    /// Returns the pairs that enter the objective of a model: the on-axis pairs, or all pairs where
+    /// there are none (M5, M7).
     pub fn measuring_pairs(&self) -> PairTable<bool> {
         if self.header.on_axis.marked().next().is_some() {
             self.header.on_axis.clone()
@@ -317,9 +314,9 @@ fn check_conditions(
     Ok(())
 }
 
-/// Least lower end of a band \[rad/s\]: a period of 17 hours.
+/// Smallest lower end of a band \[rad/s\]: a period of 17 hours.
 pub const LEAST_OMEGA: f64 = 1e-4;
-/// Greatest upper end of a band \[rad/s\]: 16 kHz.
+/// Largest upper end of a band \[rad/s\]: 16 kHz.
 pub const GREATEST_OMEGA: f64 = 1e5;
 
 /// A frequency band \[rad/s\], `LEAST_OMEGA <= min < max <= GREATEST_OMEGA`.
@@ -330,7 +327,7 @@ pub struct Band {
     max: f64,
 }
 
-/// A band that is empty, or reaches beyond the least or the greatest frequency.
+/// The error for a band that is empty or exceeds the frequency limits.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "the frequency band must be {} <= min < max <= {} (rad/s), found min {}, max {}",
@@ -358,7 +355,7 @@ impl From<Band> for [f64; 2] {
 }
 
 impl Band {
-    /// The band from `min` to `max` \[rad/s\].
+    /// Creates the band from `min` to `max` \[rad/s\].
     pub fn new(min: f64, max: f64) -> Result<Self, BandError> {
         if LEAST_OMEGA <= min && min < max && max <= GREATEST_OMEGA {
             Ok(Self { min, max })
@@ -367,7 +364,8 @@ impl Band {
         }
     }
 
-    /// A band that may reach beyond the limits of comparison, `0 < min < max`: the one drawn around such a band does.
+    /// Creates a band that may exceed the limits of comparison, `0 < min < max`, such as the
+    /// plotted range around a band.
     pub fn beyond(min: f64, max: f64) -> Result<Self, BandError> {
         if 0.0 < min && min < max && max.is_finite() {
             Ok(Self { min, max })
@@ -376,12 +374,12 @@ impl Band {
         }
     }
 
-    /// Lower end \[rad/s\].
+    /// Returns the lower end \[rad/s\].
     pub fn min(self) -> f64 {
         self.min
     }
 
-    /// Upper end \[rad/s\].
+    /// Returns the upper end \[rad/s\].
     pub fn max(self) -> f64 {
         self.max
     }

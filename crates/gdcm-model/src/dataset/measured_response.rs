@@ -1,4 +1,4 @@
-//! A frequency response given as measured data.
+//! A measured frequency response.
 
 use nalgebra::Complex;
 
@@ -6,9 +6,11 @@ use super::channel::{Pair, PairTable};
 use super::limits::{AVERAGES, WINDOW_S};
 use crate::units::number;
 
-/// A frequency response measured (or exported) at `N` frequencies, in place of a state-space model.
+/// A frequency response measured (or exported) at `N` frequencies, used instead of a state-space
+/// model.
 ///
-/// `omega` \[rad/s\] rises strictly from a positive value, `N >= 2`; every response has `N` finite values.
+/// `omega` \[rad/s\] rises strictly from a positive value, `N >= 2`; every response has `N` finite
+/// values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredResponse {
     omega: Vec<f64>,
@@ -18,8 +20,9 @@ pub struct MeasuredResponse {
     estimate: Estimate,
 }
 
-/// How a response was estimated from records, as far as whoever made it says. With coherence, both set the error bars of the
-/// response (M13) and its weight in the fit of couplings (M16.2); a condition's own gains and delays do not depend on them.
+/// Estimation settings of a response, as far as its author gives them. With coherence, they
+/// determine the error bars of the response (M13) and its weight in the fit of couplings (M16.2); a
+/// condition's own gains and delays do not depend on them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// Number of independent averages.
@@ -28,21 +31,20 @@ pub struct Estimate {
     pub window_s: Option<f64>,
 }
 
-/// Why frequency data is not a response.
+/// Why frequency data do not form a response.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeasuredResponseError {
     /// Fewer than two frequencies.
     #[error("expected at least 2 frequencies, found {0}")]
     TooFewFrequencies(usize),
-    /// A frequency is not finite, not positive, or not above the one before.
+    /// A frequency is not finite, not positive, or not above the previous one.
     #[error("frequency {entry}: expected finite, positive and rising frequencies, found {}", number(*value))]
     Frequency {
         /// Entry, counted from 1.
         entry: usize,
-        /// What stands there.
         value: f64,
     },
-    /// A response has another number of values than there are frequencies.
+    /// A response does not have one value per frequency.
     #[error("{array}, output {output}, input {input}: expected {expected} values, found {found}")]
     Length {
         /// `re`, `im` or `coherence`.
@@ -56,7 +58,7 @@ pub enum MeasuredResponseError {
         /// Number of values.
         found: usize,
     },
-    /// A valid band does not begin at or above zero and end at or above its beginning.
+    /// A valid band does not start at or above zero, or ends before it starts.
     #[error(
         "valid_band_rad_s, output {output}, input {input}: expected two rising frequencies from 0, found {} and {}",
         number(band[0]), number(band[1])
@@ -66,17 +68,15 @@ pub enum MeasuredResponseError {
         output: usize,
         /// Input, counted from 1.
         input: usize,
-        /// What stands there.
         band: [f64; 2],
     },
-    /// The number or the length of the averages is outside its range.
+    /// The number or the window length of the averages is out of range.
     #[error("{key}: expected a number from {} to {}, found {}", number(range[0]), number(range[1]), number(*value))]
     Estimate {
         /// `averages` or `window_s`.
         key: &'static str,
-        /// The least and the greatest value.
+        /// Smallest and largest permitted value.
         range: [f64; 2],
-        /// The value found.
         value: f64,
     },
     /// A value is NaN or infinite, or a coherence lies outside 0 to 1.
@@ -90,15 +90,15 @@ pub enum MeasuredResponseError {
         input: usize,
         /// Entry, counted from 1.
         entry: usize,
-        /// What may stand there.
+        /// The permitted values.
         expected: &'static str,
-        /// What stands there.
         value: f64,
     },
 }
 
 impl MeasuredResponse {
-    /// The response with real parts `re` and imaginary parts `im` at `omega` \[rad/s\], both p x m tables of `N` values.
+    /// Creates the response with real parts `re` and imaginary parts `im` at `omega` \[rad/s\],
+    /// both p x m tables of `N` values.
     pub fn new(
         omega: Vec<f64>,
         re: &PairTable<Vec<f64>>,
@@ -132,10 +132,11 @@ impl MeasuredResponse {
         })
     }
 
-    /// The same response, each pair of which is trusted between two frequencies \[rad/s\] only (M4a).
+    /// Returns the same response, each pair trusted only between two frequencies \[rad/s\] (M4a).
     ///
     /// # Errors
-    /// [`MeasuredResponseError::ValidBand`] where a band is not finite, negative, or ends before it begins.
+    /// [`MeasuredResponseError::ValidBand`] where a band is not finite, negative, or ends before it
+    /// begins.
     pub fn with_valid_bands(
         mut self,
         bands: PairTable<[f64; 2]>,
@@ -154,10 +155,11 @@ impl MeasuredResponse {
         Ok(self)
     }
 
-    /// The same response, with what is known of how it was estimated.
+    /// Returns the same response with its estimation settings.
     ///
     /// # Errors
-    /// [`MeasuredResponseError::Estimate`] where a number is outside the limits that the settings have too.
+    /// [`MeasuredResponseError::Estimate`] where a number exceeds the limits that also apply to the
+    /// settings.
     pub fn with_estimate(mut self, estimate: Estimate) -> Result<Self, MeasuredResponseError> {
         for (key, value, range) in [
             ("averages", estimate.averages, AVERAGES),
@@ -173,27 +175,30 @@ impl MeasuredResponse {
         Ok(self)
     }
 
-    /// Frequencies \[rad/s\], strictly rising.
+    /// Returns the frequencies \[rad/s\], strictly rising.
     pub fn omega(&self) -> &[f64] {
         &self.omega
     }
 
-    /// Values of each response, one for each frequency.
+    /// Returns the values of each response, one per frequency.
     pub fn values(&self) -> &PairTable<Vec<Complex<f64>>> {
         &self.values
     }
 
-    /// Coherence of each response, one value from 0 to 1 for each frequency, where the file gives it.
+    /// Returns the coherence of each response, from 0 to 1 at each frequency, where the file gives
+    /// it.
     pub fn coherence(&self) -> Option<&PairTable<Vec<f64>>> {
         self.coherence.as_ref()
     }
 
-    /// First and last frequency \[rad/s\] between which each response is trusted, where the file gives them.
+    /// Returns the first and last trusted frequency of each response \[rad/s\], where the file
+    /// gives them.
     pub fn valid_bands(&self) -> Option<&PairTable<[f64; 2]>> {
         self.valid_bands.as_ref()
     }
 
-    /// Whether there are numbers of a response: some are not zero, and its valid band holds a frequency.
+    /// Returns whether a response has data: some values are not zero, and its valid band contains a
+    /// frequency.
     pub fn is_measured(&self, pair: Pair) -> bool {
         let has_band = self
             .valid_bands
@@ -205,7 +210,7 @@ impl MeasuredResponse {
                 .any(|value| *value != Complex::new(0.0, 0.0))
     }
 
-    /// How the response was estimated.
+    /// Returns the estimation settings.
     pub fn estimate(&self) -> Estimate {
         self.estimate
     }

@@ -1,4 +1,4 @@
-//! What the engineer loads: channels, models, flight conditions; checked once, at construction (M1).
+//! The engineer's data: channels, models, flight conditions; checked once at construction (M1).
 
 pub mod channel;
 pub mod condition;
@@ -18,32 +18,34 @@ pub use dataset::{Band, Dataset};
 pub use model::{Dynamics, Model};
 pub use state_space::StateSpace;
 
-/// The most that is read of anything: what a mistaken or hostile file can make the program allocate, and how long it can work.
+/// Upper limits on all inputs; they bound the memory and time that a faulty or hostile file can
+/// cost.
 pub mod limits {
-    /// Bytes of text in a file, packed or not: 128 MiB, some 500 conditions of the example's size.
+    /// Bytes of text in a file, before or after decompression: 128 MiB, some 500 conditions of the
+    /// example's size.
     pub const LARGEST_TEXT: u64 = 128 << 20;
-    /// Inputs, and outputs: as many as gains and delays are tested with. Tables of pairs grow with the product, the search for the
-    /// best gains faster.
+    /// Inputs, and outputs: the largest number with which gains and delays are tested. Tables of
+    /// pairs grow with the product; the search for the best gains grows faster.
     pub const MOST_CHANNELS: usize = 32;
-    /// On-axis, held or ignored responses.
+    /// On-axis, constrained or ignored responses.
     pub const MOST_PAIRS: usize = MOST_CHANNELS * MOST_CHANNELS;
-    /// Conditions: comparing their ids takes time that grows with the square.
+    /// Conditions: the comparison of ids takes quadratic time.
     pub const MOST_CONDITIONS: usize = 5000;
-    /// Models of a bundle: comparing their names takes time that grows with the square.
+    /// Models of a bundle: the comparison of names takes quadratic time.
     pub const MOST_MODELS: usize = 5000;
-    /// Records of a condition: comparing their names takes time that grows with the square.
+    /// Records of a condition: the comparison of names takes quadratic time.
     pub const MOST_RECORDS: usize = 1000;
-    /// Pieces of a record, and records that a model says it was made of.
+    /// Pieces of a record, and source records listed by a model.
     pub const MOST_PIECES: usize = 1000;
-    /// Models of all conditions together.
+    /// Models in all conditions together.
     pub const MOST_MODELS_IN_ALL: usize = 50_000;
-    /// States of a model: the time of a response grows with the third power.
+    /// States of a model: the cost of a response is cubic in their number.
     pub const MOST_STATES: usize = 1000;
     /// Frequencies of a measured response.
     pub const MOST_FREQUENCIES: usize = 100_000;
     /// Coordinates of a perturbation.
     pub const MOST_COORDINATES: usize = 50;
-    /// Least and greatest number of independent averages of a measured response.
+    /// Smallest and largest number of independent averages of a measured response.
     pub const AVERAGES: [f64; 2] = [1e-6, 1e6];
     /// Shortest and longest window of a measured response \[s\].
     pub const WINDOW_S: [f64; 2] = [1e-6, 1e6];

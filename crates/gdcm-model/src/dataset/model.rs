@@ -1,4 +1,4 @@
-//! One model of a bundle: where it comes from, how its response is known and how uncertain it is, and the hash of its numbers.
+//! One model of a bundle: its origin, dynamics, uncertainty and content hash.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,17 +12,17 @@ use super::measured_response::{
 };
 use super::state_space::{StateSpace, Timing};
 
-/// How the response of a model is known.
+/// The dynamics of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dynamics {
-    /// By its matrices.
+    /// State-space matrices.
     StateSpace(StateSpace),
-    /// By measured frequency data, interpolated (identified models only).
+    /// Measured frequency data, interpolated (identified models only).
     Measured(MeasuredResponse),
 }
 
 impl Dynamics {
-    /// `(p, m)`: the number of outputs and of inputs.
+    /// Returns `(p, m)`: the number of outputs and inputs.
     pub fn shape(&self) -> (usize, usize) {
         match self {
             Dynamics::StateSpace(model) => (model.outputs(), model.inputs()),
@@ -33,51 +33,52 @@ impl Dynamics {
     }
 }
 
-/// Where a model comes from.
+/// The origin of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Origin {
-    /// The physics model linearised at the trim of the condition itself.
+    /// The physics model linearised at the condition's trim.
     Nominal {
-        /// Offsets of the trim from the condition's, by coordinate name (all zero, where given).
+        /// Trim offsets from the condition, by coordinate name (all zero, where given).
         perturbation: Option<BTreeMap<String, f64>>,
     },
     /// The physics model linearised at a perturbed trim.
     Perturbed {
-        /// Offsets of the trim from the condition's, by coordinate name ("airspeed_kt", "roll_deg").
+        /// Trim offsets from the condition, by coordinate name ("airspeed_kt", "roll_deg").
         perturbation: Option<BTreeMap<String, f64>>,
     },
     /// Identified from flight.
     Identified {
         /// Identification method ("CT-PBSID").
         method: Option<String>,
-        /// Order the identification reports.
+        /// Order reported by the identification.
         order: Option<usize>,
     },
 }
 
-/// Which file a model was made from, as far as whoever made it says.
+/// Source file of a model, as far as its author gives it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Provenance {
-    /// The file, relative to the dataset's.
+    /// Path relative to the dataset's file.
     pub file: Option<String>,
     /// SHA-256 of the file, in hexadecimal.
     pub sha256: Option<String>,
-    /// The variable in it, or the flight record.
+    /// Its variable, or the flight record.
     pub variable: Option<String>,
-    /// When the model was made, as the maker writes dates.
+    /// Creation date, in the author's format.
     pub made: Option<String>,
-    /// What else the reader noted.
+    /// Further notes from the reader.
     pub note: Option<String>,
-    /// Names of the flight records that an identified model was made of; none where they are not said.
+    /// Names of the flight records from which an identified model was estimated; empty where
+    /// unknown.
     pub records: Vec<String>,
-    /// Variables of the file that were not used; the first model of a file lists them for the whole file.
+    /// Unused variables of the file; the first model of a file lists them for the whole file.
     pub unused: Vec<String>,
-    /// The sides whose channels were taken by their position, because the file has no names for them.
+    /// The sides whose channels were matched by position, because the file has no names for them.
     pub by_position: Vec<ChannelSide>,
 }
 
 impl Provenance {
-    /// The provenance in words: "models/roll+5.mat, variable sys, made 2026-03-01".
+    /// Describes the provenance: "models/roll+5.mat, variable sys, made 2026-03-01".
     pub fn words(&self) -> String {
         let named = |name: &str, value: &Option<String>| {
             value.as_ref().map(|value| format!("{name}{value}"))
@@ -100,20 +101,18 @@ impl Provenance {
 pub struct Model {
     /// Name, unique in its bundle.
     pub name: String,
-    /// Where it comes from.
     pub origin: Origin,
-    /// How its response is known.
     pub dynamics: Dynamics,
-    /// Which file it was made from, where that is known.
+    /// Source file, where known.
     pub source: Option<Provenance>,
-    /// Names of the states, one for each; none where they are not known.
+    /// Names of the states, one per state; empty where unknown.
     pub states: Arc<[String]>,
-    /// How uncertain its response is, where the identification says so.
+    /// Uncertainty of its response, where the identification gives it.
     pub bands: Option<Arc<ModelBands>>,
 }
 
 impl Model {
-    /// A model of this name.
+    /// Creates a model with this name.
     pub fn new(name: impl Into<String>, origin: Origin, dynamics: Dynamics) -> Self {
         Self {
             name: name.into(),
@@ -125,7 +124,7 @@ impl Model {
         }
     }
 
-    /// The name of a state, or its number (from 1) where it has none: "q", "state 5".
+    /// Returns the name of a state, or its number (from 1) where it has none: "q", "state 5".
     pub fn state_name(&self, state: usize) -> String {
         self.states
             .get(state)
@@ -133,7 +132,7 @@ impl Model {
             .unwrap_or_else(|| format!("state {}", state + 1))
     }
 
-    /// Its matrices; none where its response is measured.
+    /// Returns its matrices; `None` where its response is measured.
     pub fn state_space(&self) -> Option<&StateSpace> {
         match &self.dynamics {
             Dynamics::StateSpace(model) => Some(model),
@@ -141,12 +140,12 @@ impl Model {
         }
     }
 
-    /// Whether this is the physics model at the condition's own trim.
+    /// Returns whether this is the physics model at the condition's trim.
     pub fn is_nominal(&self) -> bool {
         matches!(self.origin, Origin::Nominal { .. })
     }
 
-    /// Offsets of the trim from the condition's, where the file gives them.
+    /// Returns the trim offsets from the condition, where the file gives them.
     pub fn perturbation(&self) -> Option<&BTreeMap<String, f64>> {
         match &self.origin {
             Origin::Nominal { perturbation } | Origin::Perturbed { perturbation } => {
@@ -156,7 +155,8 @@ impl Model {
         }
     }
 
-    /// What tells this model from another of its name: its numbers, its bands, its role and its trim, as 16 hexadecimal digits.
+    /// Returns a fingerprint that distinguishes models with the same name: a hash of the numbers,
+    /// bands, role and trim, as 16 hexadecimal digits.
     pub fn fingerprint(&self) -> String {
         let mut hash = Sha256::new();
         hash.update(ContentHash::of(&self.dynamics).bytes());
@@ -165,7 +165,7 @@ impl Model {
             hash.update(coordinate.as_bytes());
             hash.update(offset.to_le_bytes());
         }
-        // Nothing is added where there are none: most models keep the fingerprint that they always had.
+        // Absent bands add nothing, so that most models keep the fingerprint they have always had.
         if let Some(bands) = &self.bands {
             bands.add_to(&mut hash);
         }
@@ -175,7 +175,8 @@ impl Model {
             .collect()
     }
 
-    /// Number of states, or the order the identification reports; none for measured data without one.
+    /// Returns the number of states, or the order reported by the identification; `None` for
+    /// measured data without an order.
     pub fn order(&self) -> Option<usize> {
         match (&self.dynamics, &self.origin) {
             (Dynamics::StateSpace(model), _) => Some(model.order()),
@@ -185,9 +186,11 @@ impl Model {
     }
 }
 
-/// Standard deviations of a model's response over frequency, as the identification estimates them (M14).
+/// Standard deviations of a model's response over frequency, as estimated by the identification
+/// (M14).
 ///
-/// A curve holds to `1 - 2 Phi(-z)` between `H_dB - z sd_db` and `H_dB + z sd_db`, and the same of its phase.
+/// A curve lies between `H_dB - z sd_db` and `H_dB + z sd_db` with probability `1 - 2 Phi(-z)`; the
+/// same holds for the phase.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelBands {
     omega: Vec<f64>,
@@ -196,10 +199,12 @@ pub struct ModelBands {
 }
 
 impl ModelBands {
-    /// The standard deviations of magnitude \[dB\] and phase \[deg\] at `omega` \[rad/s\], both p x m tables of `N` values.
+    /// Creates bands from the standard deviations of magnitude \[dB\] and phase \[deg\] at `omega`
+    /// \[rad/s\], both p x m tables of `N` values.
     ///
     /// # Errors
-    /// Frequencies that do not rise, tables of another length, numbers that are not finite or negative.
+    /// Frequencies that do not rise, tables of the wrong length, or numbers that are negative or
+    /// not finite.
     pub fn new(
         omega: Vec<f64>,
         sd_db: PairTable<Vec<f64>>,
@@ -222,17 +227,17 @@ impl ModelBands {
         })
     }
 
-    /// Frequencies \[rad/s\], strictly rising.
+    /// Returns the frequencies \[rad/s\], strictly rising.
     pub fn omega(&self) -> &[f64] {
         &self.omega
     }
 
-    /// Standard deviation of the magnitude \[dB\], one for each frequency.
+    /// Returns the standard deviation of the magnitude \[dB\], one value per frequency.
     pub fn sd_db(&self) -> &PairTable<Vec<f64>> {
         &self.sd_db
     }
 
-    /// Standard deviation of the phase \[deg\], one for each frequency.
+    /// Returns the standard deviation of the phase \[deg\], one value per frequency.
     pub fn sd_deg(&self) -> &PairTable<Vec<f64>> {
         &self.sd_deg
     }
@@ -249,13 +254,14 @@ impl ModelBands {
     }
 }
 
-/// SHA-256 of every number that the response of a model depends on: models of one hash have one response.
+/// SHA-256 of all numbers that determine a model's response: models with equal hashes have equal
+/// responses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ContentHash([u8; 32]);
 
 impl ContentHash {
-    /// The hash of a model's matrices and timing, or of its measured frequencies, values, coherence and valid bands; shapes
-    /// included.
+    /// Computes the hash of a model's matrices and timing, or of its measured frequencies, values,
+    /// coherence and valid bands; shapes included.
     pub fn of(dynamics: &Dynamics) -> Self {
         let mut hash = Sha256::new();
         match dynamics {
@@ -265,13 +271,13 @@ impl ContentHash {
         Self(hash.finalize().into())
     }
 
-    /// The hash itself.
+    /// Returns the bytes of the hash.
     pub fn bytes(&self) -> &[u8; 32] {
         &self.0
     }
 }
 
-/// Adds numbers after how many there are.
+/// Adds a count and then the numbers to a hash.
 pub(super) fn add_numbers(hash: &mut Sha256, numbers: &[f64]) {
     hash.update((numbers.len() as u64).to_le_bytes());
     let bytes: Vec<u8> = numbers
@@ -290,7 +296,7 @@ fn add_state_space(hash: &mut Sha256, model: &StateSpace) {
     [model.a(), model.b(), model.c(), model.d()]
         .into_iter()
         .for_each(|matrix| add(hash, matrix));
-    // Nothing is added for a plain model: its hash stays what it was before there was any timing.
+    // A plain model adds nothing: its hash stays the same as before timing existed.
     if !model.timing().is_plain() {
         let Timing {
             sample_time_s,

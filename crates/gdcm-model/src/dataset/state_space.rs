@@ -1,14 +1,15 @@
-//! A linear time-invariant model in state-space form, with its sampling and the delays of its channels (M2a).
+//! A linear time-invariant model in state-space form, with its sample time and channel delays
+//! (M2a).
 
 use nalgebra::DMatrix;
 
 use crate::units::number;
 
-/// A linear model `x' = A x + B u`, `y = C x + D u`, with `n` states, `m` inputs and `p` outputs; of discrete time, and with
-/// delayed channels, where its [`Timing`] says so (M2a).
+/// A linear model `x' = A x + B u`, `y = C x + D u`, with `n` states, `m` inputs and `p` outputs;
+/// discrete-time, or with delayed channels, according to its [`Timing`] (M2a).
 ///
-/// Shapes are checked at construction: `A` n x n, `B` n x m, `C` p x n, `D` p x m, all entries finite.
-/// A model of order zero (`n = 0`) is the static gain `D`.
+/// Shapes are checked at construction: `A` n x n, `B` n x m, `C` p x n, `D` p x m, all entries
+/// finite. A model of order zero (`n = 0`) is the static gain `D`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateSpace {
     a: DMatrix<f64>,
@@ -18,10 +19,10 @@ pub struct StateSpace {
     timing: Timing,
 }
 
-/// Why four matrices are not a state-space model.
+/// Why four matrices do not form a state-space model.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StateSpaceError {
-    /// A matrix has another shape than the others require.
+    /// A matrix does not have the shape required by the others.
     #[error("matrix {matrix}: expected {} x {}, found {} x {}", expected.0, expected.1, found.0, found.1)]
     Shape {
         /// `A`, `B`, `C` or `D`.
@@ -40,17 +41,16 @@ pub enum StateSpaceError {
         row: usize,
         /// Column, counted from 1.
         column: usize,
-        /// What stands there.
         value: f64,
     },
-    /// The sample time or the delays are wrong.
+    /// The sample time or the delays are invalid.
     #[error(transparent)]
     Timing(#[from] TimingError),
 }
 
 impl StateSpace {
-    /// The model (A, B, C, D) of continuous time; the order is the rows of `A`, the inputs and outputs are the columns and rows
-    /// of `D`.
+    /// Creates the continuous-time model (A, B, C, D); `A` gives the order, the columns and rows of
+    /// `D` give the inputs and outputs.
     pub fn new(
         a: DMatrix<f64>,
         b: DMatrix<f64>,
@@ -89,77 +89,78 @@ impl StateSpace {
         })
     }
 
-    /// The same matrices with a sample time or delays (M2a).
+    /// Returns the same matrices with a sample time or delays (M2a).
     ///
     /// # Errors
-    /// [`TimingError`] where they are out of range or not one for each channel.
+    /// [`TimingError`] where they are out of range or their number differs from the number of
+    /// channels.
     pub fn timed(mut self, timing: Timing) -> Result<Self, StateSpaceError> {
         self.timing = timing.checked(self.outputs(), self.inputs())?;
         Ok(self)
     }
 
-    /// Sample time and delays; delays that are all zero are none.
+    /// Returns the sample time and delays; delays that are all zero are removed.
     pub fn timing(&self) -> &Timing {
         &self.timing
     }
 
-    /// System matrix, n x n.
+    /// Returns the system matrix, n x n.
     pub fn a(&self) -> &DMatrix<f64> {
         &self.a
     }
 
-    /// Input matrix, n x m.
+    /// Returns the input matrix, n x m.
     pub fn b(&self) -> &DMatrix<f64> {
         &self.b
     }
 
-    /// Output matrix, p x n.
+    /// Returns the output matrix, p x n.
     pub fn c(&self) -> &DMatrix<f64> {
         &self.c
     }
 
-    /// Feed-through matrix, p x m.
+    /// Returns the feed-through matrix, p x m.
     pub fn d(&self) -> &DMatrix<f64> {
         &self.d
     }
 
-    /// Number of states, `n`.
+    /// Returns the number of states, `n`.
     pub fn order(&self) -> usize {
         self.a.nrows()
     }
 
-    /// Number of inputs, `m`.
+    /// Returns the number of inputs, `m`.
     pub fn inputs(&self) -> usize {
         self.d.ncols()
     }
 
-    /// Number of outputs, `p`.
+    /// Returns the number of outputs, `p`.
     pub fn outputs(&self) -> usize {
         self.d.nrows()
     }
 }
 
-/// Greatest delay of a channel \[s\].
+/// Largest delay of a channel \[s\].
 pub const GREATEST_CHANNEL_DELAY_S: f64 = 60.0;
 
-/// What a model's matrices do not say: whether they act in steps of time, and how long its channels take (M2a).
+/// Sample time and channel delays of a model, which its matrices do not contain (M2a).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Timing {
-    /// Sample time T \[s\] of a discrete-time model; none in continuous time.
+    /// Sample time T \[s\] of a discrete-time model; `None` in continuous time.
     pub sample_time_s: Option<f64>,
-    /// Delay of each input \[s\]; none where nothing is delayed.
+    /// Delay of each input \[s\]; `None` without delays.
     pub input_delays_s: Option<Vec<f64>>,
-    /// Delay of each output \[s\]; none where nothing is delayed.
+    /// Delay of each output \[s\]; `None` without delays.
     pub output_delays_s: Option<Vec<f64>>,
 }
 
-/// Why a sample time or delays cannot be those of a model.
+/// Why a sample time or delays are invalid.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TimingError {
     /// A sample time is not finite or not positive.
     #[error("sample_time_s: expected a positive number of seconds (none at all for continuous time), found {}", number(*.0))]
     SampleTime(f64),
-    /// A list of delays has another length than there are channels.
+    /// The number of delays differs from the number of channels.
     #[error("{list}: expected {expected} delays, one for each channel, found {found}")]
     Count {
         /// `input_delays_s` or `output_delays_s`.
@@ -176,24 +177,24 @@ pub enum TimingError {
         list: &'static str,
         /// Entry, counted from 1.
         entry: usize,
-        /// What stands there.
         value: f64,
     },
 }
 
 impl Timing {
-    /// Whether there is nothing to say: continuous time, nothing delayed.
+    /// Returns whether the timing is plain: continuous time without delays.
     pub fn is_plain(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Frequency \[rad/s\] from which a discrete-time model has no response, `pi / T`.
+    /// Returns the Nyquist frequency `pi / T` \[rad/s\], from which on a discrete-time model has no
+    /// response.
     pub fn nyquist_rad_s(&self) -> Option<f64> {
         self.sample_time_s
             .map(|sample_time_s| std::f64::consts::PI / sample_time_s)
     }
 
-    /// `tau_o + tau_i` \[s\] of one response.
+    /// Returns the delay `tau_o + tau_i` \[s\] of one response.
     pub fn delay_s(&self, output: usize, input: usize) -> f64 {
         let of = |delays: &Option<Vec<f64>>, channel: usize| {
             delays
@@ -205,7 +206,8 @@ impl Timing {
         of(&self.output_delays_s, output) + of(&self.input_delays_s, input)
     }
 
-    /// The timing in words: "discrete time, T = 0.01 s, input delays 0.02, 0 s"; nothing where it is plain.
+    /// Describes the timing: "discrete time, T = 0.01 s, input delays 0.02, 0 s"; empty where it is
+    /// plain.
     pub fn words(&self) -> String {
         let delays = |name: &str, delays: &Option<Vec<f64>>| {
             let delays: Vec<String> = delays
@@ -226,7 +228,8 @@ impl Timing {
         parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 
-    /// The timing of a model of `outputs` and `inputs`, delays that are all zero left out: such a model is the one without.
+    /// Checks the timing for a model with `outputs` and `inputs`, and removes delays that are all
+    /// zero, so that such a model equals the one without delays.
     pub(super) fn checked(self, outputs: usize, inputs: usize) -> Result<Self, TimingError> {
         if let Some(value) = self
             .sample_time_s

@@ -1,4 +1,5 @@
-//! A dataset before it is checked: what any reader fills, whatever the file; and the checks, up to the first fault or for all of them.
+//! A dataset before its checks, filled by any reader from any format; and the checks, which stop at
+//! the first fault or collect all of them.
 
 use std::sync::Arc;
 
@@ -12,12 +13,12 @@ use super::measured_response::{Estimate, MeasuredResponse, MeasuredResponseError
 use super::model::{Dynamics, Model, ModelBands, Origin, Provenance};
 use super::state_space::{StateSpace, StateSpaceError, Timing};
 
-/// A table of numbers for each response and frequency, `[output][input][frequency]`, the last index running fastest.
+/// A table with one number per response and frequency, `[output][input][frequency]`, the last index
+/// running fastest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseArray {
     /// Number of outputs, inputs and frequencies.
     pub shape: [usize; 3],
-    /// The numbers.
     pub values: Vec<f64>,
 }
 
@@ -26,15 +27,12 @@ pub struct ResponseArray {
 pub struct ResponseDraft {
     /// Frequencies \[rad/s\].
     pub omega: Vec<f64>,
-    /// Real parts.
     pub re: ResponseArray,
-    /// Imaginary parts.
     pub im: ResponseArray,
-    /// Coherence, where it is given.
+    /// Coherence, where given.
     pub coherence: Option<ResponseArray>,
-    /// First and last trusted frequency of each response \[rad/s\], where they are given.
+    /// First and last trusted frequency of each response \[rad/s\], where given.
     pub valid_bands: Option<ResponseArray>,
-    /// How it was estimated.
     pub estimate: Estimate,
 }
 
@@ -43,35 +41,33 @@ pub struct ResponseDraft {
 pub struct BandsDraft {
     /// Frequencies \[rad/s\].
     pub omega: Vec<f64>,
-    /// Standard deviation of magnitudes \[dB\].
+    /// Standard deviation of the magnitudes \[dB\].
     pub sd_db: ResponseArray,
-    /// Standard deviation of phases \[deg\].
+    /// Standard deviation of the phases \[deg\].
     pub sd_deg: ResponseArray,
 }
 
 /// One model, unchecked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelDraft {
-    /// Name.
     pub name: String,
-    /// What it is of.
     pub origin: Origin,
-    /// Matrices A, B, C, D, each where it is given.
+    /// Matrices A, B, C, D, each where given.
     pub matrices: [Option<DMatrix<f64>>; 4],
-    /// Sample time and delays, where they are given.
+    /// Sample time and delays, where given.
     pub timing: Timing,
-    /// Measured response, where it is given.
+    /// Measured response, where given.
     pub response: Option<ResponseDraft>,
-    /// Which file it comes from.
+    /// Source file.
     pub source: Option<Provenance>,
-    /// Names of the states, for people; none where they are not known.
+    /// Names of the states, for display; empty where unknown.
     pub states: Vec<String>,
-    /// How uncertain its response is, where that is given.
+    /// Uncertainty of its response, where given.
     pub bands: Option<BandsDraft>,
 }
 
 impl ResponseArray {
-    /// A table with as many numbers for every response.
+    /// Converts a table with equally many numbers for every response.
     fn of<V: AsRef<[f64]>>(table: &PairTable<V>) -> Self {
         let length = table
             .iter()
@@ -89,7 +85,7 @@ impl ResponseArray {
 }
 
 impl ModelDraft {
-    /// A model as it may be written, or put together with others.
+    /// Converts a model to a draft, for writing or merging.
     pub fn of(model: &Model) -> Self {
         let (matrices, timing, response) = match &model.dynamics {
             Dynamics::StateSpace(system) => {
@@ -137,47 +133,39 @@ impl ModelDraft {
 /// One flight condition, unchecked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionDraft {
-    /// What describes it besides its models.
     pub flight_state: FlightState,
-    /// Physics models.
     pub physics: Vec<ModelDraft>,
-    /// Identified models.
     pub identified: Vec<ModelDraft>,
-    /// Flight records.
     pub records: Vec<ConditionRecord>,
 }
 
 /// A dataset, unchecked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DatasetDraft {
-    /// Name for people.
     pub name: String,
-    /// What the data are and where they come from.
+    /// Content and source of the data.
     pub description: String,
-    /// Input channels.
     pub inputs: Vec<Channel>,
-    /// Output channels.
     pub outputs: Vec<Channel>,
     /// On-axis responses: output, input.
     pub on_axis: Vec<(String, String)>,
     /// Lower and upper end of the default band \[rad/s\].
     pub band: (f64, f64),
-    /// Flight conditions.
     pub conditions: Vec<ConditionDraft>,
 }
 
-/// What is wrong in a draft.
+/// A fault in a draft.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum DraftFault {
-    /// A list has more entries than the program takes.
+    /// A list exceeds its limit.
     #[error("expected at most {most} entries, found {found}")]
     TooMany {
         /// The limit.
         most: usize,
-        /// How many there are.
+        /// The number of entries.
         found: usize,
     },
-    /// A table has another shape than the channels or the states require.
+    /// A table does not have the shape required by the channels or the states.
     #[error("expected {expected}, found {found}")]
     Shape {
         /// The shape required, in words.
@@ -190,15 +178,13 @@ pub enum DraftFault {
     UnknownChannel {
         /// "output" or "input".
         kind: &'static str,
-        /// The name.
         name: String,
     },
-    /// A pair stands twice in a list.
+    /// A pair appears twice in a list.
     #[error("the pair [\"{output}\", \"{input}\"] stands twice; remove one")]
     DuplicatePair {
-        /// The output's name.
+        /// Name of the output.
         output: String,
-        /// The input's name.
         input: String,
     },
     /// A model has some matrices, but not all four.
@@ -221,29 +207,28 @@ pub enum DraftFault {
         "a physics model needs matrices A, B, C, D; a measured response is for identified models"
     )]
     MeasuredPhysics,
-    /// The ends of the band are wrong.
+    /// The ends of the band are invalid.
     #[error(transparent)]
     Band(#[from] BandError),
-    /// The matrices are no state-space model.
+    /// The matrices do not form a state-space model.
     #[error(transparent)]
     StateSpace(#[from] StateSpaceError),
-    /// The frequency data are no response.
+    /// The frequency data do not form a response.
     #[error(transparent)]
     MeasuredResponse(#[from] MeasuredResponseError),
-    /// The models are no condition.
+    /// The models do not form a condition.
     #[error(transparent)]
     Condition(#[from] ConditionError),
-    /// The conditions are no dataset.
+    /// The conditions do not form a dataset.
     #[error(transparent)]
     Dataset(#[from] DatasetError),
 }
 
-/// What is wrong in a draft, and where. Boxed, so that results that are mostly right stay small.
+/// A fault in a draft, with its location. Boxed, so that results, which are mostly successful, stay
+/// small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DraftError {
-    /// Where.
     pub place: Box<Location>,
-    /// What.
     pub fault: Box<DraftFault>,
 }
 
@@ -256,20 +241,19 @@ impl DraftError {
     }
 }
 
-/// Something odd but harmless in a draft.
+/// An unusual but harmless property of a draft.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
-    /// Where.
     pub place: Location,
-    /// What, in words.
+    /// Description.
     pub words: String,
 }
 
-/// More faults than this are not looked for: a file of another kind has one in every model.
+/// Maximum number of faults collected: a file of the wrong kind has one in every model.
 const MOST_FAULTS: usize = 1000;
 
 impl DatasetDraft {
-    /// The dataset, with what is odd about it.
+    /// Checks the draft, and returns the dataset with warnings.
     ///
     /// # Errors
     /// The first fault.
@@ -278,13 +262,14 @@ impl DatasetDraft {
             .map_err(|mut faults| faults.swap_remove(0))
     }
 
-    /// Every fault with its place, in the order of the draft; none where it is a dataset. What one fault hides, such as names that
-    /// stand twice beside models that are wrong, comes out once that is mended.
+    /// Returns every fault with its location, in the order of the draft; empty where the draft is a
+    /// valid dataset. A fault hidden by another, such as a duplicate name beside invalid models,
+    /// appears after the other is repaired.
     pub fn faults(self) -> Vec<DraftError> {
         self.checked_whole().err().unwrap_or_default()
     }
 
-    /// Every check there is, in this one place; its faults are one at least.
+    /// Runs all checks; an error holds at least one fault.
     fn checked_whole(self) -> Result<(Dataset, Vec<Warning>), Vec<DraftError>> {
         let whole = |error: DraftFault| DraftError::new(Location::default(), error);
         let mut checker = Checker {
@@ -380,10 +365,12 @@ fn on_axis_table(
 }
 
 impl Dataset {
-    /// The identified model of a draft with this dataset's channels, and what is odd about it.
+    /// Checks a draft as an identified model with this dataset's channels, and returns it with
+    /// warnings.
     ///
     /// # Errors
-    /// What keeps the draft from being a model of the dataset, with its place in the model.
+    /// The fault that keeps the draft from being a model of the dataset, with its location in the
+    /// model.
     pub fn identified_model(&self, draft: ModelDraft) -> Result<(Model, Vec<Warning>), DraftError> {
         let outputs = self.outputs().len();
         let inputs = self.inputs().len();
@@ -397,7 +384,7 @@ impl Dataset {
     }
 }
 
-/// What the checks of models need to know, and what they find.
+/// Context and findings of the model checks.
 #[derive(Default)]
 struct Checker {
     outputs: usize,
@@ -407,12 +394,12 @@ struct Checker {
 }
 
 impl Checker {
-    /// Notes a fault.
+    /// Records a fault, if there is one.
     fn keep<T>(&mut self, checked: Result<T, DraftError>) -> Option<T> {
         checked.map_err(|fault| self.faults.push(fault)).ok()
     }
 
-    /// Whether a list is no longer than it may be.
+    /// Checks a list against its limit.
     fn count(&mut self, place: Location, found: usize, most: usize) -> bool {
         if found > most {
             self.faults
@@ -421,7 +408,7 @@ impl Checker {
         found <= most
     }
 
-    /// The condition of a draft, where nothing is wrong with it.
+    /// Checks the draft of a condition; returns `None` where it has faults.
     fn condition(&mut self, position: usize, draft: ConditionDraft) -> Option<Condition> {
         let place = Location::condition(position, draft.flight_state.id.0);
         let before = self.faults.len();
@@ -457,7 +444,7 @@ impl Checker {
         models
     }
 
-    /// The model of a draft at a place.
+    /// Checks the draft of a model at a location.
     fn model(
         &mut self,
         place: Location,
@@ -513,7 +500,7 @@ impl Checker {
         })
     }
 
-    /// The names of a model's states, if there is one for each.
+    /// Checks that there is one name per state.
     fn state_names(
         &mut self,
         place: Location,
@@ -537,7 +524,7 @@ impl Checker {
         Arc::default()
     }
 
-    /// The model of four matrices, with `p` outputs and `m` inputs.
+    /// Builds the state-space model from four matrices, with `p` outputs and `m` inputs.
     fn state_space(
         &self,
         place: &Location,
@@ -554,7 +541,7 @@ impl Checker {
         let b = given('B', b)?;
         let c = given('C', c)?;
         let d = given('D', d)?;
-        // Checked before the others are checked against it, so that they are not blamed for it.
+        // Checked first, so that the other matrices are not blamed for its shape.
         if d.shape() != (p, m) {
             let fault = DraftFault::Shape {
                 expected: format!("{p} x {m} (outputs x inputs)"),
@@ -562,7 +549,7 @@ impl Checker {
             };
             return Err(DraftError::new(place.at("matrix D"), fault));
         }
-        // A list without entries does not say how long its lists would be.
+        // An empty list does not give the length of its rows.
         let stateless = a.nrows() == 0;
         let b = if stateless && b.nrows() == 0 {
             DMatrix::zeros(0, m)
@@ -634,7 +621,7 @@ impl Checker {
         bands.map_err(|error| DraftError::new(place.at("bands"), error))
     }
 
-    /// A table of frequency data, `count` numbers for each pair.
+    /// Converts a table of frequency data with `count` numbers per pair.
     fn table(
         &self,
         place: &Location,

@@ -1,5 +1,6 @@
-//! What is done with the values of a curve over frequency: unwrapping a phase, and the whole turns that bring one curve nearest to
-//! another (M2, M3); response and coherence between the frequencies of a measurement; order statistics.
+//! Operations on the values of a curve over frequency: phase unwrapping, and the whole turns that
+//! bring one curve closest to another (M2, M3); response and coherence between measured
+//! frequencies; order statistics.
 
 use std::f64::consts::{PI, TAU};
 
@@ -9,7 +10,7 @@ use crate::dataset::PairTable;
 use crate::dataset::measured_response::MeasuredResponse;
 use crate::units::{db_to_ratio, ratio_to_db};
 
-/// The angle \[rad\] in (-pi, pi] that differs from `angle` by a multiple of 2 pi.
+/// Returns the angle \[rad\] in (-pi, pi] that differs from `angle` by a multiple of 2 pi.
 pub fn wrap(angle: f64) -> f64 {
     if angle > -PI && angle <= PI {
         return angle;
@@ -24,9 +25,9 @@ pub fn wrap(angle: f64) -> f64 {
     }
 }
 
-/// Adds multiples of 2 pi to each angle \[rad\] but the first, so that no step exceeds pi.
+/// Adds multiples of 2 pi to each angle \[rad\] except the first, so that no step exceeds pi.
 ///
-/// The whole turns are summed, not the steps: an angle is rounded once, however many come before it.
+/// Sums whole turns instead of steps: each angle is rounded once, however many precede it.
 pub fn unwrap(angles: &mut [f64]) {
     let Some(&first) = angles.first() else {
         return;
@@ -45,12 +46,13 @@ pub fn unwrap(angles: &mut [f64]) {
     }
 }
 
-/// The phase difference of M3: `angles` (principal values of arg H_a conj H_b) unwrapped, then shifted by the multiple of
-/// 2 pi that puts their median in (-pi, pi]. `scratch` is overwritten.
+/// Computes the phase difference of M3: `angles` (principal values of arg H_a conj H_b) unwrapped,
+/// then shifted by the multiple of 2 pi that puts their median in (-pi, pi]. `scratch` is
+/// overwritten.
 pub fn centred_unwrap(angles: &mut [f64], scratch: &mut Vec<f64>) {
     unwrap(angles);
     if angles.iter().all(|angle| *angle > -PI && *angle <= PI) {
-        // So is their median, which costs more than all the rest.
+        // Their median lies there too; its computation costs more than everything else.
         return;
     }
     scratch.clear();
@@ -63,9 +65,10 @@ pub fn centred_unwrap(angles: &mut [f64], scratch: &mut Vec<f64>) {
     }
 }
 
-/// The multiple of 2 pi \[rad\] to add to `phase` so that it lies closest to `reference` in the median (M2).
+/// Returns the multiple of 2 pi \[rad\] to add to `phase` so that the median of its difference from
+/// `reference` is closest to zero (M2).
 ///
-/// Frequencies at which either curve is not finite do not count; zero where none is left.
+/// Ignores frequencies at which either curve is not finite; zero where none remain.
 pub fn nearest_turn_offset(phase: &[f64], reference: &[f64]) -> f64 {
     let differences = phase
         .iter()
@@ -81,9 +84,11 @@ pub fn nearest_turn_offset(phase: &[f64], reference: &[f64]) -> f64 {
     }
 }
 
-/// The measured response at each `omega` \[rad/s\]: linear on log omega in dB and in unwrapped phase.
+/// Interpolates the measured response at each `omega` \[rad/s\]: linear on log omega in dB and in
+/// unwrapped phase.
 ///
-/// Not a number outside the measured frequencies: nothing is extrapolated. Zero beside a measured zero, which has no dB.
+/// NaN outside the measured frequencies: no extrapolation. Zero next to a measured zero, which has
+/// no dB value.
 pub fn interpolate(response: &MeasuredResponse, omega: &[f64]) -> PairTable<Vec<Complex<f64>>> {
     let places: Vec<Option<Place>> = omega
         .iter()
@@ -109,9 +114,10 @@ pub fn interpolate(response: &MeasuredResponse, omega: &[f64]) -> PairTable<Vec<
     })
 }
 
-/// The coherence of each measured response at each `omega` \[rad/s\], linear on log omega (M4a); none where it is not given.
+/// Interpolates the coherence of each measured response at each `omega` \[rad/s\], linear on log
+/// omega (M4a); `None` where there is no coherence.
 ///
-/// Not a number outside the measured frequencies.
+/// NaN outside the measured frequencies.
 pub fn coherence_at(response: &MeasuredResponse, omega: &[f64]) -> Option<PairTable<Vec<f64>>> {
     let places: Vec<Option<Place>> = omega
         .iter()
@@ -129,8 +135,8 @@ pub fn coherence_at(response: &MeasuredResponse, omega: &[f64]) -> Option<PairTa
     )
 }
 
-/// The values of one curve, at rising `known` frequencies, at each `omega` \[rad/s\]: linear on log omega, beyond the ends that of
-/// the end; there is at least one.
+/// Interpolates the values of a curve, given at rising frequencies `known`, at each `omega`
+/// \[rad/s\]: linear on log omega, constant beyond the ends. At least one value is required.
 pub fn interpolate_values(known: &[f64], values: &[f64], omega: &[f64]) -> Vec<f64> {
     let (Some(&low), Some(&high)) = (known.first(), known.last()) else {
         return vec![f64::NAN; omega.len()];
@@ -141,13 +147,14 @@ pub fn interpolate_values(known: &[f64], values: &[f64], omega: &[f64]) -> Vec<f
     omega.iter().map(at).collect()
 }
 
-/// What stands at the rising frequencies `known` \[rad/s\], one of `values` for each, at another `omega`: linear on log omega; none
-/// outside them.
+/// Interpolates `values`, one per rising frequency in `known` \[rad/s\], at another `omega`: linear
+/// on log omega; `None` outside the range.
 pub fn between(known: &[f64], values: &[f64], omega: f64) -> Option<f64> {
     Place::of(known, omega).map(|place| place.between(values))
 }
 
-/// Where a frequency lies between two measured ones: on `after`, or `fraction` of the way from the one before it.
+/// Position of a frequency between two measured ones: at `after`, or `fraction` of the way from its
+/// predecessor.
 struct Place {
     after: usize,
     fraction: f64,
@@ -184,10 +191,10 @@ impl Place {
         low + self.fraction * (high - low)
     }
 
-    /// As [`Place::between`] of magnitudes \[dB\], of which one may be that of zero: minus infinity.
+    /// As [`Place::between`] for magnitudes \[dB\], which may be minus infinity for a zero value.
     fn between_magnitudes_db(&self, values: &[f64]) -> f64 {
         let value = self.between(values);
-        // The difference of two infinities, or one weighed against a number.
+        // The difference of two infinities, or an infinity weighted against a number.
         let is_beside_zero =
             self.fraction < 1.0 && values[self.after - 1..=self.after].contains(&f64::NEG_INFINITY);
         if is_beside_zero {
@@ -198,9 +205,9 @@ impl Place {
     }
 }
 
-/// Median: the middle value, or the mean of the middle two of an even count (M6).
+/// Returns the median: the middle value, or the mean of the middle two for an even count (M6).
 ///
-/// Returns NaN for no values. The values must be finite; their order is changed.
+/// NaN for no values. The values must be finite; their order changes.
 pub fn median(values: &mut [f64]) -> f64 {
     let count = values.len();
     if count == 0 {
@@ -214,12 +221,13 @@ pub fn median(values: &mut [f64]) -> f64 {
     0.5 * (lower + *upper)
 }
 
-/// Weighted median: the smallest value at which the cumulated weight reaches half of the whole, or the mean of it and the next
-/// where it is half exactly; of equal weights that is [`median`] (M4a).
+/// Returns the weighted median: the smallest value at which the cumulative weight reaches half the
+/// total, or the mean of this value and the next where it is exactly half; equals [`median`] for
+/// equal weights (M4a).
 ///
-/// Returns NaN for no values. The values must be finite and the weights positive, one for each.
+/// NaN for no values. The values must be finite and the weights positive, one per value.
 pub fn weighted_median(values: &[f64], weights: &[f64]) -> f64 {
-    /// Share of the whole weight by which sums of thousands of weights may be rounded.
+    /// Relative rounding error allowed in sums of thousands of weights.
     const ROUNDING: f64 = 1e-12;
     let mut sorted: Vec<(f64, f64)> = values
         .iter()
@@ -244,15 +252,16 @@ pub fn weighted_median(values: &[f64], weights: &[f64]) -> f64 {
     f64::NAN
 }
 
-/// Arithmetic mean; NaN for no values.
+/// Returns the arithmetic mean; NaN for no values.
 pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Quantile `q` from 0 to 1, linear between order statistics (numpy's default, Hyndman and Fan's type 7) (M7).
+/// Returns the quantile `q` from 0 to 1, linear between order statistics (numpy's default, Hyndman
+/// and Fan's type 7) (M7).
 ///
-/// `h = q (n - 1)`, `x = x_[h] + (h - [h]) (x_[h]+1 - x_[h])`. Returns NaN for no values. The values must be finite; their
-/// order is changed.
+/// `h = q (n - 1)`, `x = x_[h] + (h - [h]) (x_[h]+1 - x_[h])`. NaN for no values. The values must
+/// be finite; their order changes.
 pub fn quantile(values: &mut [f64], q: f64) -> f64 {
     if values.is_empty() {
         return f64::NAN;
@@ -322,7 +331,7 @@ mod tests {
         fn wrapping_keeps_the_angle_and_lands_in_the_half_open_turn(angle in -1e3_f64..1e3) {
             let wrapped = wrap(angle);
             prop_assert!(wrapped > -PI && wrapped <= PI);
-            // The multiple of 2 pi is exact to the rounding of angles up to 1e3.
+            // The multiple of 2 pi is exact up to the rounding of angles up to 1e3.
             prop_assert!(((angle - wrapped) / TAU - ((angle - wrapped) / TAU).round()).abs() < 1e-12);
         }
 

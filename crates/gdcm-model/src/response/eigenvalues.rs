@@ -1,4 +1,4 @@
-//! The modes of a model: its poles, how fast and how damped they are, and which states take part.
+//! Modes of a model: poles, natural frequency, damping, and participation of the states.
 //!
 //! ```text
 //! 1  balance A; A = Q T Q^H, T triangular with the poles lambda_k on its diagonal
@@ -9,12 +9,13 @@
 //! 6  residue of output i over the inputs together: (C v)_i |w B|
 //! ```
 //!
-//! Eigenvectors: Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.6.4. Participation: Perez-Arriaga, Verghese &
-//! Schweppe, "Selective modal analysis", IEEE Trans. Power Apparatus and Systems 101(9), 1982.
+//! Eigenvectors: Golub & Van Loan, "Matrix Computations", 4th ed. 2013, 7.6.4. Participation:
+//! Perez-Arriaga, Verghese & Schweppe, "Selective modal analysis", IEEE Trans. Power Apparatus and
+//! Systems 101(9), 1982.
 //!
-//! Poles and zeros of a model in the s-plane, whatever time its matrices act in (M2a).
+//! Poles and zeros of a model in the s-plane, for continuous and discrete time (M2a).
 //!
-//! Eigenvalues of a real matrix, and the triangular form that its eigenvectors come from.
+//! Eigenvalues of a real matrix, and the triangular form for its eigenvectors.
 //!
 //! ```text
 //! 1  A = Q T Q', T with blocks of one and two rows on its diagonal: Francis' implicit double shifts
@@ -31,47 +32,50 @@ use super::hessenberg_form::balance;
 use super::prepared_model::LargeEntry;
 use crate::dataset::{Dynamics, StateSpace};
 
-/// Movement of a pole for each unit of change of the balanced A from which its eigenvectors mean nothing: a double pole of one
-/// eigenvector has 1e8 in floating point, a single one below 1e3.
+/// Pole movement per unit change of the balanced A above which eigenvectors are meaningless: 1e8 in
+/// floating point for a double pole with a single eigenvector, below 1e3 for a simple pole.
 const NEAR_DEFECTIVE: f64 = 1e6;
 
-/// One pole of a model, with what it means for the motion.
+/// A pole of a model and the motion it describes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
     /// The pole `lambda` \[rad/s\].
     pub pole: Complex<f64>,
     /// Undamped natural frequency `|lambda|` \[rad/s\].
     pub frequency_rad_s: f64,
-    /// `-Re lambda / |lambda|`, negative where the mode grows; none of a pole at zero.
+    /// `-Re lambda / |lambda|`, negative for a growing mode; `None` for a pole at zero.
     pub damping_ratio: Option<f64>,
-    /// `-1 / Re lambda` \[s\], negative where the mode grows; none where it neither grows nor decays.
+    /// `-1 / Re lambda` \[s\], negative for a growing mode; `None` for a mode that neither grows
+    /// nor decays.
     pub time_constant_s: Option<f64>,
-    /// Share of each state (index, share), the greatest first, sum 1; or why there is none.
+    /// Participation of each state (index, share), in descending order, sum 1; or the reason why
+    /// there is none.
     pub participation: Result<Vec<(usize, f64)>, NearDefective>,
-    /// Residue of each output over the inputs together: its size is the norm of a row of the residue matrix, its phase relative to those
-    /// of the other outputs. None where the pole is near defective.
+    /// Residue of each output over all inputs: magnitude is the norm of the output's row of the
+    /// residue matrix, phase is relative to the other outputs. `None` for a near-defective pole.
     pub residues: Option<Vec<Complex<f64>>>,
 }
 
-/// A pole so close to another that its eigenvectors, and with them the participation of states, are rounding errors: the two share
-/// one eigenvector, or are equal, as those of two sensors of the same make are.
+/// The error for a pole so close to another that its eigenvectors, and thus the participation of
+/// the states, are rounding errors: both share an eigenvector or coincide, as for two identical
+/// sensors.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
     "the pole cannot be told from another next to it: a change of A by 1e-16 of itself moves it {movement:.0e} times as far, so \
      the shares of the states mean nothing"
 )]
 pub struct NearDefective {
-    /// How far the pole moves for each unit of change of A.
+    /// Movement of the pole per unit change of A.
     pub movement: f64,
 }
 
-/// Why a model has no modes.
+/// Why the modes of a model are unavailable.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ModesError {
     /// An entry is too large to compute with.
     #[error("{0}")]
     TooLarge(LargeEntry),
-    /// The iteration for the eigenvalues did not come to an end.
+    /// The eigenvalue iteration did not converge.
     #[error(
         "the eigenvalues of its matrix A were not found: the iteration does not come to an end"
     )]
@@ -95,21 +99,22 @@ impl Mode {
         }
     }
 
-    /// Whether it is an oscillation: one of two conjugate poles (of discrete time also a sign that alternates from sample to
-    /// sample, which is a single one).
+    /// Returns whether the mode oscillates: a complex pole. In discrete time this includes a sign
+    /// that alternates from sample to sample, which is a single pole.
     pub fn oscillates(&self) -> bool {
         self.pole.im != 0.0
     }
 }
 
-/// The modes of a model, one for each pole, rising in `|lambda|`; of a conjugate pair the one above the real axis first, and the
-/// other its mirror image to the last digit. A pole below the rounding of the matrix counts as zero.
+/// Computes the modes of a model, one per pole, in ascending `|lambda|`; of a conjugate pair, the
+/// pole above the real axis comes first, and the other is its exact conjugate. A pole below the
+/// rounding of the matrix counts as zero.
 ///
-/// Poles of discrete time are told as `s = ln z / T`; those at `z = 0`, which are gone within one sample, have no `s` and are
-/// left out (M2a). Delays of channels move no pole.
+/// Discrete-time poles are given as `s = ln z / T`; poles at `z = 0`, which vanish within one
+/// sample, have no `s` and are left out (M2a). Channel delays do not move poles.
 ///
 /// # Errors
-/// [`ModesError`] where no eigenvalues can be computed.
+/// [`ModesError`] where the eigenvalues cannot be computed.
 pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
     if let Some(entry) = LargeEntry::of(model) {
         return Err(ModesError::TooLarge(entry));
@@ -161,7 +166,8 @@ pub fn modes(model: &StateSpace) -> Result<Vec<Mode>, ModesError> {
     Ok(modes)
 }
 
-/// [`modes`] of a model known by its matrices; none of one known by a measured response, which has no states.
+/// Computes the [`modes`] of a model given by matrices; empty for a measured response, which has no
+/// states.
 ///
 /// # Errors
 /// As [`modes`].
@@ -179,12 +185,12 @@ struct Eigenvectors {
 }
 
 impl Eigenvectors {
-    /// Those of the eigenvalue at this place of the diagonal.
+    /// Computes the eigenvectors for the eigenvalue at position `index` on the diagonal.
     fn of(form: &SchurForm, index: usize) -> Result<Self, NearDefective> {
         let x = form.right(index);
         let y = form.left(index);
         let movement = x.norm() * y.norm();
-        // Not a number, too, where they overflow.
+        // Also true for NaN, where they overflow.
         if !movement.le(&NEAR_DEFECTIVE) {
             return Err(NearDefective { movement });
         }
@@ -194,7 +200,7 @@ impl Eigenvectors {
         })
     }
 
-    /// The shares of the states, the greatest first.
+    /// Returns the participation of the states, in descending order.
     fn participation(&self) -> Vec<(usize, f64)> {
         let products: Vec<f64> = self
             .right
@@ -212,7 +218,7 @@ impl Eigenvectors {
         shares
     }
 
-    /// `(C v)_i |w B|` of each output.
+    /// Returns `(C v)_i |w B|` for each output.
     fn residues(&self, b: &DMatrix<f64>, c: &DMatrix<f64>) -> Vec<Complex<f64>> {
         let of_inputs = (b.map(Complex::from).transpose() * &self.left).norm();
         (c.map(Complex::from) * &self.right)
@@ -222,24 +228,26 @@ impl Eigenvectors {
     }
 }
 
-/// From eigenvalues of matrices to poles and zeros `s` \[rad/s\]: themselves in continuous time, `s = ln z / T` in discrete time.
+/// Maps eigenvalues of matrices to poles and zeros `s` \[rad/s\]: unchanged in continuous time,
+/// `s = ln z / T` in discrete time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SPlane {
     sample_time_s: Option<f64>,
 }
 
-/// `|z|` below which all is gone within one sample: it counts as `z = 0`, which has no `s`.
+/// `|z|` below which a mode vanishes within one sample: it counts as `z = 0`, which has no `s`.
 const GONE: f64 = 1e-6;
 
 impl SPlane {
-    /// The s-plane of a model.
+    /// Returns the s-plane of a model.
     pub(super) fn of(model: &StateSpace) -> Self {
         Self {
             sample_time_s: model.timing().sample_time_s,
         }
     }
 
-    /// The matrix whose eigenvalues are taken: `A`, or `A - I` of discrete time, of which fast sampling leaves more digits.
+    /// Returns the matrix for the eigenvalue computation: `A`, or `A - I` in discrete time, which
+    /// keeps more digits for fast sampling.
     pub(super) fn matrix(self, a: &DMatrix<f64>) -> DMatrix<f64> {
         match self.sample_time_s {
             None => a.clone(),
@@ -247,8 +255,8 @@ impl SPlane {
         }
     }
 
-    /// The `s` of an eigenvalue of [`SPlane::matrix`]: `lambda`, or `ln(1 + lambda) / T`, of which the principal value is
-    /// taken; none where `z = 1 + lambda` is zero.
+    /// Returns the `s` for an eigenvalue of [`SPlane::matrix`]: `lambda`, or the principal value of
+    /// `ln(1 + lambda) / T`; `None` where `z = 1 + lambda` is zero.
     pub(super) fn value(self, eigenvalue: Complex<f64>) -> Option<Complex<f64>> {
         let Some(sample_time_s) = self.sample_time_s else {
             return Some(eigenvalue);
@@ -268,12 +276,12 @@ pub struct SchurForm {
     pub q: DMatrix<Complex<f64>>,
     /// Triangular, with the eigenvalues on its diagonal.
     pub t: DMatrix<Complex<f64>>,
-    /// The least difference of two eigenvalues that is not rounding.
+    /// Smallest difference of two eigenvalues above rounding.
     least: f64,
 }
 
 impl SchurForm {
-    /// The form of a square matrix; `None` where the iteration does not come to an end.
+    /// Computes the Schur form of a square matrix; `None` where the iteration does not converge.
     pub fn of(a: &DMatrix<f64>) -> Option<Self> {
         let (q, t) = quasi_triangular(a)?;
         let blocks: Vec<usize> = (1..a.nrows())
@@ -299,17 +307,17 @@ impl SchurForm {
         Some(form)
     }
 
-    /// The eigenvalues, in the order of the diagonal; those of a pair are conjugate to the last digit.
+    /// Returns the eigenvalues in the order of the diagonal; pairs are exact conjugates.
     pub(super) fn eigenvalues(&self) -> Vec<Complex<f64>> {
         self.t.diagonal().iter().copied().collect()
     }
 
-    /// The eigenvector of unit length of the eigenvalue at a place of the diagonal.
+    /// Returns the unit eigenvector for the eigenvalue at a position on the diagonal.
     pub fn eigenvector(&self, at: usize) -> DVector<Complex<f64>> {
         (&self.q * self.right(at)).normalize()
     }
 
-    /// `(T - t_kk) x = 0` with `x_k = 1`.
+    /// Solves `(T - t_kk) x = 0` with `x_k = 1`.
     fn right(&self, k: usize) -> DVector<Complex<f64>> {
         let mut x = self.unit(k);
         for row in (0..k).rev() {
@@ -321,7 +329,7 @@ impl SchurForm {
         x
     }
 
-    /// `y (T - t_kk) = 0` with `y_k = 1`.
+    /// Solves `y (T - t_kk) = 0` with `y_k = 1`.
     fn left(&self, k: usize) -> DVector<Complex<f64>> {
         let mut y = self.unit(k);
         for column in k + 1..self.t.nrows() {
@@ -337,7 +345,7 @@ impl SchurForm {
         })
     }
 
-    /// The difference of two eigenvalues; rounding at least, for equal ones.
+    /// Returns the difference of two eigenvalues, at least the rounding error for equal ones.
     fn apart(&self, of: usize, from: usize) -> Complex<f64> {
         let difference = self.t[(of, of)] - self.t[(from, from)];
         if difference.norm() < self.least {
@@ -347,7 +355,7 @@ impl SchurForm {
         }
     }
 
-    /// Makes the block of the rows `first` and `first + 1` triangular.
+    /// Makes the block in rows `first` and `first + 1` triangular.
     fn split(&mut self, first: usize, block: [[f64; 2]; 2]) {
         let second = first + 1;
         let size = self.t.nrows();
@@ -386,7 +394,8 @@ fn rotate_columns(
     matrix[(row, first + 1)] = right * c.conj() - left * s;
 }
 
-/// The eigenvalues of two rows `[p q; r s]`, the one with a positive imaginary part first.
+/// Returns the eigenvalues of a 2 x 2 block `[p q; r s]`, the one with positive imaginary part
+/// first.
 fn eigenvalues_of_block([[p, q], [r, s]]: [[f64; 2]; 2]) -> [Complex<f64>; 2] {
     let mean = 0.5 * (p + s);
     let half = 0.5 * (p - s);
@@ -398,17 +407,17 @@ fn eigenvalues_of_block([[p, q], [r, s]]: [[f64; 2]; 2]) -> [Complex<f64>; 2] {
             Complex::new(mean, -imaginary),
         ];
     }
-    // Nothing cancels in the greater distance from s, and the product of the two distances is -q r.
+    // The larger distance from s has no cancellation, and the product of both distances is -q r.
     let far = half + squared.sqrt().copysign(half);
     let near = if far == 0.0 { 0.0 } else { -q * r / far };
     [Complex::from(s + far), Complex::from(s + near)]
 }
 
-/// `A = Q T Q'`. Where the iteration stalls (a cyclic permutation is its own image under it), it is repeated on a
-/// reflection of the matrix, which has the same eigenvalues.
+/// Computes `A = Q T Q'`. A stalled iteration (a cyclic permutation is a fixed point) is repeated
+/// on a reflection of the matrix, which has the same eigenvalues.
 fn quasi_triangular(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
     const TRIES: i32 = 3;
-    /// Three or four are usual.
+    /// Three or four are typical.
     const ITERATIONS_FOR_EACH: usize = 60;
     let size = a.nrows();
     let most = ITERATIONS_FOR_EACH * (size + 1);
@@ -425,7 +434,8 @@ fn quasi_triangular(a: &DMatrix<f64>) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
 }
 
 impl SchurForm {
-    /// Exchanges neighbours until the eigenvalues that are `first` stand first; gives how many there are.
+    /// Exchanges neighbours until the eigenvalues selected by `first` come first; returns their
+    /// number.
     pub fn order_by(&mut self, first: impl Fn(Complex<f64>) -> bool) -> usize {
         let mut placed = 0;
         for at in 0..self.t.nrows() {
@@ -439,12 +449,13 @@ impl SchurForm {
         placed
     }
 
-    /// Exchanges the eigenvalues at `upper` and `upper + 1` by one rotation of these two rows and columns.
+    /// Exchanges the eigenvalues at `upper` and `upper + 1` by one rotation of these two rows and
+    /// columns.
     fn exchange(&mut self, upper: usize) {
         let lower = upper + 1;
         let first = self.t[(upper, upper)];
         let second = self.t[(lower, lower)];
-        // The eigenvector of `second` in these two rows.
+        // The eigenvector for `second` in these two rows.
         let x = self.t[(upper, lower)];
         let y = second - first;
         let norm = x.norm().hypot(y.norm());
@@ -472,8 +483,8 @@ impl SchurForm {
     }
 }
 
-/// Returns the eigenvalues of A without balancing \[rad/s for continuous time\], or `None` where the Schur iteration does not
-/// converge.
+/// Returns the eigenvalues of A without balancing \[rad/s for continuous time\], or `None` where
+/// the Schur iteration does not converge.
 #[must_use]
 pub fn poles(model: &StateSpace) -> Option<Vec<Complex<f64>>> {
     let schur =
@@ -557,8 +568,8 @@ mod tests {
 
     #[test]
     fn modes_of_discrete_time_are_those_that_were_sampled() {
-        // e^(A T) of the oscillator and the lag above, T = 0.02 s; a sign that alternates, and a state that forgets within a
-        // sample.
+        // e^(A T) for the oscillator and the lag above, T = 0.02 s; an alternating sign, and a
+        // state that vanishes within a sample.
         let sampled = (dmatrix![0.0, 1.0, 0.0; -16.0, -2.4, 0.0; 0.0, 0.0, -0.5] * 0.02).exp();
         let mut a = DMatrix::zeros(5, 5);
         a.view_mut((0, 0), (3, 3)).copy_from(&sampled);
@@ -578,7 +589,7 @@ mod tests {
         ];
         assert_eq!(found.len(), 4, "the pole at z = 0 has no s");
         for (mode, (re, im)) in found.iter().zip(expected) {
-            // The exponential rounds by some 1e-16, in s by 50 times as much.
+            // The exponential rounds by about 1e-16, in s by 50 times as much.
             assert!(
                 (mode.pole - Complex::new(re, im)).norm() < 1e-12,
                 "{} {re} {im}",
@@ -602,7 +613,7 @@ mod tests {
             entries in prop::collection::vec(-2.0_f64..2.0, 25), exponents in prop::collection::vec(-12_i32..12, 5),
         ) {
             let a = DMatrix::from_vec(5, 5, entries);
-            // Powers of two: nothing is rounded.
+            // Powers of two: no rounding.
             let scaled = DMatrix::from_fn(5, 5, |row, column| a[(row, column)] * 2.0_f64.powi(exponents[row] - exponents[column]));
             let plain = modes(&model(a.clone())).unwrap();
             let scaled = modes(&model(scaled)).unwrap();
@@ -610,7 +621,7 @@ mod tests {
                 let Ok(shares) = &mode.participation else { continue };
                 let near = |other: &&Mode| (other.pole - mode.pole).norm();
                 let same = scaled.iter().min_by(|a, b| near(a).total_cmp(&near(b))).unwrap();
-                // The movement is at most 1e6; poles of such matrices are mostly of movement 1 to 100.
+                // The movement is at most 1e6; for poles of such matrices it is mostly 1 to 100.
                 prop_assert!(near(&same) < 1e-8, "{} {}", same.pole, mode.pole);
                 let Ok(others) = &same.participation else { continue };
                 let share_of = |state: usize| others.iter().find(|(other, _)| *other == state).map_or(0.0, |(_, share)| *share);
@@ -637,7 +648,7 @@ mod s_plane_tests {
             Complex::new(0.3, -1e-3),
         ] {
             let found = SAMPLED.value((s * 0.01).exp() - 1.0).unwrap();
-            // The difference from 1 rounds by 1e-16 of 1, a hundred times as much in s.
+            // The difference from 1 rounds by 1e-16, a hundred times as much in s.
             assert!((found - s).norm() < 1e-13, "{found} {s}");
         }
     }
@@ -708,7 +719,7 @@ mod schur_form_tests {
     #[test]
     fn two_rows_with_real_eigenvalues_are_told_apart_without_cancellation() {
         let [far, near] = eigenvalues_of_block([[1e8, 1.0], [1.0, 0.0]]);
-        // lambda^2 - 1e8 lambda - 1 = 0: the lesser is -1e-8 (1 - 1e-16).
+        // lambda^2 - 1e8 lambda - 1 = 0: the smaller root is -1e-8 (1 - 1e-16).
         assert!(
             (far.re - 1e8).abs() < 1e-7 && (near.re + 1e-8).abs() < 1e-22,
             "{far} {near}"

@@ -1,4 +1,4 @@
-//! The frequency response of a state-space model: its states are eliminated from the system matrix.
+//! Frequency response of a state-space model by elimination of its states from the system matrix.
 //!
 //! ```text
 //! 1  balance A; scale A and B to order 1; Householder reflections make A Hessenberg and B's first column b e_1; transpose
@@ -13,8 +13,9 @@
 //! 6  the last column: w <- w - (w_n / u_n) u, and the first row of [L D'] in the same way; what is left is H'
 //! ```
 //!
-//! A frequency is a lane of a vector register. Hessenberg form: Laub, IEEE Trans. Automatic Control 26(2), 1981; tau is the
-//! pivot threshold of Duff, Erisman & Reid, "Direct Methods for Sparse Matrices", 2nd ed. 2017, 5.2.
+//! Each frequency occupies one lane of a vector register. Hessenberg form: Laub, IEEE Trans.
+//! Automatic Control 26(2), 1981; tau is the pivot threshold of Duff, Erisman & Reid, "Direct
+//! Methods for Sparse Matrices", 2nd ed. 2017, 5.2.
 
 use nalgebra::Complex;
 use pulp::{Arch, Simd, WithSimd};
@@ -23,25 +24,28 @@ use super::frequency_response::FrequencyResponse;
 use super::hessenberg_form::HessenbergForm;
 use crate::dataset::{PairTable, StateSpace};
 
-/// `H(j omega) = C (j omega I - A)^-1 B + D` at each `omega` \[rad/s\]: a p x m table of `N` values.
+/// Computes `H(j omega) = C (j omega I - A)^-1 B + D` at each `omega` \[rad/s\]: a p x m table of
+/// `N` values.
 ///
-/// The model is balanced and reduced to Hessenberg form once; at each frequency its states are then eliminated from the
-/// system matrix, with pivoting, in O(n (n + 2 max(m, p)) min(m, p)) operations. As many frequencies are solved at once as a
-/// vector of the processor holds: eight with AVX-512, four with AVX2, two with NEON, else one.
+/// The model is balanced and reduced to Hessenberg form once; at each frequency its states are then
+/// eliminated from the system matrix, with pivoting, in O(n (n + 2 max(m, p)) min(m, p))
+/// operations. The number of frequencies solved at once is the vector length of the processor:
+/// eight with AVX-512, four with AVX2, two with NEON, otherwise one.
 ///
-/// Eight neighbouring frequencies choose their pivots together: a value depends on those of its eight, by rounding
-/// only. It has the same bits wherever fused multiply-adds are (AVX2, AVX-512, NEON). Its error is that of a model whose
-/// entries are changed by less than 1e-10 of the largest of the balanced A, in practice by some 1e-13, so the relative error
-/// grows as `j omega` comes close to a pole; at a pole, where elimination meets a zero, the values are not finite. Entries
-/// beyond [`super::prepared_model::LargeEntry`]'s limit may overflow.
+/// Eight neighbouring frequencies share their pivots: a value depends on its group of eight,
+/// through rounding only. The bits are the same on all hardware with fused multiply-adds (AVX2,
+/// AVX-512, NEON). The error equals that of a model with entries changed by less than 1e-10 of the
+/// largest entry of the balanced A, in practice by about 1e-13, so the relative error grows as
+/// `j omega` approaches a pole; at a pole, where elimination meets a zero pivot, the values are not
+/// finite. Entries beyond [`super::prepared_model::LargeEntry`]'s limit may overflow.
 ///
-/// The matrices alone count, as those of continuous time: for a model with [`crate::dataset::state_space::Timing`] see
-/// [`super::prepared_model::PreparedModel`].
+/// Uses only the matrices, as continuous-time ones; for a model with
+/// [`crate::dataset::state_space::Timing`] see [`super::prepared_model::PreparedModel`].
 pub fn evaluate(model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
     evaluate_on(Arch::new(), model, omega)
 }
 
-/// [`evaluate`] on a given instruction set: for tests and benchmarks.
+/// As [`evaluate`], on a given instruction set: for tests and benchmarks.
 pub fn evaluate_on(arch: Arch, model: &StateSpace, omega: &[f64]) -> FrequencyResponse {
     let at: Vec<_> = omega
         .iter()
@@ -53,26 +57,26 @@ pub fn evaluate_on(arch: Arch, model: &StateSpace, omega: &[f64]) -> FrequencyRe
     })
 }
 
-/// `H(s)` of a reduced model, to be evaluated with the vectors of an instruction set.
+/// `H(s)` of a reduced model, for evaluation with the vectors of an instruction set.
 pub(super) struct Elimination<'a> {
-    /// The model.
     pub(super) form: &'a HessenbergForm,
     /// Each `s` \[rad/s\].
     pub(super) at: &'a [Complex<f64>],
 }
 
-/// Frequencies that choose their pivots together, whatever the length of a vector.
+/// Number of frequencies that share their pivots, whatever the vector length.
 const GROUP: usize = 8;
 
-/// Largest `|s| / alpha`, of which squares are taken.
+/// Largest `|s| / alpha`, since it is squared.
 const LARGEST: f64 = 1e150;
 
 impl WithSimd for Elimination<'_> {
     type Output = FrequencyResponse;
 
-    /// The next row, which is real, takes half the operations of the active one: it clears a column unless in some lane of
-    /// the group the entry of the active row is more than tau times as large. Multipliers within G are then at most tau, and
-    /// since each row of G enters as it is, entries grow at most to `n tau` times the largest.
+    /// The next row, which is real, costs half the operations of the active row: it clears a column
+    /// unless the entry of the active row is more than tau times as large in some lane of the
+    /// group. Multipliers within G are then at most tau, and since each row of G enters unchanged,
+    /// entries grow to at most `n tau` times the largest.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> FrequencyResponse {
         let form = self.form;
@@ -93,9 +97,9 @@ impl WithSimd for Elimination<'_> {
             let mut re = [0.0; GROUP];
             let mut im = [0.0; GROUP];
             for lane in 0..GROUP {
-                // If there are fewer, the last is in the other lanes.
+                // A short group repeats the last frequency in the remaining lanes.
                 let at = at[lane.min(at.len() - 1)] * form.frequency_scale;
-                // What would overflow must not look like a number.
+                // An overflow must not look like a number.
                 (re[lane], im[lane]) = if at.norm() > LARGEST {
                     (f64::NAN, f64::NAN)
                 } else {
@@ -126,7 +130,7 @@ impl WithSimd for Elimination<'_> {
                     let place = input * form.width() + form.order + output;
                     for (lane, at) in at.iter().enumerate() {
                         let value = &vectors[lane / S::F64_LANES].entries[place];
-                        // Without states what is not a number would be lost.
+                        // Without states, NaN would be lost.
                         curve.push(if at.is_nan() {
                             *at
                         } else {
@@ -140,20 +144,21 @@ impl WithSimd for Elimination<'_> {
     }
 }
 
-/// What the complex rows of a system matrix become, in one vector of frequencies.
+/// The complex rows of a system matrix during elimination, for one vector of frequencies.
 ///
-/// They are the *active* row, which begins as the first of `[G K]`, and all rows of `[L D']` but the first. That has one
-/// entry in G's columns, the last, and needs nothing before all others are clear: it takes no part, and the active row
-/// has its place, so that rows and responses are counted alike.
+/// These are the *active* row, initially the first of `[G K]`, and all rows of `[L D']` except the
+/// first. The first row of `[L D']` has a single entry in G's columns, the last one, and is not
+/// needed until all other columns are clear: it takes no part, and the active row occupies its
+/// place, so that rows and responses are numbered alike.
 struct ComplexRows<S: Simd> {
     /// `s / alpha`.
     shift: ComplexLanes<S>,
-    /// Row by row.
+    /// Row-major.
     entries: Vec<ComplexLanes<S>>,
 }
 
 impl<S: Simd> ComplexRows<S> {
-    /// The rows before anything is eliminated, in the memory of those of other frequencies.
+    /// Initialises the rows before any elimination, and reuses the memory of earlier frequencies.
     #[inline(always)]
     fn start(&mut self, simd: S, form: &HessenbergForm, shift: ComplexLanes<S>) {
         self.shift = shift;
@@ -167,7 +172,8 @@ impl<S: Simd> ComplexRows<S> {
         }
     }
 
-    /// Whether the entry of the active row is too large for the next row to clear, or not a number, in any lane.
+    /// Returns whether, in any lane, the entry of the active row is too large for the next row to
+    /// clear, or is NaN.
     #[inline(always)]
     fn asks_for_interchange(&self, simd: S, form: &HessenbergForm, column: usize) -> bool {
         let inverse_square_threshold =
@@ -177,7 +183,8 @@ impl<S: Simd> ComplexRows<S> {
         simd.first_true_m64s(exceeds) < S::F64_LANES
     }
 
-    /// Clears a column, with an interchange of active and next row where the one is larger.
+    /// Clears a column, with an interchange of active and next row in the lanes where the active
+    /// entry is larger.
     #[inline(always)]
     fn clear(&mut self, simd: S, form: &HessenbergForm, column: usize, interchange: bool) {
         let next = form.next_row(column);
@@ -203,7 +210,7 @@ impl<S: Simd> ComplexRows<S> {
             subtract_multiple(simd, row, quotient, active);
             subtract_next(simd, row, multiplier, next, shift);
         }
-        // The active row last: the others need it as it was.
+        // The active row comes last: the others need its old value.
         let [quotient, multiplier] = interchange.of_active_row(simd, subdiagonal, pivot);
         let zero = ComplexLanes::real(simd, 0.0);
         for entry in &mut *active {
@@ -212,7 +219,7 @@ impl<S: Simd> ComplexRows<S> {
         subtract_next(simd, active, multiplier, next, shift);
     }
 
-    /// Clears the last column with the active row, in whose place the first row of `[L D']` has its turn.
+    /// Clears the last column with the active row; the first row of `[L D']` then takes its place.
     #[inline(always)]
     fn finish(&mut self, simd: S, form: &HessenbergForm) {
         let (active, others) = self.entries.split_at_mut(form.width());
@@ -235,8 +242,8 @@ impl<S: Simd> ComplexRows<S> {
     }
 }
 
-/// `row - multiplier (next row)` right of the column that it clears: nearly all the work of an elimination. The first entry
-/// of the next row has `-shift` besides.
+/// Subtracts `multiplier (next row)` from a row, to the right of the cleared column: nearly all the
+/// work of an elimination. The first entry of the next row also contains `-shift`.
 #[inline(always)]
 fn subtract_next<S: Simd>(
     simd: S,
@@ -251,7 +258,7 @@ fn subtract_next<S: Simd>(
     row[0] = row[0].plus_product(simd, multiplier, shift);
 }
 
-/// `row - quotient (other row)`.
+/// Subtracts `quotient (other row)` from a row.
 #[inline(always)]
 fn subtract_multiple<S: Simd>(
     simd: S,
@@ -264,34 +271,36 @@ fn subtract_multiple<S: Simd>(
     }
 }
 
-/// Subdiagonal entries below this part the model in two; the largest entry is of order 1, and a double has 16 digits.
+/// Subdiagonal entries below this limit split the model in two; the largest entry is of order 1,
+/// and a double has 16 digits.
 const NEGLIGIBLE: f64 = 1e-70;
 
-/// How much larger than the entry of the next row that of the active row must be for both to be interchanged, times the
-/// order (`n tau`).
+/// Ratio of the active row's entry to the next row's entry above which both are interchanged, times
+/// the order (`n tau`).
 ///
-/// With tau = 1 elimination is partial pivoting. Real rows take a half to a third of the work of complex ones; they cost at
-/// most this factor in accuracy: `n tau` times the unit roundoff of 1.1e-16 is 3e-11, for every order. The errors of the
-/// models in `benches/responses.rs` are up to 7e-13 of their largest value.
+/// With tau = 1 elimination is partial pivoting. Real rows cost a half to a third of complex ones,
+/// and reduce the accuracy by at most this factor: `n tau` times the unit roundoff of 1.1e-16 is
+/// 3e-11, for every order. The errors of the models in `benches/responses.rs` are at most 7e-13 of
+/// their largest value.
 const PIVOT_THRESHOLD: f64 = (1_u32 << 18) as f64;
 
-/// The one entry of a column of G below the diagonal, `h`, and how it is eliminated.
+/// The single subdiagonal entry `h` of a column of G, with the constants for its elimination.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Subdiagonal {
-    /// `h`; zero where that is negligible.
+    /// `h`; zero where negligible.
     pub entry: f64,
-    /// What the row of `h` is divided by, so that it has a one in place of `h`: `h`, or one where that is negligible.
+    /// Divisor of the row of `h`, which normalises `h` to one: `h`, or one where `h` is negligible.
     pub divisor: f64,
-    /// One over [`divisor`](Self::divisor).
+    /// Reciprocal of [`divisor`](Self::divisor).
     pub reciprocal: f64,
-    /// `1 / (tau h)^2`; not a number, so that no comparison holds, where `h` is negligible.
+    /// `1 / (tau h)^2`; NaN where `h` is negligible, so that no comparison holds.
     pub inverse_square_threshold: f64,
-    /// `h^2`; below every square where `h` is negligible.
+    /// `h^2`; less than every square where `h` is negligible.
     pub square: f64,
 }
 
 impl Subdiagonal {
-    /// Of a model of an order.
+    /// Creates the constants for a model of the given order.
     pub fn new(entry: f64, order: usize) -> Self {
         if entry.abs() < NEGLIGIBLE {
             return Self {
@@ -315,19 +324,19 @@ impl Subdiagonal {
     }
 }
 
-/// That the active row clears a column, in some lanes, and the next row becomes active in its place.
+/// An interchange: in some lanes, the active row clears a column and the next row becomes active.
 ///
-/// With `u` the entry of the active row in the column, `w` that of another complex row, and `h` that of the next row, the
-/// rows become
+/// With `u` the entry of the active row in the column, `w` the entry of another complex row, and
+/// `h` the entry of the next row, the rows become
 ///
 /// ```text
 /// active row:  h (next row / h) - (h / u) (active row)
 /// other row:   (row) - (w / u) (active row)
 /// ```
 ///
-/// In the other lanes the next row clears the column, and `u` and `w` times (next row / h) are subtracted. Both are done in
-/// two steps: a *quotient* times the active row is subtracted (from zero in place of the active row itself), then a
-/// *multiplier* times (next row / h).
+/// In the other lanes the next row clears the column, and `u` and `w` times (next row / h) are
+/// subtracted. Both take two steps: subtract a *quotient* times the active row (from zero for the
+/// active row itself), then a *multiplier* times (next row / h).
 struct Interchange<S: Simd> {
     lanes: S::m64s,
     /// `1 / u`.
@@ -335,7 +344,8 @@ struct Interchange<S: Simd> {
 }
 
 impl<S: Simd> Interchange<S> {
-    /// In the lanes where the entry `u` of the active row is larger than that of the next row.
+    /// Selects the lanes where the entry `u` of the active row is larger than the entry of the next
+    /// row.
     #[inline(always)]
     fn new(simd: S, subdiagonal: &Subdiagonal, pivot: ComplexLanes<S>) -> Self {
         let lanes = simd.greater_than_f64s(pivot.square(simd), simd.splat_f64s(subdiagonal.square));
@@ -345,7 +355,7 @@ impl<S: Simd> Interchange<S> {
         }
     }
 
-    /// Quotient and multiplier of a row with this entry: `w / u` and zero, or zero and `w`.
+    /// Returns quotient and multiplier of a row with this entry: `w / u` and zero, or zero and `w`.
     #[inline(always)]
     fn of_row(&self, simd: S, entry: ComplexLanes<S>) -> [ComplexLanes<S>; 2] {
         let zero = ComplexLanes::real(simd, 0.0);
@@ -353,7 +363,7 @@ impl<S: Simd> Interchange<S> {
         [quotient, entry.replaced_where(simd, self.lanes, zero)]
     }
 
-    /// Quotient and multiplier of the active row: `h / u` and `-h`, or -1 and `u`.
+    /// Returns quotient and multiplier of the active row: `h / u` and `-h`, or -1 and `u`.
     #[inline(always)]
     fn of_active_row(
         &self,
@@ -361,7 +371,7 @@ impl<S: Simd> Interchange<S> {
         subdiagonal: &Subdiagonal,
         pivot: ComplexLanes<S>,
     ) -> [ComplexLanes<S>; 2] {
-        // Zero even where the pivot is zero: nothing of the active row goes on.
+        // Zero even where the pivot is zero: nothing remains of the active row.
         let quotient = if subdiagonal.entry == 0.0 {
             ComplexLanes::real(simd, 0.0)
         } else {
@@ -376,20 +386,18 @@ impl<S: Simd> Interchange<S> {
     }
 }
 
-/// One complex number for each lane; real and imaginary parts in a vector register each.
+/// One complex number per lane; real and imaginary parts in separate vector registers.
 ///
-/// Aligned to a cache line: a 512-bit load across two lines costs twice.
+/// Aligned to a cache line: a 512-bit load across two lines costs twice as much.
 #[derive(Clone, Copy)]
 #[repr(C, align(64))]
 struct ComplexLanes<S: Simd> {
-    /// Real parts.
     re: S::f64s,
-    /// Imaginary parts.
     im: S::f64s,
 }
 
 impl<S: Simd> ComplexLanes<S> {
-    /// The same real number in every lane.
+    /// Returns the same real number in every lane.
     #[inline(always)]
     fn real(simd: S, value: f64) -> Self {
         Self {
@@ -398,7 +406,7 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// `self - factor real`: 2 fused operations.
+    /// Returns `self - factor real`: 2 fused operations.
     #[inline(always)]
     fn minus_real_product(self, simd: S, factor: Self, real: S::f64s) -> Self {
         Self {
@@ -407,7 +415,7 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// `self + left right`: 4 fused operations.
+    /// Returns `self + left right`: 4 fused operations.
     #[inline(always)]
     fn plus_product(self, simd: S, left: Self, right: Self) -> Self {
         let re = simd.mul_add_e_f64s(left.re, right.re, self.re);
@@ -418,7 +426,7 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// `self - other`.
+    /// Returns `self - other`.
     #[inline(always)]
     fn minus(self, simd: S, other: Self) -> Self {
         Self {
@@ -427,7 +435,7 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// The number in a lane.
+    /// Returns the number in a lane.
     #[inline(always)]
     fn lane(&self, lane: usize) -> Complex<f64> {
         let part =
@@ -435,7 +443,7 @@ impl<S: Simd> ComplexLanes<S> {
         Complex::new(part(&self.re), part(&self.im))
     }
 
-    /// `self - left right`: 4 fused operations.
+    /// Returns `self - left right`: 4 fused operations.
     #[inline(always)]
     fn minus_product(self, simd: S, left: Self, right: Self) -> Self {
         let Self { re, im } = self.minus_real_product(simd, left, right.re);
@@ -445,7 +453,7 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// `self other`.
+    /// Returns `self other`.
     #[inline(always)]
     fn product(self, simd: S, other: Self) -> Self {
         let re = simd.mul_f64s(self.re, other.re);
@@ -456,7 +464,7 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// `self scale`, with a real scale for each lane.
+    /// Returns `self scale`, with a real scale per lane.
     #[inline(always)]
     fn scaled(self, simd: S, scale: S::f64s) -> Self {
         Self {
@@ -465,7 +473,7 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// `1 / self = conj(self) / |self|^2`; not finite in the lanes where `self` is zero.
+    /// Returns `1 / self = conj(self) / |self|^2`; not finite in the lanes where `self` is zero.
     #[inline(always)]
     fn reciprocal(self, simd: S) -> Self {
         let inverse = simd.div_f64s(simd.splat_f64s(1.0), self.square(simd));
@@ -475,13 +483,13 @@ impl<S: Simd> ComplexLanes<S> {
         }
     }
 
-    /// `|self|^2`.
+    /// Returns `|self|^2`.
     #[inline(always)]
     fn square(self, simd: S) -> S::f64s {
         simd.mul_add_e_f64s(self.im, self.im, simd.mul_f64s(self.re, self.re))
     }
 
-    /// `chosen` in the lanes of `mask`, `self` in the others.
+    /// Returns `chosen` in the lanes of `mask`, `self` in the others.
     #[inline(always)]
     fn replaced_where(self, simd: S, mask: S::m64s, chosen: Self) -> Self {
         Self {
@@ -547,7 +555,8 @@ mod tests {
         let omega: Vec<f64> = (0..19).map(|k| f64::from(k) * 0.25).collect();
         let response = evaluate(&oscillator(), &omega);
         for (omega, value) in omega.iter().zip(response.curve(Pair::new(0, 0))) {
-            // 1 / (4 - omega^2); a handful of operations, of which the difference amplifies rounding up to 8 times.
+            // 1 / (4 - omega^2); a handful of operations, whose rounding the difference amplifies
+            // up to 8 times.
             let expected = 1.0 / (4.0 - omega * omega);
             assert_eq!(value.is_finite(), *omega != 2.0, "{omega}");
             assert!(
@@ -575,7 +584,7 @@ mod tests {
                 ),
                 &[1.3],
             ));
-            // A power of two: nothing is rounded.
+            // A power of two: no rounding.
             assert_eq!(scaled, plain * unit);
         }
     }
@@ -612,7 +621,8 @@ mod tests {
             .clone()
     }
 
-    /// The values on every instruction set of this machine with fused multiply-adds, which must have the same bits.
+    /// Returns the values on every instruction set of this machine with fused multiply-adds; the
+    /// bits must agree.
     fn on_vectors(model: &StateSpace, omega: &[f64]) -> Vec<Values> {
         let mut values = Vec::new();
         #[cfg(target_arch = "x86_64")]
@@ -625,7 +635,7 @@ mod tests {
         values
     }
 
-    /// Entries from a sine: without pattern, and the same everywhere.
+    /// Entries from a sine: irregular, and the same everywhere.
     fn matrix(rows: usize, columns: usize, seed: f64) -> DMatrix<f64> {
         DMatrix::from_fn(rows, columns, |row, column| {
             (seed + 7.3 * row as f64 + 2.9 * (column * column) as f64).sin()
@@ -640,14 +650,15 @@ mod tests {
         StateSpace::new(a, b, c, d).unwrap()
     }
 
-    /// From far below the poles, where real rows stay, to far above, where active ones do; lanes differ in between.
+    /// From far below the poles, where the real rows stay, to far above, where the active ones do;
+    /// lanes differ in between.
     fn wide(count: usize) -> Vec<f64> {
         (0..count)
             .map(|k| 1e-3 * 1e6_f64.powf(k as f64 / count as f64))
             .collect()
     }
 
-    /// By a dense decomposition.
+    /// Computes the response by a dense decomposition.
     fn dense(model: &StateSpace, omega: f64) -> DMatrix<Complex<f64>> {
         let [a, b, c, d] =
             [model.a(), model.b(), model.c(), model.d()].map(|matrix| matrix.map(Complex::from));
@@ -655,7 +666,7 @@ mod tests {
         c * states.lu().solve(&b).unwrap() + d
     }
 
-    /// The largest difference, relative to the largest value.
+    /// Returns the largest difference, relative to the largest value.
     fn difference(found: &Values, expected: &Values) -> f64 {
         let all = |values: &Values| {
             values
@@ -687,7 +698,8 @@ mod tests {
             let omega = wide(count);
             let scalar = on(Scalar::new(), &model, &omega);
             for vectors in on_vectors(&model, &omega) {
-                // Two backward stable solutions of order 9: rounding errors of at most 9 tau times 1e-16 each.
+                // Two backward stable solutions of order 9: rounding errors of at most 9 tau times
+                // 1e-16 each.
                 assert!(
                     count == 0 || difference(&vectors, &scalar) < 8e-12,
                     "{count} frequencies"
@@ -751,7 +763,8 @@ mod tests {
                     .fold(0.0, f64::max);
                 for (pair, values) in values.iter() {
                     let error = (values[k] - expected[(pair.output, pair.input)]).norm();
-                    // The bound of threshold pivoting, 3e-11, times the condition of a random matrix of order 14.
+                    // The bound of threshold pivoting, 3e-11, times the condition number of a
+                    // random matrix of order 14.
                     assert!(error < 1e-9 * largest, "{omega}, {pair:?}: {error}");
                 }
             }
@@ -763,7 +776,7 @@ mod tests {
         for order in 1..=9 {
             let b = matrix(order, 2, 1.1);
             let c = matrix(3, order, 2.3);
-            // All poles in zero; then pairs at 2 rad/s, with one in zero left over.
+            // All poles at zero; then pairs at 2 rad/s, with a single pole at zero left over.
             let turning = DMatrix::from_fn(order, order, |row, column| match (row % 2, column) {
                 (0, column) if column == row + 1 => 2.0,
                 (1, column) if column + 1 == row => -2.0,
@@ -789,7 +802,8 @@ mod tests {
 
     #[test]
     fn a_chain_coupled_by_1e_minus_55_neither_overflows_nor_loses_its_coupling() {
-        // One over the coupling is 1e55 a step: without shrinking, the fifth step would overflow the square of a pivot.
+        // The inverse coupling is 1e55 per step: without shrinking, the fifth step would overflow
+        // the square of a pivot.
         let weak = 1e-55;
         let a = DMatrix::from_fn(8, 8, |row, column| match row.abs_diff(column) {
             0 => -1.0,

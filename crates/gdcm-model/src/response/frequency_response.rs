@@ -1,4 +1,4 @@
-//! Frequency responses: the grid of frequencies, complex values, magnitude and phase, and the curve that is drawn.
+//! Frequency responses: frequency grid, complex values, magnitude and phase, and curves for plots.
 
 use std::sync::Arc;
 
@@ -10,48 +10,50 @@ use super::prepared_model::PreparedModel;
 use crate::dataset::{Band, Dynamics, Pair, PairTable};
 use crate::units::ratio_to_db;
 
-/// `H(j omega)` of every response of a model on a grid of `N` frequencies: a p x m table of curves.
+/// `H(j omega)` for every response of a model on a grid of `N` frequencies: a p x m table of
+/// curves.
 ///
-/// A value is not finite where the response has none: at a pole on the imaginary axis, or outside the frequencies of
-/// measured data.
+/// A value is not finite where the response is undefined: at a pole on the imaginary axis, or
+/// outside the frequencies of measured data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrequencyResponse {
     pub(super) curves: PairTable<Vec<Complex<f64>>>,
 }
 
 impl FrequencyResponse {
-    /// The response of a model on one grid; for several grids prepare the model once, see [`PreparedModel`].
+    /// Computes the response of a model on a single grid; for several grids prepare the model once,
+    /// see [`PreparedModel`].
     pub fn of(dynamics: &Dynamics, grid: &FrequencyGrid) -> Self {
         PreparedModel::of(dynamics).response(grid)
     }
 
-    /// Curves of `N` values each.
+    /// Creates a response from curves of `N` values each.
     pub fn new(curves: PairTable<Vec<Complex<f64>>>) -> Self {
         Self { curves }
     }
 
-    /// Number of output channels, `p`.
+    /// Returns the number of output channels, `p`.
     pub fn outputs(&self) -> usize {
         self.curves.outputs()
     }
 
-    /// Number of input channels, `m`.
+    /// Returns the number of input channels, `m`.
     pub fn inputs(&self) -> usize {
         self.curves.inputs()
     }
 
-    /// The `N` values of one response.
+    /// Returns the `N` values of one response.
     pub fn curve(&self, pair: Pair) -> &[Complex<f64>] {
         &self.curves[pair]
     }
 
-    /// The values of every response, `[output, input]`.
+    /// Returns the values of every response, `[output, input]`.
     pub fn curves(&self) -> &PairTable<Vec<Complex<f64>>> {
         &self.curves
     }
 
-    /// The responses that are zero at every frequency at which they are finite, of which there is one at least: such a response is not
-    /// there, whatever it lacks elsewhere.
+    /// Returns the responses that are zero wherever they are finite, with at least one finite
+    /// value: such a response does not exist, even where other values are missing.
     pub fn zero_where_finite(&self) -> Vec<Pair> {
         let mut found = Vec::new();
         for (pair, curve) in self.curves.iter() {
@@ -63,7 +65,7 @@ impl FrequencyResponse {
         found
     }
 
-    /// The responses that are not finite at some frequency.
+    /// Returns the responses that are not finite at some frequency.
     pub fn not_finite(&self) -> Vec<Pair> {
         let not_finite = |curve: &[Complex<f64>]| curve.iter().any(|value| !value.is_finite());
         self.curves
@@ -81,35 +83,36 @@ pub struct FrequencyGrid {
 }
 
 impl FrequencyGrid {
-    /// [`log_spaced`] over the band, at `N = max(points, 2)` frequencies.
+    /// Creates a grid of [`log_spaced`] frequencies over the band, `N = max(points, 2)`.
     pub fn logarithmic(band: Band, points: usize) -> Self {
         Self {
             omega: log_spaced(band.min(), band.max(), points),
         }
     }
 
-    /// These frequencies \[rad/s\], which rise: two at least.
+    /// Creates a grid of these rising frequencies \[rad/s\], at least two.
     pub fn at(omega: Vec<f64>) -> Self {
         Self { omega }
     }
 
-    /// The frequencies \[rad/s\].
+    /// Returns the frequencies \[rad/s\].
     pub fn omega(&self) -> &[f64] {
         &self.omega
     }
 
-    /// Number of frequencies, `N`.
+    /// Returns the number of frequencies, `N`.
     pub fn len(&self) -> usize {
         self.omega.len()
     }
 
-    /// Never: a grid has at least two frequencies.
+    /// Always false: a grid has at least two frequencies.
     pub fn is_empty(&self) -> bool {
         self.omega.is_empty()
     }
 }
 
-/// `omega_k = exp(ln low + (k / (N - 1)) (ln high - ln low))` \[rad/s\], k = 0 ... N - 1, for `N = max(count, 2)`; the ends as given.
+/// Returns `omega_k = exp(ln low + (k / (N - 1)) (ln high - ln low))` \[rad/s\], k = 0 ... N - 1,
+/// for `N = max(count, 2)`; the ends are exact.
 #[must_use]
 pub fn log_spaced(lowest: f64, highest: f64, count: usize) -> Vec<f64> {
     let low = lowest.ln();
@@ -122,7 +125,7 @@ pub fn log_spaced(lowest: f64, highest: f64, count: usize) -> Vec<f64> {
     omega
 }
 
-/// Magnitude \[dB\] and unwrapped phase \[deg\] of one response, as they are drawn (M2).
+/// Magnitude \[dB\] and unwrapped phase \[deg\] of one response, for plots (M2).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseShape {
     /// Magnitude \[dB\] at each frequency; a value that is not finite leaves a gap.
@@ -132,7 +135,8 @@ pub struct ResponseShape {
 }
 
 impl ResponseShape {
-    /// The phase is principal at the first finite value, then unwrapped; a value that is not finite leaves a gap (M2).
+    /// Computes the shape. The phase is principal at the first finite value, then unwrapped; a
+    /// value that is not finite leaves a gap (M2).
     pub fn of(values: &[Complex<f64>]) -> Self {
         let finite: Vec<usize> = (0..values.len())
             .filter(|&k| values[k].is_finite() && values[k].norm() > 0.0)
@@ -150,7 +154,8 @@ impl ResponseShape {
         }
     }
 
-    /// The shape moved by whole turns as near to `reference` as they bring it over the first `points` frequencies (M2).
+    /// Returns the shape shifted by whole turns, as close as possible to `reference` over the first
+    /// `points` frequencies (M2).
     pub fn phase_aligned(self, reference: &Self, points: usize) -> Self {
         let radians = |phase: &[f64]| {
             phase
@@ -170,7 +175,7 @@ impl ResponseShape {
         }
     }
 
-    /// The shape over the first `points` frequencies; not a number at the others.
+    /// Returns the shape over the first `points` frequencies; NaN at the others.
     pub fn first(self, points: usize) -> Self {
         if points >= self.phase_deg.len() {
             return self;
@@ -188,7 +193,7 @@ impl ResponseShape {
         }
     }
 
-    /// The shape after a correction (M10).
+    /// Returns the shape after a correction (M10).
     pub fn corrected(&self, omega: &[f64], correction: GainDelay) -> Self {
         let phase: Vec<f64> = self
             .phase_deg
@@ -207,7 +212,8 @@ impl ResponseShape {
     }
 }
 
-/// A continuous phase \[deg\] between -180 and 180 degrees, with a gap where it jumps, in place of a line from edge to edge.
+/// Wraps a continuous phase \[deg\] to -180 to 180 degrees, with a gap at each jump instead of a
+/// line from edge to edge.
 pub fn wrapped_deg(phase_deg: &[f64]) -> Vec<f64> {
     let wrapped: Vec<f64> = phase_deg
         .iter()
@@ -229,7 +235,7 @@ pub struct PolarCurve {
 }
 
 impl PolarCurve {
-    /// Magnitude and phase of one response, where it is finite and not zero at every frequency.
+    /// Converts one response, if it is finite and not zero at every frequency.
     pub fn of(values: &[Complex<f64>]) -> Option<Self> {
         let magnitude_db: Vec<f64> = values.iter().map(magnitude_db).collect();
         if magnitude_db.iter().any(|magnitude| !magnitude.is_finite()) {
@@ -242,7 +248,8 @@ impl PolarCurve {
     }
 }
 
-/// `20 log10 |H| = 10 log10 |H|^2`; the square spares a root where it neither overflows nor underflows.
+/// Returns `20 log10 |H| = 10 log10 |H|^2`; the square avoids a root where it neither overflows nor
+/// underflows.
 fn magnitude_db(value: &Complex<f64>) -> f64 {
     let square = value.norm_sqr();
     if square.is_normal() {
@@ -252,25 +259,26 @@ fn magnitude_db(value: &Complex<f64>) -> f64 {
     }
 }
 
-/// Every response of a model as magnitude and phase.
+/// Magnitude and phase of every response of a model.
 ///
-/// An entry is `None` where the response is zero or not finite at some frequency (a structurally zero response, a pole on the
-/// imaginary axis, measured data that does not reach): there it has no G, no D and no J (M6).
+/// An entry is `None` where the response is zero or not finite at some frequency (a structurally
+/// zero response, a pole on the imaginary axis, measured data with too short a range): it has no G,
+/// D or J (M6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolarResponse {
     curves: PairTable<Option<PolarCurve>>,
 }
 
 impl PolarResponse {
-    /// Magnitude and phase of every response.
+    /// Computes magnitude and phase of every response.
     pub fn of(response: &FrequencyResponse) -> Self {
         Self {
             curves: response.curves.map(|_, curve| PolarCurve::of(curve)),
         }
     }
 
-    /// Magnitude and phase of the marked responses; the others are left undefined, for a logarithm and an arc tangent cost more
-    /// than the response itself.
+    /// Computes magnitude and phase of the marked responses; the others stay undefined, because a
+    /// logarithm and an arc tangent cost more than the response itself.
     pub fn of_marked(response: &FrequencyResponse, marked: &PairTable<bool>) -> Self {
         Self {
             curves: response.curves.map(|pair, curve| {
@@ -283,8 +291,9 @@ impl PolarResponse {
         }
     }
 
-    /// The responses that are numerically nothing: their peak over the band, \[dB\], lies 120 dB (1e-6) below the greatest of
-    /// their output and below the greatest of their input (M6a). Differencing leaves such numbers where zero is meant.
+    /// Returns the responses that are numerically zero: their peak over the band \[dB\] lies 120 dB
+    /// (1e-6) below the largest of their output and below the largest of their input (M6a).
+    /// Numerical differentiation leaves such values for exact zeros.
     pub fn numerically_nothing(&self) -> PairTable<bool> {
         const LEAST_DB: f64 = -120.0;
         let peaks = self.curves.map(|_, curve| {
@@ -315,7 +324,7 @@ impl PolarResponse {
         marked.marked().for_each(|pair| self.curves[pair] = None);
     }
 
-    /// The curves, `[output, input]`.
+    /// Returns the curves, `[output, input]`.
     pub fn curves(&self) -> &PairTable<Option<PolarCurve>> {
         &self.curves
     }
@@ -373,7 +382,8 @@ mod polar_tests {
 
     #[test]
     fn a_response_is_nothing_only_beside_both_its_output_and_its_input() {
-        // Of 2 x 2: only the last is small beside both; the third belongs to an output in small units.
+        // 2 x 2 responses: only the last is small relative to both; the third belongs to an output
+        // in small units.
         let values = [[1.0, 1.0], [1e-7, 0.99e-13]];
         let curves = PairTable::from_fn(2, 2, |pair| {
             vec![Complex::from(values[pair.output][pair.input]); 3]
@@ -404,7 +414,7 @@ mod polar_tests {
             (1.0, 0.0),
             (1e200, 4000.0),
         ] {
-            // One rounding of the logarithm and one of its multiple.
+            // One rounding for the logarithm and one for its multiple.
             assert!((magnitude_db(&Complex::new(0.0, magnitude)) - db).abs() < 1e-12);
         }
         assert_eq!(magnitude_db(&Complex::new(0.0, 0.0)), f64::NEG_INFINITY);

@@ -1,5 +1,5 @@
-//! A state-space model in the coordinates in which one frequency costs O(n^2): balanced, and reduced to upper Hessenberg form by
-//! Householder reflections.
+//! A state-space model in coordinates with O(n^2) cost per frequency: balanced, and reduced to
+//! upper Hessenberg form by Householder reflections.
 
 use std::ops::Range;
 
@@ -9,24 +9,28 @@ use pulp::{Arch, Simd, WithSimd};
 use super::elimination::Subdiagonal;
 use crate::dataset::{Pair, StateSpace};
 
-/// Least `alpha`, 2^-450 rad/s: the poles of a slower model are all in zero, as seen from any frequency in use.
+/// Smallest `alpha`, 2^-450 rad/s: at any frequency in use, all poles of a slower model are
+/// effectively zero.
 const LEAST_ALPHA: f64 = f64::from_bits((1023 - 450) << 52);
 
-/// The system matrix of a model, ready for elimination of its states.
+/// The system matrix of a model, prepared for elimination of its states.
 ///
 /// ```text
 /// [ G - (s / alpha) I   K  ]
 /// [ L                   D' ]     H(s)' = D' - L (G - (s / alpha) I)^-1 K
 /// ```
 ///
-/// G of n x n is zero below its first subdiagonal; the first row of L, which has one for each input, is zero but for its
-/// last entry; K has a column for each output. All come from the model (A, B, C, D) in these steps: balancing (a diagonal
-/// similarity) makes the units of the states irrelevant; alpha and another power of two bring the largest entries of A and
-/// B to order 1; Householder reflections make A Hessenberg and the first column of B a multiple of the first unit vector; then the
-/// system matrix is transposed, and the order of the states reversed, which makes it so again.
+/// G (n x n) is zero below its first subdiagonal; L has a row per input, and its first row is zero
+/// except for the last entry; K has a column per output. All are derived from the model (A, B, C,
+/// D) in these steps: balancing (a diagonal similarity) removes the influence of the states' units;
+/// alpha and another power of two scale the largest entries of A and B to order 1; Householder
+/// reflections make A Hessenberg and the first column of B a multiple of the first unit vector;
+/// then the system matrix is transposed, and the order of the states reversed, which restores the
+/// Hessenberg form.
 ///
-/// The work at each frequency grows with the rows of L. A model with fewer outputs than inputs is therefore held as its
-/// dual `(A', C', B', D')`, whose response is the transpose and whose inputs are the outputs of the model.
+/// The cost per frequency grows with the rows of L. A model with fewer outputs than inputs is
+/// therefore stored as its dual `(A', C', B', D')`, whose response is the transpose and whose
+/// inputs are the outputs of the model.
 #[derive(Clone, Debug)]
 pub(super) struct HessenbergForm {
     /// Number of states, `n`.
@@ -37,15 +41,16 @@ pub(super) struct HessenbergForm {
     pub outputs: usize,
     /// Whether this is the dual: rows of L then belong to outputs and columns of K to inputs.
     pub dual: bool,
-    /// The input that is the first row of L, the one of the largest column of B; the first is in its place.
+    /// Input in the first row of L, the one with the largest column of B; it trades places with the
+    /// first input.
     first_input: usize,
     /// `1 / alpha`.
     pub frequency_scale: f64,
-    /// The one entry of the first row of L.
+    /// The single entry of the first row of L.
     pub gain: f64,
-    /// The entry below the diagonal of each column of G but the last.
+    /// The subdiagonal entry of each column of G except the last.
     pub subdiagonals: Vec<Subdiagonal>,
-    /// The first row of `[G K]` and all rows of `[L D']` but the first.
+    /// The first row of `[G K]` and all rows of `[L D']` except the first.
     pub complex_rows: Vec<f64>,
     /// The other rows of `[G K]`, each divided by its subdiagonal entry.
     next_rows: Vec<f64>,
@@ -54,8 +59,8 @@ pub(super) struct HessenbergForm {
 }
 
 impl HessenbergForm {
-    /// The reduced form of a model with `a` in place of its A: the same bits on every instruction set, on which only the
-    /// time depends.
+    /// Computes the reduced form of a model with `a` replacing its A: the same bits on every
+    /// instruction set, which affects only the time.
     pub fn of(arch: Arch, a: DMatrix<f64>, model: &StateSpace) -> Self {
         let dual = model.outputs() < model.inputs();
         let mut a = if dual { a.transpose() } else { a };
@@ -73,7 +78,8 @@ impl HessenbergForm {
         let input_scale = 1.0 / power_of_two_below(b.amax());
         a *= frequency_scale;
         b *= input_scale;
-        // One after the other, the larger first: what both leave in range must not underflow between them.
+        // Applied one after the other, the larger first: a result within range must not underflow
+        // in between.
         let one = frequency_scale;
         let other = 1.0 / input_scale;
         c *= one.max(other);
@@ -94,7 +100,7 @@ impl HessenbergForm {
             rows: &mut rows,
             states: order,
         });
-        // An entry of the system matrix: the transpose, with the states in reversed order.
+        // An entry of the system matrix: transposed, with the states in reversed order.
         let reversed = |state: usize| {
             if state < order {
                 order - 1 - state
@@ -141,7 +147,7 @@ impl HessenbergForm {
         }
     }
 
-    /// The model's response of a row of L and a column of K.
+    /// Returns the model's response for a row of L and a column of K.
     pub fn pair(&self, input: usize, output: usize) -> Pair {
         let input = if input == 0 {
             self.first_input
@@ -157,19 +163,20 @@ impl HessenbergForm {
         }
     }
 
-    /// Entries in a row of `[G K]`.
+    /// Returns the number of entries in a row of `[G K]`.
     pub fn width(&self) -> usize {
         self.order + self.outputs
     }
 
-    /// The row that has a one below the diagonal in this column, from the next column on.
+    /// Returns the row with a one below the diagonal in this column, from the next column on.
     #[inline(always)]
     pub fn next_row(&self, column: usize) -> &[f64] {
         &self.next_rows[column * self.width()..][column + 1..self.width()]
     }
 }
 
-/// The largest power of two that does not exceed `value`, within 2^-1000 ... 2^1000; 1 for zero.
+/// Returns the largest power of two that does not exceed `value`, within 2^-1000 ... 2^1000; 1 for
+/// zero.
 fn power_of_two_below(value: f64) -> f64 {
     if value == 0.0 {
         return 1.0;
@@ -177,25 +184,27 @@ fn power_of_two_below(value: f64) -> f64 {
     value.log2().floor().clamp(-1e3, 1e3).exp2()
 }
 
-/// Partial sums of a scalar product.
+/// Number of partial sums of a scalar product.
 const LANES: usize = 8;
 
-/// Brings `[A B; C D]` to `[Q' A Q, Q' B; C Q, D]` with Q orthogonal, `Q' A Q` upper Hessenberg, and the first column of
-/// `Q' B` zero below its first entry.
+/// Transforms `[A B; C D]` to `[Q' A Q, Q' B; C Q, D]` with Q orthogonal, `Q' A Q` upper
+/// Hessenberg, and the first column of `Q' B` zero below its first entry.
 ///
-/// One reflection `I - beta v v'` for that column, then one for each column of A (Golub & Van Loan, "Matrix
-/// Computations", 4th ed. 2013, 7.4.2), applied from both sides in one pass over the matrix T, as `T - y v' - v w'` with
+/// One reflection `I - beta v v'` for that column, then one for each column of A (Golub & Van Loan,
+/// "Matrix Computations", 4th ed. 2013, 7.4.2), applied from both sides in one pass over the matrix
+/// T, as `T - y v' - v w'` with
 ///
 /// ```text
 /// y = beta T v,   w = beta T' v - gamma v,   gamma = beta v' y
 /// ```
 ///
-/// 10/3 n^3 + 4 n^2 (m + p) operations. A scalar product runs over eight partial sums, and every multiply-add is fused,
-/// without one in hardware too: the result has the same bits on every instruction set.
+/// 10/3 n^3 + 4 n^2 (m + p) operations. A scalar product uses eight partial sums, and every
+/// multiply-add is fused, in software where necessary: the result has the same bits on every
+/// instruction set.
 struct HouseholderReduction<'a> {
-    /// The rows of `[A B; C D]`, each of which lies in one column.
+    /// The rows of `[A B; C D]`, each stored in one column.
     rows: &'a mut DMatrix<f64>,
-    /// Rows of A.
+    /// Number of rows of A.
     states: usize,
 }
 
@@ -211,8 +220,8 @@ impl WithSimd for HouseholderReduction<'_> {
     }
 }
 
-/// Clears a column below row `first` by a reflection of the states from `first` on, applied from both sides; the column
-/// itself is not among those of these states.
+/// Clears a column below row `first` by a reflection of the states from `first` on, applied from
+/// both sides; the column does not belong to these states.
 #[inline(always)]
 fn clear(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
     let mut v = vec![0.0; rows.nrows()];
@@ -241,7 +250,7 @@ fn clear(rows: &mut DMatrix<f64>, states: usize, column: usize, first: usize) {
 #[inline(always)]
 fn reflect(rows: &mut DMatrix<f64>, states: Range<usize>, v: &[f64], beta: f64) {
     let width = rows.nrows();
-    // What stands before is done; v is zero there. Partial sums begin at whole blocks.
+    // Earlier entries are finished; v is zero there. Partial sums begin at whole blocks.
     let from = states.start / LANES * LANES;
     let mut y = vec![0.0; rows.ncols()];
     let mut w = vec![0.0; width];
@@ -266,7 +275,7 @@ fn reflect(rows: &mut DMatrix<f64>, states: Range<usize>, v: &[f64], beta: f64) 
     }
 }
 
-/// `left' right`.
+/// Returns `left' right`.
 #[inline(always)]
 fn dot(left: &[f64], right: &[f64]) -> f64 {
     let mut sums = [0.0_f64; LANES];
@@ -283,7 +292,7 @@ fn dot(left: &[f64], right: &[f64]) -> f64 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
-/// `sums + left right`, entry by entry.
+/// Computes `sums + left right`, entry by entry.
 #[inline(always)]
 fn add_products<const N: usize>(sums: &mut [f64; N], left: &[f64; N], right: &[f64; N]) {
     for lane in 0..N {
@@ -291,7 +300,7 @@ fn add_products<const N: usize>(sums: &mut [f64; N], left: &[f64; N], right: &[f
     }
 }
 
-/// `from -= factor row`.
+/// Computes `from -= factor row`.
 #[inline(always)]
 fn subtract_multiple(from: &mut [f64], factor: f64, row: &[f64]) {
     for (from, row) in from.iter_mut().zip(row) {
@@ -299,16 +308,18 @@ fn subtract_multiple(from: &mut [f64], factor: f64, row: &[f64]) {
     }
 }
 
-/// Brings row k and column k of `a`, for each state k, to norms within a factor of two of each other, by a diagonal similarity
-/// of powers of two, so that nothing is rounded: `a <- S^-1 a S`, `b <- S^-1 b`, `c <- c S`.
+/// Balances row k and column k of `a`, for each state k, to norms within a factor of two of each
+/// other, by a diagonal similarity with powers of two, hence without rounding: `a <- S^-1 a S`,
+/// `b <- S^-1 b`, `c <- c S`.
 ///
-/// Balancing of Parlett and Reinsch with 2-norms (James, Langou & Lowery, arXiv:1401.5766, algorithm 3). Entries far beyond
-/// those of any machine in use can neither keep it busy (it ends after so many sweeps over the states, each of which leaves a
-/// similar model) nor carry a scale to where B or C would overflow.
+/// Balancing of Parlett and Reinsch with 2-norms (James, Langou & Lowery, arXiv:1401.5766,
+/// algorithm 3). For entries far beyond any real machine's, the number of sweeps over the states is
+/// limited (each sweep leaves a similar model), and so is the scale, so that B and C do not
+/// overflow.
 pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatrix<f64>) {
-    /// A helicopter's model takes three to six.
+    /// A helicopter model takes three to six.
     const MOST_SWEEPS: usize = 100;
-    /// 30 decades to either side.
+    /// 30 decades in either direction.
     const LARGEST_SCALE: f64 = (1_u128 << 100) as f64;
     let mut scales = vec![1.0; a.nrows()];
     for _ in 0..MOST_SWEEPS {
@@ -334,7 +345,8 @@ pub(super) fn balance(a: &mut DMatrix<f64>, b: &mut DMatrix<f64>, c: &mut DMatri
     }
 }
 
-/// The power of two that brings a column and its row closest together; `None` where that gains less than 5 % of their squares.
+/// Returns the power of two that brings a column and its row closest together; `None` where it
+/// reduces their squares by less than 5 %.
 fn factor(a: &DMatrix<f64>, state: usize) -> Option<f64> {
     let column = a.column(state).norm_squared();
     let row = a.row(state).norm_squared();
@@ -426,7 +438,8 @@ mod tests {
 
     const STATES: usize = 11;
 
-    /// The rows of two inputs and three outputs; entries from a sine: without pattern, and the same everywhere.
+    /// The rows for two inputs and three outputs; entries from a sine: irregular, and the same
+    /// everywhere.
     fn rows() -> DMatrix<f64> {
         DMatrix::from_fn(STATES + 2, STATES + 3, |column, row| {
             if row < STATES || column < STATES {
@@ -446,7 +459,7 @@ mod tests {
         rows
     }
 
-    /// `C A^k B`, which a change of coordinates leaves alone.
+    /// Returns `C A^k B`, which is invariant under a change of coordinates.
     fn markov_parameter(rows: &DMatrix<f64>, power: usize, output: usize, input: usize) -> f64 {
         let mut states: Vec<f64> = (0..STATES).map(|row| rows[(STATES + input, row)]).collect();
         let product = |row: usize, states: &[f64]| {
@@ -480,7 +493,8 @@ mod tests {
         for (power, output, input) in [(0, 0, 0), (1, 2, 1), (5, 1, 0)] {
             let [before, after] =
                 [&before, &after].map(|rows| markov_parameter(rows, power, output, input));
-            // Entries of A^5 grow to some thousand; eleven reflections with rounding errors of 1e-16 each.
+            // Entries of A^5 grow to some thousand; eleven reflections with rounding errors of
+            // 1e-16 each.
             assert!(
                 (before - after).abs() < 1e-11,
                 "C A^{power} B: {before} and {after}"

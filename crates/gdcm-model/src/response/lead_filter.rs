@@ -1,5 +1,5 @@
-//! A filter that gives one channel phase lead and can be built (M15.3), and what the correction of two channels does to a
-//! response, eq. (12), M15.5.
+//! A realisable filter that gives a channel phase lead (M15.3), and the effect of the correction of
+//! two channels on a response, eq. (12), M15.5.
 
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
@@ -14,13 +14,13 @@ use crate::units::{db_to_ratio, ratio_to_db};
 pub enum LeadOrder {
     /// `(1 + a s) / (1 + b s)`: its gain rises with `omega^2` within the band.
     First,
-    /// Butterworth damping: the gain within the band stays.
+    /// Butterworth damping: nearly constant gain within the band.
     #[default]
     Second,
 }
 
 impl LeadOrder {
-    /// The order as a number.
+    /// Returns the order as a number.
     pub fn number(self) -> usize {
         match self {
             LeadOrder::First => 1,
@@ -47,11 +47,11 @@ impl From<LeadOrder> for usize {
     }
 }
 
-/// `L(s) = (1 + sqrt(2) a s + a^2 s^2) / (1 + sqrt(2) b s + b^2 s^2)`, or of first order `(1 + a s) / (1 + b s)`, `a >= b > 0`: a
-/// servo of `1 / b` rad/s put in the place of one of `1 / a` rad/s (M15.3).
+/// `L(s) = (1 + sqrt(2) a s + a^2 s^2) / (1 + sqrt(2) b s + b^2 s^2)`, or first-order
+/// `(1 + a s) / (1 + b s)`, `a >= b > 0`: replaces a servo with `1 / a` rad/s by one with `1 / b`
+/// rad/s (M15.3).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadFilter {
-    /// Its order.
     pub order: LeadOrder,
     /// Time constant of its numerator, `a` \[s\].
     pub zero_s: f64,
@@ -60,8 +60,8 @@ pub struct LeadFilter {
 }
 
 impl LeadFilter {
-    /// The filter of this lead time `l >= 0` at low frequency and this lag time constant `b > 0` \[s\]: `a = b + l / sqrt(2)`, of
-    /// first order `a = b + l`.
+    /// Creates the filter with lead time `l >= 0` at low frequency and lag time constant `b > 0`
+    /// \[s\]: `a = b + l / sqrt(2)`, or `a = b + l` for first order.
     pub fn new(order: LeadOrder, lead_s: f64, lag_s: f64) -> Self {
         let apart_s = match order {
             LeadOrder::First => lead_s,
@@ -74,7 +74,7 @@ impl LeadFilter {
         }
     }
 
-    /// Lead time at low frequency, `l` \[s\].
+    /// Returns the lead time at low frequency, `l` \[s\].
     pub fn lead_s(self) -> f64 {
         match self.order {
             LeadOrder::First => self.zero_s - self.lag_s,
@@ -82,28 +82,28 @@ impl LeadFilter {
         }
     }
 
-    /// `omega_1 = 1 / a` \[rad/s\]: the servo that it takes out.
+    /// Returns `omega_1 = 1 / a` \[rad/s\], the bandwidth of the servo that the filter cancels.
     pub fn zero_rad_s(self) -> f64 {
         1.0 / self.zero_s
     }
 
-    /// `omega_2 = 1 / b` \[rad/s\]: the servo that it puts in.
+    /// Returns `omega_2 = 1 / b` \[rad/s\], the bandwidth of the servo that the filter introduces.
     pub fn lag_rad_s(self) -> f64 {
         1.0 / self.lag_s
     }
 
-    /// `R = L(j inf) = (a / b)^order`.
+    /// Returns `R = L(j inf) = (a / b)^order`.
     pub fn gain_at_infinity(self) -> f64 {
         (self.zero_s / self.lag_s).powi(self.order.number() as i32)
     }
 
-    /// `20 log10 R`.
+    /// Returns `20 log10 R`.
     pub fn gain_at_infinity_db(self) -> f64 {
         ratio_to_db(self.gain_at_infinity())
     }
 
-    /// `arg L(j omega)` \[rad\], continuous in `omega`, from 0 to less than pi: that of the numerator times the conjugate of the
-    /// denominator, in which no near equals are taken from one another.
+    /// Returns `arg L(j omega)` \[rad\], continuous in `omega`, from 0 to less than pi: the
+    /// argument of the numerator times the conjugate of the denominator, which avoids cancellation.
     pub fn phase(self, omega: f64) -> f64 {
         let x = self.zero_s * omega;
         let y = self.lag_s * omega;
@@ -114,14 +114,15 @@ impl LeadFilter {
         }
     }
 
-    /// `20 log10 |L(j omega)|`; of second order `|L|^2 = (1 + (a omega)^4) / (1 + (b omega)^4)`.
+    /// Returns `20 log10 |L(j omega)|`; for second order
+    /// `|L|^2 = (1 + (a omega)^4) / (1 + (b omega)^4)`.
     pub fn magnitude_db(self, omega: f64) -> f64 {
         let power = 2 * self.order.number() as i32;
         let square = |time_s: f64| 1.0 + (time_s * omega).powi(power);
         10.0 * (square(self.zero_s) / square(self.lag_s)).log10()
     }
 
-    /// `L(j omega)`.
+    /// Returns `L(j omega)`.
     pub fn at(self, omega: f64) -> Complex<f64> {
         let side = |time_s: f64| {
             let x = time_s * omega;
@@ -134,8 +135,9 @@ impl LeadFilter {
     }
 }
 
-/// `k e^(-j omega tau) L_o L_i`: what the correction multiplies a response by (eq. (12), M10), with the lead filters of its output
-/// and its input where they have one (M15). Exact in frequency, no Pade.
+/// `k e^(-j omega tau) L_o L_i`: the factor of the correction on a response (eq. (12), M10), with
+/// the optional lead filters of its output and its input (M15). Exact in frequency, without Pade
+/// approximation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainDelay {
     gain_db: f64,
@@ -144,14 +146,14 @@ pub struct GainDelay {
 }
 
 impl GainDelay {
-    /// Leaves a response as it is.
+    /// Leaves a response unchanged.
     pub const NONE: Self = Self {
         gain_db: 0.0,
         delay_s: 0.0,
         leads: [None; 2],
     };
 
-    /// A positive gain (ratio) and a delay \[s\].
+    /// Creates a correction from a positive gain (ratio) and a delay \[s\].
     pub fn new(gain: f64, delay_s: f64) -> Self {
         Self {
             gain_db: ratio_to_db(gain),
@@ -160,19 +162,20 @@ impl GainDelay {
         }
     }
 
-    /// With these lead filters in series.
+    /// Returns the correction with these lead filters in series.
     pub fn led(self, leads: [Option<LeadFilter>; 2]) -> Self {
         Self { leads, ..self }
     }
 
-    /// Its value at `omega` \[rad/s\].
+    /// Returns its value at `omega` \[rad/s\].
     pub fn at(self, omega: f64) -> Complex<f64> {
         let filters = self.leads.iter().flatten();
         let pure = Complex::from_polar(db_to_ratio(self.gain_db), -omega * self.delay_s);
         filters.fold(pure, |product, filter| product * filter.at(omega))
     }
 
-    /// Magnitudes \[dB\] at `omega` after it: `20 log10 k` more, and what the filters add.
+    /// Returns the corrected magnitudes \[dB\] at `omega`: adds `20 log10 k` and the contribution
+    /// of the filters.
     pub fn magnitudes_db(self, magnitudes_db: &[f64], omega: &[f64]) -> impl Iterator<Item = f64> {
         magnitudes_db
             .iter()
@@ -185,7 +188,8 @@ impl GainDelay {
             })
     }
 
-    /// Phases \[rad\] at `omega` after it: `omega tau` less, and what the filters add.
+    /// Returns the corrected phases \[rad\] at `omega`: subtracts `omega tau` and adds the
+    /// contribution of the filters.
     pub fn phases(self, phases: &[f64], omega: &[f64]) -> impl Iterator<Item = f64> {
         phases.iter().zip(omega).map(move |(phase, omega)| {
             let filters = self.leads.iter().flatten();
@@ -226,7 +230,7 @@ mod tests {
             // A handful of roundings.
             prop_assert!((value / filter.at(omega) - 1.0).norm() < 1e-13);
             prop_assert!((0.0..std::f64::consts::PI).contains(&filter.phase(omega)));
-            // What is lost where two times of up to 0.8 s are taken from one another.
+            // Cancellation in the difference of two times of up to 0.8 s.
             prop_assert!((filter.lead_s() - lead_s).abs() < 1e-15);
         }
     }

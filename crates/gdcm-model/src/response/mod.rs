@@ -1,4 +1,5 @@
-//! Frequency responses: the grid, the evaluation of a model on it, magnitude and phase (M2, M3); poles and zeros of a model.
+//! Frequency responses: grid, evaluation of a model, magnitude and phase (M2, M3); poles and zeros
+//! of a model.
 
 pub mod curve_values;
 pub mod eigenvalues;

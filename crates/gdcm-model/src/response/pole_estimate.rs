@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-/// A pole and how well it is known.
+/// A pole with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoleEstimate {
     /// The pole \[rad/s\].
@@ -11,6 +11,7 @@ pub struct PoleEstimate {
     pub sd_re: f64,
     /// Standard deviation of its imaginary part \[rad/s\].
     pub sd_im: f64,
-    /// Whether the records determine it: not below the band, and its standard deviation not over half its modulus.
+    /// Whether the records determine it: not below the band, and with a standard deviation of at
+    /// most half its modulus.
     pub determined: bool,
 }

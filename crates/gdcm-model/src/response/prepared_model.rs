@@ -1,12 +1,12 @@
-//! A model made ready for its frequency response on any grid.
+//! A model prepared for its frequency response on any grid.
 //!
-//! The frequency response of a model of discrete time (M2a).
+//! Frequency response of a discrete-time model (M2a).
 //!
 //! ```text
 //! H = C (sI - F)^-1 B + D,   F = A - I,   s = z - 1 = 2j sin(omega T / 2) e^(j omega T / 2): fast sampling rounds nothing away
 //! ```
 //!
-//! Which outputs an input can reach at all.
+//! Structural connection from inputs to outputs.
 
 use std::f64::consts::PI;
 
@@ -21,10 +21,11 @@ use super::hessenberg_form::HessenbergForm;
 use crate::dataset::measured_response::MeasuredResponse;
 use crate::dataset::{Dynamics, Pair, PairTable, StateSpace};
 
-/// What of a response does not depend on the grid: made once for each model, it serves every band and every drawing.
+/// The part of a response that does not depend on the grid: computed once per model, and used for
+/// every band and plot.
 ///
-/// For a state-space model of `n` states that is the Hessenberg form, `O(n^3)` operations to make and some
-/// `8 n (n + m + p)` bytes to keep.
+/// For a state-space model with `n` states this is the Hessenberg form: `O(n^3)` operations to
+/// compute and some `8 n (n + m + p)` bytes to store.
 #[derive(Clone, Debug)]
 pub struct PreparedModel {
     source: Source,
@@ -59,16 +60,16 @@ pub struct LargeEntry {
     pub row: usize,
     /// Column, counted from 1.
     pub column: usize,
-    /// The entry.
     pub value: f64,
 }
 
-/// The largest entry that is computed with. Products of three matrices in any units of the states (to 2^100) then stay far from
-/// the largest number of the machine, and no entry of a helicopter comes near.
+/// The largest entry accepted in computations. Products of three matrices in any units of the
+/// states (to 2^100) then stay far below the largest double, and no entry of a helicopter model
+/// comes close.
 pub const LARGEST_ENTRY: f64 = 1e75;
 
 impl LargeEntry {
-    /// The first entry of a model that is too large to compute with.
+    /// Returns the first entry of a model that is too large to compute with.
     pub fn of(model: &StateSpace) -> Option<Self> {
         [
             ('A', model.a()),
@@ -118,16 +119,18 @@ impl PreparedModel {
         }
     }
 
-    /// `H(j omega) = C (j omega I - A)^-1 B + D` on the grid, or measured data interpolated on it (M2); of a model of discrete
-    /// time `C (zI - A)^-1 B + D` at `z = e^(j omega T)`, not a number from `pi / T` on; times `e^(-j omega (tau_o + tau_i))`
-    /// where channels are delayed (M2a).
+    /// Computes `H(j omega) = C (j omega I - A)^-1 B + D` on the grid, or measured data
+    /// interpolated on it (M2); for a discrete-time model `C (zI - A)^-1 B + D` at
+    /// `z = e^(j omega T)`, NaN from `pi / T` on; times `e^(-j omega (tau_o + tau_i))` for delayed
+    /// channels (M2a).
     ///
-    /// A response that its input cannot reach is exactly zero; that of a model with a [`LargeEntry`] is not a number.
+    /// A response that its input cannot reach is exactly zero; all responses of a model with a
+    /// [`LargeEntry`] are NaN.
     pub fn response(&self, grid: &FrequencyGrid) -> FrequencyResponse {
         self.at(grid.omega())
     }
 
-    /// [`PreparedModel::response`] at any frequencies `omega` \[rad/s\].
+    /// As [`PreparedModel::response`], at any frequencies `omega` \[rad/s\].
     pub fn at(&self, omega: &[f64]) -> FrequencyResponse {
         let mut response = self.undelayed(omega);
         for (pair, &delay_s) in self
@@ -157,7 +160,7 @@ impl PreparedModel {
                     .map(|omega| shifted(*omega, *sample_time_s))
                     .collect();
                 let mut response = Arch::new().dispatch(Elimination { form, at: &at });
-                // Rounding errors stand where the input does not reach the output.
+                // Without a connection from input to output, the values are rounding errors.
                 let apart = connected.iter().filter(|(_, connected)| !**connected);
                 apart.for_each(|(pair, _)| response.curves[pair].fill(Complex::new(0.0, 0.0)));
                 response
@@ -171,7 +174,8 @@ impl PreparedModel {
     }
 }
 
-/// `j omega`, or `e^(j omega T) - 1` of discrete time, which is not a number from `omega = pi / T` on.
+/// Returns `j omega`, or `e^(j omega T) - 1` in discrete time, which is NaN from `omega = pi / T`
+/// on.
 fn shifted(omega: f64, sample_time_s: Option<f64>) -> Complex<f64> {
     match sample_time_s.map(|sample_time_s| omega * sample_time_s) {
         None => Complex::new(0.0, omega),
@@ -180,7 +184,7 @@ fn shifted(omega: f64, sample_time_s: Option<f64>) -> Complex<f64> {
     }
 }
 
-/// The delays of a model's responses, where there are any.
+/// Returns the delays of a model's responses, where there are any.
 fn delays_of(dynamics: &Dynamics) -> Option<PairTable<f64>> {
     let Dynamics::StateSpace(model) = dynamics else {
         return None;
@@ -194,11 +198,12 @@ fn delays_of(dynamics: &Dynamics) -> Option<PairTable<f64>> {
     })
 }
 
-/// Whether each response of a model is more than a structural zero: whether a chain of entries that are not zero leads from
-/// the input through `B`, any number of times through `A`, and `C` (or at once through `D`) to the output.
+/// Returns whether each response of a model is more than a structural zero: whether a chain of
+/// nonzero entries leads from the input through `B`, any number of times through `A`, and `C` (or
+/// directly through `D`) to the output.
 ///
-/// Where it is not, the response is zero whatever the frequency. Computed responses would be rounding errors there, of which no
-/// ratio could be taken (M6).
+/// A structural zero has zero response at every frequency. Its computed values would be rounding
+/// errors, for which ratios are meaningless (M6).
 pub fn connected(model: &StateSpace) -> PairTable<bool> {
     let reached: Vec<Vec<bool>> = (0..model.inputs())
         .map(|input| reached_states(model, input))
@@ -214,7 +219,7 @@ pub fn connected(model: &StateSpace) -> PairTable<bool> {
     })
 }
 
-/// The states that lie on a chain of entries from the input of a response to its output.
+/// Returns the states on a chain of nonzero entries from the input of a response to its output.
 pub(super) fn leading_states(model: &StateSpace, pair: Pair) -> Vec<usize> {
     let reached = reached_states(model, pair.input);
     let seen = spread(
@@ -238,7 +243,7 @@ fn reached_states(model: &StateSpace, input: usize) -> Vec<bool> {
     )
 }
 
-/// The marked states, and those that the columns of `a` lead to from them.
+/// Returns the marked states and all states reachable from them through the columns of `a`.
 fn spread(a: &DMatrix<f64>, mut reached: Vec<bool>) -> Vec<bool> {
     let mut open: Vec<usize> = (0..reached.len()).filter(|&state| reached[state]).collect();
     let mut left = reached.len() - open.len();
@@ -286,7 +291,7 @@ mod tests {
             .to_vec()
     }
 
-    /// `A_d = e^(A T)`, `B_d = integral of e^(A t) B`: a hold of the inputs between samples.
+    /// Discretises with a zero-order hold: `A_d = e^(A T)`, `B_d = integral of e^(A t) B`.
     fn held(model: &StateSpace, sample_time_s: f64) -> StateSpace {
         let n = model.order();
         let m = model.inputs();
@@ -314,7 +319,8 @@ mod tests {
         let found = curve(held(&oscillator(), sample_time_s));
         for ((value, expected), omega) in found.iter().zip(&expected).zip(grid.omega()) {
             let lag = Complex::from_polar(1.0, -0.5 * omega * sample_time_s);
-            // What is left of the hold is (omega T)^2 / 24 = 6e-10 and what it folds down; and rounding 1e-16 / (omega T).
+            // Remaining errors: the hold, (omega T)^2 / 24 = 6e-10, and its aliasing; and rounding,
+            // 1e-16 / (omega T).
             assert!(
                 (value - expected * lag).norm() < 1e-8 * expected.norm(),
                 "{omega}"
@@ -439,7 +445,7 @@ mod discrete_form_tests {
 
     #[test]
     fn a_pole_on_the_unit_circle_is_not_finite_there_only() {
-        // z^2 + 1: poles at +-j, that is omega T = pi / 2.
+        // z^2 + 1: poles at +-j, i.e. omega T = pi / 2.
         let model = StateSpace::new(
             dmatrix![0.0, 1.0; -1.0, 0.0],
             dmatrix![0.0; 1.0],
@@ -452,7 +458,7 @@ mod discrete_form_tests {
             &[1.0, std::f64::consts::FRAC_PI_2, 2.0],
         );
         let values = response.curve(Pair::new(0, 0));
-        // The machine's pi is not pi: what is left of the pole is of the order of 1 / rounding.
+        // The double nearest to pi is not pi: the pole leaves a value of the order of 1 / rounding.
         assert!(!values[1].is_finite() || values[1].norm() > 1e15);
         for (omega, value) in [(1.0, values[0]), (2.0, values[2])] {
             let expected: Complex<f64> = (Complex::from_polar(1.0, 2.0 * omega) + 1.0).inv();

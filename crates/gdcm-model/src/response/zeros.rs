@@ -10,10 +10,10 @@
 //! 5  Newton: z <- z - H(z) / H'(z) on what step 2 left, while |H| falls
 //! ```
 //!
-//! Emami-Naeini & Van Dooren, "Computation of zeros of linear multivariable systems", Automatica 18(4), 1982, for one input and
-//! one output.
+//! Emami-Naeini & Van Dooren, "Computation of zeros of linear multivariable systems", Automatica
+//! 18(4), 1982, for the single-input, single-output case.
 //!
-//! Which part of a model an input reaches and an output sees, by orthogonal reflections.
+//! Reduction of a model to its controllable or observable part by orthogonal reflections.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -25,14 +25,15 @@ use crate::dataset::{Dynamics, Pair, StateSpace};
 /// The transmission zeros of one response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TransmissionZeros {
-    /// The finite zeros \[rad/s\], rising in size; conjugate pairs to the last digit, the one above the real axis first.
+    /// The finite zeros \[rad/s\], in ascending modulus; pairs are exact conjugates, the zero above
+    /// the real axis first.
     pub finite: Vec<Complex<f64>>,
-    /// Number of zeros at infinity: by how much the response has more poles than finite zeros. Of discrete time those at `z = 0`
-    /// are among them, for they have no `s`.
+    /// Number of zeros at infinity: the number of poles minus the number of finite zeros. In
+    /// discrete time it includes the zeros at `z = 0`, which have no `s`.
     pub infinite: usize,
 }
 
-/// Why a response has no zeros to be told.
+/// Why the zeros of a response are unavailable.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ZerosError {
     /// An entry is too large to compute with.
@@ -41,18 +42,19 @@ pub enum ZerosError {
     /// The input does not act on the output at any frequency.
     #[error("the input does not act on this output: the response is zero everywhere")]
     NoResponse,
-    /// The iteration for the eigenvalues did not come to an end.
+    /// The eigenvalue iteration did not converge.
     #[error("the zeros were not found: the iteration for the eigenvalues does not come to an end")]
     NotConverged,
     /// The model has no such response.
     #[error("the model has no output number {} or no input number {}", pair.output + 1, pair.input + 1)]
     OutsideModel {
-        /// The response asked for.
+        /// The requested response.
         pair: Pair,
     },
 }
 
-/// The finite transmission zeros of a model's response; none of a measured one, which has no states, and of one that it does not have.
+/// Returns the finite transmission zeros of a model's response; empty for a measured response,
+/// which has no states, and for a response that the model does not have.
 pub fn finite_zeros(dynamics: &Dynamics, pair: Pair) -> Vec<Complex<f64>> {
     match dynamics {
         Dynamics::StateSpace(model) => transmission_zeros(model, pair)
@@ -62,12 +64,12 @@ pub fn finite_zeros(dynamics: &Dynamics, pair: Pair) -> Vec<Complex<f64>> {
     }
 }
 
-/// The transmission zeros of the response of one output to one input: where `H(z) = C (zI - A)^-1 B + D` is zero. Poles that the
-/// response does not have (not reached or not seen) are no zeros either. Those of discrete time are told as `s = ln z / T`
-/// (M2a).
+/// Computes the transmission zeros of the response of one output to one input: the zeros of
+/// `H(z) = C (zI - A)^-1 B + D`. Cancelled poles (uncontrollable or unobservable) are not counted
+/// as zeros either. Discrete-time zeros are given as `s = ln z / T` (M2a).
 ///
 /// # Errors
-/// [`ZerosError`] where there is no response, or nothing can be computed.
+/// [`ZerosError`] where there is no response, or the computation fails.
 pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<TransmissionZeros, ZerosError> {
     if let Some(entry) = LargeEntry::of(model) {
         return Err(ZerosError::TooLarge(entry));
@@ -108,7 +110,7 @@ pub fn transmission_zeros(model: &StateSpace, pair: Pair) -> Result<Transmission
     Ok(TransmissionZeros { finite, infinite })
 }
 
-/// The states between one input and one output, in units that make their rows and columns alike.
+/// Extracts the balanced model between one input and one output.
 fn single(model: &StateSpace, plane: SPlane, pair: Pair) -> SingleResponse {
     let states = leading_states(model, pair);
     let mut a = plane.matrix(&model.a().select_rows(&states).select_columns(&states));
@@ -123,9 +125,11 @@ fn single(model: &StateSpace, plane: SPlane, pair: Pair) -> SingleResponse {
     }
 }
 
-/// Takes the zeros at infinity out of a Hessenberg model, and counts them; `None` where nothing is left.
+/// Removes the zeros at infinity from a Hessenberg model, and counts them; `None` where nothing is
+/// left.
 ///
-/// A feed-through counts as none where it would put a zero 1e10 times as far out as `|A|`, or where it is the rounding of c.
+/// A feed-through counts as zero where it would put a zero 1e10 times as far out as `|A|`, or where
+/// it is at the rounding level of c.
 fn without_infinite_zeros(mut model: SingleResponse) -> Option<(SingleResponse, usize)> {
     const FARTHEST: f64 = 1e10;
     const ROUNDING: f64 = 1e-12;
@@ -146,7 +150,7 @@ fn without_infinite_zeros(mut model: SingleResponse) -> Option<(SingleResponse, 
             return None;
         }
         let rest = states - 1;
-        // The first entry of b is all that b has: it becomes a factor of the response, which moves no zero.
+        // b has only its first entry: it becomes a factor of the response, which moves no zero.
         model = SingleResponse {
             a: model.a.view((1, 1), (rest, rest)).into_owned(),
             b: model.a.view((1, 0), (rest, 1)).column(0).into_owned(),
@@ -157,7 +161,7 @@ fn without_infinite_zeros(mut model: SingleResponse) -> Option<(SingleResponse, 
     }
 }
 
-/// `H(s)` and `H'(s) = -c (sI - A)^-2 b`; `None` at a pole.
+/// Returns `H(s)` and `H'(s) = -c (sI - A)^-2 b`; `None` at a pole.
 fn response_and_slope(
     model: &SingleResponse,
     s: Complex<f64>,
@@ -175,10 +179,10 @@ fn response_and_slope(
     Some((through(&states) + model.d, -through(&slope)))
 }
 
-/// A zero moved to where the response is least, if that is close by.
+/// Moves a zero to the nearby minimum of the response, if there is one.
 fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
     const MOST_STEPS: usize = 4;
-    /// Share of its size by which rounding may have moved a zero.
+    /// Relative distance by which rounding may have moved a zero.
     const CLOSE: f64 = 1e-3;
     let mut best = zero;
     let Some((mut value, mut slope)) = response_and_slope(model, zero) else {
@@ -189,7 +193,7 @@ fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
         if zero.im == 0.0 {
             next.im = 0.0;
         }
-        // Not a number, too, where the slope is zero.
+        // Also true for NaN, where the slope is zero.
         if !(next - zero).norm().le(&(CLOSE * zero.norm())) || next.im < 0.0 {
             break;
         }
@@ -204,7 +208,7 @@ fn polished(model: &SingleResponse, zero: Complex<f64>) -> Complex<f64> {
     best
 }
 
-/// A model of one input and one output.
+/// A single-input, single-output model.
 #[derive(Clone, Debug)]
 pub(super) struct SingleResponse {
     pub(super) a: DMatrix<f64>,
@@ -213,16 +217,16 @@ pub(super) struct SingleResponse {
     pub(super) d: f64,
 }
 
-/// A coupling below this share of |A| is the rounding of the reflections.
+/// A coupling below this share of |A| counts as rounding of the reflections.
 const NEGLIGIBLE: f64 = 1e-12;
 
 impl SingleResponse {
-    /// The same response without the states that the input does not reach: A is Hessenberg then, and b is zero but for its
-    /// first entry.
+    /// Returns the same response without the uncontrollable states: A is then Hessenberg, and b is
+    /// zero except for its first entry.
     ///
-    /// Reflections put b on the first state, then column after column of A on its subdiagonal; at the first subdiagonal entry that is
-    /// negligible the chain from the input ends (the staircase of Van Dooren, IEEE Trans. Automatic Control 26(1), 1981, for one
-    /// input).
+    /// Reflections align b with the first state, then each column of A with its subdiagonal; the
+    /// chain from the input ends at the first negligible subdiagonal entry (the staircase of Van
+    /// Dooren, IEEE Trans. Automatic Control 26(1), 1981, for one input).
     pub(super) fn reached(mut self) -> Self {
         let size = self.a.nrows();
         let negligible = NEGLIGIBLE * self.a.norm();
@@ -243,7 +247,8 @@ impl SingleResponse {
         self
     }
 
-    /// The model with inputs and outputs interchanged: what the input reaches is what the output saw.
+    /// Returns the transposed model: its controllable states are the observable states of the
+    /// original.
     pub(super) fn transposed(self) -> Self {
         Self {
             a: self.a.transpose(),
@@ -253,7 +258,8 @@ impl SingleResponse {
         }
     }
 
-    /// Reflects the states so that `axis`, which is zero before `at`, has its only entry there.
+    /// Reflects the states so that `axis`, which is zero before `at`, has its only entry at that
+    /// index.
     fn reflect(&mut self, axis: DVector<f64>, at: usize) {
         let mut normal = axis.clone();
         normal[at] += axis.norm().copysign(axis[at]);
@@ -265,7 +271,7 @@ impl SingleResponse {
         for vector in [&mut self.b, &mut self.c] {
             *vector -= 2.0 * normal.dot(vector) * &normal;
         }
-        // What the reflection makes zero, up to rounding.
+        // Entries that the reflection makes zero, up to rounding.
         if at == 0 {
             self.b.rows_mut(1, self.b.nrows() - 1).fill(0.0);
         } else {
@@ -298,7 +304,7 @@ mod tests {
         input: 0,
     };
 
-    /// The polynomial with these real roots, highest power first.
+    /// Returns the polynomial with these real roots, highest power first.
     fn polynomial(roots: &[f64]) -> Vec<f64> {
         roots.iter().fold(vec![1.0], |of, root| {
             let shifted = of.iter().copied().chain([0.0]);
@@ -308,7 +314,7 @@ mod tests {
         })
     }
 
-    /// `gain (s - z1) ... / (s - p1) ...` in the controllable canonical form.
+    /// Returns `gain (s - z1) ... / (s - p1) ...` in the controllable canonical form.
     fn canonical(gain: f64, zeros: &[f64], poles: &[f64]) -> StateSpace {
         let n = poles.len();
         let mut numerator = polynomial(zeros);
@@ -330,7 +336,7 @@ mod tests {
         StateSpace::new(a, b, c, dmatrix![gain * through]).unwrap()
     }
 
-    /// The same in other coordinates of the states.
+    /// Returns the same model in other state coordinates.
     fn transformed(model: &StateSpace, by: &DMatrix<f64>) -> StateSpace {
         let inverse = by.clone().try_inverse().unwrap();
         StateSpace::new(
@@ -364,7 +370,7 @@ mod tests {
 
     #[test]
     fn the_zeros_of_a_ratio_of_polynomials_are_found() {
-        // Conditioning of the roots of polynomials of degree 2 to 5 with roots this far apart.
+        // Conditioning of polynomials of degree 2 to 5 with roots this far apart.
         assert_zeros(
             &canonical(2.0, &[-1.0, -2.0], &[-3.0, -4.0, -5.0]),
             &[-1.0, -2.0],
@@ -405,7 +411,7 @@ mod tests {
 
     #[test]
     fn a_pole_that_the_response_does_not_have_is_no_zero() {
-        // A heading beside a lag, which nothing sees; and a mode that the input does not drive.
+        // A heading beside a lag, which is unobservable; and an uncontrollable mode.
         let model = StateSpace::new(
             dmatrix![-1.0, 0.0, 0.5; 1.0, 0.0, 0.0; 0.0, 0.0, -4.0],
             dmatrix![1.0; 0.0; 0.0],
@@ -426,7 +432,7 @@ mod tests {
             DMatrix::from_row_slice(1, 2, hidden.c.as_slice()),
             dmatrix![1.0],
         );
-        // 1 + 1 / (s + 1); the pole at -2 is not reached.
+        // 1 + 1 / (s + 1); the pole at -2 is uncontrollable.
         assert_zeros(&model.unwrap(), &[-2.0], 0, 1e-14);
     }
 
@@ -496,7 +502,8 @@ mod tests {
             prop_assert_eq!((found.finite.len(), found.infinite), (zeros.len(), extra + 1));
             for zero in &zeros {
                 let nearest = found.finite.iter().map(|found| (found - zero).norm()).fold(f64::INFINITY, f64::min);
-                // The canonical form of seven poles has entries up to 1e4, and zeros 0.3 apart a condition of some 1e3.
+                // The canonical form of seven poles has entries up to 1e4, and zeros 0.3 apart have
+                // a condition number of about 1e3.
                 prop_assert!(nearest < 1e-6, "{zero}: {found:?}");
             }
             let minimal = single(&model, SPlane::of(&model), ONLY);
@@ -504,8 +511,9 @@ mod tests {
                 .map(|(value, _)| value.norm()).fold(0.0, f64::max);
             for zero in &found.finite {
                 let (value, _) = response_and_slope(&minimal, *zero).unwrap();
-                // Of the sixteen digits the coordinates take three and the entries of the canonical form four, as above; a zero far
-                // to the left lies where the response is steeper than on the axis that the peak is of.
+                // Of sixteen digits the coordinates cost three and the entries of the canonical
+                // form four, as above; a zero far to the left lies where the response is steeper
+                // than on the axis used for the peak.
                 prop_assert!(value.norm() < 1e-6 * peak, "{zero}: {} of {peak}", value.norm());
             }
         }
@@ -520,7 +528,7 @@ mod staircase_tests {
 
     #[test]
     fn states_that_the_input_does_not_reach_are_left_out() {
-        // Two lags of which the input drives the sum only: seen in other coordinates, one state.
+        // Two lags whose sum alone is driven by the input: a single state in other coordinates.
         let a = dmatrix![-1.5, 0.5; 0.5, -1.5];
         let model = SingleResponse {
             a,
@@ -559,7 +567,7 @@ mod staircase_tests {
         assert_eq!(reached.b.iter().filter(|entry| **entry != 0.0).count(), 1);
         let below = (0..6).flat_map(|column| (column + 2..6).map(move |row| (row, column)));
         assert!(below.into_iter().all(|at| reached.a[at] == 0.0));
-        // c A b is the same in any coordinates.
+        // c A b is invariant under changes of coordinates.
         let before = b.dot(&(&a * &b));
         let after = reached.c.dot(&(&reached.a * &reached.b));
         assert!((before - after).abs() < 1e-13 * before.abs());

@@ -1,11 +1,11 @@
-//! A state-space model in discrete time, exact for inputs that are linear between samples.
+//! Discretisation of a state-space model, exact for inputs that are linear between samples.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::dataset::StateSpace;
 
-/// A model over one sample time `T`, exact for inputs that are linear between samples (first-order hold; C. F. Van Loan,
-/// IEEE Trans. Autom. Control 23, 1978).
+/// A model discretised at sample time `T`, exact for inputs that are linear between samples
+/// (first-order hold; C. F. Van Loan, IEEE Trans. Autom. Control 23, 1978).
 ///
 /// ```text
 ///     [A T  B T  0]   [Phi  G1  G2]
@@ -22,7 +22,7 @@ pub struct FirstOrderHold {
 }
 
 impl FirstOrderHold {
-    /// `model` over `sample_time_s` \[s\]; none where the result is not finite.
+    /// Discretises `model` at `sample_time_s` \[s\]; `None` where the result is not finite.
     #[must_use]
     pub fn of(model: &StateSpace, sample_time_s: f64) -> Option<Self> {
         let n = model.order();
@@ -51,7 +51,7 @@ impl FirstOrderHold {
             })
     }
 
-    /// The outputs from the state `initial` for `inputs`, both one row a sample.
+    /// Simulates the outputs from the state `initial` for `inputs`, both with one row per sample.
     #[must_use]
     pub fn simulate(&self, initial: &DVector<f64>, inputs: &DMatrix<f64>) -> DMatrix<f64> {
         let mut outputs = DMatrix::zeros(inputs.nrows(), self.c.nrows());
@@ -67,8 +67,8 @@ impl FirstOrderHold {
         outputs
     }
 
-    /// What each initial state by itself does to the outputs: `C Phi^n` for `samples` samples, (samples x outputs) x states,
-    /// all outputs of a sample one after another.
+    /// Returns the free response of the outputs to each initial state: `C Phi^n` for `samples`
+    /// samples, (samples x outputs) x states, with all outputs of a sample in consecutive rows.
     #[must_use]
     pub fn free_responses(&self, samples: usize) -> DMatrix<f64> {
         let (outputs, states) = self.c.shape();

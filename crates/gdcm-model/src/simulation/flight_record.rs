@@ -1,4 +1,4 @@
-//! Flight records as logged, and segments of them on a uniform grid of time.
+//! Flight records as logged, and their segments on a uniform time grid.
 
 use std::fmt;
 
@@ -6,36 +6,36 @@ use nalgebra::{DMatrix, DVectorView};
 
 use crate::dataset::channel::ChannelSide;
 
-/// A flight record: samples of every input and output at stamped times, in the units of the file.
+/// A flight record: samples of every input and output with time stamps, in the units of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightRecord {
-    /// Its name, for people.
+    /// Display name.
     pub name: String,
-    /// Time of each sample \[s\]; not a number where the stamp is missing.
+    /// Time of each sample \[s\]; NaN where the stamp is missing.
     pub time_s: Vec<f64>,
-    /// Inputs, one row a sample, one column a channel; not a number where the sample is missing.
+    /// Inputs, one row per sample, one column per channel; NaN where the sample is missing.
     pub inputs: DMatrix<f64>,
-    /// Outputs, one row a sample, one column a channel; not a number where the sample is missing.
+    /// Outputs, one row per sample, one column per channel; NaN where the sample is missing.
     pub outputs: DMatrix<f64>,
 }
 
-/// A segment of a flight record without gaps, on a uniform grid of time, all samples finite.
+/// A gap-free segment of a flight record on a uniform time grid, with all samples finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
-    /// Which of the records it is of, counted from 0.
+    /// Index of its record, counted from 0.
     pub record: usize,
     /// Time of its first sample \[s\], on the record's clock.
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,
-    /// Inputs, one row a sample.
+    /// Inputs, one row per sample.
     pub inputs: DMatrix<f64>,
-    /// Outputs, one row a sample.
+    /// Outputs, one row per sample.
     pub outputs: DMatrix<f64>,
 }
 
 impl FlightRecord {
-    /// Samples of one channel.
+    /// Returns the samples of one channel.
     #[must_use]
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal
@@ -46,7 +46,7 @@ impl FlightRecord {
 }
 
 impl Segment {
-    /// Samples of one channel.
+    /// Returns the samples of one channel.
     #[must_use]
     pub fn channel(&self, signal: &Signal) -> DVectorView<'_, f64> {
         signal
@@ -56,7 +56,7 @@ impl Segment {
     }
 }
 
-/// Subtracts from each column its mean.
+/// Subtracts the mean of each column.
 #[must_use]
 pub fn centred(mut samples: DMatrix<f64>) -> DMatrix<f64> {
     for mut column in samples.column_iter_mut() {
@@ -66,14 +66,14 @@ pub fn centred(mut samples: DMatrix<f64>) -> DMatrix<f64> {
     samples
 }
 
-/// A channel of the flight records, by place and by name.
+/// A channel of the flight records, by index and name.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Signal {
     /// Input or output.
     pub role: ChannelSide,
-    /// Which of them, counted from 0.
+    /// Index among the inputs or outputs, counted from 0.
     pub index: usize,
-    /// Its name, for people.
+    /// Display name.
     pub name: String,
 }
 

@@ -6,21 +6,22 @@ use nalgebra::DMatrix;
 
 use super::flight_record::Segment;
 
-/// Half length of the filter in periods of the cut-off.
+/// Half length of the filter in periods of the cut-off frequency.
 const PERIODS: f64 = 4.0;
-/// Above this share of half the sampling frequency there is nothing to filter.
+/// Cut-off above this share of the Nyquist frequency needs no filter.
 const NEAR_NYQUIST: f64 = 0.8;
-/// The longest half length in samples; more is asked for only by an absurd cut-off.
+/// Largest half length in samples; exceeded only for an absurd cut-off.
 const LONGEST: f64 = 1e5;
 
-/// A symmetric finite impulse response: a sinc in a Hamming window, of unit sum.
+/// A symmetric finite impulse response: a Hamming-windowed sinc with unit sum.
 ///
 /// ```text
 /// h[n] ~ sin(wc n dt) / (pi n) (0.54 + 0.46 cos(pi n / M)),   n = -M ... M,   M = ceil(4 * 2 pi / (wc dt))
 /// ```
 ///
-/// It moves no phase, and as every channel of a record goes through the same one, the response between them stays what it
-/// was. At both ends the signal goes on as its odd reflection, `2 x[0] - x[n]`.
+/// It has zero phase, and since every channel of a record passes through the same filter, the
+/// responses between channels are unchanged. At both ends the signal is extended by odd reflection,
+/// `2 x[0] - x[n]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LowPass {
     /// `h[0] ... h[M]`.
@@ -28,8 +29,9 @@ pub struct LowPass {
 }
 
 impl LowPass {
-    /// The filter with cut-off `omega` \[rad/s\] for a sample time \[s\]; none where `omega dt > 0.8 pi`, for then there is
-    /// nothing to take off, where either is not greater than 0, and where `M` would be over 100 000.
+    /// Creates the filter with cut-off `omega` \[rad/s\] for a sample time \[s\]; `None` where
+    /// `omega dt > 0.8 pi`, since there is nothing to remove, where either is not greater than 0,
+    /// and where `M` would exceed 100 000.
     #[must_use]
     pub fn new(omega: f64, sample_time_s: f64) -> Option<Self> {
         let step = omega * sample_time_s;
@@ -55,7 +57,7 @@ impl LowPass {
         Some(Self { half })
     }
 
-    /// `samples`, filtered.
+    /// Returns the filtered `samples`.
     #[must_use]
     pub fn filter(&self, samples: &[f64]) -> Vec<f64> {
         let reach = self.half.len() - 1;
@@ -69,7 +71,8 @@ impl LowPass {
         (0..samples.len()).map(filtered).collect()
     }
 
-    /// Every channel of a segment through the filter with cut-off `omega` \[rad/s\]; as it is where there is nothing to take off.
+    /// Filters every channel of a segment with cut-off `omega` \[rad/s\]; unchanged where there is
+    /// nothing to remove.
     #[must_use]
     pub fn applied(omega: f64, segment: &Segment) -> Segment {
         let Some(low_pass) = Self::new(omega, segment.sample_time_s) else {
@@ -91,7 +94,8 @@ impl LowPass {
     }
 }
 
-/// `samples` with `reach` more at each end, reflected oddly as often as it takes; a single sample goes on as it is.
+/// Extends `samples` by `reach` at each end through repeated odd reflection; a single sample is
+/// extended by its value.
 fn oddly_reflected(samples: &[f64], reach: usize) -> Vec<f64> {
     let Some((&first, &last)) = samples.first().zip(samples.last()) else {
         return Vec::new();
@@ -103,7 +107,8 @@ fn oddly_reflected(samples: &[f64], reach: usize) -> Vec<f64> {
         let start = reach;
         let end = reach + length - 1;
         for k in 1..=reach {
-            // Both ends grow together, so that what is reflected is there by then, however short the signal.
+            // Both ends grow together, so that the reflected samples exist already, however short
+            // the signal.
             extended[start - k] = 2.0 * first - extended[start + k];
             extended[end + k] = 2.0 * last - extended[end - k];
         }

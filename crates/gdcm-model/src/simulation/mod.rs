@@ -1,4 +1,4 @@
-//! Time responses: flight records, their low-pass filter, and a model simulated against them.
+//! Time responses: flight records, their low-pass filter, and simulation of a model against them.
 
 mod first_order_hold;
 mod flight_record;

@@ -1,4 +1,4 @@
-//! A model against a record in time.
+//! Validation of a model against records in the time domain.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -9,24 +9,26 @@ use crate::dataset::StateSpace;
 use crate::executor::{Executor, each};
 use crate::response::eigenvalues::poles;
 
-/// Time constants of the fastest diverging mode that a window lasts (M14, 6).
+/// Window length in time constants of the fastest diverging mode (M14, 6).
 const TIME_CONSTANTS: f64 = 3.0;
-/// Samples of all outputs over the unknowns (initial state and offsets) that a window has at least.
+/// Minimum ratio of samples of all outputs to unknowns (initial state and offsets) in a window.
 const OVER_UNKNOWNS: usize = 3;
-/// Initial states that show less than this share of the one that shows most are not estimated.
+/// Initial states whose effect is below this share of the largest are not estimated.
 const RANK_TOLERANCE: f64 = 1e-9;
 
-/// How a model is compared with a record in time.
+/// Settings for validation in the time domain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValidationSettings {
     /// The longest window \[s\].
     pub longest_window_s: f64,
-    /// Cut-off of the low-pass of inputs and outputs \[rad/s\]; none compares the signals as they are.
+    /// Cut-off of the low-pass filter for inputs and outputs \[rad/s\]; `None` compares the raw
+    /// signals.
     pub low_pass: Option<f64>,
 }
 
 impl ValidationSettings {
-    /// Windows of 10 s; signals low-passed at twice the highest line used, `highest` \[rad/s\] (M14, 6).
+    /// Returns windows of 10 s with signals low-pass filtered at twice the highest line in use,
+    /// `highest` \[rad/s\] (M14, 6).
     #[must_use]
     pub fn filtered(highest: f64) -> Self {
         Self {
@@ -35,7 +37,7 @@ impl ValidationSettings {
         }
     }
 
-    /// Windows of 10 s of the signals as they are, to be drawn.
+    /// Returns windows of 10 s with raw signals, for plots.
     #[must_use]
     pub fn unfiltered() -> Self {
         Self {
@@ -44,8 +46,9 @@ impl ValidationSettings {
         }
     }
 
-    /// The same with windows that all of `models` are compared over: the shortest that one of them asks for. A model that has too few samples
-    /// in its own windows is compared with nothing, and shortens none of the others'.
+    /// Returns the same settings with windows common to all of `models`: the shortest that any of
+    /// them needs. A model with too few samples in its own windows is not compared, and does not
+    /// shorten the windows of the others.
     #[must_use]
     pub fn common_to<'m>(
         self,
@@ -73,36 +76,38 @@ impl ValidationSettings {
 /// A window of a record, measured and simulated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ValidationWindow {
-    /// Which of the records it is of, counted from 0.
+    /// Index of its record, counted from 0.
     pub record: usize,
     /// Time of its first sample \[s\], on the record's clock.
     pub start_s: f64,
     /// Sample time \[s\].
     pub sample_time_s: f64,
-    /// Outputs as compared, one row a sample.
+    /// Measured outputs after filtering, one row per sample.
     pub measured: DMatrix<f64>,
-    /// Outputs of the model, one row a sample.
+    /// Outputs of the model, one row per sample.
     pub simulated: DMatrix<f64>,
 }
 
-/// A model against records in time.
+/// Validation of a model against records in the time domain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Validation {
     /// The windows, by segment and time; at least one.
     pub windows: Vec<ValidationWindow>,
-    /// Of each output `100 (1 - rms(e) / std(y))`, at most 100; none where the output does not move.
+    /// For each output `100 (1 - rms(e) / std(y))`, at most 100; `None` where the output is
+    /// constant.
     pub fit_percent: Vec<Option<f64>>,
-    /// Of each output Theil's coefficient `rms(e) / (rms y + rms y^)` about the mean of y, 0 to 1; none where neither moves.
+    /// For each output Theil's coefficient `rms(e) / (rms y + rms y^)` about the mean of y, 0 to 1;
+    /// `None` where both are constant.
     pub theil: Vec<Option<f64>>,
 }
 
-/// Why a model cannot be compared with a record in time.
+/// Why a model cannot be compared with a record in the time domain.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum ValidationError {
     /// There are no segments.
     #[error("there is no record to compare the model with")]
     NoSegments,
-    /// The model has other inputs or outputs than a segment; of which record, counted from 0.
+    /// The model's inputs or outputs differ from a segment's; index of the record, counted from 0.
     #[error("record {} has other channels than the model", .0 + 1)]
     ChannelsDiffer(usize),
     /// The response of the model over one sample is not finite.
@@ -110,22 +115,23 @@ pub enum ValidationError {
         "the model cannot be simulated: its matrices do not fit each other or hold values that are not finite"
     )]
     NotSimulated,
-    /// The longest window is no time.
+    /// The longest window is not a valid time.
     #[error("windows must last longer than 0 s")]
     NoWindow,
-    /// Too few samples to estimate an initial state and to compare as well; length of the longest window \[s\].
+    /// Too few samples both to estimate an initial state and to compare; length of the longest
+    /// window \[s\].
     #[error(
         "too short to compare in time: windows of {0:.2} s, the record or {TIME_CONSTANTS} time constants of the \
          model's fastest diverging mode, hold too few samples for its initial state"
     )]
     TooShort(f64),
-    /// The simulation leaves the range of numbers.
+    /// The simulation overflows.
     #[error("the simulated outputs are not finite")]
     NotFinite,
 }
 
-/// `model`, in the units of the file, against `segments` in time (M14, 6): windows short enough for an unstable model, each with
-/// its own initial state and output offsets.
+/// Validates `model`, in the units of the file, against `segments` in the time domain (M14, 6):
+/// windows short enough for an unstable model, each with its own initial state and output offsets.
 ///
 /// ```text
 /// window: 3 / max Re lambda, at most the longest; each segment in equal windows, no sample left out
@@ -135,7 +141,8 @@ pub enum ValidationError {
 /// ```
 ///
 /// # Errors
-/// No segments, other channels than the model's, a model that cannot be simulated, windows too short.
+/// No segments, channels that differ from the model's, a model that cannot be simulated, or windows
+/// that are too short.
 pub fn validate(
     model: &StateSpace,
     segments: &[Segment],
@@ -180,7 +187,8 @@ pub fn validate(
     })
 }
 
-/// Length of a window \[s\]; none where the model is not finite or its poles are not found.
+/// Returns the length of a window \[s\]; `None` where the model is not finite or its poles cannot
+/// be computed.
 fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
     let fastest = poles(model)?.iter().map(|pole| pole.re).fold(0.0, f64::max);
     Some(if fastest > 0.0 {
@@ -190,17 +198,18 @@ fn window_s(model: &StateSpace, longest_s: f64) -> Option<f64> {
     })
 }
 
-/// In how many windows a segment is cut; none where they hold too few samples for the initial state of a model.
+/// Returns the number of windows in a segment; `None` where they hold too few samples for the
+/// initial state of a model.
 fn windows_in(model: &StateSpace, segment: &Segment, window_s: f64) -> Option<usize> {
     let (samples, outputs) = segment.outputs.shape();
-    // A millionth of a window is rounding.
+    // A millionth of a window counts as rounding.
     let count = (samples as f64 * segment.sample_time_s / window_s - 1e-6)
         .ceil()
         .clamp(1.0, samples.max(1) as f64) as usize;
     ((samples / count) * outputs >= OVER_UNKNOWNS * (model.order() + outputs)).then_some(count)
 }
 
-/// The windows of one segment; none where it is too short.
+/// Returns the windows of one segment; `None` where it is too short.
 fn windows(
     model: &StateSpace,
     segment: &Segment,
@@ -216,7 +225,7 @@ fn windows(
     let longest = samples.div_ceil(count);
     let free = held.free_responses(longest);
     let window = |k: usize| {
-        // The product is taken in 128 bits: it may be large.
+        // The product may be large and uses 128 bits.
         let bound = |k: usize| (samples as u128 * k as u128 / count as u128) as usize;
         let from = bound(k);
         let length = bound(k + 1) - bound(k);
@@ -241,8 +250,8 @@ fn windows(
         .collect()
 }
 
-/// The outputs for `inputs` with the initial state and the offsets that bring them closest to `measured`; none where they are
-/// not finite.
+/// Simulates `inputs` with the initial state and offsets that bring the outputs closest to
+/// `measured`; `None` where they are not finite.
 fn best_simulation(
     held: &FirstOrderHold,
     free: &DMatrix<f64>,
@@ -254,7 +263,8 @@ fn best_simulation(
     let states = free.ncols();
     let forced = held.simulate(&DVector::zeros(states), &centred(inputs));
 
-    // Rows: sample after sample, each output over its std; columns: initial states, offsets, what is left to explain.
+    // Rows: sample after sample, each output divided by its standard deviation; columns: initial
+    // states, offsets, remaining error.
     let mut rows = DMatrix::zeros(samples * outputs, states + outputs + 1);
     for n in 0..samples {
         for (o, std) in std.iter().enumerate() {
@@ -273,7 +283,8 @@ fn best_simulation(
     simulated.iter().all(|y| y.is_finite()).then_some(simulated)
 }
 
-/// The least-squares solution `x` of `[a | b]` for `a x = b`, of least length in columns of length one; none where not finite.
+/// Returns the least-squares solution `x` of `[a | b]` for `a x = b`, of minimum norm for columns
+/// scaled to unit length; `None` where it is not finite.
 fn solve(rows: DMatrix<f64>) -> Option<DVector<f64>> {
     let unknowns = rows.ncols() - 1;
     if !rows.norm().is_finite() {
@@ -300,7 +311,8 @@ fn solve(rows: DMatrix<f64>) -> Option<DVector<f64>> {
     Some(solution.column(0).component_div(&lengths.transpose()))
 }
 
-/// The standard deviation of each column about its mean over all `parts`, 1 where it does not move.
+/// Returns the standard deviation of each column about its mean over all `parts`, 1 for a constant
+/// column.
 fn deviations<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> {
     let means = means(parts.clone());
     let squares = sums(parts.clone(), |o, y| (y - means[o]).powi(2));
@@ -327,7 +339,7 @@ fn means<'a>(parts: impl Iterator<Item = &'a DMatrix<f64>> + Clone) -> Vec<f64> 
         .collect()
 }
 
-/// The sum over all samples of `term(column, value)`, for each column.
+/// Returns the sum over all samples of `term(column, value)`, for each column.
 fn sums<'a>(
     parts: impl Iterator<Item = &'a DMatrix<f64>>,
     term: impl Fn(usize, f64) -> f64,
@@ -342,7 +354,7 @@ fn sums<'a>(
     sums
 }
 
-/// Fit \[%\] and Theil's coefficient of each output over all windows.
+/// Returns fit \[%\] and Theil's coefficient of each output over all windows.
 fn figures(windows: &[ValidationWindow]) -> (Vec<Option<f64>>, Vec<Option<f64>>) {
     let measured = windows.iter().map(|window| &window.measured);
     let means = means(measured.clone());
@@ -355,7 +367,7 @@ fn figures(windows: &[ValidationWindow]) -> (Vec<Option<f64>>, Vec<Option<f64>>)
     let simulated = sums(windows.iter().map(|window| &window.simulated), |o, y| {
         (y - means[o]).powi(2)
     });
-    // Every sum is over the same samples, which cancel.
+    // Every sum runs over the same samples, so that their number cancels.
     let finite = |value: f64| Some(value).filter(|value| value.is_finite());
     let fit = |o: usize| finite(100.0 * (1.0 - (error[o] / power[o]).sqrt()));
     let theil = |o: usize| finite(error[o].sqrt() / (power[o].sqrt() + simulated[o].sqrt()));

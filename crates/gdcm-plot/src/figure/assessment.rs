@@ -1,5 +1,5 @@
-//! What the correction is worth: the change of J in each condition (M12, Figures 8 to 19), and what the scatter of the net gains is made of
-//! (M13.5).
+//! Value of the correction: the change of J in each condition (M12, Figures 8 to 19), and the
+//! contributions to the scatter of the net gains (M13.5).
 
 use gdcm_method::fidelity::CostAverage;
 use gdcm_method::schedule::CostChange;
@@ -16,10 +16,10 @@ use super::drawing::{Color, Hue, Stroke};
 use super::figure::{Bars, DotShape, Dots, Figure, Intervals, Note, Panel, Place, Plot, Rule};
 
 const ZERO: Stroke = Stroke::solid(Color::DIM, 0.6);
-/// Width of a bar, where conditions are 1 apart.
+/// Width of a bar; conditions are 1 apart.
 const BAR: f64 = 0.27;
 
-/// A part of the change of J, and how its bars look; in print they differ by how dark they are.
+/// A part of the change of J and the style of its bars; in print, parts differ in darkness.
 struct Part {
     name: &'static str,
     color: Color,
@@ -44,7 +44,7 @@ const PARTS: [Part; 3] = [
     },
 ];
 
-/// ΔJ and its parts in each condition, of each of `pairs`; below 0 is better.
+/// Plots ΔJ and its parts for each of `pairs` in each condition; negative values are improvements.
 pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: AssessmentChoice) -> Figure {
     let table = AssessmentTable::of(analysis, choice);
     let title = |pair| analysis.study.dataset.pair_name(pair);
@@ -71,7 +71,8 @@ pub fn assessment_figure(analysis: &Analysis, pairs: &[Pair], choice: Assessment
         .aspect(0.62)
 }
 
-/// What the paper assesses: the nominal model under the schedule, with the average of the settings.
+/// Returns the paper's choice: the nominal model under the schedule, with the average from the
+/// settings.
 pub fn usual_choice(analysis: &Analysis) -> AssessmentChoice {
     let average = analysis.study.settings.cost_average;
     AssessmentChoice {
@@ -129,7 +130,8 @@ fn panel(analysis: &Analysis, table: &AssessmentTable, pair: Pair) -> Panel {
         .with_all(left_out)
 }
 
-/// The change of J of each of `pairs`, or a part of it, in each condition, under these headings; signed.
+/// Tabulates the signed change of J of each of `pairs`, or a part of it, in each condition under
+/// these headings.
 pub fn change_table(
     title: impl Into<String>,
     (dataset, found): (&Dataset, &AssessmentTable),
@@ -156,7 +158,7 @@ pub fn change_table(
     table
 }
 
-/// `the median`, or `the mean`.
+/// Returns `the median` or `the mean`.
 pub fn average_word(average: CostAverage) -> &'static str {
     match average {
         CostAverage::Median => "the median",
@@ -164,7 +166,7 @@ pub fn average_word(average: CostAverage) -> &'static str {
     }
 }
 
-/// The settings, the schedule, and which conditions are left out and why.
+/// Describes the settings, the schedule, and the excluded conditions with reasons.
 fn caption(analysis: &Analysis, table: &AssessmentTable) -> String {
     let study = &analysis.study;
     let mut caption = settings_words(&study.dataset, &study.settings);
@@ -187,34 +189,35 @@ fn caption(analysis: &Analysis, table: &AssessmentTable) -> String {
     caption
 }
 
-/// Width of a stacked bar, where places are 1 apart.
+/// Width of a stacked bar; places are 1 apart.
 const STACK: f64 = 0.56;
-/// How far the dots of one place stand apart.
+/// Spacing of the dots at the same place.
 const APART: f64 = 0.24;
-/// The interval of the rest.
+/// Interval of the unexplained rest.
 const INTERVAL: Stroke = Stroke::solid(Color::of(Hue::Nominal).tint(50), 2.4);
-/// Intervals are seen up to so many times the scatter.
+/// Intervals are shown up to this multiple of the scatter.
 const MOST_SEEN: f64 = 4.0;
-/// The shares end at 100 %; the numbers above them have the rest \[%\].
+/// The shares end at 100 %; the numbers above them need the rest \[%\].
 const SHARES: Range = Range {
     min: 0.0,
     max: 118.0,
 };
-/// Where those numbers stand \[%\].
+/// Position of those numbers \[%\].
 const ABOVE: f64 = 109.0;
 
-/// What the scatter is about, in the order of the places of an axis.
+/// Reference of each scatter, in the order of the places on the axis.
 const ABOUT: [&str; 2] = ["airspeed", "schedule"];
-/// The parts of a scatter, from below; in print they differ by how dark they are.
+/// Parts of a scatter, from the bottom up; in print they differ in darkness.
 const SHARED: [(&str, Hue); 3] = [
     ("trim", Hue::Perturbed),
     ("identification", Hue::Identified),
     ("unexplained", Hue::Nominal),
 ];
 
-/// The split of the scatter of each of `pairs` that has one, at equal airspeed and about the schedule: shares of the variance as stacked
-/// bars, below them the scatter itself, what is expected, and what is unexplained with its interval; none where bars were not computed,
-/// or no pair has a scatter.
+/// Plots the split of the scatter of each of `pairs`, at equal airspeed and about the schedule:
+/// shares of the variance as stacked bars; below them the scatter, its expected value, and the
+/// unexplained rest with its interval. `None` without confidence intervals, or if no pair has a
+/// scatter.
 pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     let uncertainty = analysis.uncertainty.as_ref()?;
     let of_pairs = uncertainty
@@ -240,7 +243,7 @@ pub fn evidence_figure(analysis: &Analysis, pairs: &[Pair]) -> Option<Figure> {
     })
 }
 
-/// The splits that there are, with their places.
+/// Returns the available splits with their places.
 fn splits(scatter: &PairScatter) -> impl Iterator<Item = (f64, &VarianceDecomposition)> {
     let both = [
         scatter.same_airspeed.as_ref(),
@@ -255,7 +258,7 @@ fn axis() -> Axis {
     Axis::named("Scatter about", ABOUT)
 }
 
-/// Shares of trim, identification and rest in the variance, stacked.
+/// Plots the shares of trim, identification and rest in the variance, stacked.
 fn shares(scatter: &PairScatter) -> Panel {
     let mut feet = [0.0; 2];
     let bars = (0..SHARED.len()).map(|part| {
@@ -294,7 +297,7 @@ fn shares(scatter: &PairScatter) -> Panel {
         .with_all(missing)
 }
 
-/// The standard deviations themselves, of `ln k_o k_i` in percent, and the interval of the rest.
+/// Plots the standard deviations of `ln k_o k_i` in percent, and the interval of the rest.
 fn deviations(scatter: &PairScatter, level: f64) -> Panel {
     let percent = |variance: f64| 100.0 * variance.sqrt();
     let scatter_of: fn(&VarianceDecomposition) -> f64 = |split| split.scatter;
@@ -346,7 +349,7 @@ fn deviations(scatter: &PairScatter, level: f64) -> Panel {
     Panel::new(axis(), y).with_all(intervals).with_all(dots)
 }
 
-/// What the differences come to, what the parts are, the schedule and the settings.
+/// Describes the size of the differences, their parts, the schedule and the settings.
 fn evidence_caption(analysis: &Analysis, uncertainty: &Uncertainty) -> String {
     let settings = &analysis.study.settings;
     format!(

@@ -1,37 +1,35 @@
-//! An axis of a panel: what is along it, in which unit, which part of it is shown, where it has ticks, and what stands beside them.
+//! An axis of a panel: its quantity and unit, the range shown, its ticks and labels.
 
 use serde::{Deserialize, Serialize};
 
 use gdcm_model::units::rad_s_to_hz;
 
-/// Space on either side of what is shown, as a part of its width.
+/// Margin on either side of the shown values, as a fraction of their range.
 const MARGIN: f64 = 0.05;
 
-/// How values lie along an axis.
+/// Mapping of values to positions along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// In proportion, with ticks at 1, 2, 5 times a power of ten.
+    /// Linear, with ticks at 1, 2 and 5 times a power of ten.
     Linear,
-    /// In proportion, with ticks at parts of a turn.
+    /// Linear, with ticks at fractions of a turn.
     Degrees,
-    /// By their logarithm.
     Logarithmic,
 }
 
-/// An axis: its quantity with the unit, its scale, and the part that is shown.
+/// An axis: its quantity with the unit, its scale, and its visible range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Quantity and unit: `Frequency [rad/s]`.
     pub label: String,
-    /// How values lie along it.
     pub scale: Scale,
-    /// The part shown; what holds all marks, where none is given.
+    /// The range shown; fitted to all marks if `None`.
     pub range: Option<Range>,
-    /// Values that are shown in any case.
+    /// Values that are always shown.
     pub including: Vec<f64>,
-    /// The least width shown, in the axis' unit.
+    /// Minimum width shown, in the unit of the axis.
     pub least: f64,
-    /// Names at places, in place of ticks with numbers.
+    /// Names at places, instead of numeric ticks.
     pub names: Option<Vec<(f64, String)>>,
 }
 
@@ -47,22 +45,22 @@ impl Axis {
         }
     }
 
-    /// An axis of decimal ticks.
+    /// Creates an axis with decimal ticks.
     pub fn linear(label: impl Into<String>) -> Self {
         Self::new(label, Scale::Linear)
     }
 
-    /// An axis of angles \[deg\].
+    /// Creates an axis of angles \[deg\].
     pub fn degrees(label: impl Into<String>) -> Self {
         Self::new(label, Scale::Degrees)
     }
 
-    /// A logarithmic axis; values that are not positive are not shown.
+    /// Creates a logarithmic axis, which does not show nonpositive values.
     pub fn logarithmic(label: impl Into<String>) -> Self {
         Self::new(label, Scale::Logarithmic)
     }
 
-    /// An axis of named places, the first at 0, the others at whole numbers from there.
+    /// Creates an axis of named places at 0, 1, 2, …
     pub fn named(
         label: impl Into<String>,
         names: impl IntoIterator<Item = impl Into<String>>,
@@ -80,7 +78,7 @@ impl Axis {
         }
     }
 
-    /// The same axis that shows exactly this part.
+    /// Returns the axis with exactly this range shown.
     pub fn showing(self, range: Option<Range>) -> Self {
         Self {
             range: range.or(self.range),
@@ -88,18 +86,19 @@ impl Axis {
         }
     }
 
-    /// The same axis that shows `value` too.
+    /// Returns the axis with `value` always shown.
     pub fn including(mut self, value: f64) -> Self {
         self.including.push(value);
         self
     }
 
-    /// The same axis that shows at least this width, in its unit.
+    /// Returns the axis with at least this width shown, in its unit.
     pub fn at_least(self, least: f64) -> Self {
         Self { least, ..self }
     }
 
-    /// The part that shows `values`, where none is given: on a logarithmic axis exactly those, else with some space around.
+    /// Returns the range that shows `values`, unless one is given: exact on a logarithmic axis,
+    /// otherwise with a margin.
     pub(super) fn fitted(&self, values: impl Iterator<Item = f64>) -> Range {
         if let Some(range) = self.range {
             return range;
@@ -122,12 +121,13 @@ impl Axis {
         }
     }
 
-    /// Whether a value has a place on the axis.
+    /// Returns whether the axis can show a value.
     pub(super) fn can_show(&self, value: f64) -> bool {
         value.is_finite() && (self.scale != Scale::Logarithmic || value > 0.0)
     }
 
-    /// Where a value is along the axis: 0 at the lower end of `range`, 1 at the upper; nowhere for what cannot be shown.
+    /// Returns the position of a value along the axis: 0 at the lower end of `range`, 1 at the
+    /// upper; `None` if the value cannot be shown.
     pub(super) fn fraction(&self, value: f64, range: Range) -> Option<f64> {
         let place = |value: f64| match self.scale {
             Scale::Logarithmic => value.log10(),
@@ -140,12 +140,10 @@ impl Axis {
     }
 }
 
-/// The part of an axis that is in view: finite, `min < max`.
+/// The visible range of an axis: finite, `min < max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
-    /// Lower end.
     pub min: f64,
-    /// Upper end.
     pub max: f64,
 }
 
@@ -156,7 +154,7 @@ impl Range {
         max: f64::INFINITY,
     };
 
-    /// The range from `min` to `max`, which need not be in order.
+    /// Creates the range between `min` and `max`, in either order.
     pub fn new(min: f64, max: f64) -> Self {
         Self {
             min: min.min(max),
@@ -164,7 +162,7 @@ impl Range {
         }
     }
 
-    /// The least range that holds every finite value, or nothing where there is none.
+    /// Returns the smallest range with every finite value, or `None` if there is none.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let empty = (f64::INFINITY, f64::NEG_INFINITY);
         let finite = values.into_iter().filter(|value| value.is_finite());
@@ -172,17 +170,17 @@ impl Range {
         (min <= max).then_some(Self { min, max })
     }
 
-    /// Upper end minus lower end.
+    /// Returns the upper end minus the lower end.
     pub fn width(self) -> f64 {
         self.max - self.min
     }
 
-    /// The value halfway.
+    /// Returns the centre.
     pub fn middle(self) -> f64 {
         0.5 * (self.min + self.max)
     }
 
-    /// The least range that holds this one and `value`.
+    /// Returns the smallest range that contains this range and `value`.
     pub fn including(self, value: f64) -> Self {
         Self {
             min: self.min.min(value),
@@ -190,12 +188,13 @@ impl Range {
         }
     }
 
-    /// The least range that holds both.
+    /// Returns the smallest range that contains both.
     pub fn union(self, other: Self) -> Self {
         self.including(other.min).including(other.max)
     }
 
-    /// This range with `fraction` of its width added on either side, and at least as wide as `least`.
+    /// Returns this range with `fraction` of its width added on either side, and at least as wide
+    /// as `least`.
     pub fn with_margin(self, fraction: f64, least: f64) -> Self {
         let half = (0.5 * self.width() * (1.0 + 2.0 * fraction)).max(0.5 * least);
         Self {
@@ -204,7 +203,7 @@ impl Range {
         }
     }
 
-    /// This range with `by` added to both ends.
+    /// Returns this range with `by` added to both ends.
     pub fn moved(self, by: f64) -> Self {
         Self {
             min: self.min + by,
@@ -212,10 +211,10 @@ impl Range {
         }
     }
 
-    /// This range seen `factor` times closer, with `fixed` staying where it is.
+    /// Returns this range magnified `factor` times, with `fixed` staying in place.
     pub fn zoomed(self, factor: f64, fixed: f64) -> Self {
         if factor == 1.0 {
-            // To the last digit.
+            // Exact, without rounding.
             return self;
         }
         Self {
@@ -224,9 +223,11 @@ impl Range {
         }
     }
 
-    /// This range where its width lies in `widths`, else the nearest range about the same middle whose width does.
+    /// Returns this range if its width lies in `widths`, otherwise the nearest range with the same
+    /// centre whose width does.
     ///
-    /// Keeps zooming and panning away from where numbers lose their meaning; a range that is not finite gives nothing.
+    /// Keeps zooming and panning away from widths at which numbers lose their meaning; returns
+    /// `None` for a range that is not finite.
     pub fn limited(self, widths: Self) -> Option<Self> {
         let width = self.width();
         let middle = self.middle();
@@ -244,45 +245,46 @@ impl Range {
         })
     }
 
-    /// Whether `value` lies in the range, ends included.
+    /// Returns whether `value` lies in the range, ends included.
     pub fn contains(self, value: f64) -> bool {
         (self.min..=self.max).contains(&value)
     }
 }
 
-/// Where less than this is shown \[decades\], equal steps may be labelled instead of parts of a decade.
+/// Below this width \[decades\], equal steps may be labelled instead of parts of a decade.
 const LINEAR_BELOW: f64 = 0.9;
-/// Degrees between ticks, from about one degree on; below, decimal steps.
+/// Degrees between ticks, from about 1° up; below that, decimal steps.
 const DEGREE_STEPS: [f64; 13] = [
     5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0, 360.0, 720.0, 1800.0, 3600.0, 7200.0,
 ];
 
-/// A place on an axis.
+/// A tick on an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// The value there.
     pub value: f64,
-    /// The text beside it; none beside a minor tick.
+    /// Label; `None` for a minor tick.
     pub label: Option<String>,
 }
 
-/// How close the ticks of an axis may be \[pt\].
+/// Minimum distances between ticks of an axis \[pt\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TickGaps {
-    /// From label to label.
+    /// Between labels.
     pub labels: f64,
-    /// From label to label where equal steps take the place of parts of a decade.
+    /// Between labels at equal steps instead of parts of a decade.
     pub equal_steps: f64,
-    /// From line to line of a decade.
+    /// Between grid lines within a decade.
     pub lines: f64,
 }
 
-/// From 9 to 10, the narrowest gap between the lines of a decade \[decades\].
+/// Distance from 9 to 10, the narrowest gap between the lines of a decade \[decades\].
 const NINE_TO_TEN: f64 = 0.045_757_490_560_675_115;
-/// Least distance between two labels where all nine of a decade have one \[pt\]: a row of many close numbers is hard to read.
+/// Minimum distance between labels if all nine of a decade are labelled \[pt\]: a row of many close
+/// numbers is hard to read.
 const NINE_LABELS_GAP: f64 = 44.0;
 
-/// The ticks of `axis` where `range` is shown on `length_pt`, with labels at least `gap_pt` apart.
+/// Returns the ticks of `axis` for `range` shown on `length_pt`, with labels at least `gap_pt`
+/// apart.
 pub(super) fn ticks(axis: &Axis, range: Range, length_pt: f64, gap_pt: f64) -> Vec<Tick> {
     if let Some(names) = &axis.names {
         let shown: Vec<_> = names.iter().filter(|(at, _)| range.contains(*at)).collect();
@@ -306,7 +308,7 @@ pub(super) fn ticks(axis: &Axis, range: Range, length_pt: f64, gap_pt: f64) -> V
     )
 }
 
-/// The ticks of an axis of numbers where `range` is shown on `length_pt`.
+/// Returns the ticks of a numeric axis for `range` shown on `length_pt`.
 pub fn ticks_of(scale: Scale, range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     let least = gaps.labels * range.width() / length_pt;
     match scale {
@@ -333,7 +335,7 @@ fn equal_steps(range: Range, step: f64) -> Vec<Tick> {
         .collect()
 }
 
-/// The least part of a turn \[deg\] that is not below `least`.
+/// Returns the smallest fraction of a turn \[deg\] that is at least `least`.
 pub fn degree_step(least: f64) -> f64 {
     match DEGREE_STEPS.into_iter().find(|step| *step >= least) {
         Some(step) if least > 2.0 => step,
@@ -341,13 +343,13 @@ pub fn degree_step(least: f64) -> f64 {
     }
 }
 
-/// The least of 1, 2 and 5 times a power of ten that is not below `least`.
+/// Returns the smallest of 1, 2 and 5 times a power of ten that is at least `least`.
 pub fn step_above(least: f64) -> f64 {
     if !(least > 0.0 && least.is_finite()) {
         return 1.0;
     }
     let power = 10f64.powf(least.log10().floor());
-    // A step that is meant to be round may come in a rounding error above itself.
+    // A step that should be round may exceed itself by a rounding error.
     let fits = |factor: f64| factor * power >= least * (1.0 - 1e-9);
     let factor = [1.0, 2.0, 5.0]
         .into_iter()
@@ -356,8 +358,8 @@ pub fn step_above(least: f64) -> f64 {
     factor * power
 }
 
-/// Ticks at 1 to 9 of each decade, labelled at 1, 2 and 5 or at the decades, whichever has room; of a small part of a decade, equal
-/// steps.
+/// Returns ticks at 1 to 9 of each decade, labelled at 1, 2 and 5 or at the decades, whichever
+/// fits; for a small part of a decade, equal steps.
 fn decades(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     let low = range.min.log10();
     let high = range.max.log10();
@@ -392,7 +394,7 @@ fn decades(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
         })
         .collect();
     let count = ticks.iter().filter(|tick| tick.label.is_some()).count();
-    // The upper end is where equal steps are closest.
+    // Equal steps are closest at the upper end.
     let linear = equal_steps(
         range,
         step_above(gaps.equal_steps * range.max * std::f64::consts::LN_10 / decade_pt),
@@ -404,7 +406,8 @@ fn decades(range: Range, length_pt: f64, gaps: TickGaps) -> Vec<Tick> {
     }
 }
 
-/// The shortest text of `value` to six significant digits, without trailing zeros, with a true minus sign.
+/// Formats `value` with up to six significant digits, without trailing zeros, with a true minus
+/// sign.
 pub fn compact(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return if value == 0.0 {
@@ -423,12 +426,13 @@ pub fn compact(value: f64) -> String {
     signed(text)
 }
 
-/// `value` with so many decimals, with a true minus sign.
+/// Formats `value` with `count` decimals and a true minus sign.
 pub fn decimals(value: f64, count: usize) -> String {
     signed(&format!("{value:.count$}"))
 }
 
-/// A value that rounds to zero has no sign; a negative one has a minus sign, as wide as a plus, instead of a hyphen.
+/// Drops the sign of a value that rounds to zero, and writes a minus sign, as wide as a plus,
+/// instead of a hyphen.
 fn signed(text: &str) -> String {
     match text.strip_prefix('-') {
         Some(digits) if digits.chars().all(|c| matches!(c, '0' | '.')) => digits.to_owned(),
@@ -437,7 +441,7 @@ fn signed(text: &str) -> String {
     }
 }
 
-/// The unit frequencies are shown in; inside they are always rad/s.
+/// Unit of displayed frequencies; internally they are always rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FrequencyUnit {
     /// Angular frequency.
@@ -456,7 +460,7 @@ impl FrequencyUnit {
         }
     }
 
-    /// The angular frequency `omega` \[rad/s\] in this unit.
+    /// Converts the angular frequency `omega` \[rad/s\] to this unit.
     pub fn of_omega(self, omega: f64) -> f64 {
         match self {
             Self::RadPerSecond => omega,
@@ -464,7 +468,7 @@ impl FrequencyUnit {
         }
     }
 
-    /// An angular frequency as a reader wants it: "ω 2.05 rad/s" or "f 0.326 Hz".
+    /// Formats an angular frequency with its symbol and unit: "ω 2.05 rad/s" or "f 0.326 Hz".
     pub fn readout(self, omega: f64) -> String {
         let quantity = match self {
             Self::RadPerSecond => "ω",
@@ -477,23 +481,22 @@ impl FrequencyUnit {
         )
     }
 
-    /// What stands beside the axis.
+    /// Label of the axis.
     pub fn axis_label(self) -> String {
         format!("Frequency [{}]", self.symbol())
     }
 }
 
-/// How the magnitude of a response is read.
+/// Unit of the magnitude of a response.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MagnitudeUnit {
-    /// Decibels.
     #[default]
     Decibel,
-    /// The ratio of output to input, in their units.
+    /// Ratio of output to input, in their units.
     Ratio,
 }
 
-/// How the phase of a response is drawn.
+/// Representation of the phase of a response.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PhaseUnit {
     /// Continuous over frequency (M2).
@@ -503,17 +506,17 @@ pub enum PhaseUnit {
     Wrapped,
 }
 
-/// How a difference of phases is drawn.
+/// Representation of a phase error.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PhaseErrorUnit {
     /// Δφ.
     #[default]
     Degree,
-    /// Δφ/ω: the delay that would make up for it.
+    /// Δφ/ω: the equivalent delay.
     Millisecond,
 }
 
-/// Three significant digits; of what is below 1, three decimals.
+/// Formats three significant digits; below 1, three decimals.
 fn three_digits(value: f64) -> String {
     let decimals = (2.0 - value.abs().log10().floor()).clamp(0.0, 3.0) as usize;
     format!("{value:.decimals$}")

@@ -1,5 +1,6 @@
-//! Responses of one condition or of several on paper: magnitude above phase over frequency (Figures 2 and 5), and below them the coherence
-//! of those measured: where it is low, magnitude and phase above are guesses.
+//! Responses of one or several conditions on paper: magnitude above phase over frequency (Figures 2
+//! and 5), and below them the coherence of the measured ones: where it is low, magnitude and phase
+//! are unreliable.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -25,54 +26,51 @@ use super::responses::{
 };
 use super::role::Role;
 
-/// The ground of the band of comparison.
+/// Background of the band of comparison.
 const BAND: Color = Color::of(Hue::Accent).tint(8);
-/// The ground of frequencies where what is left would be noticed.
+/// Background of frequencies at which the remaining mismatch would be noticed.
 const NOTICED: Color = Color::of(Hue::Warning).tint(20);
-/// The ground of frequencies above the band where there are leads.
+/// Background of frequencies above the band if there are leads.
 const INVALID: Color = Color::of(Hue::Warning).tint(10);
-/// A frequency that is marked.
+/// Line of a marked frequency.
 const CROSSING: Stroke = Stroke::dashed(Color::of(Hue::Text), 0.8, Dash::Short);
-/// Around an identified model.
+/// Confidence band of an identified model.
 const UNCERTAIN: Color = Color::of(Hue::Identified).tint(22);
-/// Height of the magnitude, where that of the phase is 1.
+/// Height of the magnitude panel, relative to 1 for the phase.
 const MAGNITUDE_WEIGHT: f64 = 1.35;
-/// Space above and below the curves, as a part of their height.
+/// Margin above and below the curves, as a fraction of their height.
 const MARGIN: f64 = 0.04;
 
-/// What of the responses is shown, and how.
+/// Options of a Bode plot: contents, units and ranges.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodeOptions {
-    /// Unit of frequencies.
     pub unit: FrequencyUnit,
-    /// How magnitudes are read.
     pub magnitude: MagnitudeUnit,
-    /// How phases are drawn.
     pub phase: PhaseUnit,
-    /// How differences of phases are drawn.
     pub phase_error: PhaseErrorUnit,
-    /// Roles that are left out.
+    /// Roles not shown.
     pub hidden: BTreeSet<Role>,
-    /// Models that are left out.
+    /// Models not shown.
     pub hidden_models: BTreeSet<ModelId>,
-    /// The only model shown beside the representatives.
+    /// The only model shown besides the representatives.
     pub isolated: Option<ModelId>,
-    /// Whole turns that phases were moved up by hand.
+    /// Whole turns added to phases by hand.
     pub turns: BTreeMap<(ConditionId, Pair, CurveId), i32>,
-    /// Whether what a pilot does not notice is shown, about the identified response and among the errors.
+    /// Whether the envelopes of unnoticeable added dynamics are shown, about the identified
+    /// response and among the errors.
     pub shows_muad: bool,
-    /// The response whose zeros are shown among the poles, where those of one are.
+    /// Response whose zeros are shown among the poles.
     pub zeros_of: Option<Pair>,
-    /// Frequencies \[rad/s\] that are marked, by their names: those that a bandwidth is read at.
+    /// Marked frequencies \[rad/s\] with their names, at which a bandwidth is read.
     pub crossings: Vec<(&'static str, f64)>,
-    /// The frequencies shown \[rad/s\]; those of the curves, where none are given.
+    /// Shown frequencies \[rad/s\]; fitted to the curves if `None`.
     pub omega: Option<Range>,
-    /// The values shown in the upper and in the lower panel; those that the band needs, where none are given.
+    /// Ranges of the upper and the lower panel; fitted to the band if `None`.
     pub values: [Option<Range>; 2],
 }
 
 impl BodeOptions {
-    /// The axis of frequencies.
+    /// Returns the frequency axis.
     pub(super) fn frequency_axis(&self) -> Axis {
         Axis::logarithmic(self.unit.axis_label())
             .showing(self.omega.map(|range| self.in_unit(range.min, range.max)))
@@ -82,7 +80,7 @@ impl BodeOptions {
         Range::new(self.unit.of_omega(from), self.unit.of_omega(to))
     }
 
-    /// The ground of the band of comparison.
+    /// Returns the background of the band of comparison.
     fn band(&self, band: BandOfComparison) -> Band {
         let range = self.in_unit(band.min(), band.max());
         Band {
@@ -92,7 +90,8 @@ impl BodeOptions {
         }
     }
 
-    /// The ground of the frequencies above the band where a model with leads is not valid.
+    /// Returns the background of the frequencies above the band, where a model with leads is not
+    /// valid.
     fn invalid(&self, band: BandOfComparison, up_to: f64) -> Band {
         let range = self.in_unit(band.max(), up_to);
         Band {
@@ -103,28 +102,29 @@ impl BodeOptions {
     }
 }
 
-/// What stands in the panels of one response.
+/// Contents of the panels of one response.
 pub(super) struct FrequencyPanels<'a> {
     pub(super) curves: &'a [BodeCurve],
     pub(super) references: &'a [ReferenceLine],
     pub(super) bands: &'a [BodeBand],
-    /// Frequencies that are marked \[rad/s\].
+    /// Marked frequency ranges \[rad/s\].
     pub(super) strips: &'a [(f64, f64)],
     pub(super) options: &'a BodeOptions,
 }
 
 impl FrequencyPanels<'_> {
-    /// A pane as a panel with this vertical axis.
+    /// Builds the panel of a pane with this vertical axis.
     pub(super) fn panel(&self, pane: Pane, axis: Axis) -> Panel {
         self.panel_of(pane, axis, |value| value)
     }
 
-    /// The same, where values are drawn as `shown` says.
+    /// Builds the panel of a pane with values transformed by `shown`.
     fn panel_of(&self, pane: Pane, axis: Axis, shown: impl Fn(f64) -> f64) -> Panel {
         let mut visible: Vec<&BodeCurve> =
             self.curves.iter().filter(|curve| !curve.hidden).collect();
         visible.sort_by_key(|curve| curve.role.layer(curve.rejected));
-        // The curves of a plot mostly share their frequencies: so do those of the figure then.
+        // The curves of a plot mostly share their frequencies; the curves of the figure then share
+        // them too.
         let mut last: Option<[Arc<[f64]>; 2]> = None;
         let mut in_unit = |omega: &Arc<[f64]>| match &last {
             Some([of, frequency]) if Arc::ptr_eq(of, omega) => Arc::clone(frequency),
@@ -199,8 +199,8 @@ impl FrequencyPanels<'_> {
     }
 }
 
-/// A line that curves are read against: where it is level and has a label of its own a rule, else a curve over its own frequencies or
-/// these \[rad/s\].
+/// Draws a reference line: a rule if it is level and has a label, otherwise a curve over its own
+/// frequencies or these \[rad/s\].
 fn reference_mark(
     line: &ReferenceLine,
     omega: &[f64],
@@ -230,7 +230,8 @@ fn reference_mark(
         .into()
 }
 
-/// A figure of a plot of each of `pairs`, beside one another; where it is one, that one names the figure.
+/// Builds a figure with the plots of `pairs` side by side; a single pair gives the figure its
+/// title.
 pub(super) fn figure_of_pairs(
     source: &ConditionSource<'_>,
     pairs: &[Pair],
@@ -273,7 +274,8 @@ fn side_by_side(
         .plots(pairs.iter().map(titled))
 }
 
-/// The responses `pairs` of one condition: a magnitude above a phase each, of every model and of the corrected ones.
+/// Plots the responses `pairs` of one condition, magnitude above phase, of every model and of the
+/// corrected ones.
 pub fn bode_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
     figure_of_pairs(source, pairs, "", |pair| {
         let curves = source.response_curves(pair, options, &mut ResponseCache::default());
@@ -304,7 +306,7 @@ fn plot(
         .filter(|curve| !curve.hidden)
         .cloned()
         .collect();
-    // What leads cost is drawn as far as the curves without them go (M15.6).
+    // The cost of leads is drawn up to the last frequency of the curves without them (M15.6).
     let without_leads = visible
         .iter()
         .find(|curve| curve.role == Role::WithoutLeads);
@@ -354,8 +356,8 @@ fn plot(
         .panel(on_ground(phase))
 }
 
-/// The responses `pairs` of one model of every condition: a magnitude above a phase each, from blue for the slowest condition to
-/// amber for the fastest. None where no condition has such a model.
+/// Plots the responses `pairs` of one model of every condition, magnitude above phase, from blue
+/// for the slowest condition to amber for the fastest. `None` if no condition has such a model.
 pub fn airspeeds_figure(
     analysis: &Analysis,
     pairs: &[Pair],
@@ -397,7 +399,8 @@ pub fn airspeeds_figure(
     Some(side_by_side(dataset, pairs, of_pair, title).caption(settings_words(dataset, settings)))
 }
 
-/// The magnitude of every response of one condition, outputs down, inputs across, with J before and after the correction.
+/// Plots the magnitude of every response of one condition, outputs down, inputs across, with J
+/// before and after the correction.
 pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> Figure {
     let dataset = source.dataset();
     let plots = dataset.on_axis().pairs().map(|pair| {
@@ -444,26 +447,25 @@ pub fn overview_figure(source: &ConditionSource<'_>, options: &BodeOptions) -> F
         .aspect(0.55)
 }
 
-/// Height of the strip, where that of the phase is 1.
+/// Height of the strip, relative to 1 for the phase.
 const WEIGHT: f64 = 0.45;
-/// Where coherence is trusted.
+/// Line of the least trusted coherence.
 const TRUSTED: Stroke = Stroke::dashed(Color::DIM, 0.8, Dash::Short);
 
 /// Coherence of one measured response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoherenceCurve {
-    /// The model's name.
     pub label: String,
-    /// How its response is drawn.
+    /// Determines the line style.
     pub role: Role,
-    /// Whether the model is rejected.
     pub rejected: bool,
-    /// Frequencies \[rad/s\] and coherence, 0 to 1.
+    /// Frequencies \[rad/s\] and coherence (0 to 1).
     pub points: Vec<[f64; 2]>,
 }
 
 impl ConditionSource<'_> {
-    /// The coherence of a response of every identified model that is shown and was measured with it; the representative last.
+    /// Returns the coherence of a response for every visible identified model measured with it; the
+    /// representative comes last.
     pub fn coherence_curves(&self, pair: Pair, options: &BodeOptions) -> Vec<CoherenceCurve> {
         let bundle = self.curves.condition.bundle(BundleKind::Identified);
         let models = self
@@ -493,7 +495,8 @@ impl ConditionSource<'_> {
         curves
     }
 
-    /// From which coherence on a frequency counts: that of the settings, else what is usual.
+    /// Returns the least coherence at which a frequency counts: from the settings, otherwise the
+    /// default.
     pub fn least_coherence(&self) -> f64 {
         self.study
             .settings
@@ -502,7 +505,7 @@ impl ConditionSource<'_> {
     }
 }
 
-/// The strip below a Bode plot; none where nothing was measured with coherence.
+/// Builds the strip below a Bode plot; `None` if no response was measured with coherence.
 pub(super) fn coherence_panel(
     source: &ConditionSource<'_>,
     pair: Pair,

@@ -1,4 +1,4 @@
-//! What the figures of one condition are made of, and the words that say so.
+//! Sources of the figures of one condition, and the words that describe them.
 
 use std::sync::Arc;
 
@@ -18,39 +18,37 @@ use super::bode::BodeOptions;
 use super::responses::BodeCurve;
 use super::role::Role;
 
-/// What the figures of one condition are made of.
+/// Sources of the figures of one condition.
 #[derive(Clone, Copy, Debug)]
 pub struct ConditionSource<'a> {
-    /// The dataset, and what was decided about it.
+    /// The dataset with its decisions.
     pub study: &'a Study,
-    /// The condition's result; before there is one, the responses can be shown all the same.
+    /// Result of the condition; without it, the responses can still be shown.
     pub analysis: Option<&'a ConditionAnalysis>,
-    /// The schedule, where there is one.
     pub schedule: Option<&'a Schedule>,
-    /// The responses of its models.
+    /// Responses of the models of the condition.
     pub curves: &'a Arc<ConditionCurves>,
-    /// The result of a variant of the study, by the variant's name, that is laid over.
+    /// Name and result of an overlaid variant of the study.
     pub variant: Option<(&'a str, &'a ConditionAnalysis)>,
 }
 
-/// What a curve stands for; unique within a scene.
+/// Identity of a curve; unique within a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum CurveId {
-    /// One model as it is.
     Model(ModelId),
-    /// The representative physics model with the condition's own correction.
+    /// Representative physics model with the condition's own correction.
     Corrected,
-    /// The representative physics model with the scheduled correction.
+    /// Representative physics model with the scheduled correction.
     Scheduled,
-    /// The representative physics model with the condition's own correction, its lead filters left out.
+    /// Representative physics model with the condition's own correction, without its lead filters.
     WithoutLeads,
-    /// The representative physics model with couplings alone.
+    /// Representative physics model with couplings alone.
     Coupled,
-    /// The representative physics model of a variant of the study with the variant's own correction.
+    /// Representative physics model of a variant of the study with the variant's own correction.
     Variant,
 }
 
-/// A model of the condition that is not left out of sight by another one alone.
+/// A model of the condition that is not suppressed by an isolated one.
 #[derive(Clone, Debug)]
 pub(super) struct SourceModel {
     pub(super) id: ModelId,
@@ -58,15 +56,16 @@ pub(super) struct SourceModel {
     pub(super) index: usize,
     pub(super) role: Role,
     pub(super) rejected: bool,
-    /// Whether the engineer does not want to see it.
+    /// Whether the engineer hides it.
     pub(super) hidden: bool,
 }
 
-/// The representative physics model after a correction: a curve without numbers yet, and what it is made of.
+/// The representative physics model after a correction: a curve still without numbers, and its
+/// source.
 #[derive(Clone, Debug)]
 pub(super) struct CorrectedModel<'a> {
     pub(super) curve: BodeCurve,
-    /// The result whose couplings it has.
+    /// Result that holds its couplings.
     pub(super) result: &'a ConditionAnalysis,
     /// Index of the physics model.
     pub(super) model: usize,
@@ -74,7 +73,7 @@ pub(super) struct CorrectedModel<'a> {
 }
 
 impl<'a> ConditionSource<'a> {
-    /// The condition.
+    /// Returns the id of the condition.
     pub(super) fn id(&self) -> ConditionId {
         self.curves.condition.id()
     }
@@ -83,7 +82,7 @@ impl<'a> ConditionSource<'a> {
         &self.study.dataset
     }
 
-    /// `(deg/s)/in`: the unit of the ratio of a response's output to its input.
+    /// Returns the unit of a response, output over input: `(deg/s)/in`.
     pub fn ratio_unit(dataset: &Dataset, pair: Pair) -> String {
         let output = &dataset.outputs()[pair.output].unit;
         let input = &dataset.inputs()[pair.input].unit;
@@ -102,7 +101,7 @@ impl<'a> ConditionSource<'a> {
         condition_words(self.curves.condition.flight_state())
     }
 
-    /// Dataset, condition, settings, and which models are rejected.
+    /// Describes the dataset, the condition, the settings and the rejected models.
     pub(super) fn caption(&self) -> String {
         let mut caption = settings_words(self.dataset(), &self.study.settings);
         let rejected = self.study.rejected_names(self.id());
@@ -112,20 +111,22 @@ impl<'a> ConditionSource<'a> {
         caption
     }
 
-    /// The representative of a bundle; none before the bundle was compared.
+    /// Returns the representative of a bundle; `None` before the bundle is compared.
     fn representative(&self, kind: BundleKind) -> Option<&'a str> {
         self.analysis
             .map(|analysis| analysis.representative_name(kind))
     }
 
-    /// Index of the identified model that the others are laid on and compared with; the first one where nothing was compared.
+    /// Returns the index of the identified model that the others are aligned and compared with; the
+    /// first if nothing was compared.
     pub(super) fn reference(&self) -> usize {
         let name = self.representative(BundleKind::Identified);
         name.and_then(|name| self.curves.condition.position(BundleKind::Identified, name))
             .unwrap_or(0)
     }
 
-    /// The models of a bundle in file order; where one is isolated, that one and the representative.
+    /// Returns the models of a bundle in file order; if a model is isolated, only that model and
+    /// the representative.
     pub(super) fn models(&self, kind: BundleKind, options: &BodeOptions) -> Vec<SourceModel> {
         let condition = &self.curves.condition;
         let representative = self.representative(kind);
@@ -165,7 +166,7 @@ impl<'a> ConditionSource<'a> {
             .collect()
     }
 
-    /// The curve of a model, without numbers yet.
+    /// Creates the curve of a model, still without numbers.
     pub(super) fn curve_of(&self, model: SourceModel) -> BodeCurve {
         let SourceModel {
             id,
@@ -185,7 +186,7 @@ impl<'a> ConditionSource<'a> {
         }
     }
 
-    /// "ratio 3.68, suggested as an outlier · from run 3".
+    /// Returns the detail of a model: "ratio 3.68, suggested as an outlier · from run 3".
     fn detail(&self, id: &ModelId, index: usize) -> String {
         let analysis = self.analysis.filter(|_| id.bundle == BundleKind::Physics);
         let ratio = analysis
@@ -209,8 +210,9 @@ impl<'a> ConditionSource<'a> {
             .join(" · ")
     }
 
-    /// The representative physics model with the condition's own correction, with that of the schedule, where there are leads
-    /// without them, and where a variant is laid over with its.
+    /// Returns the corrected versions of the representative physics model: with the condition's own
+    /// correction, with the scheduled one, without leads if there are leads, and with an overlaid
+    /// variant's correction.
     pub(super) fn corrected_models(
         &self,
         pair: Pair,
@@ -252,7 +254,7 @@ impl<'a> ConditionSource<'a> {
                 "corrected",
                 &result.correction,
             )?;
-            // The chip says whose decisions these are; which model represents stands in its detail.
+            // The chip names the decisions; the representative model is named in its detail.
             model.curve.detail = format!("{}; {}", model.curve.label, model.curve.detail);
             model.curve.label = format!("variant {name}");
             Some(model)
@@ -309,7 +311,7 @@ pub fn condition_words(FlightState { id, name, .. }: &FlightState) -> String {
     }
 }
 
-/// The dataset, and the settings that every figure of the analysis rests on.
+/// Describes the dataset and the settings behind every figure of the analysis.
 pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     let low = compact(settings.band.min());
     let high = compact(settings.band.max());
@@ -332,7 +334,7 @@ pub(super) fn settings_words(dataset: &Dataset, settings: &Settings) -> String {
     )
 }
 
-/// `ln k`, or `k`.
+/// Returns `ln k` or `k`.
 pub fn quantity_symbol(quantity: ScheduledQuantity) -> &'static str {
     match quantity {
         ScheduledQuantity::LnGain => "ln k",
@@ -340,7 +342,7 @@ pub fn quantity_symbol(quantity: ScheduledQuantity) -> &'static str {
     }
 }
 
-/// "polynomial of degree 2 of ln k".
+/// Describes the schedule: "polynomial of degree 2 of ln k".
 pub fn schedule_words(settings: &ScheduleSettings) -> String {
     let kind = match settings.kind {
         ScheduleKind::Polynomial { degree } => format!("polynomial of degree {degree}"),

@@ -1,87 +1,79 @@
-//! A figure laid out on paper: shapes and texts at their places, which every file format takes over as they are.
+//! A figure laid out on paper: shapes and texts at their positions, written unchanged to every file
+//! format.
 
 use super::thinning::{Pixel, thinned};
 
 /// Points \[pt\] in a millimetre.
 pub const PT_PER_MM: f64 = 72.0 / 25.4;
 
-/// Shapes on white paper, in points from the upper left corner, y downwards.
+/// A drawing on white paper, in points from the upper left corner, y downwards.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawing {
-    /// What it shows, for the file's title.
+    /// Title of the file.
     pub title: String,
     /// Width and height \[pt\].
     pub size: [f64; 2],
-    /// What stands on it; later shapes cover earlier ones.
+    /// Later shapes cover earlier ones.
     pub shapes: Vec<Shape>,
 }
 
-/// One shape.
+/// A shape of a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// Straight lines through points.
+    /// A polyline.
     Path {
-        /// The points.
         points: Vec<[f64; 2]>,
-        /// Whether the last leads back to the first.
+        /// Whether the last point connects to the first.
         closed: bool,
-        /// The colour within.
+        /// Fill colour.
         fill: Option<Color>,
-        /// The line.
+        /// Line style.
         stroke: Option<Stroke>,
     },
     /// A circle.
     Circle {
-        /// Its centre.
         center: [f64; 2],
-        /// Its radius.
         radius: f64,
-        /// The colour within.
+        /// Fill colour.
         fill: Option<Color>,
-        /// The line.
+        /// Line style.
         stroke: Option<Stroke>,
     },
-    /// A line of words.
+    /// A line of text.
     Text(Text),
-    /// Shapes of which only what lies within an area is seen.
+    /// Shapes clipped to an area.
     Clipped {
-        /// The area.
+        /// The clipping area.
         area: Area,
-        /// The shapes.
         shapes: Vec<Shape>,
     },
 }
 
-/// A line of words.
+/// A line of text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Text {
-    /// Where its base line is, at the end that the anchor says.
+    /// Position of the anchor on the base line.
     pub at: [f64; 2],
-    /// The words.
     pub words: String,
-    /// Size of the letters \[pt\].
+    /// Font size \[pt\].
     pub size_pt: f64,
-    /// Which end is at the place.
+    /// The part of the text at its position.
     pub anchor: Anchor,
-    /// Whether it runs upwards.
+    /// Whether the text runs upwards.
     pub upright: bool,
-    /// Colour.
     pub color: Color,
 }
 
-/// Which end of a text is at its place.
+/// Part of a text that lies at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
-    /// Its start.
     Start,
-    /// Its middle.
     Middle,
-    /// Its end.
     End,
 }
 
 impl Anchor {
-    /// The part of a text's width that lies before its place.
+    /// Returns the fraction of the width of a text before its position.
     pub fn before(self) -> f64 {
         match self {
             Self::Start => 0.0,
@@ -91,21 +83,17 @@ impl Anchor {
     }
 }
 
-/// A rectangle with upright sides.
+/// An axis-aligned rectangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Area {
-    /// Left edge.
     pub left: f64,
-    /// Upper edge.
     pub top: f64,
-    /// Width.
     pub width: f64,
-    /// Height.
     pub height: f64,
 }
 
 impl Area {
-    /// The rectangle of these edges.
+    /// Creates a rectangle from its upper left corner, width and height.
     pub fn new(left: f64, top: f64, width: f64, height: f64) -> Self {
         Self {
             left,
@@ -115,22 +103,23 @@ impl Area {
         }
     }
 
-    /// Right edge.
+    /// Returns the right edge.
     pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
-    /// Lower edge.
+    /// Returns the lower edge.
     pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
 
-    /// The point that is these parts of the way from the left and from below.
+    /// Returns the point at these fractions of the width from the left and of the height from the
+    /// bottom.
     pub fn at(&self, x: f64, y: f64) -> [f64; 2] {
         [self.left + x * self.width, self.bottom() - y * self.height]
     }
 
-    /// The corners, from the upper left with the clock.
+    /// Returns the corners, clockwise from the upper left.
     pub fn corners(&self) -> [[f64; 2]; 4] {
         [
             [self.left, self.top],
@@ -140,17 +129,17 @@ impl Area {
         ]
     }
 
-    /// Whether a point lies in it, edges included.
+    /// Returns whether a point lies in the rectangle, edges included.
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
         (self.left..=self.right()).contains(&x) && (self.top..=self.bottom()).contains(&y)
     }
 
-    /// How large it is.
+    /// Returns the area of the rectangle.
     pub fn size(&self) -> f64 {
         self.width * self.height
     }
 
-    /// The rectangle that is larger by `by` on every side.
+    /// Returns the rectangle enlarged by `by` on every side.
     pub fn expanded(&self, by: f64) -> Self {
         Self::new(
             self.left - by,
@@ -160,13 +149,13 @@ impl Area {
         )
     }
 
-    /// How far a point is from it; 0 within.
+    /// Returns the distance of a point from the rectangle; 0 inside.
     pub fn distance(&self, [x, y]: [f64; 2]) -> f64 {
         let beyond = |value: f64, low: f64, high: f64| (low - value).max(value - high).max(0.0);
         beyond(x, self.left, self.right()).hypot(beyond(y, self.top, self.bottom()))
     }
 
-    /// The area that both have in common, 0 where there is none.
+    /// Returns the area common to both rectangles; 0 if they do not overlap.
     pub fn overlap(&self, other: &Self) -> f64 {
         let along = |a: f64, b: f64, c: f64, d: f64| (b.min(d) - a.max(c)).max(0.0);
         along(self.left, self.right(), other.left, other.right())
@@ -175,7 +164,7 @@ impl Area {
 }
 
 impl Shape {
-    /// A line through points.
+    /// Creates a polyline.
     pub fn line(points: impl Into<Vec<[f64; 2]>>, stroke: Stroke) -> Self {
         Self::Path {
             points: points.into(),
@@ -185,7 +174,7 @@ impl Shape {
         }
     }
 
-    /// A rectangle.
+    /// Creates a rectangle.
     pub fn rectangle(area: Area, fill: Option<Color>, stroke: Option<Stroke>) -> Self {
         Self::Path {
             points: area.corners().to_vec(),
@@ -196,16 +185,16 @@ impl Shape {
     }
 }
 
-/// What a colour means: the same in the themes of the window and on paper, each of which has a colour of its own for it.
+/// Meaning of a colour; each theme of the window and paper has its own colour for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Hue {
-    /// Paper, and the ground of the plots of the window.
+    /// Paper, and the background of plots in the window.
     Background,
     /// Grid lines.
     Grid,
-    /// Titles and what is read first.
+    /// Titles and primary text.
     Text,
-    /// Labels, frames, and what is read second.
+    /// Labels, frames and secondary text.
     DimText,
     /// The nominal physics model.
     Nominal,
@@ -213,22 +202,23 @@ pub enum Hue {
     Perturbed,
     /// Models identified from flight.
     Identified,
-    /// Corrected models, and the schedule.
+    /// Corrected models and the schedule.
     Corrected,
-    /// What is left out.
+    /// Excluded models and conditions.
     Rejected,
-    /// The band of comparison, and what was looked through.
+    /// The band of comparison, and highlights.
     Accent,
-    /// Cautions, and what got worse.
+    /// Cautions and deteriorations.
     Warning,
-    /// Proofs, and what got better.
+    /// Proofs and improvements.
     Good,
-    /// From that of perturbed models, 0, to that of identified ones, 255, as in scales made for colour-blind eyes.
+    /// From the colour of perturbed models, 0, to the colour of identified models, 255, as in
+    /// colour-blind-safe scales.
     OfAirspeed(u8),
 }
 
 impl Hue {
-    /// Red, green and blue on paper (sRGB): those of the light theme, on white.
+    /// Returns red, green and blue on paper (sRGB): the light theme's colours on white.
     pub fn on_paper(self) -> [u8; 3] {
         let rgb: u32 = match self {
             Self::Background => 0xffffff,
@@ -255,7 +245,7 @@ impl Hue {
     }
 }
 
-/// The colour that is this part of the way to another one.
+/// Interpolates between two colours.
 fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
     let mix = |from: u8, to: u8| {
         (f64::from(from) + part * (f64::from(to) - f64::from(from))).round() as u8
@@ -263,36 +253,35 @@ fn mixed(from: [u8; 3], to: [u8; 3], part: f64) -> [u8; 3] {
     std::array::from_fn(|at| mix(from[at], to[at]))
 }
 
-/// A colour by what it means, and how strong it is.
+/// A colour by its meaning and strength.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Color {
-    /// What it means.
     pub hue: Hue,
-    /// How strong it is \[%\]: 100 as it is, 0 the background.
+    /// Strength \[%\]: 100 is full, 0 is the background.
     pub percent: u8,
 }
 
 impl Color {
     /// Paper.
     pub const WHITE: Self = Self::of(Hue::Background);
-    /// Titles and what is read first.
+    /// Titles and primary text.
     pub const INK: Self = Self::of(Hue::Text);
-    /// Labels, frames, and what is read second.
+    /// Labels, frames and secondary text.
     pub const DIM: Self = Self::of(Hue::DimText);
     /// Grid lines.
     pub const GRID: Self = Self::of(Hue::Grid);
 
-    /// A hue as it is.
+    /// Creates a hue at full strength.
     pub const fn of(hue: Hue) -> Self {
         Self { hue, percent: 100 }
     }
 
-    /// This colour thinned with the background.
+    /// Returns this colour blended with the background.
     pub const fn tint(self, percent: u8) -> Self {
         Self { percent, ..self }
     }
 
-    /// Red, green and blue on paper (sRGB).
+    /// Returns red, green and blue on paper (sRGB).
     pub fn rgb(self) -> [u8; 3] {
         mixed(
             Hue::Background.on_paper(),
@@ -302,10 +291,9 @@ impl Color {
     }
 }
 
-/// What parts a line consists of: tells lines apart where colours do not.
+/// Dash pattern: distinguishes lines without colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Dash {
-    /// One unbroken line.
     #[default]
     Solid,
     /// Long dashes.
@@ -321,7 +309,7 @@ pub enum Dash {
 }
 
 impl Dash {
-    /// Lengths of dashes and gaps in turn \[pt\]; none of a solid line.
+    /// Returns the lengths of dashes and gaps in turn \[pt\]; empty for a solid line.
     pub fn pattern_pt(self) -> &'static [f64] {
         match self {
             Self::Solid => &[],
@@ -337,16 +325,14 @@ impl Dash {
 /// Colour, width and dashes of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
-    /// Colour.
     pub color: Color,
     /// Width \[pt\].
     pub width_pt: f64,
-    /// Dashes.
     pub dash: Dash,
 }
 
 impl Stroke {
-    /// A solid line.
+    /// Creates a solid line.
     pub const fn solid(color: Color, width_pt: f64) -> Self {
         Self {
             color,
@@ -355,7 +341,7 @@ impl Stroke {
         }
     }
 
-    /// A line of dashes.
+    /// Creates a dashed line.
     pub const fn dashed(color: Color, width_pt: f64, dash: Dash) -> Self {
         Self {
             color,
@@ -364,7 +350,7 @@ impl Stroke {
         }
     }
 
-    /// This line of the window as it is printed: finer, for paper shows more.
+    /// Returns this line of the window as printed: thinner, because paper resolves more.
     pub fn printed(self) -> Self {
         Self {
             width_pt: Self::PRINTED * self.width_pt,
@@ -372,12 +358,13 @@ impl Stroke {
         }
     }
 
-    /// Width on paper as a part of that in the window.
+    /// Width on paper as a fraction of the width in the window.
     const PRINTED: f64 = 0.55;
 }
 
 impl Drawing {
-    /// The same drawing with fewer points: none of those left out is farther than `tolerance_pt` from its line.
+    /// Returns the drawing with fewer points: no omitted point is farther than `tolerance_pt` from
+    /// its line.
     pub fn thinned(self, tolerance_pt: f64) -> Self {
         Self {
             shapes: coarser(

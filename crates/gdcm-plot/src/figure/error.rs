@@ -1,4 +1,5 @@
-//! What the fit sees of a response: how far it is from its reference, frequency by frequency (M6).
+//! The errors that the fit sees: distance of a response from its reference, frequency by frequency
+//! (M6).
 
 use std::sync::Arc;
 
@@ -18,8 +19,8 @@ use super::figure::{Figure, Plot};
 use super::responses::{BodeCurve, Level, Pane, ReferenceKind, ReferenceLine};
 use super::role::Role;
 
-/// What the fit sees of `pairs`: the error of every kept physics model, and of the representative before and after its
-/// correction, with G, D and the bounds.
+/// Plots the errors that the fit sees for `pairs`: those of every kept physics model and of the
+/// representative before and after its correction, with G, D and the bounds.
 pub fn error_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &BodeOptions) -> Figure {
     figure_of_pairs(source, pairs, "Error", |pair| {
         let curves = source.error_curves(pair, options, &mut ErrorCache::default());
@@ -51,8 +52,9 @@ pub fn error_figure(source: &ConditionSource<'_>, pairs: &[Pair], options: &Bode
 }
 
 impl ConditionSource<'_> {
-    /// The error over the band of every kept physics model, of the representative after its correction and after the schedule's, and
-    /// the reference as the line at zero. `cache` keeps their numbers while nothing of them changes.
+    /// Returns the errors over the band: of every kept physics model, of the representative after
+    /// its own and after the scheduled correction, and the reference as the line at zero. `cache`
+    /// keeps their numbers as long as nothing changes.
     pub fn error_curves(
         &self,
         pair: Pair,
@@ -115,8 +117,8 @@ impl ConditionSource<'_> {
         drawn
     }
 
-    /// G and D, the bounds of the channels, and quantiles of the representative's error among `drawn`, hidden or not: what the fit
-    /// makes of it (M6, M7).
+    /// Returns G and D, the bounds of the channels, and quantiles of the representative's error
+    /// among `drawn`, hidden or not: the values that the fit derives from it (M6, M7).
     pub fn error_references(
         &self,
         pair: Pair,
@@ -141,16 +143,18 @@ impl ConditionSource<'_> {
     }
 }
 
-/// How far one response is from the reference, and on which branch.
+/// Distance of one response from the reference, with the phase on its branch.
 #[derive(Clone, Debug)]
 struct ErrorShape {
     /// `20 log10 |H_sim| / |H_ref|`.
     mismatch_db: Vec<f64>,
-    /// `Delta phi(H_sim, H_ref)` \[rad\] (M3, M6b): never a difference of two phases that were unwrapped apart.
+    /// `Delta phi(H_sim, H_ref)` \[rad\] (M3, M6b): never a difference of two separately unwrapped
+    /// phases.
     phase: Vec<f64>,
 }
 
-/// What is drawn of it: `20 log10 |H_ref| / |H_sim|`, and `Delta phi` in degrees or `Delta phi / omega` in milliseconds.
+/// The error as drawn: `20 log10 |H_ref| / |H_sim|`, and `Delta phi` in degrees or `Delta phi /
+/// omega` in milliseconds.
 #[derive(Clone, Debug)]
 struct DrawnError {
     magnitude_db: Arc<[f64]>,
@@ -158,7 +162,8 @@ struct DrawnError {
 }
 
 impl ErrorShape {
-    /// The error at the frequencies that count; none where none does. Not a number at the others (M4a).
+    /// Computes the error at the frequencies that count; NaN at the others (M4a). `None` if no
+    /// frequency counts.
     fn of(
         simulated: &PolarCurve,
         reference: &PolarCurve,
@@ -173,7 +178,8 @@ impl ErrorShape {
         })
     }
 
-    /// After a gain and a delay of the simulated response (M10), which leave it on its branch.
+    /// Returns the drawn error after a gain and a delay of the simulated response (M10), which
+    /// leave it on its branch.
     fn drawn(&self, correction: GainDelay, omega: &[f64], unit: PhaseErrorUnit) -> DrawnError {
         let phase = correction.phases(&self.phase, omega).zip(omega);
         DrawnError {
@@ -191,7 +197,7 @@ impl ErrorShape {
     }
 }
 
-/// What the errors are made of.
+/// Sources of the errors.
 #[derive(Clone, Debug)]
 struct Made {
     curves: Arc<ConditionCurves>,
@@ -217,12 +223,13 @@ impl Made {
         Arc::ptr_eq(&self.curves, &other.curves) && key(self) == key(other)
     }
 
-    /// The response of a model in the band; nothing where it is zero or not finite somewhere in it.
+    /// Returns the response of a model in the band; `None` if it is zero or not finite somewhere in
+    /// it.
     fn polar(&self, response: &FrequencyResponse) -> Option<PolarCurve> {
         PolarCurve::of(response.curve(self.pair).get(self.within())?)
     }
 
-    /// The error of a response of the condition over `omega`, the band.
+    /// Computes the error of a response of the condition over `omega`, the band.
     fn shape(&self, response: &FrequencyResponse, omega: &[f64]) -> Option<ErrorShape> {
         let reference = self.polar(self.curves.identified.get(self.reference)?)?;
         ErrorShape::of(
@@ -233,7 +240,7 @@ impl Made {
         )
     }
 
-    /// The frequencies among `omega` that count, where the reference's coherence says that.
+    /// Returns the frequencies among `omega` that count by the reference's coherence.
     fn coherence_weights(&self, omega: &[f64]) -> Option<CoherenceWeights> {
         let flight = &self
             .curves
@@ -244,7 +251,7 @@ impl Made {
         Some(CoherenceWeights::of_model(flight, omega, self.coherence)?[self.pair].clone())
     }
 
-    /// Which of the frequencies lie in the band.
+    /// Returns the indices of the frequencies in the band.
     fn within(&self) -> std::ops::Range<usize> {
         let omega = self.curves.grid.omega();
         omega.partition_point(|omega| *omega < self.band.0)
@@ -252,7 +259,8 @@ impl Made {
     }
 }
 
-/// Errors of every physics model of the condition shown for one response, kept while nothing of it changes.
+/// Errors of every physics model of the displayed condition for one response, kept as long as
+/// nothing changes.
 #[derive(Debug, Default)]
 pub struct ErrorCache {
     made: Option<Made>,
@@ -283,14 +291,15 @@ impl ErrorCache {
         self.made = Some(made);
     }
 
-    /// The error of a response that is none of a model as it is.
+    /// Computes the error of a response other than that of an unchanged model.
     fn shape(&self, response: &FrequencyResponse) -> Option<ErrorShape> {
         self.made.as_ref()?.shape(response, &self.omega)
     }
 }
 
-/// The envelopes of unnoticeable added dynamics over the frequencies of an error (MIL-STD-1797A). They are those of model over
-/// reference: what is drawn above is its inverse, what is drawn below is not.
+/// Returns the envelopes of unnoticeable added dynamics over the frequencies of an error
+/// (MIL-STD-1797A). The envelopes are defined for model over reference: the drawn mismatch is the
+/// inverse of that ratio, the drawn phase error is not.
 fn muad_rules(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let phase = |omega: f64, degrees: f64| match unit {
         PhaseErrorUnit::Degree => degrees,
@@ -310,8 +319,8 @@ fn muad_rules(omega: &[f64], unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     ends.into_iter().flat_map(rules).collect()
 }
 
-/// The same envelopes about the identified representative among `drawn`, hidden or not: a response within both cannot be told from
-/// it by a pilot. None where they are not asked for.
+/// Returns the same envelopes about the identified representative among `drawn`, hidden or not: a
+/// pilot cannot tell a response within both from it. Empty unless requested.
 pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLine> {
     let identified = drawn
         .iter()
@@ -336,7 +345,8 @@ pub fn muad_about(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<ReferenceLi
     ends.into_iter().flat_map(lines).collect()
 }
 
-/// An envelope over `omega` \[rad/s\]; `value` gets the number of a frequency and the frequency.
+/// Draws an envelope over `omega` \[rad/s\]; `value` receives the index of a frequency and the
+/// frequency.
 fn muad_line(
     pane: Pane,
     label: &str,
@@ -353,7 +363,8 @@ fn muad_line(
     ReferenceLine::new(pane, ReferenceKind::Envelope, label, level)
 }
 
-/// Where what is left of the mismatch would be noticed \[rad/s\]: that of the corrected curve among `drawn`, where that is asked for.
+/// Returns the frequency ranges \[rad/s\] in which the remaining mismatch of the corrected curve
+/// among `drawn` would be noticed; empty unless requested.
 pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
     let corrected = drawn
         .iter()
@@ -369,7 +380,7 @@ pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
     let mut omega = Vec::new();
     let mut error_db = Vec::new();
     let mut principal_deg = Vec::new();
-    // There is no error at frequencies that do not count.
+    // Frequencies that do not count have no error.
     for (&at, (&db, &phase)) in errors.filter(|(_, (db, _))| db.is_finite()) {
         let radians = match options.phase_error {
             PhaseErrorUnit::Degree => phase.to_radians(),
@@ -382,7 +393,7 @@ pub fn noticed(drawn: &[BodeCurve], options: &BodeOptions) -> Vec<(f64, f64)> {
     leaves(&omega, &error_db, &principal_deg)
 }
 
-/// A delay as a line in the pane of phase errors.
+/// Draws a delay as a line in the pane of phase errors.
 fn delay_rule(
     kind: ReferenceKind,
     label: String,
@@ -456,7 +467,8 @@ fn bound_rules(shown: &ConditionAnalysis, unit: PhaseErrorUnit) -> Vec<Reference
     ]
 }
 
-/// The quantiles of one response's error: what M7 would take were there no others.
+/// Returns the quantiles of one response's error: the values of M7 if there were no other
+/// responses.
 fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<ReferenceLine> {
     let delays = curve
         .omega
@@ -466,7 +478,7 @@ fn quantile_rules(curve: &BodeCurve, q: f64, unit: PhaseErrorUnit) -> Vec<Refere
             PhaseErrorUnit::Degree => phase.to_radians() / omega,
             PhaseErrorUnit::Millisecond => 1e-3 * phase,
         });
-    // There is no error at frequencies that do not count.
+    // Frequencies that do not count have no error.
     let finite = |values: &mut dyn Iterator<Item = f64>| {
         values
             .filter(|value| value.is_finite())
@@ -498,7 +510,7 @@ mod tests {
 
     use super::*;
 
-    /// A gain \[dB\] and a lead \[s\] over the reference, a response of one.
+    /// Computes the error of a gain \[dB\] and a lead \[s\] over a reference response of 1.
     fn error(omega: &[f64], gain_db: f64, lead_s: f64) -> ErrorShape {
         let polar = |gain_db: f64, lead_s: f64| PolarCurve {
             magnitude_db: vec![gain_db; omega.len()],
@@ -513,7 +525,7 @@ mod tests {
         let omega: Vec<f64> = (1..=120).map(|k| 0.1 * f64::from(k)).collect();
         let error = error(&omega, 2.0, 0.6);
         let before = error.drawn(GainDelay::NONE, &omega, PhaseErrorUnit::Millisecond);
-        // Roundings of angles of a turn, divided by 0.1 rad/s.
+        // Rounding of angles of a turn, divided by 0.1 rad/s.
         assert!(
             before
                 .phase

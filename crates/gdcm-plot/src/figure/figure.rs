@@ -1,4 +1,4 @@
-//! A figure: what a plot shows, apart from any screen; plots of panels of marks.
+//! A figure: contents of a plot, independent of any screen; plots consist of panels with marks.
 
 use std::sync::Arc;
 
@@ -8,38 +8,37 @@ use super::axis::{Axis, Range};
 use super::drawing::{Color, Stroke};
 use super::role::{Entry, entries};
 
-/// What a plot shows, apart from any screen: plots side by side, a title above, a legend and a caption below.
+/// A figure, independent of any screen: plots side by side, a title above, a legend and a caption
+/// below.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figure {
-    /// The title.
     pub title: String,
-    /// What has to be known to read it: dataset, condition, settings. No date, so that the same analysis makes the same file.
+    /// Dataset, condition and settings, as needed to read the figure. No date, so that the same
+    /// analysis makes the same file.
     pub caption: String,
-    /// The plots, row by row.
+    /// Row by row.
     pub plots: Vec<Plot>,
-    /// The most plots side by side.
+    /// Maximum number of plots side by side.
     pub columns: usize,
-    /// Whether all plots show the same part of their axes, and only the outer ones have numbers.
+    /// Whether all plots show the same range of their axes, with numbers on the outer ones only.
     pub shared: Shared,
-    /// Height of a plot's frames as a part of their width.
+    /// Height of the frames of a plot as a fraction of their width.
     pub aspect: f64,
-    /// Whether plots may be as small as is readable at all: a table of many.
+    /// Whether plots may shrink to the limit of readability, as in a table of many.
     pub dense: bool,
 }
 
-/// Which axes the plots of a figure have in common.
+/// Axes common to the plots of a figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shared {
-    /// The horizontal axes.
     pub x: bool,
-    /// The vertical axes, panel by panel.
     pub y: bool,
 }
 
-/// How wide a figure is printed.
+/// Printed width of a figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ColumnWidth {
-    /// One column of a journal's two, 84 mm.
+    /// One of a journal's two columns, 84 mm.
     Single,
     /// Both columns, 174 mm.
     #[default]
@@ -50,7 +49,7 @@ impl ColumnWidth {
     /// Both widths.
     pub const BOTH: [Self; 2] = [Self::Single, Self::Double];
 
-    /// The width \[mm\].
+    /// Returns the width \[mm\].
     pub fn mm(self) -> f64 {
         match self {
             Self::Single => 84.0,
@@ -58,7 +57,7 @@ impl ColumnWidth {
         }
     }
 
-    /// Its name in a command.
+    /// Returns its name in a command.
     pub fn name(self) -> &'static str {
         match self {
             Self::Single => "single",
@@ -66,7 +65,7 @@ impl ColumnWidth {
         }
     }
 
-    /// The width in words.
+    /// Returns the width in words.
     pub fn words(self) -> &'static str {
         match self {
             Self::Single => "single column (84 mm)",
@@ -76,7 +75,7 @@ impl ColumnWidth {
 }
 
 impl Figure {
-    /// A figure without plots.
+    /// Creates a figure without plots.
     pub fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
@@ -86,7 +85,7 @@ impl Figure {
         }
     }
 
-    /// The same figure with a caption.
+    /// Returns the figure with a caption.
     pub fn caption(self, caption: impl Into<String>) -> Self {
         Self {
             caption: caption.into(),
@@ -94,19 +93,19 @@ impl Figure {
         }
     }
 
-    /// The same figure with one more plot.
+    /// Returns the figure with one more plot.
     pub fn plot(mut self, plot: Plot) -> Self {
         self.plots.push(plot);
         self
     }
 
-    /// The same figure with more plots.
+    /// Returns the figure with more plots.
     pub fn plots(mut self, plots: impl IntoIterator<Item = Plot>) -> Self {
         self.plots.extend(plots);
         self
     }
 
-    /// The same figure with at most so many plots side by side.
+    /// Returns the figure with at most `columns` plots side by side.
     pub fn columns(self, columns: usize) -> Self {
         Self {
             columns: columns.max(1),
@@ -114,7 +113,7 @@ impl Figure {
         }
     }
 
-    /// The same figure, its plots on the same horizontal axis.
+    /// Returns the figure with a common horizontal axis.
     pub fn shared_x(self) -> Self {
         Self {
             shared: Shared {
@@ -125,7 +124,7 @@ impl Figure {
         }
     }
 
-    /// The same figure, its plots on the same vertical axes.
+    /// Returns the figure with common vertical axes.
     pub fn shared_y(self) -> Self {
         Self {
             shared: Shared {
@@ -136,12 +135,12 @@ impl Figure {
         }
     }
 
-    /// The same figure with plots of another height, as a part of their width.
+    /// Returns the figure with the plot height set as a fraction of the plot width.
     pub fn aspect(self, aspect: f64) -> Self {
         Self { aspect, ..self }
     }
 
-    /// The same figure with plots as small as is readable at all.
+    /// Returns the figure with plots that may shrink to the limit of readability.
     pub fn dense(self) -> Self {
         Self {
             dense: true,
@@ -149,7 +148,7 @@ impl Figure {
         }
     }
 
-    /// The same figure where each panel says which part of the axes that all have in common it shows.
+    /// Returns the figure with the common range of shared axes fixed in each panel.
     pub fn with_ranges(mut self) -> Self {
         let common = |along| {
             self.panels()
@@ -173,34 +172,32 @@ impl Figure {
         self
     }
 
-    /// Every panel, with the title of its plot.
+    /// Iterates over all panels, with the titles of their plots.
     pub fn panels(&self) -> impl Iterator<Item = (&str, &Panel)> {
         self.plots
             .iter()
             .flat_map(|plot| plot.panels.iter().map(|panel| (plot.title.as_str(), panel)))
     }
 
-    /// The legend: one entry for each key among the marks.
+    /// Returns the legend: one entry for each key among the marks.
     pub fn legend(&self) -> Vec<Entry> {
         entries(self.panels().flat_map(|(_, panel)| &panel.marks))
     }
 }
 
-/// Two axes and what stands between them.
+/// Two axes and the marks between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    /// The horizontal axis.
     pub x: Axis,
-    /// The vertical axis.
     pub y: Axis,
-    /// What stands in it; later marks are drawn over earlier ones.
+    /// Later marks are drawn over earlier ones.
     pub marks: Vec<Mark>,
-    /// Its part of the height of its plot, relative to the others'.
+    /// Share of the height of its plot, relative to the other panels.
     pub weight: f64,
 }
 
 impl Panel {
-    /// An empty panel.
+    /// Creates an empty panel.
     pub fn new(x: Axis, y: Axis) -> Self {
         Self {
             x,
@@ -210,30 +207,30 @@ impl Panel {
         }
     }
 
-    /// The same panel with one more mark, over those before.
+    /// Returns the panel with one more mark, drawn over the others.
     pub fn with(mut self, mark: impl Into<Mark>) -> Self {
         self.marks.push(mark.into());
         self
     }
 
-    /// The same panel with more marks, over those before.
+    /// Returns the panel with more marks, drawn over the others.
     pub fn with_all<M: Into<Mark>>(mut self, marks: impl IntoIterator<Item = M>) -> Self {
         self.marks.extend(marks.into_iter().map(Into::into));
         self
     }
 
-    /// The same panel with one more mark, below all others.
+    /// Returns the panel with one more mark, drawn below all others.
     pub fn over(mut self, ground: impl Into<Mark>) -> Self {
         self.marks.insert(0, ground.into());
         self
     }
 
-    /// The same panel of another height, relative to the others of its plot.
+    /// Returns the panel with another height, relative to the other panels of its plot.
     pub fn weight(self, weight: f64) -> Self {
         Self { weight, ..self }
     }
 
-    /// Every dot in it.
+    /// Iterates over the dots of the panel.
     pub fn dots(&self) -> impl Iterator<Item = &Dot> {
         self.marks
             .iter()
@@ -247,7 +244,7 @@ impl Panel {
             .flatten()
     }
 
-    /// What is shown of an axis where this panel stands alone.
+    /// Returns the range of an axis shown if the panel stands alone.
     pub fn shown(&self, along: Along) -> Range {
         let axis = match along {
             Along::X => &self.x,
@@ -257,17 +254,17 @@ impl Panel {
     }
 }
 
-/// Panels above one another on one horizontal axis, under one title.
+/// Vertically stacked panels with a common horizontal axis and a title.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
-    /// What the panels are of: `LON → Q`. May be empty.
+    /// Subject of the panels: `LON → Q`. May be empty.
     pub title: String,
-    /// The panels, from above.
+    /// From top to bottom.
     pub panels: Vec<Panel>,
 }
 
 impl Plot {
-    /// A plot without panels.
+    /// Creates a plot without panels.
     pub fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
@@ -275,21 +272,21 @@ impl Plot {
         }
     }
 
-    /// The same plot with one more panel below.
+    /// Returns the plot with one more panel below.
     pub fn panel(mut self, panel: Panel) -> Self {
         self.panels.push(panel);
         self
     }
 }
 
-/// What a figure is written as.
+/// File format of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum FigureFormat {
-    /// Lines and letters, for documents and for drawing programs.
+    /// Vector graphics, for documents and drawing programs.
     Svg,
-    /// Dots, 300 to the inch.
+    /// Pixels, 300 dpi.
     Png,
-    /// A page as large as the figure, with its letters.
+    /// A page as large as the figure, with embedded fonts.
     Pdf,
     /// The numbers.
     Csv,
@@ -299,7 +296,7 @@ impl FigureFormat {
     /// Every format.
     pub const ALL: [Self; 4] = [Self::Svg, Self::Png, Self::Pdf, Self::Csv];
 
-    /// The end of a file's name.
+    /// Returns the extension of a file name.
     pub fn extension(self) -> &'static str {
         match self {
             Self::Svg => "svg",
@@ -309,7 +306,7 @@ impl FigureFormat {
         }
     }
 
-    /// Its name and what it is good for.
+    /// Returns its name and its use.
     pub fn words(self) -> &'static str {
         match self {
             Self::Svg => "SVG, for documents and drawing programs",
@@ -320,100 +317,84 @@ impl FigureFormat {
     }
 }
 
-/// What stands in a panel; later marks are drawn over earlier ones.
+/// Contents of a panel; later marks are drawn over earlier ones.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
-    /// A line through points.
     Curve(Curve),
-    /// Dots.
     Dots(Dots),
-    /// Bars from a foot.
     Bars(Bars),
-    /// A shaded part of the horizontal axis.
+    /// A shaded range of the horizontal axis.
     Band(Band),
-    /// A line across the panel at one value.
+    /// A line across the panel at a value.
     Rule(Rule),
-    /// Parts of the vertical axis, one at each place.
+    /// Shaded ranges of the vertical axis, at given places.
     Spans(Spans),
     /// The area between two lines.
     Envelope(Envelope),
-    /// How sure values are.
+    /// Confidence intervals.
     Intervals(Intervals),
-    /// Pairs of values that differ.
+    /// Pairs of different values.
     Brackets(Brackets),
-    /// A line that helps to read values and is none itself.
+    /// A line that helps to read values and carries none itself.
     Guide(Guide),
-    /// Words at a place.
+    /// Text at a place.
     Note(Note),
 }
 
 /// A line through points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// What it is of: heads its column of numbers.
+    /// Subject, used as the heading of its column of numbers.
     pub name: String,
-    /// Its entry in the legend; equal entries are one. None where it has none.
+    /// Its entry in the legend, if any; equal entries are merged.
     pub key: Option<String>,
-    /// How it is drawn.
     pub stroke: Stroke,
-    /// Where its points are along x.
+    /// x values of its points.
     pub x: Arc<[f64]>,
-    /// Their values; one that is not finite leaves a gap.
+    /// y values; a value that is not finite leaves a gap.
     pub y: Arc<[f64]>,
 }
 
 /// Dots that belong together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dots {
-    /// What they are of: heads their numbers.
+    /// Subject, used as the heading of their numbers.
     pub name: String,
-    /// Their entry in the legend; equal entries are one. None where they have none.
+    /// Their entry in the legend, if any; equal entries are merged.
     pub key: Option<String>,
-    /// Their outline.
     pub shape: DotShape,
-    /// Their colour.
     pub color: Color,
-    /// Filled or open.
     pub filled: bool,
-    /// How large they are, as a part of the usual size.
     pub size: f64,
-    /// The dots.
     pub dots: Vec<Dot>,
 }
 
-/// What a mark is of: how a window tells which one is pointed at.
+/// Identity of a mark's subject, by which a window recognises the mark under the pointer.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum MarkId {
-    /// A condition.
     Condition(ConditionId),
-    /// A model.
     Model(ModelId),
 }
 
-/// One dot.
+/// A dot with its text and subject.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dot {
-    /// Where it is along x.
     pub x: f64,
-    /// Its value.
     pub y: f64,
     /// The short text beside it. May be empty.
     pub label: String,
-    /// What it is of, where that can be pointed at.
+    /// Its subject, if it can be pointed at.
     pub id: Option<MarkId>,
 }
 
-/// The outline of a dot.
+/// Shape of a dot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum DotShape {
-    /// A circle.
     #[default]
     Circle,
-    /// A square on its corner.
     Diamond,
-    /// A square.
     Square,
-    /// A triangle on its side.
+    /// A triangle pointing sideways.
     Triangle,
     /// ×, as poles are drawn.
     Cross,
@@ -424,145 +405,130 @@ pub enum DotShape {
 /// Bars that belong together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bars {
-    /// What they are of: heads their numbers and is their entry in the legend.
+    /// Heading of their numbers and entry in the legend.
     pub name: String,
-    /// Their colour.
     pub color: Color,
-    /// Their width in units of x.
+    /// Width in units of x.
     pub width: f64,
-    /// Where each stands along x, and its value.
+    /// x position and value of each bar.
     pub bars: Vec<[f64; 2]>,
-    /// What each stands on, so that bars are stacked; without it on 0.
+    /// Lower end of each bar, for stacking; 0 without it.
     pub feet: Vec<f64>,
-    /// How far they stand beside that place, so that others find room, in units of x.
+    /// Offset of the bars from their x position, to make room for others, in units of x.
     pub beside: f64,
 }
 
-/// A shaded part of the horizontal axis.
+/// A shaded range of the horizontal axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
-    /// The part.
     pub range: Range,
-    /// Its colour.
     pub color: Color,
     /// Its entry in the legend.
     pub key: String,
 }
 
-/// Shaded parts of the vertical axis, one at each place: between which values something was looked for. They widen no range.
+/// Shaded ranges of the vertical axis, one at each place: the search range of a value. They do not
+/// extend the axis range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spans {
-    /// What they are of: heads their numbers and is their entry in the legend.
+    /// Heading of their numbers and entry in the legend.
     pub name: String,
-    /// Their colour.
     pub color: Color,
-    /// Their width in units of x.
+    /// Width in units of x.
     pub width: f64,
-    /// Where each stands along x, its lower end, its upper end.
+    /// x position, lower end and upper end of each.
     pub spans: Vec<[f64; 3]>,
 }
 
-/// The area between two lines over the same places: how far a curve may lie. It widens no range but where it has edges.
+/// The area between two lines over the same places: tolerance of a curve. It extends the axis range
+/// only if it has edges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Envelope {
-    /// What it is: heads its numbers and is its entry in the legend.
+    /// Heading of its numbers and entry in the legend.
     pub name: String,
-    /// Its colour.
     pub color: Color,
-    /// How its edges are drawn; paper then leaves the area between them white.
+    /// Style of its edges; on paper, the area between visible edges stays white.
     pub edge: Option<Stroke>,
-    /// Where it is along x, ascending, its lower end, its upper end; one that is not finite leaves a gap.
+    /// x position (ascending), lower end and upper end; a value that is not finite leaves a gap.
     pub points: Vec<[f64; 3]>,
 }
 
-/// How sure values are: an upright line at each. They widen no range.
+/// Confidence intervals: a vertical line at each place. They do not extend the axis range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Intervals {
-    /// What they are: heads their numbers and is their entry in the legend.
+    /// Heading of their numbers and entry in the legend.
     pub name: String,
-    /// How they are drawn.
     pub stroke: Stroke,
-    /// Where each stands along x, its lower end, its upper end.
+    /// x position, lower end and upper end of each.
     pub ends: Vec<[f64; 3]>,
 }
 
-/// Pairs of values at one place that differ: a bracket at each. They widen no range.
+/// Pairs of different values at the same place: a bracket at each. They do not extend the axis
+/// range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Brackets {
-    /// What they say: heads their numbers and is their entry in the legend.
+    /// Heading of their numbers and entry in the legend.
     pub name: String,
-    /// How they are drawn.
     pub stroke: Stroke,
-    /// The brackets.
     pub brackets: Vec<Bracket>,
 }
 
 /// A bracket between two values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bracket {
-    /// Where both stand along x.
+    /// x position of both values.
     pub x: f64,
-    /// The values.
     pub ends: [f64; 2],
     /// The text beside it. May be empty.
     pub label: String,
 }
 
-/// A line across the panel at one value.
+/// A line across the panel at a value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
     /// The axis of the value: a value along y makes a horizontal line.
     pub along: Along,
-    /// The value.
     pub at: f64,
-    /// How it is drawn.
     pub stroke: Stroke,
     /// The text beside it. May be empty.
     pub label: String,
 }
 
-/// A line that helps to read values and is none itself, such as that of a damping ratio: it widens no range and has no numbers.
+/// A line that helps to read values, such as a line of constant damping ratio: it does not extend
+/// the axis range and has no numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guide {
-    /// Its points.
     pub points: Vec<[f64; 2]>,
     /// The text at its end. May be empty.
     pub label: String,
 }
 
-/// Words at a place.
+/// Text at a place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Note {
-    /// Where: x and y, in the panel's units, or in parts of the panel from its lower left corner.
+    /// In the units of the panel, or in a corner of the panel.
     pub at: Place,
-    /// The words.
     pub text: String,
 }
 
 /// A place in a panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Place {
-    /// In the units of the axes; the words stand about it, upright where `upright` says so.
+    /// In the units of the axes; the text is centred about it, vertical if `upright`.
     Value {
-        /// Along x.
         x: f64,
-        /// Along y.
         y: f64,
-        /// Whether the words run upwards.
+        /// Whether the text runs upwards.
         upright: bool,
     },
-    /// In the upper right corner.
     UpperRight,
-    /// In the lower left corner.
     LowerLeft,
 }
 
-/// One of the axes.
+/// One of the two axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
-    /// The horizontal one.
     X,
-    /// The vertical one.
     Y,
 }
 
@@ -581,7 +547,7 @@ into_mark!(
 );
 
 impl Curve {
-    /// A line through the points `x[k]`, `y[k]`.
+    /// Creates a line through the points `x[k]`, `y[k]`.
     pub fn new(
         name: impl Into<String>,
         stroke: Stroke,
@@ -597,7 +563,7 @@ impl Curve {
         }
     }
 
-    /// A line through these points.
+    /// Creates a line through these points.
     pub fn through(
         name: impl Into<String>,
         stroke: Stroke,
@@ -607,7 +573,7 @@ impl Curve {
         Self::new(name, stroke, x, y)
     }
 
-    /// The same curve with an entry in the legend.
+    /// Returns the curve with an entry in the legend.
     pub fn key(self, key: impl Into<String>) -> Self {
         Self {
             key: Some(key.into()),
@@ -615,14 +581,14 @@ impl Curve {
         }
     }
 
-    /// Its points.
+    /// Iterates over its points.
     pub fn points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         self.x.iter().zip(self.y.iter()).map(|(x, y)| [*x, *y])
     }
 }
 
 impl Dots {
-    /// No dots yet, drawn like this.
+    /// Creates an empty group of dots with this style.
     pub fn new(name: impl Into<String>, shape: DotShape, color: Color) -> Self {
         Self {
             name: name.into(),
@@ -635,7 +601,7 @@ impl Dots {
         }
     }
 
-    /// The same dots with an entry in the legend.
+    /// Returns the dots with an entry in the legend.
     pub fn key(self, key: impl Into<String>) -> Self {
         Self {
             key: Some(key.into()),
@@ -643,12 +609,12 @@ impl Dots {
         }
     }
 
-    /// The same dots, filled or open.
+    /// Returns the dots, filled or open.
     pub fn filled(self, filled: bool) -> Self {
         Self { filled, ..self }
     }
 
-    /// The same dots and one more.
+    /// Returns the dots with one more.
     pub fn dot(mut self, x: f64, y: f64, label: impl Into<String>) -> Self {
         self.dots.push(Dot {
             x,
@@ -661,7 +627,7 @@ impl Dots {
 }
 
 impl Envelope {
-    /// Its lower or its upper edge, as a curve, where its edges are drawn.
+    /// Returns its lower and upper edges as curves, if they are drawn.
     pub(super) fn edges(&self) -> impl Iterator<Item = Curve> + '_ {
         let edge = |stroke: Stroke, at: usize| {
             Curve::through(
@@ -677,7 +643,7 @@ impl Envelope {
 }
 
 impl Bars {
-    /// Foot and top of each.
+    /// Iterates over the lower and upper ends of the bars.
     pub(super) fn ends(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         let feet = self.feet.iter().copied().chain(std::iter::repeat(0.0));
         self.bars
@@ -688,7 +654,7 @@ impl Bars {
 }
 
 impl Rule {
-    /// A horizontal line at the value `y`.
+    /// Creates a horizontal line at the value `y`.
     pub fn horizontal(y: f64, stroke: Stroke) -> Self {
         Self {
             along: Along::Y,
@@ -698,7 +664,7 @@ impl Rule {
         }
     }
 
-    /// A vertical line at the value `x`.
+    /// Creates a vertical line at the value `x`.
     pub fn vertical(x: f64, stroke: Stroke) -> Self {
         Self {
             along: Along::X,
@@ -708,7 +674,7 @@ impl Rule {
         }
     }
 
-    /// The same line with a text beside it.
+    /// Returns the line with a text beside it.
     pub fn label(self, label: impl Into<String>) -> Self {
         Self {
             label: label.into(),
@@ -718,7 +684,7 @@ impl Rule {
 }
 
 impl Mark {
-    /// The values along an axis that a panel has to show for this mark.
+    /// Returns the values along an axis that a panel must show for this mark.
     pub(super) fn values(&self, along: Along) -> Vec<f64> {
         let pick = |[x, y]: [f64; 2]| if along == Along::X { x } else { y };
         match self {

@@ -23,27 +23,27 @@ use super::role::Role;
 /// Samples of a schedule between its ends.
 const SAMPLES: usize = 120;
 const NULL: Stroke = Stroke::dashed(Color::DIM, 0.6, Dash::Short);
-/// A bar, and that of the identification in it.
+/// Line of a bar, and of the identification part in it.
 const BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed), 0.6);
 const INNER_BAR: Stroke = Stroke::solid(Color::of(Hue::Perturbed).tint(50), 2.4);
-/// How far bars may widen the range of the dots, as a part of it.
+/// Maximum extension of the range of the dots by bars, as a fraction of it.
 const OF_BARS: f64 = 0.5;
-/// Brackets of differences at one airspeed.
+/// Brackets of differences at the same airspeed.
 const BRACKET_BEYOND: Stroke = Stroke::solid(Color::of(Hue::Warning), 0.7);
 const BRACKET_WITHIN: Stroke = Stroke::solid(Color::DIM, 0.4);
 const BEYOND: &str = "significant difference, × expected";
 const WITHIN: &str = "difference, not significant";
-/// Height of a plot as a part of its width, and where bars and brackets stand in it.
+/// Height of a plot as a fraction of its width, without and with bars and brackets.
 const ASPECTS: [f64; 2] = [0.95, 1.3];
-/// The ground of the bounds.
+/// Background of the bounds.
 const BOUNDS: Color = Color::of(Hue::Accent).tint(16);
-/// Width of that ground over airspeed \[kt\], and over conditions.
+/// Width of that background over airspeed \[kt\], and over conditions.
 const BOUNDS_WIDTHS: [f64; 2] = [3.0, 0.7];
 
-/// What the dots of a panel measure.
+/// Quantity of the dots of a panel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Measure {
-    /// A gain, a ratio; no correction is 1.
+    /// A gain (ratio); no correction is 1.
     #[default]
     Gain,
     /// A delay \[ms\]; no correction is 0.
@@ -51,7 +51,7 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// A value with its unit.
+    /// Formats a value with its unit.
     pub fn text(self, value: f64) -> String {
         match self {
             Self::Gain => decimals(value, 3),
@@ -59,7 +59,7 @@ impl Measure {
         }
     }
 
-    /// The value that corrects nothing.
+    /// Returns the value without correction.
     pub fn null(self) -> f64 {
         match self {
             Self::Gain => 1.0,
@@ -67,7 +67,7 @@ impl Measure {
         }
     }
 
-    /// Least height of a plot, in its unit.
+    /// Returns the least height of a plot, in the unit of the measure.
     pub fn least_height(self) -> f64 {
         match self {
             Self::Gain => 0.1,
@@ -75,7 +75,7 @@ impl Measure {
         }
     }
 
-    /// The schedule, where it has values of this measure over this axis.
+    /// Returns the schedule, if it has values of this measure over this axis.
     pub fn schedule_of(self, analysis: &Analysis, across: Across) -> Option<&Schedule> {
         let has_values = |schedule: &&Schedule| self == Self::Gain || schedule.has_delays();
         analysis
@@ -86,7 +86,7 @@ impl Measure {
             .filter(has_values)
     }
 
-    /// What stands beside an axis of values of a channel.
+    /// Returns the axis label for values of a channel.
     pub fn axis_label(self) -> &'static str {
         match self {
             Self::Gain => "Gain [-]",
@@ -95,27 +95,28 @@ impl Measure {
     }
 }
 
-/// What the horizontal axis stands for.
+/// Quantity on the horizontal axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Across {
     /// True airspeed \[kt\].
     #[default]
     Airspeed,
-    /// Conditions in file order, each at its place from 0 on.
+    /// Conditions in file order, at the places 0, 1, 2, …
     Conditions,
 }
 
-/// The altitude class drawn as circles and the weight class drawn filled: "low", or the first of the names; and the others.
+/// The altitude class drawn as circles and the weight class drawn filled ("low", or the first of
+/// the names), followed by the others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Classes {
-    /// The altitude classes, the one of circles first.
+    /// The altitude classes, starting with the class drawn as circles.
     pub altitudes: Vec<String>,
-    /// The weight classes, the one of filled dots first.
+    /// The weight classes, starting with the class drawn filled.
     pub weights: Vec<String>,
 }
 
 impl Classes {
-    /// Those of a dataset.
+    /// Collects the classes of a dataset.
     pub fn of(dataset: &Dataset) -> Self {
         let names = |class: fn(&FlightState) -> &Option<String>| -> Vec<String> {
             let states = dataset
@@ -133,19 +134,19 @@ impl Classes {
         }
     }
 
-    /// Whether a condition is drawn as a circle.
+    /// Returns whether a condition is drawn as a circle.
     pub fn is_first_altitude(&self, state: &FlightState) -> bool {
         state.altitude.as_ref() == self.altitudes.first()
     }
 
-    /// Whether a condition is drawn filled.
+    /// Returns whether a condition is drawn filled.
     pub fn is_first_weight(&self, state: &FlightState) -> bool {
         state.weight.as_ref() == self.weights.first()
     }
 }
 
-/// The net gain of each of `pairs` in each condition's optimum, and the schedule (Figures 6 and 7); with bars and bands where
-/// `uncertainty` says how sure they are.
+/// Plots the net gain of each of `pairs` at the optimum of each condition, and the schedule
+/// (Figures 6 and 7); with confidence intervals and bands if `uncertainty` has them.
 pub fn net_gain_figure(
     analysis: &Analysis,
     uncertainty: Option<&Uncertainty>,
@@ -173,7 +174,8 @@ pub fn net_gain_figure(
         .aspect(ASPECTS[usize::from(uncertainty.is_some())])
 }
 
-/// Lays the optima and the schedule of a variant over plots of these quantities, behind what is shown: small open dots, dotted.
+/// Overlays the optima and the schedule of a variant on plots of these quantities, behind the main
+/// marks: small open dots, dotted lines.
 pub fn add_variant(
     figure: &mut Figure,
     quantities: &[GainQuantity],
@@ -218,8 +220,9 @@ pub fn add_variant(
     }
 }
 
-/// Leaves of the numbers in plots of net gain that of the condition `selected`, and where differences are asked for, those of the pairs
-/// that differ significantly, with their brackets: what the screen shows, which tells the others where they are pointed at.
+/// Keeps in plots of net gain only the number of the condition `selected`, and if differences are
+/// shown, those of significantly different pairs with their brackets; on the screen, the others
+/// appear under the pointer.
 pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) {
     for panel in figure.plots.iter_mut().flat_map(|plot| &mut plot.panels) {
         panel.marks.retain(|mark| match mark {
@@ -257,7 +260,8 @@ pub fn quieten(figure: &mut Figure, selected: &MarkId, shows_differences: bool) 
     }
 }
 
-/// Gain or delay of each of `channels` in each condition's optimum, and the schedule (Figures 3 and 4).
+/// Plots gain or delay of each of `channels` at the optimum of each condition, and the schedule
+/// (Figures 3 and 4).
 pub fn channels_figure(
     analysis: &Analysis,
     uncertainty: Option<&Uncertainty>,
@@ -284,7 +288,7 @@ pub fn channels_figure(
         .aspect(ASPECTS[usize::from(uncertainty.is_some())])
 }
 
-/// Every channel, inputs first.
+/// Returns all channels, inputs first.
 pub fn all_channels(dataset: &Dataset) -> Vec<Channel> {
     let inputs = (0..dataset.inputs().len()).map(Channel::Input);
     inputs
@@ -308,19 +312,19 @@ fn caption(analysis: &Analysis, across: Across, measure: Measure) -> String {
     caption
 }
 
-/// A value of every condition's correction, and of the schedule.
+/// A quantity of the correction of each condition and of the schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GainQuantity {
-    /// The net gain of a response.
+    /// Net gain of a response.
     NetGain(Pair),
-    /// The gain of a channel.
+    /// Gain of a channel.
     Gain(Channel),
-    /// The delay of a channel.
+    /// Delay of a channel.
     Delay(Channel),
 }
 
 impl GainQuantity {
-    /// Gain or delay of a channel.
+    /// Creates the gain or delay of a channel.
     pub fn of_channel(channel: Channel, measure: Measure) -> Self {
         match measure {
             Measure::Gain => Self::Gain(channel),
@@ -328,7 +332,7 @@ impl GainQuantity {
         }
     }
 
-    /// What it measures.
+    /// Returns its measure.
     pub fn measure(self) -> Measure {
         if matches!(self, Self::Delay(_)) {
             Measure::Delay
@@ -337,7 +341,7 @@ impl GainQuantity {
         }
     }
 
-    /// What it is of a correction, in the unit of the measure.
+    /// Returns its value in a correction, in the unit of the measure.
     pub fn of(self, correction: &ChannelCorrection) -> f64 {
         match self {
             Self::NetGain(pair) => correction.net_gain(pair),
@@ -346,7 +350,7 @@ impl GainQuantity {
         }
     }
 
-    /// The same, as bars know it.
+    /// Returns the corresponding scalar of the uncertainty analysis.
     pub fn scalar(self) -> Scalar {
         match self {
             Self::NetGain(pair) => Scalar::NetGain(pair),
@@ -355,7 +359,8 @@ impl GainQuantity {
         }
     }
 
-    /// Between which values the optimum of a condition was looked for; none of a net gain, which has no bounds of its own.
+    /// Returns the search bounds of the optimum of a condition; `None` for a net gain, which has no
+    /// bounds of its own.
     pub fn bounds(self, result: &ConditionAnalysis) -> Option<[f64; 2]> {
         match self {
             Self::NetGain(_) => None,
@@ -407,7 +412,8 @@ impl GainQuantity {
         panel.with_all(self.dots(analysis, across))
     }
 
-    /// Samples of the scheduled figure from the least to the greatest of the conditions' airspeeds: airspeed \[kt\], and figure.
+    /// Samples the scheduled quantity from the lowest to the highest airspeed of the conditions:
+    /// airspeed \[kt\] and value.
     fn samples(self, schedule: &Schedule) -> Vec<[f64; 2]> {
         let from = schedule.airspeeds.min_kt;
         let to = schedule.airspeeds.max_kt;
@@ -418,7 +424,8 @@ impl GainQuantity {
             .collect()
     }
 
-    /// The bar of each condition, where that was computed: thin with not knowing the trim flown, thick for the model chosen (M13).
+    /// Returns the bar of each condition with one: thin for the unknown trim, thick for the model
+    /// choice (M13).
     fn bars(
         self,
         analysis: &Analysis,
@@ -458,7 +465,8 @@ impl GainQuantity {
             .collect()
     }
 
-    /// For each airspeed the difference that is the largest multiple of what is expected (M13.4).
+    /// Returns, for each airspeed, the difference with the largest ratio to its expected value
+    /// (M13.4).
     fn brackets(
         self,
         analysis: &Analysis,
@@ -506,7 +514,7 @@ impl GainQuantity {
             .collect()
     }
 
-    /// The axis of values: bars are seen as far as they leave the dots their room.
+    /// Returns the value axis; bars extend it only as far as the dots keep their room.
     fn value_axis(self, analysis: &Analysis, bars: &[Intervals], label: &str) -> Axis {
         let axis = Axis::linear(label)
             .including(self.measure().null())
@@ -526,7 +534,8 @@ impl GainQuantity {
         })
     }
 
-    /// Both bands about the samples of the schedule, as wide as `widths` says at an airspeed \[kt\].
+    /// Builds both bands about the samples of the schedule, with half-widths from `widths` at an
+    /// airspeed \[kt\].
     fn bands(
         self,
         samples: &[[f64; 2]],
@@ -566,7 +575,7 @@ impl GainQuantity {
         }
     }
 
-    /// Where each optimum was looked for.
+    /// Returns the search range of each optimum.
     fn spans(self, analysis: &Analysis, across: Across) -> Option<Spans> {
         let width = match across {
             Across::Airspeed => BOUNDS_WIDTHS[0],
@@ -585,7 +594,8 @@ impl GainQuantity {
         })
     }
 
-    /// One group of dots for each class of conditions, and one of those that are not in the schedule.
+    /// Returns a group of dots for each class of conditions, and a group for those not in the
+    /// schedule.
     fn dots(self, analysis: &Analysis, across: Across) -> Vec<Dots> {
         let classes = Classes::of(&analysis.study.dataset);
         let mut groups: Vec<Dots> = Vec::new();
@@ -593,7 +603,7 @@ impl GainQuantity {
             let choice = analysis.study.choice(state.id);
             let chosen = choice.is_in_schedule();
             let name = class_words(state, choice);
-            // Over conditions the axis has their numbers.
+            // Over conditions the axis shows their numbers.
             let label = if across == Across::Airspeed {
                 state.id.to_string()
             } else {
@@ -633,7 +643,7 @@ impl GainQuantity {
     }
 }
 
-/// Every condition with a result: its place on the horizontal axis, what describes it, its result.
+/// Returns each condition with a result: its place on the horizontal axis, its state, its result.
 fn places(
     analysis: &Analysis,
     across: Across,
@@ -649,7 +659,7 @@ fn places(
     })
 }
 
-/// `low altitude` and `high weight`, where a condition has these classes.
+/// Returns `low altitude` and `high weight`, if a condition has these classes.
 pub fn class_names(state: &FlightState) -> [Option<String>; 2] {
     let class =
         |name: &Option<String>, what: &str| name.as_ref().map(|name| format!("{name} {what}"));
@@ -659,7 +669,7 @@ pub fn class_names(state: &FlightState) -> [Option<String>; 2] {
     ]
 }
 
-/// `low altitude, high weight`; `optimum` of a condition without classes.
+/// Returns `low altitude, high weight`; `optimum` for a condition without classes.
 fn class_words(state: &FlightState, choice: &ConditionChoice) -> String {
     let mut words: Vec<String> = class_names(state).into_iter().flatten().collect();
     if words.is_empty() {

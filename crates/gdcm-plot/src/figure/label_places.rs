@@ -1,4 +1,5 @@
-//! Where the labels of dots go: around each dot, clear of the other dots, of bars and of the other labels.
+//! Placement of dot labels: around each dot, clear of the other dots, of bars and of the other
+//! labels.
 //!
 //! ```text
 //! three times, dot by dot:
@@ -7,12 +8,12 @@
 //! a label that still covers much of another one or of what is in its way is left out
 //! ```
 //!
-//! On the screen and on paper alike, in points; y runs downwards.
+//! The same on the screen and on paper, in points; y runs downwards.
 
 use super::drawing::Area;
 
-/// Directions tried around a dot, the preferred one first: which part of the label's width and height lies before the anchor, and
-/// where the anchor is.
+/// Directions tried around a dot, the preferred first: fractions of the label's width and height
+/// before the anchor, and the position of the anchor.
 const SIDES: [([f64; 2], [f64; 2]); 8] = [
     ([0.0, 1.0], [0.7, -0.7]),
     ([0.0, 0.0], [0.7, 0.7]),
@@ -23,61 +24,63 @@ const SIDES: [([f64; 2], [f64; 2]); 8] = [
     ([1.0, 0.5], [-1.0, 0.0]),
     ([0.5, 0.0], [0.0, 1.0]),
 ];
-/// Distances tried, beyond the dot's own radius \[pt\]; from the second on, a line leads from the dot to its label.
+/// Distances tried, beyond the radius of the dot \[pt\]; from the second on, a leader connects the
+/// dot to its label.
 const GAPS: [f64; 6] = [1.5, 8.0, 15.0, 22.0, 30.0, 40.0];
-/// How often every label is placed anew, given the others: early labels make room for late ones.
+/// Number of passes in which every label is placed again given the others: early labels make room
+/// for late ones.
 const SWEEPS: usize = 3;
-/// Of more dots none is labelled: their labels could not be read, and placing them would take its time.
+/// With more dots, no labels are placed: they would be unreadable and slow to place.
 const MOST_LABELS: usize = 300;
 
-/// Cost of covering a square point of another label, of a dot, of a bar, or of what lies outside, and a point of the path's length.
+/// Cost of covering a square point of another label, of a dot, of a bar, or of the area outside,
+/// and of a point of the path's length.
 const ON_LABEL: f64 = 40.0;
 const ON_DOT: f64 = 40.0;
 const ON_BAR: f64 = 8.0;
 const OUTSIDE: f64 = 30.0;
 const ON_PATH: f64 = 1.0;
-/// Cost of a point of a leader's length on a label.
+/// Cost per point of a leader's length on a label.
 const LEADER_ON_LABEL: f64 = 20.0;
-/// Cost of standing nearer to another dot than to one's own.
+/// Cost of being nearer to another dot than to its own.
 const AMBIGUOUS: f64 = 6.0;
-/// Cost of a later side, and of a point of distance.
+/// Cost of a later side, and per point of distance.
 const LATER_SIDE: f64 = 0.2;
 const FARTHER: f64 = 0.6;
-/// A label of which a greater part covers other labels, dots, or lies outside cannot be read, nor can they.
+/// A label that covers more than this fraction of other labels, dots or the area outside is
+/// unreadable, as are those it covers.
 const MOST_COVERED: f64 = 0.12;
 
 /// The place of a label.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelPlace {
-    /// Where the text goes.
+    /// Area of the text.
     pub area: Area,
-    /// The point of `area` a line should lead to, where the label stands away from its dot.
+    /// The point of `area` at which the leader ends, if the label is away from its dot.
     pub leader: Option<[f64; 2]>,
 }
 
 /// A dot to be labelled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabelledDot {
-    /// Its centre.
     pub center: [f64; 2],
-    /// How far from the centre labels stay \[pt\].
+    /// Distance from the centre that labels keep \[pt\].
     pub radius: f64,
-    /// Width and height of its label; of a label without width nothing is placed.
+    /// Width and height of its label; no label is placed if its width is zero.
     pub size: [f64; 2],
 }
 
-/// What labels keep clear of, beside the dots.
+/// Obstacles for labels, besides the dots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {
-    /// The area labels stay in.
+    /// The area for labels.
     pub bounds: Area,
-    /// A line that labels had better not cover.
+    /// A line that labels should not cover.
     pub path: Vec<[f64; 2]>,
-    /// Bars and brackets.
     pub bars: Vec<Area>,
 }
 
-/// The places of the labels of `dots`, in their order; none of a label for which there is no room.
+/// Places the labels of `dots`, in their order; `None` for a label without room.
 pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<LabelPlace>> {
     let mut places: Vec<Option<LabelPlace>> = vec![None; dots.len()];
     let labelled: Vec<usize> = (0..dots.len())
@@ -91,7 +94,7 @@ pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<L
             places[index] = best_place(index, dots, &places, around);
         }
     }
-    // The worst goes first: what it covered may then stay.
+    // The worst label goes first: labels that it covered may then stay.
     loop {
         let covered = labelled
             .iter()
@@ -104,7 +107,7 @@ pub fn place_labels(dots: &[LabelledDot], around: &Surroundings) -> Vec<Option<L
     }
 }
 
-/// Which part of a label covers other labels, dots and what lies outside.
+/// Returns the fraction of a label that covers other labels, dots and the area outside.
 fn covered_part(
     index: usize,
     dots: &[LabelledDot],
@@ -148,7 +151,7 @@ fn best_place(
         .collect();
     let mut best: Option<(LabelPlace, f64)> = None;
     for (place, preference) in candidates(dots[index]) {
-        // Most places are worse than the best one by their distance alone.
+        // The distance alone makes most places worse than the best.
         if best.is_none_or(|(_, least)| preference < least) {
             let ambiguity = AMBIGUOUS * nearer_dots(&place.area, index, dots) as f64;
             let leaders = leaders_on_labels(&place, dots[index].center, &others);
@@ -208,7 +211,7 @@ fn obstruction(
         + ON_PATH * on_path
 }
 
-/// What it costs that a label's leader crosses others, and that theirs cross it.
+/// Returns the cost of crossings between a label and leaders.
 fn leaders_on_labels(
     place: &LabelPlace,
     center: [f64; 2],
@@ -225,9 +228,9 @@ fn leaders_on_labels(
     LEADER_ON_LABEL * others.iter().map(across).sum::<f64>()
 }
 
-/// About how much of a segment lies in `area` \[pt\].
+/// Estimates the length of a segment inside `area` \[pt\].
 fn length_inside(area: &Area, from: [f64; 2], to: [f64; 2]) -> f64 {
-    /// Distance between the points that are tried \[pt\].
+    /// Distance between the sampled points \[pt\].
     const STEP: f64 = 2.0;
     let apart =
         |at: usize, low: f64, high: f64| from[at].max(to[at]) < low || from[at].min(to[at]) > high;
@@ -246,9 +249,9 @@ fn length_inside(area: &Area, from: [f64; 2], to: [f64; 2]) -> f64 {
     inside as f64 * length / steps
 }
 
-/// How many other dots are nearer to the label of a dot than the dot itself.
+/// Counts the other dots that are nearer to the label of a dot than the dot itself.
 fn nearer_dots(label: &Area, index: usize, dots: &[LabelledDot]) -> usize {
-    /// Nearer by less than this does not mislead \[pt\].
+    /// A dot that is nearer by less than this does not mislead \[pt\].
     const SLACK: f64 = 0.5;
     let distance = |dot: &LabelledDot| label.distance(dot.center) - dot.radius;
     let own = distance(&dots[index]);
@@ -259,7 +262,7 @@ fn nearer_dots(label: &Area, index: usize, dots: &[LabelledDot]) -> usize {
 }
 
 impl LabelledDot {
-    /// About what it covers.
+    /// Approximates the covered area.
     fn area(&self) -> Area {
         let width = 1.9 * self.radius;
         Area::new(

@@ -1,4 +1,4 @@
-//! Where the panels of a figure stand on paper, and what stands around them.
+//! Placement of the panels of a figure on paper, with their numbers and labels.
 
 use skrifa::instance::{LocationRef, Size};
 use skrifa::{FontRef, GlyphId, MetadataProvider};
@@ -9,13 +9,14 @@ use super::axis::{Axis, Range, Tick, ticks};
 use super::drawing::Area;
 use super::figure::{Along, Figure, Panel};
 
-/// Size of numbers at ticks, of the legend, of the caption and of texts at dots \[pt\]: the least that journals take.
+/// Font size of numbers at ticks, of the legend, of the caption and of texts at dots \[pt\]: the
+/// minimum that journals accept.
 pub(super) const SMALL_PT: f64 = 7.0;
-/// Size of labels of axes and of titles of plots \[pt\].
+/// Font size of axis labels and plot titles \[pt\].
 pub(super) const LABEL_PT: f64 = 7.5;
 /// Height of a line of labels \[pt\].
 pub(super) const LABEL_LINE: f64 = 10.0;
-/// Height of a line of small letters \[pt\].
+/// Height of a line of small text \[pt\].
 pub(super) const SMALL_LINE: f64 = 9.0;
 /// Length of a tick \[pt\].
 pub(super) const TICK: f64 = 2.2;
@@ -26,42 +27,40 @@ const COLUMN_GAP: f64 = 9.0;
 const ROW_GAP: f64 = 5.0;
 /// Space between the panels of a plot \[pt\].
 const PANEL_GAP: f64 = 4.0;
-/// Room right of the frames for half a number \[pt\].
+/// Room to the right of the frames for half a number \[pt\].
 const RIGHT: f64 = 6.0;
-/// A plot is no narrower, with the numbers at its left \[pt\].
+/// Minimum width of a plot, including the numbers at its left \[pt\].
 const LEAST_WIDTH: f64 = 88.0;
-/// Nor is one of a table of many \[pt\].
+/// Minimum width of a plot in a dense figure \[pt\].
 const LEAST_DENSE_WIDTH: f64 = 40.0;
-/// The frames of a plot are no lower \[pt\].
+/// Minimum height of the frames of a plot \[pt\].
 const LEAST_HEIGHT: f64 = 22.0;
-/// A figure leaves room for its caption on a page of A4 \[pt\].
+/// Maximum height, which leaves room for a caption on an A4 page \[pt\].
 const MOST_HEIGHT: f64 = 640.0;
-/// Numbers of a vertical axis are no closer \[pt\].
+/// Minimum distance between numbers on a vertical axis \[pt\].
 const VERTICAL_GAP: f64 = 11.0;
 
 /// A panel at its place.
 #[derive(Debug)]
 pub(super) struct Placed<'f> {
     pub(super) panel: &'f Panel,
-    /// The title of its plot, if it stands above this panel.
+    /// Title of its plot, if shown above this panel.
     pub(super) title: &'f str,
     pub(super) frame: Area,
     pub(super) x: Side,
     pub(super) y: Side,
-    /// Size of the letters in it \[pt\].
+    /// Font size in the panel \[pt\].
     pub(super) letters_pt: f64,
 }
 
-/// What is shown along an axis, and what stands beside it.
+/// Visible range, ticks and label of an axis.
 #[derive(Debug)]
 pub(super) struct Side {
     pub(super) range: Range,
     pub(super) ticks: Vec<Tick>,
-    /// Whether the ticks have numbers.
     pub(super) has_numbers: bool,
-    /// Whether the quantity stands beside it.
     pub(super) has_label: bool,
-    /// Room of the numbers across the axis \[pt\].
+    /// Room for the numbers across the axis \[pt\].
     pub(super) depth: f64,
 }
 
@@ -69,12 +68,12 @@ pub(super) struct Side {
 #[derive(Debug)]
 pub(super) struct Layout<'f> {
     pub(super) panels: Vec<Placed<'f>>,
-    /// Where they end \[pt\].
+    /// Lower end \[pt\].
     pub(super) bottom: f64,
 }
 
 impl<'f> Layout<'f> {
-    /// Places the panels of `figure` on paper of `width_pt`, from `top` down.
+    /// Places the panels of `figure` on paper `width_pt` wide, from `top` down.
     ///
     /// ```text
     /// guess the frames' width; twice:
@@ -118,7 +117,7 @@ impl<'f> Table<'f> {
         }
     }
 
-    /// Height of the frames of one plot together.
+    /// Returns the total height of the frames of a plot.
     fn plot_height(&self, frame_width: f64, top: f64) -> f64 {
         let rows = self.rows as f64;
         let around: f64 = (0..self.rows)
@@ -130,7 +129,7 @@ impl<'f> Table<'f> {
             .max(LEAST_HEIGHT)
     }
 
-    /// Room above the frames of a row, for titles.
+    /// Returns the room above the frames of a row, for titles.
     fn above(&self, row: usize) -> f64 {
         let has_title = self
             .row(row)
@@ -138,7 +137,7 @@ impl<'f> Table<'f> {
         if has_title { LABEL_LINE + 2.0 } else { 3.0 }
     }
 
-    /// Room below the frames of a row, for numbers and labels.
+    /// Returns the room below the frames of a row, for numbers and labels.
     fn below(&self, row: usize) -> f64 {
         let has_numbers = self.row(row).any(|index| self.has_x_numbers(index));
         if has_numbers {
@@ -153,7 +152,8 @@ impl<'f> Table<'f> {
         from..(from + self.columns).min(self.figure.plots.len())
     }
 
-    /// Whether the horizontal axis of a plot has numbers: its own, or as the last of its column.
+    /// Returns whether the horizontal axis of a plot has numbers: its own, or as the last of its
+    /// column.
     fn has_x_numbers(&self, index: usize) -> bool {
         !self.figure.shared.x || index + self.columns >= self.figure.plots.len()
     }
@@ -162,7 +162,8 @@ impl<'f> Table<'f> {
         !self.figure.shared.y || index.is_multiple_of(self.columns)
     }
 
-    /// Whether the quantity of a vertical axis is said: at the left of each row, and wherever it is another one than there.
+    /// Returns whether the vertical axis has a label: at the left of each row, and wherever its
+    /// quantity differs from that.
     fn has_y_label(&self, index: usize, panel: usize) -> bool {
         let first = index - index % self.columns;
         let label = |plot: usize| {
@@ -200,7 +201,7 @@ impl<'f> Table<'f> {
         ranges.reduce(Range::union).unwrap_or(Range::new(0.0, 1.0))
     }
 
-    /// Heights of the frames of a plot's panels.
+    /// Returns the heights of the frames of a plot's panels.
     fn heights(&self, index: usize, plot_height: f64) -> Vec<f64> {
         let panels = &self.figure.plots[index].panels;
         let room = plot_height - PANEL_GAP * panels.len().saturating_sub(1) as f64;
@@ -236,7 +237,7 @@ impl<'f> Table<'f> {
         let range = self.x_range(index);
         let has_numbers = is_lowest && self.has_x_numbers(index);
         let ticks = horizontal_ticks(&plot.panels[panel].x, range, frame_width);
-        // Where frames are narrow, the first of a row says it for all.
+        // With narrow frames, the label of the first in a row serves for all.
         let has_room = LABEL_PT * width(&plot.panels[panel].x.label) <= frame_width + COLUMN_GAP;
         let has_label = has_numbers && (has_room || index.is_multiple_of(self.columns));
         Side {
@@ -248,7 +249,7 @@ impl<'f> Table<'f> {
         }
     }
 
-    /// Room at the left of a column of frames, for numbers and labels.
+    /// Returns the room at the left of a column of frames, for numbers and labels.
     fn gutter(&self, column: usize, frame_width: f64, top: f64) -> f64 {
         let plot_height = self.plot_height(frame_width, top);
         let plots = (column..self.figure.plots.len()).step_by(self.columns);
@@ -315,7 +316,7 @@ impl<'f> Table<'f> {
     }
 }
 
-/// Width of the widest label, as a part of the size of its letters.
+/// Returns the width of the widest label, relative to the font size.
 fn widest(ticks: &[Tick]) -> f64 {
     ticks
         .iter()
@@ -324,38 +325,37 @@ fn widest(ticks: &[Tick]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Ticks with labels that do not touch.
+/// Returns ticks with labels that do not touch.
 fn horizontal_ticks(axis: &Axis, range: Range, length_pt: f64) -> Vec<Tick> {
     let apart = |ticks: &[Tick]| SMALL_PT * widest(ticks) + 5.0;
     let close = ticks(axis, range, length_pt, 12.0);
     let ticks = ticks(axis, range, length_pt, apart(&close).max(12.0));
     match &axis.names {
-        // Names are as wide as they are: the first guess has seen all of them.
+        // Names have a fixed width: the first guess includes all of them.
         Some(_) => ticks,
         None => super::axis::ticks(axis, range, length_pt, apart(&ticks).max(12.0)),
     }
 }
 
-/// The fonts, with the name that a reader of SVG may know them by.
+/// The fonts, with the names by which an SVG viewer may find them.
 pub const FONTS: [(&str, &[u8]); 2] = [
     ("Ubuntu", epaint_default_fonts::UBUNTU_LIGHT),
     ("Hack", epaint_default_fonts::HACK_REGULAR),
 ];
 
-/// One letter as a font draws it.
+/// A glyph of a font.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Letter {
-    /// The character.
     pub character: char,
     /// Index of the font in [`FONTS`].
     pub font: usize,
-    /// Number of the glyph in that font; 0 stands for a letter that no font has.
+    /// Glyph index in that font; 0 for a character that no font has.
     pub glyph: u16,
-    /// How far the next letter is, as a part of the size.
+    /// Advance to the next letter, relative to the font size.
     pub advance: f64,
 }
 
-/// The letters of a line of words, in their order; what has no shape of its own is spelt out.
+/// Returns the letters of a line of text, in order; characters without a shape are spelled out.
 pub fn letters(words: &str) -> Vec<Letter> {
     let fonts: Vec<FontRef<'_>> = FONTS
         .iter()
@@ -385,12 +385,12 @@ fn letter(fonts: &[FontRef<'_>], character: char) -> Option<Letter> {
     })
 }
 
-/// Width of a line of words as a part of the size of its letters.
+/// Returns the width of a line of text relative to the font size.
 pub fn width(words: &str) -> f64 {
     letters(words).iter().map(|letter| letter.advance).sum()
 }
 
-/// A text broken between words into lines no wider than `most`, a part of the size of its letters.
+/// Breaks a text between words into lines no wider than `most`, relative to the font size.
 pub(super) fn wrapped(text: &str, most: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ').filter(|word| !word.is_empty()) {

@@ -1,4 +1,5 @@
-//! What delay or lead does in each channel of one condition, to ten times the band: where the model ends to be valid, and what that costs.
+//! Delays and leads in each channel of one condition, up to ten times the band: the limit of the
+//! model's validity, and the cost of leads.
 
 use gdcm_method::correction::leads::ABOVE_BAND;
 use gdcm_method::correction::{Channel, ChannelCorrection, LeadPrice};
@@ -19,8 +20,9 @@ const OF_OUTPUT: Stroke = Stroke::dashed(Color::of(Hue::Accent), 1.6, Dash::Long
 const OF_INPUT: Stroke = Stroke::dashed(Color::of(Hue::Perturbed), 1.6, Dash::DashDot);
 const LIMIT: Stroke = Stroke::solid(Color::of(Hue::Warning), 1.2);
 
-/// Gain and phase of what gives each channel delay or lead, without the gains k, from the band to ten times its top; the channels of
-/// `pairs` and what both add to the response stand out. One row of two plots for each response.
+/// Plots gain and phase of the delay or lead of each channel, without the gains k, from the band to
+/// ten times its top; the channels of `pairs` and their combined effect on the response are
+/// emphasised. One row of two plots for each response.
 pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
     let title = format!("Leads · {}", source.condition_words());
     let caption = format!(
@@ -37,7 +39,7 @@ pub fn leads_figure(source: &ConditionSource<'_>, pairs: &[Pair]) -> Figure {
     figure.plots(rows)
 }
 
-/// Gain and phase of one response's channels, those of the other channels behind them.
+/// Plots gain and phase of one response's channels, with those of the other channels behind them.
 fn plots(source: &ConditionSource<'_>, correction: &ChannelCorrection, pair: Pair) -> [Plot; 2] {
     let dataset = source.dataset();
     let band = source.study.settings.band;
@@ -113,7 +115,8 @@ fn plots(source: &ConditionSource<'_>, correction: &ChannelCorrection, pair: Pai
     ]
 }
 
-/// The ground of what lies beyond the band, whose entry in the legend says so, and the line where it begins.
+/// Adds the background of the range beyond the band, with an entry in the legend, and the line at
+/// which it begins.
 fn beyond(panel: Panel, price: &LeadPrice) -> Panel {
     let range = Range::new(price.limit_rad_s, price.above_rad_s());
     let ground = Band {
@@ -126,7 +129,7 @@ fn beyond(panel: Panel, price: &LeadPrice) -> Panel {
         .with(Rule::vertical(price.limit_rad_s, LIMIT))
 }
 
-/// So many frequencies \[rad/s\] between two, equally far apart by their logarithms, with both.
+/// Returns logarithmically spaced frequencies \[rad/s\] between two limits, both included.
 fn frequencies(min: f64, max: f64) -> Vec<f64> {
     let part = |point: usize| point as f64 / (POINTS - 1) as f64;
     (0..POINTS)

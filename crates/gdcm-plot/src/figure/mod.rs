@@ -1,9 +1,11 @@
-//! Figures: what plots show, apart from any screen, laid out on paper to be printed.
+//! Figures: contents of plots, independent of any screen, and their layout for print.
 //!
-//! A [`Figure`] has plots side by side, a title, a legend and a caption; a [`Plot`](figure::Plot) has panels above one another; a [`Panel`] has
-//! two axes and marks. [`Figure::drawing`] lays it out at the width of a journal's column, in sizes that can be read in print, and
-//! in lines that differ without their colours; [`Figure::tables`] are its numbers. Every view of the window has a function here that
-//! makes its figure, and the command `gdcm figure` calls the same.
+//! A [`Figure`] has plots side by side, a title, a legend and a caption; a [`Plot`](figure::Plot)
+//! has vertically stacked panels; a [`Panel`] has two axes and marks. [`Figure::drawing`] lays it
+//! out at the width of a journal's column, in sizes that are readable in print, and in lines that
+//! are distinguishable without colours; [`Figure::tables`] returns its numbers. Every view of the
+//! window has a function here that builds its figure, and the command `gdcm figure` calls the same
+//! function.
 //!
 //! ```
 //! use gdcm_plot::figure::{Axis, ColumnWidth, Curve, Figure, Panel, Plot, Role};
@@ -68,38 +70,38 @@ use leads::leads_figure;
 use poles::{couplings_figure, poles_figure, zeros_of_model};
 use requirements::{record_history_figure, requirements_figure, test_answers_figure};
 
-/// Which of the program's figures.
+/// Kind of figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FigureKind {
     /// Responses of one condition (Figures 2 and 5).
     #[default]
     Bode,
-    /// What the fit sees of them.
+    /// Errors of these responses as the fit sees them.
     Error,
-    /// Every response of one condition, small.
+    /// All responses of one condition, small.
     Overview,
     /// Net gains against airspeed (Figures 6 and 7).
     NetGain,
     /// Gains or delays of the channels (Figures 3 and 4).
     Channels,
-    /// What the scatter of the net gains is made of.
+    /// Contributions to the scatter of the net gains.
     Evidence,
-    /// What the correction is worth (Figures 8 to 19).
+    /// Value of the correction (Figures 8 to 19).
     Assessment,
-    /// Poles of every model of one condition.
+    /// Poles of all models of one condition.
     Poles,
-    /// What delay or lead does in each channel of one condition, to ten times the band.
+    /// Delay or lead of each channel of one condition, up to ten times the band.
     Leads,
-    /// What couplings do to the loop they make, and to the poles of a condition.
+    /// Effect of couplings on their loop and on the poles of a condition.
     Couplings,
     /// Phase delay over bandwidth of the attitude responses.
     Requirements,
-    /// One response in every condition, coloured by airspeed.
+    /// A response in every condition, coloured by airspeed.
     Airspeeds,
 }
 
 impl FigureKind {
-    /// Every kind.
+    /// All kinds.
     pub const ALL: [Self; 12] = [
         Self::Bode,
         Self::Error,
@@ -115,7 +117,7 @@ impl FigureKind {
         Self::Airspeeds,
     ];
 
-    /// Its name in a command and in the name of a file.
+    /// Returns its name in commands and file names.
     pub fn name(self) -> &'static str {
         match self {
             Self::Bode => "bode",
@@ -133,17 +135,17 @@ impl FigureKind {
         }
     }
 
-    /// Whether it is made of error bars, which are then computed for it.
+    /// Returns whether the figure requires error bars, which are then computed for it.
     pub fn needs_bars(self) -> bool {
         matches!(self, Self::Evidence | Self::Requirements)
     }
 
-    /// Whether it has error bars where they are computed, and can do without them.
+    /// Returns whether the figure shows error bars if they are available.
     pub fn takes_bars(self) -> bool {
         matches!(self, Self::NetGain | Self::Channels)
     }
 
-    /// Whether it is a figure of one condition.
+    /// Returns whether it is a figure of one condition.
     pub fn is_of_condition(self) -> bool {
         matches!(
             self,
@@ -152,44 +154,43 @@ impl FigureKind {
     }
 }
 
-/// What models answer over time.
+/// Responses of models over time.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OverTime {
     /// To a test input.
     Test(Arc<TestAnswers>),
-    /// To a flight record, of which the input of this index is drawn.
+    /// To a flight record, with the index of the drawn input.
     Record(Arc<RecordHistory>, usize),
 }
 
-/// Which figure is wanted.
+/// Contents and options of a requested figure.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FigureRequest {
-    /// Which.
     pub kind: FigureKind,
-    /// The responses that it is of, where it is of some.
+    /// The responses, if the kind needs some.
     pub pairs: Vec<Pair>,
-    /// The channels that it is of, where it is of channels.
+    /// The channels, if the kind needs some.
     pub channels: Vec<Channel>,
-    /// What is shown of channels.
+    /// Quantity of channels.
     pub measure: Measure,
-    /// Over what.
+    /// Horizontal axis.
     pub across: Across,
-    /// What is assessed; the paper's choice where none is given.
+    /// Choice for the assessment; the paper's choice if `None`.
     pub assessed: Option<AssessmentChoice>,
-    /// Which model of each condition, where one of each is shown.
+    /// The model of each condition, in a figure with one model of each.
     pub across_role: AcrossRole,
-    /// How responses are shown.
+    /// Options for responses.
     pub bode: BodeOptions,
-    /// What couplings do, where they are shown.
+    /// Effect of the couplings, for their figure.
     pub couplings: Option<Arc<CouplingsAssessment>>,
-    /// What a qualification asks, where that is shown.
+    /// Requirements, for their figure.
     pub requirements: Option<Arc<Requirements>>,
-    /// What is shown over time in place of bandwidths.
+    /// Responses over time, shown instead of bandwidths.
     pub over_time: Option<OverTime>,
 }
 
 impl FigureRequest {
-    /// A figure of these responses and channels, shown as usual.
+    /// Creates a figure of these responses and channels with default options.
     pub fn new(kind: FigureKind, pairs: Vec<Pair>, channels: Vec<Channel>) -> Self {
         Self {
             kind,
@@ -199,8 +200,8 @@ impl FigureRequest {
         }
     }
 
-    /// The figure; none where what it is made of is not there: the condition's source for those of one condition, else the
-    /// analysis.
+    /// Builds the figure; `None` if its source is missing: the condition's source for a figure of
+    /// one condition, otherwise the analysis.
     pub fn figure(
         &self,
         analysis: Option<&Analysis>,

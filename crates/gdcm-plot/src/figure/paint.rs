@@ -1,4 +1,4 @@
-//! A figure becomes shapes and texts at their places.
+//! Painting of a figure: shapes and texts at their places.
 
 use super::axis::{Axis, Range};
 use super::drawing::{Anchor, Area, Color, Dash, Drawing, PT_PER_MM, Shape, Stroke, Text};
@@ -13,23 +13,23 @@ use super::layout::{
 use super::role::{Entry, Sample};
 use super::thinning::{Pixel, thinned};
 
-/// Size of the title \[pt\].
+/// Font size of the title \[pt\].
 const TITLE_PT: f64 = 8.5;
 /// Height of a line of the title \[pt\].
 const TITLE_LINE: f64 = 11.0;
-/// Space around everything \[pt\].
+/// Margin around everything \[pt\].
 const MARGIN: f64 = 3.0;
-/// How far a line may be from the points that it stands for \[pt\]: a tenth of the finest line.
+/// Maximum distance of a line from its original points \[pt\]: a tenth of the thinnest line.
 const TOLERANCE: f64 = 0.04;
 const FINEST: Pixel = Pixel {
     width: TOLERANCE,
     tolerance: TOLERANCE,
 };
-/// From the middle of a line of letters down to its base, as a part of their size.
+/// Distance from the middle of a line of text down to its base line, relative to the font size.
 const HALF_HEIGHT: f64 = 0.34;
 const FRAME: Stroke = Stroke::solid(Color::DIM, 0.6);
 const GRID: Stroke = Stroke::solid(Color::GRID, 0.4);
-/// From a dot to its label, where that stands away from it.
+/// Leader from a dot to a label away from it.
 const LEADER: Stroke = Stroke::solid(Color::DIM.tint(60), 0.4);
 const GUIDE: Stroke = Stroke::solid(Color::DIM.tint(40), 0.4);
 /// Half the width of a dot \[pt\].
@@ -37,15 +37,15 @@ const DOT: f64 = 2.1;
 /// Distance of a bracket from its values, and length of its ends \[pt\].
 const BRACKET: f64 = 5.0;
 const HOOK: f64 = 1.8;
-/// Height of a line of figures as a part of their size: they have no descenders.
+/// Height of a line of digits relative to the font size: they have no descenders.
 const FIGURE_HEIGHT: f64 = 0.74;
-/// Width of the line of an open dot, of a cross and of a plus \[pt\].
+/// Line width of an open dot, of a cross and of a plus \[pt\].
 const DOT_LINE: f64 = 0.9;
-/// Width of the piece of line in the legend \[pt\].
+/// Width of the line sample in the legend \[pt\].
 const SAMPLE: f64 = 22.0;
 
 impl Figure {
-    /// The figure laid out on paper of this width.
+    /// Lays the figure out on paper of this width.
     pub fn drawing(&self, width: ColumnWidth) -> Drawing {
         let width_pt = width.mm() * PT_PER_MM;
         let inner = width_pt - 2.0 * MARGIN;
@@ -91,7 +91,7 @@ impl Figure {
     }
 }
 
-/// Writes a text from `top` down; gives where it ends.
+/// Writes a text from `top` down; returns its lower end.
 fn lines(
     shapes: &mut Vec<Shape>,
     words: &str,
@@ -125,7 +125,7 @@ fn text(
     })
 }
 
-/// Draws the legend in lines as wide as the figure, from `top` down; gives where it ends.
+/// Draws the legend in lines as wide as the figure, from `top` down; returns its lower end.
 fn legend(shapes: &mut Vec<Shape>, entries: &[Entry], top: f64, inner: f64) -> f64 {
     let mut x = 0.0;
     let mut y = top + 0.5 * LABEL_LINE;
@@ -171,7 +171,7 @@ fn legend(shapes: &mut Vec<Shape>, entries: &[Entry], top: f64, inner: f64) -> f
     }
 }
 
-/// What a panel shows, and how many labels have no room in it.
+/// Returns the shapes of a panel, and the number of labels without room in it.
 fn panel_shapes(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
     let frame = placed.frame;
     let mut within = grounds(placed);
@@ -204,7 +204,8 @@ fn panel_shapes(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
     (shapes, left_out)
 }
 
-/// What stands over the lines of a panel, and may reach over its frame; how many labels have no room.
+/// Adds dots and texts, which lie over the lines of a panel and may cross its frame; returns the
+/// number of labels without room.
 fn dots_and_words(placed: &Placed<'_>, shapes: &mut Vec<Shape>) -> usize {
     let (dots, left_out) = dots_and_labels(placed);
     shapes.extend(dots);
@@ -226,8 +227,9 @@ fn dots_and_words(placed: &Placed<'_>, shapes: &mut Vec<Shape>) -> usize {
 }
 
 impl Panel {
-    /// The marks as they are drawn in `frame` where these parts of both axes are shown, with letters of this size \[pt\]; and how many
-    /// labels have no room. For canvases that draw axes of their own: edged areas are filled.
+    /// Draws the marks in `frame` with these ranges of both axes and this font size \[pt\]; also
+    /// returns the number of labels without room. For canvases that draw axes of their own: areas
+    /// with edges are filled.
     pub fn shapes(&self, frame: Area, [x, y]: [Range; 2], letters_pt: f64) -> (Vec<Shape>, usize) {
         let side = |range| Side {
             range,
@@ -261,13 +263,13 @@ impl Panel {
 }
 
 impl Placed<'_> {
-    /// Where a value is on paper; nowhere for what an axis cannot show.
+    /// Returns the position of a value on paper; `None` for a value that an axis cannot show.
     fn at(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let x = self.panel.x.fraction(x, self.x.range)?;
         Some(self.frame.at(x, self.panel.y.fraction(y, self.y.range)?))
     }
 
-    /// The line across the frame at a value.
+    /// Returns the line across the frame at a value.
     fn across(&self, along: Along, value: f64) -> Option<[[f64; 2]; 2]> {
         let ends = [0.0, 1.0];
         Some(match along {
@@ -282,8 +284,8 @@ impl Placed<'_> {
         })
     }
 
-    /// Where a bracket is on paper: the ends of its spine and those of its hooks; at the right of its values where it has no room at
-    /// their left.
+    /// Returns a bracket on paper: the ends of its spine and the ends of its hooks; to the right of
+    /// its values if there is no room to their left.
     fn bracket(&self, bracket: &Bracket) -> Option<[[[f64; 2]; 2]; 2]> {
         let [from, to] = bracket.ends.map(|end| self.at([bracket.x, end]));
         let ends = [from?, to?];
@@ -296,13 +298,13 @@ impl Placed<'_> {
         Some([moved(BRACKET), moved(BRACKET - HOOK)])
     }
 
-    /// Whether a place on paper is in the frame, or on its edge up to rounding.
+    /// Returns whether a place on paper is in the frame, or on its edge up to rounding.
     fn shows(&self, place: [f64; 2]) -> bool {
         self.frame.expanded(0.5).contains(place)
     }
 }
 
-/// Grounds lie below the grid.
+/// Draws the backgrounds, which lie below the grid.
 fn grounds(placed: &Placed<'_>) -> Vec<Shape> {
     let mut shapes = bands(placed);
     for mark in &placed.panel.marks {
@@ -333,7 +335,8 @@ fn grounds(placed: &Placed<'_>) -> Vec<Shape> {
     shapes
 }
 
-/// The area of an envelope, stretch by stretch: along its lower edge, and back along its upper one.
+/// Draws the area of an envelope, stretch by stretch: along its lower edge, and back along its
+/// upper edge.
 fn envelope(placed: &Placed<'_>, Envelope { color, points, .. }: &Envelope) -> Vec<Shape> {
     let ends = |&[x, low, high]: &[f64; 3]| Some([placed.at([x, low])?, placed.at([x, high])?]);
     let ends: Vec<Option<[[f64; 2]; 2]>> = points.iter().map(ends).collect();
@@ -355,7 +358,7 @@ fn envelope(placed: &Placed<'_>, Envelope { color, points, .. }: &Envelope) -> V
     runs.map(area).collect()
 }
 
-/// The rectangle between two corners.
+/// Creates the rectangle between two corners.
 fn rectangle(from: [f64; 2], to: [f64; 2], color: Color, stroke: Option<Stroke>) -> Shape {
     let points = vec![from, [from[0], to[1]], to, [to[0], from[1]]];
     Shape::Path {
@@ -389,7 +392,7 @@ fn grid(placed: &Placed<'_>) -> Vec<Shape> {
     shapes
 }
 
-/// What is drawn within the frame of a mark.
+/// Draws the part of a mark that is clipped to the frame.
 fn lines_of(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
     match mark {
         Mark::Curve(curve) => curve_lines(placed, curve),
@@ -432,7 +435,7 @@ fn lines_of(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
     }
 }
 
-/// A curve without what lies outside the frame: what is drawn is no longer than what is seen.
+/// Draws a curve without the parts outside the frame, so that no invisible parts are drawn.
 fn curve_lines(placed: &Placed<'_>, curve: &Curve) -> Vec<Shape> {
     let points: Vec<Option<[f64; 2]>> = curve
         .points()
@@ -466,13 +469,13 @@ fn bar_shapes(placed: &Placed<'_>, bars: &Bars) -> Vec<Shape> {
     bars.bars.iter().zip(bars.ends()).filter_map(bar).collect()
 }
 
-/// A bracket as one line: from the end of one hook along the spine to that of the other.
+/// Draws a bracket as one line: from the end of one hook along the spine to the end of the other.
 fn bracket_line([from, to]: [[f64; 2]; 2], [near, far]: [[f64; 2]; 2], stroke: Stroke) -> Shape {
     Shape::line([near, from, to, far], stroke)
 }
 
-/// Dots are drawn whole where their middle is in the frame, with their texts around them, and those of brackets beside these; how
-/// many texts have no room.
+/// Draws whole dots if their centre is in the frame, with their labels around them and those of
+/// brackets beside these; also returns the number of labels without room.
 fn dots_and_labels(placed: &Placed<'_>) -> (Vec<Shape>, usize) {
     let mut shapes = Vec::new();
     let mut labels = Vec::new();
@@ -555,7 +558,7 @@ fn labelled(placed: &Placed<'_>, center: [f64; 2], radius: f64, label: &str) -> 
     }
 }
 
-/// What the labels of a panel keep clear of.
+/// Returns the obstacles for the labels of a panel.
 fn surroundings(placed: &Placed<'_>) -> Surroundings {
     let mut path = Vec::new();
     let mut bars = Vec::new();
@@ -566,7 +569,7 @@ fn surroundings(placed: &Placed<'_>) -> Surroundings {
     };
     for mark in &placed.panel.marks {
         match mark {
-            // The first curve with an entry in the legend is what the dots are about.
+            // The first curve with an entry in the legend is the one to which the dots refer.
             Mark::Curve(curve)
                 if path.is_empty() && curve.key.is_some() && curve.stroke.dash == Dash::Solid =>
             {
@@ -597,7 +600,8 @@ fn surroundings(placed: &Placed<'_>) -> Surroundings {
     }
 }
 
-/// A dot of a shape and of a size, as a part of the usual one; all shapes cover about the same area.
+/// Draws a dot with this shape and a size relative to the default; all shapes have about the same
+/// area.
 pub fn dot_shapes(
     [x, y]: [f64; 2],
     (shape, part): (DotShape, f64),
@@ -623,7 +627,8 @@ pub fn dot_shapes(
             stroke,
         }]
     };
-    // Two lines: one that turns back over the middle has no direction there, and its corner no place on the screen.
+    // Two lines: a line that turns back over the middle has no direction there, and its corner no
+    // place on the screen.
     let strokes = |ends: [[[f64; 2]; 2]; 2]| {
         let place = |[dx, dy]: [f64; 2]| [x + radius * dx, y + radius * dy];
         ends.map(|ends| Shape::line(ends.map(place).to_vec(), line))
@@ -644,7 +649,7 @@ pub fn dot_shapes(
     }
 }
 
-/// The words beside a line across the frame, on white, so that curves may run behind them.
+/// Draws the text beside a line across the frame, on white, so that curves may run behind it.
 fn rule_label(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
     let Mark::Rule(Rule {
         along, at, label, ..
@@ -673,7 +678,7 @@ fn rule_label(placed: &Placed<'_>, mark: &Mark) -> Vec<Shape> {
     vec![Shape::rectangle(ground, Some(Color::WHITE), None), words]
 }
 
-/// The words that belong to a mark.
+/// Draws the text of a mark.
 fn words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
     let size_pt = placed.letters_pt;
     let small = |at, words: &str, anchor| text(at, words, size_pt, anchor, Color::DIM);
@@ -688,7 +693,7 @@ fn words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
         }
         Mark::Note(Note { at, text: words }) => match at {
             Place::Value { x, y, upright } => {
-                // Words about a name of an axis need room beside those of the next.
+                // Texts about a name on an axis need room beside those of the next.
                 let slot = placed.frame.width / placed.x.range.width();
                 let is_named = placed.panel.x.names.is_some();
                 if is_named && !upright && size_pt * width(words) > slot {
@@ -724,7 +729,7 @@ fn words(placed: &Placed<'_>, mark: &Mark) -> Option<Shape> {
     }
 }
 
-/// Ticks, numbers and label below a frame.
+/// Draws ticks, numbers and label below a frame.
 fn horizontal(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for tick in &side.ticks {
@@ -767,7 +772,7 @@ fn horizontal(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
     shapes
 }
 
-/// Ticks, numbers and label at the left of a frame.
+/// Draws ticks, numbers and label at the left of a frame.
 fn vertical(side: &Side, axis: &Axis, frame: Area) -> Vec<Shape> {
     let mut shapes = Vec::new();
     for tick in &side.ticks {

@@ -1,4 +1,5 @@
-//! Poles of every model of one condition in the s-plane, and what couplings do: to the loop they make, and to the poles (M16.4).
+//! Poles of every model of one condition in the s-plane, and the effect of couplings on their loop
+//! and on the poles (M16.4).
 
 use nalgebra::Complex;
 
@@ -18,7 +19,8 @@ use super::figure::{
 use super::requirements::{arrow, spanned};
 use super::role::Role;
 
-/// Real and imaginary parts in the window of the slow modes \[rad/s\]: the rigid-body modes of a helicopter lie there.
+/// Real and imaginary ranges of the slow modes \[rad/s\]: those of the rigid-body modes of a
+/// helicopter.
 const SLOW: [Range; 2] = [
     Range {
         min: -1.2,
@@ -30,18 +32,18 @@ const SLOW: [Range; 2] = [
     },
 ];
 const DAMPING_RATIOS: [f64; 6] = [0.1, 0.2, 0.4, 0.6, 0.8, 0.95];
-/// How far the rays of equal damping reach \[rad/s\].
+/// Length of the rays of constant damping \[rad/s\].
 const FAR: f64 = 1e3;
-/// Points of an arc of equal frequency.
+/// Points of an arc of constant frequency.
 const ARC_POINTS: usize = 60;
 const AXIS: Stroke = Stroke::solid(Color::DIM, 0.6);
 
-/// The zeros of a model for the response whose zeros are shown.
+/// Zeros of a model for the response whose zeros are shown.
 type ZerosOf<'a> = &'a dyn Fn(&ModelId) -> Vec<Complex<f64>>;
 
-/// Poles of every model of one condition: all of them, and the window of the slow modes; physics models ×, identified ones +.
-/// `zeros_of` gives those of a model for the response whose zeros are shown, where one is; `shifts` is where couplings move the poles
-/// of the physics representative.
+/// Plots the poles of every model of one condition: all of them, and the window of the slow modes;
+/// physics models ×, identified models +. `zeros_of` gives the zeros of a model for the selected
+/// response, if any; `shifts` gives the pole shifts of the physics representative due to couplings.
 pub fn poles_figure(
     source: &ConditionSource<'_>,
     modes: &ConditionModes,
@@ -89,7 +91,7 @@ pub fn poles_figure(
         .aspect(0.85)
 }
 
-/// The models that are shown, what matters most last.
+/// Returns the visible models, the most important last.
 fn shown_models(source: &ConditionSource<'_>, options: &BodeOptions) -> Vec<SourceModel> {
     let models = BundleKind::BOTH
         .into_iter()
@@ -99,7 +101,7 @@ fn shown_models(source: &ConditionSource<'_>, options: &BodeOptions) -> Vec<Sour
     shown
 }
 
-/// One group of dots for each model.
+/// Returns one group of dots for each model.
 fn poles(shown: &[SourceModel], modes: &ConditionModes) -> Vec<Dots> {
     let group = |model: &SourceModel| {
         let shape = match model.id.bundle {
@@ -131,7 +133,7 @@ fn pole_dot(model: &SourceModel, value: Complex<f64>) -> Dot {
     }
 }
 
-/// Finite transmission zeros of a response of a model of the condition.
+/// Returns the finite transmission zeros of a response of a model of the condition.
 pub fn zeros_of_model(source: &ConditionSource<'_>, pair: Pair, id: &ModelId) -> Vec<Complex<f64>> {
     let model = source.curves.condition.model(id.bundle, &id.name);
     model
@@ -139,7 +141,8 @@ pub fn zeros_of_model(source: &ConditionSource<'_>, pair: Pair, id: &ModelId) ->
         .unwrap_or_default()
 }
 
-/// Zeros of one response in the nominal model and in both representatives, as circles; they may lie far out, and widen no range.
+/// Returns the zeros of one response in the nominal model and in both representatives, as circles;
+/// they may lie far out and do not extend the axis range.
 fn zeros(
     source: &ConditionSource<'_>,
     shown: &[SourceModel],
@@ -176,11 +179,11 @@ fn zeros(
         .collect()
 }
 
-/// Parts of the width and of the height of a plot within which two values of damping would lie over one another.
+/// Fractions of the width and height of a plot within which two damping labels would overlap.
 const BESIDE: [f64; 2] = [0.11, 0.07];
 
-/// Lines to read a part of the s-plane by: rays of equal damping ratio, the upper ones with its value where they leave the part, and
-/// arcs of equal frequency.
+/// Returns grid lines for a part of the s-plane: rays of constant damping ratio, the upper ones
+/// labelled where they leave the part, and arcs of constant frequency.
 pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide> {
     let reach = [real.min, real.max, imaginary.min, imaginary.max]
         .into_iter()
@@ -221,7 +224,7 @@ pub fn damping_grid([real, imaginary]: [Range; 2]) -> impl Iterator<Item = Guide
     rays.chain(arcs)
 }
 
-/// Rays of equal damping ratio, `Re λ = -ζ |λ|`, above and below the real axis.
+/// Returns rays of constant damping ratio, `Re λ = -ζ |λ|`, above and below the real axis.
 fn rays() -> Vec<Mark> {
     let ray = |ratio: f64, sign: f64| -> Mark {
         let far = [-FAR * ratio, sign * FAR * (1.0 - ratio * ratio).sqrt()];
@@ -242,8 +245,9 @@ const SHOWN: Stroke = Stroke::solid(Color::of(Hue::Corrected), 1.6);
 const WAY: Stroke = Stroke::solid(Color::of(Hue::Corrected), 1.0);
 const RINGING: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
 
-/// The least singular value of `I - K H` over frequency, of every condition, `shown` on top; and the poles of that condition's physics
-/// representative without couplings and with them. Without a condition the one that is nearest to ringing.
+/// Plots the least singular value of `I - K H` over frequency for every condition, `shown` on top;
+/// and the poles of that condition's physics representative without and with couplings. Without a
+/// selected condition, the one nearest to ringing.
 pub fn couplings_figure(
     assessment: &CouplingsAssessment,
     shown: Option<ConditionId>,
@@ -276,7 +280,7 @@ pub fn couplings_figure(
     )
 }
 
-/// How near the loop is to ringing.
+/// Plots the distance of the loop from ringing.
 fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: FrequencyUnit) -> Plot {
     let omega: Vec<f64> = assessment
         .omega
@@ -318,7 +322,7 @@ fn loop_plot(assessment: &CouplingsAssessment, shown: ConditionId, unit: Frequen
     )))
 }
 
-/// Where the poles go.
+/// Plots the shifts of the poles.
 fn pole_plot(assessment: &CouplingsAssessment, shown: ConditionId) -> Plot {
     let x = Axis::linear("Re λ [rad/s]");
     let y = Axis::linear("Im λ [rad/s]");
@@ -334,7 +338,7 @@ fn pole_plot(assessment: &CouplingsAssessment, shown: ConditionId) -> Plot {
     Plot::new(format!("Poles of condition {shown}")).panel(panel)
 }
 
-/// Poles without couplings, those with them, and an arrow from each to where it goes.
+/// Returns the poles without and with couplings, and an arrow from each to its new position.
 pub fn pole_shift_marks(shifts: &[PoleShift]) -> Vec<Mark> {
     let place = |pole: Complex<f64>| [pole.re, pole.im];
     let moved: Vec<[[f64; 2]; 2]> = shifts

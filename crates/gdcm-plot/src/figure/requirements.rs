@@ -1,5 +1,5 @@
-//! What a qualification asks: phase delay over bandwidth of every attitude response (M17.1), and models over time, what they answer to a test
-//! input and to a flight record within the corridors about it (M17.2).
+//! Requirements: phase delay over bandwidth of every attitude response (M17.1), and models over
+//! time, in response to a test input and to a flight record with its tolerance corridors (M17.2).
 
 use gdcm_method::requirements::level_boundary::LevelBoundary;
 use gdcm_method::requirements::tolerance::ToleranceCheck;
@@ -19,13 +19,13 @@ use super::role::Role;
 
 const WAY: Stroke = Stroke::solid(Color::DIM.tint(70), 0.7);
 const BAR: Stroke = Stroke::solid(Color::DIM, 0.7);
-/// Length and half the width of an arrow's head, as parts of what the marks of a plot span.
+/// Length and half width of an arrow head, as fractions of the span of the marks in a plot.
 const HEAD: [f64; 2] = [0.035, 0.012];
-/// Above every phase delay that is drawn \[ms\].
+/// Larger than every drawn phase delay \[ms\].
 const BEYOND_MS: f64 = 1e4;
 const LEVEL: Stroke = Stroke::dashed(Color::of(Hue::Warning), 1.0, Dash::Short);
 
-/// How the model of a role is drawn.
+/// Returns the shape and colour of the model of a role.
 fn look(role: RequirementRole) -> (DotShape, Color) {
     match role {
         RequirementRole::Physics => (DotShape::Circle, Color::of(Hue::Perturbed)),
@@ -35,12 +35,13 @@ fn look(role: RequirementRole) -> (DotShape, Color) {
     }
 }
 
-/// Bandwidth \[rad/s\] and phase delay \[ms\], where there are both: where a response stands in its plot.
+/// Returns the place of a response in the plot, bandwidth \[rad/s\] and phase delay \[ms\], if both
+/// are defined.
 pub fn bandwidth_place(of: &BandwidthFinding) -> Option<[f64; 2]> {
     Some([of.omega_bw_rad_s?, s_to_ms(of.phase_delay_s?)])
 }
 
-/// The responses that have a bandwidth and a phase delay in some condition.
+/// Returns the responses with a bandwidth and a phase delay in some condition.
 pub fn bandwidth_pairs(requirements: &Requirements) -> Vec<Pair> {
     let mut pairs: Vec<Pair> = Vec::new();
     for of in requirements
@@ -55,9 +56,9 @@ pub fn bandwidth_pairs(requirements: &Requirements) -> Vec<Pair> {
     pairs
 }
 
-/// Phase delay over bandwidth, a plot for each attitude response: a mark for each condition and model, an arrow from the physics model
-/// to the corrected one, intervals where there are some, and the engineer's levels. A number that rests on a model beyond the band is
-/// grey.
+/// Plots phase delay over bandwidth for each attitude response: a mark for each condition and
+/// model, an arrow from the physics model to the corrected one, available intervals, and the
+/// engineer's levels. Numbers that rest on a model beyond the band are grey.
 pub fn requirements_figure(
     requirements: &Requirements,
     dataset: &Dataset,
@@ -86,8 +87,8 @@ pub fn requirements_figure(
         .plots(plots)
 }
 
-/// What lies beyond the boundaries, at less bandwidth and more phase delay, the widest first and the narrower darker; of one that turns
-/// back along x nothing is shaded.
+/// Shades the areas beyond the boundaries, with less bandwidth and more phase delay, the widest
+/// first and the narrower ones darker; a boundary that turns back along x is not shaded.
 fn beyond(levels: &LevelBoundaries, axis: &str) -> Vec<Envelope> {
     let mut rising: Vec<&LevelBoundary> = levels
         .of_axis(axis)
@@ -123,7 +124,7 @@ fn boundaries<'a>(levels: &'a LevelBoundaries, axis: &'a str) -> impl Iterator<I
     levels.of_axis(axis).map(line)
 }
 
-/// What these places span along both axes; nothing is no more than a thousandth.
+/// Returns the spans of these places along both axes; at least a thousandth.
 pub(super) fn spanned(places: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
     [0, 1].map(|axis| {
         let range =
@@ -135,7 +136,8 @@ pub(super) fn spanned(places: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2
     })
 }
 
-/// A line from one place to another with a head in the middle, where no marker hides it; drawn to the scale of what is `spanned`.
+/// Returns a line between two places with a head in the middle, where no marker hides it; scaled to
+/// the spans `spanned`.
 pub(super) fn arrow(from: [f64; 2], to: [f64; 2], spanned: [f64; 2]) -> Vec<[f64; 2]> {
     let along = [0, 1].map(|axis| (to[axis] - from[axis]) / spanned[axis]);
     let length = along[0].hypot(along[1]);
@@ -218,7 +220,7 @@ fn marks(requirements: &Requirements, pair: Pair) -> Vec<Mark> {
             let dot = |of: &BandwidthFinding| {
                 let [x, y] = bandwidth_place(of)?;
                 let id = Some(MarkId::Condition(of.condition));
-                // One number a condition is enough to find the others by.
+                // One number per condition suffices to identify the others.
                 let label = if role == RequirementRole::Corrected {
                     of.condition.to_string()
                 } else {
@@ -244,15 +246,16 @@ fn marks(requirements: &Requirements, pair: Pair) -> Vec<Mark> {
 
 const INPUT: Stroke = Stroke::solid(Color::of(Hue::Text), 1.2);
 
-/// What was flown, and the corridor about it.
+/// Flight data and their corridor.
 const FLOWN: Stroke = Stroke::solid(Color::of(Hue::Text), 1.0);
 const CORRIDOR: Color = Color::of(Hue::Text).tint(14);
-/// Height of the difference from flight, where that of the record is 1.
+/// Height of the difference from flight, relative to 1 for the record.
 const DIFFERENCE_WEIGHT: f64 = 0.55;
-/// How much wider a line is outside the corridor \[pt\].
+/// Additional line width outside the corridor \[pt\].
 const OUTSIDE_PT: f64 = 1.8;
 
-/// The line of a model over time: as in Bode, the identified one as thin as the others.
+/// Returns the line of a model over time: as in a Bode plot, except that the identified line is as
+/// thin as the others.
 fn line_of(role: RequirementRole) -> Stroke {
     let role = match role {
         RequirementRole::Physics => Role::Representative,
@@ -263,7 +266,8 @@ fn line_of(role: RequirementRole) -> Stroke {
     role.line(false)
 }
 
-/// The input, then a plot for each output with a curve for each model, over time. Why a model has no curve stands below.
+/// Plots the input, then each output with a curve for each model, over time. The reasons for
+/// missing curves are given below.
 pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
     let time_s = answers.time_s();
     let input = &dataset.inputs()[answers.input];
@@ -317,8 +321,9 @@ pub fn test_answers_figure(answers: &TestAnswers, dataset: &Dataset) -> Figure {
         .plots(std::iter::once(moved).chain(outputs))
 }
 
-/// An input of a record, then a plot for each quantity that has a tolerance: what was flown with the corridor about it and what each model
-/// answers, above what it answers less flight, both wide where it is outside. Every window begins anew.
+/// Plots an input of a record, then each quantity with a tolerance: flight data with their corridor
+/// and the response of each model, above the difference between model and flight, both thick
+/// outside the corridor. Every window starts anew.
 pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: usize) -> Figure {
     let moved = &dataset.inputs()[input];
     let panel = |label: &str| Panel::new(Axis::linear("time [s]"), Axis::linear(label));
@@ -372,7 +377,7 @@ pub fn record_history_figure(history: &RecordHistory, dataset: &Dataset, input: 
         .plots(std::iter::once(first).chain(quantities))
 }
 
-/// What of a record is drawn.
+/// Drawn quantity of a record.
 #[derive(Clone, Copy, PartialEq)]
 enum Shown {
     AsItIs,
@@ -380,7 +385,7 @@ enum Shown {
 }
 
 impl Shown {
-    /// A value at a sample of a window.
+    /// Returns a value at a sample of a window.
     fn of(self, value: f64, window: &ToleranceCheck, n: usize) -> f64 {
         if self == Self::LessFlight {
             value - window.flown[n]
@@ -390,7 +395,8 @@ impl Shown {
     }
 }
 
-/// Every sample of a record with its time \[s\], and a gap after each window, which the next one does not go on from.
+/// Iterates over the samples of a record with their times \[s\], and a gap after each window,
+/// because windows are separate.
 fn samples(check: &RecordCheck) -> impl Iterator<Item = (f64, Option<(&ToleranceCheck, usize)>)> {
     let time = |window: &ToleranceCheck, n: usize| window.start_s + n as f64 * window.sample_time_s;
     check.windows.iter().flat_map(move |window| {
@@ -399,7 +405,7 @@ fn samples(check: &RecordCheck) -> impl Iterator<Item = (f64, Option<(&Tolerance
     })
 }
 
-/// A value at each sample over time.
+/// Returns a value at each sample over time.
 fn values(check: &RecordCheck, value: impl Fn(&ToleranceCheck, usize) -> f64) -> Vec<[f64; 2]> {
     samples(check)
         .map(|(time, at)| [time, at.map_or(f64::NAN, |(window, n)| value(window, n))])
@@ -471,7 +477,7 @@ mod tests {
 
     #[test]
     fn an_arrow_ends_where_it_leads_and_its_head_points_there() {
-        // In parts of the span from the origin to the far corner.
+        // As fractions of the span from the origin to the far corner.
         let points = arrow([1.0, 10.0], [3.0, 10.0], [2.0, 100.0]);
         assert_eq!(
             (points[0], points[6], points.len()),

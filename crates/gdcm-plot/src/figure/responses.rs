@@ -1,5 +1,5 @@
-//! Responses over frequency, as a plot of magnitude above phase shows them: the curves of every model of a condition and of one model of
-//! every condition, lines across, and areas around curves.
+//! Responses over frequency, as in a plot of magnitude above phase: the curves of every model of a
+//! condition or of one model of every condition, reference lines, and areas around curves.
 
 use std::sync::Arc;
 
@@ -19,12 +19,14 @@ use super::condition_source::{ConditionSource, CorrectedModel, CurveId};
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::role::Role;
 
-/// Height that fitting gives to values outside the band on either side, as a part of the height within it.
+/// Height that fitting reserves for values outside the band on either side, as a fraction of the
+/// height within it.
 const OUTSIDE_PART: f64 = 0.4;
 
 impl ConditionSource<'_> {
-    /// Every curve of one response, hidden ones too; phases are laid on that of the reference. `cache` keeps their numbers, and where
-    /// they are in memory, while nothing of them changes.
+    /// Returns every curve of one response, including hidden ones; phases are aligned with the
+    /// reference. `cache` keeps their numbers, and their addresses in memory, as long as nothing
+    /// changes.
     pub fn response_curves(
         &self,
         pair: Pair,
@@ -76,7 +78,7 @@ impl ConditionSource<'_> {
     }
 }
 
-/// A curve that says that its phase was moved up by so many turns.
+/// Notes on a curve that its phase was moved up by `turns`.
 fn moved_by_hand(mut curve: BodeCurve, turns: i32) -> BodeCurve {
     if turns != 0 {
         let moved = format!("phase {}°", signed(360.0 * f64::from(turns), 0));
@@ -89,19 +91,20 @@ fn moved_by_hand(mut curve: BodeCurve, turns: i32) -> BodeCurve {
     curve
 }
 
-/// Shapes of every model of the condition shown for one response, kept while neither changes.
+/// Shapes of every model of the displayed condition for one response, kept as long as neither
+/// changes.
 #[derive(Debug, Default)]
 pub struct ResponseCache {
     made_of: Option<(Arc<ConditionCurves>, Pair, usize)>,
     omega: Arc<[f64]>,
-    /// What phases are laid on, over so many of the first frequencies.
+    /// Reference for the phases, and the number of leading frequencies over which it applies.
     reference: Option<(ResponseShape, usize)>,
     physics: Vec<ResponseShape>,
     identified: Vec<ResponseShape>,
 }
 
-/// A continuous phase \[deg\] as it is drawn, so many turns up. A wrapped one has a gap where it jumps, in place of a line from edge to
-/// edge.
+/// Returns a continuous phase \[deg\] as drawn, moved up by `turns`. A wrapped phase has a gap at
+/// its jumps, instead of a line from edge to edge.
 fn presented(phase_deg: &Arc<[f64]>, unit: PhaseUnit, turns: i32) -> Arc<[f64]> {
     match (unit, turns) {
         (PhaseUnit::Unwrapped, 0) => Arc::clone(phase_deg),
@@ -114,8 +117,8 @@ fn presented(phase_deg: &Arc<[f64]>, unit: PhaseUnit, turns: i32) -> Arc<[f64]> 
 }
 
 impl ResponseCache {
-    /// Makes the shapes of `pair`; phases are laid on that of the identified model `reference` around the band. Beyond that the
-    /// identified models, which say nothing there, end.
+    /// Computes the shapes of `pair`; phases are aligned with the identified model `reference`
+    /// around the band. Identified models end beyond that range, where they carry no information.
     fn refresh(
         &mut self,
         curves: &Arc<ConditionCurves>,
@@ -133,7 +136,7 @@ impl ResponseCache {
             .identified
             .get(reference)
             .map(|response| ResponseShape::of(response.curve(pair)));
-        // The last frequency of a grid may be a rounding error beyond its end.
+        // The last frequency of a grid may exceed its end by a rounding error.
         let limit = display_band(band).max() * (1.0 + 1e-9);
         let points = curves.grid.omega().partition_point(|omega| *omega <= limit);
         self.reference = reference_shape.map(|shape| (shape, points));
@@ -155,7 +158,7 @@ impl ResponseCache {
         self.made_of = Some((Arc::clone(curves), pair, reference));
     }
 
-    /// The shape of a response, its phase laid on that of the reference.
+    /// Returns the shape of a response, with its phase aligned with the reference.
     fn laid(&self, response: &FrequencyResponse, pair: Pair) -> ResponseShape {
         let shape = ResponseShape::of(response.curve(pair));
         match &self.reference {
@@ -172,7 +175,8 @@ impl ResponseCache {
     }
 }
 
-/// The 95 % band of every identified model among `curves` that is drawn, is kept, and says how uncertain it is.
+/// Returns the 95 % band of every identified model among `curves` that is drawn, is kept, and has
+/// an uncertainty.
 pub fn uncertainty_bands(dataset: &Dataset, pair: Pair, curves: &[BodeCurve]) -> Vec<BodeBand> {
     let band = |curve: &BodeCurve| {
         let CurveId::Model(id) = &curve.id else {
@@ -204,7 +208,8 @@ fn band_around(curve: &BodeCurve, bands: &ModelBands, pair: Pair) -> BodeBand {
     band
 }
 
-/// Between which two of `omegas` a frequency lies, and how far by its logarithm; none outside of them.
+/// Returns the index of the interval of `omegas` that contains a frequency, and the logarithmic
+/// fraction within it; `None` outside.
 fn place(omegas: &[f64], omega: f64) -> Option<(usize, f64)> {
     let above = omegas.partition_point(|of| *of <= omega);
     let at = above.checked_sub(1)?;
@@ -215,7 +220,7 @@ fn place(omegas: &[f64], omega: f64) -> Option<(usize, f64)> {
     }
 }
 
-/// Shapes of one response of several models, kept while both stay the same.
+/// Shapes of one response of several models, kept as long as both stay the same.
 #[derive(Debug, Default)]
 pub struct AirspeedCache {
     made_of: Option<(Arc<AcrossCurves>, Pair)>,
@@ -224,7 +229,7 @@ pub struct AirspeedCache {
 }
 
 impl AirspeedCache {
-    /// Makes the shapes of `pair`; phases are laid on that of the first model.
+    /// Computes the shapes of `pair`; phases are aligned with the first model.
     fn refresh(&mut self, curves: &Arc<AcrossCurves>, pair: Pair) {
         if self
             .made_of
@@ -249,8 +254,8 @@ impl AirspeedCache {
     }
 }
 
-/// One response of one model of each condition, in the colour of its airspeed, under the correction of `role`; none of a condition
-/// without one.
+/// Returns one response of one model of each condition, in the colour of its airspeed, under the
+/// correction of `role`; conditions without such a model are skipped.
 pub fn airspeed_curves(
     (dataset, analysis): (&Dataset, Option<&Analysis>),
     role: AcrossRole,
@@ -279,7 +284,8 @@ pub fn airspeed_curves(
     cache.shapes.iter().filter_map(curve).collect()
 }
 
-/// The values to show: all within the band, and outside it as far as they leave room for those within.
+/// Returns the range to show: all values within the band, and those outside it as far as they leave
+/// room for the former.
 pub fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -> Option<Range> {
     let points = || {
         curves
@@ -295,31 +301,30 @@ pub fn fitted_values(curves: &[BodeCurve], pane: Pane, (min, max): (f64, f64)) -
     Some(Range::new(all.min.max(room.min), all.max.min(room.max)))
 }
 
-/// Which of the two stacked plots.
+/// One of the two stacked plots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Pane {
-    /// Magnitude \[dB\], above.
+    /// Upper pane \[dB\].
     Magnitude,
-    /// Phase \[deg\], below.
+    /// Lower pane \[deg\].
     Phase,
 }
 
-/// A frequency response with its name and its role.
+/// A frequency response with its name and role.
 #[derive(Clone, Debug)]
 pub struct BodeCurve {
-    /// How events name this curve.
+    /// Identifies the curve in events.
     pub id: CurveId,
-    /// The name that hovering shows.
+    /// Name shown under the pointer.
     pub label: String,
-    /// A second line for hovering: what the caller wants to say about it, and what a click does. May be empty.
+    /// Second line shown under the pointer: details from the caller, and the effect of a click. May
+    /// be empty.
     pub detail: String,
-    /// What the curve stands for.
     pub role: Role,
-    /// Whether the model is left out.
     pub rejected: bool,
     /// Whether another view points at it.
     pub highlighted: bool,
-    /// Whether the engineer does not want to see it; the legend names its role all the same.
+    /// Whether the engineer hides it; the legend names its role all the same.
     pub hidden: bool,
     /// Frequencies \[rad/s\], ascending.
     pub omega: Arc<[f64]>,
@@ -330,7 +335,7 @@ pub struct BodeCurve {
 }
 
 impl BodeCurve {
-    /// A curve of this role without words and numbers yet.
+    /// Creates a curve of this role, without texts and numbers yet.
     pub fn new(id: CurveId, role: Role) -> Self {
         let label = String::new();
         let detail = String::new();
@@ -354,7 +359,7 @@ impl BodeCurve {
         }
     }
 
-    /// The same curve of these numbers.
+    /// Returns the curve with these numbers.
     pub fn with(
         self,
         omega: &Arc<[f64]>,
@@ -372,12 +377,13 @@ impl BodeCurve {
         }
     }
 
-    /// What a pane shows of this curve.
+    /// Returns the values of this curve in a pane.
     pub fn values(&self, pane: Pane) -> &[f64] {
         self.shared_values(pane)
     }
 
-    /// [`Self::values`] with their owner: whoever holds it can tell later whether they are still the same.
+    /// Returns [`Self::values`] with their owner, by which a holder can tell later whether they are
+    /// unchanged.
     pub fn shared_values(&self, pane: Pane) -> &Arc<[f64]> {
         match pane {
             Pane::Magnitude => &self.magnitude_db,
@@ -385,7 +391,8 @@ impl BodeCurve {
         }
     }
 
-    /// The points of a pane in plot coordinates, `[log10 omega, value]`; gaps are points that are not finite.
+    /// Iterates over the points of a pane in plot coordinates, `[log10 omega, value]`; gaps are
+    /// points that are not finite.
     pub fn points(&self, pane: Pane) -> impl Iterator<Item = [f64; 2]> + '_ {
         self.omega
             .iter()
@@ -393,7 +400,8 @@ impl BodeCurve {
             .map(|(omega, value)| [omega.log10(), *value])
     }
 
-    /// [`Self::points`], with logarithms taken once for all the curves on the same frequencies.
+    /// Returns [`Self::points`], with logarithms computed once for all curves on the same
+    /// frequencies.
     pub fn points_on<'a>(
         &'a self,
         axis: &'a mut LogFrequencies,
@@ -405,7 +413,8 @@ impl BodeCurve {
             .map(|(log_omega, value)| [*log_omega, *value])
     }
 
-    /// Those of [`Self::points_on`] from `low` to `high` in `log10 omega`, and one on either side.
+    /// Returns the points of [`Self::points_on`] from `low` to `high` in `log10 omega`, and one
+    /// more on either side.
     pub fn points_between<'a>(
         &'a self,
         axis: &'a mut LogFrequencies,
@@ -423,7 +432,8 @@ impl BodeCurve {
         points.map(|(log_omega, value)| [*log_omega, *value])
     }
 
-    /// The value at `omega` \[rad/s\], linear in `log10 omega` between points; nothing outside them or beside a gap.
+    /// Returns the value at `omega` \[rad/s\], linear in `log10 omega` between points; `None`
+    /// outside them or beside a gap.
     pub fn value_at(&self, pane: Pane, omega: f64) -> Option<f64> {
         let values = self.values(pane);
         let after = self.omega.partition_point(|at| *at < omega);
@@ -442,7 +452,7 @@ impl BodeCurve {
     }
 }
 
-/// The logarithms of the frequencies asked for last: the curves of a scene mostly share theirs.
+/// Logarithms of the most recent frequencies: the curves of a scene mostly share theirs.
 #[derive(Clone, Debug, Default)]
 pub struct LogFrequencies {
     omega: Arc<[f64]>,
@@ -450,7 +460,7 @@ pub struct LogFrequencies {
 }
 
 impl LogFrequencies {
-    /// `log10` of each of `omega`.
+    /// Returns `log10` of each of `omega`.
     fn of(&mut self, omega: &Arc<[f64]>) -> &[f64] {
         if !Arc::ptr_eq(&self.omega, omega) {
             self.omega = Arc::clone(omega);
@@ -460,22 +470,23 @@ impl LogFrequencies {
     }
 }
 
-/// How a figure depends on the frequency.
+/// Frequency dependence of a reference line.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Level {
-    /// It is this everywhere.
+    /// The same value everywhere.
     Constant(f64),
-    /// It is this times omega \[rad/s\]: what a delay takes from the phase.
+    /// Proportional to omega \[rad/s\]: the phase of a delay.
     PerOmega(f64),
-    /// It is what it is at each of these frequencies: omega \[rad/s\], rising, and value.
+    /// Samples: omega \[rad/s\] (ascending) and value.
     Sampled(Vec<[f64; 2]>),
 }
 
 impl Level {
-    /// Points of a line that is no straight one.
+    /// Points of a line that is not straight.
     const POINTS: usize = 80;
 
-    /// The value at omega \[rad/s\]; of a sampled one that of the sample, and not a number elsewhere.
+    /// Returns the value at omega \[rad/s\]; for a sampled level the value of the sample, NaN
+    /// elsewhere.
     pub fn at(&self, omega: f64) -> f64 {
         match self {
             Self::Constant(value) => *value,
@@ -487,7 +498,7 @@ impl Level {
         }
     }
 
-    /// The points of the line between two frequencies: `log10 omega` and value.
+    /// Returns the points of the line between two frequencies: `log10 omega` and value.
     pub fn points(&self, from: f64, to: f64) -> Vec<[f64; 2]> {
         let log_omega =
             (0..=Self::POINTS).map(|point| from + (to - from) * point as f64 / Self::POINTS as f64);
@@ -502,21 +513,21 @@ impl Level {
     }
 }
 
-/// What a rule stands for; what comes first gets its label first.
+/// Meaning of a reference line, in the order in which labels are placed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ReferenceKind {
-    /// What the fit asks for: G, D.
+    /// Targets of the fit: G, D.
     Delta,
     /// A bound of the channels: LB, UB.
     Bound,
     /// A quantile over the band.
     Quantile,
-    /// What a pilot does not notice.
+    /// Envelope of unnoticeable added dynamics.
     Envelope,
 }
 
 impl ReferenceKind {
-    /// How it is drawn in the window.
+    /// Returns its style in the window.
     pub fn line(self) -> Stroke {
         match self {
             Self::Delta => Stroke::dashed(Color::INK, 0.9, Dash::Dotted),
@@ -526,7 +537,7 @@ impl ReferenceKind {
         }
     }
 
-    /// Its entry in the legend of a figure, where it has no label of its own there.
+    /// Returns its entry in the legend of a figure, for a line without a label there.
     pub fn key(self) -> &'static str {
         match self {
             Self::Delta => "delta gain, delta delay",
@@ -537,23 +548,20 @@ impl ReferenceKind {
     }
 }
 
-/// A labelled line across a pane that curves are read against.
+/// A labelled line across a pane, for reading curves against it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceLine {
-    /// The pane it lies in.
     pub pane: Pane,
-    /// What it stands for.
     pub kind: ReferenceKind,
-    /// What stands on it: "G 0.83 (−1.7 dB)".
+    /// Its label: "G 0.83 (−1.7 dB)".
     pub label: String,
-    /// What is said of it besides where there is room: ", median over the band". May be empty.
+    /// Additional text, shown if there is room: ", median over the band". May be empty.
     pub note: String,
-    /// Where it lies.
     pub level: Level,
 }
 
 impl ReferenceLine {
-    /// A line of which nothing is said besides its label.
+    /// Creates a line with a label only.
     pub(super) fn new(
         pane: Pane,
         kind: ReferenceKind,
@@ -570,7 +578,7 @@ impl ReferenceLine {
     }
 }
 
-/// How far a response may lie from its curve.
+/// Uncertainty band of a response about its curve.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodeBand {
     /// Frequencies \[rad/s\], ascending.
@@ -592,7 +600,7 @@ mod tests {
             PhaseUnit::Wrapped,
             0,
         );
-        // Two roundings of angles below 360.
+        // Two rounding errors of angles below 360.
         assert!((wrapped[1] + 170.0).abs() < 1e-12 && (wrapped[3] - 160.0).abs() < 1e-12);
         assert!(wrapped[2].is_nan(), "{wrapped:?}");
     }

@@ -1,4 +1,4 @@
-//! What a curve stands for, and how it therefore looks on paper: the same in every figure.
+//! Role of a curve, and its appearance on paper: the same in every figure.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,37 +8,37 @@ use gdcm_study::study::requirements::RequirementRole;
 use super::drawing::{Color, Dash, Hue, Stroke};
 use super::figure::{DotShape, Mark};
 
-/// What a curve stands for.
+/// Role of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Role {
-    /// The physics model at the trim itself.
+    /// Physics model at the trim itself.
     Nominal,
-    /// A physics model at a perturbed trim.
+    /// Physics model at a perturbed trim.
     Perturbed,
-    /// The physics model that represents its bundle.
+    /// Physics model that represents its bundle.
     Representative,
-    /// A model identified from flight.
+    /// Model identified from flight.
     Identified,
-    /// The identified model that represents its bundle.
+    /// Identified model that represents its bundle.
     IdentifiedRepresentative,
-    /// The representative physics model with the condition's own correction.
+    /// Representative physics model with the condition's own correction.
     Corrected,
-    /// The physics model with the correction of the schedule.
+    /// Physics model with the scheduled correction.
     Scheduled,
-    /// The representative physics model with the condition's own correction, its lead filters left out.
+    /// Representative physics model with the condition's own correction, without its lead filters.
     WithoutLeads,
-    /// The representative physics model with couplings alone: no gain, delay or lead of a channel.
+    /// Representative physics model with couplings alone: no gain, delay or lead of a channel.
     Coupled,
-    /// The physics model with the correction of a variant of the study, laid over for comparison.
+    /// Physics model with the correction of a variant of the study, overlaid for comparison.
     Variant,
-    /// A model left out, whatever it was.
+    /// Excluded model of any kind.
     Rejected,
-    /// A model of one of several conditions: 0 is the slowest, 255 the fastest.
+    /// A model of one of several conditions, from 0 for the slowest to 255 for the fastest.
     OfAirspeed(u8),
 }
 
 impl Role {
-    /// Every role of one condition, in the order of a legend.
+    /// All roles of one condition, in the order of a legend.
     pub const ALL: [Self; 11] = [
         Self::Nominal,
         Self::Perturbed,
@@ -53,7 +53,8 @@ impl Role {
         Self::Rejected,
     ];
 
-    /// The role of a model of a condition at an airspeed \[kt\], among those of the slowest and the fastest condition.
+    /// Returns the role of a model of a condition at an airspeed \[kt\], between the slowest and
+    /// the fastest condition.
     pub fn of_airspeed(airspeed_kt: f64, (least, most): (f64, f64)) -> Self {
         let part = if most > least {
             (airspeed_kt - least) / (most - least)
@@ -63,7 +64,7 @@ impl Role {
         Self::OfAirspeed((255.0 * part.clamp(0.0, 1.0)).round() as u8)
     }
 
-    /// The role of a model as it is.
+    /// Returns the role of an unchanged model.
     pub fn of_model(kind: BundleKind, is_nominal: bool, represents: bool) -> Self {
         match (kind, is_nominal, represents) {
             (BundleKind::Physics, true, _) => Self::Nominal,
@@ -74,7 +75,7 @@ impl Role {
         }
     }
 
-    /// The name in a legend.
+    /// Returns the name in a legend.
     pub fn name(self) -> &'static str {
         match self {
             Self::Nominal => "nominal",
@@ -92,7 +93,7 @@ impl Role {
         }
     }
 
-    /// The name as one word of a command.
+    /// Returns the name as one word of a command.
     pub fn word(self) -> &'static str {
         match self {
             Self::Identified => "identified",
@@ -103,7 +104,8 @@ impl Role {
         }
     }
 
-    /// The role that a curve is shown in: a rejected curve is `Rejected`, but the nominal model stays nominal.
+    /// Returns the displayed role of a curve: `Rejected` for a rejected curve, except that the
+    /// nominal model stays nominal.
     pub fn shown(self, rejected: bool) -> Self {
         if rejected && self != Self::Nominal {
             Self::Rejected
@@ -112,8 +114,8 @@ impl Role {
         }
     }
 
-    /// The line in the window. Where colours are not seen, dashes and widths tell the roles apart. A rejected nominal model stays
-    /// red, but dotted.
+    /// Returns the line in the window. Dashes and widths distinguish the roles without colours. A
+    /// rejected nominal model stays red, but dotted.
     pub fn line(self, rejected: bool) -> Stroke {
         let line = |hue, width_pt, dash| Stroke {
             color: Color::of(hue),
@@ -126,7 +128,7 @@ impl Role {
             Self::Perturbed => Stroke::solid(Color::of(Hue::Perturbed).tint(80), 0.8),
             Self::Representative => line(Hue::Perturbed, 1.4, Dash::Solid),
             Self::Identified => line(Hue::Identified, 1.2, Dash::Short),
-            // Wide: it is seen below the corrected curve that is to lie on it.
+            // Wide: visible below the corrected curve that should lie on it.
             Self::IdentifiedRepresentative => line(Hue::Identified, 4.0, Dash::Solid),
             Self::Corrected => line(Hue::Corrected, 2.0, Dash::Solid),
             Self::Scheduled => line(Hue::Corrected, 1.6, Dash::Long),
@@ -138,12 +140,12 @@ impl Role {
         }
     }
 
-    /// The line on paper: that of the window, as fine as it can be printed.
+    /// Returns the line on paper: the window's line, thinned for print.
     pub fn stroke(self, rejected: bool) -> Stroke {
         self.line(rejected).printed()
     }
 
-    /// The entry in the legend of a figure.
+    /// Returns the entry in the legend of a figure.
     pub fn key(self, rejected: bool) -> &'static str {
         match self.shown(rejected) {
             Self::Nominal if rejected => "nominal (rejected)",
@@ -151,7 +153,7 @@ impl Role {
         }
     }
 
-    /// Place in the order of drawing: what matters most is drawn last, on top.
+    /// Returns the place in the drawing order: the most important roles are drawn last, on top.
     pub fn layer(self, rejected: bool) -> usize {
         match self.shown(rejected) {
             Self::Rejected => 0,
@@ -168,34 +170,28 @@ impl Role {
     }
 }
 
-/// One entry of a legend.
+/// An entry of a legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// Its words.
     pub text: String,
-    /// What stands before them.
     pub sample: Sample,
 }
 
-/// What stands before the words of an entry.
+/// Sample before the text of an entry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sample {
-    /// A piece of line.
     Line(Stroke),
-    /// A dot.
     Dot {
-        /// Its outline.
         shape: DotShape,
-        /// Its colour.
         color: Color,
-        /// Filled or open.
         filled: bool,
     },
-    /// A piece of ground.
+    /// A patch of background.
     Ground(Color),
 }
 
-/// One entry for each key among `marks`: roles in their order, then the others in the order in which they come.
+/// Returns one entry for each key among `marks`: roles in their order, then the others in order of
+/// appearance.
 pub(super) fn entries<'m>(marks: impl Iterator<Item = &'m Mark>) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
     for mark in marks {
@@ -205,7 +201,7 @@ pub(super) fn entries<'m>(marks: impl Iterator<Item = &'m Mark>) -> Vec<Entry> {
             entries.push(entry);
         }
     }
-    // Stable: what is no role keeps its order.
+    // Stable: entries without a role keep their order.
     entries.sort_by_key(|entry| place(&entry.text));
     entries
 }
@@ -236,13 +232,14 @@ fn entry(mark: &Mark) -> Option<Entry> {
 }
 
 fn place(text: &str) -> usize {
-    // Where only one physics model is drawn it stands in the place of the nominal one.
+    // A single physics model takes the place of the nominal one.
     let text = if text == RequirementRole::Physics.name() {
         Role::Nominal.key(false)
     } else {
         text
     };
-    // A rejected model has the entry of its own role: all but the nominal one have that of the rejected.
+    // Rejected models share the entry of the rejected role, except the nominal one, which has its
+    // own.
     let of_role =
         |role: &Role| role.key(false) == text || (*role == Role::Nominal && role.key(true) == text);
     Role::ALL

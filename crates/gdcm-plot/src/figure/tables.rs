@@ -1,4 +1,5 @@
-//! The numbers of a figure to the last digit: as one long table for programs, or as a table for each panel for people.
+//! The numbers of a figure at full precision: as one long table for programs, or as a table for
+//! each panel for people.
 
 use std::sync::Arc;
 
@@ -21,16 +22,17 @@ pub const LONG_COLUMNS: [&str; 8] = [
 ];
 
 impl Figure {
-    /// All numbers as the rows of one table under [`LONG_COLUMNS`], one for each point: the figure's title, the panel (title of the
-    /// plot, quantity), the curve, the text beside the point, and both coordinates, each after the label of its axis. A labelled
-    /// horizontal line has no x.
+    /// Returns all numbers as the rows of one table under [`LONG_COLUMNS`], one for each point: the
+    /// figure's title, the panel (title of the plot, quantity), the curve, the text beside the
+    /// point, and both coordinates, each after the label of its axis. A labelled horizontal line
+    /// has no x.
     pub fn long_rows(&self) -> impl Iterator<Item = [String; 8]> + '_ {
         self.panels()
             .flat_map(|(title, panel)| panel.long_rows(&self.title, panel.name(title)))
     }
 
-    /// The numbers of each panel: one column for each curve where all share their x, else one row for each point. Bounds of a
-    /// band that stand at frequencies of their own follow in tables of their own.
+    /// Returns the numbers of each panel: one column for each curve if all share their x, otherwise
+    /// one row for each point. Band limits at frequencies of their own follow in separate tables.
     pub fn tables(&self) -> Vec<Table> {
         let (tables, of_bands): (Vec<Table>, Vec<Option<Table>>) = self
             .panels()
@@ -44,7 +46,8 @@ impl Figure {
     }
 }
 
-/// A table whose names a terminal or a spreadsheet shows as they are.
+/// Removes control characters from a table, so that a terminal or a spreadsheet shows its names
+/// unchanged.
 fn without_control_codes(mut table: Table) -> Table {
     let cells = table
         .columns
@@ -56,7 +59,7 @@ fn without_control_codes(mut table: Table) -> Table {
     table
 }
 
-/// What is listed of a mark: its name, and its points with the texts beside them.
+/// Listed numbers of a mark: its name, and its points with the texts beside them.
 struct Series {
     name: String,
     x: Arc<[f64]>,
@@ -64,11 +67,11 @@ struct Series {
     labels: Option<Vec<String>>,
 }
 
-/// One value for every x: its name, and the value.
+/// Name and value of a constant over all x.
 type Constant<'m> = (&'m str, f64);
 
 impl Panel {
-    /// What it is called among the numbers, in a plot of this title.
+    /// Returns its name among the numbers, in a plot of this title.
     fn name(&self, title: &str) -> String {
         if title.is_empty() {
             self.y.label.clone()
@@ -77,7 +80,7 @@ impl Panel {
         }
     }
 
-    /// Its rows of the long table, in a figure of this title and under this name.
+    /// Returns its rows of the long table, in a figure of this title and under this name.
     fn long_rows<'p>(
         &'p self,
         figure_title: &'p str,
@@ -150,7 +153,7 @@ impl Panel {
         }
     }
 
-    /// `x | first curve [unit] | second curve [unit] | …`; the series have the same x.
+    /// Builds `x | first curve [unit] | second curve [unit] | …`; the series have the same x.
     fn wide(&self, title: String, series: &[Series], constants: &[Constant<'_>]) -> Table {
         let unit = unit_of(&self.y.label);
         let names = series
@@ -175,7 +178,7 @@ impl Panel {
         table
     }
 
-    /// `series | label | x | y`.
+    /// Builds `series | label | x | y`.
     fn long(&self, title: String, series: &[Series], constants: &[Constant<'_>]) -> Table {
         let mut table = Table::new(title, ["series", "label", &self.x.label, &self.y.label]);
         for series in series {
@@ -253,7 +256,7 @@ fn series(mark: &Mark) -> Vec<Series> {
     }
 }
 
-/// What a labelled horizontal line says.
+/// Returns the label and value of a labelled horizontal line.
 fn constant(mark: &Mark) -> Option<Constant<'_>> {
     match mark {
         Mark::Rule(rule) if rule.along == Along::Y && !rule.label.is_empty() => {
@@ -263,12 +266,13 @@ fn constant(mark: &Mark) -> Option<Constant<'_>> {
     }
 }
 
-/// ` [dB]` of `Magnitude [dB]`; nothing of a label without a unit.
+/// Returns ` [dB]` for `Magnitude [dB]`; empty for a label without a unit.
 fn unit_of(label: &str) -> &str {
     label.rfind(" [").map(|at| &label[at..]).unwrap_or_default()
 }
 
-/// The name of a place on an axis of names, of what stands beside it too; else the number.
+/// Returns the name of a place on an axis of names, including places beside it; otherwise the
+/// number.
 fn place(axis: &Axis, value: f64) -> String {
     let name = axis
         .names
@@ -279,9 +283,9 @@ fn place(axis: &Axis, value: f64) -> String {
     name.unwrap_or_else(|| figure(value))
 }
 
-/// A figure to the last digit; an empty cell where it is not finite.
+/// Formats a number at full precision; empty if it is not finite.
 fn figure(value: f64) -> String {
-    // Debug writes an exponent where Display would write hundreds of zeros.
+    // Debug writes an exponent, unlike Display, which would write hundreds of zeros.
     if value.is_finite() {
         format!("{value:?}")
     } else {

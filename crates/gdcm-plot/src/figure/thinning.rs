@@ -1,24 +1,24 @@
-//! Points of a line that need not be drawn.
+//! Thinning of lines: points that need not be drawn.
 
 use std::borrow::Cow;
 
-/// The least that can be seen, in the units of a plot.
+/// Smallest visible distances, in the units of a plot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
     /// Width of a column of pixels, in units of x.
     pub width: f64,
-    /// How far from a curve a line may be drawn, in units of y.
+    /// Maximum distance of a line from a curve, in units of y.
     pub tolerance: f64,
 }
 
 impl Pixel {
-    /// Splits points, ascending in x, into those of each column of pixels.
+    /// Splits points, ascending in x, by column of pixels.
     fn columns(self, points: &[[f64; 2]]) -> impl Iterator<Item = &[[f64; 2]]> {
         let mut rest = points;
         std::iter::from_fn(move || {
             let first = rest.first()?;
             let end = ((first[0] / self.width).floor() + 1.0) * self.width;
-            // By rounding, the end may come out at the first point itself.
+            // By rounding, the end may fall on the first point itself.
             let count = rest
                 .iter()
                 .take_while(|point| point[0] < end)
@@ -31,8 +31,9 @@ impl Pixel {
     }
 }
 
-/// The points of `run` that have to be drawn: whatever reaches farthest in its column of pixels, and as many others as keep the
-/// lines between them within the tolerance of every value. Both ends stay; where `run` does not ascend in x, all of it.
+/// Returns the points of `run` that must be drawn: the extremes in each column of pixels, and as
+/// many others as keep the lines between them within the tolerance of every value. Both ends stay;
+/// a `run` that does not ascend in x is returned whole.
 pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
     if !run.is_sorted_by(|one, next| one[0] < next[0]) {
         return run.to_vec();
@@ -40,9 +41,10 @@ pub fn thinned(run: &[[f64; 2]], pixel: Pixel) -> Vec<[f64; 2]> {
     along_wedges(&column_extremes(run, pixel), pixel.tolerance)
 }
 
-/// The first, the least, the greatest and the last point in each column of pixels, in their order.
+/// Returns the first, the least, the greatest and the last point in each column of pixels, in their
+/// order.
 fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
-    // Most often no column holds three points, and there is nothing to leave out.
+    // Most often no column holds three points, and no point can be omitted.
     if run
         .windows(3)
         .all(|points| points[2][0] - points[0][0] >= pixel.width)
@@ -71,7 +73,8 @@ fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
     Cow::Owned(kept)
 }
 
-/// The points of `run` that are needed for straight lines between them to stay within `tolerance` of every value left out.
+/// Returns the points of `run` needed for straight lines between them to stay within `tolerance` of
+/// every omitted value.
 ///
 /// ```text
 /// keep the first point
@@ -79,8 +82,8 @@ fn column_extremes(run: &[[f64; 2]], pixel: Pixel) -> Cow<'_, [[f64; 2]]> {
 ///     where the next point lies outside of it: keep the point before, and begin a wedge there
 /// keep the last point
 /// ```
-/// Linear in the number of points. Williams, "An efficient algorithm for the piecewise linear approximation of planar
-/// curves", Computer Graphics and Image Processing 8, 1978.
+/// Linear in the number of points. Williams, "An efficient algorithm for the piecewise linear
+/// approximation of planar curves", Computer Graphics and Image Processing 8, 1978.
 fn along_wedges(run: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     let Some((first, rest)) = run.split_first() else {
         return Vec::new();
@@ -112,7 +115,7 @@ mod tests {
 
     use super::*;
 
-    /// The value at `x` of the lines between `kept`.
+    /// Returns the value at `x` of the lines between `kept`.
     fn drawn_at(kept: &[[f64; 2]], x: f64) -> f64 {
         let after = kept
             .partition_point(|point| point[0] < x)
@@ -122,7 +125,7 @@ mod tests {
         y0 + (y1 - y0) * (x - x0) / (x1 - x0)
     }
 
-    /// Largest distance in y of `points` from the lines between `kept`.
+    /// Returns the largest distance in y of `points` from the lines between `kept`.
     fn error(points: &[[f64; 2]], kept: &[[f64; 2]]) -> f64 {
         points
             .iter()
@@ -130,7 +133,7 @@ mod tests {
             .fold(0.0, f64::max)
     }
 
-    /// The least and the greatest value of some points.
+    /// Returns the least and the greatest value of some points.
     fn extremes(points: &[[f64; 2]]) -> (f64, f64) {
         let start = (f64::INFINITY, f64::NEG_INFINITY);
         points.iter().fold(start, |(least, greatest), point| {
@@ -138,7 +141,7 @@ mod tests {
         })
     }
 
-    /// Pixels a hundred times narrower than the distance of points at 0, 1, 2 …
+    /// Returns pixels a hundred times narrower than the distance of points at 0, 1, 2 …
     fn fine(tolerance: f64) -> Pixel {
         Pixel {
             width: 0.01,
@@ -146,7 +149,8 @@ mod tests {
         }
     }
 
-    /// Runs of points from far closer to farther apart than a pixel, of steps up, down and level.
+    /// Generates runs of points with spacings from far below to above a pixel, and with steps up,
+    /// down and level.
     fn run() -> impl Strategy<Value = Vec<[f64; 2]>> {
         let step = (
             0.01..1.0f64,

@@ -1,4 +1,4 @@
-//! A drawing as PDF: one page as large as the drawing, letters as text. No dates, no random names.
+//! A drawing as PDF: one page as large as the drawing, text as text. No dates, no random names.
 
 use std::io::{self, Write};
 
@@ -18,10 +18,11 @@ use crate::figure::Color;
 use crate::figure::drawing::{Area, Drawing, Shape, Stroke, Text};
 use crate::figure::layout::{FONTS, Letter, letters, width};
 
-/// The part of a radius at which the handles of a quarter of a circle are, made of one cubic curve.
+/// Distance of the control points of a cubic curve for a quarter circle, as a fraction of the
+/// radius.
 const QUARTER: f64 = 0.552_284_749_830_793_4;
 
-/// The bytes of the file.
+/// Returns the bytes of the file.
 pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     let [catalog, pages, page, content, info] = [1, 2, 3, 4, 5].map(Ref::new);
     let mut drawn = Page {
@@ -60,7 +61,7 @@ pub fn pdf(drawing: &Drawing) -> io::Result<Vec<u8>> {
     Ok(pdf.finish())
 }
 
-/// What stands on the page, from its lower left corner up.
+/// Content of the page, in coordinates from its lower left corner up.
 struct Page {
     content: Content,
     height: f64,
@@ -193,7 +194,7 @@ impl Page {
         self.content.end_text();
     }
 
-    /// Letters of one font.
+    /// Writes letters of one font.
     fn run(&mut self, run: &[Letter], size_pt: f64) {
         let Some(first) = run.first() else { return };
         let codes: Vec<u8> = run
@@ -210,7 +211,7 @@ fn parts(color: Color) -> [f32; 3] {
     color.rgb().map(|part| f32::from(part) / 255.0)
 }
 
-/// Units of a PDF's letters in their size.
+/// Units per em of a PDF font.
 const UNITS: f64 = 1000.0;
 const IDENTITY: SystemInfo<'static> = SystemInfo {
     registry: Str(b"Adobe"),
@@ -218,7 +219,7 @@ const IDENTITY: SystemInfo<'static> = SystemInfo {
     supplement: 0,
 };
 
-/// The letters of each font that have been used, numbered in the order in which they came.
+/// The used letters of each font, numbered in order of first use.
 #[derive(Default)]
 pub(super) struct UsedLetters {
     fonts: [Used; FONTS.len()],
@@ -232,7 +233,7 @@ struct Used {
 }
 
 impl UsedLetters {
-    /// The number of a letter in its font.
+    /// Returns the number of a letter in its font.
     pub(super) fn code(&mut self, letter: &Letter) -> u16 {
         let Used { numbers, letters } = &mut self.fonts[letter.font];
         let is_new = numbers.get(letter.glyph).is_none();
@@ -243,7 +244,7 @@ impl UsedLetters {
         code
     }
 
-    /// Writes the fonts that were used as objects from `first` on; gives the name and the object of each.
+    /// Writes the used fonts as objects from `first` on; returns the name and the object of each.
     pub(super) fn write(&self, pdf: &mut Pdf, first: Ref) -> io::Result<Vec<(&'static str, Ref)>> {
         let mut next = first;
         let mut written = Vec::new();
@@ -266,7 +267,7 @@ impl Used {
         let [font, descendant, descriptor, characters, file] = std::array::from_fn(|_| next.bump());
         let subset = subsetter::subset(bytes, 0, &self.numbers).map_err(io::Error::other)?;
         let face = FontRef::new(bytes).map_err(io::Error::other)?;
-        // Readers take six letters and a plus for the name of a part of a font.
+        // Readers expect six letters and a plus before the name of a font subset.
         let part = format!("GDCMFG+{name}");
         let part = Name(part.as_bytes());
         pdf.type0_font(font)
@@ -321,12 +322,12 @@ impl Used {
             .ascent(metrics.ascent)
             .descent(metrics.descent)
             .cap_height(metrics.cap_height.unwrap_or(metrics.ascent))
-            // No reader uses it of a font that is in the file.
+            // No reader uses it for an embedded font.
             .stem_v(80.0)
             .font_file2(file);
     }
 
-    /// The character that each letter stands for.
+    /// Returns the character of each letter.
     fn characters(&self) -> Vec<u8> {
         let mut map = UnicodeCmap::<u16>::new(Name(b"Custom"), IDENTITY);
         for letter in &self.letters {
@@ -338,7 +339,7 @@ impl Used {
     }
 }
 
-/// Bytes packed as PDF takes them.
+/// Compresses bytes as PDF expects them.
 pub(super) fn packed(bytes: &[u8]) -> io::Result<Vec<u8>> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::best());
     encoder.write_all(bytes)?;

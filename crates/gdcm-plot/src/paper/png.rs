@@ -16,16 +16,16 @@ use crate::figure::Color;
 use crate::figure::drawing::{Area, Drawing, Shape, Stroke, Text};
 use crate::figure::layout::{FONTS, letters, width};
 
-/// Dots to the inch: what journals ask for.
+/// Dots per inch, as journals require.
 const DOTS_PER_INCH: f64 = 300.0;
-/// Dots to a point.
+/// Dots per point.
 const SCALE: f64 = DOTS_PER_INCH / 72.0;
 /// Inches in a metre.
 const INCHES_PER_METRE: f64 = 1.0 / 0.0254;
-/// How far a drawn circle may be from a true one \[pt\].
+/// Maximum deviation of a drawn circle from a true one \[pt\].
 const TOLERANCE: f64 = 0.01;
 
-/// Writes the drawing, 300 dots to the inch.
+/// Writes the drawing at 300 dots per inch.
 pub fn write_png(drawing: &Drawing, file: &mut dyn Write) -> io::Result<()> {
     let [width, height] = drawing
         .size
@@ -46,7 +46,7 @@ pub fn write_png(drawing: &Drawing, file: &mut dyn Write) -> io::Result<()> {
     writer.finish().map_err(unpacked)
 }
 
-/// So that a full disk is told as one.
+/// Unwraps the I/O error, so that a full disk is reported as such.
 fn unpacked(error: EncodingError) -> io::Error {
     match error {
         EncodingError::IoError(error) => error,
@@ -54,9 +54,9 @@ fn unpacked(error: EncodingError) -> io::Error {
     }
 }
 
-/// Red, green and blue of each dot, row by row.
+/// Returns red, green and blue of each dot, row by row.
 fn pixels(drawing: &Drawing, width: u16, height: u16) -> Vec<u8> {
-    // Without the instructions of one processor or another: the same dots everywhere.
+    // Without processor-specific instructions: the same dots everywhere.
     let settings = RenderSettings {
         level: Level::baseline(),
         num_threads: 0,
@@ -80,7 +80,7 @@ fn pixels(drawing: &Drawing, width: u16, height: u16) -> Vec<u8> {
     context.flush();
     let mut pixmap = Pixmap::new(width, height);
     context.render(&mut pixmap, &mut Resources::new());
-    // The ground is white throughout: nothing is transparent.
+    // The background is white throughout: nothing is transparent.
     pixmap
         .data_as_u8_slice()
         .chunks_exact(4)
@@ -178,7 +178,7 @@ fn write(context: &mut RenderContext, text: &Text, fonts: &[FontRef<'_>]) {
             .get(letter.font)
             .and_then(|font| font.outline_glyphs().get(GlyphId::from(letter.glyph)));
         if let Some(outline) = outline {
-            // An outline that is damaged is left out; those of the fonts here are not.
+            // A damaged outline is skipped; those of the fonts here are sound.
             let _ = outline.draw(
                 DrawSettings::unhinted(Size::new(1.0), LocationRef::default()),
                 &mut pen,
@@ -193,7 +193,7 @@ fn write(context: &mut RenderContext, text: &Text, fonts: &[FontRef<'_>]) {
 /// Collects outlines of letters side by side, y downwards.
 struct Pen {
     path: BezPath,
-    /// Where the letter begins.
+    /// Start of the letter.
     x: f64,
 }
 

@@ -1,4 +1,4 @@
-//! A drawing as SVG 1.1: lines as paths, letters as text. Units are points.
+//! A drawing as SVG 1.1: lines as paths, text as text. Units are points.
 
 use std::fmt::Write;
 
@@ -8,10 +8,10 @@ use crate::figure::Color;
 use crate::figure::drawing::{Anchor, Area, Drawing, PT_PER_MM, Shape, Stroke, Text};
 use crate::figure::layout::{FONTS, width};
 
-/// Fonts to take where a reader does not have ours, about as wide.
+/// Fallback fonts of similar width, for a viewer without ours.
 const OTHER_FONTS: &str = "Helvetica, Arial, sans-serif";
 
-/// The text of the file.
+/// Returns the text of the file.
 pub fn svg(drawing: &Drawing) -> String {
     let head = format!(
         "xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" {}",
@@ -20,8 +20,8 @@ pub fn svg(drawing: &Drawing) -> String {
     element(drawing, &head, "frame")
 }
 
-/// The drawing as a part of a page in HTML, which knows the element without a name space. `name` begins the names that it refers
-/// to by: no two of a page may share it.
+/// Returns the drawing as a part of an HTML page, which knows the element without a name space.
+/// `name` is the prefix of its internal references: it must be unique on the page.
 pub fn inline_svg(drawing: &Drawing, name: &str) -> String {
     let label = escaped(&sanitized(&drawing.title));
     element(
@@ -68,9 +68,9 @@ fn element(drawing: &Drawing, head: &str, name: &str) -> String {
 
 struct Svg<'a> {
     text: String,
-    /// What the names of areas begin with.
+    /// Prefix of the names of clip areas.
     name: &'a str,
-    /// How many areas have been clipped to: their numbers end their names.
+    /// Number of clip areas so far: their numbers end their names.
     clips: usize,
 }
 
@@ -148,7 +148,7 @@ impl Svg<'_> {
         } else {
             String::new()
         };
-        // As long as it was laid out, in whatever letters the reader has.
+        // As long as laid out, with any font of the viewer.
         let length = number(size_pt * width(words));
         let length = format!(" textLength=\"{length}\" lengthAdjust=\"spacingAndGlyphs\"");
         let color = hex(*color);
@@ -167,7 +167,7 @@ fn path(points: &[[f64; 2]], closed: bool) -> String {
             1 => "L",
             _ => " ",
         };
-        // A string takes whatever is written.
+        // Writing to a string cannot fail.
         let _ = write!(text, "{command}{} {}", number(*x), number(*y));
     }
     if closed {
@@ -203,7 +203,8 @@ fn hex(color: Color) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// A length to a hundredth of a point, which no printer shows; without zeros at its end, and without a minus before nothing.
+/// Formats a length to a hundredth of a point, below any printer's resolution; without trailing
+/// zeros, and without a minus before zero.
 fn number(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -214,7 +215,7 @@ fn number(value: f64) -> String {
     }
 }
 
-/// Words as XML takes them; what XML 1.0 has no place for is left out.
+/// Escapes text for XML; characters that XML 1.0 cannot represent are dropped.
 pub fn escaped(words: &str) -> String {
     let mut text = String::with_capacity(words.len());
     for character in words.chars() {

@@ -25,54 +25,55 @@ use super::lead_compensation::{LeadCompensated, LeadOffer};
 use super::remark::Remark;
 use super::uncertainty::Uncertainty;
 
-/// J of every response of the nominal model of a condition before and after the scheduled correction (M12), or in words why the
-/// condition is left out.
+/// J of every response of a condition's nominal model before and after the scheduled correction
+/// (M12), or the reason in words why the condition is left out.
 pub type Assessed = Result<PairTable<Option<CostChange>>, String>;
 
-/// Everything the analysis says of a study.
+/// Complete result of a study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
-    /// The study that was analysed.
     pub study: Study,
     /// Frequencies of comparison \[rad/s\].
     pub omega: Arc<[f64]>,
-    /// Result of each condition.
     pub conditions: BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>,
-    /// The couplings that every physics model has gone through, or why there are none; nothing where they are not asked for (M16).
+    /// Couplings put on every physics model, or why there are none; `None` where none are requested
+    /// (M16).
     pub couplings: Option<Result<Arc<FittedCouplings>, CouplingError>>,
-    /// What the couplings are worth and what they cost, once that was asked for ([`super::couplings_assessment::CouplingsJob`]).
+    /// Benefit and cost of the couplings, once assessed
+    /// ([`super::couplings_assessment::CouplingsJob`]).
     pub coupling_assessment: Option<Arc<CouplingsAssessment>>,
-    /// Channels that one side seems to have in another sign or unit: what is said first.
+    /// Channels with an apparent sign or unit difference between the two sides; reported first.
     pub doubts: Vec<ConventionDoubt>,
-    /// The schedule of the chosen conditions.
+    /// Schedule of the chosen conditions.
     pub schedule: Result<Schedule, ScheduleError>,
-    /// Assessment of each condition.
     pub assessment: BTreeMap<ConditionId, Assessed>,
-    /// How sure its figures are, once that has been asked for ([`Engine::uncertainty`](super::engine::Engine::uncertainty)).
+    /// Uncertainty of the figures, once computed
+    /// ([`Engine::uncertainty`](super::engine::Engine::uncertainty)).
     pub uncertainty: Option<Arc<Uncertainty>>,
 }
 
 impl Analysis {
-    /// Result of one condition, where there is one.
+    /// Returns the result of one condition, where there is one.
     pub fn condition(&self, id: ConditionId) -> Option<&ConditionAnalysis> {
         self.conditions.get(&id)?.as_ref().ok()
     }
 
-    /// The same, or in words why there is none.
+    /// Returns the result of one condition, or the reason in words why there is none.
     pub(super) fn result(&self, id: ConditionId) -> Result<&ConditionAnalysis, String> {
         let outcome = self.conditions.get(&id).ok_or("it was not analysed")?;
         outcome.as_ref().map_err(ToString::to_string)
     }
 
-    /// The couplings that every physics model has gone through, where there are any.
+    /// Returns the couplings put on every physics model, where there are any.
     pub fn fitted_couplings(&self) -> Option<&Arc<FittedCouplings>> {
         self.couplings.as_ref()?.as_ref().ok()
     }
 
-    /// The couplings of a study that is to have some; none where it asks for none.
+    /// Returns the couplings that the study requests; `None` where it requests none.
     ///
     /// # Errors
-    /// Why there are none, in words that name the channels: what would leave without them is not what was asked for.
+    /// The reason, naming the channels, why the requested couplings are unavailable: an export
+    /// without them would not match the request.
     pub fn asked_couplings(&self) -> Result<Option<&Arc<FittedCouplings>>, String> {
         let words = |error: &CouplingError| error.words(&self.study.dataset.names_of_channels().0);
         self.couplings
@@ -81,7 +82,8 @@ impl Analysis {
             .transpose()
     }
 
-    /// What has to be said of the couplings: why there are none, or what they mean, are worth and cost, as far as that was asked for.
+    /// Returns the remarks on the couplings: why there are none, or their meaning, benefit and
+    /// cost, as far as requested.
     pub fn coupling_remarks(&self) -> Vec<Remark> {
         match (self.asked_couplings(), &self.coupling_assessment) {
             (Err(why), _) => vec![no_couplings(&why)],
@@ -90,7 +92,8 @@ impl Analysis {
         }
     }
 
-    /// The conditions that the schedule is made of, in the dataset's order: the chosen ones that have a result.
+    /// Returns the conditions in the schedule, in the dataset's order: the chosen conditions with a
+    /// result.
     pub fn scheduled(&self) -> Vec<ConditionId> {
         self.study
             .dataset
@@ -99,10 +102,10 @@ impl Analysis {
             .collect()
     }
 
-    /// The schedule of the chosen conditions without one of them.
+    /// Fits the schedule of the chosen conditions without one of them.
     ///
     /// # Errors
-    /// [`ScheduleError`] where there is none.
+    /// [`ScheduleError`] where these conditions have no schedule.
     pub fn schedule_without(&self, left_out: ConditionId) -> Result<Schedule, ScheduleError> {
         let mut others = self.study.clone();
         if let Some(choice) = others.choices.get_mut(&left_out) {
@@ -112,8 +115,8 @@ impl Analysis {
         Schedule::of(&scheduled_points(&others, &self.conditions), settings)
     }
 
-    /// What speaks for each form of the schedule, its lists in the order of [`Analysis::scheduled`] (M11). Some hundred small
-    /// least squares problems.
+    /// Compares the forms of the schedule, with lists in the order of [`Analysis::scheduled`]
+    /// (M11). Solves some hundred small least squares problems.
     ///
     /// # Errors
     /// [`ScheduleError`] where there is no schedule.
@@ -124,7 +127,8 @@ impl Analysis {
         )
     }
 
-    /// What speaks for each degree of the scheduled signed delays; none where leads are not asked for (M15.5).
+    /// Compares the degrees of the scheduled signed delays; `None` where leads are not requested
+    /// (M15.5).
     pub fn compare_lead_degrees(&self) -> Vec<LeadDegreeFit> {
         compare_lead_degrees(
             &scheduled_points(&self.study, &self.conditions),
@@ -133,70 +137,71 @@ impl Analysis {
     }
 }
 
-/// Everything the analysis says of one condition.
+/// Result of one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionAnalysis {
-    /// The condition that was analysed: it names the models that the figures below are in the order of.
+    /// The analysed condition; its models define the order of the figures below.
     pub condition: Arc<Condition>,
     /// Distances and discontinuity ratios of the bundles.
     pub figures: Arc<BundleMetrics>,
-    /// What the couplings have changed; none without couplings.
+    /// Changes due to the couplings; `None` without couplings.
     pub coupled: Option<CoupledCondition>,
-    /// Representatives, G and D, of physics models with couplings where there are any (M16.3).
+    /// Representatives, G and D, with the couplings on the physics models where there are any
+    /// (M16.3).
     pub comparison: Arc<Comparison>,
-    /// What the gains were asked to do.
+    /// Problem of the gains.
     pub gain_problem: Arc<Problem>,
-    /// What the delays, or the signed delays, were asked to do.
+    /// Problem of the delays, or of the signed delays.
     pub delay_problem: Arc<Problem>,
     /// Optimal gains, eq. (7).
     pub gains: Arc<Solution>,
     /// Optimal delays, eq. (11), or signed delays, M15.4.
     pub delays: Arc<Solution>,
-    /// What the leads leave, where leads are asked for (M15.5).
+    /// Difference left after the leads, where leads are requested (M15.5).
     pub compensated: Option<Arc<LeadCompensated>>,
-    /// What leads would buy, where all held responses want lead and leads are not asked for.
+    /// Benefit of leads, where all constrained responses want lead and leads are not requested.
     pub offer: Option<LeadOffer>,
-    /// Both as one correction.
+    /// Gains and delays as one correction.
     pub correction: ChannelCorrection,
     /// J of the physics representative before and after this correction.
     pub cost: Arc<PairTable<Option<CostChange>>>,
-    /// Channels that seem to have another sign or unit here.
+    /// Channels with an apparent sign or unit difference in this condition.
     pub doubts: Vec<ConventionDoubt>,
-    /// What the engineer has to know about the result.
     pub cautions: Vec<Caution>,
 }
 
 impl ConditionAnalysis {
-    /// The comparison of the models as they are: before the couplings, where there are any.
+    /// Returns the comparison of the models before the couplings, where there are any.
     pub fn before_couplings(&self) -> &Comparison {
         self.coupled
             .as_ref()
             .map_or(&self.comparison, |coupled| &coupled.before)
     }
 
-    /// Responses held: the constrained ones that are defined.
+    /// Returns the constrained responses that are defined.
     pub fn held(&self) -> &PairTable<bool> {
         &self.gain_problem.constrained
     }
 
-    /// G of a response as the gains were asked for it: of what the leads leave, where there are any.
+    /// Returns the G used in the gain problem: G after the leads, where there are any.
     pub fn wanted_gain(&self, pair: Pair) -> Option<f64> {
         self.gain_problem.delta[pair]
     }
 
-    /// D of a response as the delays were asked for it \[s\]: of eq. (9), or of M15.2.
+    /// Returns the D used in the delay problem \[s\]: of eq. (9), or of M15.2.
     pub fn wanted_delay_s(&self, pair: Pair) -> Option<f64> {
         self.delay_problem.delta[pair]
     }
 
-    /// Whether the delays were asked for the D of M15.2, which leads always are, and not for that of eq. (9).
+    /// Returns whether the delays are fitted to the D of M15.2 (always so for leads) instead of the
+    /// D of eq. (9).
     pub fn asks_band_delays(&self) -> bool {
         let asked = &self.delay_problem.delta;
         let delta = &self.comparison.delta;
         *asked == delta.band_delay_s && *asked != delta.delay_s
     }
 
-    /// The value of which [`Self::wanted_delay_s`] is one: its bar stands beside it (M13).
+    /// Returns the scalar behind [`Self::wanted_delay_s`], to look up its error bar (M13).
     pub fn wanted_delay(&self, pair: Pair) -> Scalar {
         let is_median = self.delay_problem.delta[pair] == self.comparison.delta.delay_s[pair];
         if is_median {
@@ -206,12 +211,12 @@ impl ConditionAnalysis {
         }
     }
 
-    /// Bounds of every channel gain.
+    /// Returns the bounds of every channel gain.
     pub fn gain_bounds(&self) -> GainBounds {
         self.gain_problem.bounds
     }
 
-    /// Least and greatest delay of every channel \[s\]; leads are negative (M15.4).
+    /// Returns the least and greatest delay of every channel \[s\]; leads are negative (M15.4).
     pub fn delay_bounds_s(&self) -> [f64; 2] {
         // Adding zero turns minus zero into zero.
         [
@@ -220,12 +225,12 @@ impl ConditionAnalysis {
         ]
     }
 
-    /// Upper bound of every channel delay \[s\].
+    /// Returns the upper bound of every channel delay \[s\].
     pub fn delay_upper_s(&self) -> f64 {
         self.delay_problem.bounds.upper
     }
 
-    /// Names of the physics models suggested as outliers, whatever is rejected.
+    /// Returns the names of the physics models suggested as outliers, including rejected models.
     pub fn suggested(&self) -> Vec<String> {
         let suggested = self
             .figures
@@ -240,27 +245,28 @@ impl ConditionAnalysis {
             .collect()
     }
 
-    /// The representative of a bundle, with the scores of its models in the order of [`ConditionAnalysis::condition`].
+    /// Returns the representative of a bundle, with the scores of its models in the order of
+    /// [`ConditionAnalysis::condition`].
     pub fn representative(&self, kind: BundleKind) -> &Representative {
         kind.pick(&self.comparison.physics, &self.comparison.identified)
     }
 
-    /// The model that represents a bundle.
+    /// Returns the model that represents a bundle.
     pub fn representative_model(&self, kind: BundleKind) -> &Model {
         &self.condition.bundle(kind)[self.representative(kind).model]
     }
 
-    /// Its name.
+    /// Returns the name of the model that represents a bundle.
     pub fn representative_name(&self, kind: BundleKind) -> &str {
         &self.representative_model(kind).name
     }
 
-    /// Mean distance of a model to the other kept ones, where it has one.
+    /// Returns the mean distance of a model to the other kept models, where it has one.
     pub fn score(&self, kind: BundleKind, name: &str) -> Option<f64> {
         self.representative(kind).scores[self.condition.position(kind, name)?]
     }
 
-    /// Discontinuity ratio of a physics model, where it has one.
+    /// Returns the discontinuity ratio of a physics model, where it has one.
     pub fn discontinuity_ratio(&self, name: &str) -> Option<f64> {
         let ratios = &self.figures.discontinuity.as_ref().ok()?.ratios;
         ratios[self.condition.position(BundleKind::Physics, name)?]
@@ -270,44 +276,36 @@ impl ConditionAnalysis {
 /// Why a condition has no result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConditionFailure {
-    /// The condition has no identified model.
     #[error(
         "no identified models yet, so there is no reference to compare the physics models with; identify them from the condition's \
          flight records (gdcm identify RECORDS --into DATASET, or Identify from records in the window), or add identified models"
     )]
     NoReference,
-    /// The two representatives share no response that both have over the whole band.
+    /// The two representatives have no response in common that is defined over the whole band.
     #[error(
         "no response of \"{physics}\" can be compared with \"{identified}\" over the whole band: each is zero, not finite or out of \
          the range of gains somewhere; choose another representative, or another band{because}"
     )]
     NothingToCompare {
-        /// Name of the physics representative.
         physics: String,
-        /// Name of the identified representative.
         identified: String,
-        /// What is known of the models' responses, each after "; ".
+        /// Known facts about the models' responses, each after "; ".
         because: String,
     },
-    /// Every model kept is set aside (M5b).
+    /// Every kept model is set aside (M5b).
     #[error(
         "no {bundle} model is left to compare: each one kept lacks a measuring response that another model of the bundle \
          has; restore one that has them all, or narrow the band"
     )]
-    AllSetAside {
-        /// Which.
-        bundle: BundleKind,
-    },
-    /// The gains could not be computed.
+    AllSetAside { bundle: BundleKind },
     #[error("the gains could not be computed: {0}")]
     Gains(ProblemError),
-    /// The delays could not be computed.
     #[error("the delays could not be computed: {0}")]
     Delays(ProblemError),
 }
 
 impl ConditionFailure {
-    /// Stable name of the reason, for programs and tests.
+    /// Returns the stable code of the reason, for programs and tests.
     pub fn code(&self) -> &'static str {
         match self {
             Self::NoReference => "no-reference",

@@ -1,5 +1,5 @@
-//! What a correction is worth, response by response and condition by condition, for the model and the correction that are asked
-//! for (M12, Figures 8 to 19).
+//! Benefit of a correction, response by response and condition by condition, for the chosen model
+//! and correction (M12, Figures 8 to 19).
 
 use std::sync::Arc;
 
@@ -17,17 +17,17 @@ use super::execution::in_turn;
 use super::job::{Job, Shared};
 use super::settings::Settings;
 
-/// Which physics model is assessed.
+/// The physics model that is assessed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AssessedModel {
-    /// The one at the condition's own trim (the paper).
+    /// The model at the condition's own trim (the paper).
     #[default]
     Nominal,
-    /// The one that represents its bundle.
+    /// The model that represents its bundle.
     Representative,
 }
 
-/// Which correction is assessed.
+/// The correction that is assessed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum AssessedCorrection {
     /// The schedule at the condition's airspeed (the paper).
@@ -35,17 +35,18 @@ pub enum AssessedCorrection {
     Scheduled,
     /// The schedule without the lead filters of its signed delays (M15).
     ScheduledWithoutLeads,
-    /// The schedule of the other conditions at the condition's airspeed: what it foresees of a flight that it has not seen.
+    /// The schedule of the other conditions at the condition's airspeed: a prediction for a flight
+    /// not used in the fit.
     ScheduleOfOthers,
     /// The condition's own optimum.
     Own,
 }
 
 impl AssessedCorrection {
-    /// The correction of a condition.
+    /// Returns the correction of a condition.
     ///
     /// # Errors
-    /// [`ScheduleError`] where a schedule is asked for and there is none.
+    /// [`ScheduleError`] where the requested schedule does not exist.
     pub fn of(
         self,
         analysis: &Analysis,
@@ -68,7 +69,7 @@ impl AssessedCorrection {
         }
     }
 
-    /// Where it comes from, in words.
+    /// Returns the origin of the correction in words.
     pub(super) fn source(self, airspeed_kt: f64) -> String {
         let at = format!("at {} kt", number(airspeed_kt));
         match self {
@@ -80,19 +81,17 @@ impl AssessedCorrection {
     }
 }
 
-/// What is assessed, and how.
+/// Choices of an assessment: model, correction and average.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct AssessmentChoice {
-    /// Which physics model.
     pub model: AssessedModel,
-    /// Under which correction.
     pub correction: AssessedCorrection,
-    /// How squared errors are averaged in J.
+    /// Average of squared errors over frequency in J.
     pub average: CostAverage,
 }
 
 impl AssessmentChoice {
-    /// What the paper assesses: the nominal model under the schedule.
+    /// The paper's assessment: the nominal model under the schedule.
     pub(super) fn of_paper(settings: &Settings) -> Self {
         let model = AssessedModel::Nominal;
         let correction = AssessedCorrection::Scheduled;
@@ -104,54 +103,48 @@ impl AssessmentChoice {
     }
 }
 
-/// One condition's part of an assessment.
+/// Assessment of one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessedCondition {
-    /// The condition.
     pub condition: ConditionId,
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// Name of the physics model.
     pub model: String,
     /// J of each response before and after, against the identified representative.
     pub changes: PairTable<Option<CostChange>>,
-    /// Why a response has none.
+    /// Why a response has no J.
     pub missing: Vec<(Pair, String)>,
 }
 
-/// A condition that an assessment leaves out, and why.
+/// A condition left out of an assessment, and why.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftOut {
-    /// The condition.
     pub condition: ConditionId,
-    /// The reason in words.
     pub why: String,
 }
 
 /// J before and after of every response of every condition (M12).
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentTable {
-    /// What is assessed.
     pub choice: AssessmentChoice,
-    /// The conditions assessed, in the dataset's order.
     pub conditions: Vec<AssessedCondition>,
-    /// Those left out.
     pub left_out: Vec<LeftOut>,
 }
 
-/// An assessment in a sentence: how many responses come closer, and which goes farthest away.
+/// Summary of an assessment: how many responses come closer, and which moves farthest away.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentSummary {
-    /// Responses with a J less than before.
+    /// Number of responses whose J decreases.
     pub better: usize,
-    /// Responses compared, each in each condition.
+    /// Number of responses compared, counted in each condition.
     pub compared: usize,
-    /// The one with the greatest change of J, and the change.
+    /// The response with the greatest change of J, and the change.
     pub worst: Option<(ConditionId, Pair, f64)>,
 }
 
 impl AssessmentTable {
-    /// The assessment of an analysis, from the mismatches that it keeps: two averages over frequency for each response.
+    /// Assesses an analysis from its stored mismatches: two averages over frequency for each
+    /// response.
     pub fn of(analysis: &Analysis, choice: AssessmentChoice) -> Self {
         let mut table = Self {
             choice,
@@ -173,7 +166,7 @@ impl AssessmentTable {
         }
     }
 
-    /// J before and after of one response in one condition.
+    /// Returns J before and after of one response in one condition.
     pub fn change(&self, condition: ConditionId, pair: Pair) -> Option<CostChange> {
         self.conditions
             .iter()
@@ -181,7 +174,7 @@ impl AssessmentTable {
             .changes[pair]
     }
 
-    /// The assessment of the marked responses in a sentence.
+    /// Summarises the assessment of the marked responses.
     pub fn summary(&self, marked: &PairTable<bool>) -> AssessmentSummary {
         let mut summary = AssessmentSummary {
             better: 0,
@@ -205,7 +198,7 @@ impl AssessmentTable {
 }
 
 impl AssessmentSummary {
-    /// The sentence: "better in 41 of 50, worst PED → NY in condition 5: +12.3".
+    /// Writes the sentence: "better in 41 of 50, worst PED → NY in condition 5: +12.3".
     pub fn words(&self, dataset: &Dataset) -> String {
         let Some((condition, pair, change)) = self.worst else {
             return "nothing to assess".to_owned();
@@ -219,8 +212,9 @@ impl AssessmentSummary {
     }
 }
 
-/// How the schedule fares on the conditions that are held out, beside those it is made of: "held out (3, 8): better in 9 of 10 on-axis
-/// responses, mean ΔJ −12.3; the others: better in 40 of 45, mean ΔJ −15.0". None where none is held out.
+/// Compares the schedule on the held-out conditions with the conditions in its fit: "held out (3,
+/// 8): better in 9 of 10 on-axis responses, mean ΔJ −12.3; the others: better in 40 of 45, mean ΔJ
+/// −15.0". `None` where no condition is held out.
 pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option<String> {
     let is_held_out = |id: ConditionId| analysis.study.choice(id).held_out;
     let held_out = analysis.study.dataset.ids().filter(|id| is_held_out(*id));
@@ -260,7 +254,7 @@ pub fn held_out_verdict(analysis: &Analysis, choice: AssessmentChoice) -> Option
     ))
 }
 
-/// One condition's part, or why it has none.
+/// Assesses one condition, or returns why it is left out.
 pub(super) fn assessed(
     analysis: &Analysis,
     id: ConditionId,
@@ -354,12 +348,10 @@ fn missing(
     without.map(|pair| (pair, why(pair))).collect()
 }
 
-/// An assessment that may take longer than a frame: of hundreds of conditions.
+/// Job for an assessment of hundreds of conditions, which may take longer than a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AssessmentJob {
-    /// The analysis that is assessed.
     pub analysis: Shared<Analysis>,
-    /// What is assessed, and how.
     pub choice: AssessmentChoice,
 }
 

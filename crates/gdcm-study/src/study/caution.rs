@@ -1,4 +1,4 @@
-//! What the engineer has to know about a result that could be had all the same.
+//! Cautions about results that are available nevertheless.
 
 use std::fmt;
 use std::sync::Arc;
@@ -12,103 +12,81 @@ use gdcm_model::units::number;
 
 use super::BundleChoice;
 
-/// A caution that travels with a result.
+/// A caution attached to a result.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Caution {
-    /// A held response has no G and no D in this condition, and is not held there.
-    HeldButUndefined {
-        /// The response.
-        pair: Pair,
-        /// Why it has none.
-        why: Undefined,
-    },
-    /// No outliers could be suggested.
+    /// A constrained response has no G and no D in this condition, and is not constrained there.
+    HeldButUndefined { pair: Pair, why: Undefined },
+    /// No outliers can be suggested.
     NoSuggestions(DiscontinuityError),
-    /// A model takes no part in distances, suggestions and representatives (M5b).
+    /// A model is excluded from distances, suggestions and representatives (M5b).
     SetAside {
-        /// Which model.
         model: BundleModel,
         /// The measuring responses that it lacks and another model of its bundle has.
         lacks: Vec<Pair>,
-        /// Those of them that are zero wherever it has values.
+        /// The missing responses that are zero wherever they have values.
         zero: Vec<Pair>,
-        /// Why it lacks others that are not finite; the rest is zero somewhere in the band.
+        /// Why other responses are not finite; the rest is zero somewhere in the band.
         why: Option<NotFinite>,
-        /// Whether it was pinned, in vain.
+        /// Whether it was pinned, without effect.
         pinned: bool,
     },
-    /// A model has responses that are not finite somewhere in the band.
     NotFinite {
-        /// Which model.
         model: BundleModel,
-        /// The responses.
         responses: Vec<Pair>,
-        /// Why they are not.
         why: NotFinite,
     },
-    /// A measured model has responses of which every measured value is zero: they were not measured, or not found by their names.
+    /// A measured model has responses that are zero at every measured frequency: not measured, or
+    /// not found by name.
     MissingResponses {
-        /// Which model.
         model: BundleModel,
-        /// The responses.
         responses: Vec<Pair>,
     },
-    /// Two models differ in some responses by a factor that is no gain: beyond 1e50 or 1e-50 (M6).
+    /// Two models differ in some responses by a factor that cannot be a gain: beyond 1e50 or 1e-50
+    /// (M6).
     GainsOutOfRange {
-        /// The physics model.
         physics: String,
-        /// The identified model.
         identified: String,
-        /// The responses.
         responses: Vec<GainOutOfRange>,
     },
-    /// Responses of a representative that are treated as structurally zero (M6a).
+    /// Responses of a representative treated as structurally zero (M6a).
     NumericallyNothing {
-        /// Which model.
         model: BundleModel,
-        /// The responses.
         responses: Vec<Pair>,
     },
-    /// Frequencies of the identified representative's responses count for nothing, because it was not measured there (M4a).
+    /// Frequencies of the identified representative's responses have no weight, because it was not
+    /// measured there (M4a).
     NotCoherent {
-        /// Least coherence that counts.
+        /// Least coherence of a frequency that counts.
         threshold: f64,
-        /// Number of responses that coherence weighs.
+        /// Number of responses weighted by coherence.
         weighed: usize,
-        /// How many frequencies of which response are left out, the most first.
+        /// Number of omitted frequencies of each response, in descending order.
         left_out: Vec<(Pair, usize)>,
-        /// Number of frequencies in the band.
         points: usize,
     },
-    /// The identified representative is measured with coherence, which is switched off (M4a).
+    /// The identified representative has measured coherence, and weighting by coherence is switched
+    /// off (M4a).
     CoherenceNotUsed,
-    /// The channels of models were taken by their position, because their files have no names for them.
+    /// The channels of models were assigned by position, because their files do not name them.
     ChannelsByPosition {
-        /// Which bundle.
         bundle: BundleKind,
-        /// The models' names.
         models: Vec<String>,
     },
-    /// A response is fitted whose G is far from one.
-    UnusualGain {
-        /// The response.
-        pair: Pair,
-        /// Its G.
-        gain: f64,
-    },
+    /// The objective fits a response whose G is far from one.
+    UnusualGain { pair: Pair, gain: f64 },
 }
 
-/// A response with a gain, flight over physics, that cannot be computed with.
+/// A response whose gain, flight over physics, is out of the computable range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GainOutOfRange {
-    /// The response.
     pub pair: Pair,
     /// The gain farthest from one within the band, as the nearest power of ten.
     pub power_of_ten: i32,
 }
 
 impl GainOutOfRange {
-    /// Those of two models.
+    /// Returns the out-of-range gains of two models.
     pub(super) fn of_models(physics: &PolarResponse, identified: &PolarResponse) -> Vec<Self> {
         physics
             .curves()
@@ -117,7 +95,8 @@ impl GainOutOfRange {
             .collect()
     }
 
-    /// That of one response; none where one of the models lacks it, or its gain can be computed with.
+    /// Returns the out-of-range gain of one response; `None` where a model lacks it, or its gain is
+    /// in range.
     pub(super) fn of_pair(
         physics: &PolarResponse,
         identified: &PolarResponse,
@@ -141,15 +120,13 @@ impl GainOutOfRange {
     }
 }
 
-/// The range of gains that are computed with, in words.
+/// Returns the computable range of gains in words.
 const GAIN_RANGE: &str = "gains are computed with from 1e-50 to 1e50";
 
 /// A model by its bundle and its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BundleModel {
-    /// Which bundle.
     pub bundle: BundleKind,
-    /// The model's name.
     pub name: String,
 }
 
@@ -171,24 +148,25 @@ impl fmt::Display for BundleModel {
 /// Why a response has no G and no D.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Undefined {
-    /// It is zero over the whole band in the representative of this bundle.
+    /// Zero over the whole band in the representative of this bundle.
     Zero(BundleKind),
-    /// It is zero at some frequency of the band in the representative of this bundle.
+    /// Zero at some frequency of the band in the representative of this bundle.
     ZeroSomewhere(BundleKind),
-    /// It is not finite somewhere in the band in the representative of this bundle.
+    /// Not finite somewhere in the band in the representative of this bundle.
     NotFinite(BundleKind),
     /// The gain, flight over physics, is about this power of ten: beyond 1e50 or 1e-50.
     GainOutOfRange(i32),
-    /// It is numerically nothing in the representative of this bundle (M6a).
+    /// Numerically zero in the representative of this bundle (M6a).
     NumericallyNothing(BundleKind),
-    /// No frequency of the identified representative's response is coherent enough, or all lie outside its valid band (M4a).
+    /// No frequency of the identified representative's response is coherent enough, or all lie
+    /// outside its valid band (M4a).
     NotCoherent,
-    /// The identified representative is measured, and no file of it gives this response.
+    /// The identified representative is measured, and none of its files contains this response.
     NotMeasured,
 }
 
 impl Undefined {
-    /// Its stable code.
+    /// Returns the stable code.
     pub fn code(self) -> &'static str {
         match self {
             Self::Zero(_) => "response-zero",
@@ -203,7 +181,7 @@ impl Undefined {
 }
 
 impl fmt::Display for Undefined {
-    /// The reason in words that begin with "its response".
+    /// Returns the reason in words that begin with "its response".
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Undefined::Zero(bundle) => {
@@ -233,7 +211,7 @@ impl fmt::Display for Undefined {
     }
 }
 
-/// What "numerically nothing" means (M6a).
+/// Definition of "numerically nothing" (M6a).
 const NOTHING: &str =
     "over the band less than 1e-6 of the greatest response of its output and of its input";
 
@@ -242,18 +220,18 @@ const NOTHING: &str =
 pub enum NotFinite {
     /// An entry of its matrices is too large to compute with.
     Entry(LargeEntry),
-    /// It is measured over a part of the band only.
+    /// The model is measured over a part of the band only.
     Measured {
         /// First measured frequency \[rad/s\].
         min: f64,
         /// Last measured frequency \[rad/s\].
         max: f64,
     },
-    /// It is of discrete time, and the band goes on to where that has no response (M2a).
+    /// The model is discrete-time, and the band extends beyond its Nyquist frequency (M2a).
     Sampled {
         /// Sample time \[s\].
         sample_time_s: f64,
-        /// Where its response ends, `pi / T` \[rad/s\].
+        /// Upper end of its response, `pi / T` \[rad/s\].
         nyquist_rad_s: f64,
     },
     /// A pole on the imaginary axis, or an overflow.
@@ -261,7 +239,8 @@ pub enum NotFinite {
 }
 
 impl NotFinite {
-    /// Why a model of these dynamics has a response that is not finite in a band that ends at `top` \[rad/s\].
+    /// Returns why a model with these dynamics has a response that is not finite in a band that
+    /// ends at `top` \[rad/s\].
     fn of(dynamics: &Dynamics, top: f64) -> Self {
         match dynamics {
             Dynamics::StateSpace(model) => {
@@ -294,7 +273,7 @@ impl fmt::Display for NotFinite {
         match self {
             NotFinite::Entry(entry) => write!(formatter, "{entry}: correct the file, or reject the model"),
             NotFinite::Measured { min, max } => {
-                // Six decimals at most: what is lost is no reason to look for.
+                // Six decimals suffice in a message.
                 let round = |omega: f64| (omega * 1e6).round() / 1e6;
                 let min = round(*min);
                 let max = round(*max);
@@ -314,16 +293,16 @@ impl fmt::Display for NotFinite {
     }
 }
 
-/// G outside these is unusual: a change of units, a sign of a response that means nothing.
+/// Range of usual G; beyond it, suspect a change of units or the sign of a meaningless response.
 const USUAL_GAINS: std::ops::RangeInclusive<f64> = 0.1..=10.0;
 
 impl Caution {
-    /// The caution of a G that is fitted, if it is one.
+    /// Returns the caution about a fitted G outside the usual range, if it is.
     pub(super) fn of_gain(pair: Pair, gain: f64) -> Option<Self> {
         (!USUAL_GAINS.contains(&gain)).then_some(Caution::UnusualGain { pair, gain })
     }
 
-    /// Its stable code.
+    /// Returns the stable code.
     pub fn code(&self) -> &'static str {
         match self {
             Caution::HeldButUndefined { .. } => "held-but-undefined",
@@ -340,12 +319,13 @@ impl Caution {
         }
     }
 
-    /// Whether it says that a model is set aside.
+    /// Returns whether the caution reports a model set aside.
     pub fn is_set_aside(&self, bundle: BundleKind, name: &str) -> bool {
         matches!(self, Caution::SetAside { model, .. } if model.bundle == bundle && model.name == name)
     }
 
-    /// The caution of the kept models of a bundle whose channels were taken by their position, where there are some.
+    /// Returns the caution about kept models of a bundle whose channels were assigned by position,
+    /// if any.
     pub(super) fn of_positions(
         condition: &Condition,
         choice: &BundleChoice,
@@ -368,7 +348,7 @@ impl Caution {
         Some(Caution::ChannelsByPosition { bundle, models })
     }
 
-    /// The response that the engineer may want to ignore in the objective.
+    /// Returns the response to consider ignoring in the objective.
     pub fn offers_to_ignore(&self) -> Option<Pair> {
         match self {
             Caution::UnusualGain { pair, .. } => Some(*pair),
@@ -376,7 +356,7 @@ impl Caution {
         }
     }
 
-    /// The caution in words; `pair_name` names a response.
+    /// Returns the caution in words; `pair_name` names a response.
     pub fn words(&self, pair_name: impl Fn(Pair) -> String) -> String {
         let names = |pairs: &[Pair]| {
             pairs
@@ -446,9 +426,9 @@ impl Caution {
     }
 }
 
-/// "nominal, roll+5, roll-5 and 6 more".
+/// Joins names: "nominal, roll+5, roll-5 and 6 more".
 fn few(names: &[String]) -> String {
-    /// Names in full.
+    /// Number of names listed in full.
     const NAMED: usize = 3;
     let listed = names[..names.len().min(NAMED)].join(", ");
     match names.len().saturating_sub(NAMED) {
@@ -457,9 +437,9 @@ fn few(names: &[String]) -> String {
     }
 }
 
-/// "31 of PED → P, 12 of COL → Q, and some of 5 more responses".
+/// Joins counts: "31 of PED → P, 12 of COL → Q, and some of 5 more responses".
 fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> String) -> String {
-    /// Responses named.
+    /// Number of responses listed by name.
     const NAMED: usize = 3;
     let named = left_out
         .iter()
@@ -470,7 +450,7 @@ fn left_out_words(left_out: &[(Pair, usize)], pair_name: &impl Fn(Pair) -> Strin
     named.chain(more).collect::<Vec<_>>().join(", ")
 }
 
-/// Three significant digits.
+/// Formats with three significant digits.
 fn short(gain: f64) -> String {
     if (1e-3..1e4).contains(&gain) {
         format!("{gain:.3}")
@@ -479,8 +459,9 @@ fn short(gain: f64) -> String {
     }
 }
 
-/// What the kept models of a bundle lack in a band that ends at `top` \[rad/s\]: those set aside, those that have responses which are
-/// not finite, and measured ones of which responses are missing.
+/// Returns the cautions about the kept models of a bundle in a band that ends at `top` \[rad/s\]:
+/// models set aside, models with responses that are not finite, and measured models with missing
+/// responses.
 pub(super) fn of_models(
     condition: &Condition,
     choice: &BundleChoice,
@@ -497,7 +478,8 @@ pub(super) fn of_models(
         }
         let model = BundleModel::of(condition, bundle, index);
         let zero = response.zero_where_finite();
-        // What is zero wherever it has values is not there: a wider measurement would not bring it.
+        // A response that is zero wherever it has values is absent: a wider measurement would not
+        // add it.
         let mut not_finite = response.not_finite();
         not_finite.retain(|pair| !zero.contains(pair));
         let why = NotFinite::of(dynamics, top);

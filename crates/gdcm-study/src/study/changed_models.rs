@@ -1,6 +1,6 @@
-//! Models of a study that are other than those of its dataset's file: identified models taken into a condition in their place, and
-//! channels whose models are turned, because one side counts them positive the other way round. They are changed where the study takes
-//! them, so that nothing else has to know of it.
+//! Models of a study that differ from those in its dataset's file: identified models adopted into a
+//! condition, and channels with reversed sign. The study applies the changes when it adopts the
+//! models, so that no other code depends on them.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -20,10 +20,11 @@ use gdcm_sysid::identification::Identification;
 use super::edit::EditRefusal;
 use super::{BundleChoice, Study};
 
-/// Which models of an identification are taken.
+/// Selection of the models of an identification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OfferedModels {
-    /// The refined model, its neighbours in order, and the models without each record (M14, section 5).
+    /// The refined model, its neighbours in order, and the models without each record (M14, section
+    /// 5).
     pub refined: bool,
     /// CT-PBSID without refinement.
     pub unrefined: bool,
@@ -32,13 +33,13 @@ pub struct OfferedModels {
 }
 
 impl OfferedModels {
-    /// The bundle that M14 gives to M5.
+    /// The bundle that M14 passes to M5.
     pub const REFINED: Self = Self {
         refined: true,
         unrefined: false,
         measured: false,
     };
-    /// The same, and CT-PBSID without refinement.
+    /// The bundle that M14 passes to M5, and CT-PBSID without refinement.
     pub const WITH_UNREFINED: Self = Self {
         refined: true,
         unrefined: true,
@@ -52,17 +53,16 @@ impl OfferedModels {
     };
 }
 
-/// Models identified from flight records, and these.
+/// Models identified from flight records, and the records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AdoptedModels {
-    /// The identified bundle of the condition.
     pub models: Vec<Model>,
-    /// The flight records of the condition.
     pub records: Vec<ConditionRecord>,
 }
 
 impl AdoptedModels {
-    /// The offered models of an identification of `records`, the recommended one first.
+    /// Returns the selectable models of an identification of `records`, the recommended model
+    /// first.
     pub fn of(
         found: &Identification,
         offered: OfferedModels,
@@ -94,16 +94,19 @@ impl AdoptedModels {
         Self { models, records }
     }
 
-    /// The dataset with these models for the identified bundle of a condition, and these records among its own.
+    /// Returns the dataset with these models as the identified bundle of a condition, and these
+    /// records added to the condition's.
     ///
     /// # Errors
-    /// [`EditRefusal::NoCondition`], and [`EditRefusal::Models`] where they cannot be the condition's.
+    /// [`EditRefusal::NoCondition`], and [`EditRefusal::Models`] where the models do not fit the
+    /// condition.
     pub fn put_into(&self, dataset: &Dataset, id: ConditionId) -> Result<Dataset, EditRefusal> {
         let before = dataset
             .condition(id)
             .ok_or(EditRefusal::NoCondition { condition: id })?;
         let refused = |why: String| EditRefusal::Models { condition: id, why };
-        // A condition without identified models is valid, but models that are not there take the place of none.
+        // A condition without identified models is valid, but an empty set of models replaces
+        // nothing.
         if self.models.is_empty() {
             let error = ConditionError::EmptyBundle(BundleKind::Identified);
             return Err(refused(error.to_string()));
@@ -117,17 +120,18 @@ impl AdoptedModels {
 }
 
 impl Study {
-    /// The dataset as its file has it, whatever was taken since.
+    /// Returns the dataset of the file, without adopted models and reversed signs.
     pub fn file_dataset(&self) -> &Arc<Dataset> {
         self.file.as_ref().unwrap_or(&self.dataset)
     }
 
-    /// The models taken in place of those of the file, condition by condition.
+    /// Returns the models adopted instead of those of the file, condition by condition.
     pub fn taken_models(&self) -> impl Iterator<Item = (ConditionId, &Arc<AdoptedModels>)> {
         self.taken.iter().map(|(id, models)| (*id, models))
     }
 
-    /// Takes models into conditions: into all of them, or into none. Decisions about models that are gone go with them.
+    /// Adopts models into all of these conditions, or into none. Decisions about removed models are
+    /// dropped.
     pub(super) fn take_models(
         &mut self,
         taken: &[(ConditionId, Arc<AdoptedModels>)],
@@ -137,14 +141,14 @@ impl Study {
         self.rebuild(models, self.signs.clone())
     }
 
-    /// Puts the models of the file back into a condition.
+    /// Restores the models of the file in a condition.
     pub(super) fn return_models(&mut self, condition: ConditionId) -> Result<(), EditRefusal> {
         let mut models = self.taken.clone();
         models.remove(&condition);
         self.rebuild(models, self.signs.clone())
     }
 
-    /// Turns the models of a channel, or puts them back as they were.
+    /// Reverses the sign of a channel's models, or restores it.
     pub(super) fn set_sign(
         &mut self,
         channel: Channel,
@@ -159,7 +163,8 @@ impl Study {
         self.rebuild(self.taken.clone(), signs)
     }
 
-    /// The dataset of the file with these models in its conditions, then turned.
+    /// Returns the dataset of the file with these models in its conditions, then with reversed
+    /// signs.
     fn rebuild(
         &mut self,
         models: BTreeMap<ConditionId, Arc<AdoptedModels>>,
@@ -177,7 +182,8 @@ impl Study {
         Ok(())
     }
 
-    /// Drops decisions about identified models that the dataset does not have any more, the variants' too.
+    /// Drops decisions about identified models that the dataset no longer has, also in the
+    /// variants.
     fn forget_absent_models(&mut self) {
         let dataset = Arc::clone(&self.dataset);
         let is_there = |id: ConditionId, name: &str| {
@@ -203,15 +209,14 @@ impl BundleChoice {
     }
 }
 
-/// Whose models of a channel are turned.
+/// The models whose sign of a channel is reversed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SignRole {
-    /// Those of the identified bundles.
+    /// The models of the identified bundles.
     Identified,
-    /// Those of the physics bundles.
+    /// The models of the physics bundles.
     Physics,
-    /// All.
     All,
 }
 
@@ -219,7 +224,7 @@ impl SignRole {
     /// Every role.
     pub const EACH: [Self; 3] = [Self::Identified, Self::Physics, Self::All];
 
-    /// Its word in files and options.
+    /// Returns the word in files and options.
     pub fn word(self) -> &'static str {
         match self {
             Self::Identified => "identified",
@@ -228,7 +233,7 @@ impl SignRole {
         }
     }
 
-    /// The models, in words.
+    /// Returns the models in words.
     pub fn models(self) -> &'static str {
         match self {
             Self::Identified => "the identified models",
@@ -237,28 +242,25 @@ impl SignRole {
         }
     }
 
-    /// Whether the models of a bundle are turned.
+    /// Returns whether the sign is reversed in the models of a bundle.
     pub fn covers(self, kind: BundleKind) -> bool {
         self == Self::All || self == kind.pick(Self::Physics, Self::Identified)
     }
 }
 
-/// The channels that are turned.
+/// The channels with reversed sign.
 pub type Signs = BTreeMap<Channel, SignRole>;
 
-/// A turned channel as files say it.
+/// A channel with reversed sign, as stored in files.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TurnedChannel {
-    /// Its name.
     pub channel: String,
-    /// Whether it is an input or an output.
     pub side: ChannelSide,
-    /// Whose models are turned.
     pub of: SignRole,
 }
 
 impl TurnedChannel {
-    /// The channel in a dataset, where it has it.
+    /// Returns the channel in a dataset, where it exists.
     pub fn find(&self, dataset: &Dataset) -> Option<Channel> {
         let (channels, of): (_, fn(usize) -> Channel) = match self.side {
             ChannelSide::Input => (dataset.inputs(), Channel::Input),
@@ -272,7 +274,7 @@ impl TurnedChannel {
 }
 
 impl Study {
-    /// The channels that are turned, by their names.
+    /// Returns the channels with reversed sign, by name.
     pub fn turned_channels(&self) -> Vec<TurnedChannel> {
         let turned = |(channel, of): (&Channel, &SignRole)| TurnedChannel {
             channel: channel.name_in(&self.dataset),
@@ -287,8 +289,8 @@ impl Study {
     }
 }
 
-/// The dataset with the models of these channels turned: of an output its rows of C and D, of an input its columns of B and D, of
-/// measured responses all of the channel.
+/// Returns the dataset with the signs of these channels reversed: for an output its rows of C and
+/// D, for an input its columns of B and D, for measured responses every response of the channel.
 pub(super) fn turned(dataset: &Arc<Dataset>, signs: &Signs) -> Result<Arc<Dataset>, EditRefusal> {
     let mut turned = Arc::clone(dataset);
     for condition in dataset.conditions().iter().filter(|_| !signs.is_empty()) {

@@ -1,7 +1,8 @@
-//! A channel that is logged late in all records alike, told against a physics model (M14, section 10).
+//! A channel logged late in all records alike, detected against a physics model (M14, section 10).
 //!
-//! A delay of all records cannot be told from dynamics by the records alone. Against a physics model it can, where its responses lag in
-//! proportion to frequency and those of the other channels do not.
+//! The records alone cannot distinguish a delay common to all of them from dynamics. Comparison
+//! with a physics model can, where the responses of one channel lag in proportion to frequency and
+//! those of the other channels do not.
 //!
 //! ```text
 //! 1  of each response that is coherent over half of the band:   phi = arg(measured / physics), unwrapped
@@ -14,7 +15,8 @@
 //! 4  of two channels each is late where the other is early: the one with the least |common| is named
 //! ```
 //!
-//! `common`, what all channels have in common, is no matter of one channel: the leads say it (M15, section 6).
+//! `common`, the delay that all channels share, cannot be assigned to one channel: the leads report
+//! it (M15, section 6).
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::dataset::{Band, BundleKind, Condition, Dataset, Dynamics, Pair};
@@ -24,32 +26,32 @@ use gdcm_model::simulation::Signal;
 use gdcm_model::units::{s_to_ms, telling};
 use gdcm_sysid::identification::{ResponseEstimate, TRUSTED_COHERENCE};
 
-/// Share of the points in the band at which a response is coherent, at least.
+/// Least share of the points in the band at which a response must be coherent.
 const LEAST_SHOWN: f64 = 0.5;
-/// Standard deviation that a physics model's phase has at least \[rad\].
+/// Lower bound on the standard deviation of a physics model's phase \[rad\].
 const PHYSICS_SD: f64 = 3.0 * std::f64::consts::PI / 180.0;
-/// The least delay that is told \[s\].
+/// Least delay that is reported \[s\].
 const LEAST_S: f64 = 5e-3;
-/// Scatter of the other responses beyond which a delay stands out.
+/// Multiple of the scatter of the other responses beyond which a delay is significant.
 const STANDS_OUT: f64 = 2.5;
-/// Standard deviation of a normal scatter over its median modulus.
+/// Ratio of the standard deviation to the median modulus of a normal scatter.
 const OF_MEDIAN: f64 = 1.4826;
-/// Share of the squared phase that a delay leaves at most.
+/// Greatest share of the squared phase that a delay may leave unexplained.
 const MOST_LEFT: f64 = 0.2;
 
-/// A channel that seems to be logged late, or early, in all records.
+/// A channel that appears to be logged late, or early, in all records.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChannelTimeSkew {
-    /// Input or output.
     pub role: ChannelSide,
-    /// Which, counted from 0.
+    /// Index, counted from 0.
     pub index: usize,
-    /// How late \[s\]; negative when it is early.
+    /// Delay \[s\]; negative when the channel is early.
     pub delay_s: f64,
 }
 
 impl ChannelTimeSkew {
-    /// The channel whose delay explains why a measured response is late against that of a physics model; none where none stands out.
+    /// Finds the channel whose delay explains the lag of a measured response against a physics
+    /// model; `None` where no delay is significant.
     pub fn of(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Self> {
         let lags = lags(measured, band, physics)?;
         let (outputs, inputs) = measured.points.first()?.response.shape();
@@ -71,7 +73,7 @@ impl ChannelTimeSkew {
             .map(|suspect| suspect.channel)
     }
 
-    /// The same against the nominal physics model of a condition.
+    /// Finds the channel against the nominal physics model of a condition.
     pub fn of_condition(
         measured: &ResponseEstimate,
         band: [f64; 2],
@@ -83,7 +85,7 @@ impl ChannelTimeSkew {
         Self::of(measured, band, &nominal.dynamics)
     }
 
-    /// The channel of a dataset.
+    /// Returns the channel of a dataset.
     pub fn signal(&self, dataset: &Dataset) -> Option<Signal> {
         let channels = if self.role == ChannelSide::Input {
             dataset.inputs()
@@ -98,7 +100,7 @@ impl ChannelTimeSkew {
         })
     }
 
-    /// What is said of it; `name` is the channel's, `physics` the physics model's.
+    /// Returns the finding in words; `name` is the channel's name, `physics` the physics model's.
     pub fn words(&self, name: &str, physics: &str) -> String {
         let ms = telling(s_to_ms(self.delay_s.abs()), 0);
         let how = if self.delay_s < 0.0 { "early" } else { "late" };
@@ -110,7 +112,7 @@ impl ChannelTimeSkew {
     }
 }
 
-/// How late one response is against that of a physics model.
+/// Lag of one response against that of a physics model.
 struct Lag {
     pair: Pair,
     delay_s: f64,
@@ -119,7 +121,7 @@ struct Lag {
 }
 
 impl Lag {
-    /// `sum W (phi + omega d)^2`.
+    /// Returns `sum W (phi + omega d)^2`.
     fn left(&self, delay_s: f64) -> f64 {
         self.phase
             .iter()
@@ -128,7 +130,8 @@ impl Lag {
     }
 }
 
-/// The lags of the responses that are coherent over half of the band; none where the physics model has none on these frequencies.
+/// Computes the lags of the responses that are coherent over half of the band; `None` where the
+/// physics model has no response at these frequencies.
 fn lags(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Option<Vec<Lag>> {
     let points: Vec<_> = measured
         .points
@@ -184,17 +187,17 @@ fn lags(measured: &ResponseEstimate, band: [f64; 2], physics: &Dynamics) -> Opti
     Some(pairs.filter_map(lag).collect())
 }
 
-/// A channel whose delay stands out.
+/// A channel with a significant delay.
 struct Suspect {
     channel: ChannelTimeSkew,
-    /// What the others have in common \[s\].
+    /// Delay common to the others \[s\].
     common_s: f64,
-    /// The squared phase that its delay explains.
+    /// Squared phase explained by its delay.
     explained: f64,
 }
 
 impl Suspect {
-    /// A channel with so many responses, if it is late.
+    /// Tests a channel with this many responses for a delay.
     fn of(lags: &[Lag], (role, index, responses): (ChannelSide, usize, usize)) -> Option<Self> {
         let is_own = |lag: &&Lag| match role {
             ChannelSide::Output => lag.pair.output == index,
@@ -217,7 +220,7 @@ impl Suspect {
         let before = left(common_s);
         let after = left(common_s + delay_s);
         let is_late = delay_s.abs() > tolerance_s && agree && after <= MOST_LEFT * before;
-        // The responses to an input that is logged late come too early.
+        // The responses to an input that is logged late are early.
         let delay_s = if role == ChannelSide::Output {
             delay_s
         } else {

@@ -22,20 +22,19 @@ use super::condition_responses::ConditionResponses;
 use super::execution::Execution;
 use super::{BundleChoice, ConditionChoice, Study, caution};
 
-/// Distances within each bundle and discontinuity ratios of the physics bundle; they do not depend on what is rejected.
+/// Distances within each bundle and discontinuity ratios of the physics bundle, independent of
+/// rejections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BundleMetrics {
-    /// Distances of the physics models.
     pub physics: BundleDistance,
-    /// Distances of the identified models.
     pub identified: BundleDistance,
     /// Discontinuity ratios of the physics models, or why there are none.
     pub discontinuity: Result<Discontinuity, DiscontinuityError>,
 }
 
 impl BundleMetrics {
-    /// Distances over the responses marked in `measuring`, two steps for each model. Measured models are compared by their
-    /// coherence where there is a threshold for it (M4a).
+    /// Computes the distances over the responses marked in `measuring`, two steps for each model.
+    /// Measured models are compared with coherence weights where a threshold is set (M4a).
     pub fn of(
         condition: &Condition,
         responses: &ConditionResponses,
@@ -74,13 +73,14 @@ impl BundleMetrics {
         })
     }
 
-    /// Distances of one bundle.
+    /// Returns the distances of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &BundleDistance {
         kind.pick(&self.physics, &self.identified)
     }
 }
 
-/// The marked responses of every model, or all where no model has one of those; and which model lacks which.
+/// Returns the marked responses of every model, or all responses where no model has a marked one;
+/// and the missing responses of each model.
 fn measured_pairs(
     responses: &[Arc<FrequencyResponse>],
     measuring: &PairTable<bool>,
@@ -122,8 +122,8 @@ fn distances(
     Ok(BundleDistance::from_rows(rows, measured))
 }
 
-/// What of a study's models cannot be computed or compared in its band, condition by condition: the cautions that an
-/// analysis gives of the models by themselves.
+/// Returns the cautions about the models alone, condition by condition: responses that cannot be
+/// computed or compared in the study's band.
 pub fn cautions_of_models(
     study: &Study,
     execution: &Execution<'_>,
@@ -158,7 +158,8 @@ pub fn cautions_of_models(
     Ok(cautions)
 }
 
-/// The gains that cannot be computed with, between the nominal physics model and the first kept identified model that shows some.
+/// Returns the gains out of the computable range, between the nominal physics model and the first
+/// kept identified model with any.
 fn gains_out_of_range(
     condition: &Condition,
     responses: &ConditionResponses,
@@ -186,12 +187,12 @@ fn gains_out_of_range(
     None
 }
 
-/// Mismatch of a physics model and the identified representative, with the J it amounts to.
+/// Mismatch of a physics model and the identified representative, with the resulting J.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelMismatch {
     /// Difference of every response that both models have.
     pub mismatch: PairTable<Option<Mismatch>>,
-    /// J of the physics model as it is.
+    /// J of the uncorrected physics model.
     pub cost: PairTable<Option<Cost>>,
 }
 
@@ -207,12 +208,10 @@ impl ModelMismatch {
     }
 }
 
-/// The two representatives and how they differ.
+/// The two representatives and their differences.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// Representative of the physics bundle, with scores.
     pub physics: Representative,
-    /// Representative of the identified bundle, with scores.
     pub identified: Representative,
     /// The physics representative against the identified one.
     pub representative: ModelMismatch,
@@ -222,13 +221,13 @@ pub struct Comparison {
     pub delta: Delta,
     /// Why a response has no G and no D, where it has none.
     pub undefined: PairTable<Option<Undefined>>,
-    /// What has to be known about the models, whatever is held.
+    /// Cautions about the models, independent of the constraints.
     pub cautions: Vec<Caution>,
 }
 
 impl Comparison {
-    /// Picks the representatives among the models kept and compares them, by the coherence of the identified one where there is
-    /// a threshold for it (M4a).
+    /// Selects the representatives among the kept models and compares them, with the identified
+    /// representative's coherence weights where a threshold is set (M4a).
     pub fn of(
         condition: &Condition,
         responses: &ConditionResponses,
@@ -294,7 +293,7 @@ impl Comparison {
             .gain
             .map(|pair, gain| gain.is_none().then(|| why(pair)));
         let mut out_of_range = GainOutOfRange::of_models(&simulated.polar, &reference.polar);
-        // A gain may be out of range where coherence leaves it out.
+        // A gain may be out of range where coherence excludes the response.
         out_of_range.retain(|of| delta.gain[of.pair].is_none());
         if !out_of_range.is_empty() {
             let name = |kind: BundleKind, model: usize| condition.bundle(kind)[model].name.clone();
@@ -330,8 +329,8 @@ impl Comparison {
 }
 
 impl Comparison {
-    /// The same comparison, G of each response the mean (of its logarithm) over every pair of a kept physics and a kept identified
-    /// model that have it.
+    /// Returns the same comparison, with G of each response the mean (of its logarithm) over all
+    /// pairs of a kept physics and a kept identified model that have the response.
     pub(super) fn with_mean_gains(
         mut self,
         condition: &Condition,
@@ -367,7 +366,7 @@ impl Comparison {
     }
 }
 
-/// Why a response of two representatives has no G and no D.
+/// Returns why a response of two representatives has no G and no D.
 fn why_undefined(simulated: &Compared, reference: &Compared, pair: Pair) -> Undefined {
     for (bundle, compared) in [
         (BundleKind::Physics, simulated),
@@ -393,12 +392,13 @@ fn why_undefined(simulated: &Compared, reference: &Compared, pair: Pair) -> Unde
         Some(GainOutOfRange { power_of_ten, .. }) if reference.left(pair) != Some(0) => {
             Undefined::GainOutOfRange(power_of_ten)
         }
-        // Both have it, and no frequency of it counts.
+        // Both have the response, and no frequency has weight.
         _ => Undefined::NotCoherent,
     }
 }
 
-/// What coherence did to the comparison with a reference, where that is more than to weigh it (M4a).
+/// Returns the caution about frequencies that coherence excludes from the comparison with a
+/// reference (M4a).
 fn coherence_caution(
     flight: &Dynamics,
     reference: &Compared,
@@ -444,7 +444,7 @@ enum Absence {
 }
 
 impl Absence {
-    /// Of a response that is zero, or not finite, at one frequency at least.
+    /// Classifies a response that is zero, or not finite, at one frequency at least.
     fn of(values: &[Complex<f64>]) -> Self {
         let mut finite = values.iter().filter(|value| value.is_finite()).peekable();
         if finite.peek().is_some() && finite.all(|value| value.norm() == 0.0) {
@@ -458,17 +458,18 @@ impl Absence {
     }
 }
 
-/// A model as it is compared: without the responses that are numerically nothing.
+/// A model prepared for comparison, without its numerically zero responses.
 pub(super) struct Compared {
     polar: PolarResponse,
     absent: PairTable<Option<Absence>>,
     nothing: PairTable<bool>,
-    /// Which frequencies count, where coherence says that.
+    /// Weights of the frequencies, where coherence is used.
     coherence_weights: Option<PairTable<CoherenceWeights>>,
 }
 
 impl Compared {
-    /// A model of a bundle; an identified one by its coherence where there is a threshold for it (M4a).
+    /// Prepares a model of a bundle; an identified model with coherence weights where a threshold
+    /// is set (M4a).
     pub(super) fn of(
         condition: &Condition,
         responses: &ConditionResponses,
@@ -493,7 +494,7 @@ impl Compared {
         }
     }
 
-    /// What it differs from a reference in, response by response.
+    /// Computes the mismatches against a reference, response by response.
     pub(super) fn against(&self, reference: &Self) -> Mismatches {
         mismatch_table(
             &self.polar,
@@ -506,12 +507,13 @@ impl Compared {
         self.polar.curves()[pair].is_some()
     }
 
-    /// Why the model has no response as it is; none where it has one, be that numerically nothing.
+    /// Returns why the unmodified model lacks a response; `None` where it has it, even if
+    /// numerically zero.
     fn absence(&self, pair: Pair) -> Option<Absence> {
         self.absent[pair]
     }
 
-    /// How many frequencies of a response count, where coherence says which do.
+    /// Returns the number of frequencies with weight in a response, where coherence is used.
     fn left(&self, pair: Pair) -> Option<usize> {
         self.coherence_weights
             .as_ref()

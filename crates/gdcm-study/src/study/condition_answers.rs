@@ -1,5 +1,6 @@
-//! What the models of one condition answer, to be drawn (M17.2): to the sticks of a flight record, with the corridors about flight, and to a
-//! test input, where no record is there to compare them with.
+//! Time responses of the models of one condition for plots (M17.2): to the inputs of a flight
+//! record, with the tolerance corridors about flight, and to a test input, with no record to
+//! compare with.
 
 use std::sync::Arc;
 
@@ -22,40 +23,39 @@ use super::table::Table;
 use super::time_histories::{Comparer, HistoryRecord, LEAST_PIECE_S, Trend, common_windows};
 use super::time_history_tables::percent;
 
-/// One quantity of a record: flown, and as each model answers.
+/// One quantity of a record: measured, and simulated with each model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuantityHistory {
-    /// The row of the table of tolerances.
     pub tolerance: Tolerance,
-    /// Index of the output that it is read from.
+    /// Index of the output that it is computed from.
     pub output: usize,
-    /// Unit of what is compared.
+    /// Unit of the compared quantity.
     pub unit: String,
-    /// Whether the output is on-axis to the input that moved most; none where that is not known.
+    /// Whether the output is on-axis to the input that moved most; `None` where that input is
+    /// unknown.
     pub on_axis: Option<bool>,
-    /// What each model gives, in windows that are the same for all of them.
+    /// Result of each model, in the same windows for all models.
     pub models: Vec<(RequirementRole, RecordCheck)>,
 }
 
 /// One record against the tolerances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordHistory {
-    /// The condition.
     pub condition: ConditionId,
-    /// Name of the record.
     pub record: String,
-    /// Whether the identified models were kept from it.
+    /// Whether the record was excluded from the identification of the models.
     pub held_out: bool,
     /// The record, in the units of the dataset's channels.
     pub flight: Shared<FlightRecord>,
-    /// Each row of the table that can be applied.
+    /// Each applicable row of the table.
     pub quantities: Vec<QuantityHistory>,
-    /// In words what is not compared, and why.
+    /// The quantities that are not compared, with reasons in words.
     pub missing: Vec<String>,
 }
 
 impl RecordHistory {
-    /// Share of time inside, the largest excess and when, of each quantity and model; off the axis, whether the trend is correct.
+    /// Builds the table: share of time inside, largest excess and its time, for each quantity and
+    /// model; off-axis, also whether the trend is correct.
     pub fn table(&self) -> Table {
         let columns = [
             "quantity",
@@ -99,18 +99,15 @@ impl RecordHistory {
     }
 }
 
-/// A record of a condition against the tolerances of the study, beside the live answer.
+/// Job that compares a record of a condition with the tolerances of the study, beside the live
+/// answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordHistoryJob {
-    /// The analysis.
     pub analysis: Shared<Analysis>,
-    /// The condition.
     pub condition: ConditionId,
-    /// The record.
     pub record: HistoryRecord,
-    /// How its channels are prepared.
+    /// Preparation of its channels.
     pub preparation: Preparation,
-    /// The tolerances.
     pub tolerances: ToleranceTable,
 }
 
@@ -172,9 +169,9 @@ impl RecordHistoryJob {
 }
 
 impl Job for RecordHistoryJob {
-    /// Who carries out its pieces.
+    /// Executor of the pieces.
     type Tools = Box<dyn Executor>;
-    /// In words why there is none.
+    /// Error: the reason in words.
     type Output = Result<Arc<RecordHistory>, String>;
 
     fn run(
@@ -191,27 +188,25 @@ impl Job for RecordHistoryJob {
     }
 }
 
-/// Time shown, as a multiple of the duration of the test.
+/// Time shown, as a multiple of the duration of the test input.
 const SHOWN: f64 = 5.0;
-/// The least time shown \[s\].
+/// Least time shown \[s\].
 const LEAST_SHOWN_S: f64 = 10.0;
-/// Sample times that the time shown has.
+/// Number of sample times in the time shown.
 const STEPS: usize = 1000;
 
-/// What the models of a condition answer to a test input from rest.
+/// Responses of the models of a condition to a test input, starting from rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestAnswers {
-    /// The condition.
     pub condition: ConditionId,
-    /// Index of the input that is moved.
     pub input: usize,
-    /// How it is moved.
+    /// Shape of the input.
     pub test: TestInput,
     /// Sample time \[s\]; the first sample is at 0 s.
     pub sample_time_s: f64,
     /// The input at every sample, in its unit.
     pub signal: Vec<f64>,
-    /// Outputs of each model, samples x outputs, in their units; in words why there are none.
+    /// Outputs of each model, samples x outputs, in their units; otherwise the reason in words.
     pub models: Vec<(RequirementRole, Result<DMatrix<f64>, String>)>,
 }
 
@@ -247,7 +242,7 @@ impl TestAnswers {
         })
     }
 
-    /// The times of the samples \[s\].
+    /// Returns the times of the samples \[s\].
     pub fn time_s(&self) -> Vec<f64> {
         (0..self.signal.len())
             .map(|n| n as f64 * self.sample_time_s)
@@ -255,23 +250,21 @@ impl TestAnswers {
     }
 }
 
-/// The answers of the models of a condition to the test input of the study, beside the live answer.
+/// Job that simulates the models of a condition with the study's test input, beside the live
+/// answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestAnswersJob {
-    /// The analysis.
     pub analysis: Shared<Analysis>,
-    /// The condition.
     pub condition: ConditionId,
-    /// Index of the input that is moved.
     pub input: usize,
-    /// How it is moved.
+    /// Shape of the input.
     pub test: TestInput,
 }
 
 impl Job for TestAnswersJob {
-    /// Who carries out its pieces.
+    /// Executor of the pieces.
     type Tools = Box<dyn Executor>;
-    /// In words why there are none.
+    /// Error: the reason in words.
     type Output = Result<Arc<TestAnswers>, String>;
 
     fn run(

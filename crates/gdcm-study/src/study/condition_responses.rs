@@ -1,4 +1,4 @@
-//! Responses of every model of a condition, each kept by what it is computed from.
+//! Frequency responses of every model of a condition, each cached by its inputs.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
@@ -14,15 +14,16 @@ use super::execution::{Execution, Memo};
 use super::fitted_couplings::FittedCouplings;
 use super::settings::{PhaseCorrection, Settings};
 
-/// What a response depends on besides the numbers of its model: the band and the number of frequencies in it.
+/// Dependencies of a response besides the numbers of its model: the band and the number of
+/// frequencies in it.
 pub(super) type GridKey = (Band, usize);
 
-/// What a response is computed for. The last one for each is kept.
+/// Purpose of a response. The last response for each purpose is cached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Purpose {
-    /// Comparing models, in the band of comparison.
+    /// Comparison of models, in the band of comparison.
     Comparison,
-    /// Drawing them, in a wider band.
+    /// Drawing, in a wider band.
     Drawing,
 }
 
@@ -33,11 +34,12 @@ pub struct ConditionResponses {
     pub physics: Vec<Arc<FrequencyResponse>>,
     /// Responses of the identified models, in file order.
     pub identified: Vec<Arc<FrequencyResponse>>,
-    /// Those of the physics models with couplings, where there are any.
+    /// Responses of the physics models with couplings, where there are any.
     coupled: Option<CoupledResponses>,
 }
 
-/// Responses of the physics models of a condition with mixing and feedback (M16.3), each made when it is first asked for.
+/// Responses of the physics models of a condition with mixing and feedback (M16.3), each computed
+/// on first use.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct CoupledResponses {
     couplings: Arc<FittedCouplings>,
@@ -46,7 +48,7 @@ pub(super) struct CoupledResponses {
 }
 
 impl CoupledResponses {
-    /// None made yet, of so many models.
+    /// Creates an empty cache for this many models.
     pub(super) fn new(couplings: &Arc<FittedCouplings>, airspeed_kt: f64, models: usize) -> Self {
         let made = (0..models).map(|_| OnceLock::new()).collect();
         Self {
@@ -58,8 +60,8 @@ impl CoupledResponses {
 }
 
 impl ConditionResponses {
-    /// The response of a model as it is compared and corrected: `H` of an identified model, `H~` of a physics model, which is `H`
-    /// where there are no couplings (M16.3).
+    /// Returns the response of a model for comparison and correction: `H` of an identified model,
+    /// `H~` of a physics model, equal to `H` without couplings (M16.3).
     pub(super) fn compared(&self, kind: BundleKind, model: usize) -> Arc<FrequencyResponse> {
         let response = &self.bundle(kind)[model];
         match &self.coupled {
@@ -78,7 +80,7 @@ impl ConditionResponses {
         }
     }
 
-    /// The same with couplings.
+    /// Adds couplings to the responses.
     pub(super) fn with(self, coupled: CoupledResponses) -> Self {
         Self {
             coupled: Some(coupled),
@@ -86,7 +88,7 @@ impl ConditionResponses {
         }
     }
 
-    /// The responses of every model of `condition` on `points` frequencies of `band`.
+    /// Computes the responses of every model of `condition` on `points` frequencies of `band`.
     pub fn of(
         condition: &Arc<Condition>,
         (band, points): (Band, usize),
@@ -97,22 +99,22 @@ impl ConditionResponses {
         models.responses(Purpose::Comparison, (band, points), &grid, execution)
     }
 
-    /// The responses of one bundle.
+    /// Returns the responses of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         kind.pick(&self.physics, &self.identified)
     }
 }
 
-/// The last responses of one model, and what they start from.
+/// The last responses of one model, and the model prepared for them.
 #[derive(Debug, Default)]
 struct ModelResponses {
     prepared: OnceLock<PreparedModel>,
-    /// The last one for each [`Purpose`].
+    /// The last response for each [`Purpose`].
     last: [Mutex<Memo<GridKey, Arc<FrequencyResponse>>>; 2],
 }
 
 impl ModelResponses {
-    /// A value is kept whole or not at all, whoever panicked.
+    /// Locks the last response; a panic elsewhere cannot leave it incomplete.
     fn last(&self, purpose: Purpose) -> MutexGuard<'_, Memo<GridKey, Arc<FrequencyResponse>>> {
         self.last[purpose as usize]
             .lock()
@@ -134,8 +136,9 @@ impl ModelResponses {
     }
 }
 
-/// The models that some condition of some engine holds, by their numbers: a model that stays, or comes back under another name or in
-/// another place, keeps its responses. Engines of one study that share them ([`super::engine::Engine::sharing`]) compute and hold each once.
+/// The models used by some condition of some engine, keyed by their numbers: a model that stays, or
+/// returns under another name or in another place, keeps its responses. Engines of one study that
+/// share them ([`super::engine::Engine::sharing`]) compute and store each only once.
 #[derive(Clone, Debug, Default)]
 pub struct KnownModels {
     by_content: Arc<Mutex<HashMap<ContentHash, Weak<ModelResponses>>>>,
@@ -148,7 +151,7 @@ impl KnownModels {
             .unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Forgets the models that no condition holds any more.
+    /// Removes the models that no condition uses any more.
     pub(super) fn forget_unused(&self) {
         self.by_content()
             .retain(|_, responses| responses.strong_count() > 0);
@@ -174,7 +177,7 @@ pub(super) struct ConditionModels {
 }
 
 impl ConditionModels {
-    /// The models of `condition`; those that are known already bring their responses.
+    /// Collects the models of `condition`; known models bring their responses.
     pub(super) fn of(condition: &Arc<Condition>, known: &KnownModels) -> Self {
         let contents = models_of(condition).map(|model| ContentHash::of(&model.dynamics));
         let models = contents
@@ -186,12 +189,12 @@ impl ConditionModels {
         }
     }
 
-    /// The condition.
+    /// Returns the condition.
     pub(super) fn condition(&self) -> &Arc<Condition> {
         &self.condition
     }
 
-    /// Hash of the numbers of a model.
+    /// Returns the hash of the numbers of a model.
     pub(super) fn content(&self, kind: BundleKind, model: usize) -> ContentHash {
         let before = if kind == BundleKind::Physics {
             0
@@ -201,7 +204,8 @@ impl ConditionModels {
         self.models[before + model].0
     }
 
-    /// Whether the bundles hold the same models, by name, origin and numbers, in the same order.
+    /// Returns whether the bundles contain the same models, by name, origin and numbers, in the
+    /// same order.
     pub(super) fn are_the_same_as(&self, other: &Self) -> bool {
         let contents = |models: &Self| {
             models
@@ -217,7 +221,7 @@ impl ConditionModels {
             && named(&self.condition).eq(named(&other.condition))
     }
 
-    /// Responses of every model, model by model; each is a step.
+    /// Computes the responses of every model, model by model; each is a step.
     pub(super) fn responses(
         &self,
         purpose: Purpose,
@@ -252,7 +256,7 @@ impl ConditionModels {
         })
     }
 
-    /// Lets go of what was computed for drawing.
+    /// Drops the responses computed for drawing.
     pub(super) fn forget_drawn(&self) {
         for (_, responses) in &self.models {
             *responses.last(Purpose::Drawing) = Memo::default();
@@ -269,15 +273,12 @@ fn models_of(condition: &Condition) -> impl Iterator<Item = &Model> {
 /// Responses of every model of a condition on a grid for drawing.
 #[derive(Debug)]
 pub struct ConditionCurves {
-    /// The condition: it names the models in whose order the responses are.
+    /// The condition; its models define the order of the responses.
     pub condition: Arc<Condition>,
-    /// The frequencies.
     pub grid: FrequencyGrid,
-    /// Responses of the physics models.
     pub physics: Vec<Arc<FrequencyResponse>>,
-    /// Responses of the identified models.
     pub identified: Vec<Arc<FrequencyResponse>>,
-    /// Responses with couplings that were drawn last, with what they are of.
+    /// Coupled responses drawn last, with their inputs.
     coupled: Mutex<Vec<CoupledCurve>>,
 }
 
@@ -309,13 +310,13 @@ impl ConditionCurves {
         }
     }
 
-    /// `H~` of a physics model under the couplings of a result; `H` without couplings.
+    /// Returns `H~` of a physics model under the couplings of a result; `H` without couplings.
     pub fn with_couplings(
         &self,
         result: &ConditionAnalysis,
         model: usize,
     ) -> Arc<FrequencyResponse> {
-        /// Those of a result and of a variant, each of a representative now and before.
+        /// A result and a variant, each with its representative now and before.
         const KEPT: usize = 4;
         let Some(coupled) = &result.coupled else {
             return Arc::clone(&self.physics[model]);
@@ -340,23 +341,23 @@ impl ConditionCurves {
         response
     }
 
-    /// The responses of one bundle.
+    /// Returns the responses of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &[Arc<FrequencyResponse>] {
         kind.pick(&self.physics, &self.identified)
     }
 }
 
-/// Frequencies of drawn curves.
+/// Number of frequencies of drawn curves.
 pub const CURVE_POINTS: usize = 500;
 
-/// The band drawn around a band of comparison: a little more than half a decade's third on either side.
+/// Returns the band drawn around a band of comparison: wider by a factor of 1.7 on either side.
 pub fn display_band(band: Band) -> Band {
     const MARGIN: f64 = 1.7;
     Band::beyond(band.min() / MARGIN, band.max() * MARGIN).unwrap_or(band)
 }
 
-/// The frequencies of the curves of a condition: [`display_band`], and up to ten times the band where leads are to show what they cost
-/// above it (M15.6).
+/// Returns the band of a condition's curves: [`display_band`], and up to ten times the band where
+/// leads are requested, to show their effect above it (M15.6).
 pub fn curves_band(settings: &Settings) -> Band {
     let usual = display_band(settings.band);
     let has_leads = settings.phase == PhaseCorrection::Lead;

@@ -1,4 +1,4 @@
-//! The stages of one condition, each kept while what it depends on stays the same.
+//! The analysis stages of one condition, each cached while its inputs stay the same.
 
 use std::sync::Arc;
 
@@ -30,9 +30,10 @@ use super::substitutions::{
 };
 use super::{ConditionChoice, Study};
 
-/// What the distances depend on, besides the models: the grid, the responses that measure them, and the coherence that counts.
+/// Dependencies of the distances, besides the models: the grid, the measuring responses, and the
+/// coherence threshold.
 type FiguresKey = (GridKey, PairTable<bool>, Option<f64>);
-/// What the comparison of the representatives depends on, besides the models.
+/// Dependencies of the comparison of the representatives, besides the models.
 type ComparisonKey = (
     FiguresKey,
     ConditionChoice,
@@ -45,15 +46,15 @@ type ComparisonKey = (
 pub(super) struct ConditionStages {
     models: ConditionModels,
     figures: Memo<FiguresKey, Arc<BundleMetrics>>,
-    /// Of the physics models as they are.
+    /// Stages with the physics models without couplings.
     plain: SolvedStages,
     responses: Memo<(GridKey, Arc<FittedCouplings>), CoupledResponses>,
-    /// Of the physics models with couplings.
+    /// Stages with the physics models with couplings.
     coupled: SolvedStages,
     substitutions: SubstitutionMemo,
 }
 
-/// The last comparison of the representatives of a condition, and the optima found on it.
+/// The last comparison of the representatives of a condition, and the optima based on it.
 #[derive(Clone, Debug, Default)]
 struct SolvedStages {
     comparison: Memo<ComparisonKey, Result<Arc<Comparison>, ConditionFailure>>,
@@ -62,18 +63,18 @@ struct SolvedStages {
     delays: Memo<Arc<Problem>, Solved>,
 }
 
-/// What an analysis is carried out with.
+/// Context of an analysis.
 #[derive(Clone, Copy)]
 pub(super) struct Run<'a> {
     pub(super) study: &'a Study,
     /// The frequencies of comparison.
     pub(super) grid: &'a FrequencyGrid,
-    /// How far the proof of each condition's gains may go.
+    /// Budget of the proof of each condition's gains.
     pub(super) proofs: ProofBudget,
     pub(super) execution: &'a Execution<'a>,
 }
 
-/// What a condition is compared and solved from.
+/// Inputs of a condition's comparison and solution.
 struct Measured<'a> {
     run: Run<'a>,
     condition: Arc<Condition>,
@@ -84,7 +85,7 @@ struct Measured<'a> {
 }
 
 impl ConditionStages {
-    /// Nothing computed yet but what the models bring.
+    /// Creates the stages with nothing computed yet besides the models' own cached responses.
     pub(super) fn of(models: ConditionModels) -> Self {
         Self {
             models,
@@ -96,7 +97,7 @@ impl ConditionStages {
         }
     }
 
-    /// Goes on with `models`: what was computed stays where the bundles are the same.
+    /// Continues with `models`; results are kept where the bundles are the same.
     pub(super) fn take(&mut self, models: ConditionModels) {
         if self.models.are_the_same_as(&models) {
             self.models = models;
@@ -105,17 +106,17 @@ impl ConditionStages {
         }
     }
 
-    /// Steps of the analysis of a condition: three for each model, and one.
+    /// Returns the number of steps of a condition's analysis: three for each model, plus one.
     pub(super) fn steps(condition: &Condition) -> usize {
         3 * model_count(condition) + 1
     }
 
-    /// The models with their responses.
+    /// Returns the models with their responses.
     pub(super) fn models(&self) -> &ConditionModels {
         &self.models
     }
 
-    /// Takes gains of the same problem in place of those kept.
+    /// Replaces the cached gains of the same problem.
     pub(super) fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
         for stages in [&mut self.plain, &mut self.coupled] {
             if stages.gains.holds(problem) {
@@ -124,7 +125,7 @@ impl ConditionStages {
         }
     }
 
-    /// Responses and distances of the models as they are.
+    /// Computes responses and distances of the models without couplings.
     fn measured<'a>(&mut self, run: Run<'a>) -> Result<Measured<'a>, Cancelled> {
         let Run {
             study,
@@ -162,7 +163,8 @@ impl ConditionStages {
         })
     }
 
-    /// What the condition brings to the fit of the couplings; none where its representatives cannot be compared, or have no delays.
+    /// Returns the condition's contribution to the fit of the couplings; `None` where its
+    /// representatives cannot be compared, or have no delays.
     pub(super) fn coupling_source(
         &mut self,
         run: Run<'_>,
@@ -192,7 +194,8 @@ impl ConditionStages {
         Ok(source)
     }
 
-    /// Whatever is not kept of the analysis of the condition, of physics models with couplings where there are any.
+    /// Completes the analysis of the condition, with the couplings on the physics models where
+    /// there are any.
     pub(super) fn analyze(
         &mut self,
         run: Run<'_>,
@@ -226,8 +229,9 @@ impl ConditionStages {
         Ok(outcome)
     }
 
-    /// How the figures of the condition change when other models stand in for the representatives of `analysis` (M13.1); what is
-    /// kept of that is not computed again. The couplings stay those of the representatives.
+    /// Computes how the figures of the condition change when other models replace the
+    /// representatives of `analysis` (M13.1); cached results are reused. The couplings stay those
+    /// of the representatives.
     pub(super) fn substitutions(
         &mut self,
         run: Run<'_>,
@@ -268,7 +272,8 @@ impl ConditionStages {
             })
     }
 
-    /// The responses with couplings, where there are any: the one place where they are put on a physics model that is compared.
+    /// Computes the responses with couplings, where there are any: the only place that applies
+    /// couplings to a physics model for comparison.
     fn coupled_responses(
         &mut self,
         study: &Study,
@@ -291,7 +296,7 @@ impl ConditionStages {
 }
 
 impl Run<'_> {
-    /// The optimum of a problem, proven as far as may be.
+    /// Solves a problem, with the proof as far as the budget allows.
     fn solved(&self, problem: &Problem) -> Result<Solved, Cancelled> {
         solved(problem, self.proofs, self.execution.progress())
     }
@@ -305,7 +310,7 @@ impl Measured<'_> {
 }
 
 impl SolvedStages {
-    /// The representatives, which the models as they are decide, and how their responses differ.
+    /// Compares the representatives, which are selected among the models without couplings.
     fn compare(
         &mut self,
         measured: &Measured<'_>,
@@ -403,7 +408,8 @@ impl SolvedStages {
         }))
     }
 
-    /// What leads would be worth, where they are not asked for and all held responses want them.
+    /// Estimates the benefit of leads, where they are not requested and all constrained responses
+    /// want them.
     fn offer(
         &mut self,
         input: &SolveInput<'_>,
@@ -425,7 +431,8 @@ impl SolvedStages {
             lower: design.lower_s(),
             upper: input.delay_upper_s,
         };
-        // The weight decides on shares, not on what is held: it is 1 whatever delays are asked with.
+        // The weight decides on shares, not on the constraints: it is 1 for any weight of the
+        // delays.
         let asked = input.delay_problem(Some(&design));
         let problem = Problem {
             constrained: held.clone(),
@@ -440,7 +447,7 @@ impl SolvedStages {
                 input.run.execution.progress(),
             )
         };
-        // An offer that cannot be made is none.
+        // An offer that cannot be computed is no offer.
         let Ok(solution) = self.offer.get_or_fail(Arc::new(problem), solve)? else {
             return Ok(None);
         };
@@ -456,7 +463,7 @@ impl SolvedStages {
         ))
     }
 
-    /// The delays, or signed delays, with what they were asked to do.
+    /// Solves for the delays, or signed delays, and returns them with their problem.
     fn delays(
         &mut self,
         input: &SolveInput<'_>,
@@ -469,7 +476,7 @@ impl SolvedStages {
         Ok((problem, delays))
     }
 
-    /// The delays, then the gains on what leads leave (M15.5).
+    /// Solves for the delays, then for the gains on the difference left after the leads (M15.5).
     fn solve(
         &mut self,
         input: &SolveInput<'_>,
@@ -502,14 +509,15 @@ impl SolvedStages {
     }
 }
 
-/// The budget of the proof of a substitution's gains: as far as that of a live answer, without a look for other minima.
+/// Proof budget for the gains of a substitution: as for a live answer, without a search for other
+/// minima.
 pub(super) const SUBSTITUTION_PROOF: ProofBudget = ProofBudget {
     work: 1_000_000,
     listing: 0,
     bytes: 64_000_000,
 };
 
-/// What the optima of a condition are asked for.
+/// Inputs of a condition's optimisation problems.
 struct SolveInput<'a> {
     run: Run<'a>,
     measuring: &'a PairTable<bool>,
@@ -541,7 +549,7 @@ impl<'a> SolveInput<'a> {
         &self.run.study.settings
     }
 
-    /// What lead filters have in common, where leads are asked for.
+    /// Returns the common design of the lead filters, where leads are requested.
     fn lead_design(&self) -> Option<Arc<LeadDesign>> {
         let is_asked = self.settings().phase == PhaseCorrection::Lead;
         is_asked.then(|| {
@@ -572,7 +580,8 @@ impl<'a> SolveInput<'a> {
         }
     }
 
-    /// Delays of the D that is chosen, signed ones of the band delay; none at all where the phase is left as it is.
+    /// Builds the problem of delays for the chosen D, or of signed delays for the band delay; an
+    /// empty problem where the phase is not corrected.
     fn delay_problem(&self, design: Option<&LeadDesign>) -> Problem {
         let settings = self.settings();
         let delta = self.delta;
@@ -608,10 +617,10 @@ impl<'a> SolveInput<'a> {
     }
 }
 
-/// What came of one problem.
+/// Outcome of one problem.
 pub(super) type Solved = Result<Arc<Solution>, ProblemError>;
 
-/// The optimum of a problem, proven within a budget.
+/// Solves a problem, with the proof within a budget.
 pub(super) fn solved(
     problem: &Problem,
     proofs: ProofBudget,
@@ -623,7 +632,7 @@ pub(super) fn solved(
     }
 }
 
-/// The two optima of a condition with what they are the optima of.
+/// The two optima of a condition with their problems.
 struct Optima {
     gain_problem: Arc<Problem>,
     delay_problem: Arc<Problem>,
@@ -695,7 +704,7 @@ fn cautions_of(
     cautions
 }
 
-/// Number of models of both bundles.
+/// Returns the number of models of both bundles.
 pub(super) fn model_count(condition: &Condition) -> usize {
     condition.bundle(BundleKind::Physics).len() + condition.bundle(BundleKind::Identified).len()
 }

@@ -1,4 +1,5 @@
-//! Signs and units that one side seems to have otherwise: said before any delay, zero or mode is blamed for what they do.
+//! Apparent differences of sign and unit between the two sides, reported first: before a delay,
+//! zero or mode is blamed for their effect.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -16,15 +17,16 @@ use super::comparison::{Compared, Mismatches};
 use super::condition_responses::ConditionResponses;
 use super::execution::Execution;
 
-/// Within this \[rad\] of half a turn a phase difference speaks for another sign.
+/// A phase difference within this \[rad\] of half a turn indicates a reversed sign.
 const NEAR_HALF_A_TURN: f64 = 20.0 / 180.0 * PI;
-/// What scale factors of channels usually are, up or down: beyond, a unit is asked after.
+/// Usual limit of scale factors of channels, up or down; beyond it, a unit is suspected.
 const USUAL_FACTOR: f64 = 5.0;
-/// How far the factors of single responses may be from their median, as a ratio: models differ by that much beside a unit.
+/// Greatest ratio of the factors of single responses to their median: models differ by that much
+/// besides a unit.
 const MOST_SPREAD: f64 = 2.0;
-/// How near a factor has to be to a known one, as a ratio.
+/// Tolerance for a factor to match a known one, as a ratio.
 const NEAR_FACTOR: f64 = 1.08;
-/// What takes one unit to another, and which.
+/// Known conversion factors between units, with their names.
 const KNOWN_FACTORS: [(f64, &str); 6] = [
     (9.806_65, "g and m/s²"),
     (32.174, "g and ft/s²"),
@@ -34,32 +36,31 @@ const KNOWN_FACTORS: [(f64, &str); 6] = [
     (1000.0, "a unit and its thousandth"),
 ];
 
-/// What one side seems to have otherwise than the other.
+/// The difference of convention between the two sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Convention {
-    /// The sign.
     Sign,
-    /// The unit: what the identified models give is this factor times what the physics models give.
+    /// The unit: ratio of the identified models' values to the physics models' values.
     Factor(f64),
 }
 
-/// A channel that the identified models seem to have in another convention than the physics models.
+/// A channel with an apparent difference of convention between the identified and the physics
+/// models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConventionDoubt {
-    /// What is otherwise.
     pub convention: Convention,
-    /// The channel that is to blame.
+    /// The responsible channel.
     pub channel: Channel,
-    /// The measuring responses that show it.
+    /// The measuring responses with the difference.
     pub pairs: Vec<Pair>,
     /// Whether all responses of the channel show it.
     pub all_responses: bool,
-    /// The conditions where it shows, in file order.
+    /// The conditions with the difference, in file order.
     pub conditions: Vec<ConditionId>,
 }
 
 impl ConventionDoubt {
-    /// The doubt in words, with what would settle it.
+    /// Describes the suspected difference and how to settle it.
     pub fn words(&self, dataset: &Dataset) -> String {
         let channel = self.channel.name_in(dataset);
         let pairs: Vec<String> = self
@@ -114,7 +115,7 @@ impl ConventionDoubt {
         }
     }
 
-    /// The channel that is to be turned, where it is the sign.
+    /// Returns the channel to reverse, where the sign is in doubt.
     pub fn turns(&self) -> Option<Channel> {
         (self.convention == Convention::Sign).then_some(self.channel)
     }
@@ -134,7 +135,8 @@ fn is_near(factor: f64, known: f64) -> bool {
     (1.0 / NEAR_FACTOR..=NEAR_FACTOR).contains(&ratio)
 }
 
-/// What the models of one condition differ in: what is asked, G among it, is asked of few responses.
+/// The mismatches of one condition's models; quantities such as G are computed on demand, for few
+/// responses.
 struct Sample<'a> {
     condition: ConditionId,
     mismatch: &'a Mismatches,
@@ -142,7 +144,7 @@ struct Sample<'a> {
 }
 
 impl Sample<'_> {
-    /// The responses of a channel that have a mismatch.
+    /// Returns the responses of a channel that have a mismatch.
     fn of_channel(&self, channel: Channel) -> impl Iterator<Item = (Pair, &Mismatch)> {
         let own = self
             .mismatch
@@ -151,7 +153,7 @@ impl Sample<'_> {
         own.filter_map(|(pair, mismatch)| Some((pair, mismatch.as_ref()?)))
     }
 
-    /// Share of the responses of a channel that the other sign would bring nearer.
+    /// Returns the share of a channel's responses that the opposite sign would bring nearer.
     fn opposed(&self, channel: Channel) -> f64 {
         let opposed: Vec<f64> = self
             .of_channel(channel)
@@ -166,7 +168,7 @@ impl Sample<'_> {
         opposed.iter().sum::<f64>() / opposed.len().max(1) as f64
     }
 
-    /// Natural logarithms of G of the responses of a channel.
+    /// Returns the natural logarithms of G of the responses of a channel.
     fn ln_gains(&self, channel: Channel) -> Vec<f64> {
         self.of_channel(channel)
             .filter_map(|(pair, _)| Some(self.gains[pair]?.ln()))
@@ -174,7 +176,7 @@ impl Sample<'_> {
     }
 }
 
-/// A sum over frequency by the weights of J (M4a).
+/// Sums over frequency with the weights of J (M4a).
 fn weighted_sum(mismatch: &Mismatch, of: impl Fn(f64) -> f64) -> f64 {
     let weight = |place: usize| mismatch.weights().map_or(1.0, |weights| weights[place]);
     mismatch
@@ -185,7 +187,7 @@ fn weighted_sum(mismatch: &Mismatch, of: impl Fn(f64) -> f64) -> f64 {
         .sum()
 }
 
-/// Whether the phase difference lies near half a turn over most of the band.
+/// Returns whether the phase difference is near half a turn over most of the band.
 fn is_turned(mismatch: &Mismatch) -> bool {
     let near = |phase: f64| {
         if PI - phase.abs() <= NEAR_HALF_A_TURN {
@@ -197,7 +199,8 @@ fn is_turned(mismatch: &Mismatch) -> bool {
     weighted_sum(mismatch, near) > 0.5 * weighted_sum(mismatch, |_| 1.0)
 }
 
-/// What the representatives of each condition say of signs and units; signs first.
+/// Collects the suspected sign and unit differences of each condition's representatives; signs
+/// first.
 pub(super) fn convention_doubts(
     conditions: &[(ConditionId, &Mismatches)],
     measuring: &PairTable<bool>,
@@ -215,13 +218,14 @@ pub(super) fn convention_doubts(
         .collect()
 }
 
-/// The other channel of a response.
+/// Returns the other channel of a response.
 fn other(channel: Channel, pair: Pair) -> Channel {
     let [output, input] = Channel::of(pair);
     if channel == output { input } else { output }
 }
 
-/// What one sample shows of a channel: the condition, the responses that show it, and whether all of the channel do.
+/// Evidence for a channel in one sample: the condition, the responses, and whether all responses of
+/// the channel show it.
 type Shown = (ConditionId, Vec<Pair>, bool);
 
 fn sign_doubt(
@@ -230,7 +234,8 @@ fn sign_doubt(
     channel: Channel,
 ) -> Option<ConventionDoubt> {
     let shown = samples.iter().map(|sample| {
-        // Of the two channels of a response that one is to blame whose other responses are opposed too; the output where both are.
+        // Of the two channels of a response, blame the channel whose other responses are also
+        // opposed; the output where both are.
         let is_to_blame = |pair: Pair| {
             let own = sample.opposed(channel);
             let of_other = sample.opposed(other(channel, pair));
@@ -256,7 +261,8 @@ fn factor_doubt(
     let is_far = |ln_gain: f64| ln_gain.abs() > USUAL_FACTOR.ln();
     let mut ln_gains = Vec::new();
     let shown = samples.iter().map(|sample| {
-        // Of the two channels of a response that one is to blame whose other responses have about the same factor.
+        // Of the two channels of a response, blame the channel whose other responses have about the
+        // same factor.
         let is_to_blame = |pair: Pair, ln_gain: f64| {
             let apart = |channel| (median(&mut sample.ln_gains(channel)) - ln_gain).abs();
             let here = apart(channel);
@@ -281,7 +287,7 @@ fn factor_doubt(
     });
     let shown: Vec<Shown> = shown.collect();
     let factor = median(&mut ln_gains);
-    // A unit is one factor: responses that ask for several differ by something else.
+    // A unit is a single factor: responses with different factors differ for another reason.
     if ln_gains
         .iter()
         .any(|ln_gain| (ln_gain - factor).abs() > MOST_SPREAD.ln())
@@ -292,7 +298,8 @@ fn factor_doubt(
 }
 
 impl ConventionDoubt {
-    /// The doubt that conditions show; none where none does.
+    /// Returns the suspected difference from the evidence of several conditions; `None` without
+    /// evidence.
     fn of(
         convention: Convention,
         channel: Channel,
@@ -317,10 +324,11 @@ impl ConventionDoubt {
     }
 }
 
-/// What the nominal physics model and the first identified model that is kept say in each condition, before anything is analysed.
+/// Compares the nominal physics model with the first kept identified model in each condition,
+/// before any analysis.
 ///
 /// # Errors
-/// [`Cancelled`] where `execution` is.
+/// [`Cancelled`] where `execution` is cancelled.
 pub fn doubts_of_models(
     study: &Study,
     execution: &Execution<'_>,

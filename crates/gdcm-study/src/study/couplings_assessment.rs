@@ -1,5 +1,5 @@
-//! What couplings are worth and what they cost: how sure their entries are, J without and with them and of conditions left out, the poles
-//! that move, how near the loop is to ringing, what it does above the band (M16.4).
+//! Benefit and cost of couplings: the uncertainty of their entries, J without and with them and of
+//! conditions left out, moved poles, stability margin of the loop, effect above the band (M16.4).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -29,50 +29,49 @@ use super::fitted_couplings::FittedCouplings;
 use super::job::{Job, VariantJob};
 use super::settings::CouplingCorrection;
 
-/// The step that an assessment reports.
+/// Name of the step in progress reports.
 const LEAVING_OUT: &str = "couplings without each condition";
 
-/// Frequencies of the singular values below the band, and from its lower end to ten times its top: 2 % apart over the example's band.
+/// Number of frequencies of the singular values below the band, and from its lower end to ten times
+/// its top: 2 % apart over the example's band.
 const MARGIN_POINTS: [usize; 2] = [60, 300];
 
 /// An entry of `M~` or of `K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingEntry {
-    /// The entry.
     pub value: f64,
-    /// Half-width of its bar; none of fewer than three conditions.
+    /// Half-width of its error bar; `None` with fewer than three conditions.
     pub half_width: Option<f64>,
-    /// Its standard deviation by the jackknife.
+    /// Jackknife standard deviation.
     pub deviation: Option<f64>,
-    /// Whether it is not told from that of no coupling.
+    /// Whether the value is not distinguishable from the value without coupling.
     pub is_within_bar: bool,
 }
 
-/// What couplings do to one condition.
+/// Effect of the couplings on one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionCouplings {
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// Poles of the physics representative before and after, or why they are not known.
+    /// Poles of the physics representative before and after, or why they are unknown.
     pub poles: Result<Vec<PoleShift>, String>,
     /// The least singular value of `I - K H` at [`CouplingsAssessment::omega`].
     pub singular_values: Vec<f64>,
-    /// The least of them from the lower end of the band to ten times its top.
+    /// Least singular value from the lower end of the band to ten times its top.
     pub margin: Option<LoopMargin>,
     /// `20 log10 |H~ - H| / |H|` of each response at ten times the band.
     pub above_band_db: PairTable<Option<f64>>,
-    /// J of the condition left out, on the axis and off it; none where it is in no fit.
+    /// J of the condition when left out, on-axis and off-axis; `None` where it is in no fit.
     pub left_out: Option<CouplingCost>,
-    /// Kept physics models with matrices, other than the representative, whose loop cannot be closed, and why.
+    /// Kept physics models with matrices, other than the representative, whose loop cannot be
+    /// closed, with the reason.
     pub refused: Vec<(String, String)>,
 }
 
-/// A pole of a kept physics model with a positive real part that it has not without the couplings.
+/// A pole of a kept physics model with a positive real part that is absent without the couplings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnstablePole {
-    /// The condition.
     pub condition: ConditionId,
-    /// The physics model.
     pub model: String,
     /// Whether it represents its bundle.
     pub is_representative: bool,
@@ -82,33 +81,32 @@ pub struct UnstablePole {
     pub is_in_band: bool,
 }
 
-/// What couplings are worth and what they cost (M16.4). What follows in words: [`CouplingsAssessment::remarks`].
+/// Benefit and cost of couplings (M16.4). Conclusions in words: [`CouplingsAssessment::remarks`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct CouplingsAssessment {
-    /// Which couplings.
     pub couplings: CouplingCorrection,
-    /// What was found.
     pub fitted: Arc<FittedCouplings>,
-    /// Level of the bars.
+    /// Level of the error bars.
     pub level: f64,
-    /// The band of comparison.
     pub band: Band,
-    /// The fits without each condition in turn; none of fewer than three conditions.
+    /// The fits without each condition in turn; empty with fewer than three conditions.
     pub left_out_fits: Vec<LeftOutFit>,
-    /// J without and with them.
+    /// J without and with the couplings.
     pub costs: CouplingCosts,
     /// Frequencies of the singular values \[rad/s\]: from a tenth of the band to ten times it.
     pub omega: Arc<[f64]>,
-    /// Each condition that was analysed.
+    /// Each analysed condition.
     pub conditions: BTreeMap<ConditionId, ConditionCouplings>,
-    /// Poles that are newly unstable, of every kept physics model.
+    /// Newly unstable poles of every kept physics model.
     pub unstable: Vec<UnstablePole>,
-    /// Number of conditions all of whose held responses want lead that no channel gives: a feedback then takes its place.
+    /// Number of conditions where all constrained responses want lead that no channel provides: a
+    /// feedback then acts as a substitute.
     pub want_leads: usize,
 }
 
 impl CouplingsAssessment {
-    /// The airspeed at which mixing is told where one has to be chosen: the mean of the conditions' \[kt\].
+    /// Returns the mean airspeed of the conditions \[kt\], at which the mixing is reported where a
+    /// single airspeed is needed.
     pub fn mean_airspeed_kt(&self) -> f64 {
         self.fitted.matrices().airspeeds().mean_kt
     }
@@ -117,7 +115,7 @@ impl CouplingsAssessment {
         CouplingBars::of(&self.left_out_fits, airspeed_kt, self.level).ok()
     }
 
-    /// `M~`, m x m, at an airspeed, with its bars.
+    /// Returns `M~`, m x m, at an airspeed, with its error bars.
     pub fn mixing(&self, airspeed_kt: f64) -> DMatrix<CouplingEntry> {
         let values = self.fitted.matrices().normalised_mixing(airspeed_kt);
         let bars = self.bars(airspeed_kt);
@@ -128,7 +126,7 @@ impl CouplingsAssessment {
         )
     }
 
-    /// `K`, m x p, with its bars.
+    /// Returns `K`, m x p, with its error bars.
     pub fn feedback(&self) -> DMatrix<CouplingEntry> {
         let bars = self.bars(self.mean_airspeed_kt());
         let values = self.fitted.matrices().feedback();
@@ -139,18 +137,21 @@ impl CouplingsAssessment {
         )
     }
 
-    /// Number of newly unstable poles whose frequency lies in the band of comparison, of every kept physics model.
+    /// Returns the number of newly unstable poles whose frequency lies in the band of comparison,
+    /// over all kept physics models.
     pub fn unstable_in_band(&self) -> usize {
         self.unstable.iter().filter(|of| of.is_in_band).count()
     }
 
-    /// What couplings are worth by what decides: J of conditions left out, or of the schedule where none is left out.
+    /// Returns the decisive costs: J of conditions left out, or of the schedule where none is left
+    /// out.
     pub fn deciding_cost(&self) -> CouplingCost {
         self.costs.left_out.unwrap_or(self.costs.scheduled)
     }
 }
 
-/// Values with the half-widths of their bars and Student's quantile; `is_fixed` says which of them are no unknowns.
+/// Builds entries from values, half-widths of their error bars and Student's quantile; `is_fixed`
+/// marks the values that are not unknowns.
 fn entries(
     values: &DMatrix<f64>,
     bars: Option<(&DMatrix<f64>, f64)>,
@@ -171,15 +172,14 @@ fn entries(
     })
 }
 
-/// What comes of an assessment: why there are no couplings is told by the fit.
+/// Result of an assessment; without couplings, the error of the fit.
 pub type AssessedCouplings = Result<Arc<CouplingsAssessment>, CouplingError>;
 
-/// What couplings would do to a study, or do, beside the live answer.
+/// Job that assesses couplings for a study, beside the live answer.
 #[derive(Clone, Debug)]
 pub struct CouplingsJob {
-    /// The study; what it says of couplings does not count.
+    /// The study; its own setting of couplings is ignored.
     pub study: Study,
-    /// The couplings.
     pub couplings: CouplingCorrection,
 }
 
@@ -198,7 +198,7 @@ impl PartialEq for CouplingsJob {
 }
 
 impl Job for CouplingsJob {
-    /// An engine that keeps what is common to all fits.
+    /// An engine that caches the results common to all fits.
     type Tools = Engine;
     type Output = Option<AssessedCouplings>;
 
@@ -214,10 +214,10 @@ fn with_couplings(study: &Study, couplings: CouplingCorrection) -> Study {
 }
 
 impl Engine {
-    /// What couplings do to a study; none where none are asked for.
+    /// Assesses the couplings of a study; `None` where it requests none.
     ///
     /// # Errors
-    /// [`Cancelled`] soon after `progress` says so.
+    /// [`Cancelled`] soon after `progress` requests it.
     pub fn assess_couplings(
         &mut self,
         study: &Study,
@@ -277,7 +277,8 @@ impl Engine {
         Ok(Some(Ok(Arc::new(assessment))))
     }
 
-    /// Each condition of the fit without what it brings to it and to the schedule: none of fewer than three.
+    /// Repeats the fit and the schedule without each condition in turn; empty with fewer than three
+    /// conditions.
     fn left_out(
         &self,
         with: &Analysis,
@@ -323,7 +324,8 @@ struct LeftOutCondition {
 }
 
 impl LeftOutCondition {
-    /// None where the others do not make couplings or a schedule, or it cannot be assessed.
+    /// Returns `None` where the other conditions give no couplings or schedule, or the condition
+    /// cannot be assessed.
     fn of(condition: ConditionId, held_out: &Analysis, without: &Analysis) -> Option<Self> {
         let fit = LeftOutFit {
             condition,
@@ -351,7 +353,7 @@ impl LeftOutCondition {
     }
 }
 
-/// The representatives under a correction.
+/// Returns the choice that assesses the representatives under a correction.
 fn choice(analysis: &Analysis, correction: AssessedCorrection) -> AssessmentChoice {
     AssessmentChoice {
         model: AssessedModel::Representative,
@@ -389,7 +391,8 @@ fn costs(without: &Analysis, with: &Analysis, left_out: &[LeftOutCondition]) -> 
     }
 }
 
-/// From a tenth of the band to ten times it, both ends of the band's lower part among the frequencies.
+/// Returns the grid from a tenth of the band to ten times it, with both ends of the lower part of
+/// the band included.
 fn margin_grid(band: Band) -> FrequencyGrid {
     let [below, above] = MARGIN_POINTS;
     let mut omega = log_spaced(band.min() / ABOVE_BAND, band.min(), below);
@@ -398,7 +401,8 @@ fn margin_grid(band: Band) -> FrequencyGrid {
     FrequencyGrid::at(omega)
 }
 
-/// What the couplings do to a condition, and the newly unstable poles of its kept physics models.
+/// Computes the effect of the couplings on a condition, and the newly unstable poles of its kept
+/// physics models.
 fn of_condition(
     study: &Study,
     result: &ConditionAnalysis,
@@ -480,7 +484,8 @@ fn of_condition(
 }
 
 impl ConditionCouplings {
-    /// The response among the marked ones that couplings change most above the band, and by how much \[dB\].
+    /// Returns the marked response that couplings change most above the band, and the change
+    /// \[dB\].
     pub fn most_changed_above_band(&self, marked: &PairTable<bool>) -> Option<(Pair, f64)> {
         let known = marked
             .marked()
@@ -489,42 +494,42 @@ impl ConditionCouplings {
     }
 }
 
-/// A mean of J on the axis and off it.
+/// Mean J on-axis and off-axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct AxisCost {
-    /// Over the on-axis responses; none where none can be compared.
+    /// Over the on-axis responses; `None` where none can be compared.
     pub on_axis: Option<f64>,
-    /// Over the others.
+    /// Over the off-axis responses.
     pub others: Option<f64>,
 }
 
-/// The same without couplings and with them.
+/// Mean J without and with couplings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CouplingCost {
-    /// Without couplings.
     pub without: AxisCost,
-    /// With couplings.
     pub with: AxisCost,
 }
 
-/// J in the mean over the conditions, of each response that can be compared both without and with couplings (M16.4).
+/// Mean J over the conditions, of each response that can be compared both without and with
+/// couplings (M16.4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CouplingCosts {
-    /// Of the physics representatives as they are.
+    /// Of the uncorrected physics representatives.
     pub uncorrected: AxisCost,
     /// Of each condition's own correction.
     pub own: CouplingCost,
     /// Of the schedule at each condition's airspeed.
     pub scheduled: CouplingCost,
-    /// Of conditions left out: couplings, channel delays and schedule found without each, in turn; none of fewer than three.
+    /// Of conditions left out: couplings, channel delays and schedule found without each condition
+    /// in turn; `None` with fewer than three.
     pub left_out: Option<CouplingCost>,
 }
 
 impl CouplingCost {
-    /// Off-axis J of what is worth its price, over that without couplings.
+    /// Greatest off-axis J, relative to that without couplings, at which couplings are worthwhile.
     const WORTH: f64 = 0.9;
 
-    /// Whether the off-axis J is at least a tenth less with couplings.
+    /// Returns whether couplings reduce the off-axis J by at least a tenth.
     pub fn is_worth_it(&self) -> bool {
         self.with
             .others
@@ -533,10 +538,11 @@ impl CouplingCost {
     }
 }
 
-/// Sums of J of the responses of many conditions.
+/// Sums of J over the responses of many conditions.
 pub(super) struct CostSums<'a> {
     on_axis: &'a PairTable<bool>,
-    /// Off the axis and on it: number, J before any correction, without couplings, with them.
+    /// Off-axis and on-axis: count, then J before any correction, without couplings, with
+    /// couplings.
     sums: [(usize, [f64; 3]); 2],
 }
 
@@ -548,7 +554,7 @@ impl<'a> CostSums<'a> {
         }
     }
 
-    /// Adds the responses of a condition, without couplings and with them.
+    /// Adds the responses of a condition, without and with couplings.
     pub(super) fn add(
         &mut self,
         without: &PairTable<Option<CostChange>>,
@@ -573,12 +579,12 @@ impl<'a> CostSums<'a> {
         AxisCost { on_axis, others }
     }
 
-    /// The mean of J before any correction.
+    /// Returns the mean of J before any correction.
     pub(super) fn uncorrected(&self) -> AxisCost {
         self.mean(0)
     }
 
-    /// The means of J without couplings and with them.
+    /// Returns the means of J without and with couplings.
     pub(super) fn corrected(&self) -> CouplingCost {
         CouplingCost {
             without: self.mean(1),
@@ -850,7 +856,8 @@ mod tests {
         assert_eq!(list(&mean_cost["own"]).len(), 2);
     }
 
-    /// A stable aircraft of so many outputs and inputs; `response` says which responses it has.
+    /// Builds a stable aircraft with this many outputs and inputs; `response` selects the responses
+    /// it has.
     fn aircraft(outputs: usize, inputs: usize, response: impl Fn(Pair) -> bool) -> StateSpace {
         let states = outputs * inputs;
         let of = |state: usize| Pair::new(state / inputs, state % inputs);
@@ -875,7 +882,8 @@ mod tests {
         StateSpace::new(a, b, c, DMatrix::zeros(outputs, inputs)).unwrap()
     }
 
-    /// A study of such aircraft, whose flight is theirs with a little mixing and feedback; gains alone correct the channels.
+    /// Builds a study of such aircraft, whose flight models add a little mixing and feedback; gains
+    /// alone correct the channels.
     fn small_study(
         outputs: usize,
         inputs: usize,
@@ -990,7 +998,7 @@ mod tests {
         let study = small_study(2, 2, 3, |pair| pair != Pair::new(0, 1));
         let analysis = Engine::default().analyze(&study, &Unobserved).unwrap();
         let matrices = analysis.fitted_couplings().unwrap().matrices();
-        // The ridge draws entries by a thousandth.
+        // The ridge shifts entries by a thousandth.
         assert!(
             (matrices.normalised_mixing(60.0)[(1, 0)] - 0.08).abs() < 1e-3,
             "{matrices:?}"

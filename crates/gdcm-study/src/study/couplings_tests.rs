@@ -1,5 +1,5 @@
-//! Mixing and feedback of the reference dataset, from M15's signed delays to the gains and costs of what is coupled, against
-//! independent numpy code (`tests/data/reference/mixing.json`).
+//! Mixing and feedback of the reference dataset, from M15's signed delays to the gains and costs
+//! with couplings, against independent numpy code (`tests/data/reference/mixing.json`).
 
 use std::io::Read;
 use std::sync::{Arc, LazyLock};
@@ -28,13 +28,13 @@ use crate::study::assessment_table::{AssessedModel, AssessmentChoice};
 pub(super) static REFERENCE: LazyLock<Value> = LazyLock::new(|| {
     serde_json::from_str(include_str!("../../../../tests/data/reference/mixing.json")).unwrap()
 });
-/// A dataset with delays or leads, nothing rejected.
+/// A dataset with delays or leads, without rejections.
 pub(super) struct Example {
     pub(super) dataset: Arc<Dataset>,
     pub(super) analysis: Analysis,
 }
 
-/// The reference dataset, of which the known answers are.
+/// The reference dataset, source of the known answers.
 pub(super) static EXAMPLE: LazyLock<Example> = LazyLock::new(|| {
     Example::of(include_bytes!(
         "../../../../tests/data/reference/example-dataset.json.gz"
@@ -228,7 +228,7 @@ impl Example {
         }
     }
 
-    /// The dataset of the representatives alone, the physics models coupled.
+    /// Returns the dataset of the representatives alone, with the couplings on the physics models.
     fn coupled(&self, matrices: &CouplingMatrices) -> Arc<Dataset> {
         let condition = |result: &ConditionAnalysis| {
             let state = result.condition.flight_state();
@@ -255,7 +255,8 @@ impl Example {
         )
     }
 
-    /// The least singular value of `I - K H` from `low` to `high` \[rad/s\] over the physics representatives.
+    /// Returns the least singular value of `I - K H` from `low` to `high` \[rad/s\] over the
+    /// physics representatives.
     fn least_margin(&self, matrices: &CouplingMatrices, (low, high): (f64, f64)) -> LoopMargin {
         let grid = FrequencyGrid::logarithmic(Band::beyond(low, high).unwrap(), 60);
         let margin = |model: &Model| {
@@ -271,7 +272,7 @@ impl Example {
             .unwrap()
     }
 
-    /// The poles of all physics models that become unstable.
+    /// Returns the poles of all physics models that become unstable.
     fn newly_unstable(&self, matrices: &CouplingMatrices) -> Vec<PoleShift> {
         let mut unstable = Vec::new();
         for condition in self.dataset.conditions() {
@@ -307,7 +308,7 @@ fn row_by_row(matrix: &DMatrix<f64>) -> Vec<f64> {
     matrix.transpose().as_slice().to_vec()
 }
 
-/// `[on-axis, others]` of the corrected J, in the mean over the conditions.
+/// Returns `[on-axis, others]` of the corrected J, averaged over the conditions.
 pub(super) fn mean_costs(of: impl Iterator<Item = PairTable<Option<CostChange>>>) -> [f64; 2] {
     let mut sums = [(0.0, 0.0); 2];
     for table in of {
@@ -421,8 +422,9 @@ fn the_example_with_mixing_and_feedback_agrees() {
     the_example_agrees(&FEEDBACK, "feedback");
 }
 
-/// The embedded example, whose identified models are the program's own: near the figures of M16.4 and M16.5, which are of other
-/// identified models (least singular values of 0.87 in the band and 0.96 above; two slow divergences more).
+/// The embedded example, whose identified models are the program's own: near the figures of M16.4
+/// and M16.5, which come from other identified models (least singular values of 0.87 in the band
+/// and 0.96 above; two more slow divergences).
 #[test]
 fn the_embedded_example_reads_as_what_was_put_in() {
     let example = Example::of(include_bytes!("../../../../assets/example-dataset.json.gz"));
@@ -432,7 +434,8 @@ fn the_embedded_example_reads_as_what_was_put_in() {
         .normalised_mixing(fit.matrices.airspeeds().mean_kt);
     let (inputs, _) = example.dataset.names_of_channels();
     let at = |name: &str| inputs.iter().position(|of| of == name).unwrap();
-    // What was put in: a swashplate phase of 1.8 degrees and a coupling, 0.03, and 0.03.
+    // True values: from LON to LAT a swashplate phase of 1.8 degrees plus a coupling, then 0.03,
+    // and 0.03.
     for (from, to, expected) in [
         ("LON", "LAT", 0.047),
         ("COL", "LAT", 0.027),
@@ -495,7 +498,7 @@ fn the_bars_of_the_example_tell_its_largest_entries_from_nothing() {
     assert!(fed.len() == 24 && fed.windows(2).all(|of| of[0].share >= of[1].share));
 }
 
-/// The last piece of work first.
+/// Executor that starts with the last piece of work.
 struct Backwards;
 
 impl Executor for Backwards {
@@ -515,7 +518,7 @@ fn a_fit_is_the_same_to_the_last_bit_whoever_carries_it_out() {
     assert_eq!(found, *FEEDBACK);
 }
 
-/// The study of the reference dataset with leads and these couplings.
+/// Returns the study of the reference dataset with leads and these couplings.
 fn study(couplings: CouplingCorrection) -> Study {
     let mut study = EXAMPLE.analysis.study.clone();
     study.apply(&setting::COUPLINGS.to(couplings)).unwrap();
@@ -526,19 +529,20 @@ fn analyze(engine: &mut Engine, study: &Study) -> Analysis {
     engine.analyze(study, &Unobserved).unwrap()
 }
 
-/// An engine that has analysed the example with mixing and feedback, and what it found.
+/// An engine that has analysed the example with mixing and feedback, and its analysis.
 pub(super) static COUPLED: LazyLock<(Engine, Analysis)> = LazyLock::new(|| {
     let mut engine = Engine::default();
     let analysis = analyze(&mut engine, &study(CouplingCorrection::MixingAndFeedback));
     (engine, analysis)
 });
 
-/// The engine of [`COUPLED`], which each test changes for itself.
+/// Returns a copy of the engine of [`COUPLED`], for each test to change.
 pub(super) fn engine() -> Engine {
     COUPLED.0.fork(Box::new(gdcm_model::executor::Sequential))
 }
 
-/// `[on-axis, others]` of the mean J of each condition's own correction, and of the scheduled one.
+/// Returns `[on-axis, others]` of the mean J of each condition's own correction, and of the
+/// scheduled correction.
 pub(super) fn own_and_scheduled(analysis: &Analysis) -> [[f64; 2]; 2] {
     let results = analysis
         .conditions
@@ -659,7 +663,7 @@ fn a_condition_held_out_does_not_enter_the_fit() {
         result.before_couplings(),
         "but it is coupled too"
     );
-    // Another identified model of it changes nothing of the fit.
+    // Another identified model of the condition does not change the fit.
     let mut other = result
         .condition
         .bundle(BundleKind::Identified)

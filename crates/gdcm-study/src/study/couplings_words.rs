@@ -1,5 +1,5 @@
-//! What couplings say, in the engineer's words: a diagnosis first, then what they are worth, then what they cost (M16.4); and the same as
-//! tables (M16.5).
+//! Words for couplings: a diagnosis first, then the benefit, then the cost (M16.4); and tables of
+//! the same figures (M16.5).
 
 use std::collections::BTreeMap;
 
@@ -19,12 +19,13 @@ use super::remark::{Remark, RemarkKind};
 use super::settings::CouplingCorrection;
 use super::table::Table;
 
-/// Entries told of each matrix, the largest.
+/// Number of entries reported of each matrix, largest first.
 const TOLD: usize = 3;
-/// Shares below this say nothing.
+/// Shares below this are negligible.
 const NOTHING: f64 = 0.005;
 
-/// That a study which asks for couplings has none: all of it is without them.
+/// Returns the remark that a study requests couplings and has none, so that all results are without
+/// them.
 pub fn no_couplings(why: &str) -> Remark {
     Remark::new(
         RemarkKind::Trouble,
@@ -33,7 +34,7 @@ pub fn no_couplings(why: &str) -> Remark {
 }
 
 impl CouplingsAssessment {
-    /// All that has to be said: the diagnosis, what couplings are worth, and the cautions.
+    /// Returns all remarks: the diagnosis, the benefit of couplings, and the cautions.
     pub fn remarks(&self, dataset: &Dataset) -> Vec<Remark> {
         let diagnosis = self
             .diagnosis(dataset)
@@ -42,7 +43,7 @@ impl CouplingsAssessment {
         diagnosis.chain(self.consequences(dataset)).collect()
     }
 
-    /// What couplings are worth, what they cost, and the cautions.
+    /// Returns the benefit, the cost, and the cautions.
     pub fn consequences(&self, dataset: &Dataset) -> Vec<Remark> {
         let price = self
             .price(dataset)
@@ -54,8 +55,9 @@ impl CouplingsAssessment {
             .collect()
     }
 
-    /// What the largest entries that are told from nothing mean: "LAT takes 4.7 % of LON: as a swashplate phase of 2.7°"; "PED follows NY
-    /// by 1.2 % per m/s²: directional stiffness that the physics model does not have".
+    /// Interprets the largest significant entries: "LAT takes 4.7 % of LON: as a swashplate phase
+    /// of 2.7°"; "PED follows NY by 1.2 % per m/s²: directional stiffness that the physics model
+    /// does not have".
     pub fn diagnosis(&self, dataset: &Dataset) -> Vec<String> {
         let airspeed_kt = self.mean_airspeed_kt();
         let is_told =
@@ -77,7 +79,7 @@ impl CouplingsAssessment {
             .collect()
     }
 
-    /// Whether J of conditions left out says that couplings are worth it.
+    /// Judges from J of conditions left out whether couplings are worthwhile.
     fn verdict(&self) -> Vec<Remark> {
         let cost = self.deciding_cost();
         let ([Some(others), Some(without)], on_axis) = (
@@ -115,7 +117,8 @@ impl CouplingsAssessment {
         remarks
     }
 
-    /// What a study without these couplings is offered: nothing where they are not worth it, or no condition was left out.
+    /// Returns the offer to a study without these couplings; `None` where they are not worthwhile,
+    /// or no condition was left out.
     pub fn offer(&self) -> Option<String> {
         let cost = self.costs.left_out.filter(CouplingCost::is_worth_it)?;
         Some(format!(
@@ -126,7 +129,7 @@ impl CouplingsAssessment {
         ))
     }
 
-    /// What the couplings do above the band, and how far poles move in it.
+    /// Describes the effect of the couplings above the band, and the pole shifts in it.
     fn price(&self, dataset: &Dataset) -> impl Iterator<Item = String> {
         let above = self
             .conditions
@@ -172,7 +175,7 @@ impl CouplingsAssessment {
         })
     }
 
-    /// What the engineer has to know before the couplings are used.
+    /// Returns the cautions to read before the couplings are used.
     pub fn cautions(&self, dataset: &Dataset) -> Vec<Remark> {
         let caution = |text: String| Remark::new(RemarkKind::Caution, text);
         let mut remarks: Vec<Remark> = self.unstable_words();
@@ -223,7 +226,8 @@ impl CouplingsAssessment {
         remarks
     }
 
-    /// Poles that are newly unstable of the representatives, and of the other kept models; those in the band first.
+    /// Lists the newly unstable poles of the representatives, and of the other kept models; poles
+    /// in the band first.
     fn unstable_words(&self) -> Vec<Remark> {
         let remark = |is_representative: bool| {
             let poles: Vec<&UnstablePole> = self
@@ -258,7 +262,7 @@ impl CouplingsAssessment {
         [true, false].into_iter().filter_map(remark).collect()
     }
 
-    /// Some condition without which there are no couplings, and how many there are.
+    /// Names a condition whose omission leaves no couplings, and the number of such conditions.
     fn partly_left_out(&self) -> Option<String> {
         let all = self.fitted.problem.conditions.len();
         let known = self.left_out_fits.len();
@@ -287,7 +291,7 @@ impl CouplingsAssessment {
     }
 }
 
-/// "1 condition", "11 conditions".
+/// Counts conditions: "1 condition", "11 conditions".
 fn counted(conditions: usize) -> String {
     format!(
         "{conditions} condition{}",
@@ -295,12 +299,12 @@ fn counted(conditions: usize) -> String {
     )
 }
 
-/// Whether a channel is an angular rate, by its unit.
+/// Returns whether a channel is an angular rate, by its unit.
 fn is_rate(channel: &Channel) -> bool {
     ["deg/s", "rad/s", "°/s"].contains(&channel.unit.trim())
 }
 
-/// Whether a channel is an acceleration, by its unit.
+/// Returns whether a channel is an acceleration, by its unit.
 fn is_acceleration(channel: &Channel) -> bool {
     matches!(
         channel.unit.trim(),
@@ -308,7 +312,7 @@ fn is_acceleration(channel: &Channel) -> bool {
     )
 }
 
-/// "LAT takes 4.7 % of LON: as a swashplate phase of 2.7°".
+/// Describes a mixing entry: "LAT takes 4.7 % of LON: as a swashplate phase of 2.7°".
 fn mixing_words(dataset: &Dataset, of: &MixingShare) -> String {
     let [to, from] = [of.to, of.from].map(|input| &dataset.inputs()[input]);
     let share = if to.unit == from.unit {
@@ -332,7 +336,8 @@ fn mixing_words(dataset: &Dataset, of: &MixingShare) -> String {
     format!("{} takes {share}{phase}.", to.name)
 }
 
-/// "PED follows NY by 1.2 % per m/s²: directional stiffness that the physics model does not have".
+/// Describes a feedback entry: "PED follows NY by 1.2 % per m/s²: directional stiffness that the
+/// physics model does not have".
 fn feedback_words(dataset: &Dataset, of: &FeedbackShare) -> String {
     let input = &dataset.inputs()[of.input];
     let output = &dataset.outputs()[of.output];
@@ -344,7 +349,7 @@ fn feedback_words(dataset: &Dataset, of: &FeedbackShare) -> String {
         (true, _) if is_rate(output) => "damping",
         _ => "a coupling",
     };
-    // A share is one only between channels of one unit.
+    // A share is meaningful only between channels with the same unit.
     let moved = &dataset.inputs()[of.moved];
     let share = if moved.unit == input.unit {
         format!("{} % of {}", percent(of.share), moved.name)
@@ -372,7 +377,8 @@ fn percent(share: f64) -> String {
     telling(100.0 * share, 1).replace('-', "−")
 }
 
-/// "in the band condition 4, slow at 2 rad/s; condition 1, 8 models at 0.143 to 0.149 rad/s": the poles of one condition together.
+/// Locates unstable poles, grouped by condition: "in the band condition 4, slow at 2 rad/s;
+/// condition 1, 8 models at 0.143 to 0.149 rad/s".
 fn unstable_places(poles: &[&UnstablePole]) -> String {
     let mut places: BTreeMap<(bool, ConditionId), Vec<&UnstablePole>> = BTreeMap::new();
     poles.iter().for_each(|of| {
@@ -406,7 +412,7 @@ fn unstable_places(poles: &[&UnstablePole]) -> String {
     places.iter().map(place).collect::<Vec<_>>().join("; ")
 }
 
-/// "−0.30 ± 1.20j rad/s".
+/// Formats a pole: "−0.30 ± 1.20j rad/s".
 fn pole_words(pole: Complex<f64>) -> String {
     let imaginary = pole.im.abs();
     let imaginary = if imaginary > 0.0 {
@@ -433,7 +439,8 @@ fn undetermined_words(dataset: &Dataset, unknowns: &[Unknown]) -> Option<String>
 }
 
 impl CouplingsAssessment {
-    /// "mixing and feedback of 11 conditions; its least-squares problem is solved to 3e-16".
+    /// Returns the heading: "mixing and feedback of 11 conditions; its least-squares problem is
+    /// solved to 3e-16".
     pub fn heading(&self) -> String {
         format!(
             "{} fitted to {}; the normal equations of the last solve hold to {:.0e}",
@@ -443,7 +450,7 @@ impl CouplingsAssessment {
         )
     }
 
-    /// J on the axis and off it, without couplings and with them.
+    /// Returns the table of J on-axis and off-axis, without and with couplings.
     pub fn cost_table(&self) -> Table {
         let columns = [
             "mean J",
@@ -469,8 +476,8 @@ impl CouplingsAssessment {
         table
     }
 
-    /// The mixing at the mean airspeed, and the feedback where there is one: what each input (row) takes of each input and output. An
-    /// entry within its bar stands in brackets.
+    /// Returns the mixing at the mean airspeed, and the feedback where there is one: for each input
+    /// (row), the share of each input and output. An entry within its error bar is in brackets.
     pub fn matrix_tables(&self, dataset: &Dataset) -> Vec<Table> {
         let airspeed_kt = self.mean_airspeed_kt();
         let (inputs, outputs) = dataset.names_of_channels();
@@ -505,7 +512,8 @@ impl CouplingsAssessment {
         tables
     }
 
-    /// The poles of each condition's physics representative before and after, the farthest moved first.
+    /// Returns the poles of each condition's physics representative before and after, largest shift
+    /// first.
     pub fn pole_table(&self) -> Table {
         let columns = [
             "condition",
@@ -561,7 +569,7 @@ fn matrix_table(
     table
 }
 
-/// "0.047 ± 0.011", in brackets where it is within its bar.
+/// Formats an entry: "0.047 ± 0.011", in brackets where it is within its error bar.
 fn entry_words(entry: &CouplingEntry) -> String {
     let value = telling(entry.value, 3).replace('-', "−");
     let bar = entry.half_width.filter(|half_width| *half_width > 0.0);

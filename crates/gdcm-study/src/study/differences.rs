@@ -1,5 +1,5 @@
-//! What differs between two sets of decisions about one dataset, and between two states of one dataset, with the decisions carried over from
-//! one to the other.
+//! Differences between two sets of decisions about one dataset, and between two states of one
+//! dataset, with the decisions carried over from one to the other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -17,14 +17,14 @@ use super::setting::SETTINGS;
 use super::settings::{ResponseNames, Settings};
 use super::{BundleChoice, ConditionChoice, Study, Variant};
 
-/// One decision that was taken otherwise.
+/// One changed decision.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecisionDifference {
-    /// What was decided: "α of the gains", "LON → Q", "nominal (condition 10)".
+    /// Subject of the decision: "α of the gains", "LON → Q", "nominal (condition 10)".
     pub what: String,
-    /// The one decision: "1", "held", "rejected".
+    /// Decision before: "1", "held", "rejected".
     pub before: String,
-    /// The other.
+    /// Decision after.
     pub after: String,
 }
 
@@ -44,8 +44,8 @@ impl fmt::Display for DecisionDifference {
     }
 }
 
-/// Every decision in which `after` differs from `before`, a study of the same dataset: settings, responses, then condition by
-/// condition. What was kept under names does not count.
+/// Lists every decision in which `after` differs from `before`, a study of the same dataset:
+/// settings, responses, then condition by condition. Variants are not compared.
 pub fn decision_differences(before: &Study, after: &Study) -> Vec<DecisionDifference> {
     let a = &before.settings;
     let b = &after.settings;
@@ -156,40 +156,36 @@ fn bundle_differences(
         .collect()
 }
 
-/// One thing in which a dataset differs from the one that a study was made with, or a decision that has no place in it.
+/// One difference between a dataset and the dataset that a study was made with, or a decision that
+/// does not apply to it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Difference {
-    /// The file is another one, and the study does not say what was in the file that it was saved with.
+    /// The file has changed, and the study has no inventory of the file that it was saved with.
     AnotherFile {
-        /// SHA-256 when the study was saved.
+        /// SHA-256 of the file when the study was saved.
         expected: String,
-        /// SHA-256 now.
+        /// SHA-256 of the present file.
         found: String,
     },
-    /// The dataset has a condition that it did not have.
     ConditionAdded(ConditionId),
-    /// The dataset has lost a condition.
     ConditionRemoved(ConditionId),
-    /// A condition is flown at another airspeed.
+    /// A condition has another airspeed.
     AirspeedChanged {
-        /// The condition.
         condition: ConditionId,
         /// The airspeed before \[kt\].
         before_kt: f64,
         /// The airspeed now \[kt\].
         now_kt: f64,
     },
-    /// A bundle has a model that it did not have.
+    /// A bundle has a new model.
     ModelAdded(ModelId),
-    /// A bundle has lost a model.
     ModelRemoved(ModelId),
-    /// A model has other numbers, other bands, or another trim.
+    /// A model has changed numbers, bands or trim.
     ModelChanged(ModelId),
     /// A decision no longer applies.
     NotApplied {
-        /// The decision in a few words: "reject nominal (condition 10)".
+        /// Label of the decision: "reject nominal (condition 10)".
         decision: String,
-        /// Why not.
         why: String,
     },
 }
@@ -224,25 +220,23 @@ impl fmt::Display for Difference {
     }
 }
 
-/// Every decision of a study by the names of channels, conditions and models: it outlives the dataset that it was taken about.
+/// Every decision of a study by the names of channels, conditions and models, independent of the
+/// dataset.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decisions {
-    /// Settings.
     pub settings: Settings<ResponseNames>,
-    /// Choices in each condition.
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
-    /// Models taken in place of those of the file.
+    /// Models adopted instead of those of the file.
     pub taken: Vec<(ConditionId, Arc<AdoptedModels>)>,
-    /// The channels whose models are turned.
+    /// The channels with reversed sign.
     pub signs: Vec<TurnedChannel>,
-    /// What requirements are asked with.
     pub requirements: Arc<RequirementSettings>,
-    /// The decisions kept under names; these have none of their own.
+    /// The variants; a variant contains no variants of its own.
     pub variants: Vec<(String, Decisions)>,
 }
 
 impl Decisions {
-    /// The decisions of a study.
+    /// Collects the decisions of a study.
     pub fn of(study: &Study) -> Self {
         Self {
             settings: study.settings.named(&study.dataset),
@@ -263,7 +257,8 @@ impl Decisions {
         }
     }
 
-    /// The study of `dataset` with every decision that applies to it, and those that do not.
+    /// Returns the study of `dataset` with every decision that applies to it, and a list of the
+    /// other decisions.
     pub fn applied_to(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
         let mut study = Study::new(dataset);
         let mut differences = Vec::new();
@@ -326,7 +321,7 @@ impl Decisions {
     }
 }
 
-/// The listed responses as a table.
+/// Returns the listed responses as a table.
 fn marked(
     verb: &str,
     listed: &ResponseNames,
@@ -346,7 +341,7 @@ fn marked(
     table
 }
 
-/// Every choice goes the way of the engineer's own decisions, so that nothing comes in that could not be decided.
+/// Applies every choice as an edit, so that no choice comes in that an edit would refuse.
 fn take_choice(
     study: &mut Study,
     condition: ConditionId,
@@ -392,7 +387,8 @@ fn carry_out(edit: &Edit, study: &mut Study, differences: &mut Vec<Difference>) 
 }
 
 impl Study {
-    /// This study of another state of its dataset: with every decision that still applies, and all that is different.
+    /// Returns this study for another state of its dataset, with every decision that still applies,
+    /// and all differences.
     pub fn reconciled(&self, dataset: Arc<Dataset>) -> (Study, Vec<Difference>) {
         let mut differences = Inventory::of(self.file_dataset()).differences(&dataset);
         let (study, not_applied) = Decisions::of(self).applied_to(dataset);
@@ -402,7 +398,7 @@ impl Study {
 }
 
 impl Inventory {
-    /// What is different in `dataset` from the one that this is the inventory of.
+    /// Lists the differences of `dataset` from the dataset of this inventory.
     pub fn differences(&self, dataset: &Dataset) -> Vec<Difference> {
         let now = Inventory::of(dataset);
         let mut differences = Vec::new();
@@ -463,13 +459,10 @@ fn compare_bundles(
 /// The models of one condition: name, and fingerprint of the numbers, the bands and the trim.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConditionInventory {
-    /// The condition.
     pub id: ConditionId,
     /// True airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// The physics models.
     pub physics: BTreeMap<String, String>,
-    /// The identified models.
     pub identified: BTreeMap<String, String>,
 }
 
@@ -489,18 +482,19 @@ impl ConditionInventory {
         }
     }
 
-    /// The models of one bundle.
+    /// Returns the models of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &BTreeMap<String, String> {
         kind.pick(&self.physics, &self.identified)
     }
 }
 
-/// What a dataset holds, small enough to stand in the file of a study: of it, a study tells what has changed since.
+/// Content of a dataset, small enough for a study file: a study compares it with the present
+/// dataset to report changes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inventory(pub Vec<ConditionInventory>);
 
 impl Inventory {
-    /// The inventory of a dataset.
+    /// Takes the inventory of a dataset.
     pub fn of(dataset: &Dataset) -> Self {
         Self(
             dataset

@@ -1,4 +1,4 @@
-//! Every decision the engineer can take about a study, and the only code that carries one out.
+//! Every decision about a study, and the only code that applies decisions.
 
 use std::sync::Arc;
 
@@ -15,213 +15,143 @@ use super::{ConditionChoice, Study};
 /// One decision about a study.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
-    /// Take a model out of its bundle.
     Reject(ModelId),
-    /// Take a model out of its bundle, and say why.
+    /// Rejects a model, with a reason.
     RejectBecause {
-        /// The model.
         model: ModelId,
-        /// The reason in the engineer's words.
         reason: String,
     },
-    /// Say why a rejected model is rejected; an empty reason takes back what was said.
+    /// Sets the reason of a rejection; an empty reason removes it.
     SetReason(ModelId, String),
-    /// Put a rejected model back.
     Restore(ModelId),
-    /// Put every rejected model of a condition back, in both bundles.
+    /// Restores every rejected model of a condition, in both bundles.
     RestoreAll {
-        /// The condition.
         condition: ConditionId,
     },
-    /// Take models out of their bundles: all of them, or none.
+    /// Rejects all of these models, or none.
     RejectEach(Vec<ModelId>),
-    /// Put rejected models back.
     RestoreEach(Vec<ModelId>),
-    /// Let a model represent its bundle, whatever the medoid is.
+    /// Makes a model represent its bundle instead of the medoid.
     Pin(ModelId),
-    /// Let the medoid represent a bundle again.
+    /// Makes the medoid represent the bundle again.
     Unpin {
-        /// The condition.
         condition: ConditionId,
-        /// Which bundle.
         bundle: BundleKind,
     },
-    /// Take a condition into the schedule, or leave it out.
     SetScheduled {
-        /// The condition.
         condition: ConditionId,
-        /// Whether it enters the schedule.
         scheduled: bool,
     },
-    /// Hold a condition out, to judge the schedule by it, or let it be one of the others again.
+    /// Holds a condition out of the schedule, to validate the schedule with it, or includes it
+    /// again.
     SetHeldOut {
-        /// The condition.
         condition: ConditionId,
-        /// Whether it is held out.
         held_out: bool,
     },
-    /// Hold exactly the dataset's on-axis responses.
+    /// Constrains exactly the dataset's on-axis responses.
     ConstrainOnAxis,
-    /// Hold a response exactly, or free it.
+    /// Constrains or releases a response.
     Hold(Pair, bool),
-    /// Fit a response, or ignore it in the objective.
+    /// Fits a response, or ignores it in the objective.
     Fit(Pair, bool),
-    /// Give a setting of the whole study a value ([`Setting::to`]).
+    /// Changes a setting of the whole study ([`Setting::to`]).
     Set(&'static Setting, Value),
-    /// Turns the models of a channel, or puts them back as the file has them: a decision about the data, of all variants.
+    /// Reverses the sign of a channel's models, or restores it: a decision about the data, common
+    /// to all variants.
     SetSign {
-        /// The channel.
         channel: Channel,
-        /// Whose models; none puts all back.
+        /// The models to reverse; `None` restores all.
         of: Option<SignRole>,
     },
-    /// Put models identified from flight records into conditions, in place of the identified models there.
+    /// Adopts models identified from flight records, instead of the identified models of
+    /// conditions.
     TakeModels(Vec<(ConditionId, Arc<AdoptedModels>)>),
-    /// Put the identified models of the dataset's file back into a condition.
     ReturnModels {
-        /// The condition.
         condition: ConditionId,
     },
-    /// Ask requirements with other settings: what of them is other, and all of them. A decision of the study, of all variants.
+    /// Changes the requirement settings: label of the change, and the complete settings. A decision
+    /// of the study, common to all variants.
     SetRequirements(&'static str, Arc<RequirementSettings>),
-    /// Keep the present decisions under a name.
+    /// Stores the present decisions under a name.
     KeepVariant {
-        /// The name.
         name: String,
     },
-    /// Put the decisions that were kept under a name in place of the present ones.
+    /// Replaces the present decisions with those stored under a name.
     TakeVariant {
-        /// The name.
         name: String,
     },
-    /// Forget the decisions kept under a name.
     RemoveVariant {
-        /// The name.
         name: String,
     },
-    /// Give kept decisions another name.
     RenameVariant {
-        /// The name now.
         from: String,
-        /// The new name.
         to: String,
     },
 }
 
-/// Characters that the reason of a rejection may have.
+/// Greatest length of a rejection's reason, in characters.
 pub const LONGEST_REASON: usize = 1000;
 
-/// Why a decision was not carried out; the study is unchanged.
+/// Why a decision was refused; the study is unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EditRefusal {
-    /// The last model of a bundle cannot be rejected.
     #[error(
         "condition {condition}: \"{model}\" is the last model kept in its bundle; at least one must stay"
     )]
     LastModel {
-        /// The condition's id.
         condition: ConditionId,
-        /// The model's name.
         model: String,
     },
-    /// A rejected model cannot represent its bundle.
     #[error(
         "condition {condition}: \"{model}\" is rejected; restore it before using it as representative"
     )]
     PinRejected {
-        /// The condition's id.
         condition: ConditionId,
-        /// The model's name.
         model: String,
     },
-    /// Only a rejected model has a reason to be.
     #[error("condition {condition}: \"{model}\" is not rejected; a reason goes with a rejection")]
     ReasonOfKept {
-        /// The condition's id.
         condition: ConditionId,
-        /// The model's name.
         model: String,
     },
-    /// A text is longer than it may be.
     #[error("{what}: expected at most {most} characters, found {found}")]
     TooLong {
-        /// What the text is.
         what: &'static str,
-        /// Characters it may have.
         most: usize,
-        /// Characters it has.
         found: usize,
     },
-    /// Models that cannot be those of a condition.
+    /// The models do not fit the condition.
     #[error("condition {condition}: {why}")]
-    Models {
-        /// The condition's id.
-        condition: ConditionId,
-        /// Why not.
-        why: String,
-    },
-    /// A variant needs a name.
+    Models { condition: ConditionId, why: String },
     #[error("a variant needs a name")]
     VariantWithoutName,
-    /// Another variant has this name.
     #[error("there is a variant \"{name}\" already")]
-    VariantExists {
-        /// The name.
-        name: String,
-    },
-    /// No variant has this name.
+    VariantExists { name: String },
     #[error("there is no variant \"{name}\"")]
-    NoVariant {
-        /// The name.
-        name: String,
-    },
-    /// A setting lies outside its range.
+    NoVariant { name: String },
     #[error("{setting}: expected {expected}, found {}", number(*found))]
     OutOfRange {
-        /// The setting's name.
         setting: &'static str,
-        /// Its range.
         expected: String,
-        /// The value given.
         found: f64,
     },
-    /// The two ends of the band are wrong.
+    /// The two ends of the band are invalid.
     #[error(transparent)]
     Band(#[from] BandError),
-    /// A setting cannot have a value of this kind.
     #[error("{setting}: this is not one of its values")]
-    NotAValue {
-        /// The setting's name.
-        setting: &'static str,
-    },
-    /// The dataset has no such condition.
+    NotAValue { setting: &'static str },
     #[error("the dataset has no condition {condition}")]
-    NoCondition {
-        /// The condition.
-        condition: ConditionId,
-    },
-    /// The dataset has no such model.
+    NoCondition { condition: ConditionId },
     #[error("condition {} has no {} model \"{}\"", model.condition, model.bundle, model.name)]
-    NoModel {
-        /// The model.
-        model: ModelId,
-    },
-    /// The channel does not exist.
+    NoModel { model: ModelId },
     #[error("the dataset has no {}", channel.name(&[], &[]))]
-    NoChannel {
-        /// The channel.
-        channel: Channel,
-    },
-    /// The dataset has no such response.
+    NoChannel { channel: Channel },
     #[error("the dataset has no response of output number {} to input number {}", pair.output + 1, pair.input + 1)]
-    NoResponse {
-        /// The response.
-        pair: Pair,
-    },
+    NoResponse { pair: Pair },
 }
 
 impl Edit {
-    /// Rejects physics models of a condition, by their names.
+    /// Returns the decision that rejects physics models of a condition, by name.
     pub fn reject_physics(condition: ConditionId, models: &[String]) -> Self {
         Self::RejectEach(
             models
@@ -231,7 +161,7 @@ impl Edit {
         )
     }
 
-    /// The decision in a few words, for the undo list: "reject nominal (condition 10)".
+    /// Returns a short label for the undo list: "reject nominal (condition 10)".
     pub fn label(&self, study: &Study) -> String {
         let name_of = |id: &ModelId| format!("{} (condition {})", id.name, id.condition);
         match self {
@@ -296,7 +226,8 @@ impl Edit {
         }
     }
 
-    /// Whether two decisions in a row are one to the engineer: two positions of the same slider.
+    /// Returns whether two consecutive decisions form one undo step: two positions of the same
+    /// slider.
     pub fn continues(&self, earlier: &Edit) -> bool {
         match (self, earlier) {
             (Edit::Set(later, _), Edit::Set(earlier, _)) => later == earlier,
@@ -309,7 +240,7 @@ impl Edit {
 }
 
 impl Study {
-    /// Carries out one decision, or refuses it and leaves the study as it was.
+    /// Applies one decision, or refuses it and leaves the study unchanged.
     pub fn apply(&mut self, edit: &Edit) -> Result<(), EditRefusal> {
         match edit {
             Edit::Reject(id) => return self.reject(id),
@@ -354,7 +285,7 @@ impl Study {
         Ok(())
     }
 
-    /// A condition with the choices in it, to change.
+    /// Returns a condition with its choices, mutable.
     fn condition(
         &mut self,
         id: ConditionId,
@@ -367,7 +298,7 @@ impl Study {
         found.ok_or(EditRefusal::NoCondition { condition: id })
     }
 
-    /// As [`Study::condition`], of a model that is there.
+    /// Works as [`Study::condition`], and checks that the model exists.
     fn model(&mut self, id: &ModelId) -> Result<(&Condition, &mut ConditionChoice), EditRefusal> {
         let (condition, choice) = self.condition(id.condition)?;
         if condition.position(id.bundle, &id.name).is_none() {
@@ -398,7 +329,7 @@ impl Study {
         Ok(())
     }
 
-    /// Several decisions as one: all of them, or none.
+    /// Applies several decisions as one: all of them, or none.
     fn attempt(
         &mut self,
         decide: impl FnOnce(&mut Self) -> Result<(), EditRefusal>,

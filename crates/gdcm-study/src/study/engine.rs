@@ -1,4 +1,4 @@
-//! The analysis of a study, stage by stage, each kept while what it depends on stays the same.
+//! The analysis of a study, stage by stage; each stage is cached while its inputs stay the same.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -24,17 +24,19 @@ use super::fitted_couplings::{CouplingFitKey, CouplingOutcome, CouplingSource, F
 use super::uncertainty::Uncertainty;
 use super::{Study, schedule_losses};
 
-/// Computes analyses and keeps each stage's last result by what it is computed from, never by where that came from: of a dataset
-/// with one other model, one response is computed.
-/// Responses (numbers of the model, band, points) -> distances -> representatives, G, D (rejections, pins, average) -> bounds (quantile) ->
-/// gains, delays (constraints, weights, alpha, bounds) -> schedule -> assessment.
-/// Where couplings are asked for, they are fitted to the representatives and what follows these is of physics models with couplings.
+/// Computes analyses and caches each stage's last result by the numbers in its inputs, whatever
+/// their source: for a dataset in which one model has changed, one response is computed.
+/// Responses (numbers of the model, band, points) -> distances -> representatives, G, D
+/// (rejections, pins, average) -> bounds (quantile) -> gains, delays (constraints, weights, alpha,
+/// bounds) -> schedule -> assessment. Where couplings are requested, they are fitted to the
+/// representatives, and all later stages use physics models with couplings.
 ///
-/// Neither conditions nor models depend on one another: the result is the same to the last bit whoever carries them out.
+/// Conditions and models are independent of one another: the result is the same to the last bit
+/// with any executor.
 #[derive(Clone)]
 pub struct Engine {
     executor: Arc<dyn Executor>,
-    /// How far the proof of each condition's gains may go.
+    /// Budget of the proof of each condition's gains.
     proofs: ProofBudget,
     dataset: Option<Arc<Dataset>>,
     known: KnownModels,
@@ -42,11 +44,11 @@ pub struct Engine {
     conditions: BTreeMap<ConditionId, ConditionStages>,
     /// The condition drawn last.
     drawn: Option<ConditionId>,
-    /// Its curves.
+    /// Curves of the condition drawn last.
     curves: Memo<(Band, usize), Arc<ConditionCurves>>,
 }
 
-/// The budget of a proof that an answer may wait for; what needs more of it is proven beside the answer ([`super::job::ProofJob`]).
+/// Budget of a proof within a live answer; longer proofs run beside it ([`super::job::ProofJob`]).
 pub const LIVE_PROOF: ProofBudget = ProofBudget {
     work: 1_000_000,
     listing: 100_000,
@@ -59,11 +61,11 @@ impl Default for Engine {
     }
 }
 
-/// What came of each condition.
+/// Outcome of each condition.
 pub(super) type Outcomes = BTreeMap<ConditionId, Result<ConditionAnalysis, ConditionFailure>>;
 
 impl Engine {
-    /// An engine whose work is carried out by `executor`.
+    /// Creates an engine that runs on `executor`.
     pub fn with_executor(executor: Box<dyn Executor>) -> Self {
         Self {
             executor: executor.into(),
@@ -77,7 +79,7 @@ impl Engine {
         }
     }
 
-    /// Another engine that knows what this one has computed, and goes its own way from there.
+    /// Copies the engine with its cached results; the copy then changes independently.
     pub fn fork(&self, executor: Box<dyn Executor>) -> Self {
         Self {
             executor: executor.into(),
@@ -85,18 +87,18 @@ impl Engine {
         }
     }
 
-    /// Who carries out its work.
+    /// Returns the executor.
     pub(super) fn executor(&self) -> &dyn Executor {
         self.executor.as_ref()
     }
 
-    /// The same engine with another budget for the proof of each condition's gains.
+    /// Sets the budget of the proof of each condition's gains.
     pub fn with_proofs_within(self, proofs: ProofBudget) -> Self {
         Self { proofs, ..self }
     }
 
-    /// The same engine with the responses of models that other engines know; for engines that work on the same band and points in
-    /// turn, since of each model the last response is kept.
+    /// Shares the responses of models with other engines; for engines that work on the same band
+    /// and points in turn, since only the last response of each model is cached.
     pub fn sharing(self, known: &KnownModels) -> Self {
         Self {
             known: known.clone(),
@@ -104,14 +106,15 @@ impl Engine {
         }
     }
 
-    /// Takes gains that were proven elsewhere, with a larger budget, in place of its own for the same problem.
+    /// Replaces cached gains of the same problem with gains proven elsewhere under a larger budget.
     pub fn take_gains(&mut self, problem: &Arc<Problem>, solution: &Arc<Solution>) {
         self.conditions
             .values_mut()
             .for_each(|stages| stages.take_gains(problem, solution));
     }
 
-    /// The analysis of `study`; stages that do not depend on what changed since the last call are not computed again.
+    /// Analyses `study`; stages whose inputs have not changed since the last call are not computed
+    /// again.
     pub fn analyze(
         &mut self,
         study: &Study,
@@ -120,7 +123,8 @@ impl Engine {
         self.analyze_first(study, None, progress)
     }
 
-    /// As [`Engine::analyze`], with the result of one condition told before the others are begun.
+    /// Works as [`Engine::analyze`], and reports the result of one condition before the others are
+    /// started.
     pub fn analyze_first(
         &mut self,
         study: &Study,
@@ -173,8 +177,8 @@ impl Engine {
         Ok(analysis)
     }
 
-    /// How sure each figure of `analysis` is (M13). Substitutions of models that do not depend on what changed since the last call are not
-    /// computed again.
+    /// Computes the uncertainty of each figure of `analysis` (M13). Substitutions whose inputs have
+    /// not changed since the last call are not computed again.
     pub fn uncertainty(
         &mut self,
         analysis: &Analysis,
@@ -183,7 +187,7 @@ impl Engine {
         let study = &analysis.study;
         self.take(&study.dataset);
         let grid = FrequencyGrid::logarithmic(study.settings.band, study.settings.points);
-        // A response and a substitution for each model.
+        // One response and one substitution for each model.
         let total = study
             .dataset
             .conditions()
@@ -210,7 +214,8 @@ impl Engine {
         Ok(Uncertainty::of(analysis, &substitutions))
     }
 
-    /// The curves of every model of one condition on `points` frequencies of `band`; none of a condition that is not there.
+    /// Returns the curves of every model of one condition on `points` frequencies of `band`; `None`
+    /// where the condition does not exist.
     pub fn curves(
         &mut self,
         dataset: &Arc<Dataset>,
@@ -245,7 +250,7 @@ impl Engine {
         Ok(Some(curves))
     }
 
-    /// Goes on with this dataset: whatever it shares with the last one stays computed.
+    /// Switches to this dataset, and keeps all results for the content it shares with the last one.
     fn take(&mut self, dataset: &Arc<Dataset>) {
         if self
             .dataset
@@ -258,7 +263,7 @@ impl Engine {
             .conditions()
             .iter()
             .map(|condition| ConditionModels::of(condition, &self.known));
-        // All are made before any of the last dataset's is dropped: a model may have moved.
+        // Collect all before dropping any of the last dataset's: a model may have moved.
         let models: Vec<ConditionModels> = models.collect();
         let mut before = std::mem::take(&mut self.conditions);
         for models in models {
@@ -279,17 +284,16 @@ impl Engine {
     }
 }
 
-/// The condition whose result is wanted before the others'.
+/// The condition whose result is needed before the others.
 #[derive(Clone, Copy)]
 pub struct WantedFirst<'a> {
-    /// The condition.
     pub condition: ConditionId,
-    /// Is told its result, which the whole analysis will contain.
+    /// Receives its result, which is also part of the whole analysis.
     pub tell: &'a (dyn Fn(&Result<ConditionAnalysis, ConditionFailure>) + Sync),
 }
 
-/// Steps of an analysis: those of the conditions; of those that couplings are fitted to once more for what goes into the fit, and
-/// once more for the fit.
+/// Returns the number of steps of an analysis: those of the conditions, plus, for the conditions
+/// that couplings are fitted to, once more for the inputs of the fit and once more for the fit.
 fn steps(study: &Study) -> usize {
     let of = |condition: &Arc<Condition>| {
         let is_fitted_to =
@@ -299,7 +303,8 @@ fn steps(study: &Study) -> usize {
     study.dataset.conditions().iter().map(of).sum()
 }
 
-/// The couplings of a study, fitted to the conditions that are analysed and not held out; none where they are not asked for (M16.1).
+/// Fits the couplings of a study to the conditions that are analysed and not held out; `None` where
+/// couplings are not requested (M16.1).
 fn fit_of(
     run: Run<'_>,
     kept: &mut Memo<CouplingFitKey, CouplingOutcome>,
@@ -333,7 +338,7 @@ fn fit_of(
     let fit = kept.get_or_fail(key, |key| {
         key.fit(study, grid, &sources, (execution.parts().0, &solves))
     })?;
-    // None of them was told where the fit is known.
+    // No solve was reported where the fit is cached.
     solves.advanced(1, 1);
     Ok(Some(fit))
 }
@@ -341,7 +346,7 @@ fn fit_of(
 /// Reports the progress of a fit as steps of the analysis.
 struct Solves<'a> {
     execution: &'a Execution<'a>,
-    /// How many steps the fit is.
+    /// Number of steps of the fit.
     steps: usize,
     told: AtomicUsize,
 }
@@ -353,13 +358,14 @@ impl Progress for Solves<'_> {
 
     fn advanced(&self, done: usize, total: usize) {
         let told = self.steps * done / total.max(1);
-        // Several threads may report at once: never backwards.
+        // Several threads may report at the same time; progress never goes backwards.
         let before = self.told.fetch_max(told, Ordering::Relaxed);
         self.execution.step(told.saturating_sub(before));
     }
 }
 
-/// All conditions: first the one that is wanted first, by everybody together, then the others side by side.
+/// Analyses all conditions: first the one needed first, on all threads, then the others in
+/// parallel.
 fn analyze_conditions(
     run: Run<'_>,
     stages: &mut BTreeMap<ConditionId, ConditionStages>,
@@ -385,12 +391,12 @@ fn analyze_conditions(
     Ok(outcomes)
 }
 
-/// Signs and units that are to be asked after, told to each condition that shows them too.
+/// Collects suspected sign and unit differences, and adds each to the conditions that show it.
 fn doubts_of(study: &Study, outcomes: &mut Outcomes) -> Vec<ConventionDoubt> {
     let solved = outcomes
         .iter()
         .filter_map(|(id, outcome)| Some((*id, outcome.as_ref().ok()?)));
-    // Signs and units are those of the models as they are.
+    // Signs and units are judged on the models without couplings.
     let mismatches =
         solved.map(|(id, result)| (id, &result.before_couplings().representative.mismatch));
     let doubts = convention_doubts(
@@ -410,7 +416,7 @@ fn doubts_of(study: &Study, outcomes: &mut Outcomes) -> Vec<ConventionDoubt> {
     doubts
 }
 
-/// The scheduled conditions that have a result, in the dataset's order.
+/// Returns the scheduled conditions with a result, in the dataset's order.
 pub(super) fn scheduled_points<'a>(
     study: &Study,
     outcomes: &'a Outcomes,
@@ -431,7 +437,8 @@ pub(super) fn scheduled_points<'a>(
     in_schedule(study, outcomes).map(point).collect()
 }
 
-/// The settings of the schedule of these conditions, with what the choice of delays comes to in them (M11).
+/// Returns the schedule settings for these conditions, with the choice about delays resolved for
+/// them (M11).
 pub(super) fn schedule_settings(study: &Study, outcomes: &Outcomes) -> ScheduleSettings {
     let delays = match study.settings.schedule_delays {
         DelayScheduling::Always => true,
@@ -444,7 +451,7 @@ pub(super) fn schedule_settings(study: &Study, outcomes: &Outcomes) -> ScheduleS
     }
 }
 
-/// Whether a constrained response has a net delay above half a millisecond.
+/// Returns whether a constrained response has a net delay above half a millisecond.
 fn has_notable_delay(result: &ConditionAnalysis) -> bool {
     result
         .held()
@@ -452,7 +459,7 @@ fn has_notable_delay(result: &ConditionAnalysis) -> bool {
         .any(|pair| result.correction.net_delay_s(pair) > NOTABLE_DELAY_S)
 }
 
-/// The results of the conditions that are in the schedule, in file order.
+/// Returns the results of the scheduled conditions, in file order.
 fn in_schedule<'a>(
     study: &Study,
     outcomes: &'a Outcomes,
@@ -464,11 +471,12 @@ fn in_schedule<'a>(
     chosen.filter_map(|id| outcomes.get(&id)?.as_ref().ok())
 }
 
-/// The channels of which no schedule can hold the signed delays of all conditions (M15.6).
+/// Returns cautions about the channels for which no schedule can reproduce the signed delays of all
+/// conditions (M15.6).
 fn signed_delays_apart(study: &Study, outcomes: &Outcomes) -> Vec<ScheduleCaution> {
-    /// Farther than this \[s\] from the mean a signed delay is not scheduled.
+    /// Greatest distance \[s\] from the mean of a signed delay that can be scheduled.
     const APART_S: f64 = 0.02;
-    /// Below this \[s\] a sign says nothing.
+    /// Signed delays below this \[s\] have no meaningful sign.
     const NOTHING_S: f64 = 2e-3;
     let leads = in_schedule(study, outcomes)
         .filter_map(|result| Some((result.condition.id(), &result.compensated.as_ref()?.leads)));

@@ -1,4 +1,4 @@
-//! The carrying out of an analysis: by whom, how far, whether still wanted.
+//! Execution of an analysis: executor, progress and cancellation.
 
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use gdcm_model::executor::{Executor, Sequential, each};
 use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 
-/// Carries out the pieces of one analysis, stops between two of them, and tells how far it is.
+/// Runs the pieces of one analysis, checks for cancellation between two of them, and reports
+/// progress.
 pub struct Execution<'a> {
     executor: &'a dyn Executor,
     progress: &'a dyn Progress,
@@ -15,7 +16,7 @@ pub struct Execution<'a> {
 }
 
 impl<'a> Execution<'a> {
-    /// An analysis of `total` steps.
+    /// Creates the execution of an analysis with `total` steps.
     pub fn new(executor: &'a dyn Executor, progress: &'a dyn Progress, total: usize) -> Self {
         Self {
             executor,
@@ -25,22 +26,22 @@ impl<'a> Execution<'a> {
         }
     }
 
-    /// An analysis by one thread that nobody observes.
+    /// Creates an execution on one thread without an observer.
     pub fn sequential() -> Execution<'static> {
         Execution::new(&Sequential, &Unobserved, 0)
     }
 
-    /// Who is told of the progress.
+    /// Returns the observer of the progress.
     pub(super) fn progress(&self) -> &'a dyn Progress {
         self.progress
     }
 
-    /// Who carries out the pieces, and who is told of the progress.
+    /// Returns the executor and the observer of the progress.
     pub(super) fn parts(&self) -> (&'a dyn Executor, &'a dyn Progress) {
         (self.executor, self.progress)
     }
 
-    /// `count` steps more are done. Every hundredth of the total is told.
+    /// Counts `count` more steps as done, and reports every hundredth of the total.
     pub(super) fn step(&self, count: usize) {
         let before = self.done.fetch_add(count, Ordering::Relaxed);
         let hundredth = |done: usize| 100 * done / self.total.max(1);
@@ -49,7 +50,7 @@ impl<'a> Execution<'a> {
         }
     }
 
-    /// `of(0), of(1), ...`, in any order; each is `steps` steps.
+    /// Evaluates `of(0), of(1), ...`, in any order; each is `steps` steps.
     pub(super) fn each<T: Send>(
         &self,
         count: usize,
@@ -64,7 +65,7 @@ impl<'a> Execution<'a> {
         .ok_or(Cancelled)
     }
 
-    /// One piece of work; none if it is not wanted any more.
+    /// Runs one piece of work; `None` after cancellation.
     fn piece<T>(&self, steps: usize, work: impl FnOnce() -> T) -> Option<T> {
         if self.progress.cancelled() {
             return None;
@@ -74,7 +75,7 @@ impl<'a> Execution<'a> {
         Some(result)
     }
 
-    /// As [`Execution::each`] for work on things that change, which may itself be stopped.
+    /// Works as [`Execution::each`] on mutable items, with work that may itself be cancelled.
     pub(super) fn each_mut<S: Send, T: Send>(
         &self,
         things: Vec<S>,
@@ -87,10 +88,10 @@ impl<'a> Execution<'a> {
     }
 }
 
-/// What `of` makes of each thing, one after the other.
+/// Applies `of` to each item, one after the other.
 ///
 /// # Errors
-/// [`Cancelled`] between two things, where `progress` says so.
+/// [`Cancelled`] between two items, where `progress` requests it.
 pub(super) fn in_turn<T, U>(
     things: &[T],
     progress: &dyn Progress,
@@ -107,7 +108,7 @@ pub(super) fn in_turn<T, U>(
     each.collect()
 }
 
-/// One value, kept as long as what it depends on stays the same.
+/// A cached value, valid while its key stays the same.
 #[derive(Clone, Debug)]
 pub(super) struct Memo<K, V> {
     kept: Option<(K, V)>,
@@ -120,21 +121,22 @@ impl<K, V> Default for Memo<K, V> {
 }
 
 impl<K: PartialEq, V: Clone> Memo<K, V> {
-    /// A value made elsewhere.
+    /// Creates a cache with a value computed elsewhere.
     pub(super) fn of(key: K, value: V) -> Self {
         Self {
             kept: Some((key, value)),
         }
     }
 
-    /// The value for `key`: the kept one where the key is the same, `make(&key)` otherwise.
+    /// Returns the value for `key`: the cached value where the key is the same, `make(&key)`
+    /// otherwise.
     pub(super) fn get(&mut self, key: K, make: impl FnOnce(&K) -> V) -> V {
         let made = self.get_or_fail(key, |key| Ok::<V, Infallible>(make(key)));
         made.unwrap_or_else(|never| match never {})
     }
 
-    /// As [`Memo::get`], for a value that may fail to be made: nothing is kept then. The old value is dropped first, so that
-    /// a large one is not in memory twice.
+    /// Works as [`Memo::get`] for a fallible computation: an error leaves the cache empty. The old
+    /// value is dropped first, so that a large value is not in memory twice.
     pub(super) fn get_or_fail<E>(
         &mut self,
         key: K,
@@ -149,7 +151,7 @@ impl<K: PartialEq, V: Clone> Memo<K, V> {
         Ok(value)
     }
 
-    /// The value for `key`, if it is kept.
+    /// Returns the value for `key`, if cached.
     pub(super) fn kept(&self, key: &K) -> Option<&V> {
         self.kept
             .as_ref()
@@ -157,7 +159,7 @@ impl<K: PartialEq, V: Clone> Memo<K, V> {
             .map(|(_, value)| value)
     }
 
-    /// Whether the value for `key` is kept.
+    /// Returns whether the value for `key` is cached.
     pub(super) fn holds(&self, key: &K) -> bool {
         self.kept(key).is_some()
     }
@@ -169,7 +171,7 @@ mod tests {
 
     use super::*;
 
-    /// Stops after so many pieces of work, and keeps what it hears.
+    /// Cancels after a number of pieces of work, and records the reports.
     struct Impatient {
         left: AtomicUsize,
         heard: Mutex<Vec<(usize, usize)>>,

@@ -1,5 +1,5 @@
-//! The couplings of a study: what they are fitted to, what was found (M16.1, M16.2), and a condition's physics models with them, the one
-//! place where what leaves takes them (M16.3).
+//! The couplings of a study: their fit (M16.1, M16.2), and a condition's physics models with
+//! couplings, the only source of coupled models for exports (M16.3).
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -35,35 +35,36 @@ use super::settings::PhaseCorrection;
 /// The couplings of a study.
 #[derive(Clone, Debug)]
 pub struct FittedCouplings {
-    /// What they were fitted to: the representatives of the conditions that are analysed and not held out.
+    /// Problem of the fit: the representatives of the conditions that are analysed and not held
+    /// out.
     pub problem: CouplingProblem,
-    /// What was found.
     pub fit: CouplingFit,
 }
 
 impl PartialEq for FittedCouplings {
-    /// Two fits of the same numbers couple every model alike, whatever they were fitted to.
+    /// Two fits with the same numbers have the same effect on every model, whatever their data.
     fn eq(&self, other: &Self) -> bool {
         self.fit == other.fit
     }
 }
 
 impl FittedCouplings {
-    /// Mixing and feedback.
+    /// Returns the matrices of mixing and feedback.
     pub fn matrices(&self) -> &CouplingMatrices {
         &self.fit.matrices
     }
 
-    /// Whether the couplings were fitted to a condition.
+    /// Returns whether the couplings were fitted to a condition.
     pub fn is_fitted_to(&self, condition: ConditionId) -> bool {
         self.problem.conditions.iter().any(|of| of.id == condition)
     }
 }
 
-/// The couplings that were asked for, or why there are none.
+/// The requested couplings, or why there are none.
 pub(super) type CouplingOutcome = Result<Arc<FittedCouplings>, CouplingError>;
 
-/// What one condition brings to the fit: its representatives, and what its channels get without couplings.
+/// Contribution of one condition to the fit: its representatives, and its channel delays without
+/// couplings.
 pub(super) struct CouplingSource {
     pub(super) condition: Arc<Condition>,
     pub(super) comparison: Arc<Comparison>,
@@ -94,7 +95,7 @@ impl CouplingSource {
     }
 }
 
-/// What a fit depends on in one condition.
+/// Dependencies of a fit in one condition.
 #[derive(Clone, Debug, PartialEq)]
 struct ConditionKey {
     id: ConditionId,
@@ -105,7 +106,7 @@ struct ConditionKey {
     bands: Option<Arc<ModelBands>>,
 }
 
-/// All that a fit depends on: neither the weight of the gains nor their bounds are in it.
+/// All dependencies of a fit: neither the weight of the gains nor their bounds are among them.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct CouplingFitKey {
     kind: CouplingKind,
@@ -114,7 +115,8 @@ pub(super) struct CouplingFitKey {
     airspeed_tolerance_kt: f64,
     lead: Option<LeadSettings>,
     coherence: Option<f64>,
-    /// Number and length \[s\] of the averages of measured responses that do not say it, and whether they overlap by half.
+    /// Number and length \[s\] of the averages of measured responses that do not state them, and
+    /// whether the windows overlap by half.
     averaging: (Option<f64>, Option<f64>, bool),
     delays_s: Option<Channels<f64>>,
     conditions: Vec<ConditionKey>,
@@ -153,7 +155,7 @@ impl CouplingFitKey {
         }
     }
 
-    /// The problem of these sources (M16.1).
+    /// Builds the problem of these sources (M16.1).
     fn problem(
         &self,
         study: &Study,
@@ -192,7 +194,7 @@ impl CouplingFitKey {
         }
     }
 
-    /// The couplings of these sources, or why there are none.
+    /// Fits the couplings of these sources, or returns why there are none.
     pub(super) fn fit(
         &self,
         study: &Study,
@@ -209,7 +211,8 @@ impl CouplingFitKey {
     }
 }
 
-/// Standard deviation of `ln H` that the bands of an identified model tell, or its coherence where that counts (M16.2).
+/// Returns the standard deviation of `ln H` from the bands of an identified model, or from its
+/// coherence where that is used (M16.2).
 fn deviation(study: &Study, identified: &Model, omega: &[f64]) -> Option<PairTable<Vec<f64>>> {
     if let Some(bands) = &identified.bands {
         return Some(response_deviation(bands, omega));
@@ -230,12 +233,11 @@ fn deviation(study: &Study, identified: &Model, omega: &[f64]) -> Option<PairTab
     ))
 }
 
-/// What the couplings have changed of a condition.
+/// Changes that the couplings make in a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoupledCondition {
-    /// The comparison of the models as they are, which decides on the representatives.
+    /// Comparison of the models without couplings, which selects the representatives.
     pub before: Arc<Comparison>,
-    /// The couplings.
     pub fitted: Arc<FittedCouplings>,
 }
 
@@ -244,7 +246,8 @@ impl ConditionAnalysis {
         self.condition.flight_state().airspeed_kt
     }
 
-    /// `H~ = (I - H K)^-1 H M~` of a response of one of its physics models; the response itself without couplings.
+    /// Returns `H~ = (I - H K)^-1 H M~` of a response of one of its physics models; the response
+    /// itself without couplings.
     #[must_use]
     pub fn coupled_response<'a>(
         &self,
@@ -261,7 +264,8 @@ impl ConditionAnalysis {
         }
     }
 
-    /// Where the couplings move the poles of the physics representative; nothing without couplings, and where it has no poles.
+    /// Returns how the couplings move the poles of the physics representative; `None` without
+    /// couplings, or where it has no poles.
     #[must_use]
     pub fn pole_shifts(&self) -> Vec<PoleShift> {
         let representative = self.representative_model(BundleKind::Physics).state_space();
@@ -279,11 +283,13 @@ impl ConditionAnalysis {
         shifts.unwrap_or_default()
     }
 
-    /// The matrices of one of its physics models with the couplings in them; the model itself without couplings. Delays of its own
-    /// channels, which stand inside the loop, are then states: `pade` approximants, or whole samples.
+    /// Returns the matrices of one of its physics models with the couplings; the model itself
+    /// without couplings. Delays of its own channels, which lie inside the loop, become states:
+    /// `pade` approximants, or whole samples.
     ///
     /// # Errors
-    /// [`CoupledModelError`] where the loop through the feed-through cannot be computed with.
+    /// [`CoupledModelError`] where the loop through the feed-through is singular or
+    /// ill-conditioned.
     pub fn coupled_model<'a>(
         &self,
         physics: &'a StateSpace,
@@ -297,10 +303,12 @@ impl ConditionAnalysis {
         )
     }
 
-    /// `M_O H~ M_I`: a physics model with the couplings, then with a correction of its channels.
+    /// Returns `M_O H~ M_I`: a physics model with the couplings, then with a correction of its
+    /// channels.
     ///
     /// # Errors
-    /// As [`ConditionAnalysis::coupled_model`], and where the correction's delays or leads cannot become states.
+    /// As [`ConditionAnalysis::coupled_model`], and where the correction's delays or leads cannot
+    /// become states.
     pub fn corrected_model(
         &self,
         physics: &StateSpace,
@@ -312,7 +320,7 @@ impl ConditionAnalysis {
     }
 }
 
-/// A physics model with couplings in its matrices; the model itself without.
+/// Returns a physics model with the couplings in its matrices; the model itself without couplings.
 fn coupled_model<'a>(
     fitted: Option<&Arc<FittedCouplings>>,
     physics: &'a StateSpace,
@@ -329,7 +337,8 @@ fn coupled_model<'a>(
 }
 
 impl Analysis {
-    /// `M_O H~ M_I` of a physics model of any condition: also of one that has no result of its own.
+    /// Returns `M_O H~ M_I` of a physics model of any condition, also of a condition without a
+    /// result.
     ///
     /// # Errors
     /// As [`ConditionAnalysis::corrected_model`].

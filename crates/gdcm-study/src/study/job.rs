@@ -1,4 +1,4 @@
-//! Long work that is done beside the live answer.
+//! Long computations beside the live answer.
 
 use std::ops::Deref;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -30,7 +30,7 @@ use super::execution::in_turn;
 use super::fitted_couplings::FittedCouplings;
 use super::uncertainty::Uncertainty;
 
-/// A value that several hold, equal to itself alone: two of them are compared without a look at their numbers.
+/// A shared value compared by identity: two of them are compared without reading their contents.
 #[derive(Debug)]
 pub struct Shared<T: ?Sized>(Arc<T>);
 
@@ -60,35 +60,37 @@ impl<T: ?Sized> Deref for Shared<T> {
     }
 }
 
-/// One piece of long work with progress and cancellation, done beside the live answer.
+/// A long computation with progress and cancellation, run beside the live answer.
 ///
-/// Two jobs are equal where they have the same output: a job under way is given up only when no equal one is asked for any more.
+/// Two jobs are equal where they have the same output: a running job is cancelled only when no
+/// equal job is requested any more.
 pub trait Job: Clone + PartialEq + Send + 'static {
-    /// What it works with, kept from one job to the next.
+    /// Resources kept from one job to the next.
     type Tools;
-    /// What it makes.
+    /// Result of the job.
     type Output: Send;
 
-    /// Does the work.
+    /// Runs the job.
     ///
     /// # Errors
-    /// [`Cancelled`] soon after `progress` says so.
+    /// [`Cancelled`] soon after `progress` requests it.
     fn run(
         &self,
         tools: &mut Self::Tools,
         progress: &dyn Progress,
     ) -> Result<Self::Output, Cancelled>;
 
-    /// Whether `newer`, which is asked for in its place, is quicker once it is done; `done` of `total` steps are behind. Then it goes on.
+    /// Returns whether this job, `done` of `total` steps complete, should continue although `newer`
+    /// is requested instead: `newer` is faster once this job is complete.
     fn serves(&self, _newer: &Self, _done: usize, _total: usize) -> bool {
         false
     }
 }
 
-/// The whole proof of equation (7) for one condition, where the live answer's budget did not reach.
+/// The complete proof of equation (7) for one condition, where the live answer's budget was too
+/// small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProofJob {
-    /// What the gains are asked to do.
     pub problem: Arc<Problem>,
 }
 
@@ -101,16 +103,15 @@ impl Job for ProofJob {
     }
 }
 
-/// What holding or freeing each response of one condition would cost.
+/// Cost of constraining or releasing each response of one condition.
 #[derive(Clone, Debug)]
 pub struct TogglesJob {
-    /// The condition's result.
     pub condition: ConditionAnalysis,
 }
 
 impl TogglesJob {
-    /// Whether the costs are those of this result: they depend on its two problems, and on the objectives that they are
-    /// compared with.
+    /// Returns whether the costs apply to this result: they depend on its two problems, and on the
+    /// reference objectives.
     pub fn is_of(&self, condition: &ConditionAnalysis) -> bool {
         let a = &self.condition;
         let b = condition;
@@ -129,11 +130,11 @@ impl PartialEq for TogglesJob {
 
 impl Job for TogglesJob {
     type Tools = ();
-    /// None where a problem has no answer.
+    /// `None` where a problem has no solution.
     type Output = Option<Toggles>;
 
     fn run(&self, (): &mut (), progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
-        // The table is a hint, not a result.
+        // A limited proof: the table is a hint, not a result.
         let budget = ProofBudget {
             work: 4_000_000,
             ..ProofBudget::default()
@@ -157,21 +158,19 @@ impl Job for TogglesJob {
     }
 }
 
-/// The responses of every model of one condition, for drawing.
+/// The frequency responses of every model of one condition, for drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvesJob {
-    /// The models.
     pub dataset: Shared<Dataset>,
-    /// The condition.
     pub condition: ConditionId,
     /// Band, and the number of frequencies in it.
     pub grid: (Band, usize),
 }
 
 impl Job for CurvesJob {
-    /// The engine that keeps the models prepared.
+    /// The engine that caches the prepared models.
     type Tools = Engine;
-    /// None of a condition that the dataset does not have.
+    /// `None` where the dataset does not have the condition.
     type Output = Option<Arc<ConditionCurves>>;
 
     fn run(&self, engine: &mut Engine, progress: &dyn Progress) -> Result<Self::Output, Cancelled> {
@@ -182,7 +181,6 @@ impl Job for CurvesJob {
 /// The modes of every model of one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModesJob {
-    /// The condition.
     pub condition: Shared<Condition>,
 }
 
@@ -195,14 +193,13 @@ impl Job for ModesJob {
     }
 }
 
-/// The responses of some models, wherever in the dataset they are, on one grid.
+/// The responses of selected models, from any condition of the dataset, on one grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossJob {
-    /// The dataset.
     pub dataset: Shared<Dataset>,
-    /// The models; those that the dataset does not have are left out.
+    /// The models; models that the dataset does not have are skipped.
     pub models: Vec<ModelId>,
-    /// The couplings of those models; none of models as they are.
+    /// The couplings put on those models; `None` for models without couplings.
     pub couplings: Option<Arc<FittedCouplings>>,
     /// Band, and the number of frequencies in it.
     pub grid: (Band, usize),
@@ -211,14 +208,12 @@ pub struct AcrossJob {
 /// Responses of models of several conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcrossCurves {
-    /// The frequencies.
     pub grid: FrequencyGrid,
-    /// Each model with its response.
     pub responses: Vec<(ModelId, Arc<FrequencyResponse>)>,
 }
 
 impl AcrossJob {
-    /// The model of a role of every condition, as far as there is one.
+    /// Returns the job for the model of a role in every condition that has one.
     pub fn of(
         dataset: &Arc<Dataset>,
         analysis: Option<&Analysis>,
@@ -266,7 +261,7 @@ impl Job for AcrossJob {
     }
 }
 
-/// Which model of each condition is laid over the others'.
+/// The model of each condition drawn in the overlay of conditions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AcrossRole {
     /// The physics model at the condition's own trim.
@@ -274,14 +269,14 @@ pub enum AcrossRole {
     Nominal,
     /// The physics model that represents its bundle.
     Representative,
-    /// The same under the condition's own correction.
+    /// The physics representative under the condition's own correction.
     Corrected,
     /// The identified model that represents its bundle.
     Identified,
 }
 
 impl AcrossRole {
-    /// Every role, in the order of its list.
+    /// Every role, in list order.
     pub const ALL: [Self; 4] = [
         Self::Nominal,
         Self::Representative,
@@ -289,7 +284,7 @@ impl AcrossRole {
         Self::Identified,
     ];
 
-    /// Its name.
+    /// Returns the name of the role.
     pub fn name(self) -> &'static str {
         match self {
             Self::Nominal => "nominal",
@@ -299,7 +294,8 @@ impl AcrossRole {
         }
     }
 
-    /// The model that has this role in a condition; none where that takes a result and there is none.
+    /// Returns the model with this role in a condition; `None` where the role needs a result and
+    /// there is none.
     pub fn model(self, condition: &Condition, analysis: Option<&Analysis>) -> Option<ModelId> {
         let of = |kind: BundleKind, name: &str| ModelId::new(condition.id(), kind, name);
         if self == Self::Nominal {
@@ -317,7 +313,8 @@ impl AcrossRole {
         Some(of(kind, result.representative_name(kind)))
     }
 
-    /// What is done to its response before it is drawn; none where the response has no correction.
+    /// Returns the correction applied to its response before drawing; `None` where the response has
+    /// no correction.
     pub fn correction(
         self,
         condition: ConditionId,
@@ -331,17 +328,15 @@ impl AcrossRole {
     }
 }
 
-/// The cost of every single toggle of a condition.
+/// Cost of every single toggle of a condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Toggles {
-    /// Of the gains.
     pub gains: Vec<Toggle>,
-    /// Of the delays.
     pub delays: Vec<Toggle>,
 }
 
 impl Toggles {
-    /// The toggles of one response: of its gain and of its delay.
+    /// Returns the toggles of one response: of its gain and of its delay.
     pub fn of_pair(&self, pair: Pair) -> (Option<&Toggle>, Option<&Toggle>) {
         let gain = self.gains.iter().find(|toggle| toggle.pair == pair);
         (gain, self.delays.iter().find(|toggle| toggle.pair == pair))
@@ -351,12 +346,11 @@ impl Toggles {
 /// The analysis of a variant ([`Study::of_variant`]), beside the live answer.
 #[derive(Clone, Debug)]
 pub struct VariantJob {
-    /// The study with the variant's decisions.
     pub study: Study,
 }
 
 impl PartialEq for VariantJob {
-    /// The same dataset and the same decisions: the words that they are explained with do not count.
+    /// Compares the dataset and the decisions; the reasons of rejections are ignored.
     fn eq(&self, other: &Self) -> bool {
         let a = &self.study;
         let b = &other.study;
@@ -369,7 +363,8 @@ impl PartialEq for VariantJob {
 }
 
 impl Job for VariantJob {
-    /// An engine that keeps what variants have in common: responses and distances, which no decision but the band changes.
+    /// An engine that caches the results common to variants: responses and distances, which depend
+    /// on no decision but the band.
     type Tools = Engine;
     type Output = Arc<Analysis>;
 
@@ -378,10 +373,9 @@ impl Job for VariantJob {
     }
 }
 
-/// The bars of an analysis, and what follows from them.
+/// Error bars of an analysis, and the conclusions from them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UncertaintyJob {
-    /// The analysis.
     pub analysis: Shared<Analysis>,
 }
 
@@ -395,25 +389,23 @@ impl Job for UncertaintyJob {
     }
 }
 
-/// The modes of one model; none of a measured response.
+/// The modes of one model; an error for a measured response.
 pub type ModelModes = Result<Vec<Mode>, ModesError>;
 
 /// The modes of every model of a condition, in file order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionModes {
-    /// The condition: it names the models.
+    /// The condition; it names the models.
     pub condition: Arc<Condition>,
-    /// Modes of the physics models.
     pub physics: Vec<ModelModes>,
-    /// Modes of the identified models.
     pub identified: Vec<ModelModes>,
 }
 
 impl ConditionModes {
-    /// The modes of every model, model by model; each is a step.
+    /// Computes the modes of every model, model by model; each is a step.
     ///
     /// # Errors
-    /// [`Cancelled`] between two models, where `progress` says so.
+    /// [`Cancelled`] between two models, where `progress` requests it.
     pub fn of(condition: &Arc<Condition>, progress: &dyn Progress) -> Result<Self, Cancelled> {
         let models: Vec<&Model> = BundleKind::BOTH
             .into_iter()
@@ -428,12 +420,13 @@ impl ConditionModes {
         })
     }
 
-    /// The modes of one bundle.
+    /// Returns the modes of one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &[ModelModes] {
         kind.pick(&self.physics, &self.identified)
     }
 
-    /// Each mode of the model of index `reference` followed through its bundle. A model without modes leaves gaps.
+    /// Follows each mode of the model with index `reference` through its bundle. A model without
+    /// modes leaves gaps.
     pub fn tracks(&self, kind: BundleKind, reference: usize) -> Vec<ModeTrack> {
         let modes = self
             .bundle(kind)
@@ -443,28 +436,26 @@ impl ConditionModes {
     }
 }
 
-/// Why there is nothing to identify a model from.
+/// Why no model can be identified.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NothingToIdentify {
-    /// No record is used.
     #[error("there is no record to identify from: add some, or use those that are there")]
     NoRecord,
-    /// Every record is held out.
     #[error("every record is held out: at least one has to be left to identify from")]
     AllHeldOut,
 }
 
-/// Records, and how models are to be identified from them.
+/// Records, and the options of an identification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IdentificationRequest {
     /// The records, in the units of the channels.
     pub records: Shared<[FlightRecord]>,
-    /// How.
     pub options: Options,
 }
 
 impl IdentificationRequest {
-    /// The request of those `records` that are used, those held out of the fit that their guess says.
+    /// Builds the request from those `records` that are used, with the records held out whose guess
+    /// says so.
     ///
     /// # Errors
     /// No record is used, or all are held out.
@@ -499,7 +490,7 @@ impl IdentificationRequest {
     /// Identifies models.
     ///
     /// # Errors
-    /// Those of [`identify`].
+    /// The errors of [`identify`].
     pub fn identify(
         &self,
         executor: &dyn Executor,
@@ -509,30 +500,28 @@ impl IdentificationRequest {
     }
 }
 
-/// What an identification under way has told.
+/// News from a running identification.
 #[derive(Clone, Debug, Default)]
 pub struct IdentificationNews {
-    /// The step under way, in words.
+    /// Description of the present step.
     pub step: String,
-    /// The first model, before it is refined.
+    /// First model, before refinement.
     pub first_model: Option<Arc<StateSpace>>,
-    /// How long it took, once it is done \[s\].
+    /// Duration, once complete \[s\].
     pub duration_s: Option<f64>,
 }
 
-/// Models of one condition from its flight records.
+/// Identification of one condition's models from its flight records.
 #[derive(Clone, Debug)]
 pub struct IdentifyJob {
-    /// The condition.
     pub condition: ConditionId,
-    /// What is asked for.
     pub request: IdentificationRequest,
-    /// What is told meanwhile; no part of what is asked for.
+    /// News during the run; not part of the request.
     news: Arc<Mutex<IdentificationNews>>,
 }
 
 impl IdentifyJob {
-    /// The job of this request.
+    /// Creates the job of this request.
     pub fn new(condition: ConditionId, request: IdentificationRequest) -> Self {
         Self {
             condition,
@@ -541,7 +530,7 @@ impl IdentifyJob {
         }
     }
 
-    /// What it has told so far.
+    /// Returns the news so far.
     pub fn told(&self) -> IdentificationNews {
         told(&self.news).clone()
     }
@@ -553,12 +542,12 @@ impl PartialEq for IdentifyJob {
     }
 }
 
-/// The news; a panic while they were locked leaves them whole.
+/// Locks the news; a panic under the lock leaves them intact.
 fn told(news: &Mutex<IdentificationNews>) -> MutexGuard<'_, IdentificationNews> {
     news.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Keeps the news, and hands on the rest.
+/// Stores the news, and forwards other progress.
 struct Told<'a> {
     progress: &'a dyn Progress,
     news: &'a Mutex<IdentificationNews>,
@@ -583,7 +572,7 @@ impl Progress for Told<'_> {
 }
 
 impl Job for IdentifyJob {
-    /// Who carries out its pieces.
+    /// Executor of the pieces.
     type Tools = Box<dyn Executor>;
     type Output = Result<Arc<Identification>, IdentificationError>;
 
@@ -608,21 +597,19 @@ impl Job for IdentifyJob {
     }
 }
 
-/// What a model gives for the inputs of a flight record (M14, section 6).
+/// Simulation of a model with the inputs of a flight record (M14, section 6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationJob {
-    /// The record, in the units of the dataset.
     pub record: Shared<FlightRecord>,
-    /// How its channels are prepared.
+    /// Preparation of its channels.
     pub preparation: Preparation,
-    /// The model.
     pub model: StateSpace,
 }
 
 impl Job for SimulationJob {
-    /// Who carries out its pieces.
+    /// Executor of the pieces.
     type Tools = Box<dyn Executor>;
-    /// In words why there is none.
+    /// Error: the reason in words.
     type Output = Result<Arc<Validation>, String>;
 
     fn run(

@@ -1,4 +1,4 @@
-//! What lead filters leave of the difference between two representatives (M15.5).
+//! The difference between two representatives that remains after the lead filters (M15.5).
 
 use std::sync::Arc;
 
@@ -18,12 +18,13 @@ use super::remark::{Remark, RemarkKind, Repeated, miss_words};
 use super::settings::PhaseCorrection;
 use super::uncertainty::Uncertainty;
 
-/// The physics representative with the leads of its channels against the identified one: what the gains are found on.
+/// The physics representative with the leads of its channels against the identified one: the basis
+/// of the gains.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeadCompensated {
     /// The signed delays with their filters.
     pub leads: ChannelLeads,
-    /// Difference of every response that both models have; the pure delays among the leads are not in it.
+    /// Difference of every response that both models have, without the pure delays among the leads.
     pub mismatch: PairTable<Option<Mismatch>>,
     /// G of the compensated representative, `[output, input]`.
     pub gain: PairTable<Option<f64>>,
@@ -37,7 +38,7 @@ impl LeadCompensated {
                 .as_ref()
                 .map(|mismatch| mismatch.multiplied(&lead.magnitude_db, &lead.phase)),
         });
-        // A pure delay leaves every magnitude.
+        // A pure delay does not change magnitudes.
         let gain = delta_gains(&mismatch);
         Arc::new(Self {
             leads: leads.clone(),
@@ -47,17 +48,20 @@ impl LeadCompensated {
     }
 }
 
-/// The mean J of the held responses, all of which want lead: as corrected, and with leads too.
+/// Mean J of the constrained responses, all of which want lead: with the present correction, and
+/// with leads too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeadOffer {
     /// Under the present correction.
     pub without: f64,
-    /// With a lead filter in each channel that wants one: the same gains, of which such filters take little.
+    /// With a lead filter in each channel that wants one, and the same gains, which such filters
+    /// change little.
     pub with: f64,
 }
 
 impl LeadOffer {
-    /// The offer of these leads, where they would leave J of the held responses at least a tenth less than it is now.
+    /// Returns the offer of these leads, where they would reduce J of the constrained responses by
+    /// at least a tenth.
     pub(super) fn of(
         leads: ChannelLeads,
         mismatch: &PairTable<Option<Mismatch>>,
@@ -82,13 +86,14 @@ impl LeadOffer {
     }
 }
 
-/// Two figures of D this far apart \[s\] are not those of a delay.
+/// Difference \[s\] between the two figures of D beyond which they do not describe a delay.
 const APART_S: f64 = 0.02;
-/// Signed delays below this \[s\] are nothing to correct.
+/// Signed delays below this \[s\] need no correction.
 const NOTHING_S: f64 = 2e-3;
 
-/// The responses and the channels that get lead, in words: "P from LAT wants 65 ms of lead over the band: 24 on P, 41 on LAT"; "LAT: as if
-/// a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band". What a response wants has its bar, where `sure` knows
+/// Describes the responses and the channels with lead: "P from LAT wants 65 ms of lead over the
+/// band: 24 on P, 41 on LAT"; "LAT: as if a servo of 17 rad/s were replaced by one of 36 rad/s;
+/// +12.4 dB above the band". The lead that a response wants has its error bar where `sure` contains
 /// it: "65 ± 4 ms" (M13).
 pub fn lead_words(
     study: &Study,
@@ -168,7 +173,8 @@ pub fn lead_words(
         .collect()
 }
 
-/// How many states the leads add, and where the corrected model ends to be valid.
+/// Describes the number of states that the leads add, and the upper frequency limit of the
+/// corrected model's validity.
 pub fn lead_limit_words(result: &ConditionAnalysis) -> Option<String> {
     let leads = &result.compensated.as_ref()?.leads;
     let top = number(LeadPrice::of(leads)?.limit_rad_s);
@@ -182,7 +188,8 @@ pub fn lead_limit_words(result: &ConditionAnalysis) -> Option<String> {
     ))
 }
 
-/// "as if a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB above the band".
+/// Describes a lead filter: "as if a servo of 17 rad/s were replaced by one of 36 rad/s; +12.4 dB
+/// above the band".
 pub fn servo_words(filter: LeadFilter) -> String {
     format!(
         "as if a servo of {} rad/s were replaced by one of {} rad/s; {} dB above the band",
@@ -192,7 +199,7 @@ pub fn servo_words(filter: LeadFilter) -> String {
     )
 }
 
-/// What has to be known of leads, where they are asked for, in words (M15.6).
+/// Returns the cautions about leads in words, where they are requested (M15.6).
 pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
     let remarks = if result.compensated.is_some() {
         lead_remarks(study, result)
@@ -206,7 +213,8 @@ pub fn lead_cautions(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
         .collect()
 }
 
-/// What leads do and what has to be asked before them; of a study without leads, whether they would help.
+/// Returns the remarks on leads and on the checks before their use; for a study without leads,
+/// whether they would help.
 pub(super) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let caution = |text: String| Remark::new(RemarkKind::Caution, text);
     let mut remarks: Vec<Remark> = common_lead(result).into_iter().collect();
@@ -228,7 +236,7 @@ pub(super) fn lead_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Rem
     remarks
 }
 
-/// That all held responses want about the same lead, and what to check first.
+/// Reports that all constrained responses want about the same lead, and what to check first.
 fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     let held = result.held().marked();
     let mut wanted_s: Vec<f64> = held
@@ -255,7 +263,8 @@ fn common_lead(result: &ConditionAnalysis) -> Option<Remark> {
     })
 }
 
-/// Whether every held response gets what it wants; which does not and why.
+/// Reports whether every constrained response gets the lead it wants; otherwise which does not, and
+/// why.
 fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let held = result.held().marked().count();
     let delays = &result.delays;
@@ -281,7 +290,7 @@ fn achieved(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         .collect()
 }
 
-/// What filters of first order add to the gain within the band, which the gains take back.
+/// Reports the gain increase within the band by first-order filters, which the gains compensate.
 fn raised_gain(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let compensated = result.compensated.as_ref()?;
     let rises = result.held().marked().filter_map(|pair| {
@@ -299,7 +308,8 @@ fn raised_gain(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     })
 }
 
-/// The held responses of which the two figures of D are far apart, but for those whose sign is doubted: half a turn is no zero and no mode.
+/// Reports the constrained responses whose two figures of D are far apart, except those with a
+/// suspected sign: half a turn is no zero and no mode.
 fn not_of_a_delay(study: &Study, result: &ConditionAnalysis) -> Option<String> {
     let delta = &result.comparison.delta;
     let is_doubted = |pair: &Pair| {

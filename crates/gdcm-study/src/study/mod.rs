@@ -1,4 +1,4 @@
-//! What the engineer does: settings, rejections, pins; and the analysis of it all, in cached stages.
+//! Studies: settings, rejections and pins by the engineer, and their analysis in cached stages.
 
 pub mod analysis;
 pub mod assessment_table;
@@ -49,7 +49,7 @@ use edit::{EditRefusal, check_length};
 use requirements::RequirementSettings;
 use settings::Settings;
 
-// What most files of the room speak of: they take it from here, with one another's types, by `use super::*`.
+// Common imports of this module.
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, LazyLock};
 
@@ -66,15 +66,16 @@ pub use gdcm_model::progress::{Cancelled, Progress, Unobserved};
 pub struct BundleChoice {
     /// Names of the rejected models.
     pub rejected: BTreeSet<String>,
-    /// Why, in the engineer's words, for those of them where that was said; studies of older programs do not say it.
+    /// Reasons of rejections, in the engineer's words, where given; studies of older programs have
+    /// none.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub reasons: BTreeMap<String, String>,
-    /// Name of the model that represents the bundle in place of the medoid; never a rejected one.
+    /// Name of the model that represents the bundle instead of the medoid; never a rejected model.
     pub pinned: Option<String>,
 }
 
 impl BundleChoice {
-    /// Puts a model back; the reason goes with the rejection.
+    /// Restores a model; the reason is removed with the rejection.
     pub(super) fn restore(&mut self, name: &str) {
         self.rejected.remove(name);
         self.reasons.remove(name);
@@ -84,13 +85,11 @@ impl BundleChoice {
 /// The engineer's choices in one condition.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct ConditionChoice {
-    /// Choices among the physics models.
     pub physics: BundleChoice,
-    /// Choices among the identified models.
     pub identified: BundleChoice,
-    /// Whether the condition enters the schedule.
     pub scheduled: bool,
-    /// Whether the condition is held out: analysed and assessed, but kept from the schedule, which it is to judge.
+    /// Whether the condition is held out: analysed and assessed, but kept out of the schedule, to
+    /// validate it.
     pub held_out: bool,
 }
 
@@ -106,7 +105,7 @@ impl Default for ConditionChoice {
 }
 
 impl ConditionChoice {
-    /// Puts every model of both bundles back.
+    /// Restores every model of both bundles.
     pub(super) fn restore_all(&mut self) {
         for choice in [&mut self.physics, &mut self.identified] {
             choice.rejected.clear();
@@ -114,7 +113,7 @@ impl ConditionChoice {
         }
     }
 
-    /// What of the choices an analysis depends on: not the words that they were explained with.
+    /// Returns the choices that an analysis depends on: without the reasons of rejections.
     pub(super) fn without_reasons(&self) -> Self {
         let mut choice = self.clone();
         choice.physics.reasons.clear();
@@ -122,7 +121,7 @@ impl ConditionChoice {
         choice
     }
 
-    /// What of the choices the comparison of the models depends on.
+    /// Returns the choices that the comparison of the models depends on.
     pub(super) fn of_models(&self) -> Self {
         Self {
             scheduled: true,
@@ -131,46 +130,45 @@ impl ConditionChoice {
         }
     }
 
-    /// Whether the schedule is made of the condition: chosen for it, and not held out.
+    /// Returns whether the condition is used in the schedule: chosen for it, and not held out.
     pub fn is_in_schedule(&self) -> bool {
         self.scheduled && !self.held_out
     }
 
-    /// The choices in one bundle.
+    /// Returns the choices in one bundle.
     pub fn bundle(&self, kind: BundleKind) -> &BundleChoice {
         kind.pick(&self.physics, &self.identified)
     }
 
-    /// The choices in one bundle, to change.
+    /// Returns the choices in one bundle, mutable.
     pub fn bundle_mut(&mut self, kind: BundleKind) -> &mut BundleChoice {
         kind.pick(&mut self.physics, &mut self.identified)
     }
 }
 
-/// A study: a dataset, and every decision about it. What is saved, and what undo goes back over.
+/// A study: a dataset, and every decision about it. The unit of saving and of undo.
 #[derive(Clone, Debug)]
 pub struct Study {
-    /// The models.
     pub dataset: Arc<Dataset>,
     /// Every setting that changes a result.
     pub settings: Settings,
-    /// Choices in each condition of the dataset.
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
-    /// Other decisions about the dataset, kept under their names, in the order in which they were kept. No analysis depends on
-    /// them.
+    /// Alternative decisions about the dataset, stored under their names, in the order of storage.
+    /// No analysis depends on them.
     pub variants: Vec<Arc<Variant>>,
-    /// The channels whose models are turned: in `dataset` they are turned already.
+    /// The channels with reversed sign; `dataset` already contains the reversal.
     pub signs: Signs,
-    /// What requirements are asked with. No correction depends on it.
+    /// Settings of the requirements. No correction depends on them.
     pub requirements: Arc<RequirementSettings>,
-    /// Models taken in place of those of the dataset's file; `dataset` has them.
+    /// Models adopted instead of those of the dataset's file; `dataset` contains them.
     pub(super) taken: BTreeMap<ConditionId, Arc<AdoptedModels>>,
-    /// The dataset as its file has it, where models are taken or turned.
+    /// The dataset as in its file, where models are adopted or reversed.
     pub(super) file: Option<Arc<Dataset>>,
 }
 
 impl PartialEq for Study {
-    /// Decisions first: the numbers of two datasets are compared only where these are not one and the same.
+    /// Compares decisions first: the numbers of two datasets are compared only where they are not
+    /// the same object.
     fn eq(&self, other: &Self) -> bool {
         let decisions = (
             &self.settings,
@@ -190,7 +188,7 @@ impl PartialEq for Study {
 }
 
 impl Study {
-    /// The study of a dataset before any decision.
+    /// Creates the study of a dataset, before any decision.
     pub fn new(dataset: Arc<Dataset>) -> Self {
         let settings = Settings::of(&dataset);
         let choices = dataset
@@ -209,13 +207,14 @@ impl Study {
         }
     }
 
-    /// The choices in one condition; those of a condition that the dataset does not have are none.
+    /// Returns the choices in one condition; empty choices for a condition that the dataset does
+    /// not have.
     pub fn choice(&self, condition: ConditionId) -> &ConditionChoice {
         static NONE: LazyLock<ConditionChoice> = LazyLock::new(ConditionChoice::default);
         self.choices.get(&condition).unwrap_or(&NONE)
     }
 
-    /// Whether a model is rejected.
+    /// Returns whether a model is rejected.
     pub fn is_rejected(&self, id: &ModelId) -> bool {
         self.choice(id.condition)
             .bundle(id.bundle)
@@ -223,7 +222,7 @@ impl Study {
             .contains(&id.name)
     }
 
-    /// Why a model is rejected, where the engineer has said so.
+    /// Returns the reason of a model's rejection, where given.
     pub fn reason(&self, id: &ModelId) -> Option<&str> {
         self.choice(id.condition)
             .bundle(id.bundle)
@@ -232,7 +231,8 @@ impl Study {
             .map(String::as_str)
     }
 
-    /// Names of the rejected models of one condition in file order, the physics bundle first.
+    /// Returns the names of the rejected models of one condition in file order, the physics bundle
+    /// first.
     pub fn rejected_names(&self, condition: ConditionId) -> Vec<&str> {
         let of = |kind| {
             let rejected = &self.choice(condition).bundle(kind).rejected;
@@ -249,22 +249,20 @@ impl Study {
     }
 }
 
-/// Characters that the name of a variant may have.
+/// Greatest length of a variant's name, in characters.
 pub const LONGEST_VARIANT_NAME: usize = 60;
 
-/// All decisions of a study at one time, under a name.
+/// All decisions of a study at one time, stored under a name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variant {
     /// The name, unique in its study.
     pub name: String,
-    /// Every setting.
     pub settings: Settings,
-    /// Choices in each condition.
     pub choices: BTreeMap<ConditionId, ConditionChoice>,
 }
 
 impl Study {
-    /// The variant of this name.
+    /// Returns the variant with this name.
     pub fn variant(&self, name: &str) -> Option<&Variant> {
         self.variants
             .iter()
@@ -272,8 +270,8 @@ impl Study {
             .map(Arc::as_ref)
     }
 
-    /// The study with the decisions of one of its variants in place of the present ones, and no variants of its own: what is
-    /// analysed to compare them.
+    /// Returns the study with the decisions of one of its variants instead of the present ones, and
+    /// without variants: the study analysed for comparisons.
     pub fn of_variant(&self, name: &str) -> Option<Study> {
         let Variant {
             settings, choices, ..
@@ -351,7 +349,7 @@ impl Study {
     }
 }
 
-/// Steps kept; a snapshot is a few kilobytes, for the models are shared.
+/// Greatest number of steps; a snapshot takes a few kilobytes, because the models are shared.
 const MOST_STEPS: usize = 500;
 
 #[derive(Clone, Debug)]
@@ -361,17 +359,18 @@ struct Step<B> {
     beside: B,
 }
 
-/// What undo and redo go back over: whole studies, each with the label of the decision between it and the next.
+/// Undo history: whole studies, each with the label of the decision between it and the next.
 ///
-/// `B` is what a step changes beside the study: the state of it on the other side of the step, which undo and redo exchange for the
-/// present one. It is `B::default()`, which changes nothing, where the decision is one about the study.
+/// `B` is state outside the study that a step changes: its value on the other side of the step,
+/// which undo and redo exchange for the present value. Decisions about the study alone use
+/// `B::default()`, which changes nothing.
 #[derive(Clone, Debug)]
 pub struct History<B = ()> {
     past: Vec<Step<B>>,
     future: Vec<Step<B>>,
-    /// What the last decision took from the future.
+    /// Redo steps removed by the last decision.
     lost: Vec<Step<B>>,
-    /// The last decision, while the next may still be a part of it (a slider being dragged).
+    /// The last decision, while the next may still continue it (a slider being dragged).
     open: Option<Edit>,
 }
 
@@ -387,9 +386,10 @@ impl<B> Default for History<B> {
 }
 
 impl<B: Default> History<B> {
-    /// Keeps `before`, the study that `edit` is about to change (or has just changed).
+    /// Stores `before`, the study that `edit` is about to change (or has just changed).
     ///
-    /// A decision that continues the last one (see [`Edit::continues`]) adds no step until [`History::seal`].
+    /// A decision that continues the last one (see [`Edit::continues`]) adds no step until
+    /// [`History::seal`].
     pub fn record(&mut self, before: Study, edit: &Edit) {
         let lost = std::mem::take(&mut self.future);
         if self.open.as_ref().is_some_and(|open| edit.continues(open)) {
@@ -404,7 +404,8 @@ impl<B: Default> History<B> {
         self.open = Some(edit.clone());
     }
 
-    /// Keeps a decision that leaves the study as it is: `before` is what it changed beside the study, as that was.
+    /// Stores a decision that leaves the study unchanged: `before` is the previous value of the
+    /// state outside the study.
     pub fn record_beside(&mut self, study: Study, label: String, before: B) {
         self.lost = std::mem::take(&mut self.future);
         self.push(Step {
@@ -415,7 +416,7 @@ impl<B: Default> History<B> {
         self.open = None;
     }
 
-    /// Keeps `before`, the study of the dataset as it was before it was read again.
+    /// Stores `before`, the study with the dataset before a reload.
     pub fn record_reload(&mut self, before: Study, label: String) {
         self.future.clear();
         self.push(Step {
@@ -433,13 +434,13 @@ impl<B: Default> History<B> {
         self.past.push(step);
     }
 
-    /// Ends the decision being taken: the slider was let go.
+    /// Closes the present decision, for example when a slider is released.
     pub fn seal(&mut self) {
         self.open = None;
     }
 
-    /// The study before the last decision, given the study as it is now; `exchange` puts what is beside it back, and gives that as
-    /// it is now.
+    /// Returns the study before the last decision, given the present study; `exchange` restores the
+    /// state outside the study, and returns its present value.
     pub fn undo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
         let step = self.past.pop()?;
         self.open = None;
@@ -451,8 +452,8 @@ impl<B: Default> History<B> {
         Some(step.study)
     }
 
-    /// The study before the last decision, as if that had never been taken, where it was `edit`: it cannot be brought back,
-    /// and those that it took from the future can again.
+    /// Returns the study before the last decision if that was `edit`, and removes the decision: it
+    /// cannot be redone, and the redo steps that it removed are available again.
     pub fn forget(&mut self, edit: &Edit) -> Option<Study> {
         if self.open.as_ref() != Some(edit) {
             return None;
@@ -463,7 +464,8 @@ impl<B: Default> History<B> {
         Some(step.study)
     }
 
-    /// The study after the last decision taken back, given the study as it is now; `exchange` as in [`History::undo`].
+    /// Returns the study after the last undone decision, given the present study; `exchange` as in
+    /// [`History::undo`].
     pub fn redo(&mut self, now: &Study, exchange: impl FnOnce(B) -> B) -> Option<Study> {
         let step = self.future.pop()?;
         self.open = None;
@@ -475,12 +477,12 @@ impl<B: Default> History<B> {
         Some(step.study)
     }
 
-    /// What [`History::undo`] would take back, in a few words.
+    /// Returns the label of the decision that [`History::undo`] would undo.
     pub fn undo_label(&self) -> Option<&str> {
         self.past.last().map(|step| step.label.as_str())
     }
 
-    /// What [`History::redo`] would bring back, in a few words.
+    /// Returns the label of the decision that [`History::redo`] would redo.
     pub fn redo_label(&self) -> Option<&str> {
         self.future.last().map(|step| step.label.as_str())
     }

@@ -1,4 +1,5 @@
-//! What the result of a condition says, in the engineer's words: the same in the window and in a terminal.
+//! Remarks on the result of a condition, in the engineer's words, identical in the window and in a
+//! terminal.
 
 use gdcm_method::correction::sensitivity::{Sensitivity, kkt_residual, sensitivities};
 use gdcm_method::correction::{Channel, Solution};
@@ -13,51 +14,51 @@ use super::changed_models::SignRole;
 use super::lead_compensation::lead_remarks;
 use super::settings::PhaseCorrection;
 
-/// How a remark is meant.
+/// Kind of a remark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RemarkKind {
-    /// What was asked for was done.
+    /// The request was fulfilled.
     Good,
-    /// It was done, but the engineer has to know something.
+    /// The request was fulfilled, with a caution.
     Caution,
-    /// It could not be done.
+    /// The request could not be fulfilled.
     Trouble,
 }
 
 /// One remark on the result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Remark {
-    /// How it is meant.
     pub kind: RemarkKind,
     /// One or two sentences.
     pub text: String,
-    /// The response that the engineer may want to ignore in the objective.
+    /// The response to consider ignoring in the objective.
     pub ignore: Option<Pair>,
-    /// The correction of the phase that the engineer may want in place of the present one.
+    /// The correction of the phase to consider instead of the present one.
     pub phase: Option<PhaseCorrection>,
-    /// The channel whose models can be turned, or put back (none of their role), at once.
+    /// The channel whose sign can be reversed, or restored (`None` as the role), at once.
     pub turn: Option<(Channel, Option<SignRole>)>,
-    /// What of it is told in one table, where many conditions have it.
+    /// Content for one common table, where many conditions have the remark.
     pub repeated: Option<Repeated>,
 }
 
-/// A remark that most conditions of a study have, by its numbers: many of them make one table.
+/// A remark that most conditions of a study share, with its numbers, so that many of them form one
+/// table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Repeated {
-    /// Held responses need lead, by how much \[ms\].
+    /// Constrained responses need lead, with the lead of each \[ms\].
     NeedsLead(Vec<(Pair, String)>),
-    /// All held responses need about the same lead \[ms\].
+    /// All constrained responses need about the same lead \[ms\].
     CommonLead(String),
-    /// Held responses are farther from flight than without a correction.
+    /// Constrained responses are farther from flight than without a correction.
     Farther(Vec<Pair>),
-    /// By how much the lead filters raise the gain within the band at most \[dB\], and of which response.
+    /// Greatest gain increase within the band by the lead filters \[dB\], and its response.
     RaisedGain(String, Pair),
-    /// What the mean J of the held responses is without leads, and would be with them.
+    /// Mean J of the constrained responses without leads, and with them.
     LeadsOffered([String; 2]),
 }
 
 impl Remark {
-    /// A remark that offers nothing.
+    /// Creates a remark without an offer.
     pub fn new(kind: RemarkKind, text: String) -> Self {
         Self {
             kind,
@@ -69,7 +70,7 @@ impl Remark {
         }
     }
 
-    /// The remark, as one that many conditions have.
+    /// Marks the remark as one that many conditions share.
     pub(super) fn repeated(self, repeated: Repeated) -> Self {
         Self {
             repeated: Some(repeated),
@@ -78,7 +79,8 @@ impl Remark {
     }
 }
 
-/// Which held gains and delays were matched, which were not and why, and the cautions of the condition and of the schedule.
+/// Collects the remarks: which constrained gains and delays were matched, which were not and why,
+/// and the cautions of the condition and of the schedule.
 pub fn remarks(
     study: &Study,
     result: &ConditionAnalysis,
@@ -117,7 +119,8 @@ pub fn remarks(
     remarks
 }
 
-/// Signs and units to be asked after, before anything is blamed for them; then what has been turned.
+/// Reports suspected sign and unit differences first, before other causes are considered; then the
+/// reversed channels.
 fn sign_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let doubts = result.doubts.iter().map(|doubt| Remark {
         turn: doubt
@@ -165,7 +168,8 @@ fn gain_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         .collect()
 }
 
-/// What held responses get in place of what they want, then each conflict behind that.
+/// Describes the actual values of constrained responses that miss their target, then the conflicts
+/// that cause it.
 pub(super) fn miss_words(study: &Study, solution: &Solution) -> impl Iterator<Item = String> {
     let (inputs, outputs) = study.dataset.names_of_channels();
     let top = study.settings.band.max();
@@ -181,7 +185,7 @@ pub(super) fn miss_words(study: &Study, solution: &Solution) -> impl Iterator<It
     std::iter::once(misses.join(" ")).chain(conflicts)
 }
 
-/// The loops of held responses that count as agreeing.
+/// Reports the loops of constrained responses within the agreement tolerance.
 fn agreement_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     let (inputs, outputs) = study.dataset.names_of_channels();
     let loops = result.gains.agreeing.iter().chain(&result.delays.agreeing);
@@ -190,7 +194,8 @@ fn agreement_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
         .collect()
 }
 
-/// That coherence weighs, where it leaves nothing out; a caution says so where it does (M4a).
+/// Reports that coherence weights are used, where they exclude nothing; exclusions are reported by
+/// a caution (M4a).
 fn coherence_remark(result: &ConditionAnalysis) -> Option<Remark> {
     let mismatches = result.comparison.representative.mismatch.iter();
     let weighed = mismatches
@@ -212,9 +217,9 @@ fn coherence_remark(result: &ConditionAnalysis) -> Option<Remark> {
     })
 }
 
-/// The held responses that the correction takes away from flight.
+/// Reports the constrained responses that the correction moves away from flight.
 fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
-    // Half is a rise of J that nobody sees; of leads every one is told (M15.6).
+    // An increase of J by half a unit is negligible; with leads every increase is reported (M15.6).
     let notable = if study.settings.phase == PhaseCorrection::Lead {
         0.0
     } else {
@@ -236,7 +241,7 @@ fn worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     })
 }
 
-/// How many of the responses that are not held leads take away from flight (M15.6).
+/// Reports the number of unconstrained responses that leads move away from flight (M15.6).
 fn others_worse_remark(study: &Study, result: &ConditionAnalysis) -> Option<Remark> {
     let others = result.cost.iter().filter(|(pair, _)| !result.held()[*pair]);
     let changes: Vec<f64> = others
@@ -299,10 +304,10 @@ fn delay_remarks(study: &Study, result: &ConditionAnalysis) -> Vec<Remark> {
     remarks
 }
 
-/// What the outcome leaves to say, entry by entry: other minima, what each missed delay leaves at the top of the band, and what
-/// the held responses and the active bounds cost.
+/// Lists the details of the solution: other minima, the error at the top of the band due to each
+/// missed delay, and the cost of the constrained responses and the active bounds.
 pub fn details(study: &Study, result: &ConditionAnalysis) -> Vec<String> {
-    /// A share of the objective below which a restraint costs nothing worth reading.
+    /// Share of the objective below which the cost of a constraint is negligible.
     const NOTABLE: f64 = 1e-3;
     let (inputs, outputs) = study.dataset.names_of_channels();
     let mut details = vec![result.gains.proof.outcome.words()];

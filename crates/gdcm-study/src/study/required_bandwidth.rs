@@ -33,20 +33,14 @@ use super::substitutions::Swap;
 /// Bandwidth and phase delay of one response of one model of a condition.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BandwidthFinding {
-    /// The condition.
     pub condition: ConditionId,
     /// Its true airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// The response.
     #[serde(skip)]
     pub pair: Pair,
-    /// Name of its output.
     pub output: String,
-    /// Name of its input.
     pub input: String,
-    /// Which model.
     pub role: RequirementRole,
-    /// Its name.
     pub model: String,
     /// The bandwidth \[rad/s\].
     pub omega_bw_rad_s: Option<f64>,
@@ -58,25 +52,27 @@ pub struct BandwidthFinding {
     pub omega_180_rad_s: Option<f64>,
     /// Phase delay \[s\].
     pub phase_delay_s: Option<f64>,
-    /// Which margin the bandwidth is.
+    /// The margin that determines the bandwidth.
     pub rule: Option<BandwidthRule>,
-    /// Whether the gain margin comes before the phase margin: the standard warns of it.
+    /// Whether the gain margin is reached before the phase margin, of which the standard warns.
     pub gain_limited: bool,
-    /// Largest departure of the phase from a straight line between `omega_180` and `2 omega_180` \[deg\].
+    /// Largest deviation of the phase from a straight line between `omega_180` and `2 omega_180`
+    /// \[deg\].
     pub phase_departure_deg: Option<f64>,
-    /// Whether the phase delay is read from the least-squares line, the phase not being straight.
+    /// Whether the phase delay is computed from the least-squares line, because the phase is not
+    /// straight.
     pub phase_delay_of_line: bool,
-    /// The numbers that rest on the response above the band, by name.
+    /// Names of the numbers that depend on the response above the band.
     pub rests_above_band: Vec<&'static str>,
-    /// The numbers that rest on the response below the band, by name.
+    /// Names of the numbers that depend on the response below the band.
     pub rests_below_band: Vec<&'static str>,
-    /// The interval of each number that has one, by name.
+    /// Interval of each number, by name, where there is one.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub interval: BTreeMap<&'static str, [f64; 2]>,
-    /// Swaps that lack a number and are no part of its interval, by name.
+    /// Number of swaps without a value, excluded from the interval, by name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub swaps_left_out: BTreeMap<&'static str, usize>,
-    /// Phase \[deg\] at the lowest frequency of the band, where it speaks for a reversed channel.
+    /// Phase \[deg\] at the lowest frequency of the band, where it indicates a reversed channel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reversed_phase_deg: Option<f64>,
     /// Why a number, or every interval ("interval"), is absent, by its name.
@@ -84,7 +80,7 @@ pub struct BandwidthFinding {
     pub absent: BTreeMap<&'static str, String>,
 }
 
-/// Names of the numbers that are read from a response, in the order of [`metrics`].
+/// Names of the numbers computed from a response, in the order of [`metrics`].
 const METRICS: [&str; 5] = [
     "omega_bw_rad_s",
     "omega_phase_rad_s",
@@ -92,11 +88,11 @@ const METRICS: [&str; 5] = [
     "omega_180_rad_s",
     "phase_delay_s",
 ];
-/// Name of the departure of the phase from a straight line.
+/// Name of the deviation of the phase from a straight line.
 const DEPARTURE: &str = "phase_departure_deg";
 
 impl BandwidthFinding {
-    /// Its numbers by their names.
+    /// Returns the numbers with their names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 6] {
         let [bandwidth, phase, gain, neutral, delay] = METRICS;
         [
@@ -109,13 +105,14 @@ impl BandwidthFinding {
         ]
     }
 
-    /// Whether a number rests on the response above the band.
+    /// Returns whether a number depends on the response above the band.
     pub fn rests_above(&self, name: &str) -> bool {
         self.rests_above_band.contains(&name)
     }
 }
 
-/// The bandwidths of every on-axis response of a condition, role by role; of responses without one the reason.
+/// Computes the bandwidths of every on-axis response of a condition, role by role; for responses
+/// without a bandwidth, the reason.
 pub(super) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFinding> {
     let models = PreparedModels::of(asked);
     let pairs = asked.analysis.study.dataset.measuring_pairs();
@@ -130,20 +127,19 @@ pub(super) fn bandwidth_findings(asked: &AskedCondition<'_>) -> Vec<BandwidthFin
         .collect()
 }
 
-/// A model made ready for its response.
+/// A model prepared for the evaluation of its response.
 struct ReadModel<'a> {
     dynamics: Cow<'a, Dynamics>,
-    /// How sure its response is, where the model itself says it.
+    /// Uncertainty of its response, where the model contains it.
     bands: Option<&'a ModelBands>,
     sampled: SampledModel,
 }
 
-/// How a model is read between the frequencies that are searched.
+/// Evaluation of a model between the grid frequencies of the search.
 #[derive(Clone, Copy, PartialEq)]
 enum Between {
-    /// Exactly.
     Exact,
-    /// By interpolation: of models that only say how much a number scatters.
+    /// By interpolation, for models used only for the scatter of a number.
     Interpolated,
 }
 
@@ -158,11 +154,11 @@ impl<'a> ReadModel<'a> {
     }
 }
 
-/// What a correction makes of one response.
+/// Effect of a correction on one response.
 #[derive(Clone, Copy)]
 struct PairCorrection {
     multiplier: GainDelay,
-    /// Whether a lead filter is part of it: above the band it is no model of the aircraft.
+    /// Whether it includes a lead filter: above the band the result does not model the aircraft.
     has_leads: bool,
 }
 
@@ -172,7 +168,7 @@ impl PairCorrection {
         has_leads: false,
     };
 
-    /// None where the net gain is not positive.
+    /// Returns `None` where the net gain is not positive.
     fn of(correction: &ChannelCorrection, pair: Pair) -> Option<Self> {
         let has_leads = Channel::of(pair)
             .into_iter()
@@ -183,7 +179,7 @@ impl PairCorrection {
         })
     }
 
-    /// Of the figures of a swap; none where one of them does not exist.
+    /// Returns the effect for the figures of a swap; `None` where one of them does not exist.
     fn of_swap(figures: &Figures, pair: Pair, leads: Option<&ChannelLeads>) -> Option<Self> {
         let gain = figures[Scalar::NetGain(pair)]?.exp();
         let [output_s, input_s] =
@@ -199,16 +195,16 @@ impl PairCorrection {
     }
 }
 
-/// The values of the numbers of one response, where there are any; the order is that of [`METRICS`].
+/// Values of the numbers of one response, where they exist, in the order of [`METRICS`].
 type MetricValues = [Option<f64>; 5];
 
-/// The models of a condition that bandwidths are read from.
+/// The models of a condition for bandwidths.
 struct PreparedModels<'a> {
     asked: &'a AskedCondition<'a>,
     physics: usize,
-    /// The physics representative and those that stand in for it.
+    /// The physics representative and its substitutes.
     of_physics: BTreeMap<usize, ReadModel<'a>>,
-    /// The same with the couplings, as far as they have matrices; empty without couplings.
+    /// The same models with the couplings, where they have matrices; empty without couplings.
     of_coupled: BTreeMap<usize, ReadModel<'a>>,
     identified: ReadModel<'a>,
     swaps: &'a [Swap],
@@ -267,7 +263,8 @@ impl<'a> PreparedModels<'a> {
         }
     }
 
-    /// Bandwidth and phase delay of a response of a model under a correction, and its phase where that speaks for a reversed channel.
+    /// Computes bandwidth and phase delay of a response of a model under a correction, and its
+    /// phase where that indicates a reversed channel.
     fn read(
         &self,
         model: &ReadModel<'_>,
@@ -289,7 +286,8 @@ impl<'a> PreparedModels<'a> {
             (Dynamics::Measured(measured), _) => (&exact, measured.omega().to_vec()),
         };
         let attitude = AttitudeResponse::new(response, output, &omega, band)?;
-        // Of the 400 points of the line that the phase delay is read from, those between its ends; ends and crossings are of the model itself.
+        // Interpolate, among the 400 points of the line for the phase delay, those between its
+        // ends; evaluate ends and crossings with the model itself.
         let attitude = match *model.dynamics {
             Dynamics::StateSpace(_) => attitude.sampled_by(&interpolated),
             Dynamics::Measured(_) => attitude,
@@ -340,7 +338,7 @@ impl<'a> PreparedModels<'a> {
         finding
     }
 
-    /// The bandwidth of the model of a role, or why it has none.
+    /// Returns the bandwidth of the model of a role, or why it has none.
     fn bandwidth(
         &self,
         pair: Pair,
@@ -358,7 +356,7 @@ impl<'a> PreparedModels<'a> {
             .map_err(|error| error.to_string())
     }
 
-    /// A physics model as a role has it: with the couplings where it is corrected.
+    /// Returns a physics model as used in a role: with the couplings where it is corrected.
     fn physics_of(
         &self,
         role: RequirementRole,
@@ -396,7 +394,7 @@ impl<'a> PreparedModels<'a> {
         }
     }
 
-    /// The intervals of swapped models.
+    /// Adds the intervals from swapped models.
     fn add_swapped(&self, finding: &mut BandwidthFinding, bandwidth: &Bandwidth) {
         let level = self.asked.analysis.study.settings.uncertainty.level;
         let of_bundle = |kind: BundleKind| -> Vec<MetricValues> {
@@ -427,7 +425,7 @@ impl<'a> PreparedModels<'a> {
         }
     }
 
-    /// The numbers of a response after a swap.
+    /// Computes the numbers of a response after a swap.
     fn swapped(
         &self,
         (kind, model, figures): &Swap,
@@ -453,7 +451,7 @@ impl<'a> PreparedModels<'a> {
 }
 
 impl BandwidthFinding {
-    /// Takes what was read from a response.
+    /// Stores the numbers computed from a response.
     fn take(&mut self, bandwidth: &Bandwidth) {
         let read = metrics(bandwidth);
         let [omega_bw, omega_phase, omega_gain, omega_180, phase_delay] =
@@ -465,7 +463,7 @@ impl BandwidthFinding {
         ) = (omega_bw, omega_phase, omega_gain);
         (self.omega_180_rad_s, self.phase_delay_s) = (omega_180, phase_delay);
         (self.rule, self.gain_limited) = (bandwidth.rule, bandwidth.is_gain_limited());
-        // Where leads refuse the phase delay, the line that it would be read from rests on them too.
+        // Where leads invalidate the phase delay, its line depends on them too.
         let line = bandwidth.phase_line.filter(|_| phase_delay.is_some());
         self.phase_departure_deg = line.map(|line| line.departure_deg);
         self.phase_delay_of_line = line.is_some_and(|line: PhaseLine| !line.is_straight());
@@ -487,7 +485,7 @@ impl BandwidthFinding {
         }
     }
 
-    /// Takes intervals of standard deviations: normal, and not below zero.
+    /// Adds intervals from standard deviations: normal, and not below zero.
     fn take_deviations(&mut self, bandwidth: &Bandwidth, level: f64) {
         let factor = student_quantile(level, f64::INFINITY);
         for (name, metric) in METRICS.into_iter().zip(metrics(bandwidth)) {
@@ -505,7 +503,7 @@ impl BandwidthFinding {
     }
 }
 
-/// What is read from a response, in the order of [`METRICS`].
+/// Computes the numbers of a response, in the order of [`METRICS`].
 fn metrics(bandwidth: &Bandwidth) -> [Result<Metric, NoMetric>; 5] {
     [
         bandwidth.omega_bw,

@@ -1,5 +1,5 @@
-//! The modes of the physics representative, as it is and with the couplings of the study, against those of the identified one, where both
-//! are known by their matrices (M17.3).
+//! The modes of the physics representative, without and with the couplings of the study, against
+//! those of the identified representative, where the matrices of both are known (M17.3).
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use gdcm_model::response::pole_estimate::PoleEstimate;
 
 use super::requirements::AskedCondition;
 
-/// The poles that were identified of conditions, with how sure they are: a dataset does not keep that.
+/// Identified poles of conditions with their uncertainty, which a dataset does not store.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KnownPoles(BTreeMap<ConditionId, Vec<PoleEstimate>>);
 
@@ -28,7 +28,7 @@ impl FromIterator<(ConditionId, Vec<PoleEstimate>)> for KnownPoles {
 }
 
 impl KnownPoles {
-    /// Those of a condition; none where nothing was identified of it.
+    /// Returns the poles of a condition; empty where no model was identified for it.
     fn of(&self, condition: ConditionId) -> &[PoleEstimate] {
         self.0.get(&condition).map_or(&[], Vec::as_slice)
     }
@@ -37,16 +37,13 @@ impl KnownPoles {
 /// A mode of one model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeNumbers {
-    /// Name of the model.
     pub model: String,
     /// Real part of its pole \[rad/s\].
     pub pole_real_rad_s: f64,
     /// Imaginary part of its pole \[rad/s\], not negative.
     pub pole_imaginary_rad_s: f64,
-    /// Period, time to half amplitude and damping ratio.
     #[serde(flatten)]
     pub values: ModeValues,
-    /// Why a number is absent, by its name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub absent: BTreeMap<&'static str, &'static str>,
 }
@@ -73,7 +70,7 @@ impl ModeNumbers {
         }
     }
 
-    /// Its numbers by their names.
+    /// Returns the numbers with their names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 5] {
         [
             ("pole_real_rad_s", Some(self.pole_real_rad_s)),
@@ -85,43 +82,41 @@ impl ModeNumbers {
     }
 }
 
-/// A mode of the identified representative, and those of the physics representative in its place.
+/// A mode of the identified representative, and the matching modes of the physics representative.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModeFinding {
-    /// The condition.
     pub condition: ConditionId,
     /// Its true airspeed \[kt\].
     pub airspeed_kt: f64,
     /// Number of the mode in this condition, from 1, by rising frequency.
     pub number: usize,
-    /// What it is called; none where neither states nor frequency say it.
+    /// Its name; `None` where neither states nor frequency determine it.
     pub name: Option<ModeName>,
-    /// What it is named by; by its frequency and damping alone it is a guess.
+    /// Basis of the name; a name by frequency and damping alone is a guess.
     pub named_by: NamedBy,
-    /// What is said of the physics mode.
+    /// Verdict on the physics mode.
     pub verdict: ModeVerdict,
-    /// The mode of the identified representative.
     pub identified: ModeNumbers,
-    /// Standard deviations of its numbers; none where the identification that it is of is not known.
+    /// Standard deviations of its numbers; `None` where the source identification is unknown.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub identified_deviation: Option<ModeValues>,
-    /// That of the physics representative in its place; none where it has none.
+    /// The matching mode of the physics representative, where there is one.
     pub physics: Option<ModeNumbers>,
-    /// What is said of it with the couplings of the study; none without couplings, for gains and delays move no pole.
+    /// Verdict with the couplings of the study; `None` without couplings, because gains and delays
+    /// move no pole.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corrected_verdict: Option<ModeVerdict>,
-    /// That mode; none without couplings too.
+    /// The matching mode with the couplings; `None` also without couplings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corrected: Option<ModeNumbers>,
-    /// The tolerance, where the table has one for this mode.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<ModeTolerance>,
 }
 
-/// The modes of a condition.
+/// Compares the modes of a condition.
 ///
 /// # Errors
-/// Why there are none, in words.
+/// The reason in words why there are no modes.
 pub(super) fn mode_findings(
     asked: &AskedCondition<'_>,
     known: &KnownPoles,
@@ -178,7 +173,7 @@ pub(super) fn mode_findings(
     Ok(rows.into_iter().enumerate().map(finding).collect())
 }
 
-/// The modes of a physics model with the couplings of the study; none without couplings.
+/// Returns the modes of a physics model with the couplings of the study; `None` without couplings.
 fn coupled_modes(asked: &AskedCondition<'_>, physics: &Model) -> Result<Option<Vec<Mode>>, String> {
     let Some(matrices) = physics
         .state_space()
@@ -197,7 +192,7 @@ fn coupled_modes(asked: &AskedCondition<'_>, physics: &Model) -> Result<Option<V
         .map_err(|error| named(&error))
 }
 
-/// The modes of a model, or why they are not known.
+/// Returns the modes of a model, or why they are unknown.
 fn known_modes(model: &Model) -> Result<Vec<Mode>, String> {
     if model.state_space().is_none() {
         return Err(format!(

@@ -1,5 +1,5 @@
-//! What a qualification asks of the models of every condition (M17), without flight records: bandwidth and phase delay, modes, summary
-//! costs; what it is asked with, and of which models.
+//! Qualification requirements on the models of every condition (M17) that need no flight records:
+//! bandwidth and phase delay, modes, summary costs; with their settings and model roles.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -26,37 +26,36 @@ use super::required_bandwidth::{BandwidthFinding, bandwidth_findings};
 use super::required_modes::{KnownPoles, ModeFinding, mode_findings};
 use super::settings::is_default;
 
-/// What requirements are asked with; a part that is left out is the default.
+/// Settings of the requirements; an omitted part has its default.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RequirementSettings {
-    /// Names of the outputs whose attitude the stick commands; of all others it commands the rate.
+    /// Names of the outputs with attitude command; all other outputs have rate command.
     #[serde(skip_serializing_if = "BTreeSet::is_empty")]
     pub attitude_command: BTreeSet<String>,
-    /// Boundaries of levels over bandwidth and phase delay.
     #[serde(skip_serializing_if = "is_default")]
     pub levels: LevelBoundaries,
-    /// How far a time history may be from the flown one.
+    /// Tolerances of time histories about the measured ones.
     #[serde(skip_serializing_if = "is_default")]
     pub tolerances: ToleranceTable,
-    /// How far a mode may be from the flown one.
+    /// Tolerances of modes about the identified ones.
     #[serde(skip_serializing_if = "is_default")]
     pub mode_tolerances: ModeToleranceTable,
-    /// From where on the overview says that a corrected model is far from the identified one.
+    /// Limits beyond which the overview marks a corrected model as far from the identified one.
     #[serde(skip_serializing_if = "is_default")]
     pub overview: OverviewLimits,
-    /// What the models answer to where no flight record is shown.
+    /// Test input of the models where no flight record is shown.
     #[serde(skip_serializing_if = "is_default")]
     pub test: TestInput,
 }
 
-/// From where on the overview of the corrected models says that one is far from the identified one: limits of the program, of no standard.
+/// Limits beyond which the overview marks a corrected model as far from the identified one. The
+/// limits are the program's own, from no standard.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct OverviewLimits {
-    /// Difference of the bandwidth, as a part of the identified one.
+    /// Relative difference of the bandwidth from the identified one.
     pub bandwidth: f64,
-    /// Difference of the phase delay \[s\].
     pub phase_delay_s: f64,
     /// Least share of time inside a tolerance, 0 to 1.
     pub share_inside: f64,
@@ -72,21 +71,19 @@ impl Default for OverviewLimits {
     }
 }
 
-/// A limit of the overview that is not above zero.
+/// An invalid limit of the overview: not above zero.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("limits of the overview: expected {name} above zero, found {}", number(*found))]
 pub struct OverviewLimitsError {
-    /// Which.
     pub name: &'static str,
-    /// What stands there.
     pub found: f64,
 }
 
 impl OverviewLimits {
-    /// The same, checked.
+    /// Checks the limits and returns them.
     ///
     /// # Errors
-    /// [`OverviewLimitsError`] where one is not a number above zero.
+    /// [`OverviewLimitsError`] where a limit is not a number above zero.
     pub fn checked(self) -> Result<Self, OverviewLimitsError> {
         let Self {
             bandwidth,
@@ -109,7 +106,7 @@ impl OverviewLimits {
 }
 
 impl Analysis {
-    /// The same analysis, of which requirements are asked with other settings.
+    /// Returns the same analysis with other requirement settings.
     pub fn asked_with(&self, settings: &Arc<RequirementSettings>) -> Self {
         let mut analysis = self.clone();
         analysis.study.requirements = Arc::clone(settings);
@@ -118,7 +115,7 @@ impl Analysis {
 }
 
 impl RequirementSettings {
-    /// How an axis answers to its stick, by the name of its output.
+    /// Returns the command type of an axis, by the name of its output.
     pub fn command_of(&self, output: &str) -> CommandType {
         if self.attitude_command.contains(output) {
             CommandType::Attitude
@@ -127,7 +124,7 @@ impl RequirementSettings {
         }
     }
 
-    /// What names outputs that the dataset does not have, in words.
+    /// Describes the settings with outputs that the dataset does not have.
     pub fn without_channel(&self, dataset: &Dataset) -> Vec<String> {
         let (_, outputs) = dataset.names_of_channels();
         let unknown = |name: &&String| !outputs.contains(name);
@@ -141,18 +138,17 @@ impl RequirementSettings {
     }
 }
 
-/// Which model of a condition a number is of.
+/// Role of a model in a condition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RequirementRole {
-    /// The physics representative as it is.
+    /// The uncorrected physics representative.
     #[default]
     Physics,
-    /// The same under the condition's own correction.
+    /// The physics representative under the condition's own correction.
     Corrected,
-    /// The same under the schedule at the condition's airspeed.
+    /// The physics representative under the schedule at the condition's airspeed.
     Scheduled,
-    /// The identified representative.
     Identified,
 }
 
@@ -165,7 +161,7 @@ impl RequirementRole {
         Self::Identified,
     ];
 
-    /// The bundle whose representative it is of.
+    /// Returns the bundle of the role's representative.
     pub fn bundle(self) -> BundleKind {
         if self == Self::Identified {
             BundleKind::Identified
@@ -174,7 +170,7 @@ impl RequirementRole {
         }
     }
 
-    /// Its name.
+    /// Returns the name of the role.
     pub fn name(self) -> &'static str {
         match self {
             Self::Physics => "physics",
@@ -185,32 +181,29 @@ impl RequirementRole {
     }
 }
 
-/// The summary costs of a physics model against the identified representative (M17.4).
+/// Summary costs of a physics model against the identified representative (M17.4).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SummaryFinding {
-    /// The condition.
     pub condition: ConditionId,
     /// Its true airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// Which model.
     pub role: RequirementRole,
-    /// Its name.
     pub model: String,
     /// Mean J over the on-axis responses.
     pub mean_j_on_axis: Option<f64>,
     /// Mean J over all responses.
     pub mean_j_all: Option<f64>,
-    /// Mean share of the band, in `ln omega`, inside the MUAD envelopes, over the on-axis responses: 0 to 1.
+    /// Mean share of the band, in `ln omega`, inside the MUAD envelopes, over the on-axis
+    /// responses: 0 to 1.
     pub muad_share_on_axis: Option<f64>,
-    /// The same over all responses.
+    /// Mean share of the band inside the MUAD envelopes over all responses: 0 to 1.
     pub muad_share_all: Option<f64>,
-    /// Why a number is absent, by its name.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub absent: BTreeMap<&'static str, String>,
 }
 
 impl SummaryFinding {
-    /// Its numbers by their names.
+    /// Returns the numbers with their names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 4] {
         [
             ("mean_j_on_axis", self.mean_j_on_axis),
@@ -221,48 +214,42 @@ impl SummaryFinding {
     }
 }
 
-/// A question that has no answer, in one condition or in all.
+/// A missing answer, in one condition or in all.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct MissingFinding {
-    /// The condition; none where it is all of them.
+    /// The condition; `None` for all conditions.
     pub condition: Option<ConditionId>,
-    /// What is missing: "all", "scheduled" or "modes".
+    /// Missing item: "all", "scheduled" or "modes".
     pub what: &'static str,
-    /// The reason in words.
     pub why: String,
 }
 
-/// What has to be known about the numbers of a condition.
+/// A caution about the numbers of a condition.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct RequirementCaution {
-    /// The condition.
     pub condition: ConditionId,
-    /// The caution in words.
     pub text: String,
 }
 
-/// What a qualification asks of the models of every condition, as it is written.
+/// Qualification requirements on the models of every condition, in the format of the export.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Requirements {
     /// The identified band \[rad/s\].
     pub band_rad_s: [f64; 2],
-    /// Level of every interval.
     pub interval_level: f64,
-    /// Names of the outputs whose attitude the stick commands; of all others it commands the rate.
+    /// Names of the outputs with attitude command; all other outputs have rate command.
     pub attitude_command: BTreeSet<String>,
     /// Bandwidth and phase delay of every on-axis response of every condition and role.
     pub bandwidth: Vec<BandwidthFinding>,
-    /// The modes of physics against those identified.
+    /// The physics modes against the identified modes.
     pub modes: Vec<ModeFinding>,
     /// The summary costs of every condition and role.
     pub summary: Vec<SummaryFinding>,
-    /// What has no answer, and why.
     pub missing: Vec<MissingFinding>,
-    /// What has to be known.
     pub cautions: Vec<RequirementCaution>,
 }
 
-/// One condition with what its questions are asked of.
+/// One condition with the models and results for its requirements.
 pub(super) struct AskedCondition<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) result: &'a ConditionAnalysis,
@@ -278,12 +265,12 @@ impl AskedCondition<'_> {
         self.result.condition.flight_state().airspeed_kt
     }
 
-    /// The name of the model of a role.
+    /// Returns the name of the model of a role.
     pub(super) fn model_name(&self, role: RequirementRole) -> String {
         self.result.representative_name(role.bundle()).to_owned()
     }
 
-    /// The correction of a role; none of models that have none.
+    /// Returns the correction of a role; `None` for roles without a correction.
     pub(super) fn correction(&self, role: RequirementRole) -> Option<&ChannelCorrection> {
         match role {
             RequirementRole::Corrected => Some(&self.result.correction),
@@ -292,7 +279,7 @@ impl AskedCondition<'_> {
         }
     }
 
-    /// The roles that there is a model for.
+    /// Returns the roles that have a model.
     pub(super) fn roles(&self) -> impl Iterator<Item = RequirementRole> + use<> {
         let has_schedule = self.scheduled.is_some();
         RequirementRole::ALL
@@ -345,7 +332,7 @@ impl AskedCondition<'_> {
     }
 }
 
-/// What is found of one condition.
+/// Computes the findings of one condition.
 fn findings_of(analysis: &Analysis, known: &KnownPoles, id: ConditionId) -> Requirements {
     let mut found = Requirements::default();
     let missing = |what, why: String| MissingFinding {
@@ -381,11 +368,12 @@ fn findings_of(analysis: &Analysis, known: &KnownPoles, id: ConditionId) -> Requ
     found
 }
 
-/// What a qualification asks of the models of every condition with a result (M17.1, M17.3, M17.4), without records. Each condition is
-/// a step. Intervals take the bars of the analysis ([`Analysis::uncertainty`]); which modes flight determines takes the poles that are `known`.
+/// Computes the requirements on the models of every condition with a result (M17.1, M17.3, M17.4),
+/// without records. Each condition is a step. Intervals use the error bars of the analysis
+/// ([`Analysis::uncertainty`]); whether flight determines a mode is judged from the `known` poles.
 ///
 /// # Errors
-/// [`Cancelled`] where `execution` is stopped.
+/// [`Cancelled`] where `execution` is cancelled.
 pub fn requirements_of(
     analysis: &Analysis,
     known: &KnownPoles,
@@ -420,10 +408,10 @@ pub fn requirements_of(
 }
 
 impl Engine {
-    /// What a qualification asks of the models of every condition; see [`requirements_of`].
+    /// Computes the requirements on the models of every condition; see [`requirements_of`].
     ///
     /// # Errors
-    /// [`Cancelled`] soon after `progress` says so.
+    /// [`Cancelled`] soon after `progress` requests it.
     pub fn requirements(
         &self,
         analysis: &Analysis,
@@ -438,7 +426,8 @@ impl Engine {
     }
 }
 
-/// A caution for each response whose phase speaks for a reversed channel, with the models that it is of.
+/// Returns a caution for each response whose phase indicates a reversed channel, with the affected
+/// models.
 fn reversed_phases(analysis: &Analysis, findings: &[BandwidthFinding]) -> Vec<RequirementCaution> {
     let mut reversed: Vec<(Pair, ConditionId, Vec<&str>)> = Vec::new();
     for finding in findings
@@ -465,36 +454,29 @@ fn reversed_phases(analysis: &Analysis, findings: &[BandwidthFinding]) -> Vec<Re
 /// Why the model of a role cannot be simulated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RoleModelError {
-    /// It is a response that was measured.
+    /// The model is a measured response.
     #[error("\"{model}\" is a measured response: without matrices it answers to no record")]
-    Measured {
-        /// Its name.
-        model: String,
-    },
-    /// It acts in discrete time.
+    Measured { model: String },
+    /// The model is discrete-time.
     #[error("\"{model}\" acts in discrete time: records are simulated in continuous time")]
-    Discrete {
-        /// Its name.
-        model: String,
-    },
-    /// There is no schedule.
+    Discrete { model: String },
     #[error(transparent)]
     NoSchedule(#[from] ScheduleError),
-    /// Delays or leads cannot become states.
     #[error(transparent)]
     Delays(#[from] CorrectedModelError),
-    /// Couplings or a correction cannot be put on it.
+    /// Couplings or a correction cannot be applied to the model.
     #[error(transparent)]
     Coupled(#[from] CoupledModelError),
 }
 
 impl Analysis {
-    /// The model of a role of a condition in continuous time, its delays as states: the physics representative as it is, with the
-    /// couplings of the study and a correction (`M_O H~ M_I`), or the identified representative.
+    /// Returns the model of a role of a condition in continuous time, with delays as states: the
+    /// uncorrected physics representative, with the couplings of the study and a correction (`M_O
+    /// H~ M_I`), or the identified representative.
     ///
     /// # Errors
-    /// [`RoleModelError`] where the model has no matrices or acts in discrete time, there is no schedule, or matrices cannot be
-    /// computed with.
+    /// [`RoleModelError`] where the model has no matrices or is discrete-time, there is no
+    /// schedule, or the matrices cannot be used in computations.
     pub fn role_model(
         &self,
         of: &ConditionAnalysis,
@@ -524,7 +506,7 @@ impl Analysis {
     }
 }
 
-/// The matrices of a model of continuous time.
+/// Returns the matrices of a continuous-time model.
 fn continuous(model: &Model) -> Result<&StateSpace, RoleModelError> {
     let name = || model.name.clone();
     let matrices = model

@@ -1,5 +1,5 @@
-//! What a qualification asks, as tables, and the job that finds it beside the live answer (M17). One table has the corrected model of every
-//! condition against the identified one, requirement by requirement:
+//! Tables of the requirements, and their job beside the live answer (M17). One table compares the
+//! corrected model of every condition with the identified one, requirement by requirement:
 //!
 //! ```text
 //! bandwidth     100 (omega_BW / omega_BW of the identified model - 1) [%]
@@ -30,21 +30,19 @@ use super::time_histories::TimeHistories;
 use super::time_history_tables::percent;
 use super::uncertainty::Uncertainty;
 
-/// What a qualification asks of an analysis, with its error bars where they are known.
+/// Requirements on the models of an analysis, with error bars where they are known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementsJob {
-    /// The analysis.
     pub analysis: Shared<Analysis>,
-    /// How sure its values are.
+    /// Error bars of its values.
     pub uncertainty: Option<Shared<Uncertainty>>,
-    /// What is asked with, which an analysis does not depend on.
+    /// Settings of the requirements, on which the analysis does not depend.
     pub settings: Arc<RequirementSettings>,
-    /// What was identified of conditions.
     pub known: KnownPoles,
 }
 
 impl Job for RequirementsJob {
-    /// Who carries out its pieces.
+    /// Executor of the pieces.
     type Tools = Box<dyn Executor>;
     type Output = Arc<Requirements>;
 
@@ -76,7 +74,7 @@ fn cell(value: Option<f64>, digits: usize) -> String {
     )
 }
 
-/// Modulus, damping ratio and period of a mode; dashes where there is none.
+/// Formats modulus, damping ratio and period of a mode; dashes where there is none.
 fn mode_cells(of: Option<&ModeNumbers>) -> [String; 3] {
     [
         cell(
@@ -89,7 +87,8 @@ fn mode_cells(of: Option<&ModeNumbers>) -> [String; 3] {
 }
 
 impl Requirements {
-    /// Bandwidth and phase delay of every on-axis response of every condition and model, with what has to be known of each.
+    /// Returns bandwidth and phase delay of every on-axis response of every condition and model,
+    /// with cautions.
     pub fn bandwidth_table(&self, dataset: &Dataset) -> Table {
         let columns = [
             "condition",
@@ -128,7 +127,7 @@ impl Requirements {
         table
     }
 
-    /// Why a condition has no modes to compare; none where it has.
+    /// Returns why a condition has no modes to compare; `None` where it has.
     pub fn no_modes(&self, condition: ConditionId) -> Option<&str> {
         let is_of = |of: &&MissingFinding| {
             of.condition == Some(condition) && matches!(of.what, "modes" | "all")
@@ -136,7 +135,8 @@ impl Requirements {
         self.missing.iter().find(is_of).map(|of| of.why.as_str())
     }
 
-    /// The modes of a condition: flown, of the physics representative, and with the couplings of the study where there are some.
+    /// Returns the modes of a condition: identified, of the physics representative, and with the
+    /// couplings of the study where there are any.
     pub fn mode_table(&self, condition: ConditionId) -> Table {
         let modes = || self.modes.iter().filter(|of| of.condition == condition);
         let is_coupled = modes().any(|of| of.corrected_verdict.is_some());
@@ -200,8 +200,9 @@ impl Requirements {
         table
     }
 
-    /// Mean J, and the share of the band inside the envelopes of unnoticeable added dynamics, of every condition and model; with the
-    /// answers to flight records `J_rms` and Theil's coefficients too.
+    /// Returns mean J, and the share of the band inside the envelopes of unnoticeable added
+    /// dynamics, of every condition and model; with the responses to flight records, also `J_rms`
+    /// and Theil's coefficients.
     pub fn summary_table(&self, histories: Option<&TimeHistories>) -> Table {
         let heads = [
             "condition",
@@ -247,7 +248,8 @@ impl Requirements {
                     .chain(over_time(of.condition, of.role)),
             );
         }
-        // The others are compared with it: over time only is there something to say of it.
+        // The other models are compared with the identified model: only time histories say anything
+        // about it.
         let role = RequirementRole::Identified;
         for of in of_records
             .into_iter()
@@ -273,7 +275,8 @@ impl Requirements {
         table
     }
 
-    /// The summary of a row of [`Requirements::summary_table`]; none of the identified model, which the others are compared with.
+    /// Returns the summary of a row of [`Requirements::summary_table`]; `None` for the identified
+    /// model, the reference of the others.
     pub fn summary_of(&self, row: &[String]) -> Option<&SummaryFinding> {
         let [condition, _, role, ..] = row else {
             return None;
@@ -283,7 +286,7 @@ impl Requirements {
             .find(|of| of.condition.to_string() == *condition && of.role.name() == role)
     }
 
-    /// What a condition's model has of a response.
+    /// Returns the bandwidth of a response of a condition's model.
     pub fn bandwidth_of(
         &self,
         condition: ConditionId,
@@ -297,7 +300,7 @@ impl Requirements {
 }
 
 impl BandwidthFinding {
-    /// What has to be known of it, or why it has no number.
+    /// Returns the cautions about the finding, or why it has no number.
     pub fn remark(&self) -> String {
         let mut words = Vec::new();
         if let Some(why) = self
@@ -345,17 +348,18 @@ pub fn mode_verdict_words(verdict: ModeVerdict) -> &'static str {
 /// The corrected model of every condition against the identified one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RequirementsOverview {
-    /// A row for each requirement with its limit, a column for each condition; a dash where there is no number.
+    /// A row for each requirement with its limit, a column for each condition; a dash where there
+    /// is no number.
     pub table: Table,
     /// Whether a cell is beyond its limit, row by row.
     outside: Vec<Vec<bool>>,
 }
 
-/// Columns that say what a row is of.
+/// Columns that identify the requirement of a row.
 const HEADS: [&str; 3] = ["requirement", "unit", "limit"];
 
 impl RequirementsOverview {
-    /// Whether a cell is beyond its limit.
+    /// Returns whether a cell is beyond its limit.
     pub fn is_outside(&self, row: usize, column: usize) -> bool {
         self.outside
             .get(row)
@@ -364,7 +368,7 @@ impl RequirementsOverview {
             .unwrap_or(false)
     }
 
-    /// Columns before the first condition.
+    /// Number of columns before the first condition.
     pub const HEADS: usize = HEADS.len();
 }
 
@@ -372,7 +376,8 @@ impl RequirementsOverview {
 type Judged = (String, bool);
 
 impl Requirements {
-    /// The corrected model of every condition against the identified one; with the answers to flight records their shares inside too.
+    /// Compares the corrected model of every condition with the identified one; with the responses
+    /// to flight records, also their shares inside.
     pub fn overview(
         &self,
         dataset: &Dataset,
@@ -449,7 +454,7 @@ impl Requirements {
                 },
             );
         }
-        // Of tolerances those of what is measured itself.
+        // Only tolerances of measured quantities, not of integrals.
         for quantity in histories
             .into_iter()
             .flat_map(TimeHistories::measured_quantities)
@@ -473,10 +478,12 @@ impl Requirements {
         overview
     }
 
-    /// How many modes of the corrected model are beyond their tolerance; none where no mode with a tolerance is determined.
+    /// Counts the modes of the corrected model beyond their tolerance; `None` where no mode with a
+    /// tolerance is determined.
     fn modes_outside(&self, id: ConditionId) -> Option<Judged> {
         let of_condition = self.modes.iter().filter(|of| of.condition == id);
-        // Gains and delays move no pole: without couplings the physics model's are those of the corrected one.
+        // Gains and delays move no pole: without couplings the corrected model has the poles of the
+        // physics model.
         let verdicts: Vec<ModeVerdict> = of_condition
             .map(|of| of.corrected_verdict.unwrap_or(of.verdict))
             .collect();
@@ -487,7 +494,7 @@ impl Requirements {
     }
 }
 
-/// A limit without the last digits of its unit.
+/// Formats a limit without floating-point noise from its unit.
 fn limit(value: f64) -> String {
     number((1e6 * value).round() / 1e6)
 }

@@ -1,4 +1,4 @@
-//! What the schedule loses of the conditions' own corrections: delays that it leaves out, and J.
+//! Losses of the schedule against the conditions' own corrections: omitted delays, and J.
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::schedule::assessment::corrected_cost_on;
@@ -9,13 +9,12 @@ use gdcm_model::units::s_to_ms;
 use super::analysis::{Analysis, ConditionAnalysis};
 use super::comparison::ModelMismatch;
 
-/// Delay \[s\] below which a channel counts as having none: it reads as 0.0 ms.
+/// Delay \[s\] below which a channel counts as having none: it is displayed as 0.0 ms.
 const NO_DELAY_S: f64 = 5e-5;
 
 /// A channel that has a delay in the own corrections of some conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DelayedChannel {
-    /// The channel.
     pub channel: Channel,
     /// Its delay in each of these conditions, the longest first.
     pub delays: Vec<OwnDelay>,
@@ -24,14 +23,13 @@ pub struct DelayedChannel {
 /// The delay of a channel in a condition's own correction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OwnDelay {
-    /// The condition.
     pub condition: ConditionId,
     /// The delay \[s\].
     pub delay_s: f64,
 }
 
 impl DelayedChannel {
-    /// The delay in words: "delay of output NX: 5.3 ms in condition 4".
+    /// Describes the delay: "delay of output NX: 5.3 ms in condition 4".
     pub fn words(&self, dataset: &Dataset) -> String {
         let side = match self.channel {
             Channel::Input(_) => "input",
@@ -59,7 +57,7 @@ impl DelayedChannel {
 }
 
 impl Analysis {
-    /// The channels that have a delay in the own correction of one of these conditions.
+    /// Returns the channels with a delay in the own correction of one of these conditions.
     pub fn delayed_channels(&self, conditions: &[ConditionId]) -> Vec<DelayedChannel> {
         let mut found = Vec::new();
         for channel in Channel::all_of(&self.study.dataset) {
@@ -81,7 +79,8 @@ impl Analysis {
         found
     }
 
-    /// The delays of the scheduled conditions that the schedule leaves out; none where it has delays, and where there is no schedule.
+    /// Returns the delays of the scheduled conditions that the schedule omits; empty where it has
+    /// delays, and where there is no schedule.
     pub fn unscheduled_delays(&self) -> Vec<DelayedChannel> {
         match &self.schedule {
             Ok(schedule) if !schedule.has_delays() => self.delayed_channels(&self.scheduled()),
@@ -90,7 +89,8 @@ impl Analysis {
     }
 }
 
-/// The conditions that the schedule leaves with more than twice the J of their own correction (M12).
+/// Returns cautions about the conditions with more than twice the J of their own correction under
+/// the schedule (M12).
 pub(super) fn schedule_cost_cautions(analysis: &Analysis) -> Vec<ScheduleCaution> {
     let mut cautions = Vec::new();
     for result in analysis
@@ -105,8 +105,9 @@ pub(super) fn schedule_cost_cautions(analysis: &Analysis) -> Vec<ScheduleCaution
     cautions
 }
 
-/// J of a condition under the schedule and under its own correction: of the nominal model, or of the representative where that is
-/// rejected. None without a schedule, or where no on-axis response can be compared.
+/// Returns J of a condition under the schedule and under its own correction: of the nominal model,
+/// or of the representative where the nominal model is rejected. `None` without a schedule, or
+/// where no on-axis response can be compared.
 fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<ScheduledCost> {
     let schedule = analysis.schedule.as_ref().ok()?;
     let condition = &result.condition;
@@ -146,7 +147,7 @@ fn scheduled_cost(analysis: &Analysis, result: &ConditionAnalysis) -> Option<Sch
     })
 }
 
-/// J of a response of a model under a correction.
+/// Returns J of a response of a model under a correction.
 fn cost_of(
     analysis: &Analysis,
     models: &ModelMismatch,
@@ -158,7 +159,7 @@ fn cost_of(
     Some(corrected_cost_on(mismatch, correction, pair, &analysis.omega, average)?.total())
 }
 
-/// J of some responses, summed.
+/// Sum of J over some responses.
 #[derive(Default)]
 struct CostSum {
     scheduled: f64,

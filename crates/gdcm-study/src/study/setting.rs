@@ -1,5 +1,6 @@
-//! The one table of settings: what each is called, where it stands in files and on a command line, what it may be, and how the
-//! window shows it. Undo, comparisons of decisions, refusals, the report, the command line and the window read it.
+//! The table of settings: name, key in files, command-line option, allowed values and window
+//! control of each. Undo, comparisons of decisions, refusals, the report, the command line and the
+//! window read it.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};
@@ -15,7 +16,7 @@ use super::settings::{
     CouplingCorrection, DEFAULT_COHERENCE, DelayFrom, PhaseCorrection, Settings,
 };
 
-/// A row of name, key and option before what is special about it.
+/// Returns a row of name, key and option, with defaults for the rest.
 const fn row([name, key, option]: [&'static str; 3], help: &'static str, kind: Kind) -> Setting {
     let control = Control {
         place: Place::Elsewhere,
@@ -49,7 +50,7 @@ impl Setting {
         }
     }
 
-    /// The word that its option stands for without a value.
+    /// Sets the value of the option without an argument.
     const fn bare(self, word: &'static str) -> Self {
         Self {
             bare: Some(word),
@@ -57,7 +58,7 @@ impl Setting {
         }
     }
 
-    /// Where its control stands, after which caption, under which accessible name.
+    /// Sets the control's place, caption and accessible name.
     const fn at(self, place: Place, caption: &'static str, label: &'static str) -> Self {
         Self {
             control: Control {
@@ -70,7 +71,7 @@ impl Setting {
         }
     }
 
-    /// By how much its number is dragged, and with how many decimals it stands there.
+    /// Sets the drag step of the number and its decimals in the control.
     const fn digits(self, step: f64, digits: Digits) -> Self {
         Self {
             control: Control {
@@ -119,7 +120,8 @@ const fn choice(
     Kind::Choice { words, get, set }
 }
 
-/// Weight of the regularisation of the output gains, eq. (7); beyond its range the optimum no longer moves.
+/// Weight of the regularisation of the output gains, eq. (7); beyond its range the optimum is
+/// constant.
 pub static ALPHA_GAIN: Setting = row(
     ["α of the gains", "alpha_gain", "--alpha"],
     "Weight that keeps the output gains, eq. (7), near 1; 0 is the limit α → 0",
@@ -139,7 +141,7 @@ pub static ALPHA_DELAY: Setting = row(
 )
 .at(Place::Slider, "α delays", "α delays");
 
-/// How the phase is corrected.
+/// Correction of the phase.
 pub static PHASE: Setting = row(
     ["phase correction", "phase", "--phase"],
     "How the phase is corrected: not at all, by delays, or by a delay or a lead filter a channel",
@@ -159,7 +161,7 @@ pub static PHASE: Setting = row(
 )
 .at(Place::Top, "Phase", "Phase correction");
 
-/// Which D the delays are fitted to.
+/// The D that the delays are fitted to.
 pub static DELAY_FROM: Setting = row(
     ["delay estimate", "delay_from", "--delay-from"],
     "Which D the delays are fitted to: the median of phase over frequency, or a straight line over the band",
@@ -203,7 +205,7 @@ fn has_leads(study: &Study) -> bool {
     study.settings.phase == PhaseCorrection::Lead
 }
 
-/// `n` of the lead filters, of which the lag time constant is `1 / (n omega_B)` (M15.3).
+/// `n` of the lead filters, whose lag time constant is `1 / (n omega_B)` (M15.3).
 pub static LEAD_POLE: Setting = row(
     ["n of the lead filters", "lead.n", "--lead-n"],
     "Lag of every lead filter: 1/(n ω_B), ω_B the top of the band; smaller: less noise, and more lead in reach",
@@ -223,7 +225,7 @@ pub static LEAD_LIMIT: Setting = row(
 .digits(0.1, Digits::Significant)
 .where_it(has_leads);
 
-/// What corrects couplings and modes.
+/// Correction of couplings and modes.
 pub static COUPLINGS: Setting = row(
     ["couplings", "couplings", "--couplings"],
     "What corrects couplings and modes, the same for all conditions, before the channels are corrected: nothing, a mixing of the \
@@ -290,7 +292,7 @@ pub static QUANTILE: Setting = row(
 .at(Place::Beside, "bound quantile", "Bound quantile")
 .digits(0.1, Digits::Decimals(1));
 
-/// Bounds of the gains by hand, -120 to 120 dB; nothing goes back to the quantiles.
+/// Manual bounds of the gains, -120 to 120 dB; no value restores the quantiles.
 pub static GAIN_BOUNDS: Setting = row(
     ["gain bounds", "gain_bounds", "--gain-bounds"],
     "Least and greatest gain of every channel set by hand, for every condition; auto: from the quantiles of each",
@@ -308,7 +310,7 @@ pub static GAIN_BOUNDS: Setting = row(
 .at(Place::Line, "Gain bounds", "Gain bounds")
 .digits(0.002, Digits::Gain);
 
-/// Upper bound of the delays \[s\] by hand; nothing goes back to the quantile.
+/// Manual upper bound of the delays \[s\]; no value restores the quantile.
 pub static DELAY_UPPER: Setting = row(
     ["upper delay bound", "delay_upper_s", "--delay-bound"],
     "Greatest delay of every channel set by hand, for every condition; auto: from the quantiles of each",
@@ -324,7 +326,7 @@ pub static DELAY_UPPER: Setting = row(
 .at(Place::Line, "Delay bound", "Upper delay bound")
 .digits(0.2, Digits::Decimals(1));
 
-/// Mismatch of a loop of held gains that counts as agreement \[dB\].
+/// Mismatch of a loop of constrained gains that counts as agreement \[dB\].
 pub static AGREEMENT: Setting = row(
     ["loop tolerance", "agreement_db", "--agreement"],
     "A loop of held gains that disagrees by no more than this [dB] counts as agreeing",
@@ -337,7 +339,7 @@ pub static AGREEMENT: Setting = row(
 .unit("dB", "dB", 1.0)
 .at(Place::Line, "Loop tolerance", "Loop tolerance");
 
-/// Median or mean over frequency in J.
+/// Average over frequency in J: median or mean.
 pub static COST_AVERAGE: Setting = row(
     ["average in J", "cost_average", "--cost-average"],
     "How squared errors are averaged over frequency in J",
@@ -360,7 +362,7 @@ pub static COST_AVERAGE: Setting = row(
 )
 .at(Place::Line, "Method", "Average in J");
 
-/// What the gains minimise.
+/// Objective of the gains.
 pub static GAIN_OBJECTIVE: Setting = row(
     [
         "objective of the gains",
@@ -387,7 +389,7 @@ pub static GAIN_OBJECTIVE: Setting = row(
 )
 .at(Place::Beside, "", "Objective of the gains");
 
-/// Which models G is taken from.
+/// The models that G is computed from.
 pub static GAIN_SOURCE: Setting = row(
     ["source of G", "gain_from", "--gain-from"],
     "What G is taken from: the two representatives, or the mean over all pairs of kept models",
@@ -410,7 +412,7 @@ pub static GAIN_SOURCE: Setting = row(
 )
 .at(Place::Line, "G from", "Source of G");
 
-/// Level of every bar, interval and test.
+/// Level of every error bar, interval and test.
 pub static LEVEL: Setting = row(
     ["confidence level", "error_bars.level", "--level"],
     "Level of every error bar, interval and test",
@@ -424,7 +426,7 @@ pub static LEVEL: Setting = row(
 .at(Place::Line, "Confidence level", "Confidence level")
 .digits(0.5, Digits::Decimals(1));
 
-/// Degrees of freedom that a condition's identification part borrows at most.
+/// Greatest number of degrees of freedom that a condition's identification part borrows.
 pub static POOLING: Setting = row(
     ["pooling (degrees of freedom borrowed)", "error_bars.prior_degrees", "--pooling"],
     "Degrees of freedom that a condition's identification part borrows from the other conditions at most; 0 trusts the condition \
@@ -434,7 +436,7 @@ pub static POOLING: Setting = row(
 .at(Place::Beside, "pooling", "Pooling (degrees of freedom borrowed)")
 .digits(0.1, Digits::Significant);
 
-/// Least coherence of a frequency that counts.
+/// Least coherence of a frequency with weight.
 pub static COHERENCE: Setting = row(
     ["coherence threshold", "coherence_threshold", "--coherence"],
     "Least coherence γ² of measured responses that is used: off, on, or the least (on is 0.6); off: every frequency counts alike",
@@ -449,7 +451,7 @@ pub static COHERENCE: Setting = row(
 .at(Place::Line, "Coherence", "Least coherence")
 .where_it(|study| study.settings.coherence_threshold.is_some() || study.dataset.has_coherence());
 
-/// Number of averages of measured responses that do not say it.
+/// Number of averages of measured responses that do not state it.
 pub static AVERAGES: Setting = row(
     [
         "averages of measured responses",
@@ -466,7 +468,7 @@ pub static AVERAGES: Setting = row(
     },
 );
 
-/// Length of the windows of measured responses that do not say it \[s\].
+/// Length of the windows of measured responses that do not state it \[s\].
 pub static WINDOW: Setting = row(
     [
         "windows of measured responses",
@@ -484,7 +486,7 @@ pub static WINDOW: Setting = row(
 )
 .unit("seconds", "s", 1.0);
 
-/// Whether those windows overlap by half.
+/// Whether the windows of measured responses that do not state it overlap by half.
 pub static HALF_OVERLAP: Setting = row(
     [
         "windows overlap",
@@ -499,7 +501,7 @@ pub static HALF_OVERLAP: Setting = row(
     },
 );
 
-/// The form of the schedule.
+/// Form of the schedule.
 pub static SCHEDULE: Setting = row(
     ["schedule", "schedule.kind", "--degree"],
     "Degree of the schedule's polynomial in airspeed, 0 to 3, or a lookup table",
@@ -521,7 +523,7 @@ pub static SCHEDULE: Setting = row(
 )
 .at(Place::Top, "Schedule", "Schedule");
 
-/// What is regressed on airspeed.
+/// Quantity regressed on airspeed.
 pub static SCHEDULED_QUANTITY: Setting = row(
     ["scheduled quantity", "schedule.of", "--schedule-of"],
     "What is regressed on airspeed",
@@ -584,7 +586,7 @@ pub static TAU_DEGREE: Setting = row(
 .at(Place::Line, "Over airspeed", "Schedule of the signed delays")
 .where_it(has_leads);
 
-/// Airspeeds this close to the next one are one \[kt\].
+/// Greatest step between consecutive airspeeds that count as equal \[kt\].
 pub static AIRSPEED_TOLERANCE: Setting = row(
     [
         "airspeed tolerance",
@@ -602,7 +604,7 @@ pub static AIRSPEED_TOLERANCE: Setting = row(
 .at(Place::Line, "One airspeed", "Airspeed tolerance")
 .digits(0.1, Digits::Decimals(1));
 
-/// What is scheduled beside airspeed.
+/// Scheduling variable besides airspeed.
 pub static SECOND_VARIABLE: Setting = row(
     [
         "second variable",
@@ -634,7 +636,7 @@ pub static SECOND_VARIABLE: Setting = row(
     "Second variable of the schedule",
 );
 
-/// Every setting but which responses are held and ignored, in the order in which they are told.
+/// Every setting except the constrained and ignored responses, in display order.
 pub static SETTINGS: [&Setting; 29] = [
     &ALPHA_GAIN,
     &ALPHA_DELAY,

@@ -1,4 +1,5 @@
-//! What a row of the table of settings says, and what can be done with it: give it a value, refuse one, tell it, read it.
+//! Rows of the table of settings, and their operations: setting, checking, formatting and parsing a
+//! value.
 
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::{GainBounds, GainObjective};
@@ -20,133 +21,110 @@ use super::settings::{CouplingCorrection, DelayFrom, PhaseCorrection, Settings};
 pub struct Setting {
     /// Its name in running text: "α of the gains".
     pub name: &'static str,
-    /// Its key in the settings of files; a dot leads into an object: "lead.n".
+    /// Its key in the settings of files; a dot separates the key of a nested object: "lead.n".
     pub key: &'static str,
     /// Its option of the command line: "--alpha".
     pub option: &'static str,
-    /// The word that the option stands for where no value follows it; none where one has to follow.
+    /// Value of the option without an argument; `None` where an argument is required.
     pub bare: Option<&'static str>,
-    /// What it means, in a sentence.
+    /// Description in one sentence.
     pub help: &'static str,
-    /// Its unit.
     pub unit: Unit,
-    /// What it may be.
+    /// Type and range of the value.
     pub kind: Kind,
-    /// How the window shows it.
+    /// Its control in the window.
     pub control: Control,
 }
 
-/// The unit of a setting in files and on a command line, and that in which people read it.
+/// Unit of a setting in files and on a command line, and the displayed unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Unit {
-    /// In files.
+    /// Unit in files.
     pub file: &'static str,
-    /// For people.
+    /// Displayed unit.
     pub shown: &'static str,
-    /// How many of the latter are one of the former.
+    /// Number of displayed units in one file unit.
     pub scale: f64,
 }
 
-/// What a setting may be, and the field of [`Settings`] that holds it.
+/// Type and range of a setting, with access to its field of [`Settings`].
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
-    /// A number within a range.
     Number {
-        /// Least and greatest.
         range: [f64; 2],
-        /// Whether it is a whole number.
         whole: bool,
-        /// Its value.
         get: fn(&Settings) -> f64,
-        /// Changes it.
         set: fn(&mut Settings, f64),
     },
-    /// A number within a range, or nothing.
+    /// A number within a range, or no value.
     Optional {
-        /// Least and greatest.
         range: [f64; 2],
-        /// The word that stands for nothing on a command line, and in a sentence.
+        /// The words for no value: on a command line, and in a sentence.
         nothing: [&'static str; 2],
-        /// The number that "on" stands for, where that is one of its words.
+        /// The number for the word "on", where that is accepted.
         on: Option<f64>,
-        /// Its value.
         get: fn(&Settings) -> Option<f64>,
-        /// Changes it.
         set: fn(&mut Settings, Option<f64>),
     },
-    /// Two numbers, the lower and the upper end, within a range; or nothing.
+    /// A lower and an upper number within a range, or no value.
     Range {
-        /// Least and greatest.
         range: [f64; 2],
-        /// The words for nothing, where it may be nothing.
+        /// The words for no value, where that is allowed.
         nothing: Option<[&'static str; 2]>,
-        /// The names of the two ends in the window.
         ends: [&'static str; 2],
-        /// Its value.
         get: fn(&Settings) -> Option<[f64; 2]>,
-        /// Changes it.
         set: fn(&mut Settings, Option<[f64; 2]>) -> Result<(), EditRefusal>,
     },
-    /// Yes or no.
     Flag {
-        /// What no and yes are, in a sentence.
+        /// The words for no and yes, in a sentence.
         words: [&'static str; 2],
-        /// Its value.
         get: fn(&Settings) -> bool,
-        /// Changes it.
         set: fn(&mut Settings, bool),
     },
-    /// One of several.
     Choice {
-        /// Each of them: its word on the command line, that in the window, and what it means.
+        /// For each choice: its word on the command line, its label in the window, and its meaning.
         words: &'static [[&'static str; 3]],
-        /// The index of the one chosen.
         get: fn(&Settings) -> usize,
-        /// Chooses another.
         set: fn(&mut Settings, usize),
     },
 }
 
-/// How the window shows a setting.
+/// Control of a setting in the window.
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
-    /// Where its control stands.
     pub place: Place,
-    /// What stands before the control.
     pub caption: &'static str,
-    /// The accessible name of the control.
     pub label: &'static str,
-    /// How much the value shown changes by a point of dragging.
+    /// Change of the displayed value per point of dragging.
     pub step: f64,
-    /// How the value is written.
     pub digits: Digits,
-    /// Whether it has an effect.
+    /// Whether the setting has an effect.
     pub applies: fn(&Study) -> bool,
 }
 
-/// How the window writes a number.
+/// Number format in the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Digits {
-    /// With three significant digits.
+    /// Three significant digits.
     Significant,
-    /// With so many decimals.
+    /// A fixed number of decimals.
     Decimals(usize),
-    /// As a gain: three decimals, two where the third is zero.
+    /// Format of a gain: three decimals, two where the third is zero.
     Gain,
 }
 
-/// Where the control of a setting stands.
+/// Place of the control of a setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Above the table of settings, with a slider.
     Slider,
-    /// Above the table, on a line of its own.
+    /// Above the table, on its own line.
     Top,
-    /// On a line of its own.
+    /// On its own line.
     Line,
     /// On the line of the setting before it.
     Beside,
-    /// In the view of what it is about.
+    /// In the view of its subject.
     Elsewhere,
 }
 
@@ -155,22 +133,19 @@ pub enum Place {
 pub enum Value {
     /// A number in the unit of files.
     Number(f64),
-    /// Nothing, where there may be nothing.
+    /// No value, where that is allowed.
     Nothing,
-    /// The lower and the upper end.
     Range([f64; 2]),
-    /// Yes or no.
     Flag(bool),
-    /// The index of a choice.
     Choice(usize),
 }
 
-/// A type of which a setting chooses one value.
+/// A type with one value for each choice of a setting.
 pub trait Choice: Copy + PartialEq + 'static {
-    /// All of them, in the order of the setting's words.
+    /// All values, in the order of the setting's words.
     const ALL: &'static [Self];
 
-    /// Its index among all.
+    /// Returns its index among all values.
     fn index(self) -> usize {
         Self::ALL
             .iter()
@@ -278,12 +253,12 @@ impl PartialEq for Setting {
 }
 
 impl Setting {
-    /// The decision that gives the setting a value.
+    /// Returns the decision that sets this value.
     pub fn to(&'static self, value: impl Into<Value>) -> Edit {
         Edit::Set(self, value.into())
     }
 
-    /// Its value.
+    /// Returns the present value.
     pub fn value(&self, settings: &Settings) -> Value {
         match self.kind {
             Kind::Number { get, .. } => Value::Number(get(settings)),
@@ -294,7 +269,7 @@ impl Setting {
         }
     }
 
-    /// Gives it a value, or refuses one outside its range and leaves the settings as they were.
+    /// Sets a value, or refuses a value outside its range and leaves the settings unchanged.
     pub(super) fn set(&self, settings: &mut Settings, value: Value) -> Result<(), EditRefusal> {
         self.check(value)?;
         match (self.kind, value) {
@@ -310,7 +285,7 @@ impl Setting {
         Ok(())
     }
 
-    /// Refuses a value that the setting may not have.
+    /// Refuses a value that the setting does not allow.
     pub fn check(&self, value: Value) -> Result<(), EditRefusal> {
         match (self.kind, value) {
             (
@@ -328,7 +303,7 @@ impl Setting {
             (Kind::Number { range, .. } | Kind::Optional { range, .. }, Value::Number(found)) => {
                 self.check_range(&self.a_number(), found, range)
             }
-            // The band, which cannot be nothing, says itself what it may be.
+            // The band, which must have a value, describes its own range.
             (Kind::Range { nothing: None, .. }, Value::Range([min, max])) => {
                 Ok(Band::new(min, max).map(drop)?)
             }
@@ -384,12 +359,12 @@ impl Setting {
         }
     }
 
-    /// Its value in words.
+    /// Returns the present value in words.
     pub fn words(&self, settings: &Settings) -> String {
         self.text(self.value(settings))
     }
 
-    /// A value in words, with at most six significant digits: "20 ms", "by the quantile", "median".
+    /// Formats a value, with at most six significant digits: "20 ms", "by the quantile", "median".
     pub fn text(&self, value: Value) -> String {
         let Unit { shown, scale, .. } = self.unit;
         let unit = if shown.is_empty() {
@@ -420,7 +395,7 @@ impl Setting {
         }
     }
 
-    /// What a command line may say of it: "none|delay|lead", "off|on|NUMBER".
+    /// Returns the syntax of the option's argument: "none|delay|lead", "off|on|NUMBER".
     pub fn syntax(&self) -> String {
         match self.kind {
             Kind::Number { .. } => "NUMBER".to_owned(),
@@ -441,10 +416,10 @@ impl Setting {
         }
     }
 
-    /// The value that a command line says; a flag is said by its being there.
+    /// Parses the value from the command line; a flag is set by its presence.
     ///
     /// # Errors
-    /// What was expected, and what was found.
+    /// Expected and found value.
     pub fn read(&self, said: &[&str]) -> Result<Value, String> {
         let real = |text: &str| {
             text.trim()
@@ -504,7 +479,7 @@ impl Setting {
 }
 
 impl Settings {
-    /// Refuses values outside their ranges: the first, with its setting.
+    /// Refuses values outside their ranges: returns the first, with its setting.
     ///
     /// # Errors
     /// The setting, and why its value is refused.

@@ -1,5 +1,5 @@
-//! Every setting that changes a result: the values, as files hold them. What each is called, may be and looks like stands in
-//! [`super::setting`].
+//! Every setting that changes a result, with its value as stored in files. Names, ranges and
+//! controls are in [`super::setting`].
 
 use std::fmt;
 
@@ -16,30 +16,31 @@ use gdcm_model::dataset::limits::MOST_PAIRS;
 use gdcm_model::dataset::{Band, Dataset, PairTable};
 use gdcm_model::whole_number::whole;
 
-/// Mismatch of a loop of held gains that counts as agreement \[dB\] before any decision.
+/// Default mismatch of a loop of constrained gains that counts as agreement \[dB\].
 const DEFAULT_AGREEMENT_DB: f64 = 0.05;
 
-/// Least coherence of a frequency that counts before any decision (M4a).
+/// Default least coherence of a frequency with weight (M4a).
 pub const DEFAULT_COHERENCE: f64 = 0.6;
 
-/// How the phase is corrected.
+/// Correction of the phase.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PhaseCorrection {
-    /// Not at all: gains alone.
+    /// No correction of the phase: gains alone.
     None,
     /// By delays (the paper, M9).
     #[default]
     Delay,
-    /// By one signed delay a channel: a delay, or a lead filter where it is negative (M15).
+    /// By one signed delay for each channel: a delay, or a lead filter where it is negative (M15).
     Lead,
 }
 
-/// What corrects the couplings and modes of the physics models before their channels are corrected (M16).
+/// Correction of the couplings and modes of the physics models, before their channels are corrected
+/// (M16).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CouplingCorrection {
-    /// Nothing: the physics models stay as they are (the paper).
+    /// No correction: the physics models are unchanged (the paper).
     #[default]
     None,
     /// A mixing of the inputs.
@@ -50,7 +51,7 @@ pub enum CouplingCorrection {
 }
 
 impl CouplingCorrection {
-    /// What it is called in sentences; none: "no couplings".
+    /// Returns the name in sentences; "no couplings" for none.
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "no couplings",
@@ -59,7 +60,7 @@ impl CouplingCorrection {
         }
     }
 
-    /// What is to be fitted; none where nothing is.
+    /// Returns the kind of couplings to fit; `None` without couplings.
     pub fn kind(self) -> Option<CouplingKind> {
         match self {
             Self::None => None,
@@ -69,14 +70,14 @@ impl CouplingCorrection {
     }
 }
 
-/// Which D the delays are fitted to. Leads are always fitted to the band delay (M15.5).
+/// The D that the delays are fitted to. Leads are always fitted to the band delay (M15.5).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum DelayFrom {
     /// The median of `Delta phi / omega`, eq. (9) (the paper).
     #[default]
     Median,
-    /// The band delay: the straight line of least squares through `Delta phi` (M15.2).
+    /// The band delay: the least-squares line through `Delta phi` (M15.2).
     Band,
 }
 
@@ -89,7 +90,7 @@ impl fmt::Display for DelayFrom {
     }
 }
 
-/// Responses by the names of their channels, output first: as files say them.
+/// Responses by the names of their channels, output first, as stored in files.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<(String, String)>")]
 pub struct ResponseNames(pub Vec<(String, String)>);
@@ -108,11 +109,11 @@ impl TryFrom<Vec<(String, String)>> for ResponseNames {
     }
 }
 
-/// Every setting that changes a result; the same for all conditions of a study. `R` says which responses are marked: a table of the
-/// dataset's responses, or, in files, their names. What files of older programs do not say is what it was before any decision.
+/// Every setting that changes a result, common to all conditions of a study. `R` represents the
+/// marked responses: a table of the dataset's responses, or their names in files. A setting absent
+/// from an older file has its initial default.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings<R = PairTable<bool>> {
-    /// Band over which models are compared.
     #[serde(rename = "band_rad_s")]
     pub band: Band,
     /// Number of logarithmically spaced frequencies in the band, both ends included (M2).
@@ -120,52 +121,54 @@ pub struct Settings<R = PairTable<bool>> {
     pub points: usize,
     /// Weight of the regularisation of the output gains, eq. (7).
     pub alpha_gain: f64,
-    /// Weight of the regularisation of the output delays, eq. (11), or of all signed delays (M15.4).
+    /// Weight of the regularisation of the output delays, eq. (11), or of all signed delays
+    /// (M15.4).
     pub alpha_delay: f64,
     /// Quantile that sets the bounds, and its complement (M7).
     pub quantile: f64,
-    /// Which responses are held exactly; they start as the on-axis pairs.
+    /// The responses constrained exactly; initially the on-axis pairs.
     pub constrained: R,
-    /// Which responses the objective ignores (weight 0); it fits the others (weight 1).
+    /// The responses that the objective ignores (weight 0); it fits the others (weight 1).
     pub ignored: R,
-    /// Whether J takes the median over frequency (the paper) or the mean (Tischler) (M4).
+    /// Average over frequency in J: the median (the paper) or the mean (Tischler) (M4).
     pub cost_average: CostAverage,
-    /// Least coherence of a frequency that counts, where the reference is measured with coherence, which then weighs J, G and D
-    /// too; none: coherence is not used (M4a).
+    /// Least coherence of a frequency with weight, where the reference is measured with coherence,
+    /// which then weights J, G and D too; `None`: coherence is not used (M4a).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coherence_threshold: Option<f64>,
-    /// What the gains minimise.
+    /// Objective of the gains.
     pub gain_objective: GainObjective,
-    /// Bounds of every channel gain set by hand, in place of the quantiles.
+    /// Manual bounds of every channel gain, instead of the quantiles.
     pub gain_bounds: Option<GainBounds>,
-    /// Upper bound of every channel delay \[s\] set by hand, in place of the quantile.
+    /// Manual upper bound of every channel delay \[s\], instead of the quantile.
     pub delay_upper_s: Option<f64>,
-    /// How the phase is corrected (M9, M15).
+    /// Correction of the phase (M9, M15).
     #[serde(default)]
     pub phase: PhaseCorrection,
-    /// Which D the delays are fitted to (M15.2).
+    /// The D that the delays are fitted to (M15.2).
     #[serde(default)]
     pub delay_from: DelayFrom,
-    /// What lead filters have in common (M15.3).
+    /// Common parameters of the lead filters (M15.3).
     #[serde(default, skip_serializing_if = "is_default")]
     pub lead: LeadSettings,
-    /// What corrects couplings and modes (M16).
+    /// Correction of couplings and modes (M16).
     #[serde(default, skip_serializing_if = "is_default")]
     pub couplings: CouplingCorrection,
-    /// Mismatch \[dB\] up to which a loop of held gains counts as agreeing: each is then held at the nearest that does.
+    /// Mismatch \[dB\] up to which a loop of constrained gains counts as agreeing: each gain is
+    /// then constrained at the nearest consistent value.
     #[serde(default = "default_agreement_db")]
     pub agreement_db: f64,
-    /// How channel gains are scheduled with airspeed (M11).
+    /// Schedule of the channel gains with airspeed (M11).
     #[serde(default)]
     pub schedule: ScheduleSettings,
-    /// Whether the schedule has delays too (M11). Files of older programs say it in `schedule.delays` alone
-    /// ([`Settings::complete_delay_scheduling`]).
+    /// Whether the schedule has delays too (M11). Files of older programs have `schedule.delays`
+    /// alone ([`Settings::complete_delay_scheduling`]).
     #[serde(default = "never_scheduled")]
     pub schedule_delays: DelayScheduling,
-    /// Which models G is taken from.
+    /// The models that G is computed from.
     #[serde(default, rename = "gain_from")]
     pub gain_source: GainSource,
-    /// How bars are made (M13).
+    /// Options of the error bars (M13).
     #[serde(default, rename = "error_bars")]
     pub uncertainty: UncertaintySettings,
 }
@@ -183,7 +186,8 @@ pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 }
 
 impl<R> Settings<R> {
-    /// The same settings, with the marked responses said in another way: `of` gets what is done to them, hold or ignore.
+    /// Returns the same settings with another representation of the marked responses; `of` receives
+    /// the verb, "hold" or "ignore".
     pub fn with_responses<Q>(&self, mut of: impl FnMut(&'static str, &R) -> Q) -> Settings<Q> {
         Settings {
             band: self.band,
@@ -210,13 +214,15 @@ impl<R> Settings<R> {
         }
     }
 
-    /// Sets whether the schedule has delays, with the flag that older programs read in its place.
+    /// Sets whether the schedule has delays, together with the flag that older programs read
+    /// instead.
     pub fn set_delay_scheduling(&mut self, scheduling: DelayScheduling) {
         self.schedule_delays = scheduling;
         self.schedule.delays = scheduling == DelayScheduling::Always;
     }
 
-    /// Takes over `schedule.delays` of a file that says nothing else: `true` is always, `false` never.
+    /// Adopts `schedule.delays` of a file without the newer setting: `true` is always, `false`
+    /// never.
     pub fn complete_delay_scheduling(&mut self) {
         if self.schedule_delays == DelayScheduling::Never {
             self.set_delay_scheduling(self.schedule.delays.into());
@@ -225,7 +231,7 @@ impl<R> Settings<R> {
 }
 
 impl Settings {
-    /// The settings a dataset starts with.
+    /// Returns the initial settings of a dataset.
     pub fn of(dataset: &Dataset) -> Self {
         let none = PairTable::filled(dataset.outputs().len(), dataset.inputs().len(), false);
         Self {
@@ -253,7 +259,7 @@ impl Settings {
         }
     }
 
-    /// The settings as files say them.
+    /// Returns the settings as stored in files.
     pub fn named(&self, dataset: &Dataset) -> Settings<ResponseNames> {
         self.with_responses(|_, table| {
             ResponseNames(
@@ -265,13 +271,14 @@ impl Settings {
         })
     }
 
-    /// Which responses the objective fits.
+    /// Returns the responses that the objective fits.
     pub fn fitted(&self) -> PairTable<bool> {
         self.ignored.map(|_, ignored| !ignored)
     }
 
-    /// Which models G is taken from, in words; and that the setting has no effect where the gains are found on what leads leave,
-    /// which is a matter of the representatives (M15.5).
+    /// Describes the models that G is computed from; and that the setting has no effect where the
+    /// gains are based on the difference left after leads, which involves the representatives alone
+    /// (M15.5).
     pub fn gain_source_words(&self) -> String {
         let words = self.gain_source.words();
         if self.gain_source == GainSource::MeanOfPairs && self.phase == PhaseCorrection::Lead {

@@ -1,4 +1,4 @@
-//! Other models of the bundles in place of the representatives, one at a time (M13.1).
+//! Substitution of other models of the bundles for the representatives, one at a time (M13.1).
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,19 +22,20 @@ use super::condition_stages::Run;
 use super::fitted_couplings::FittedCouplings;
 use super::settings::Settings;
 
-/// What came of the substitutions of one condition.
+/// Results of the substitutions of one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionSubstitutions {
-    /// How the figures change.
+    /// Spread of the figures.
     pub spread: ConditionSpread,
-    /// Figures of each substitution, with the bundle and the place of the model that stands in; none where it could not be analysed.
+    /// Figures of each substitution, with the bundle and the index of the substituted model; `None`
+    /// where it could not be analysed.
     pub substitutions: Vec<Swap>,
 }
 
-/// A model in place of its representative, with the figures of the correction that it leads to.
+/// A substituted model, with the figures of the resulting correction.
 pub type Swap = (BundleKind, usize, Option<Arc<Figures>>);
 
-/// What substitutions are made of.
+/// Inputs of substitutions.
 #[derive(Clone, Copy)]
 pub(super) struct Substituting<'a> {
     pub(super) run: Run<'a>,
@@ -43,16 +44,16 @@ pub(super) struct Substituting<'a> {
     pub(super) couplings: Option<&'a Arc<FittedCouplings>>,
 }
 
-/// What comes of a substitution: the correction, and the G that it was asked for, and both D \[s\].
+/// Result of a substitution: the correction, its G, and both D \[s\].
 #[derive(Clone, Debug)]
 pub(super) struct SubstitutedOptimum {
     pub(super) correction: ChannelCorrection,
-    /// The deltas, G that of what leads leave.
+    /// The deltas, with G after the leads.
     pub(super) delta: Delta,
 }
 
 impl SubstitutedOptimum {
-    /// Of the representatives themselves.
+    /// Returns the result of the representatives themselves.
     pub(super) fn of(analysis: &ConditionAnalysis) -> Self {
         let delta = Delta {
             gain: analysis.gain_problem.delta.clone(),
@@ -64,7 +65,7 @@ impl SubstitutedOptimum {
         }
     }
 
-    /// Logarithms of gains and delays \[s\]; none where a figure is not defined.
+    /// Returns the logarithms of gains, and delays \[s\]; `None` where a figure is not defined.
     pub(super) fn figures(&self) -> Figures {
         let Self {
             correction,
@@ -89,8 +90,8 @@ impl SubstitutedOptimum {
     }
 }
 
-/// What a substitution depends on besides the two models: the settings of the analysis, the representatives, beside which phases lie, and
-/// the couplings.
+/// Dependencies of a substitution besides the two models: the settings of the analysis, the
+/// representatives as the reference of phase branches, and the couplings.
 type SwapKey = (
     Settings,
     PairTable<bool>,
@@ -98,7 +99,8 @@ type SwapKey = (
     Option<Arc<FittedCouplings>>,
 );
 
-/// The substitutions made last, by the physics and the identified model: a model that is rejected or restored leaves the others'.
+/// The last substitutions, by physics and identified model: rejecting or restoring a model keeps
+/// those of the others.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SubstitutionMemo {
     key: Option<SwapKey>,
@@ -113,8 +115,9 @@ impl Substituting<'_> {
         ]
     }
 
-    /// The other kept models of a bundle, in file order; none that is set aside (M5b). A model that stands twice counts once, for
-    /// it says nothing more; copies of the representative count where there are no others.
+    /// Returns the other kept models of a bundle, in file order, without models set aside (M5b).
+    /// Duplicate models count once, because they add no information; copies of the representative
+    /// count where there are no others.
     fn others(&self, kind: BundleKind) -> Vec<usize> {
         let representative = self.analysis.representative(kind);
         let scores = representative.scores.iter().enumerate();
@@ -122,7 +125,7 @@ impl Substituting<'_> {
             scores.filter(|(model, score)| score.is_some() && *model != representative.model);
         let responses = self.responses.bundle(kind);
         let mut distinct = Vec::new();
-        // Models of the same numbers share their response.
+        // Models with the same numbers share their response.
         let is_copy = |a: usize, b: usize| Arc::ptr_eq(&responses[a], &responses[b]);
         let mut copies = Vec::new();
         for (model, _) in kept {
@@ -140,7 +143,7 @@ impl Substituting<'_> {
         }
     }
 
-    /// The settings that a substitution depends on.
+    /// Returns the settings that a substitution depends on.
     fn key(&self) -> SwapKey {
         let Study {
             settings, dataset, ..
@@ -170,7 +173,8 @@ impl Substituting<'_> {
 }
 
 impl SubstitutionMemo {
-    /// All substitutions; those that are not kept are made, each a step, with the correction that `optimum` finds for a comparison.
+    /// Completes all substitutions; those not cached are computed, each a step, with the correction
+    /// that `optimum` returns for a comparison.
     pub(super) fn complete(
         &mut self,
         substituting: &Substituting<'_>,
@@ -194,7 +198,8 @@ impl SubstitutionMemo {
         let [physics, identified] = substituting.representatives();
         let models =
             |&(kind, model): &(BundleKind, usize)| kind.pick([model, identified], [physics, model]);
-        // The mean over all pairs is no figure of the representatives: what changes are measured from is made too.
+        // The mean over all pairs is not a figure of the representatives: the reference of the
+        // changes is computed too.
         let Run {
             study, execution, ..
         } = substituting.run;
@@ -240,7 +245,7 @@ impl SubstitutionMemo {
     }
 }
 
-/// The figures of each of these pairs of models.
+/// Computes the figures of each of these pairs of models.
 fn make(
     substituting: &Substituting<'_>,
     pairs: &[[usize; 2]],
@@ -270,7 +275,8 @@ fn make(
             (&simulated, &other)
         };
         let mut mismatch = simulated.against(reference);
-        // As if the pair were pinned: each phase difference is laid beside that of the representatives (M13.1).
+        // As with the pair pinned: each phase difference is on the branch nearest to that of the
+        // representatives (M13.1).
         for (pair, entry) in mismatch.iter_mut() {
             *entry = entry.take().map(|entry| match median_phases[pair] {
                 Some(median_phase) => entry.align_branch(omega, median_phase),
@@ -278,7 +284,7 @@ fn make(
             });
         }
         let delta = Delta::of(&mismatch, omega);
-        // As of a pinned pair that has nothing to compare.
+        // As for a pinned pair without comparable responses.
         if delta.gain.iter().all(|(_, gain)| gain.is_none()) {
             return Ok(None);
         }
@@ -294,7 +300,8 @@ fn make(
 
 /// Natural logarithm of a ratio of 1 dB.
 const LN_DB: f64 = std::f64::consts::LN_10 / 20.0;
-/// The figures of a condition with what its substitutions and its identified representative say of them.
+/// Collects the figures of a condition with the spread of its substitutions and the errors reported
+/// by its identified representative.
 pub(super) fn bar_source<'a>(
     analysis: &Analysis,
     result: &ConditionAnalysis,
@@ -340,9 +347,10 @@ pub(super) fn bar_source<'a>(
     }
 }
 
-/// Whether the error that the identified representative tells of itself counts for a value: for G, D and the net gains that are held
-/// and matched, which are G (M13.2). The other net gains and the channels rest on the spread of the models alone: what one response's
-/// error does to them is not known without that of all responses together.
+/// Returns whether the error that the identified representative reports applies to a value: to G, D
+/// and the constrained, matched net gains, which equal G (M13.2). The other net gains and the
+/// channels rely on the spread of the models alone: the effect of one response's error on them is
+/// unknown without the errors of all responses together.
 pub(super) fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -> bool {
     let is_matched = |pair: Pair| {
         result.held()[pair] && result.gains.unmatched.iter().all(|miss| miss.pair != pair)
@@ -354,13 +362,13 @@ pub(super) fn takes_reported_error(result: &ConditionAnalysis, scalar: Scalar) -
     }
 }
 
-/// Whether the identified representative of a condition tells an error of its own.
+/// Returns whether the identified representative of a condition reports an error of its own.
 pub(super) fn reports_error(analysis: &Analysis, result: &ConditionAnalysis) -> bool {
     told_by_band(analysis, result).is_some() || told_by_coherence(analysis, result).is_some()
 }
 
-/// The error of each response of the identified representative that its coherence tells, with its degrees of freedom; none where it
-/// was not measured so, or coherence counts for nothing.
+/// Returns the error of each response of the identified representative from its coherence, with its
+/// degrees of freedom; `None` where it was measured without coherence, or coherence is not used.
 fn told_by_coherence(
     analysis: &Analysis,
     result: &ConditionAnalysis,
@@ -383,8 +391,8 @@ fn told_by_coherence(
     }))
 }
 
-/// The error of each response of the identified representative that its own band tells: medians over the band of comparison. Its
-/// deviations are taken as known.
+/// Returns the error of each response of the identified representative from its own bands: medians
+/// over the band of comparison. Its deviations are taken as known.
 fn told_by_band(
     analysis: &Analysis,
     result: &ConditionAnalysis,
@@ -408,7 +416,7 @@ fn told_by_band(
     }))
 }
 
-/// `(Q84 - Q16) / 2` of `ln |H_ref| / |H_sim|` over the band.
+/// Returns `(Q84 - Q16) / 2` of `ln |H_ref| / |H_sim|` over the band.
 pub(super) fn left_in_band(result: &ConditionAnalysis) -> PairTable<Option<f64>> {
     result
         .comparison

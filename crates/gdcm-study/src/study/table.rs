@@ -1,4 +1,4 @@
-//! A table of what was found, to be read, copied and saved: the same texts wherever it goes.
+//! Tables of results to read, copy and save, with the same text in every format.
 
 use gdcm_method::uncertainty::{Scalar, VarianceDecomposition};
 use gdcm_model::dataset::Dataset;
@@ -7,10 +7,11 @@ use gdcm_model::units::{signed, without_sign_of_zero};
 use super::analysis::Analysis;
 use super::uncertainty::{AirspeedDifference, Uncertainty};
 
-/// Rows of texts under headings. Headings name quantity and unit (`airspeed [kt]`), so that a table can stand alone.
+/// Rows of texts under headings. Headings name quantity and unit (`airspeed [kt]`), so that a table
+/// is self-contained.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Table {
-    /// What it is a table of, in words.
+    /// Title in words.
     pub title: String,
     /// The heading of each column, with its unit.
     pub columns: Vec<String>,
@@ -19,7 +20,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table without rows.
+    /// Creates a table without rows.
     pub fn new(
         title: impl Into<String>,
         columns: impl IntoIterator<Item = impl Into<String>>,
@@ -31,7 +32,8 @@ impl Table {
         }
     }
 
-    /// Adds a row; cells beyond the last column are left out, missing ones are empty, a zero has no sign.
+    /// Adds a row; cells beyond the last column are dropped, missing cells are empty, and zeros
+    /// have no sign.
     pub fn row(&mut self, cells: impl IntoIterator<Item = impl Into<String>>) {
         let mut cells: Vec<String> = cells
             .into_iter()
@@ -41,8 +43,8 @@ impl Table {
         self.rows.push(cells);
     }
 
-    /// The table as text of equally wide letters: the title, the headings, a line for each row. Columns of figures are aligned at
-    /// the right, others at the left; no line ends in spaces.
+    /// Formats the table as monospaced text: the title, the headings, a line for each row. Numeric
+    /// columns are right-aligned, others left-aligned; no line ends in spaces.
     pub fn text(&self) -> String {
         let records = || std::iter::once(&self.columns).chain(&self.rows);
         let cells_of = |column: usize| records().map(move |record| record[column].as_str());
@@ -69,7 +71,7 @@ impl Table {
                     .zip(&widths)
                     .zip(&figures)
                     .map(|((cell, &width), figures)| {
-                        // Not by the width of a format, which holds no more than 65535.
+                        // Not by the width of a format string, which is limited to 65535.
                         let room = " ".repeat(width - cell.chars().count());
                         if *figures {
                             format!("{room}{cell}")
@@ -83,7 +85,7 @@ impl Table {
         text
     }
 
-    /// Whether every cell of a column that is not empty is a number, and there is one.
+    /// Returns whether every nonempty cell of a column is a number, and there is at least one.
     pub fn has_numbers(&self, column: usize) -> bool {
         let mut cells = self
             .rows
@@ -95,7 +97,7 @@ impl Table {
     }
 }
 
-/// The cell, a zero without its sign.
+/// Returns the cell, with the sign of a zero removed.
 fn unsigned_zero(cell: String) -> String {
     let unsigned = without_sign_of_zero(&cell);
     if unsigned.len() == cell.len() {
@@ -105,7 +107,8 @@ fn unsigned_zero(cell: String) -> String {
     }
 }
 
-/// Whether a text is a number, with whichever minus sign and a unit behind it or none, or the dash that stands for none.
+/// Returns whether a text is a number, with any minus sign and an optional unit, or the dash for a
+/// missing value.
 fn is_number(cell: &str) -> bool {
     let mut words = cell.split(' ');
     let number = words
@@ -115,14 +118,14 @@ fn is_number(cell: &str) -> bool {
     matches!(cell, "–" | "—" | "-") || (words.count() < 2 && number.parse::<f64>().is_ok())
 }
 
-/// What stands where there is no figure.
+/// Placeholder for a missing figure.
 const NONE: &str = "–";
 
 fn cell(figure: Option<f64>, decimals: usize) -> String {
     figure.map_or_else(|| NONE.to_owned(), |figure| format!("{figure:.decimals$}"))
 }
 
-/// A standard deviation of a logarithm in percent.
+/// Formats a standard deviation of a logarithm in percent.
 fn percent(deviation: Option<f64>) -> String {
     cell(deviation.map(|deviation| 100.0 * deviation), 1)
 }
@@ -140,7 +143,8 @@ fn probability(p: Option<f64>) -> String {
     )
 }
 
-/// The differences of net gains at equal airspeed, the largest multiple of what is expected first, with the difference of each row.
+/// Tabulates the differences of net gains at equal airspeed, largest multiple of the expected
+/// difference first, with the difference of each row.
 pub fn difference_table(
     dataset: &Dataset,
     uncertainty: &Uncertainty,
@@ -173,7 +177,7 @@ pub fn difference_table(
     (table, differences)
 }
 
-/// Whether the schedule needs a second variable, with what could not have been seen.
+/// Tabulates whether the schedule needs a second variable, with the smallest detectable effect.
 pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     let columns = [
         "response",
@@ -205,7 +209,7 @@ pub fn second_variable_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Ta
     table
 }
 
-/// What the scatter of each on-axis net gain is made of.
+/// Tabulates the components of the scatter of each on-axis net gain.
 pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     let columns = [
         "response",
@@ -250,7 +254,7 @@ pub fn scatter_table(dataset: &Dataset, uncertainty: &Uncertainty) -> Table {
     table
 }
 
-/// The on-axis net gains of every condition with their bars.
+/// Tabulates the on-axis net gains of every condition with their error bars.
 pub fn bar_table(analysis: &Analysis, uncertainty: &Uncertainty) -> Table {
     let level = format!("± [%] of {:.0} %", 100.0 * uncertainty.level);
     let columns = [

@@ -1,4 +1,5 @@
-//! Time histories of the models of every condition within tolerances about its flight records (M17.2).
+//! Time histories of the models of every condition within tolerances about its flight records
+//! (M17.2).
 //!
 //! ```text
 //! 1  a record is prepared as an identification prepares it, pieces of 2 s and more
@@ -31,33 +32,30 @@ use super::execution::Execution;
 use super::job::{Job, Shared};
 use super::requirements::{MissingFinding, RequirementRole, RoleModelError};
 
-/// The shortest piece of a record that is compared \[s\]: tests of qualifications are short steps and doublets.
+/// Shortest piece of a record that is compared \[s\]: qualification tests are short steps and
+/// doublets.
 pub(super) const LEAST_PIECE_S: f64 = 2.0;
-/// What a reason for an absent time history is listed under.
+/// Category of the reasons for an absent time history.
 const WHAT: &str = "time histories";
 
-/// A flight record that models are compared with.
+/// A flight record for the comparison of models.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HistoryRecord {
-    /// Its samples, in the units of the dataset's channels.
     pub flight: Shared<FlightRecord>,
-    /// Whether the identified models were kept from it.
+    /// Whether the record was excluded from the identification of the models.
     pub held_out: bool,
 }
 
-/// The flight records of a condition, and how they are prepared.
+/// The flight records of a condition, and their preparation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HistoryRecords {
-    /// The condition.
     pub condition: ConditionId,
-    /// Its records.
     pub records: Vec<HistoryRecord>,
-    /// How their channels are prepared.
     pub preparation: Preparation,
 }
 
 impl HistoryRecords {
-    /// Those of the `records` that are used.
+    /// Collects those of the `records` that are used.
     pub fn of<'r>(
         condition: ConditionId,
         records: impl IntoIterator<Item = &'r LaidOutRecord>,
@@ -77,25 +75,23 @@ impl HistoryRecords {
         }
     }
 
-    /// Steps of [`time_histories_of`]: one to prepare each record, one for each model's answer to it.
+    /// Returns the number of steps of [`time_histories_of`]: one to prepare each record, one for
+    /// each model's response to it.
     pub fn steps(records: &[Self]) -> usize {
         (1 + RequirementRole::ALL.len()) * records.iter().map(|of| of.records.len()).sum::<usize>()
     }
 }
 
-/// What is asked for: records against an analysis.
+/// Job that compares records with an analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeHistoriesJob {
-    /// The analysis.
     pub analysis: Shared<Analysis>,
-    /// The records, condition by condition.
     pub records: Vec<HistoryRecords>,
-    /// The tolerances.
     pub tolerances: ToleranceTable,
 }
 
 impl Job for TimeHistoriesJob {
-    /// Who carries out its pieces.
+    /// Executor of the pieces.
     type Tools = Box<dyn Executor>;
     type Output = Arc<TimeHistories>;
 
@@ -119,10 +115,11 @@ impl Job for TimeHistoriesJob {
 }
 
 impl Engine {
-    /// What the models of an analysis answer to `records` within the tolerances of its study; see [`time_histories_of`].
+    /// Simulates the models of an analysis with `records` and compares them within the tolerances
+    /// of its study; see [`time_histories_of`].
     ///
     /// # Errors
-    /// [`Cancelled`] soon after `progress` says so.
+    /// [`Cancelled`] soon after `progress` requests it.
     pub fn time_histories(
         &self,
         analysis: &Analysis,
@@ -139,18 +136,19 @@ impl Engine {
     }
 }
 
-/// Whether an off-axis output goes the way that it went in flight.
+/// Whether an off-axis output has the same trend as in flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Trend {
-    /// The correlation of simulated and flown is positive.
+    /// The correlation of simulated and measured output is positive.
     Correct,
-    /// It is not.
+    /// The correlation is not positive.
     Opposite,
 }
 
 impl Trend {
-    /// Of an output that is off the axis of the input that moved most, by the correlation of simulated and flown; none on the axis.
+    /// Returns the trend of an output off-axis to the input that moved most, from the correlation
+    /// of simulated and measured output; `None` on-axis.
     pub(super) fn of(correlation: Option<f64>, on_axis: Option<bool>) -> Option<Self> {
         let correlation = correlation.filter(|_| on_axis == Some(false))?;
         Some(if correlation > 0.0 {
@@ -160,7 +158,7 @@ impl Trend {
         })
     }
 
-    /// Its name.
+    /// Returns the name of the trend.
     pub fn name(self) -> &'static str {
         match self {
             Self::Correct => "correct",
@@ -169,34 +167,36 @@ impl Trend {
     }
 }
 
-/// One model's answer to one record against one row of the table.
+/// Result of one model and one record for one row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ToleranceFinding {
-    /// What is compared ("bank angle").
+    /// Name of the compared quantity ("bank angle").
     pub quantity: String,
-    /// The output that it is read from.
+    /// The output that it is computed from.
     pub output: String,
     /// Whether it is the integral of that output from the start of each window.
     pub integrated: bool,
-    /// Unit of what is compared.
+    /// Unit of the compared quantity.
     pub unit: String,
-    /// Share of the samples that are inside, 0 to 1.
+    /// Share of the samples inside, 0 to 1.
     pub share_inside: f64,
     /// The largest distance beyond the corridor, in `unit`; negative where all samples are inside.
     pub largest_excess: f64,
-    /// When that is, on the record's clock \[s\].
+    /// Time of the largest excess, on the record's clock \[s\].
     pub largest_excess_at_s: f64,
-    /// Correlation of simulated and flown about their means; none where one of them does not move.
+    /// Correlation of simulated and measured signal about their means; `None` where one of them is
+    /// constant.
     pub correlation: Option<f64>,
-    /// Whether the output is on-axis to the input that moved most; none where that is not known.
+    /// Whether the output is on-axis to the input that moved most; `None` where that input is
+    /// unknown.
     pub on_axis: Option<bool>,
-    /// Off the axis, the sign of the correlation.
+    /// For off-axis outputs, the sign of the correlation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trend: Option<Trend>,
 }
 
 impl ToleranceFinding {
-    /// Its numbers by their names.
+    /// Returns the numbers with their names.
     pub fn quantities(&self) -> [(&'static str, Option<f64>); 4] {
         [
             ("share_inside", Some(self.share_inside)),
@@ -207,72 +207,68 @@ impl ToleranceFinding {
     }
 }
 
-/// One model's answer to one record.
+/// Result of one model and one record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HistoryFinding {
-    /// The condition.
     pub condition: ConditionId,
     /// Its true airspeed \[kt\].
     pub airspeed_kt: f64,
-    /// Name of the record.
     pub record: String,
-    /// Whether the identified models were kept from it.
+    /// Whether the record was excluded from the identification of the models.
     pub held_out: bool,
-    /// Which model.
     pub role: RequirementRole,
-    /// Its name.
     pub model: String,
-    /// The input that moved most; none where the inputs have different units.
+    /// The input that moved most; `None` where the inputs have different units.
     pub moved_input: Option<String>,
-    /// Samples that are compared.
+    /// Number of samples compared.
     pub samples: usize,
-    /// Windows that they are in.
+    /// Number of windows with these samples.
     pub windows: usize,
     /// Length of the longest window \[s\].
     pub window_s: f64,
-    /// Weighted rms error (M17.4) \[deg, deg/s, ft/s, ft/s^2\]; none where no output has such a unit.
+    /// Weighted rms error (M17.4) \[deg, deg/s, ft/s, ft/s^2\]; `None` where no output has such a
+    /// unit.
     pub j_rms: Option<f64>,
-    /// Names of the outputs that do not count in it: their units are none of angles, speeds and accelerations.
+    /// Names of the outputs excluded from it: their units are not those of angles, speeds and
+    /// accelerations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub j_rms_left_out: Vec<String>,
-    /// Theil's coefficient of each output that moves, by its name: 0 to 1.
+    /// Theil's coefficient of each output that varies, by its name: 0 to 1.
     pub theil: BTreeMap<String, f64>,
-    /// Each row of the table that can be applied.
+    /// Each applicable row of the table.
     pub tolerances: Vec<ToleranceFinding>,
 }
 
-/// Time histories of the models of every condition that has records, as they are written.
+/// Time histories of the models of every condition that has records, in the format of the export.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TimeHistories {
-    /// The tolerances asked for.
     pub tolerance_table: ToleranceTable,
-    /// Every record with every model that answers to it.
+    /// Every record with every model simulated.
     pub records: Vec<HistoryFinding>,
-    /// What is not compared, and why.
     pub missing: Vec<MissingFinding>,
 }
 
-/// Everything that answers are compared by, the same for all records.
+/// Common data of the comparisons of all records.
 pub(super) struct Comparer<'a> {
     inputs: &'a [Channel],
     outputs: &'a [Channel],
     on_axis: PairTable<bool>,
-    /// The rows that can be applied, each with its tolerance in the unit of the dataset.
+    /// The applicable rows, each with its tolerance in the unit of the dataset.
     pub(super) rows: Vec<(&'a Tolerance, ChannelTolerance)>,
 }
 
-/// A record, ready to be simulated, with the models that are to answer.
+/// A record prepared for simulation, with its models.
 struct PreparedHistory<'a> {
     result: &'a ConditionAnalysis,
     record: &'a HistoryRecord,
     segments: Vec<Segment>,
 }
 
-/// Time histories of the models of every condition within `tolerances` about its `records` (M17.2). Steps are
-/// [`HistoryRecords::steps`].
+/// Computes time histories of the models of every condition, and compares them within `tolerances`
+/// about its `records` (M17.2). The number of steps is [`HistoryRecords::steps`].
 ///
 /// # Errors
-/// [`Cancelled`] where `execution` is stopped.
+/// [`Cancelled`] where `execution` is cancelled.
 pub fn time_histories_of(
     analysis: &Analysis,
     records: &[HistoryRecords],
@@ -328,7 +324,8 @@ pub fn time_histories_of(
     Ok(histories)
 }
 
-/// How every model of a condition answers to a record: the signals as they are, in the same windows.
+/// Returns the settings for simulating every model of a condition with a record: unfiltered
+/// signals, and the same windows.
 pub(super) fn common_windows<'m>(
     models: impl IntoIterator<Item = &'m StateSpace>,
     segments: &[Segment],
@@ -344,7 +341,7 @@ fn missing_of(condition: Option<ConditionId>, why: String) -> MissingFinding {
     }
 }
 
-/// The conditions that no record is of.
+/// Returns the conditions without records.
 fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<MissingFinding> {
     let has_records = |id: ConditionId| {
         records
@@ -364,7 +361,7 @@ fn without_records(analysis: &Analysis, records: &[HistoryRecords]) -> Vec<Missi
         .collect()
 }
 
-/// Every record of a condition with a result, prepared; the reasons for the others go to `missing`.
+/// Prepares every record of a condition with a result; the reasons for the others go to `missing`.
 fn prepared<'a>(
     analysis: &'a Analysis,
     records: &'a [HistoryRecords],
@@ -402,7 +399,7 @@ fn prepared<'a>(
     Ok(prepared)
 }
 
-/// The models of each condition that has a record.
+/// Returns the models of each condition that has a record.
 fn role_models(
     analysis: &Analysis,
     prepared: &[PreparedHistory<'_>],
@@ -414,7 +411,7 @@ fn role_models(
         models.entry(id).or_insert_with(|| {
             let model = |role| match analysis.role_model(result, role) {
                 Ok(model) => Some((role, model)),
-                // Said once, of the schedule.
+                // Reported once, for the schedule.
                 Err(RoleModelError::NoSchedule(_)) => None,
                 Err(why) => {
                     missing.push(missing_of(
@@ -453,7 +450,8 @@ impl<'a> Comparer<'a> {
         }
     }
 
-    /// The input that varies most over the segments of a record; none where the inputs cannot be compared.
+    /// Returns the input that varies most over the segments of a record; `None` where the inputs
+    /// cannot be compared.
     pub(super) fn moved_input(&self, segments: &[Segment]) -> Option<usize> {
         let (first, others) = self.inputs.split_first()?;
         if others.iter().any(|input| input.unit != first.unit) {
@@ -469,12 +467,14 @@ impl<'a> Comparer<'a> {
         (0..self.inputs.len()).max_by(|a, b| variation(*a).total_cmp(&variation(*b)))
     }
 
-    /// Whether an output is on-axis to the input that moved most; none where that is not known.
+    /// Returns whether an output is on-axis to the input that moved most; `None` where that input
+    /// is unknown.
     pub(super) fn is_on_axis(&self, output: usize, moved: Option<usize>) -> Option<bool> {
         moved.map(|input| self.on_axis[Pair::new(output, input)])
     }
 
-    /// The answer of a model to a record against the tolerances, or in words why there is none.
+    /// Compares the response of a model to a record with the tolerances, or returns the reason in
+    /// words why there is none.
     fn finding(
         &self,
         history: &PreparedHistory<'_>,
@@ -524,7 +524,7 @@ impl<'a> Comparer<'a> {
         })
     }
 
-    /// One row of the table over all windows of a record.
+    /// Evaluates one row of the table over all windows of a record.
     fn against(
         &self,
         (tolerance, of_channel): &(&Tolerance, ChannelTolerance),
@@ -573,7 +573,7 @@ mod tests {
     const CONDITION: ConditionId = ConditionId(3);
     const SAMPLE_TIME_S: f64 = 0.02;
 
-    /// A sweep of the first input alone, `samples` long, that the model of a role answers to.
+    /// Builds a sweep of the first input alone, `samples` long, with the outputs of a role's model.
     fn flown(analysis: &Analysis, role: RequirementRole, samples: usize) -> FlightRecord {
         let model = analysis
             .role_model(analysis.condition(CONDITION).unwrap(), role)
@@ -646,7 +646,8 @@ mod tests {
                 "{of:?}"
             );
         }
-        // It is its own record, but for the least squares of the initial state.
+        // The model reproduces its own record, except for the least-squares fit of the initial
+        // state.
         assert!(
             identified.j_rms.unwrap() < 1e-6 && identified.theil["Q"] < 1e-7,
             "{identified:?}"
@@ -696,7 +697,7 @@ mod tests {
             shown.rows[2][..3],
             ["3", "2", "pitch rate"].map(str::to_owned)
         );
-        // Rounded down: what is not wholly inside is never 100.
+        // Rounded down: a share below 1 is never displayed as 100.
         assert_eq!(
             shown.rows[2][3].parse::<f64>().unwrap(),
             (1e3 * share).floor() / 10.0
@@ -832,7 +833,7 @@ mod tests {
         let correction = result.correction.on(pair).unwrap();
         for (k, omega) in grid.omega().iter().enumerate() {
             let expected = coupled.curve(pair)[k] * correction.at(*omega);
-            // What a Pade approximant of delays of tens of ms lags too little in the band.
+            // Lag error in the band of a Pade approximant for delays of tens of ms.
             assert!(
                 (answered.curve(pair)[k] - expected).norm() < 1e-4 * expected.norm(),
                 "{omega}"
@@ -925,7 +926,8 @@ mod tests {
                 .collect()
         };
         assert_eq!(windows(&slow), windows(&fast));
-        // One that diverges too fast to be compared at all shortens nobody's.
+        // A model that diverges too fast to be compared at all does not shorten the windows of
+        // others.
         let hopeless = StateSpace::new(
             slow.a() + DMatrix::from_diagonal_element(slow.order(), slow.order(), 100.0),
             slow.b().clone(),
@@ -936,7 +938,7 @@ mod tests {
         assert_eq!(common_windows([&slow, &hopeless], &segments), alone);
     }
 
-    /// Greatest real part of the poles \[rad/s\].
+    /// Returns the greatest real part of the poles \[rad/s\].
     fn fastest(model: &StateSpace) -> f64 {
         model
             .a()

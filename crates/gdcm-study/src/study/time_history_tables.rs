@@ -10,7 +10,7 @@ use super::table::Table;
 use super::time_histories::{HistoryFinding, TimeHistories, ToleranceFinding, Trend};
 
 impl TimeHistories {
-    /// The conditions that have records, each with their number.
+    /// Returns the conditions with records, and the number of records of each.
     pub fn conditions(&self) -> Vec<(ConditionId, usize)> {
         let of_condition = self
             .records
@@ -28,7 +28,7 @@ impl TimeHistories {
             .collect()
     }
 
-    /// The findings of a condition and a role.
+    /// Returns the findings of a condition and a role.
     pub fn of_role(
         &self,
         condition: ConditionId,
@@ -39,7 +39,7 @@ impl TimeHistories {
             .filter(move |of| (of.condition, of.role) == (condition, role))
     }
 
-    /// Share of the samples of all records of a condition that are inside a tolerance, 0 to 1.
+    /// Returns the share of samples inside a tolerance over all records of a condition, 0 to 1.
     pub fn share_inside(
         &self,
         condition: ConditionId,
@@ -56,13 +56,13 @@ impl TimeHistories {
         self.mean(condition, role, share)
     }
 
-    /// `J_rms` of all records of a condition: the root of the mean square over their samples.
+    /// Returns `J_rms` over all records of a condition: the root mean square over their samples.
     pub fn j_rms(&self, condition: ConditionId, role: RequirementRole) -> Option<f64> {
         self.mean(condition, role, |finding| Some(finding.j_rms?.powi(2)))
             .map(f64::sqrt)
     }
 
-    /// The mean of what some records of a condition have, each by its samples.
+    /// Averages a quantity over the records of a condition that have it, weighted by samples.
     fn mean(
         &self,
         condition: ConditionId,
@@ -78,7 +78,7 @@ impl TimeHistories {
         (sums[1] > 0.0).then(|| sums[0] / sums[1])
     }
 
-    /// The rows of the table of tolerances that were applied, in its order.
+    /// Returns the applied rows of the table of tolerances, in its order.
     fn quantities(&self) -> impl Iterator<Item = &str> {
         let rows = self
             .tolerance_table
@@ -91,7 +91,7 @@ impl TimeHistories {
         rows.filter(move |name| self.records.iter().any(|finding| is_applied(finding, name)))
     }
 
-    /// The same without those of integrals.
+    /// Returns the applied rows without integrals.
     pub(super) fn measured_quantities(&self) -> impl Iterator<Item = &str> {
         let is_integral = |name: &str| {
             self.tolerance_table
@@ -102,7 +102,8 @@ impl TimeHistories {
         self.quantities().filter(move |name| !is_integral(name))
     }
 
-    /// Share of time inside each tolerance over all records of each condition, model by model.
+    /// Tabulates the share of time inside each tolerance over all records of each condition, model
+    /// by model.
     pub fn share_table(&self) -> Table {
         let heads = ["condition", "records", "quantity"].map(str::to_owned);
         let columns = heads
@@ -124,7 +125,8 @@ impl TimeHistories {
         table
     }
 
-    /// Theil's coefficient of an output over all records of a condition: their mean, each by its samples.
+    /// Returns Theil's coefficient of an output over all records of a condition: the mean weighted
+    /// by samples.
     pub fn theil(
         &self,
         condition: ConditionId,
@@ -136,7 +138,7 @@ impl TimeHistories {
         })
     }
 
-    /// The outputs that have a coefficient of Theil.
+    /// Returns the outputs with a Theil coefficient.
     fn moved_outputs(&self) -> BTreeSet<&str> {
         self.records
             .iter()
@@ -145,7 +147,7 @@ impl TimeHistories {
             .collect()
     }
 
-    /// Headings of [`TimeHistories::costs`].
+    /// Returns the headings of [`TimeHistories::costs`].
     pub(super) fn cost_heads(&self) -> Vec<String> {
         let theil = self
             .moved_outputs()
@@ -154,7 +156,7 @@ impl TimeHistories {
         std::iter::once("J_rms".to_owned()).chain(theil).collect()
     }
 
-    /// `J_rms` of a condition's model, and Theil's coefficient of every output, as they are shown.
+    /// Formats `J_rms` of a condition's model, and Theil's coefficient of every output.
     pub(super) fn costs(&self, condition: ConditionId, role: RequirementRole) -> Vec<String> {
         let theil = self
             .moved_outputs()
@@ -166,7 +168,7 @@ impl TimeHistories {
             .collect()
     }
 
-    /// `J_rms` and Theil's coefficients over all records of each condition and model.
+    /// Tabulates `J_rms` and Theil's coefficients over all records of each condition and model.
     pub fn cost_table(&self) -> Table {
         let columns = ["condition", "records", "model"]
             .map(str::to_owned)
@@ -189,8 +191,9 @@ impl TimeHistories {
         table
     }
 
-    /// The records of a condition against every tolerance: what each model leaves of the corridor, and when most. What every model is
-    /// inside of throughout, off the axis with the correct trend, is left out and counted.
+    /// Tabulates the records of a condition against every tolerance: largest excess of each model,
+    /// and its time. Rows where every model is inside throughout, and off-axis has the correct
+    /// trend, are omitted and counted.
     pub fn record_table(&self, condition: ConditionId) -> Table {
         let heads = ["record", "quantity"].map(str::to_owned);
         let columns = heads
@@ -203,7 +206,7 @@ impl TimeHistories {
             .filter(|finding| finding.condition == condition)
             .collect();
         let mut all = 0;
-        // Two records may have the same name: the roles rise within one.
+        // Two records may have the same name: the roles ascend within each record.
         for of_record in of_condition.chunk_by(|a, b| a.record == b.record && a.role < b.role) {
             for (row, first) in of_record[0].tolerances.iter().enumerate() {
                 all += 1;
@@ -244,7 +247,7 @@ impl TimeHistories {
         table
     }
 
-    /// How the outputs weigh in `J_rms`, and which do not count in it.
+    /// Describes the weights of the outputs in `J_rms`, and the outputs excluded from it.
     pub fn weights_words(&self) -> String {
         let left_out: BTreeSet<&str> = self
             .records
@@ -261,7 +264,8 @@ impl TimeHistories {
     }
 }
 
-/// "85.2; 0.84 deg/s at 12.3 s; opposite": share of time inside, what is beyond, a trend that is not correct.
+/// Formats a result: "85.2; 0.84 deg/s at 12.3 s; opposite": share of time inside, largest excess,
+/// and an incorrect trend.
 fn excess_words(of: &ToleranceFinding) -> String {
     let mut words = vec![percent(Some(of.share_inside))];
     if of.largest_excess > 0.0 {
@@ -276,12 +280,12 @@ fn excess_words(of: &ToleranceFinding) -> String {
     words.join("; ")
 }
 
-/// A share in percent, rounded down: 100 is all of it.
+/// Formats a share in percent, rounded down: 100 means the whole.
 pub(super) fn percent(share: Option<f64>) -> String {
     number(share.map(|share| (1e3 * share).floor() / 10.0), 1)
 }
 
-/// A number, or a dash.
+/// Formats a number, or a dash.
 fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
 }

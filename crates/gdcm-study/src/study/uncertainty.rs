@@ -1,5 +1,5 @@
-//! How sure the figures of an analysis are, what their scatter over the conditions is made of, and what follows for the schedule
-//! (M13).
+//! Uncertainty of the figures of an analysis, components of their scatter over the conditions, and
+//! conclusions for the schedule (M13).
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -18,65 +18,65 @@ use gdcm_model::dataset::{Condition, ConditionId, Dataset, Pair, PairTable};
 use super::analysis::{Analysis, ConditionAnalysis};
 use super::substitutions::{ConditionSubstitutions, bar_source, left_in_band};
 
-/// How sure the figures of an analysis are.
+/// Uncertainty of the figures of an analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
-    /// Level of every bar, interval and test.
+    /// Level of every error bar, interval and test.
     pub level: f64,
-    /// Each condition that was analysed.
+    /// Each analysed condition.
     pub conditions: BTreeMap<ConditionId, ConditionUncertainty>,
-    /// The differences of the on-axis net gains of every two conditions at equal airspeed, response by response.
+    /// Differences of the on-axis net gains between every two conditions at equal airspeed,
+    /// response by response.
     pub differences: Vec<AirspeedDifference>,
-    /// How many differences there are where they are too many to compare; none is kept then.
+    /// Number of differences where they are too many to compare; none is stored then.
     pub too_many_differences: Option<usize>,
-    /// What the scatter of each on-axis net gain is made of.
+    /// Components of the scatter of each on-axis net gain.
     pub scatter: Vec<PairScatter>,
-    /// The bands of the schedule, where it is one of `ln k` with degrees of freedom left.
+    /// Confidence bands of the schedule, where it is a schedule of `ln k` with degrees of freedom
+    /// left.
     pub bands: Option<ScheduleBands>,
-    /// Whether the schedule needs a second variable, for each on-axis response and each variable.
+    /// Test for a second scheduling variable, for each on-axis response and each variable.
     pub second_variables: Vec<SecondVariableTest>,
 }
 
-/// How sure the figures of one condition are.
+/// Uncertainty of the figures of one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionUncertainty {
-    /// The bar of each figure that exists.
+    /// Error bar of each figure that exists.
     pub bars: ScalarTable<Option<Bar>>,
-    /// `(Q84 - Q16) / 2` over the band of `ln |H_ref| / |H_sim|` of the representatives: what one gain leaves over.
+    /// `(Q84 - Q16) / 2` over the band of `ln |H_ref| / |H_sim|` of the representatives: the
+    /// mismatch that a single gain leaves.
     pub left_in_band: PairTable<Option<f64>>,
-    /// What the bars are made of.
+    /// Substitutions behind the error bars.
     pub substitutions: ConditionSubstitutions,
 }
 
-/// What the scatter of one on-axis net gain is made of (M13.5).
+/// Components of the scatter of one on-axis net gain (M13.5).
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairScatter {
-    /// The response.
     pub pair: Pair,
-    /// At equal airspeed; none where no two conditions share one.
+    /// Scatter at equal airspeed; `None` where no two conditions share an airspeed.
     pub same_airspeed: Option<VarianceDecomposition>,
-    /// About the schedule; none where it goes through every condition.
+    /// Scatter about the schedule; `None` where it passes through every condition.
     pub about_schedule: Option<VarianceDecomposition>,
 }
 
-/// Whether the schedule of one on-axis net gain needs a second variable (M13.7).
+/// Test for a second scheduling variable of one on-axis net gain (M13.7).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondVariableTest {
-    /// The response.
     pub pair: Pair,
-    /// The variable.
     pub variable: SecondVariable,
-    /// Its effect, or why it cannot be told.
+    /// Its effect, or why it cannot be determined.
     pub effect: Result<SecondVariableEffect, SecondVariableError>,
-    /// The probability of so great an effect where there is none, after Holm's correction over all responses and variables.
+    /// Probability of an effect at least as large under the null hypothesis, after Holm's
+    /// correction over all responses and variables.
     pub p_holm: Option<f64>,
-    /// Whether the schedule needs it.
     pub needed: bool,
 }
 
 impl fmt::Display for SecondVariableTest {
-    /// The test in words: "from the lowest to the highest altitude −7 % ± 6 %: not needed; an effect smaller than ± 6 % could not have
-    /// been seen".
+    /// Writes the test in words: "from the lowest to the highest altitude −7 % ± 6 %: not needed;
+    /// an effect smaller than ± 6 % could not have been seen".
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let variable = self.variable.name();
         let effect = match &self.effect {
@@ -95,14 +95,15 @@ impl fmt::Display for SecondVariableTest {
     }
 }
 
-/// The bands of a schedule of `ln k` (M13.6).
+/// Confidence bands of a schedule of `ln k` (M13.6).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScheduleBands {
     of: Vec<(Scalar, ScheduleBand)>,
 }
 
 impl ScheduleBands {
-    /// The half-widths about the scheduled figure, the logarithm of a channel's gain or of a net gain, at an airspeed \[kt\].
+    /// Returns the half-widths about the scheduled figure, the logarithm of a channel's gain or of
+    /// a net gain, at an airspeed \[kt\].
     pub fn at(&self, schedule: &Schedule, figure: Scalar, airspeed_kt: f64) -> Option<BandWidths> {
         let (_, band) = self.of.iter().find(|(scalar, _)| *scalar == figure)?;
         let widths = band.at(&schedule.design_row(airspeed_kt));
@@ -131,7 +132,7 @@ impl ScheduleBands {
 }
 
 impl Uncertainty {
-    /// What the substitutions of the conditions of an analysis say.
+    /// Computes the uncertainty from the substitutions of an analysis's conditions.
     pub(super) fn of(
         analysis: &Analysis,
         substitutions: &[(ConditionId, ConditionSubstitutions)],
@@ -207,7 +208,8 @@ impl Uncertainty {
         }
     }
 
-    /// For each airspeed the difference of a net gain that is the largest multiple of what is expected; none where they have no spread.
+    /// Returns, for each airspeed, the difference of a net gain that is the largest multiple of the
+    /// expected difference; empty where the differences have no spread.
     pub fn greatest_differences(&self, pair: Pair) -> Vec<&AirspeedDifference> {
         let mut greatest: Vec<&AirspeedDifference> = Vec::new();
         let compared =
@@ -227,7 +229,7 @@ impl Uncertainty {
         greatest
     }
 
-    /// What the differences at equal airspeed come to, in a sentence.
+    /// Summarises the differences at equal airspeed in a sentence.
     pub fn differences_in_words(&self) -> String {
         let beyond = self
             .differences
@@ -250,13 +252,13 @@ impl Uncertainty {
         }
     }
 
-    /// The bar of one figure of one condition.
+    /// Returns the error bar of one figure of one condition.
     pub fn bar(&self, condition: ConditionId, figure: Scalar) -> Option<&Bar> {
         self.conditions.get(&condition)?.bars[figure].as_ref()
     }
 }
 
-/// The bars of one figure in several conditions; none where one has none.
+/// Returns the error bars of one figure in several conditions; `None` where a condition has none.
 fn bars_of(conditions: &[&ConditionUncertainty], scalar: Scalar) -> Option<Vec<Bar>> {
     conditions
         .iter()
@@ -314,33 +316,33 @@ fn second_variables(
     tests
 }
 
-/// Differences that are compared at most.
+/// Greatest number of differences that are compared.
 const MOST_DIFFERENCES: usize = 20_000;
-/// Conditions whose airspeeds differ by no more \[kt\] fly at equal airspeed (M13.4).
+/// Greatest difference of airspeeds that count as equal \[kt\] (M13.4).
 pub(super) const EQUAL_AIRSPEED_KT: f64 = 1.0;
 
 /// The difference of an on-axis net gain between two conditions at equal airspeed (M13.4).
 #[derive(Clone, Debug, PartialEq)]
 pub struct AirspeedDifference {
-    /// The response.
     pub pair: Pair,
-    /// The two conditions, in the dataset's order.
     pub conditions: [ConditionId; 2],
-    /// Their airspeed \[kt\], the mean of both.
+    /// Mean airspeed of the two conditions \[kt\].
     pub airspeed_kt: f64,
     /// The difference of `ln k_o k_i`.
     pub difference: Difference,
-    /// Its probability where there is none, after Holm's correction over all that are shown; none where the bundles have no spread.
+    /// Probability of such a difference under the null hypothesis, after Holm's correction over all
+    /// displayed differences; `None` where the bundles have no spread.
     pub p_holm: Option<f64>,
 }
 
 impl AirspeedDifference {
-    /// Whether it is more than is expected from trim and identification uncertainty.
+    /// Returns whether the difference exceeds the expectation from trim and identification
+    /// uncertainty.
     pub fn is_significant(&self, level: f64) -> bool {
         self.p_holm.is_some_and(|p| p < 1.0 - level)
     }
 
-    /// What the test says of it.
+    /// Returns the verdict of the test.
     pub fn verdict(&self, level: f64) -> &'static str {
         match (self.p_holm, self.is_significant(level)) {
             (None, _) => "no spread",
@@ -349,8 +351,8 @@ impl AirspeedDifference {
         }
     }
 
-    /// The difference in words: "conditions 3 and 5 (45 kt) differ by 13 %, 5.4 × expected from trim and identification uncertainty; significant: a
-    /// physical effect, or a model-form error".
+    /// Describes the difference: "conditions 3 and 5 (45 kt) differ by 13 %, 5.4 × expected from
+    /// trim and identification uncertainty; significant: a physical effect, or a model-form error".
     pub fn words(&self, level: f64) -> String {
         let [first, second] = self.conditions;
         let airspeed = self.airspeed_kt;
@@ -367,10 +369,10 @@ impl AirspeedDifference {
     }
 }
 
-/// The differences of these net gains of every two conditions at equal airspeed.
+/// Computes the differences of these net gains between every two conditions at equal airspeed.
 ///
 /// # Errors
-/// How many there are, where they are too many to compare.
+/// The number of differences, where they are too many to compare.
 pub(super) fn differences(
     dataset: &Dataset,
     conditions: &BTreeMap<ConditionId, ConditionUncertainty>,
@@ -425,7 +427,7 @@ pub(super) fn differences(
     Ok(found)
 }
 
-/// Holm's correction over those that there are.
+/// Applies Holm's correction to the known probabilities.
 pub(super) fn holm_where_known(probabilities: &[Option<f64>]) -> Vec<Option<f64>> {
     let known: Vec<f64> = probabilities.iter().flatten().copied().collect();
     let mut corrected = holm(&known).into_iter();

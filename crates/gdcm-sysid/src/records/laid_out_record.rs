@@ -1,4 +1,4 @@
-//! A record with the columns that are its channels, and what its name says about it.
+//! A record with the columns of its channels, and the information in its name.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,20 +19,19 @@ use super::record_layout::RecordLayout;
 use super::record_table::{RecordColumn, RecordTable, TimeBase};
 use crate::identification::preparation::RecordUse;
 
-/// What the names of folders and files say about a record.
+/// Information from the folder and file names of a record.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordGuess {
     /// The manoeuvre.
     pub kind: RecordKind,
-    /// Whether it is meant for validation.
+    /// Whether the record is reserved for validation.
     pub held_out: bool,
-    /// The condition.
     pub condition: Option<i64>,
     /// True airspeed \[kt\].
     pub airspeed_kt: Option<f64>,
 }
 
-/// What names of manoeuvres, and of records for validation, hold.
+/// Parts of the names of manoeuvres and of validation records.
 const MANOEUVRES: [(RecordKind, &[&str]); 3] = [
     (RecordKind::Sweep, &["sweep", "chirp", "swp"]),
     (RecordKind::Multisine, &["multisine", "schroeder", "msine"]),
@@ -48,14 +47,16 @@ const VALIDATION: [&str; 5] = [
     "holdout",
     "heldout",
 ];
-/// Words that say so too, but stand in others ("value", "testbed").
+/// Further words for validation, matched as whole words only, because others contain them ("value",
+/// "testbed").
 const VALIDATION_WORDS: [&str; 4] = ["val", "valid", "check", "verif"];
 
-/// What names of recorded references end with: pilot's and position references, setpoints, injected signals; short ones stand alone.
+/// Endings of the names of recorded references: pilot and position references, setpoints, injected
+/// signals; endings of up to two letters must be whole words.
 const REFERENCES: &str =
     "ref reference cmd command sp setpoint des desired targ target chirp excitation x0";
 
-/// Whether a word of a name says that it is a recorded reference: "pos_ref", "RATE.RDes", "SIDD.Targ".
+/// Whether a word in a name marks a recorded reference: "pos_ref", "RATE.RDes", "SIDD.Targ".
 fn names_reference(name: &str) -> bool {
     let lower = name.to_lowercase();
     let mut words = lower.split(|letter: char| !letter.is_alphanumeric());
@@ -67,7 +68,7 @@ fn names_reference(name: &str) -> bool {
 }
 
 impl RecordGuess {
-    /// Reads the names of a record, of its file, and of the file in an archive that it is.
+    /// Reads the names of a record, of its file, and of its variable or file in an archive.
     pub fn of_table(table: &RecordTable, patterns: &[NamePattern]) -> Self {
         let source = &table.source;
         let names = [
@@ -81,16 +82,17 @@ impl RecordGuess {
         )
     }
 
-    /// The condition that the name says; none where it says none, or one that `dataset` does not have.
+    /// Returns the condition in the name; `None` if the name has none, or `dataset` does not have
+    /// it.
     pub fn condition_of(&self, dataset: &Dataset) -> Option<ConditionId> {
         let said = ConditionId(self.condition?);
         dataset.condition(said).map(|condition| condition.id())
     }
 
-    /// Reads a name, such as "c03_045kt/sweep_LON_1.csv", by these patterns.
+    /// Reads a name such as "c03_045kt/sweep_LON_1.csv" by these patterns.
     pub fn of(name: &str, patterns: &[NamePattern]) -> Self {
         let lower = name.to_lowercase();
-        // "3-2-1-1" and "hold_out" are "3211" and "holdout".
+        // "3-2-1-1" and "hold_out" become "3211" and "holdout".
         let joined = folded_name(name);
         let holds = |words: &[&str]| words.iter().any(|word| joined.contains(word));
         let kind = MANOEUVRES
@@ -112,27 +114,25 @@ impl RecordGuess {
     }
 }
 
-/// A record as it was read, with the columns that are its channels.
+/// A record as it was read, with the columns of its channels.
 #[derive(Clone, Debug)]
 pub struct LaidOutRecord {
-    /// As its file has it.
+    /// The contents of its file.
     pub table: Arc<RecordTable>,
-    /// Which columns are its channels.
     pub layout: RecordLayout,
-    /// What its name says, or the engineer instead.
+    /// Information from its name, or from the user instead.
     pub guess: RecordGuess,
-    /// Whether it is used.
     pub used: bool,
-    /// What keeps it from being used.
+    /// Problems that prevent its use.
     pub problems: Vec<LayoutProblem>,
-    /// What is odd about it.
+    /// Unusual features that may be correct.
     pub cautions: Vec<LayoutCaution>,
-    /// Its samples in the units of the channels; none while there are problems.
+    /// Samples in the units of the channels; `None` while there are problems.
     pub flight: Option<Arc<FlightRecord>>,
 }
 
 impl LaidOutRecord {
-    /// A record with these columns for its channels.
+    /// Creates a record with these columns for its channels.
     pub fn new(
         table: Arc<RecordTable>,
         layout: RecordLayout,
@@ -153,7 +153,7 @@ impl LaidOutRecord {
         }
     }
 
-    /// A record with the columns proposed for its channels, and what was chosen, a line a choice.
+    /// Creates a record with proposed columns, and returns a note for each choice.
     pub fn proposed(
         table: RecordTable,
         channels: &RecordChannels,
@@ -181,8 +181,9 @@ impl LaidOutRecord {
         )
     }
 
-    /// A record with its channels. One that the dataset itself names is as that says: in its units where the file says none, times
-    /// the factors and less the delays that it keeps, but for what is said of the samples of a channel.
+    /// Creates a record with its channels. A record named by the dataset follows the dataset: in
+    /// its units if the file gives none, with the factors and delays stored there. A user-defined
+    /// conversion of a channel replaces the stored factor.
     pub fn as_dataset_says(
         table: RecordTable,
         channels: &RecordChannels,
@@ -216,7 +217,8 @@ impl LaidOutRecord {
         (record.as_said(&entry, &channels), notes)
     }
 
-    /// First and last time \[s\] of its samples, on its own clock; none while there are problems, or where no stamp is a number.
+    /// Returns the first and last time \[s\] of its samples, on its own clock; `None` while there
+    /// are problems, or if no stamp is a number.
     pub fn span_s(&self) -> Option<[f64; 2]> {
         let mut stamps = self
             .flight
@@ -229,7 +231,7 @@ impl LaidOutRecord {
         Some([first_s, stamps.next_back().unwrap_or(first_s)])
     }
 
-    /// The same record with other columns for its channels.
+    /// Returns the same record with other columns for its channels.
     #[must_use]
     pub fn laid_out(&self, layout: RecordLayout, channels: &RecordChannels) -> Self {
         Self {
@@ -243,7 +245,8 @@ impl LaidOutRecord {
         }
     }
 
-    /// The record as a dataset says of it: with its remedies, held out or not, used or not.
+    /// Applies the dataset entry of the record: its remedies, whether it is reserved for
+    /// validation, and whether it is used.
     #[must_use]
     pub fn as_said(self, entry: &ConditionRecord, channels: &RecordChannels) -> Self {
         let record = if entry.remedies.is_empty() {
@@ -265,8 +268,8 @@ impl LaidOutRecord {
         }
     }
 
-    /// The columns that may have driven a loop from outside (M14.15), which move and are neither the time nor a channel, and whether
-    /// their names say that they did; those first.
+    /// Returns the varying columns that are neither the time nor a channel and may have driven a
+    /// loop from outside (M14.15), each with a flag for a reference name; flagged columns first.
     pub fn possible_references(&self) -> Vec<(&str, bool)> {
         let RecordLayout {
             time,
@@ -294,7 +297,8 @@ impl LaidOutRecord {
             .filter(|(index, _)| !taken.contains(index));
         let moves =
             |column: &RecordColumn| column.range().is_some_and(|(least, most)| least < most);
-        // What the documentation of a system knows as a signal of the aircraft is none.
+        // A column that the system's documentation identifies as a signal of the aircraft is not a
+        // reference.
         let is_free =
             |column: &RecordColumn| column.meaning.is_none_or(|meaning| meaning == "TARG");
         let mut found: Vec<(&str, bool)> = columns
@@ -310,12 +314,13 @@ impl LaidOutRecord {
         found
     }
 
-    /// Its samples, where it is used.
+    /// Returns its samples if it is used.
     pub fn used_flight(&self) -> Option<&Arc<FlightRecord>> {
         self.flight.as_ref().filter(|_| self.used)
     }
 
-    /// What a dataset says of it: where it is, what its name tells, and the parts of it that an identification used.
+    /// Creates the dataset entry: the location, the information in its name, and the intervals used
+    /// by an identification.
     pub fn entry(&self, found: &RecordUse, channels: &RecordChannels) -> ConditionRecord {
         let used_s = self
             .flight
@@ -330,8 +335,9 @@ impl LaidOutRecord {
     }
 }
 
-/// Leaves out each record whose samples are those of one before it, with a caution: evidence counts once, however often and under
-/// whatever names it is given. What the engineer said of a copy that was told before stands.
+/// Excludes each record whose samples repeat an earlier one, with a caution: evidence counts once,
+/// however often and under whatever names it is given. A user decision on a copy that was already
+/// reported is kept.
 pub fn leave_out_copies(records: &mut [LaidOutRecord]) {
     for index in 1..records.len() {
         let (before, from) = records.split_at_mut(index);
@@ -357,7 +363,7 @@ pub fn leave_out_copies(records: &mut [LaidOutRecord]) {
     }
 }
 
-/// Whether all samples are the same to the last bit; the clocks may differ.
+/// Whether all samples agree to the last bit; the clocks may differ.
 fn is_copy(a: &FlightRecord, b: &FlightRecord) -> bool {
     let same = |a: &DMatrix<f64>, b: &DMatrix<f64>| {
         a.shape() == b.shape()

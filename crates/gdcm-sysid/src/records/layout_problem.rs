@@ -1,79 +1,74 @@
-//! What is wrong, or odd, in the columns chosen from a record.
+//! Problems and cautions about the columns chosen from a record.
 
 use gdcm_model::dataset::channel::ChannelSide;
 use gdcm_model::units::{number, telling};
 
 use crate::identification::topics::TopicError;
 
-/// Why the columns chosen from a record cannot be used as they are.
+/// Reasons why the chosen columns cannot be used as they are.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LayoutProblem {
-    /// Nothing says when the samples were taken; the columns there are.
+    /// The time of the samples is missing; lists the available columns.
     #[error("no column gives the time; say which does, or the sample rate (columns: {0})")]
     NoTime(String),
-    /// There is no column of the name asked for.
+    /// A requested column does not exist.
     #[error("there is no column \"{name}\"; there are {found}")]
     NoSuchColumn {
-        /// The name.
         name: String,
-        /// The columns there are.
+        /// The available columns.
         found: String,
     },
-    /// Stamps stand still or fall.
+    /// Stamps repeat or decrease.
     #[error(
         "the time in column {column} does not increase at {count} of {samples} samples, first at sample {sample} ({} s follows \
          {} s); choose another column, give the sample rate in its place, or cut the file there",
         number(*after), number(*before)
     )]
     TimeOrder {
-        /// The column, in quotation marks.
+        /// In quotation marks.
         column: String,
-        /// How many stamps.
+        /// Number of such stamps.
         count: usize,
-        /// Of how many.
+        /// Total number.
         samples: usize,
         /// The first of them, counted from 1.
         sample: usize,
         /// The stamp before it \[s\].
         before: f64,
-        /// The stamp \[s\].
+        /// Its stamp \[s\].
         after: f64,
     },
-    /// Steps of time are too long for a manoeuvre.
+    /// Time steps are too long for a manoeuvre.
     #[error(
         "the time in column {column} goes in steps of {} s: its unit is another, or it is no time",
         telling(*step_s, 3)
     )]
     TimeStep {
-        /// The column, in quotation marks.
+        /// In quotation marks.
         column: String,
         /// The median step \[s\].
         step_s: f64,
     },
-    /// A sample time that is not positive.
+    /// The sample time is not positive.
     #[error("the sample time is {} s; it must be a positive number of seconds", number(*.0))]
     SampleTime(f64),
-    /// No column is this channel.
+    /// No column matches this channel.
     #[error("no column is the {side} {channel}; say which is (columns: {found})")]
     NoColumn {
-        /// Input or output.
         side: ChannelSide,
-        /// The channel.
         channel: String,
-        /// The columns there are.
+        /// The available columns.
         found: String,
     },
-    /// Several columns can be this channel.
+    /// Several columns match this channel.
     #[error("several columns can be the {side} {channel}: {found}; say which is")]
     SeveralColumns {
-        /// Input or output.
         side: ChannelSide,
-        /// The channel.
         channel: String,
-        /// Their names.
+        /// The names of these columns.
         found: String,
     },
-    /// Columns without names.
+    /// The columns have no names.
     #[error(
         "the file has {found} columns without names; say which column is which channel, by its number: {channel}=#2, and so on for \
          each"
@@ -81,107 +76,97 @@ pub enum LayoutProblem {
     Unnamed {
         /// The first channel.
         channel: String,
-        /// Columns of the file.
+        /// Number of columns in the file.
         found: usize,
     },
-    /// A name that leaves the sign open.
+    /// The column name leaves the sign open.
     #[error(
         "nothing says whether column \"{column}\" is positive in the direction in which {channel} is; say it: {channel}={plain} \
          takes the column as it is, {channel}=-{plain} turns it"
     )]
     Sign {
-        /// The channel.
         channel: String,
-        /// The column.
         column: String,
-        /// Its name without marks.
+        /// The column name without sign marks.
         plain: String,
     },
-    /// A unit that neither the file nor the samples say.
+    /// Neither the file nor the samples determine the unit.
     #[error(
         "the file does not say the unit of {channel} (column {column}), and its samples can be in {units}; say which: \
          --unit \"{channel}={unit}\", or page Columns"
     )]
     UnsaidUnit {
-        /// The channel.
         channel: String,
-        /// The column, in quotation marks.
+        /// In quotation marks.
         column: String,
-        /// The channel's unit.
+        /// Unit of the channel.
         unit: String,
-        /// The units that the samples can be in, in words.
+        /// Possible units of the samples, as a list.
         units: String,
     },
-    /// A unit that cannot be converted.
     #[error(
         "{channel} has the unit \"{from}\" in the file (column {column}) and \"{to}\" is wanted: there is no factor from one to the other; say one"
     )]
     Conversion {
-        /// The channel.
         channel: String,
-        /// The column, in quotation marks.
+        /// In quotation marks.
         column: String,
-        /// The file's unit.
+        /// Unit in the file.
         from: String,
-        /// The unit wanted.
+        /// Requested unit.
         to: String,
     },
-    /// Two channels are one column.
+    /// Two channels use the same column.
     #[error(
         "{first} and {second} are both taken from column {column}; choose another for one of them"
     )]
     OneColumn {
-        /// One channel.
         first: String,
-        /// The other, or "the time".
+        /// The other channel, or "the time".
         second: String,
-        /// The column, in quotation marks.
+        /// In quotation marks.
         column: String,
     },
-    /// A column has no numbers.
+    /// The column has no numbers.
     #[error("{channel}: column {column} has no sample that is a number; choose another")]
     Empty {
-        /// The channel.
         channel: String,
-        /// The column, in quotation marks.
+        /// In quotation marks.
         column: String,
     },
-    /// A factor that is zero or not finite.
+    /// The factor is zero or not finite.
     #[error("{channel}: samples cannot be multiplied by {}", number(*factor))]
     Factor {
-        /// The channel.
         channel: String,
-        /// The factor.
+        /// Zero, infinite or NaN.
         factor: f64,
     },
-    /// A delay that is none of a sensor or a bus.
+    /// The delay is not plausible for a sensor or a bus.
     #[error("{channel}: a delay of {} s in one record is not possible; at most 10 s", number(*delay_s))]
     Delay {
-        /// The channel.
         channel: String,
         /// The delay \[s\].
         delay_s: f64,
     },
-    /// Samples that no helicopter has in this unit.
+    /// The samples exceed the range of helicopters in this unit.
     #[error(
         "{channel} (column {column}) reaches {} {unit}, and no helicopter more than {} {unit}: the column or its unit is wrong{hint}",
         telling(*value, 0), number(*most)
     )]
     Magnitude {
-        /// The channel.
         channel: String,
-        /// The column, in quotation marks.
+        /// In quotation marks.
         column: String,
-        /// The greatest sample, converted.
+        /// The largest absolute sample, converted.
         value: f64,
-        /// The most there can be.
+        /// The largest plausible value.
         most: f64,
-        /// The channel's unit.
+        /// Unit of the channel.
         unit: String,
-        /// What it may be, in words; empty where nothing is known.
+        /// A guess at the cause; empty without one.
         hint: String,
     },
-    /// Topics with clocks of their own do not make a record.
+    /// Topics with separate clocks cannot be combined into a record.
     #[error("{0}")]
     Topics(TopicError),
 }
@@ -193,49 +178,47 @@ impl LayoutProblem {
     }
 }
 
-/// What is odd in the columns chosen from a record, and can be right.
+/// Unusual features of the chosen columns, which may be correct.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LayoutCaution {
-    /// A channel does not change.
+    /// A channel is constant.
     #[error("{channel} (column {column}) does not change in this record")]
     Constant {
-        /// The channel.
         channel: String,
-        /// The column, in quotation marks.
+        /// In quotation marks.
         column: String,
     },
     /// Two channels have the same samples.
     #[error("{first} and {second} have the same samples")]
     Same {
-        /// One channel.
+        /// Name of one channel.
         first: String,
-        /// The other.
+        /// Name of the other channel.
         second: String,
     },
-    /// A record is another under a second name.
+    /// The record is a copy of another under a different name.
     #[error("its samples are those of {first}: left out, for evidence counts once")]
     Copy {
-        /// The name of the other.
+        /// Name of the other record.
         first: String,
     },
     /// Samples are missing.
     #[error("{channel} (column {column}): {count} of {samples} samples are missing")]
     Missing {
-        /// The channel.
         channel: String,
-        /// The column, in quotation marks.
+        /// In quotation marks.
         column: String,
-        /// How many.
+        /// Number of missing samples.
         count: usize,
-        /// Of how many.
+        /// Total number.
         samples: usize,
     },
     /// Stamps are missing.
     #[error("{count} of {samples} stamps of time are missing")]
     MissingTime {
-        /// How many.
+        /// Number of missing stamps.
         count: usize,
-        /// Of how many.
+        /// Total number.
         samples: usize,
     },
 }

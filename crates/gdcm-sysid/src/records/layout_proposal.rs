@@ -1,4 +1,4 @@
-//! Columns proposed for the time and the channels of a record.
+//! Proposed columns for the time and the channels of a record.
 
 use gdcm_model::assembly::ChannelRule;
 use gdcm_model::assembly::channel_match::{SignedName, folded_name, same_channel, sign_between};
@@ -12,30 +12,30 @@ use super::record_layout::{ColumnUse, RecordLayout, possible_units};
 use super::record_table::{RecordColumn, RecordTable, TimeBase};
 use super::resampling::Resampling;
 
-/// What the engineer says about the time of records.
+/// User settings for the time of records.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TimeWish {
-    /// The column; none for the one that looks like it.
+    /// The time column; `None` selects the most likely one.
     pub column: Option<String>,
-    /// Sample time \[s\], which stands in place of a column.
+    /// Sample time \[s\], used instead of a column.
     pub sample_time_s: Option<f64>,
 }
 
-/// A layout proposed for a record, every choice in words.
+/// A layout proposed for a record, with a note for each choice.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LayoutProposal {
-    /// The layout, as far as there is one.
+    /// The layout, as far as it is known.
     pub layout: RecordLayout,
-    /// What was chosen and why, a line a choice.
+    /// The choices and their reasons, one note each.
     pub notes: Vec<String>,
-    /// What keeps the layout from being used.
+    /// Problems that prevent the use of the layout.
     pub problems: Vec<LayoutProblem>,
-    /// What is odd, and can be right.
+    /// Unusual features that may be correct.
     pub cautions: Vec<LayoutCaution>,
 }
 
 impl RecordLayout {
-    /// Columns for the time and for each channel.
+    /// Proposes columns for the time and for each channel.
     ///
     /// ```text
     /// time     as wished, else the column of that name, else the file's sample time
@@ -91,7 +91,7 @@ impl RecordLayout {
             problems: told,
             ..
         } = proposer;
-        // Where something was said of a channel already, that it has no column is no news.
+        // Missing columns are not reported again if the proposal already reported problems.
         let rest = layout
             .problems(table, channels)
             .into_iter()
@@ -113,7 +113,7 @@ impl RecordLayout {
     }
 }
 
-/// Proposes columns of a table for channels, and keeps what is said of that.
+/// Proposes columns of a table for channels, and collects the notes.
 struct Proposer<'r> {
     table: &'r RecordTable,
     channels: &'r RecordChannels,
@@ -164,7 +164,7 @@ impl Proposer<'_> {
         None
     }
 
-    /// Columns of one side, by name.
+    /// Returns the columns of one side, by name.
     fn named(&mut self, side: ChannelSide, time: Option<usize>) -> Vec<Option<ColumnUse>> {
         let table = self.table;
         let rules = side.of(&self.channels.inputs, &self.channels.outputs);
@@ -224,7 +224,8 @@ impl Proposer<'_> {
         uses
     }
 
-    /// The column with its factor, turned where a mark in its name, or in what is asked for, says so; in words.
+    /// Returns the column with its factor, negated if a sign mark in its name or in the requested
+    /// name requires it; adds a note.
     fn used(&mut self, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
         let used = self.converted(rule, column)?;
         let said = matches!(
@@ -269,7 +270,7 @@ impl Proposer<'_> {
         })
     }
 
-    /// The column with the factor from the file's unit to the channel's, and in words.
+    /// Returns the column with the factor from the file's unit to the channel's, and adds a note.
     fn converted(&mut self, rule: &ChannelRule, column: usize) -> Option<ColumnUse> {
         let table = self.table;
         let quoted = table.quoted(column);
@@ -322,7 +323,7 @@ impl Proposer<'_> {
         Some(ColumnUse::times(column, factor))
     }
 
-    /// The column of a file that does not say its unit, in words where the samples leave nothing open.
+    /// Returns the column of a file without a unit; adds a note if the samples leave only one.
     fn by_samples(&mut self, rule: &ChannelRule, column: usize) -> ColumnUse {
         let table = self.table;
         let used = ColumnUse::by_unit(table, column, &rule.unit);
@@ -340,12 +341,12 @@ impl Proposer<'_> {
     }
 }
 
-/// A name without the marks of its sign: "-az" and "az (down)" are "az".
+/// Returns a name without its sign marks: "-az" and "az (down)" become "az".
 fn plain(name: &str) -> String {
     SignedName::of(name).name
 }
 
-/// The columns that can be a channel.
+/// Returns the columns that can be a channel.
 fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec<usize> {
     let mut found: Vec<usize>;
     let named = |is_it: &dyn Fn(&str) -> bool| -> Vec<usize> {
@@ -358,8 +359,8 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec
             .filter(|&column| !other_side(column) && is_it(&table.columns[column].name))
             .collect()
     };
-    // What the engineer says, however it is typed: "elev_yoke1" is "elev,yoke1", and no other name of the stick. The very name goes
-    // before one with the mark of a sign, and that before what the field calls the same.
+    // User-defined names in any spelling: "elev_yoke1" is "elev,yoke1", and other names of the
+    // stick do not apply. The exact name precedes a name with a sign mark, which precedes synonyms.
     let aliases: Vec<String> = rule
         .aliases
         .iter()
@@ -426,7 +427,8 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec
                 .is_some_and(|meaning| names.iter().any(|wanted| same_channel(meaning, wanted)))
         });
     }
-    // In logs whose columns are known, a field of the same letter is another thing: "PIDR.P" is no roll rate.
+    // In logs with documented columns a field of the same letter is something else: "PIDR.P" is not
+    // a roll rate.
     let is_known = || table.columns.iter().any(|column| column.meaning.is_some());
     if found.is_empty() && (!rule.aliases.is_empty() || !is_known()) {
         found = of_columns(&|column| names.iter().any(|wanted| column.field() == *wanted));
@@ -447,12 +449,14 @@ fn candidates(table: &RecordTable, rule: &ChannelRule, side: ChannelSide) -> Vec
     found
 }
 
-/// Whether a column is a latitude or a longitude, of the same names as sticks: an angle that hardly changes, by its unit or, where
-/// the file says none and the channel's very name is another, by both of them standing nearly still.
+/// Whether a column is a latitude or a longitude, whose names resemble those of inputs: an angle
+/// that hardly changes, judged by its unit; without a unit in the file, by a latitude and a
+/// longitude column that are both nearly constant.
 fn is_position(table: &RecordTable, column: usize, rule: &ChannelRule) -> bool {
-    /// A minute at 140 kt is 0.04 degrees.
+    /// One minute at 140 kt is 0.04 degrees.
     const MOST_DEG: f64 = 0.5;
-    /// Of its greatest value; where the column has the channel's very name, so little that no stick that is flown stands so still.
+    /// Range relative to the largest value. The second limit applies to a column with the exact
+    /// name of the channel: smaller than the motion of any stick in flight.
     const MOST_CHANGE: [f64; 2] = [0.02, 0.002];
     let is_called =
         |column: &RecordColumn, names: &[&str]| names.contains(&folded_name(&column.name).as_str());

@@ -1,4 +1,4 @@
-//! What is proposed for a record, and what is said against it.
+//! Proposed layouts, their problems and cautions.
 
 use std::collections::BTreeMap;
 
@@ -45,7 +45,7 @@ fn table(columns: Vec<RecordColumn>) -> RecordTable {
     }
 }
 
-/// A record as another tool names and orders its columns.
+/// A record with the column names and order of another tool.
 fn record() -> RecordTable {
     table(vec![
         column("nz", "g", |k| 0.1 * (0.3 * k).sin()),
@@ -170,7 +170,7 @@ fn a_unit_that_neither_the_file_nor_the_samples_say_is_asked_for_and_one_that_th
             Err(told(&proposal.problems))
         }
     };
-    // 6.9 rad/s are 395 deg/s, which a helicopter may reach; 7.1 rad/s are 407.
+    // 6.9 rad/s are 395 deg/s, within the range of helicopters; 7.1 rad/s are 407.
     assert_eq!(
         with("", 6.9, "deg/s").unwrap_err(),
         "the file does not say the unit of P (column \"roll rate\"), and its samples can be in deg/s or rad/s; say which: \
@@ -186,7 +186,8 @@ fn a_unit_that_neither_the_file_nor_the_samples_say_is_asked_for_and_one_that_th
         ),
         (1.0, true)
     );
-    // Forty radians in a second no helicopter turns: degrees, of which the channel has fewer.
+    // No helicopter turns at forty radians per second: the samples are degrees, fewer in the
+    // channel's unit.
     assert_eq!(
         with("", 40.0, "rad/s").unwrap().0,
         std::f64::consts::PI / 180.0
@@ -217,7 +218,7 @@ fn a_unit_that_is_said_of_the_channel_is_that_of_files_that_say_none() {
         (said.problems.len(), said.layout.outputs[0].unwrap().factor),
         (0, 180.0 / std::f64::consts::PI)
     );
-    // Whoever reads the record again by the dataset, which is in deg/s, comes to the same samples.
+    // Reading the record again with the dataset, in deg/s, gives the same samples.
     let entry = said
         .layout
         .condition_record(&table, &RecordGuess::default(), &channels);
@@ -304,7 +305,7 @@ fn channels_that_are_missing_doubtful_or_without_a_factor_are_asked_for() {
         ),
         "{words}"
     );
-    // What the engineer says stands.
+    // User settings are kept.
     let mut layout = proposed(&table).layout;
     layout.outputs = vec![
         Some(ColumnUse::as_it_is(6)),
@@ -581,7 +582,7 @@ fn a_latitude_and_a_longitude_are_no_sticks() {
         );
         assert_eq!(found.layout.inputs, [None, None], "{unit}");
     }
-    // A stick that is held beside one that is moved is a stick.
+    // A constant stick beside a moving one is still a stick.
     let sticks = with(
         column("lat", "", |_| 50.0),
         column("lon", "", |k| 50.0 + 8.0 * (0.1 * k).sin()),
@@ -730,7 +731,7 @@ fn what_is_put_right_in_one_record_is_put_right_in_it_alone() {
     layout.put_right(&remedies, &channels);
     let [before, after] =
         [&as_logged, &layout].map(|layout| layout.flight_record(&table, &channels).unwrap());
-    // LON is 40 + k at 0.02 k: 30 ms later it is 1.5 more, and there is nothing beyond the end.
+    // LON is 40 + k at 0.02 k: 30 ms later it is 1.5 more, and there is no value beyond the end.
     assert!(
         (after.inputs[(10, 0)] - 51.5).abs() < 1e-12,
         "{}",
@@ -742,7 +743,8 @@ fn what_is_put_right_in_one_record_is_put_right_in_it_alone() {
         (after.inputs.column(1), after.outputs.column(1)),
         (before.inputs.column(1), before.outputs.column(1))
     );
-    // It is kept with the record, goes to no other, and stays where other columns are said.
+    // The remedy is stored with the record, is not passed to other records, and survives a change
+    // of columns.
     let entry = layout.condition_record(&table, &RecordGuess::default(), &channels);
     assert_eq!(entry.remedies, remedies);
     let other = as_logged
@@ -750,7 +752,7 @@ fn what_is_put_right_in_one_record_is_put_right_in_it_alone() {
         .unwrap()
         .with_remedies_of(&layout);
     assert_eq!(other, layout);
-    // Twice adds up.
+    // Applying it twice accumulates.
     layout.put_right(&remedies, &channels);
     let twice = layout.flight_record(&table, &channels).unwrap();
     assert!((twice.inputs[(10, 0)] - 53.0).abs() < 1e-12 && twice.outputs == before.outputs);

@@ -6,8 +6,8 @@
 //!                                   -> problems and cautions of what is chosen, or the flight record
 //! ```
 //!
-//! Samples are the file's, times a factor; nothing is filtered or taken off. Where the channels have clocks of their own, they are
-//! brought to one (M14.11), and that is said.
+//! Samples are those of the file, times a factor, without filtering or detrending. Channels with
+//! separate clocks are resampled to a common clock (M14.11), and this is reported.
 
 pub mod laid_out_record;
 pub mod layout_problem;

@@ -1,4 +1,5 @@
-//! The channels that records are to give: those of a dataset, as an engineer writes them, and a dataset made of them.
+//! The channels to read from records: from a dataset or a user's list, and a new dataset for such
+//! channels.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -20,31 +21,31 @@ use super::record_layout::RecordLayout;
 use super::record_table::RecordTable;
 use super::resampling::ResamplingWish;
 
-/// What the engineer says of the samples of a channel, whatever their file says.
+/// User-defined conversion of a channel's samples; overrides the file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SaidConversion {
-    /// They are in this unit.
+    /// Unit of the samples.
     Unit(String),
-    /// How many of the channel's units one of the column's is; negative where the sign is the other one.
+    /// Channel units per column unit; negative for the opposite sign.
     Factor(f64),
 }
 
-/// Inputs and outputs that records are to give. A channel without a unit is taken in that of the file; one with other names is looked for
-/// by these alone.
+/// Inputs and outputs to read from records. A channel without a unit takes the unit of the file; a
+/// channel with aliases is searched only by its aliases.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordChannels {
     /// Inputs, in order.
     pub inputs: Vec<ChannelRule>,
     /// Outputs, in order.
     pub outputs: Vec<ChannelRule>,
-    /// What is said of samples, by channel.
+    /// User-defined conversions by channel.
     pub said: BTreeMap<String, SaidConversion>,
-    /// How topics with clocks of their own become one record.
+    /// Combination of topics with separate clocks into one record.
     pub resampling: ResamplingWish,
 }
 
 impl RecordChannels {
-    /// The channels of a dataset, in its units.
+    /// Returns the channels of a dataset, in its units.
     pub fn of_dataset(dataset: &Dataset) -> Self {
         let rule = |channel: &Channel| ChannelRule {
             unit: channel.unit.clone(),
@@ -61,7 +62,8 @@ impl RecordChannels {
         }
     }
 
-    /// The same for records that the dataset itself names: these are in its units where their files say none, times their remedies.
+    /// Returns the channels for records named by the dataset: in its units if their files give
+    /// none, with their remedies applied.
     #[must_use]
     pub fn of_named_records(mut self) -> Self {
         for rule in self.inputs.iter_mut().chain(&mut self.outputs) {
@@ -70,7 +72,8 @@ impl RecordChannels {
         self
     }
 
-    /// Gives channels without a unit that of the column that this layout takes for them, so that further records are converted.
+    /// Gives channels without a unit the unit of their column in this layout, so that further
+    /// records are converted.
     pub fn take_units(&mut self, layout: &RecordLayout, table: &RecordTable) {
         let sides = [
             (&mut self.inputs, &layout.inputs),
@@ -85,7 +88,7 @@ impl RecordChannels {
                 let of_file = || used.and_then(|used| table.columns.get(used.column)?.unit.clone());
                 let unit = match self.said.get(&rule.name) {
                     Some(SaidConversion::Unit(unit)) => Some(unit.clone()),
-                    // In which unit the product is, nobody says.
+                    // The unit of the product is unknown.
                     Some(SaidConversion::Factor(factor)) if factor.abs() != 1.0 => None,
                     _ => of_file(),
                 };
@@ -95,39 +98,38 @@ impl RecordChannels {
     }
 }
 
-// Channels as an engineer writes them in one line: "LON, Q [deg/s]=pitch_rate".
+// Channels as written in one line: "LON, Q [deg/s]=pitch_rate".
 
-/// Channels by name, each with its unit and the column that it is where these are said.
+/// Channels by name, each with an optional unit and column.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ChannelList {
     /// The channels, in order.
     pub channels: Vec<SaidChannel>,
 }
 
-/// A channel as it is written.
+/// A channel as written in a list.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SaidChannel {
-    /// The name.
     pub name: String,
-    /// The unit; empty where none is said.
+    /// The unit; empty if not given.
     pub unit: String,
-    /// The column that it is: its name, `TOPIC.FIELD`, or `#3` for the third.
+    /// The column: its name, `TOPIC.FIELD`, or `#3` for the third.
     pub column: Option<String>,
 }
 
-/// Why a text is no list of channels.
+/// Reasons why a text is not a list of channels.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ChannelListError {
-    /// A part of it is no channel.
+    /// A part of the text is not a channel.
     #[error("expected CHANNEL or CHANNEL=COLUMN, as P or P [deg/s]=roll_rate, found \"{0}\"")]
     NoChannel(String),
-    /// A channel stands twice.
+    /// Duplicate channel.
     #[error("{0} stands twice")]
     Twice(String),
 }
 
 impl SaidChannel {
-    /// What is said of where the channel is found, and in which unit.
+    /// Returns the rule for the column and unit of the channel.
     pub fn rule(&self) -> ChannelRule {
         ChannelRule {
             unit: self.unit.clone(),
@@ -202,7 +204,7 @@ impl fmt::Display for ChannelList {
     }
 }
 
-/// The parts of a list between commas that stand in no quotation marks.
+/// Splits a list at the commas outside quotation marks.
 fn split_outside_quotes(text: &str) -> Vec<&str> {
     let mut quoted = false;
     let is_comma = |c: char| {
@@ -212,19 +214,21 @@ fn split_outside_quotes(text: &str) -> Vec<&str> {
     text.split(is_comma).collect()
 }
 
-// A dataset for records of channels that no dataset has yet: models are identified from them before there is a physics model.
+// A dataset for records with new channels: models are identified from them before a physics model
+// exists.
 
-/// What stands for a unit that nobody says.
+/// Placeholder for an unknown unit.
 pub const UNSAID_UNIT: &str = "?";
 
-/// A dataset of one condition with these records and without models: one that answers nothing, `y = 0 u`, is its physics model until
-/// there is another, and no analysis has a result before.
+/// Creates a dataset of one condition with these records and without models: a placeholder with
+/// zero response, `y = 0 u`, is its physics model until a real one is added; no analysis has a
+/// result before that.
 ///
-/// The responses that matter are those of a helicopter as far as there are such channels, and else every output to the input of its
-/// place.
+/// The usual responses of a helicopter are marked as on-axis for the channels found, otherwise each
+/// output to the input with the same index.
 ///
 /// # Errors
-/// No input or no output, a name that stands twice.
+/// No input or no output, or a duplicate name.
 pub fn dataset_of_records(
     name: &str,
     channels: &RecordChannels,

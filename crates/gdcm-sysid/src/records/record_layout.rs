@@ -1,4 +1,4 @@
-//! Which columns of a record are its time and its channels.
+//! Assignment of a record's columns to its time and channels.
 
 use std::collections::BTreeMap;
 
@@ -17,26 +17,26 @@ use super::record_channels::RecordChannels;
 use super::record_table::{LONGEST_STEP_S, RecordColumn, RecordTable, TimeBase, median_step};
 use super::resampling::{Resampling, has_holes};
 
-/// A column of a record that is a channel.
+/// A column of a record, used as a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColumnUse {
     /// Index of the column.
     pub column: usize,
-    /// How many of the channel's units one of the column's is; negative where the sign is the other one.
+    /// Channel units per column unit; negative for the opposite sign.
     pub factor: f64,
-    /// Whether the factor is still to be said: neither the file nor the samples say which unit these are in.
+    /// Whether the factor is still open: neither the file nor the samples determine the unit.
     pub is_unit_open: bool,
-    /// What is put right in this record alone.
+    /// Remedy applied in this record only.
     pub remedy: ChannelRemedy,
 }
 
 impl ColumnUse {
-    /// The column as it is.
+    /// Uses the column unchanged.
     pub fn as_it_is(column: usize) -> Self {
         Self::times(column, 1.0)
     }
 
-    /// The column times a factor.
+    /// Uses the column times a factor.
     pub fn times(column: usize, factor: f64) -> Self {
         Self {
             column,
@@ -46,7 +46,7 @@ impl ColumnUse {
         }
     }
 
-    /// The same without what is put right in one record.
+    /// Returns the use without the remedy of this record.
     fn without_remedy(self) -> Self {
         Self {
             remedy: ChannelRemedy::NONE,
@@ -54,25 +54,26 @@ impl ColumnUse {
         }
     }
 
-    /// What its samples are multiplied by in all.
+    /// Returns the total factor of the samples.
     pub(super) fn gain(&self) -> f64 {
         self.factor * self.remedy.factor
     }
 }
 
-/// Which columns of a record are its time and its channels: proposed by [`RecordLayout::proposed`], and free to be changed.
+/// Assignment of a record's columns to its time and channels: proposed by
+/// [`RecordLayout::proposed`], and editable.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordLayout {
-    /// What says when the samples were taken; none where that is still to be said.
+    /// Source of the sample times; `None` while open.
     pub time: Option<TimeBase>,
-    /// One for each input; none where it is still to be said.
+    /// One for each input; `None` while open.
     pub inputs: Vec<Option<ColumnUse>>,
-    /// One for each output; none where it is still to be said.
+    /// One for each output; `None` while open.
     pub outputs: Vec<Option<ColumnUse>>,
 }
 
 impl RecordLayout {
-    /// Every channel, inputs first, with the column that is chosen for it.
+    /// Returns every channel, inputs first, with its chosen column.
     pub(super) fn uses<'r>(
         &'r self,
         channels: &'r RecordChannels,
@@ -88,7 +89,7 @@ impl RecordLayout {
         of_side(ChannelSide::Input).chain(of_side(ChannelSide::Output))
     }
 
-    /// The channels for which a column is chosen.
+    /// Returns the channels with a chosen column.
     fn chosen<'r>(
         &'r self,
         channels: &'r RecordChannels,
@@ -97,7 +98,8 @@ impl RecordLayout {
             .filter_map(|(_, rule, used)| Some((rule, used?)))
     }
 
-    /// Everything that keeps the chosen columns from being used; nothing where [`RecordLayout::flight_record`] gives a record.
+    /// Returns all problems of the chosen columns; empty if [`RecordLayout::flight_record`] returns
+    /// a record.
     pub fn problems(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutProblem> {
         let mut problems = self.time_problems(table);
         for (side, rule, used) in self.uses(channels) {
@@ -120,7 +122,7 @@ impl RecordLayout {
         problems
     }
 
-    /// What is odd in the chosen columns, and can be right.
+    /// Returns unusual features of the chosen columns, which may be correct.
     pub fn cautions(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutCaution> {
         let mut cautions = Vec::new();
         let is_resampled = Resampling::of(self, table, channels).is_some();
@@ -174,7 +176,8 @@ impl RecordLayout {
         cautions
     }
 
-    /// The flight record of the chosen columns: each sample times its factor, nothing else; none where a problem is left.
+    /// Returns the flight record of the chosen columns: each sample times its factor, otherwise
+    /// unchanged. Fails while a problem remains.
     pub fn flight_record(
         &self,
         table: &RecordTable,
@@ -190,7 +193,7 @@ impl RecordLayout {
         }
     }
 
-    /// The samples on the one clock that they have, those of its part alone.
+    /// Returns the samples on their common clock, restricted to the record's part of the file.
     fn as_logged(&self, table: &RecordTable, time: TimeBase) -> FlightRecord {
         let of_topic = || {
             let used = self.inputs.iter().chain(&self.outputs).flatten().next()?;
@@ -225,7 +228,7 @@ impl RecordLayout {
         }
     }
 
-    /// Each channel with what was put right of it in the record that `other` is of.
+    /// Copies the remedy of each channel from `other`.
     #[must_use]
     pub fn with_remedies_of(mut self, other: &Self) -> Self {
         let sides = [
@@ -241,7 +244,7 @@ impl RecordLayout {
         self
     }
 
-    /// Puts channels right in this record alone, by their names, besides what was put right before.
+    /// Adds remedies to channels by name, in this record only, in addition to earlier remedies.
     pub fn put_right(
         &mut self,
         remedies: &BTreeMap<String, ChannelRemedy>,
@@ -261,15 +264,16 @@ impl RecordLayout {
         }
     }
 
-    /// How a channel is used, to change.
+    /// Returns the editable use of a channel.
     pub fn channel_mut(&mut self, role: ChannelSide, index: usize) -> Option<&mut ColumnUse> {
         role.of(&mut self.inputs, &mut self.outputs)
             .get_mut(index)?
             .as_mut()
     }
 
-    /// This layout of `table` with what differs between two layouts of `from`, channel by channel: what is said of the columns of one
-    /// record, of another that has columns of these names. What is put right in one record alone stays as it is.
+    /// Applies the changes between two layouts of `from` to this layout of `table`, channel by
+    /// channel: transfers the user's edits of one record to another with columns of the same names.
+    /// Remedies, which belong to one record, stay as they are.
     #[must_use]
     pub fn following(
         &self,
@@ -312,7 +316,7 @@ impl RecordLayout {
         layout
     }
 
-    /// The same with every unit that is still to be said taken to be that of the channel.
+    /// Takes every open unit to be the unit of the channel.
     #[must_use]
     pub fn in_units_of_channels(&self) -> Self {
         let closed = |uses: &[Option<ColumnUse>]| -> Vec<Option<ColumnUse>> {
@@ -332,7 +336,7 @@ impl RecordLayout {
         }
     }
 
-    /// The same columns, by name, of another record; none where that lacks one of them.
+    /// Returns the same columns, by name, in another record; `None` if it lacks one of them.
     pub fn carried_to(&self, other: &RecordTable, from: &RecordTable) -> Option<Self> {
         let place = |column: usize| place(column, from, other);
         let carry = |uses: &[Option<ColumnUse>]| -> Option<Vec<Option<ColumnUse>>> {
@@ -359,7 +363,7 @@ impl RecordLayout {
         })
     }
 
-    /// What a dataset says of this record: where it is, and what its name tells.
+    /// Creates the dataset entry of this record: its location, and the information in its name.
     pub fn condition_record(
         &self,
         table: &RecordTable,
@@ -409,7 +413,7 @@ impl RecordLayout {
         }
     }
 
-    /// Columns that are two channels at once.
+    /// Returns a problem for each column used by two channels.
     fn shared_columns(&self, table: &RecordTable, channels: &RecordChannels) -> Vec<LayoutProblem> {
         let mut taken: Vec<(usize, String)> = Vec::new();
         if let Some(TimeBase::Column { column, .. }) = self.time {
@@ -433,7 +437,7 @@ impl RecordLayout {
     }
 }
 
-/// Where a column of one record is in another, by its name.
+/// Returns the index in another record of a column, by name.
 fn place(column: usize, from: &RecordTable, other: &RecordTable) -> Option<usize> {
     let name = &from.columns.get(column)?.name;
     if other
@@ -500,7 +504,7 @@ fn order_problem(times_s: &[f64], column: String) -> Option<LayoutProblem> {
     })
 }
 
-/// Whether numbers are the same, missing ones in the same places.
+/// Whether samples are equal, with missing samples in the same places.
 pub(super) fn same_samples(first: &[f64], second: &[f64]) -> bool {
     first.len() == second.len()
         && first
@@ -509,7 +513,7 @@ pub(super) fn same_samples(first: &[f64], second: &[f64]) -> bool {
             .all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
 }
 
-/// The samples of these rows, one column a channel; not a number where a sample is missing.
+/// Returns the samples in these rows, one column per channel; NaN where a sample is missing.
 fn samples_of(
     table: &RecordTable,
     uses: &[Option<ColumnUse>],
@@ -543,8 +547,9 @@ fn samples_of(
     samples
 }
 
-/// A channel that is logged late by `delay_s`, as it was: at t the straight line at t + delay between two samples next to one
-/// another; not a number beyond the ends, beside a sample that is missing, and in a gap of the stamps.
+/// Removes a logging delay of `delay_s` from a channel: at t, the linear interpolation at t + delay
+/// between two adjacent samples; NaN beyond the ends, beside a missing sample, and in a gap of the
+/// stamps.
 fn advanced(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
     let longest_s = LONGEST_LINE * median_step(time_s).unwrap_or(0.0);
     let mut next = 0;
@@ -576,14 +581,15 @@ fn advanced(time_s: &[f64], values: &[f64], delay_s: f64) -> Vec<f64> {
     time_s.iter().map(|t| t + delay_s).map(at).collect()
 }
 
-/// The longest delay that is one of a sensor or a bus \[s\].
+/// Longest plausible delay of a sensor or a bus \[s\].
 const LONGEST_DELAY_S: f64 = 10.0;
-/// The longest line between two samples, over the median step: gaps of three samples, as where records are prepared (M14.1).
+/// Longest interpolation interval, in median steps: gaps of three samples, as in the preparation of
+/// records (M14.1).
 const LONGEST_LINE: f64 = 4.5;
 
-// In which units the samples of a channel can be, and in which they cannot.
+// Possible and impossible units of a channel's samples.
 
-/// The most that a helicopter has of a dimension, in a unit of that dimension.
+/// Largest plausible value for a helicopter by dimension, in the given unit.
 const MOST: [(Dimension, f64, &str); 7] = [
     (Dimension::AngularRate, 400.0, "deg/s"),
     (Dimension::Angle, 3600.0, "deg"),
@@ -594,28 +600,29 @@ const MOST: [(Dimension, f64, &str); 7] = [
     (Dimension::Length, 50_000.0, "m"),
 ];
 
-/// The units that channels are logged in.
+/// Units in which channels are logged.
 const LOGGED: [&str; 21] = [
     "rad/s", "deg/s", "rad", "deg", "rad/s^2", "deg/s^2", "g", "m/s^2", "ft/s^2", "m/s", "ft/s",
     "kt", "%", "1", "m", "cm", "mm", "ft", "in", "N", "lb",
 ];
 
-/// The most that a helicopter has of what a unit measures, in that unit.
+/// Returns the largest plausible value for a helicopter in this unit.
 fn most(unit: &str) -> Option<f64> {
     let dimension = PhysicalUnit::of(unit)?.dimension;
     let (_, limit, of) = MOST.into_iter().find(|(of, ..)| *of == dimension)?;
     Some(limit * conversion_factor(of, unit)?)
 }
 
-/// The greatest sample without its sign.
+/// Returns the largest absolute sample.
 fn peak(column: &RecordColumn) -> Option<f64> {
     column
         .range()
         .map(|(least, most)| least.abs().max(most.abs()))
 }
 
-/// The units that the samples of a column can be in, for a channel of this unit, which stands first: those of the same dimension in
-/// which no helicopter has less than the greatest sample. Samples that are all zero, and a unit that is not known, leave nothing open.
+/// Returns the possible units of a column's samples for a channel with this unit, which comes
+/// first: units of the same dimension whose largest plausible value is not below the largest
+/// sample. Empty if all samples are zero; an unknown unit leaves nothing open.
 pub(super) fn possible_units<'u>(column: &RecordColumn, unit: &'u str) -> Vec<&'u str> {
     let Some(peak) = peak(column).filter(|peak| *peak > 0.0) else {
         return Vec::new();
@@ -629,7 +636,7 @@ pub(super) fn possible_units<'u>(column: &RecordColumn, unit: &'u str) -> Vec<&'
         .collect()
 }
 
-/// The problem of a channel whose unit neither its file nor its samples say.
+/// Returns the problem of a channel whose unit is determined by neither its file nor its samples.
 pub(super) fn unsaid_unit(
     table: &RecordTable,
     rule: &ChannelRule,
@@ -645,13 +652,14 @@ pub(super) fn unsaid_unit(
     })
 }
 
-/// The fault of a channel whose samples cannot be in its unit.
+/// Returns the problem of a channel whose samples are implausible in its unit.
 pub(super) fn magnitude(
     table: &RecordTable,
     rule: &ChannelRule,
     used: ColumnUse,
 ) -> Option<LayoutProblem> {
-    // What a system's documentation says of its columns is no guess, and quadrotors turn faster than helicopters.
+    // Columns identified by a system's documentation are not guesses, and quadrotors turn faster
+    // than helicopters.
     let column = table
         .columns
         .get(used.column)
@@ -685,8 +693,8 @@ pub(super) fn magnitude(
 }
 
 impl ColumnUse {
-    /// A column for a channel of this unit, by the unit that the file says or else by the only one that its samples can be in; the unit
-    /// is open where they can be in several.
+    /// Uses a column for a channel with this unit, converted from the unit in the file, or else
+    /// from the only possible unit of its samples; the unit is open if several are possible.
     pub fn by_unit(table: &RecordTable, column: usize, unit: &str) -> Self {
         let Some(of) = table.columns.get(column) else {
             return Self::as_it_is(column);
@@ -705,13 +713,14 @@ impl ColumnUse {
         }
     }
 
-    /// The units among which one is still to be said, for a channel of this unit; none where nothing is open.
+    /// Returns the possible units of an open column, for a channel with this unit; empty if nothing
+    /// is open.
     pub fn open_units<'u>(&self, table: &RecordTable, unit: &'u str) -> Vec<&'u str> {
         let column = table.columns.get(self.column).filter(|_| self.is_unit_open);
         column.map_or_else(Vec::new, |column| possible_units(column, unit))
     }
 
-    /// The column in a unit that is said, for a channel of another.
+    /// Uses the column in a given unit for a channel with another.
     #[must_use]
     pub fn in_unit(self, said: &str, unit: &str) -> Self {
         Self {
@@ -721,8 +730,9 @@ impl ColumnUse {
         }
     }
 
-    /// What is put right in this record, and whatever else was said of the column: what takes it from its file, in the dataset's units
-    /// where that says none, to the samples that are used. Whoever reads the record again by the dataset knows nothing else.
+    /// Returns the remedy of this record combined with all user settings of the column: the
+    /// conversion from the file, in the dataset's units if the file gives none, to the samples
+    /// used. A later reading of the record with the dataset has no other information.
     pub(super) fn kept_remedy(&self, table: &RecordTable, rule: &ChannelRule) -> ChannelRemedy {
         let of_file = table.columns.get(self.column).map_or(1.0, |column| {
             let unit = column.said_unit().filter(|_| !rule.unit.is_empty());

@@ -1,4 +1,4 @@
-//! A record as its file has it: columns of samples.
+//! A record in the form of its file: columns of samples.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -16,21 +16,21 @@ use super::topic_tables::shown;
 /// A column of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordColumn {
-    /// Its name; "column 3" where the file has none.
+    /// Its name; "column 3" if the file has none.
     pub name: String,
-    /// Its unit, where the file says it.
+    /// Its unit, if given in the file.
     pub unit: Option<String>,
-    /// Its side, where the file says it.
+    /// Its side, if given in the file.
     pub side: Option<ChannelSide>,
-    /// Samples, in the file's unit; not a number where one is missing.
+    /// Samples, in the file's unit; NaN where one is missing.
     pub values: Vec<f64>,
-    /// The topic that it is of, where that has a clock of its own.
+    /// Its topic, if that has a separate clock.
     pub topic: Option<Arc<TopicClock>>,
-    /// The channel that it is by the documentation of the system that logged it: "P", "LON".
+    /// The channel by the documentation of the logging system: "P", "LON".
     pub meaning: Option<&'static str>,
 }
 
-/// When the samples of a topic were taken: some columns of a table, with stamps of their own.
+/// The sample times of a topic: some columns of a table, with separate stamps.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TopicClock {
     /// Name of the topic.
@@ -40,7 +40,7 @@ pub struct TopicClock {
 }
 
 impl RecordColumn {
-    /// A column of which nothing but its name is known.
+    /// Creates a column from a name and samples only.
     pub fn new(name: impl Into<String>, values: Vec<f64>) -> Self {
         Self {
             name: name.into(),
@@ -52,7 +52,7 @@ impl RecordColumn {
         }
     }
 
-    /// Its name within its topic: `xyz[0]` of `vehicle_angular_velocity.xyz[0]`.
+    /// Returns its name within its topic: `xyz[0]` for `vehicle_angular_velocity.xyz[0]`.
     pub fn field(&self) -> &str {
         let topic = self.topic.as_ref().map_or("", |topic| topic.name.as_str());
         self.name
@@ -61,12 +61,12 @@ impl RecordColumn {
             .unwrap_or(&self.name)
     }
 
-    /// The unit that the file says, where it does.
+    /// Returns the unit given in the file, if any.
     pub fn said_unit(&self) -> Option<&str> {
         self.unit.as_deref().filter(|unit| !unit.trim().is_empty())
     }
 
-    /// Least and greatest of the samples that are numbers; none where there are none.
+    /// Returns the smallest and largest finite sample; `None` if there are none.
     pub fn range(&self) -> Option<(f64, f64)> {
         let finite = self
             .values
@@ -81,39 +81,37 @@ impl RecordColumn {
     }
 }
 
-/// Where a record comes from.
+/// Origin of a record.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RecordSource {
-    /// The file.
     pub file: String,
     /// SHA-256 of the file, in hexadecimal.
     pub sha256: String,
-    /// Which record of the file, or which variable; none where the file holds one.
+    /// The record or variable within the file; `None` if the file has only one.
     pub variable: Option<String>,
 }
 
-/// A record as its file has it.
+/// A record in the form of its file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RecordTable {
-    /// Its name, for people.
+    /// Displayed name.
     pub name: String,
-    /// Its columns, all of one length but for those of topics with clocks of their own.
+    /// Its columns, of equal length except for topics with separate clocks.
     pub columns: Vec<RecordColumn>,
     /// Whether the file names the columns.
     pub named: bool,
-    /// Sample time \[s\], where the file says it other than by a column.
+    /// Sample time \[s\], if the file gives it other than by a column.
     pub sample_time_s: Option<f64>,
-    /// Where it comes from.
     pub source: RecordSource,
-    /// How it was read, in words.
+    /// Notes on how it was read.
     pub notes: Vec<String>,
-    /// What the system that logged it was at, when.
+    /// Mode intervals of the logging system.
     pub modes: Vec<ModeSpan>,
-    /// First and last time \[s\] of the part of it that is the record; none is all of it.
+    /// First and last time \[s\] of the part used as the record; `None` for the whole file.
     pub part_s: Option<[f64; 2]>,
 }
 
-/// From when to when the system that logged a record was armed, or in a flight mode.
+/// Interval in which the logging system was armed, or in a flight mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeSpan {
     /// "armed", or the name of the mode.
@@ -123,7 +121,7 @@ pub struct ModeSpan {
 }
 
 impl RecordTable {
-    /// A table of columns, of which nothing else is known.
+    /// Creates a table of columns without further information.
     pub fn new(name: impl Into<String>, columns: Vec<RecordColumn>) -> Self {
         Self {
             name: name.into(),
@@ -133,7 +131,7 @@ impl RecordTable {
         }
     }
 
-    /// Number of samples; of topics with clocks of their own, of the one that has most.
+    /// Returns the number of samples; with separate clocks, the largest number of any topic.
     pub fn rows(&self) -> usize {
         self.columns
             .iter()
@@ -142,7 +140,7 @@ impl RecordTable {
             .unwrap_or(0)
     }
 
-    /// The column of this name, as it is written, else without case; `#30` is the thirtieth.
+    /// Returns the column with this name, exact or else ignoring case; `#30` is the thirtieth.
     pub fn find(&self, name: &str) -> Option<usize> {
         let position = |is_it: &dyn Fn(&str) -> bool| {
             self.columns.iter().position(|column| is_it(&column.name))
@@ -153,7 +151,7 @@ impl RecordTable {
                 .checked_sub(1)
                 .filter(|column| *column < self.columns.len())
         };
-        // A column of a matrix, counted from 0 as Python does or from 1 as MATLAB does.
+        // A column of a matrix, counted from 0 as in Python or from 1 as in MATLAB.
         let indexed = || {
             let (matrix, index, first) = match name.trim().strip_suffix(']') {
                 Some(rest) => rest
@@ -175,7 +173,8 @@ impl RecordTable {
             .or_else(indexed)
     }
 
-    /// What a dataset says of the record, and the condition: by its name in a file of the same name, or in an archive of another.
+    /// Returns the dataset entry of the record, and its condition: matched by its name in a file of
+    /// the same name, or in an archive with another name.
     pub fn entry_of_dataset<'d>(
         &self,
         dataset: &'d Dataset,
@@ -196,8 +195,9 @@ impl RecordTable {
         None
     }
 
-    /// Whether both hold the same record: the same part of the same record of one file, or of the same samples under one name. The same
-    /// samples in a file of another name are a copy (`leave_out_copies`).
+    /// Whether both are the same record: the same part of the same record in one file, or equal
+    /// samples under the same name. Equal samples under another name are a copy
+    /// (`leave_out_copies`).
     pub fn is_same_record(&self, other: &Self) -> bool {
         let is_same_file = self.source.sha256 == other.source.sha256
             && !self.source.sha256.is_empty()
@@ -208,7 +208,7 @@ impl RecordTable {
         self.part_s == other.part_s && (is_same_source || is_same_content)
     }
 
-    /// The name of a column in quotation marks.
+    /// Returns the name of a column in quotation marks.
     pub(super) fn quoted(&self, column: usize) -> String {
         self.columns.get(column).map_or_else(
             || format!("column {}", column + 1),
@@ -216,7 +216,7 @@ impl RecordTable {
         )
     }
 
-    /// The names of all columns, no more than a message can bear.
+    /// Returns the names of all columns, shortened to fit a message.
     pub(super) fn column_names(&self) -> String {
         shown(
             &self
@@ -228,12 +228,12 @@ impl RecordTable {
     }
 }
 
-/// The last part of a path.
+/// Returns the last part of a path.
 fn file_name(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
 }
 
-/// Whether columns have the same names and samples, to the last bit.
+/// Whether columns have equal names and equal samples, to the last bit.
 fn same_columns(first: &[RecordColumn], second: &[RecordColumn]) -> bool {
     let same = |a: &RecordColumn, b: &RecordColumn| {
         let values = a.values.iter().map(|value| value.to_bits());
@@ -246,26 +246,26 @@ fn same_columns(first: &[RecordColumn], second: &[RecordColumn]) -> bool {
 
 // Several records in one table.
 
-/// What tells the records of one table apart.
+/// Separation of several records in one table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separation {
     /// The table is one record.
     None,
-    /// A column that has one number for each record.
+    /// A column with one number for each record.
     ByColumn(usize),
-    /// A column of stamps that begins again.
+    /// A column of stamps that restarts.
     ByTime(usize),
 }
 
-/// Names of columns that number records.
+/// Names of columns with record numbers.
 const NUMBERS: &str = "record records recordid recordno recordnumber run runid runno runnumber manoeuvre maneuver segment event \
                        testpoint experiment";
 
 impl Separation {
-    /// Fewer samples than these are no record of several in a file.
+    /// Fewest samples of a record in a table with several.
     pub const FEWEST: usize = 20;
 
-    /// What tells the records of a table apart, as far as names of columns and stamps say.
+    /// Proposes the separation of a table from its column names and stamps.
     pub fn proposed(table: &RecordTable) -> Self {
         if table.columns.iter().any(|column| column.topic.is_some()) {
             return Self::None;
@@ -295,7 +295,8 @@ impl Separation {
 }
 
 impl RecordTable {
-    /// The records of the table, each named by what tells it apart. Samples without a number belong to none.
+    /// Splits the table into records, named by their number or part. Samples without a number
+    /// belong to no record.
     pub fn separated(self, separation: Separation) -> Vec<RecordTable> {
         let (parts, why): (Vec<(Range<usize>, String)>, String) = match separation {
             Separation::None => return vec![self],
@@ -365,7 +366,7 @@ impl RecordTable {
     }
 }
 
-/// Ranges of samples with one number each; none for those without.
+/// Returns ranges of samples with equal numbers; samples without a number are skipped.
 fn runs_of(numbers: &[f64]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for (sample, value) in numbers
@@ -381,7 +382,8 @@ fn runs_of(numbers: &[f64]) -> Vec<Range<usize>> {
     runs
 }
 
-/// Ranges of samples between restarts: falls of the stamps that are not made good within some samples, as a slip is.
+/// Returns ranges of samples between restarts: decreases of the stamps that are not recovered
+/// within a few samples, unlike a slip.
 fn rising_parts(stamps: &[f64]) -> Vec<Range<usize>> {
     let mut parts = Vec::new();
     let mut start = 0;
@@ -407,32 +409,32 @@ fn rising_parts(stamps: &[f64]) -> Vec<Range<usize>> {
     parts
 }
 
-// What says when the samples of a record were taken.
+// Source of the sample times.
 
-/// What says when the samples of a record were taken.
+/// Source of the sample times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeBase {
     /// A column of stamps.
     Column {
         /// Its index.
         column: usize,
-        /// Seconds in one of its units.
+        /// Seconds per unit of the column.
         seconds: f64,
     },
-    /// One sample each so many seconds.
+    /// Equidistant samples with this sample time \[s\].
     SampleTime(f64),
-    /// The stamps that each topic has of its own.
+    /// The separate stamps of each topic.
     Topics,
 }
 
-/// Steps longer than this \[s\] are no samples of a manoeuvre.
+/// Longest plausible step of a manoeuvre \[s\].
 pub(super) const LONGEST_STEP_S: f64 = 1.5;
-/// Steps shorter than this \[s\] are no samples of a flight recorder.
+/// Shortest plausible step of a flight recorder \[s\].
 const SHORTEST_STEP_S: f64 = 5e-5;
 const SECONDS_A_DAY: f64 = 86_400.0;
 
 impl TimeBase {
-    /// Times of the samples \[s\]; not a number where a stamp is missing.
+    /// Returns the times of the samples \[s\]; NaN where a stamp is missing.
     pub fn times_s(self, table: &RecordTable) -> Vec<f64> {
         match self {
             TimeBase::SampleTime(step_s) => (0..table.rows())
@@ -458,7 +460,7 @@ impl TimeBase {
         }
     }
 
-    /// The median step \[s\]; none where there are no two stamps.
+    /// Returns the median step \[s\]; `None` without two stamps.
     pub fn step_s(self, table: &RecordTable) -> Option<f64> {
         match self {
             TimeBase::SampleTime(step_s) => Some(step_s),
@@ -469,7 +471,8 @@ impl TimeBase {
         }
     }
 
-    /// The unit of a column of stamps and what says so: its unit, the end of its name, or else the length of its steps.
+    /// Returns the time base of a column of stamps and the reason for its unit: the given unit, the
+    /// end of its name, or else the length of its steps.
     pub(super) fn of_column(table: &RecordTable, column: usize) -> (Self, String) {
         let stamps = &table.columns[column];
         let (unit, why) = unit_of(stamps);
@@ -486,7 +489,7 @@ impl TimeBase {
         )
     }
 
-    /// The column that is the time by its name, or by being the first and rising in a table without names.
+    /// Finds the time column by its name, or as the first, rising column of a table without names.
     pub(super) fn find(table: &RecordTable) -> Option<usize> {
         let rank = |index: usize| {
             let column = &table.columns[index];
@@ -495,7 +498,7 @@ impl TimeBase {
             } else {
                 (index == 0).then_some(2)
             }?;
-            // A column that stands still or falls most of the time is a time by its name only.
+            // A column that mostly repeats or decreases is a time by name only.
             Some((u8::from(!mostly_rises(&column.values)), by_name, index))
         };
         let best = (0..table.columns.len()).filter_map(rank).min()?;
@@ -503,7 +506,7 @@ impl TimeBase {
     }
 }
 
-/// Seconds in a unit of time, and its usual spelling.
+/// Returns the seconds in a unit of time, and its usual spelling.
 fn seconds_in(unit: &str) -> Option<(&'static str, f64)> {
     let unit = PhysicalUnit::of(unit).filter(|unit| unit.dimension == Dimension::Time)?;
     Some((unit.name, unit.size))
@@ -532,7 +535,7 @@ fn unit_of(stamps: &RecordColumn) -> ((&'static str, f64), String) {
             if step > 1.0 { "long" } else { "short" }
         )
     };
-    // Thousandths that are too short once more are millionths.
+    // Steps that are too short for milliseconds are microseconds, and so on.
     let units = [("ms", 1e-3), ("µs", 1e-6), ("ns", 1e-9)];
     if step > LONGEST_STEP_S {
         let fits = |unit: &&(&str, f64)| (2e-4..=LONGEST_STEP_S).contains(&(step * unit.1));
@@ -550,7 +553,7 @@ fn unit_of(stamps: &RecordColumn) -> ((&'static str, f64), String) {
     (("s", 1.0), " (the file does not say the unit)".to_owned())
 }
 
-/// Median of the steps between stamps that follow one another.
+/// Returns the median step between consecutive stamps.
 pub fn median_step(stamps: &[f64]) -> Option<f64> {
     let steps = stamps.windows(2).map(|pair| pair[1] - pair[0]);
     let mut steps: Vec<f64> = steps.filter(|step| step.is_finite()).collect();

@@ -1,4 +1,4 @@
-//! Chosen columns with clocks of their own, brought to one (M14.11).
+//! Resampling of chosen columns with separate clocks to a common clock (M14.11).
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -15,21 +15,23 @@ use super::record_layout::{ColumnUse, RecordLayout};
 use super::record_table::{RecordColumn, RecordTable, TopicClock, median_step};
 use crate::identification::topics::{CommonClock, Topic, TopicError, is_held};
 
-/// What decides how topics with clocks of their own become one record.
+/// Settings for the combination of topics with separate clocks into one record.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ResamplingWish {
-    /// End of the band that the record is for \[rad/s\]; none where that is not known.
+    /// Upper end of the record's band of interest \[rad/s\]; `None` if unknown.
     pub band_end: Option<f64>,
-    /// Samples in a second, for records with one clock too; none resamples these not at all, and topics by the rule.
+    /// Sample rate \[Hz\], also applied to records with one clock; `None` leaves those unchanged
+    /// and resamples topics by the rule.
     pub rate_hz: Option<f64>,
-    /// Inputs that act as logged until the next sample, whatever their samples look like.
+    /// Inputs treated as constant between logged samples, whatever their samples look like.
     pub held: BTreeSet<String>,
 }
 
-/// Of the samples of a column this share begins holes, where tables of several clocks were joined into one.
+/// Fraction of a column's samples followed by a hole, above which the table counts as a join of
+/// several clocks.
 const SHARE_OF_HOLES: f64 = 0.1;
 
-/// The chosen columns of a table, and the clock that they are brought to.
+/// The chosen columns of a table, and their common clock.
 pub(super) struct Resampling {
     /// The inputs, then the outputs.
     topics: Vec<Topic>,
@@ -39,17 +41,19 @@ pub(super) struct Resampling {
 }
 
 impl RecordLayout {
-    /// Whether the chosen columns have several clocks, or a rate is asked for: the record is on a clock of its own then.
+    /// Whether the chosen columns have several clocks, or a rate is requested; the record then has
+    /// a new clock.
     pub fn is_resampled(&self, table: &RecordTable, channels: &RecordChannels) -> bool {
         Resampling::of(self, table, channels).is_some()
     }
 }
 
 impl Resampling {
-    /// How the chosen columns come to one clock; none where they have one, or a column or the time is still to be said.
+    /// Prepares the resampling of the chosen columns to a common clock; `None` if they already have
+    /// one, or if a column or the time is still open.
     ///
     /// # Errors
-    /// Why they cannot.
+    /// The reason why they cannot be resampled.
     pub(super) fn of(
         layout: &RecordLayout,
         table: &RecordTable,
@@ -106,7 +110,7 @@ impl Resampling {
         }))
     }
 
-    /// What is done, in words.
+    /// Returns a description of the resampling.
     pub(super) fn words(&self) -> Vec<String> {
         let rates: Vec<String> = self
             .topics
@@ -128,7 +132,7 @@ impl Resampling {
         std::iter::once(resampled).chain(held).collect()
     }
 
-    /// The record on the one clock; not a number in the gaps of each topic.
+    /// Returns the record on the common clock; NaN in the gaps of each topic.
     pub(super) fn flight_record(&self, name: String) -> FlightRecord {
         let time_s = self.clock.times_s();
         let matrix = |topics: &[Topic]| {
@@ -148,7 +152,7 @@ impl Resampling {
     }
 }
 
-/// Whether samples are missing again and again, as in a table that joins the rows of several clocks.
+/// Whether samples are missing repeatedly, as in a table that joins the rows of several clocks.
 pub(super) fn has_holes(values: &[f64]) -> bool {
     let begin = values
         .windows(2)
@@ -157,7 +161,7 @@ pub(super) fn has_holes(values: &[f64]) -> bool {
     begin as f64 > SHARE_OF_HOLES * values.len() as f64
 }
 
-/// Whether 95 % of the steps are within 20 % of the median one, or of a multiple of it (M14, 1.1).
+/// Whether 95 % of the steps are within 20 % of the median step or of a multiple of it (M14, 1.1).
 fn is_even(time_s: &[f64]) -> bool {
     let Some(middle) = median_step(time_s).filter(|step| *step > 0.0) else {
         return false;

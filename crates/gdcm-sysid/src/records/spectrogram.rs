@@ -1,4 +1,4 @@
-//! Power of a channel over time and frequency, so that a sweep in a long record is seen.
+//! Power of a channel over time and frequency, which shows a sweep in a long record.
 
 use std::f64::consts::TAU;
 
@@ -20,25 +20,25 @@ use crate::identification::spectra;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrogram {
-    /// Middle of the first and of the last window \[s\].
+    /// Centres of the first and of the last window \[s\].
     pub time_s: [f64; 2],
-    /// Frequency of the first and of the last row \[rad/s\].
+    /// Frequencies of the first and of the last row \[rad/s\].
     pub omega: [f64; 2],
     /// Level of each row in each window \[dB\].
     pub levels: Vec<Vec<f64>>,
 }
 
 impl Spectrogram {
-    /// Rows of every window.
+    /// Number of rows in every window.
     pub const ROWS: usize = 64;
-    /// The lowest level told \[dB\].
+    /// The lowest reported level \[dB\].
     pub const FLOOR: f64 = -40.0;
 
-    /// The spectrogram of samples at these times up to `highest` \[rad/s\]; none where the record is shorter than a window, or has no
-    /// frequency that a window shows.
+    /// Computes the spectrogram of samples at these times up to `highest` \[rad/s\]; `None` if the
+    /// record is shorter than a window, or no frequency is resolved by a window.
     #[must_use]
     pub fn of(time_s: &[f64], samples: &[f64], highest: f64) -> Option<Self> {
-        /// Windows, at most.
+        /// Largest number of windows.
         const MOST: usize = 400;
         let mut steps: Vec<f64> = time_s
             .windows(2)
@@ -108,7 +108,7 @@ impl Spectrogram {
     }
 }
 
-/// The samples in a Hann window, less their mean.
+/// Returns the samples in a Hann window, with their mean removed.
 fn window(samples: &[f64], sample_time_s: f64) -> Segment {
     let finite = || samples.iter().copied().filter(|sample| sample.is_finite());
     let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
@@ -152,7 +152,8 @@ mod tests {
                 .max_by(|a, b| levels[*a].total_cmp(&levels[*b]))
                 .unwrap();
             let omega = found.omega[0] * ratio.powi(ridge as i32);
-            // Within the resolution of a window of 15 s, a line apart of 0.42 rad/s, and half of what is swept meanwhile.
+            // Within the resolution of a window of 15 s, whose lines are 0.42 rad/s apart, and half
+            // of the change of the sweep within it.
             assert!(
                 (omega - (2.0 + 0.1 * time)).abs() < 0.42 + 0.75,
                 "{time} s: {omega}"

@@ -1,7 +1,8 @@
-//! Tables that are topics of one record: a file, or a struct, for each.
+//! Tables that are topics of one record: one file or struct per topic.
 //!
-//! A table that has a column for every channel is a record. Tables that lack some may have them together: then they are the topics of
-//! one log, each with its own stamps. What a table is called names its columns.
+//! A table with a column for every channel is a record. Tables that lack some channels may have all
+//! of them together: these are the topics of one log, each with separate stamps. The name of a
+//! table names its columns.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -17,16 +18,16 @@ use super::record_table::{
     RecordColumn, RecordSource, RecordTable, Separation, TimeBase, TopicClock, median_step,
 };
 
-/// Names of the one column that a topic has beside its stamps, which say nothing.
+/// Uninformative names of the only column beside the stamps of a topic.
 const PLAIN: [&str; 8] = [
     "value", "values", "data", "signal", "signals", "x", "y", "val",
 ];
 impl RecordTable {
-    /// Which record of a file, or of a folder, it is that its topics make together.
+    /// Name of the record that the topics of a file or folder form together.
     pub const TOPICS: &'static str = "its topics";
 
-    /// The record that topics make under this name: all of them as [`Self::TOPICS`], or those of one of several logs as
-    /// "its topics, log_7".
+    /// Returns the record that topics form under this name: all of them as [`Self::TOPICS`], or
+    /// those of one of several logs as "its topics, log_7".
     pub fn of_topics_called(tables: &[RecordTable], variable: &str) -> Option<RecordTable> {
         if variable == Self::TOPICS {
             return Some(Self::of_topics(tables));
@@ -42,7 +43,7 @@ impl RecordTable {
         (!of_log.is_empty()).then(|| Self::of_log(&of_log, log))
     }
 
-    /// The topics of one of several logs, side by side.
+    /// Combines the topics of one of several logs, side by side.
     fn of_log(tables: &[RecordTable], log: &str) -> RecordTable {
         let joined = Self::of_topics(tables);
         let variable = Some(format!("{}, {log}", Self::TOPICS));
@@ -56,7 +57,8 @@ impl RecordTable {
         }
     }
 
-    /// The topics of one record, side by side; tables without a time are left out, and that is said.
+    /// Combines the topics of one record, side by side; tables without a time are left out and
+    /// reported.
     fn of_topics(tables: &[RecordTable]) -> RecordTable {
         let first = tables.first();
         let file = first
@@ -112,9 +114,11 @@ impl RecordTable {
         joined
     }
 
-    /// A table whose columns stand behind several columns of stamps, each with what was sampled then, as topics; any other as it is.
+    /// Splits a table with several columns of stamps, each followed by its samples, into topics;
+    /// returns any other table unchanged.
     ///
-    /// The stamps of each rise, and their times overlap: a second clock of another origin is a column like others.
+    /// The stamps of each topic rise, and their times overlap: a second clock with another origin
+    /// is an ordinary column.
     #[must_use]
     pub fn side_by_side(mut self) -> RecordTable {
         let is_time = |column: &RecordColumn| {
@@ -188,7 +192,7 @@ impl RecordTable {
         self
     }
 
-    /// The part of the record between two times on its own clock \[s\].
+    /// Returns the part of the record between two times on its own clock \[s\].
     #[must_use]
     pub fn part_of_time(&self, part_s: [f64; 2]) -> RecordTable {
         let mut part = self.clone();
@@ -203,8 +207,9 @@ impl RecordTable {
     }
 }
 
-/// Tables of which several are topics of one record, as such: in each file or folder those that lack a channel and have all of them
-/// together; where these are topics of several logs, so that channels have several columns, those of each log. The rest is as it was.
+/// Combines tables that are topics of one record: in each file or folder, tables that lack a
+/// channel and have all channels together. If they are topics of several logs, so that channels
+/// have several columns, each log is combined separately. Other tables are unchanged.
 pub fn with_topics_joined(
     tables: Vec<RecordTable>,
     channels: &RecordChannels,
@@ -272,7 +277,8 @@ pub fn with_topics_joined(
         .collect()
 }
 
-/// Whether stamps rise, and are enough for a signal; behind the last one nothing may stand.
+/// Whether stamps rise and are numerous enough for a signal, without values after the first missing
+/// stamp.
 fn rises(stamps: &[f64]) -> bool {
     let known: Vec<f64> = stamps
         .iter()
@@ -285,7 +291,7 @@ fn rises(stamps: &[f64]) -> bool {
         && rest.iter().all(|stamp| stamp.is_nan())
 }
 
-/// What topics of one log have in common: their file, or else the folder of their files.
+/// Returns the common key of the topics of one log: their file, or else the folder of their files.
 fn group_of(source: &RecordSource) -> String {
     match &source.variable {
         Some(_) => source.file.clone(),
@@ -296,7 +302,7 @@ fn group_of(source: &RecordSource) -> String {
     }
 }
 
-/// What each of the topics is called.
+/// Returns the name of each topic.
 fn topic_names(tables: &[RecordTable]) -> Vec<String> {
     let first = tables.first().map(|table| table.source.file.as_str());
     let one_file = tables
@@ -308,11 +314,12 @@ fn topic_names(tables: &[RecordTable]) -> Vec<String> {
         .collect()
 }
 
-/// Marks between the words of a name.
+/// Separators between the words of a name.
 const MARKS: [char; 4] = ['_', '-', '.', ' '];
 
-/// The log that each topic is of: "log_7" of "log_7_rates" beside "log_8_rates". A topic begins at the first mark behind which another
-/// name is the same; one that only its own log has is of the longest log that its name begins with. Nothing where there is none.
+/// Returns the log of each topic: "log_7" for "log_7_rates" beside "log_8_rates". A topic name
+/// begins at the first separator after which another name is the same; a topic found in one log
+/// only belongs to the longest log name that its name begins with. Empty without a match.
 fn logs_of(names: &[String]) -> Vec<String> {
     let parts = |name: &str| {
         name.match_indices(MARKS)
@@ -356,7 +363,7 @@ fn logs_of(names: &[String]) -> Vec<String> {
     names.iter().zip(&logs).map(of_topic).collect()
 }
 
-/// The variable of a file, or the file of a folder, without its ending.
+/// Returns the variable of a file, or the name of a file in a folder without its extension.
 fn topic_name(table: &RecordTable, one_file: bool) -> String {
     let source = &table.source;
     let name = source
@@ -365,14 +372,15 @@ fn topic_name(table: &RecordTable, one_file: bool) -> String {
         .filter(|_| one_file)
         .unwrap_or(&source.file);
     let name = name.rsplit('/').next().unwrap_or(name);
-    // An ending is one of letters: the number in "motor.1" is not.
+    // An extension has letters: the number in "motor.1" is not an extension.
     let stem = name
         .rsplit_once('.')
         .filter(|(_, ending)| ["csv", "txt", "tsv", "dat", "mat", "npz", "json"].contains(ending));
     stem.map_or(name, |(stem, _)| stem).to_owned()
 }
 
-/// How many bytes all names begin with, up to a mark between words: "log_3_2024_" of "log_3_2024_q" and "log_3_2024_M".
+/// Returns the number of bytes in the common prefix of all names, up to a separator: "log_3_2024_"
+/// for "log_3_2024_q" and "log_3_2024_M".
 fn common_prefix(names: &[String]) -> usize {
     let Some(first) = names.first().filter(|_| names.len() > 1) else {
         return 0;
@@ -391,8 +399,8 @@ fn common_prefix(names: &[String]) -> usize {
         .map_or(0, |at| at + 1)
 }
 
-/// Seconds in a unit of the stamps, by the name of their column: topics of one log count alike, and only fast ones tell the unit by
-/// their steps.
+/// Returns the seconds per unit of the stamps, by the name of their column: topics of one log share
+/// the unit, and only fast topics reveal it by their steps.
 fn seconds_by_name(tables: &[RecordTable]) -> BTreeMap<String, f64> {
     let mut fastest: BTreeMap<String, (f64, f64)> = BTreeMap::new();
     for table in tables {
@@ -419,7 +427,7 @@ fn seconds_by_name(tables: &[RecordTable]) -> BTreeMap<String, f64> {
         .collect()
 }
 
-/// The columns of a topic with its stamps; none where nothing says when they were taken.
+/// Returns the columns of a topic with its stamps; `None` without a source of sample times.
 fn topic_columns(
     table: &RecordTable,
     name: &str,
@@ -469,9 +477,9 @@ fn topic_columns(
     Some(columns.collect())
 }
 
-/// Names in a row, no more than a message can bear.
+/// Joins names, shortened to fit a message.
 pub(super) fn shown(names: &[&str]) -> String {
-    /// Enough to see what went wrong.
+    /// Sufficient to find the cause.
     const SHOWN: usize = 20;
     let more = names.len().saturating_sub(SHOWN);
     let names = names

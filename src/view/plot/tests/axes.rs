@@ -1,4 +1,4 @@
-//! What the axes of a Bode plot answer to.
+//! Interaction with the axes of a Bode plot.
 
 use egui::{Key, vec2};
 use egui_kittest::kittest::Queryable;
@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 use super::bode::{Model, harness, three_curves, wheel};
 use super::*;
 
-/// Frequencies and values in view.
+/// Visible frequencies and values.
 fn ranges(harness: &Harness<'_, Model>) -> ((f64, f64), Range, Range) {
     let view = &harness.state().view;
     (

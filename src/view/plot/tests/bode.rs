@@ -56,7 +56,7 @@ pub(super) fn three_curves() -> Vec<BodeCurve> {
     ]
 }
 
-/// A point on the magnitude of curve `index` at the frequency of sample `k`.
+/// Returns a point on the magnitude of curve `index` at the frequency of sample `k`.
 pub(super) fn point_on(harness: &Harness<'_, Model>, index: usize, k: usize) -> Pos2 {
     let curve = &harness.state().curves[index];
     harness
@@ -66,12 +66,12 @@ pub(super) fn point_on(harness: &Harness<'_, Model>, index: usize, k: usize) -> 
         .unwrap()
 }
 
-/// A place in the magnitude plot that is far from every curve.
+/// Returns a place in the magnitude plot that is far from every curve.
 pub(super) fn empty_spot(harness: &Harness<'_, Model>) -> Pos2 {
     point_on(harness, 2, 60) + vec2(0.0, 40.0)
 }
 
-/// The same where there is one curve.
+/// The same for a single curve.
 fn empty_spot_of_one(harness: &Harness<'_, Model>) -> Pos2 {
     point_on(harness, 0, 60) + vec2(0.0, 40.0)
 }
@@ -107,7 +107,7 @@ fn a_click_names_the_nearest_curve() {
     let mut harness = harness(three_curves());
     for (index, id) in [(0, 1), (1, 2), (2, 3)] {
         let at = point_on(&harness, index, 60) + vec2(0.0, 2.0);
-        // Clicks in one place within the time of a double click would be one.
+        // Without a pause, clicks in the same place would count as a double click.
         harness.run_steps(30);
         click(&mut harness, at);
         assert_eq!(
@@ -235,7 +235,7 @@ fn the_wheel_zooms_about_the_pointer() {
     harness.step();
     let before = harness.state().view.omega_range();
     harness.event(wheel(vec2(0.0, 120.0)));
-    // Scrolling is smooth: it takes some frames.
+    // Scrolling is smooth and takes some frames.
     harness.run_steps(12);
     let after = harness.state().view.omega_range();
     assert!(
@@ -264,7 +264,7 @@ fn one_notch_of_the_wheel_zooms_by_a_tenth_and_none_goes_far_beyond_what_is_comp
     };
     harness.event(notch(1.0));
     harness.run_steps(30);
-    // The smoothing of the toolkit adds up in single precision.
+    // The toolkit's smoothing accumulates in single precision.
     assert!(
         (before / decades(&harness) - 1.1).abs() < 1e-3,
         "{before} {}",
@@ -560,7 +560,7 @@ fn a_secondary_click_on_the_ground_marks_the_frequency_there() {
     );
 }
 
-/// Lines of many points that the last frame drew in place of an image.
+/// Counts the lines of many points that the last frame drew instead of an image.
 fn long_lines(harness: &Harness<'_, Model>) -> usize {
     let is_long =
         |shape: &egui::Shape| matches!(shape, egui::Shape::Path(path) if path.points.len() > 10);
@@ -584,7 +584,7 @@ fn three_hundred_perturbed_curves_at_rest_are_one_image_and_the_one_pointed_at_a
         )
     }));
     let mut harness = harness(curves);
-    // Corrected, in both panes; dashes and dots of the nominal model are short.
+    // The corrected curve, in both panes; dashes and dots of the nominal model are short.
     assert_eq!(long_lines(&harness), 2);
     let at = point_on(&harness, 1, 60);
     harness.hover_at(at);
@@ -596,7 +596,7 @@ fn three_hundred_perturbed_curves_at_rest_are_one_image_and_the_one_pointed_at_a
     harness.event(wheel(vec2(0.0, 40.0)));
     harness.step();
     assert!(long_lines(&harness) > 300, "what moves is drawn as lines");
-    // The zoom glides.
+    // The zoom is animated.
     harness.run_steps(20);
     assert!(long_lines(&harness) < 5);
 }

@@ -1,4 +1,4 @@
-//! Charts of one group, worked with the pointer.
+//! Interaction with the charts of a group.
 
 use egui::{Id, Rect, vec2};
 use egui_plot::{PlotBounds, PlotMemory};
@@ -11,7 +11,8 @@ use crate::view::plot::chart::{Chart, ChartAxis, ChartLine, chart_ui};
 const TITLES: [&str; 2] = ["one", "other"];
 const SIZE: egui::Vec2 = vec2(600.0, 200.0);
 
-/// Two charts, one below the other, of 10,000 samples of `y = x` and of `y = -x` from 0 to 100; what is in view of each.
+/// Two stacked charts with 10,000 samples of `y = x` and of `y = -x` from 0 to 100; the state holds
+/// the visible bounds of each.
 fn harness() -> Harness<'static, Vec<PlotBounds>> {
     let line = |slope: f64| -> Arc<[[f64; 2]]> {
         (0..10_000)
@@ -136,7 +137,7 @@ fn dragging_moves_the_time_of_every_chart_and_the_values_follow() {
     );
     let widths = [&whole, &moved].map(|views| views[0].width());
     assert!((widths[0] - widths[1]).abs() < 1e-6);
-    // From where the view begins now to the last sample.
+    // From the current start of the view to the last sample.
     assert!(
         (moved[0].min()[1] - moved[0].min()[0]).abs() < 10.0
             && (moved[0].max()[1] - 100.0).abs() < 10.0

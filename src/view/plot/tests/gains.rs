@@ -7,7 +7,7 @@ use gdcm_plot::figure::{Color, Figure, MarkId, Panel, Range, Role as CurveRole};
 use super::*;
 use crate::view::palette::{self, Palette};
 
-/// Plots of gains, or of columns where there are some.
+/// Plots of gains, or of columns if there are any.
 #[derive(Default)]
 struct Model {
     figure: Figure,
@@ -17,7 +17,7 @@ struct Model {
     events: Vec<FigureEvent>,
 }
 
-/// Says what is shown by number.
+/// Describes marks by their numbers.
 struct Numbers;
 
 impl FigureWords for Numbers {

@@ -1,4 +1,4 @@
-//! What the plots answer to the mouse, without a display.
+//! Interaction of the plots with the mouse, without a display.
 
 mod axes;
 mod bode;
@@ -15,7 +15,7 @@ use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};
 
 use super::*;
 
-/// The curve of a physics model with this number for a name.
+/// Returns the id of a physics model that is named after this number.
 pub(super) fn numbered(number: u64) -> CurveId {
     CurveId::Model(ModelId::new(
         ConditionId(1),
@@ -24,7 +24,7 @@ pub(super) fn numbered(number: u64) -> CurveId {
     ))
 }
 
-/// A curve of three values, an octave apart, the same in both panes.
+/// Returns a curve of values an octave apart, the same in both panes.
 pub(super) fn sample_curve(id: u64, values: &[f64]) -> BodeCurve {
     let curve = BodeCurve::new(numbered(id), Role::Perturbed);
     curve.with(&vec![1.0, 2.0, 4.0].into(), &values.into(), &values.into())
@@ -83,7 +83,8 @@ fn drag<State>(harness: &mut Harness<'_, State>, path: &[Pos2], button: PointerB
     harness.step();
 }
 
-/// A first-order lag of this gain \[dB\] and corner frequency \[rad/s\] on 120 frequencies from 0.3 to 20 rad/s.
+/// Returns a first-order lag with this gain \[dB\] and corner frequency \[rad/s\] at 120
+/// frequencies from 0.3 to 20 rad/s.
 fn lag(id: u64, gain_db: f64, corner: f64, role: Role) -> BodeCurve {
     let omega: Arc<[f64]> = (0..120)
         .map(|k| 0.3 * (20.0f64 / 0.3).powf(f64::from(k) / 119.0))

@@ -1,5 +1,5 @@
-//! The blackbox of Betaflight and its kin: several flights in one file, each a heading of lines and then frames
-//! (<https://betaflight.com/docs/development/Blackbox-Internals>).
+//! The blackbox format of Betaflight and relatives: several flights in one file, each with header
+//! lines followed by frames (<https://betaflight.com/docs/development/Blackbox-Internals>).
 //!
 //! ```text
 //! H Product:Blackbox …        a flight begins
@@ -7,8 +7,8 @@
 //! I, P, S, G, H, E            frames: whole, told from others, slow, of GPS, of home; an event
 //! ```
 //!
-//! A frame counts if the next one begins where it ends. Where one is damaged, all that is told from it is left out, up to the next
-//! whole frame: a gap.
+//! A frame counts if another frame begins where it ends. After a damaged frame, all frames
+//! predicted from it are left out up to the next intra frame, which leaves a gap.
 
 use std::collections::BTreeMap;
 
@@ -21,9 +21,9 @@ use crate::record_files::{Columns, MOST_RECORDS};
 use crate::variables::{ReadingBudget, VariableFault};
 
 const MARK: &[u8] = b"H Product:Blackbox";
-/// A step of the time beyond this is damage \[µs\].
+/// A larger time step is damage \[µs\].
 const LONGEST_STEP: i64 = 10_000_000;
-/// Fewer frames than these are no flight.
+/// A flight with fewer frames is ignored.
 const FEWEST: usize = 50;
 
 /// Logs of Betaflight.
@@ -82,7 +82,7 @@ fn read_blackbox(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Columns
     Ok(flights)
 }
 
-/// What the lines before the frames say.
+/// Contents of the header lines before the frames.
 #[derive(Default)]
 struct Heading {
     lines: BTreeMap<String, String>,
@@ -91,7 +91,7 @@ struct Heading {
 }
 
 impl Heading {
-    /// The heading, and where it ends.
+    /// Reads the header; also returns where it ends.
     fn read(bytes: &[u8]) -> (Self, usize) {
         let mut heading = Self::default();
         let mut at = 0;
@@ -112,7 +112,7 @@ impl Heading {
                 .frames
                 .insert(kind, heading.fields(char::from(kind)));
         }
-        // What is told from whole frames is called as they are.
+        // Predicted frames have the names and signs of intra frames.
         let whole = heading.frames[&b'I'].clone();
         if let Some(told) = heading.frames.get_mut(&b'P') {
             (told.names, told.signed) = (whole.names, whole.signed);
@@ -157,23 +157,23 @@ impl Heading {
         }
     }
 
-    /// The fields of a kind of frame, where they are known.
+    /// The fields of a kind of frame, if they are known.
     fn frame(&self, kind: u8) -> Option<&FrameFields> {
         self.frames.get(&kind).filter(|fields| fields.is_whole())
     }
 }
 
-/// The frames of a flight.
+/// Frames of a flight.
 struct Flight {
     heading: Heading,
-    /// The numbers of the fields of whole frames.
+    /// Numbers of the fields of intra frames.
     values: Vec<Vec<f64>>,
-    /// Times \[µs\] and flags of the modes.
+    /// Times \[µs\] and mode flags.
     modes: (Vec<f64>, Vec<f64>),
     damaged: usize,
 }
 
-/// What a frame was.
+/// A decoded frame.
 enum Frame {
     Main(Vec<i64>),
     Slow(Vec<i64>),
@@ -182,7 +182,7 @@ enum Frame {
 }
 
 impl Flight {
-    /// The frames of a flight; none where there are hardly any.
+    /// Reads the frames of a flight; returns nothing if there are too few.
     fn read(
         bytes: &[u8],
         name: &str,
@@ -215,7 +215,7 @@ impl Flight {
             budget.work(count as u64, name)?;
             let mut bits = Bits::new(bytes, at + 1);
             let frame = flight.heading.parse(bytes[at], &mut bits, &before);
-            // The next one begins where it ends.
+            // The next frame begins where this frame ends.
             let follows = bytes
                 .get(bits.at)
                 .is_none_or(|next| b"IPSGHE".contains(next));
@@ -264,7 +264,7 @@ impl Flight {
         Ok((frames >= FEWEST).then_some(flight))
     }
 
-    /// The columns of the flight, with the sums of the controller's terms.
+    /// Returns the columns of the flight, with the sums of the controller's terms.
     fn columns(self, name: String, budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
         let names = self
             .heading
@@ -300,7 +300,7 @@ impl Flight {
         let mut notes = vec![
             "a log of Betaflight; axisSum is the sum of the terms of the controller".to_owned(),
         ];
-        // 1 as an IEEE 754 number: rates are in deg/s.
+        // 1.0 as an IEEE 754 bit pattern: rates are in deg/s.
         let is_degrees = self
             .heading
             .lines
@@ -338,7 +338,7 @@ impl Flight {
 }
 
 impl Heading {
-    /// The frame of a letter; none where it is none, or damaged.
+    /// Parses the frame of a letter; returns nothing for an unknown letter or a damaged frame.
     fn parse(
         &self,
         kind: u8,
@@ -363,14 +363,14 @@ impl Heading {
     }
 }
 
-/// An event: how many numbers it has, its number says.
+/// Parses an event, whose number decides its length.
 fn event(bits: &mut Bits<'_>) -> Option<Frame> {
     match bits.byte()? {
-        // A beep, disarming, a failure of the inertial unit.
+        // Beep, disarming, failure of the inertial unit.
         0 | 15 | 40 => drop(bits.unsigned()?),
-        // Logging goes on; another flight mode.
+        // Logging resumes; change of the flight mode.
         14 | 30 => drop((bits.unsigned()?, bits.unsigned()?)),
-        // A value adjusted in flight: a number of four bytes, or a packed one.
+        // In-flight adjustment: a four-byte number, or a packed number.
         13 => match bits.byte()? & 0x80 {
             0 => drop(bits.signed()?),
             _ => drop((bits.byte()?, bits.byte()?, bits.byte()?, bits.byte()?)),
@@ -386,15 +386,16 @@ fn event(bits: &mut Bits<'_>) -> Option<Frame> {
     Some(Frame::Other)
 }
 
-// Frames: how the numbers in them are packed, and what they are told from.
+// Frame fields: encoding and prediction.
 //
-// Each field has an encoding and a predictor, by number (<https://betaflight.com/docs/development/Blackbox-Internals>). What stands in
-// the file is the difference to the prediction.
+// Each field has a numbered encoding and a numbered predictor
+// (<https://betaflight.com/docs/development/Blackbox-Internals>). The file holds the difference
+// from the prediction.
 
-/// Most fields of a frame.
+/// Largest number of fields of a frame.
 pub(super) const MOST_FIELDS: usize = 256;
 
-/// The fields of one kind of frame.
+/// Fields of one kind of frame.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrameFields {
     pub(super) names: Vec<String>,
@@ -403,7 +404,7 @@ pub(super) struct FrameFields {
     pub(super) encodings: Vec<u8>,
 }
 
-/// Numbers of the heading that predictions take.
+/// Header numbers used by the predictors.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Known {
     pub(super) least_throttle: i64,
@@ -411,7 +412,7 @@ pub(super) struct Known {
     pub(super) battery: i64,
 }
 
-/// Bytes that are read one after another.
+/// Cursor over bytes.
 pub(super) struct Bits<'b> {
     bytes: &'b [u8],
     pub(super) at: usize,
@@ -428,7 +429,8 @@ impl<'b> Bits<'b> {
         Some(byte)
     }
 
-    /// Seven bits a byte, the lowest first; the eighth says that more come.
+    /// Reads a variable-length number: seven bits a byte, lowest first; the eighth bit announces
+    /// another byte.
     pub(super) fn unsigned(&mut self) -> Option<u32> {
         let mut value = 0_u32;
         for shift in (0..32).step_by(7) {
@@ -441,18 +443,18 @@ impl<'b> Bits<'b> {
         None
     }
 
-    /// The same, with the sign in the lowest bit.
+    /// Reads a variable-length number with the sign in the lowest bit.
     pub(super) fn signed(&mut self) -> Option<i32> {
         let value = self.unsigned()?;
         Some((value >> 1).cast_signed() ^ -((value & 1).cast_signed()))
     }
 
-    /// The negative of 14 bits with a sign.
+    /// Reads the negative of a signed 14-bit number.
     fn negative_14(&mut self) -> Option<i32> {
         Some(-extended(self.unsigned()? & 0x3fff, 14))
     }
 
-    /// Three numbers of 2, 4 or 6 bits, or of 1 to 4 bytes each.
+    /// Reads three numbers of 2, 4 or 6 bits, or of 1 to 4 bytes each.
     fn three(&mut self) -> Option<[i32; 3]> {
         let lead = self.byte()?;
         Some(match lead >> 6 {
@@ -477,7 +479,7 @@ impl<'b> Bits<'b> {
         })
     }
 
-    /// Four numbers of no, 4, 8 or 16 bits, half a byte after another, the highest first.
+    /// Reads four numbers of 0, 4, 8 or 16 bits, in half-byte steps, highest first.
     fn four(&mut self) -> Option<[i32; 4]> {
         let tags = self.byte()?;
         let mut half = None;
@@ -506,14 +508,14 @@ impl<'b> Bits<'b> {
     }
 }
 
-/// A number of so many bits with a sign.
+/// Sign-extends a number of `count` bits.
 fn extended(bits: u32, count: u32) -> i32 {
     let unused = 32 - count;
     (bits << unused).cast_signed() >> unused
 }
 
 impl FrameFields {
-    /// Whether there is an encoding and a predictor that are known for each name.
+    /// Whether every name has a known encoding and predictor.
     pub(super) fn is_whole(&self) -> bool {
         let count = self.names.len();
         let known = |encoding: &u8| matches!(encoding, 0 | 1 | 3 | 6 | 7 | 8 | 9);
@@ -526,7 +528,7 @@ impl FrameFields {
             && self.encodings.iter().all(known)
     }
 
-    /// The numbers of a frame, as they stand; none where they are damaged.
+    /// Reads the differences of a frame as stored; returns nothing if they are damaged.
     pub(super) fn differences(&self, bits: &mut Bits<'_>) -> Option<Vec<i64>> {
         let mut values: Vec<i64> = Vec::with_capacity(self.names.len());
         while values.len() < self.names.len() {
@@ -537,7 +539,7 @@ impl FrameFields {
                 1 => values.push(i64::from(bits.unsigned()?)),
                 3 => values.push(i64::from(bits.negative_14()?)),
                 6 => {
-                    // As many as follow one another, up to eight; a bit for each says whether it is more than 0.
+                    // Up to eight consecutive fields share a byte; each bit marks a nonzero field.
                     let count = self.encodings[from..]
                         .iter()
                         .take(8)
@@ -561,7 +563,7 @@ impl FrameFields {
         Some(values)
     }
 
-    /// The numbers of a frame by their predictions from the frame before and the one before that.
+    /// Computes the numbers of a frame from its differences and the two frames before.
     pub(super) fn values(
         &self,
         mut values: Vec<i64>,
@@ -593,7 +595,7 @@ impl FrameFields {
                 11 => known.least_motor,
                 _ => 0,
             };
-            // As the logger reckons, in 32 bits.
+            // 32-bit arithmetic, as in the logger.
             let low = values[at].wrapping_add(predicted) as u32;
             values[at] = if self.signed[at] {
                 i64::from(low.cast_signed())
@@ -609,7 +611,8 @@ impl FrameFields {
 mod tests {
     use super::*;
 
-    /// A flight of `frames` frames, every tenth of them whole; the time goes on by a millisecond.
+    /// A flight of `frames` frames, every tenth of them an intra frame; each frame adds a
+    /// millisecond.
     fn flight(frames: u32) -> Vec<u8> {
         let mut bytes = b"H Product:Blackbox flight data recorder by Nicholas Sherlock\nH Data version:2\n\
             H Field I name:loopIteration,time,axisP[0],axisI[0],gyroADC[0]\nH Field I signed:0,0,1,1,1\n\
@@ -627,7 +630,8 @@ mod tests {
             bytes
         };
         let signed = |value: i32| packed((value << 1 ^ value >> 31).cast_unsigned());
-        // The roll rate goes 0, 1, 2, … and the prediction of the mean of the two frames before is 1 or 2 behind.
+        // The roll rate is 0, 1, 2, …; the predicted mean of the two frames before is 1 or 2
+        // behind.
         for frame in 0..frames {
             if frame % 10 == 0 {
                 bytes.push(b'I');
@@ -650,7 +654,7 @@ mod tests {
                     frame as i32 - 2
                 };
                 bytes.push(b'P');
-                // After a whole frame the time is predicted to stand still.
+                // After an intra frame the predicted time does not change.
                 bytes.extend([signed(if first { 1000 } else { 0 }), vec![0]].concat());
                 bytes.extend(signed(frame as i32 - (last + earlier) / 2));
             }
@@ -743,7 +747,7 @@ mod frame_tests {
             Bits::new(&[0b1100_0001, 0x34, 0x12, 0xff, 0x05], 0).three(),
             Some([0x1234, -1, 5])
         );
-        // 4 bits, 8 bits, none, 16 bits: 1, -2, 0, 0x1234.
+        // 4 bits, 8 bits, 0 bits, 16 bits: 1, -2, 0, 0x1234.
         assert_eq!(
             Bits::new(&[0b1100_1001, 0x1f, 0xe1, 0x23, 0x40], 0).four(),
             Some([1, -2, 0, 0x1234])

@@ -1,4 +1,4 @@
-//! DataFlash, the logs of ArduPilot, as bytes and what both of their forms have in common
+//! DataFlash, the log format of ArduPilot: binary form, text form and their common parts
 //! (<https://ardupilot.org/dev/docs/code-overview-adding-a-new-log-message.html>).
 //!
 //! ```text
@@ -18,11 +18,11 @@ use crate::strides::{NumberClass, StoredNumber};
 use crate::variables::{ReadingBudget, VariableFault};
 
 const MARK: [u8; 2] = [0xa3, 0x95];
-/// The type of the messages that describe others, and their length.
+/// Type and length of the messages that describe other messages.
 const FORMAT: u8 = 128;
 const FORMAT_LENGTH: usize = 89;
 
-/// Logs of ArduPilot as bytes.
+/// Binary logs of ArduPilot.
 pub(crate) const DATAFLASH: Importer = Importer {
     name: "a DataFlash log of ArduPilot",
     endings: &["bin"],
@@ -34,19 +34,19 @@ pub(crate) const DATAFLASH: Importer = Importer {
     },
 };
 
-// What describes messages, in both forms of these logs.
+// Message descriptions, shared by both forms.
 
-/// A field of a message, by its letter.
+/// Kind of a message field, given by its letter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FieldKind {
-    /// A number, and what it is multiplied by.
+    /// A number and its multiplier.
     Number(StoredNumber, f64),
-    /// So many bytes that are no number.
+    /// Bytes that are not a number, with their length.
     Other(usize),
 }
 
 impl FieldKind {
-    /// What a letter of a format means; none where it is none.
+    /// Returns the kind of a format letter, or nothing if the letter is unknown.
     fn of(letter: char) -> Option<Self> {
         use NumberClass::{Float, Signed, Unsigned};
         let (class, size, factor) = match letter {
@@ -84,19 +84,20 @@ impl FieldKind {
     }
 }
 
-/// What a type of messages holds.
+/// Layout of a message type.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     pub(super) name: String,
-    /// Kind, place and name of each field.
+    /// Kind, offset and name of each field.
     pub(super) fields: Vec<(FieldKind, usize, String)>,
-    /// Letters of the units and of the multipliers.
+    /// Letters of units and multipliers.
     units: Vec<char>,
     multipliers: Vec<char>,
 }
 
 impl Layout {
-    /// A layout by its letters and its names; none where a letter is unknown, or there are more names than letters.
+    /// Builds a layout from its letters and names; returns nothing for an unknown letter or too
+    /// many names.
     pub(super) fn of(name: &str, letters: &str, names: &str) -> Option<Self> {
         let mut offset = 0;
         let mut fields = Vec::new();
@@ -115,7 +116,7 @@ impl Layout {
     }
 }
 
-/// The layouts of a log by type, and what the letters of units mean.
+/// Layouts of a log by type, with the meanings of the unit letters.
 #[derive(Default)]
 pub(super) struct Layouts {
     pub(super) by_type: BTreeMap<u8, Layout>,
@@ -132,24 +133,25 @@ impl Layouts {
     }
 }
 
-/// The topics of a log while they are read: one for each message and instance.
+/// Topics of a log during reading: one for each message and instance.
 #[derive(Default)]
 pub(super) struct Topics {
     by_name: BTreeMap<(String, u64), TopicSamples>,
 }
 
-/// What of a message is taken.
+/// The parts of a message that are used.
 pub(super) struct Taken<'l> {
     layout: &'l Layout,
-    /// Places of the stamp, and seconds in one of its units.
+    /// Position of the time stamp, and the duration of its unit \[s\].
     stamp: (usize, f64),
     instance: Option<usize>,
-    /// Places of the numbers, what they are multiplied by, and their units.
+    /// Positions of the numbers, their multipliers and their units.
     numbers: Vec<(usize, f64, Option<String>)>,
 }
 
 impl<'l> Taken<'l> {
-    /// The stamp, the instance and the numbers of a layout; none where it has no stamp or no numbers.
+    /// Finds the time stamp, the instance and the numbers of a layout; returns nothing without a
+    /// stamp or numbers.
     pub(super) fn of(layout: &'l Layout, layouts: &Layouts) -> Option<Self> {
         if ["FMT", "FMTU", "UNIT", "MULT", "PARM"].contains(&layout.name.as_str()) {
             return None;
@@ -174,7 +176,7 @@ impl<'l> Taken<'l> {
                 .multipliers
                 .get(at)
                 .and_then(|letter| layouts.multipliers.get(letter));
-            // The letters of the format that are hundredths say so in the multiplier too.
+            // Format letters for hundredths repeat the factor in the multiplier.
             let multiplier = multiplier
                 .copied()
                 .filter(|by| factor == 1.0 && *by != 0.0 && by.is_finite());
@@ -203,7 +205,7 @@ impl<'l> Taken<'l> {
     }
 }
 
-/// A unit of these logs as this program spells it.
+/// Converts a unit of these logs to the spelling of this program.
 fn spelt(unit: &str) -> String {
     match unit {
         "m/s/s" => "m/s^2".to_owned(),
@@ -214,7 +216,7 @@ fn spelt(unit: &str) -> String {
 }
 
 impl Topics {
-    /// Takes a message, whose field at a place `value` gives.
+    /// Takes a message; `value` returns the field at an index.
     pub(super) fn take(
         &mut self,
         taken: &Taken<'_>,
@@ -252,7 +254,7 @@ impl Topics {
         topic.push(time * taken.stamp.1, values, budget)
     }
 
-    /// Its columns, with what the documentation says of them and when the aircraft was in which mode.
+    /// Returns the columns with their documented meanings and the flight modes over time.
     pub(super) fn columns(self, notes: Vec<String>) -> Result<Columns, VariableFault> {
         let states = |name: &str, field: &str| {
             let topic = self.by_name.get(&(name.to_owned(), 0))?;
@@ -296,7 +298,7 @@ impl Topics {
     }
 }
 
-// The form as bytes.
+// Binary form.
 
 fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, VariableFault> {
     let mut layouts = Layouts::default();
@@ -339,7 +341,8 @@ fn read_dataflash(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, V
     topics.columns(notes)
 }
 
-/// Shows every message to `take`, which may learn the lengths of others from it; how many bytes were of none.
+/// Passes each message to `take`, which may learn the lengths of other messages from it; returns
+/// the number of bytes outside messages.
 fn each_message(
     bytes: &[u8],
     lengths: &mut [usize; 256],
@@ -366,7 +369,7 @@ fn each_message(
     Ok(skipped)
 }
 
-/// Learns what a message says of others.
+/// Learns the description of other messages from a message.
 fn describe(kind: u8, content: &[u8], layouts: &mut Layouts, lengths: &mut [usize; 256]) {
     if kind == FORMAT {
         let Some([of, length]) = array::<2>(content, 0) else {
@@ -380,7 +383,7 @@ fn describe(kind: u8, content: &[u8], layouts: &mut Layouts, lengths: &mut [usiz
                 .map(|(kind, offset, _)| offset + kind.size())
                 .max()
                 .unwrap_or(0);
-            // The length of a description is known; of others it stands here.
+            // The length of a description is known; the lengths of other messages are read here.
             if of != FORMAT && usize::from(length) >= needed + 3 {
                 lengths[usize::from(of)] = usize::from(length);
                 layouts.by_type.insert(of, layout);
@@ -422,7 +425,7 @@ fn describe(kind: u8, content: &[u8], layouts: &mut Layouts, lengths: &mut [usiz
     }
 }
 
-/// Letters up to the first that is none.
+/// Printable ASCII text up to the first other byte.
 fn letters(bytes: &[u8]) -> String {
     bytes
         .iter()
@@ -431,10 +434,10 @@ fn letters(bytes: &[u8]) -> String {
         .collect()
 }
 
-// The form as text: a line for each message, `NAME, value, value`, with what describes messages in FMT, FMTU, UNIT and MULT lines.
-// Values are as the log means them: hundredths are multiplied already.
+// Text form: a line for each message, `NAME, value, value`; FMT, FMTU, UNIT and MULT lines describe
+// the messages. Values are already multiplied.
 
-/// Logs of ArduPilot as text.
+/// Text logs of ArduPilot.
 pub(crate) const DATAFLASH_TEXT: Importer = Importer {
     name: "a DataFlash log of ArduPilot as text",
     endings: &["log"],
@@ -478,7 +481,7 @@ fn read_text(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
     ])
 }
 
-/// What the lines that describe others say.
+/// Reads the layouts from the lines that describe messages.
 fn layouts_of(text: &str) -> Layouts {
     let mut layouts = Layouts::default();
     for line in text.lines() {
@@ -510,7 +513,7 @@ fn layouts_of(text: &str) -> Layouts {
                     .into_iter()
                     .for_each(|id| drop(layouts.units.insert(id, (*label).to_owned())));
             }
-            // Values of a text are multiplied already.
+            // Values in text logs are already multiplied.
             _ => {}
         }
     }
@@ -544,7 +547,7 @@ pub(super) mod tests {
         )
     }
 
-    /// A log of `samples` rates and of two instances of an inertial unit.
+    /// A log of `samples` rates and two instances of an inertial unit.
     pub(in crate::formats::logs) fn log(samples: u64) -> Vec<u8> {
         let mut bytes = format(
             FORMAT,

@@ -1,4 +1,4 @@
-//! Logs as they come off aircraft: topics with clocks of their own.
+//! Aircraft logs: topics, each with its own clock.
 //!
 //! ```text
 //! bytes -> messages -> topics: stamps, and a column for each field      (ulog, dataflash, blackbox)
@@ -20,12 +20,12 @@ pub(crate) use blackbox::BLACKBOX;
 pub(crate) use dataflash::{DATAFLASH, DATAFLASH_TEXT};
 pub(crate) use ulog::ULOG;
 
-/// Fewer samples than these are no signal.
+/// A topic with fewer samples is ignored.
 const FEWEST: usize = 3;
-/// Most spans of modes that are kept of one log.
+/// Largest number of mode spans kept for a log.
 const MOST_MODES: usize = 1000;
 
-/// A topic while it is read.
+/// A topic during reading.
 struct TopicSamples {
     name: String,
     fields: Vec<TopicField>,
@@ -40,7 +40,7 @@ struct TopicField {
 }
 
 impl TopicSamples {
-    /// A topic of these fields, none of which has a sample yet.
+    /// Creates a topic with these fields and no samples.
     fn new(name: String, fields: impl IntoIterator<Item = (String, Option<String>)>) -> Self {
         let fields = fields.into_iter().map(|(name, unit)| TopicField {
             name,
@@ -54,7 +54,7 @@ impl TopicSamples {
         }
     }
 
-    /// Takes a sample: a value for each field, in order.
+    /// Appends a sample: a value for each field, in order.
     fn push(
         &mut self,
         time_s: f64,
@@ -70,7 +70,7 @@ impl TopicSamples {
         Ok(())
     }
 
-    /// Its columns; none where it has hardly any samples.
+    /// Returns the columns; none if there are too few samples.
     fn columns(self) -> Vec<RecordColumn> {
         if self.time_s.len() < FEWEST {
             return Vec::new();
@@ -88,7 +88,7 @@ impl TopicSamples {
     }
 }
 
-/// From when to when a state was which: one span for each run of equal values that has a name.
+/// Returns the spans of equal, named values of a state.
 fn mode_spans(
     time_s: &[f64],
     values: impl IntoIterator<Item = f64>,
@@ -100,7 +100,7 @@ fn mode_spans(
         let goes_on = last == Some(value);
         let begins = last.is_none() || !goes_on;
         if begins {
-            // A state lasts until the next one is told.
+            // A state lasts until the next state is logged.
             if let Some(open) = spans.last_mut().filter(|_| last.and_then(&name).is_some()) {
                 open.ends_s[1] = time;
             }
@@ -118,7 +118,7 @@ fn mode_spans(
     spans
 }
 
-/// Spans in words: "armed 3.2 to 88.1 s".
+/// Describes spans: "armed 3.2 to 88.1 s".
 fn modes_note(spans: &[ModeSpan]) -> Option<String> {
     const SHOWN: usize = 8;
     let words = |span: &ModeSpan| {
@@ -137,27 +137,29 @@ fn modes_note(spans: &[ModeSpan]) -> Option<String> {
     (!shown.is_empty()).then(|| format!("{}{more}", shown.join(", ")))
 }
 
-// Numbers in bytes, the lowest byte first.
+// Little-endian numbers.
 
-/// So many bytes from a place on; none where there are not as many.
+/// Returns `N` bytes from an offset on, or nothing if too few are left.
 pub(super) fn array<const N: usize>(bytes: &[u8], offset: usize) -> Option<[u8; N]> {
     bytes.get(offset..offset.checked_add(N)?)?.try_into().ok()
 }
 
-// What the columns of each system's logs are, by its documentation.
+// Documented meanings of the columns of each system's logs.
 
-/// A column of a system's logs: its name, the channel that it is, its unit.
+/// A documented column: name, channel, unit.
 type Meaning = (&'static str, &'static str, &'static str);
 
-/// What the columns of a system's logs are: for each channel the first that is there and moves.
+/// Documented columns of a system's logs: for each channel the first column that is present and
+/// varies.
 pub(super) struct Meanings {
     columns: &'static [Meaning],
-    /// What is to be known of their signs.
+    /// Remark on the signs.
     signs: &'static str,
 }
 
-/// PX4: `VehicleTorqueSetpoint.msg`, `VehicleThrustSetpoint.msg` (normalised, body axes), `VehicleAngularVelocity.msg` \[rad/s\],
-/// `VehicleAcceleration.msg` \[m/s²\]; before 1.14 `ActuatorControls.msg` (<https://docs.px4.io/main/en/msg_docs/>).
+/// PX4: `VehicleTorqueSetpoint.msg`, `VehicleThrustSetpoint.msg` (normalised, body axes),
+/// `VehicleAngularVelocity.msg` \[rad/s\], `VehicleAcceleration.msg` \[m/s²\]; before 1.14
+/// `ActuatorControls.msg` (<https://docs.px4.io/main/en/msg_docs/>).
 pub(super) const PX4: Meanings = Meanings {
     columns: &[
         ("vehicle_torque_setpoint.xyz[0]", "LAT", "1"),
@@ -185,8 +187,9 @@ pub(super) const PX4: Meanings = Meanings {
             to turn one)",
 };
 
-/// ArduPilot: `SIDD` of the system identification mode, `RATE`, `IMU` (<https://ardupilot.org/copter/docs/logmessages.html>). What `R`,
-/// `P` and `Y` are there are roll, pitch and yaw; `…Out` goes to the motors, from -1 to 1 (`AOut` from 0 to 1).
+/// ArduPilot: `SIDD` of the system identification mode, `RATE`, `IMU`
+/// (<https://ardupilot.org/copter/docs/logmessages.html>). `R`, `P` and `Y` are roll, pitch and
+/// yaw; `…Out` goes to the motors, from -1 to 1 (`AOut` from 0 to 1).
 pub(super) const ARDUPILOT: Meanings = Meanings {
     columns: &[
         ("RATE.ROut", "LAT", "1"),
@@ -216,8 +219,8 @@ pub(super) const ARDUPILOT: Meanings = Meanings {
             to turn one)",
 };
 
-/// Betaflight and its kin: what the blackbox calls its fields; `axisSum` is the sum of the terms of the controller, which goes to the
-/// mixer (<https://betaflight.com/docs/development/Blackbox>).
+/// Betaflight and relatives: field names of the blackbox; `axisSum` is the sum of the controller's
+/// terms, the input of the mixer (<https://betaflight.com/docs/development/Blackbox>).
 pub(super) const BETAFLIGHT: Meanings = Meanings {
     columns: &[
         ("axisSum[0]", "LAT", ""),
@@ -231,7 +234,7 @@ pub(super) const BETAFLIGHT: Meanings = Meanings {
     signs: "signs are the flight controller's: compare one channel before signs of derivatives are used",
 };
 
-/// Gives columns the channel and the unit that they have by the documentation; says what was given.
+/// Assigns the documented channels and units to columns; returns a note of the assignments.
 pub(super) fn give_meanings(columns: &mut [RecordColumn], meanings: &Meanings) -> Option<String> {
     let mut given: Vec<(&str, &str)> = Vec::new();
     for &(name, channel, unit) in meanings.columns {

@@ -7,7 +7,8 @@
 //!   D  number, then the data of that topic     O  a dropout [ms]         others: parameters, texts, marks
 //! ```
 //!
-//! Stamps count microseconds since the autopilot was started. The data of a log that a crash cut end where they end.
+//! Stamps are microseconds since the start of the autopilot. A log cut off by a crash is read up to
+//! its end.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +23,7 @@ use crate::variables::{ReadingBudget, VariableFault};
 
 const MAGIC: &[u8] = b"ULog\x01\x12\x35";
 const HEADER: usize = 16;
-/// The flag that data were appended, the only one that a reader must know.
+/// Flag for appended data, the only flag that a reader must know.
 const APPENDED: u8 = 1;
 
 /// Logs of PX4.
@@ -37,12 +38,12 @@ pub(crate) const ULOG: Importer = Importer {
     },
 };
 
-/// A topic of a number, and where its data stand in a message.
+/// A subscribed topic and the positions of its data in a message.
 struct Subscription {
     samples: TopicSamples,
     stamp: Place,
     places: Vec<Place>,
-    /// The least length of its data.
+    /// Shortest possible data of the topic \[bytes\].
     least: usize,
 }
 
@@ -67,7 +68,7 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
         budget.work(1, "")?;
         let from = at + 3;
         let to = from + usize::from(u16::from_le_bytes([low, high]));
-        // What a crash cut off ends where something was appended.
+        // A message cut off by a crash ends where data were appended.
         let next = appended.iter().copied().filter(|offset| *offset > at).min();
         if next.is_some_and(|next| to > next) {
             at = next.unwrap_or(to);
@@ -87,7 +88,7 @@ fn read_ulog(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Columns, Variab
     messages.columns(is_cut)
 }
 
-/// Where data were appended.
+/// Reads the offsets of appended data.
 fn offsets_of(flags: &[u8]) -> Result<Vec<usize>, VariableFault> {
     let unknown = flags.get(8..16).unwrap_or_default().iter().enumerate();
     if unknown
@@ -154,7 +155,8 @@ impl<'b> Messages<'b> {
         Ok(())
     }
 
-    /// Takes a topic and its instance under a number; one whose layout is damaged or has no stamp is left out.
+    /// Registers a topic and its instance under a number; skips a layout that is damaged or lacks a
+    /// time stamp.
     fn subscribe(
         &mut self,
         content: &'b [u8],
@@ -248,7 +250,8 @@ impl<'b> Messages<'b> {
     }
 }
 
-/// When the aircraft was armed, and its modes (`vehicle_status`: `arming_state` 2 is armed, `nav_state` by PX4's message).
+/// Finds the armed spans and the flight modes (`vehicle_status`: `arming_state` 2 is armed,
+/// `nav_state` follows PX4's message).
 fn modes_of(topics: &[TopicSamples]) -> Vec<ModeSpan> {
     let Some(status) = topics.iter().find(|topic| topic.name == "vehicle_status") else {
         return Vec::new();
@@ -296,29 +299,30 @@ const NAVIGATION: [(u8, &str); 13] = [
     (21, "orbit"),
 ];
 
-// The layouts of messages: fields of numbers, of arrays and of other layouts, as a flat list of numbers.
+// Message layouts: fields that are numbers, arrays or other layouts, flattened to a list of
+// numbers.
 
-/// The most bytes that a message can have: its length is a number of 16 bits.
+/// Largest message, limited by its 16-bit length \[bytes\].
 const LARGEST: usize = 65_535;
-/// Layouts inside one another.
+/// Deepest nesting of layouts.
 const DEEPEST: usize = 8;
 
 /// A number in the data of a message.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Place {
-    /// Its name: `xyz[0]`, `esc[1].esc_rpm`.
+    /// For example `xyz[0]`, `esc[1].esc_rpm`.
     pub(super) name: String,
     pub(super) number: StoredNumber,
     pub(super) offset: usize,
 }
 
-/// Layouts by the name of their message, as they stand in the file: `uint64_t timestamp;float[3] xyz`.
+/// Layouts by message name, as written in the file: `uint64_t timestamp;float[3] xyz`.
 pub(super) type Formats<'b> = BTreeMap<&'b str, &'b str>;
 
-/// The numbers in a message of this name, and how many bytes it has.
+/// Returns the numbers in a message of this name and its length in bytes.
 ///
 /// # Errors
-/// A layout that is missing, in a circle, or longer than any message.
+/// A layout that is missing, recursive, or longer than the largest message.
 pub(super) fn places_of(
     name: &str,
     formats: &Formats<'_>,
@@ -346,7 +350,7 @@ impl Flat<'_> {
         VariableFault::damaged(self.message, what, 0)
     }
 
-    /// Adds the numbers of a layout from a place on; gives where it ends.
+    /// Adds the numbers of a layout from an offset on; returns the end offset.
     fn add(
         &mut self,
         name: &str,
@@ -409,7 +413,7 @@ impl Flat<'_> {
                     None if kind == "char" => offset + 1,
                     None => self.add(kind, &format!("{label}."), offset, deeper - 1)?,
                 };
-                // What has no bytes could stand there any number of times.
+                // Fields without bytes could be repeated without limit.
                 if offset == begin || offset > LARGEST {
                     return Err(self.damaged(format!(
                         "the field \"{}\" has no length, or too much",
@@ -422,7 +426,7 @@ impl Flat<'_> {
     }
 }
 
-/// The number that a name of a type of C means; none where it means none.
+/// Returns the number type of a C type name, or nothing if it is unknown.
 fn number_of(kind: &str) -> Option<StoredNumber> {
     use NumberClass::{Float, Signed, Unsigned};
     let (class, size) = match kind {
@@ -441,7 +445,7 @@ fn number_of(kind: &str) -> Option<StoredNumber> {
     Some(StoredNumber::little_endian(class, size))
 }
 
-/// As much of a name as a message can bear.
+/// Shortens a name for a message.
 fn short(name: &str) -> String {
     name.chars()
         .take(60)

@@ -1,4 +1,4 @@
-//! Files of level 4: one matrix of numbers or characters after the other.
+//! Files of level 4: consecutive matrices of numbers or characters.
 //!
 //! Source: "MAT-File Format", The MathWorks, "Level 4 MAT-File Format".
 
@@ -10,9 +10,9 @@ use crate::formats::mat::{FieldPath, count};
 use crate::strides::{Entries, NumberClass, StoredNumber};
 use crate::variables::{Array, ReadingBudget, Value, Variable, VariableFault};
 
-/// What stands before each matrix.
+/// Header of a matrix.
 struct Header {
-    /// Kind of the stored numbers: P of the type MOPT.
+    /// Number type: P of the type MOPT.
     stored: StoredNumber,
     /// T of the type MOPT.
     meaning: Meaning,
@@ -22,7 +22,7 @@ struct Header {
     name_length: usize,
 }
 
-/// What the numbers mean.
+/// Meaning of the numbers.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Meaning {
     Numbers,
@@ -30,12 +30,12 @@ enum Meaning {
     Sparse,
 }
 
-/// Whether a file begins like one of level 4.
+/// Whether a file begins with a level-4 header.
 pub(super) fn begins(bytes: &[u8]) -> bool {
     header(&mut Cursor::file(bytes, ByteOrder::Little)).is_ok()
 }
 
-/// All variables of a file.
+/// Reads all variables of a file.
 pub(super) fn read(
     bytes: &[u8],
     budget: &ReadingBudget<'_>,
@@ -90,7 +90,8 @@ fn header(file: &mut Cursor<'_>) -> Result<Header, VariableFault> {
     })
 }
 
-/// The order of bytes: the type is less than 2000 in the right one, its thousands 0 (little) or 1 (big), its hundreds 0.
+/// Determines the byte order: read in the correct order the type is below 2000, with 0 (little) or
+/// 1 (big) as its thousands digit and 0 as its hundreds digit.
 fn order(bytes: &[u8]) -> Option<ByteOrder> {
     let first = *bytes.first_chunk::<4>()?;
     let fits = |order: ByteOrder, thousands: u32| order.u32(first) / 100 == thousands * 10;
@@ -104,7 +105,7 @@ fn order(bytes: &[u8]) -> Option<ByteOrder> {
     }
 }
 
-/// The numbers that P of the type MOPT stands for.
+/// Number type for P of the type MOPT.
 fn stored_number(kind: u32, order: ByteOrder) -> Option<StoredNumber> {
     let (class, size) = match kind {
         0 => (NumberClass::Float, 8),
@@ -163,7 +164,8 @@ impl Header {
             .collect())
     }
 
-    /// Columns of rows, of columns, of numbers and of their imaginary parts; the last row says how large the matrix is.
+    /// Reads columns of row indices, column indices, real parts and imaginary parts; the last row
+    /// gives the size of the matrix.
     fn sparse(
         &self,
         columns: &[f64],
@@ -217,7 +219,7 @@ mod tests {
     use super::*;
     use crate::variables::ElementKind;
 
-    /// One matrix, written by a machine of either kind.
+    /// A matrix in the given byte order.
     fn matrix(kind: u32, sizes: [u32; 4], order: ByteOrder, data: &[u8]) -> Vec<u8> {
         let word = |word: u32| {
             if order == ByteOrder::Little {

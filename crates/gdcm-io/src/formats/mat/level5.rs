@@ -12,14 +12,14 @@ use crate::formats::mat::{self, FieldPath, Header};
 use crate::strides::{NumberClass, StoredNumber};
 use crate::variables::{ReadingBudget, Variable, VariableFault};
 
-/// Length of the text and the numbers that a file begins with.
+/// Length of the file header, text and numbers \[bytes\].
 pub(super) const HEADER_BYTES: usize = 128;
-/// Where the header says how the file is written.
+/// Offset of the version in the header.
 const VERSION_AT: usize = 124;
-/// Where the header says where the objects lie.
+/// Offset of the position of the objects in the header.
 const OBJECTS_AT: usize = 116;
 
-/// The order of bytes of a file, and the first number of its version; `None` if its header is that of no such file.
+/// Reads the byte order and the major version; `None` if the header is not from such a file.
 pub(super) fn version(bytes: &[u8]) -> Option<(ByteOrder, u8)> {
     match *bytes.get(VERSION_AT..HEADER_BYTES)? {
         [_, version, b'I', b'M'] => Some((ByteOrder::Little, version)),
@@ -28,7 +28,7 @@ pub(super) fn version(bytes: &[u8]) -> Option<(ByteOrder, u8)> {
     }
 }
 
-/// All variables of a file.
+/// Reads all variables of a file.
 pub(super) fn read(
     bytes: &[u8],
     order: ByteOrder,
@@ -52,7 +52,7 @@ pub(super) fn read(
     let mut names = HashSet::new();
     while !file.is_empty() {
         budget.take(1, 2 * size_of::<Variable>() as u64, "")?;
-        // Arrays without a name are the machine's own notes, above all the objects.
+        // Arrays without a name are internal to MATLAB, mainly the objects.
         let Some(variable) = variable(&mut file, &arrays)? else {
             continue;
         };
@@ -66,7 +66,7 @@ pub(super) fn read(
     Ok(variables)
 }
 
-/// Where the objects lie. Old versions leave blanks there.
+/// Reads the position of the objects, which old versions leave blank.
 fn objects_at(bytes: &[u8], order: ByteOrder) -> Option<usize> {
     let place: [u8; 8] = bytes.get(OBJECTS_AT..VERSION_AT)?.try_into().ok()?;
     if place == [b' '; 8] || place == [0; 8] {
@@ -106,8 +106,9 @@ fn named(
     }))
 }
 
-/// Where the next array begins: behind the array that began at `start`, whose `unread` bytes are no part of it if nothing begins
-/// where its tag says that it ends. GNU Octave counts too many bytes for some texts and objects.
+/// Finds the next array after the array at `start`. Its `unread` bytes do not belong to it if
+/// nothing begins at the end given by its tag: GNU Octave counts too many bytes for some texts and
+/// objects.
 pub(super) fn behind<'b>(
     start: Cursor<'b>,
     array: Element<'b>,
@@ -122,7 +123,7 @@ pub(super) fn behind<'b>(
     Ok(behind)
 }
 
-/// The contents of an element that must be an array.
+/// Returns the contents of an element that must be an array.
 pub(super) fn matrix(element: Element<'_>) -> Result<Cursor<'_>, VariableFault> {
     match element.kind {
         DataKind::Matrix => Ok(element.data),
@@ -132,42 +133,40 @@ pub(super) fn matrix(element: Element<'_>) -> Result<Cursor<'_>, VariableFault> 
     }
 }
 
-// Bytes read one after the other, in the order of the machine that wrote them.
+// Sequential reading in the byte order of the file.
 
-/// Which byte of a number comes first.
+/// Byte order of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ByteOrder {
     Little,
     Big,
 }
 
-/// A place in a stretch of bytes that cannot be left.
+/// A position in a stretch of bytes that reading cannot leave.
 ///
-/// Its faults name no variable: [`crate::formats::mat::FieldPath::name`] does that.
+/// Its faults name no variable: [`crate::formats::mat::FieldPath::name`] adds the name.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cursor<'b> {
     bytes: &'b [u8],
-    /// Which byte of a number comes first.
     pub(super) order: ByteOrder,
-    /// Where in the file the next byte lies.
+    /// Offset of the next byte in the file.
     pub(super) offset: u64,
-    /// How the stretch lies in the file.
     stretch: Stretch,
 }
 
-/// What it means that a stretch of bytes ends too early, and where its bytes lie.
+/// Origin of a stretch of bytes, which decides the fault when it ends too early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stretch {
-    /// The file itself: it is cut off.
+    /// The file itself, which is cut off.
     File,
-    /// An element in the file: its size is wrong.
+    /// An element of the file, whose size is wrong.
     Element,
-    /// An element that was unpacked: the best that can be said of its place is where the packed one begins.
+    /// An unpacked element: its position is the beginning of the packed element.
     Unpacked,
 }
 
 impl<'b> Cursor<'b> {
-    /// At the beginning of a file.
+    /// Starts at the beginning of a file.
     pub(super) fn file(bytes: &'b [u8], order: ByteOrder) -> Self {
         Self {
             bytes,
@@ -177,7 +176,7 @@ impl<'b> Cursor<'b> {
         }
     }
 
-    /// At the beginning of what was unpacked, or stands as data, at `offset` of the file.
+    /// Starts at the beginning of unpacked or embedded bytes at `offset` of the file.
     pub(super) fn unpacked(bytes: &'b [u8], order: ByteOrder, offset: u64) -> Self {
         Self {
             bytes,
@@ -187,22 +186,22 @@ impl<'b> Cursor<'b> {
         }
     }
 
-    /// The bytes that are left.
+    /// Returns the remaining bytes.
     pub(super) fn rest(&self) -> &'b [u8] {
         self.bytes
     }
 
-    /// Number of bytes that are left.
+    /// Number of remaining bytes.
     pub(super) fn len(&self) -> usize {
         self.bytes.len()
     }
 
-    /// Whether the end is reached.
+    /// Whether no bytes remain.
     pub(super) fn is_empty(&self) -> bool {
         self.bytes.is_empty()
     }
 
-    /// The next `length` bytes, as an element of their own.
+    /// Takes the next `length` bytes as an element.
     pub(super) fn take(&mut self, length: usize) -> Result<Cursor<'b>, VariableFault> {
         let (bytes, rest) = self
             .bytes
@@ -226,32 +225,33 @@ impl<'b> Cursor<'b> {
         Ok(taken)
     }
 
-    /// All bytes that are left, and the place behind them. If they are too few, it is still this stretch that ends too early.
+    /// Takes all remaining bytes and moves to their end. If they are too few, the fault refers to
+    /// this stretch.
     pub(super) fn take_all(&mut self) -> Result<Cursor<'b>, VariableFault> {
         let rest = *self;
         self.pass(rest.len())?;
         Ok(rest)
     }
 
-    /// Passes over `length` bytes, or as many as there are.
+    /// Skips `length` bytes, or all remaining bytes.
     pub(super) fn pass(&mut self, length: usize) -> Result<(), VariableFault> {
         self.take(length.min(self.len())).map(drop)
     }
 
-    /// The next `N` bytes.
+    /// Reads the next `N` bytes.
     pub(super) fn array<const N: usize>(&mut self) -> Result<[u8; N], VariableFault> {
         let taken = self.take(N)?;
         <[u8; N]>::try_from(taken.bytes).map_err(|_| self.too_short())
     }
 
-    /// A whole number of 32 bits.
+    /// Reads a 32-bit integer.
     pub(super) fn u32(&mut self) -> Result<u32, VariableFault> {
         let order = self.order;
         let bytes = self.array()?;
         Ok(order.u32(bytes))
     }
 
-    /// The fault that the bytes here contradict the format.
+    /// Returns the fault for bytes at this position that contradict the format.
     pub(super) fn damaged(&self, what: impl Into<String>) -> VariableFault {
         VariableFault::damaged("", what, self.offset)
     }
@@ -268,7 +268,7 @@ impl<'b> Cursor<'b> {
 }
 
 impl ByteOrder {
-    /// A whole number of 32 bits.
+    /// Decodes a 32-bit integer.
     pub(super) fn u32(self, bytes: [u8; 4]) -> u32 {
         match self {
             ByteOrder::Little => u32::from_le_bytes(bytes),
@@ -276,7 +276,7 @@ impl ByteOrder {
         }
     }
 
-    /// A whole number of 64 bits.
+    /// Decodes a 64-bit integer.
     pub(super) fn u64(self, bytes: [u8; 8]) -> u64 {
         match self {
             ByteOrder::Little => u64::from_le_bytes(bytes),
@@ -285,11 +285,11 @@ impl ByteOrder {
     }
 }
 
-// One data element: a tag that says what kind of data follows and how much, and the data.
+// One data element: a tag with the kind and length of the data, and the data.
 //
 // Source: "MAT-File Format", The MathWorks, "Data Element Format".
 
-/// What kind of data an element holds.
+/// Data type of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DataKind {
     I8 = 1,
@@ -312,15 +312,14 @@ pub(super) enum DataKind {
 /// A data element.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Element<'b> {
-    /// What kind of data it holds.
     pub(super) kind: DataKind,
-    /// The data, without what fills them up to eight bytes.
+    /// Without the padding to eight bytes.
     pub(super) data: Cursor<'b>,
-    /// Whether there are as many bytes as its tag says; of an array there may be fewer.
+    /// Whether all bytes announced by the tag are present; an array may have fewer.
     pub(super) whole: bool,
 }
 
-/// Every kind of data, with how its numbers are stored; of matrices and packed data there are none.
+/// All data types with their number types; matrices and packed data have none.
 const KINDS: [(DataKind, Option<(NumberClass, usize)>); 15] = [
     (DataKind::I8, Some((NumberClass::Signed, 1))),
     (DataKind::U8, Some((NumberClass::Unsigned, 1))),
@@ -347,7 +346,7 @@ impl DataKind {
             .find(|kind| *kind as u32 == number)
     }
 
-    /// How its numbers are stored, where it holds any.
+    /// Returns the number type, if the element holds numbers.
     pub(super) fn stored(self, order: ByteOrder) -> Option<StoredNumber> {
         let (class, size) = KINDS.iter().find(|(kind, _)| *kind == self)?.1?;
         StoredNumber::new(class, size, order == ByteOrder::Big)
@@ -355,12 +354,12 @@ impl DataKind {
 }
 
 impl<'b> Element<'b> {
-    /// Reads the next element and what fills it up.
+    /// Reads the next element and its padding.
     pub(super) fn read(cursor: &mut Cursor<'b>) -> Result<Self, VariableFault> {
         let tag = *cursor;
         let unknown = |number: u32| tag.damaged(format!("an element of the unknown kind {number}"));
         let first = cursor.u32()?;
-        // Up to four bytes of data stand in the tag itself, whose upper half is then their number.
+        // A small element holds up to four bytes in its tag, whose upper half is their number.
         let small = first >> 16;
         if small != 0 {
             let number = first & 0xffff;
@@ -375,7 +374,7 @@ impl<'b> Element<'b> {
         let kind = DataKind::of(first).ok_or_else(|| unknown(first))?;
         let length = cursor.u32()? as usize;
         if kind == DataKind::Matrix && length > cursor.len() {
-            // GNU Octave takes some arrays for a few bytes longer than they are.
+            // GNU Octave announces a few bytes too many for some arrays.
             return Ok(Self {
                 kind,
                 data: cursor.take_all()?,
@@ -393,7 +392,7 @@ impl<'b> Element<'b> {
         })
     }
 
-    /// Whether an array begins here, or nothing follows.
+    /// Whether an array or the end of the data is at the cursor.
     pub(super) fn begins_array(cursor: &Cursor<'_>) -> bool {
         let mut tag = *cursor;
         let kind = tag.u32().map(DataKind::of);
@@ -402,7 +401,7 @@ impl<'b> Element<'b> {
         cursor.is_empty() || (fits && matches!(kind, Ok(Some(DataKind::Matrix | DataKind::Packed))))
     }
 
-    /// Passes over all elements that are left.
+    /// Skips all remaining elements.
     pub(super) fn pass_all(cursor: &mut Cursor<'_>) -> Result<(), VariableFault> {
         while !cursor.is_empty() {
             Element::read(cursor)?;
@@ -410,7 +409,7 @@ impl<'b> Element<'b> {
         Ok(())
     }
 
-    /// Number of numbers in it.
+    /// Number of values in the element.
     pub(super) fn count(&self) -> Result<usize, VariableFault> {
         let stored = self.kind.stored(self.data.order);
         let width = stored
@@ -425,7 +424,7 @@ impl<'b> Element<'b> {
         Ok(self.data.len() / width)
     }
 
-    /// Text of one byte each: a name.
+    /// Reads a name, one byte for each character.
     pub(super) fn name(&self) -> Result<String, VariableFault> {
         match self.kind {
             DataKind::I8 | DataKind::U8 | DataKind::Utf8 => Ok(name_of(self.data.rest())),
@@ -434,7 +433,8 @@ impl<'b> Element<'b> {
     }
 }
 
-/// A name up to the first zero. What is not UTF-8 is taken for Latin-1, in which old programs wrote.
+/// Decodes a name up to the first zero; bytes that are not UTF-8 are read as Latin-1, the encoding
+/// of old programs.
 pub(super) fn name_of(bytes: &[u8]) -> String {
     let bytes = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
     match std::str::from_utf8(bytes) {
@@ -447,12 +447,12 @@ pub(super) fn name_of(bytes: &[u8]) -> String {
 //
 // Source: "MAT-File Format", The MathWorks, "Data Compression"; RFC 1950.
 
-/// How many bytes one packed byte can become at most, rounded up (RFC 1951: 258 bytes from two bits).
+/// Largest ratio of unpacked to packed bytes, rounded up (RFC 1951: 258 bytes from two bits).
 const MOST_EXPANSION: u64 = 1040;
-/// How many bytes are unpacked before the budget is asked again.
+/// Number of bytes unpacked between two checks of the budget.
 const CHUNK: u64 = 1 << 20;
 
-/// The bytes of a packed element: its tag, which says how many follow, and those.
+/// Unpacks an element: its tag, and the bytes announced by the tag.
 pub(super) fn unpacked(
     packed: Cursor<'_>,
     budget: &ReadingBudget<'_>,
@@ -470,7 +470,7 @@ pub(super) fn unpacked(
         )));
     }
     unpack_more(&mut decoder, length, &mut bytes, packed, budget)?;
-    // At the end lies a checksum, which is compared when the end is looked for.
+    // The checksum at the end is compared when the end is read.
     let more = decoder
         .read(&mut [0])
         .map_err(|_| packed.damaged("the packed bytes were changed"))?;
@@ -501,7 +501,8 @@ fn unpack_more(
                 _ => packed.damaged("the packed bytes were changed"),
             })?;
         if (found as u64) < chunk {
-            // GNU Octave counts too many bytes; whether too few are left is found out when they are read.
+            // GNU Octave announces too many bytes; whether too few are present shows when they are
+            // read.
             return Ok(());
         }
         left -= chunk;
@@ -515,7 +516,7 @@ mod level5_tests {
     use crate::formats::mat::sample_tests::{chars, doubles, element, file, matrix, record};
     use crate::variables::Value;
 
-    /// The same array, whose tag counts four bytes too many.
+    /// The same array with a tag that counts four bytes too many.
     fn too_long(array: Vec<u8>) -> Vec<u8> {
         let length = array.len() as u32 - 8 + 4;
         [&array[..4], &length.to_le_bytes(), &array[8..]].concat()

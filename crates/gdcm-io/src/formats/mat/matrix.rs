@@ -1,4 +1,4 @@
-//! One array of a file, with everything that lies in it.
+//! One array of a file with its contents.
 //!
 //! Source: "MAT-File Format", The MathWorks, "miMATRIX Format".
 
@@ -10,17 +10,16 @@ use crate::variables::{
     Array, CellArray, Object, RECORD, ReadingBudget, StructArray, TextArray, Value, VariableFault,
 };
 
-/// What reading an array takes besides its bytes.
+/// Shared state for reading arrays.
 #[derive(Clone, Copy)]
 pub(super) struct Arrays<'a> {
-    /// Counts the memory.
     pub(super) budget: &'a ReadingBudget<'a>,
-    /// The objects of the file, or why they cannot be read.
+    /// The objects of the file, or the reason why they cannot be read.
     pub(super) objects: Result<&'a Subsystem, &'a str>,
 }
 
 impl Arrays<'_> {
-    /// The contents of an array behind its header.
+    /// Reads the contents of an array after its header.
     pub(super) fn contents(
         &self,
         header: &Header,
@@ -46,7 +45,7 @@ impl Arrays<'_> {
         value.map_err(|fault| trail.name(fault))
     }
 
-    /// The next array, which lies in another.
+    /// Reads the next array nested in another array.
     pub(super) fn inner(
         &self,
         contents: &mut Cursor<'_>,
@@ -99,7 +98,8 @@ impl Arrays<'_> {
         let stored = starts.last().copied().unwrap_or(0);
         let mut part = || {
             let mut element = Element::read(contents)?;
-            // MATLAB says of true and false in sparse matrices that they take eight bytes each, and writes one.
+            // MATLAB announces eight bytes for each logical value of a sparse matrix, and writes
+            // one.
             if header.logical
                 && element.kind == DataKind::F64
                 && element.data.len() < stored.saturating_mul(8)
@@ -160,13 +160,13 @@ impl Arrays<'_> {
         let names = field_names(contents, self.budget)?;
         let count = header.count;
         self.room(count.saturating_mul(names.len()), contents)?;
-        // Of records without fields there may be any number in a few bytes.
+        // Records without fields can be announced in any number with a few bytes.
         self.budget.take(count as u64, RECORD, "")?;
         let mut fields: Vec<(String, Vec<Value>)> = Vec::with_capacity(names.len());
         for name in names {
             fields.push((name, Vec::new()));
         }
-        // Of no fields there may be any number of records.
+        // Without fields no records are created.
         let records = if fields.is_empty() { 0 } else { count };
         for at in 0..records {
             let record = trail.step(Step::Record(at))?;
@@ -181,7 +181,7 @@ impl Arrays<'_> {
         })
     }
 
-    /// Counts `count` values that follow, each of which takes eight bytes of the file at least.
+    /// Budgets `count` values, each of at least eight bytes in the file.
     fn room(&self, count: usize, contents: &Cursor<'_>) -> Result<usize, VariableFault> {
         if count > contents.len() / 8 {
             return Err(contents.damaged(format!("{count} values in {} bytes", contents.len())));
@@ -193,7 +193,7 @@ impl Arrays<'_> {
     }
 }
 
-/// The names of the fields of records, which stand before them.
+/// Reads the field names, which precede the records.
 pub(super) fn field_names(
     contents: &mut Cursor<'_>,
     budget: &ReadingBudget<'_>,
@@ -226,11 +226,12 @@ pub(super) fn field_names(
     Ok(found)
 }
 
-// Numbers of a data element, whatever kind they are stored as.
+// Numbers of a data element in any stored type.
 
-/// All numbers of an element, of which there must be `count`.
+/// Reads all numbers of an element, which must be `count`.
 ///
-/// MATLAB stores the numbers of an array in the smallest kind that holds them, so that this is not the array's own kind.
+/// MATLAB stores the numbers of an array in the smallest type that holds them, so the stored type
+/// differs from the array's type.
 pub(super) fn numbers(
     element: &Element<'_>,
     count: usize,
@@ -254,7 +255,7 @@ pub(super) fn numbers(
         .collect())
 }
 
-/// All whole numbers of an element: sizes and places.
+/// Reads all integers of an element: sizes and indices.
 pub(super) fn places(
     element: &Element<'_>,
     budget: &ReadingBudget<'_>,
@@ -281,7 +282,7 @@ pub(super) fn places(
     places.ok_or_else(|| element.data.damaged("a negative size"))
 }
 
-/// All whole numbers of 64 bits of an element, if it holds such.
+/// Reads the 64-bit integers of an element, if it holds that type.
 pub(super) fn long_words(
     element: &Element<'_>,
     budget: &ReadingBudget<'_>,
@@ -303,9 +304,9 @@ pub(super) fn long_words(
     ))
 }
 
-// Arrays of characters.
+// Character arrays.
 
-/// The rows of an array of characters, stored as text or as numbers of characters.
+/// Reads the rows of a character array, stored as text or as character codes.
 pub(super) fn text(
     element: &Element<'_>,
     shape: &[usize],
@@ -315,7 +316,7 @@ pub(super) fn text(
     budget.take(wanted as u64, 16, "")?;
     let mut characters = characters(element, wanted, budget)?;
     if characters.is_empty() {
-        // Old versions leave out characters that are all blank.
+        // Old versions omit the characters of blank arrays.
         characters = vec![u32::from(b' '); wanted];
     }
     if characters.len() != wanted {
@@ -327,9 +328,10 @@ pub(super) fn text(
     rows(&characters, shape, "", budget)
 }
 
-/// The texts in the rows of an array of characters, of which there are as many as the shape says.
+/// Splits a character array into texts, one for each row of the shape.
 ///
-/// An array without characters is one empty text, as MATLAB's `''` is, unless it has several rows.
+/// An array without characters is one empty text, such as MATLAB's `''`, unless it has several
+/// rows.
 pub(crate) fn rows(
     characters: &[u32],
     shape: &[usize],
@@ -345,7 +347,7 @@ pub(crate) fn rows(
     let shape: Vec<usize> = [height, 1].iter().chain(pages).copied().collect();
     let texts = count(&shape);
     budget.take(texts as u64, size_of::<String>() as u64, variable)?;
-    // A unit of UTF-16 takes up to three bytes.
+    // A UTF-16 unit takes up to three bytes.
     budget.take(characters.len() as u64, 3, variable)?;
     let page = height.saturating_mul(length);
     let row = |text: usize| {
@@ -361,7 +363,7 @@ pub(crate) fn rows(
     })
 }
 
-/// Text of characters' numbers, whether those beyond 16 bits are one number or two (as in UTF-16).
+/// Builds a text from character codes; codes beyond 16 bits may be one number or a UTF-16 pair.
 fn written(numbers: impl Iterator<Item = u32>) -> String {
     let mut units = Vec::new();
     for number in numbers {
@@ -388,8 +390,8 @@ fn characters(
         .collect())
 }
 
-/// The shape counts units of UTF-16 in files of MATLAB, characters in those of some other programs, and bytes in those that
-/// call Latin-1 UTF-8.
+/// Decodes UTF-8 characters. The shape counts UTF-16 units in files of MATLAB, characters in files
+/// of some other programs, and bytes in files that label Latin-1 as UTF-8.
 fn of_utf8(bytes: &[u8], wanted: usize) -> Vec<u32> {
     let text = String::from_utf8_lossy(bytes);
     let units = text.encode_utf16().count();
@@ -402,12 +404,13 @@ fn of_utf8(bytes: &[u8], wanted: usize) -> Vec<u32> {
     }
 }
 
-// Arrays whose contents lie elsewhere in the file: objects of classes, and what cannot be read.
+// Opaque arrays, whose contents are elsewhere in the file: class objects, and values that cannot be
+// read.
 //
-// The format is not published by The MathWorks; it is known from the descriptions of the MatFileHandler, matio (Python) and
-// MAT.jl projects.
+// The format is not published by The MathWorks; it is known from the descriptions of the
+// MatFileHandler, matio (Python) and MAT.jl projects.
 
-/// The value of an opaque array behind its name.
+/// Reads the value of an opaque array after its name.
 pub(super) fn opaque_value(
     arrays: &Arrays<'_>,
     contents: &mut Cursor<'_>,
@@ -435,12 +438,12 @@ pub(super) fn opaque_value(
     }
 }
 
-/// A value of a class that this program does not read.
+/// Returns the value for a class that this program does not read.
 pub(super) fn unread(class: &str, trail: &FieldPath<'_>) -> Value {
     unread_because(class, "values of this class are not read", &trail.words())
 }
 
-/// A value that cannot be read, and how to come by its data all the same.
+/// Returns an unreadable value with the reason and a way to export its data.
 pub(super) fn unread_because(class: &str, why: &str, variable: &str) -> Value {
     let line = export_line(class, variable);
     Value::opaque(class, format!("{why}; in MATLAB, save its data: {line}"))

@@ -1,7 +1,7 @@
-//! Files of MATLAB (".mat"), of level 4 and of levels 5 to 7, as GNU Octave and SciPy write them too.
+//! MATLAB files (".mat") of level 4 and of levels 5 to 7, also as written by GNU Octave and SciPy.
 //!
-//! Source: "MAT-File Format", The MathWorks. Files of version 7.3 are HDF5 files, which are read elsewhere; the objects in them are
-//! laid out as in `Subsystem`.
+//! Source: "MAT-File Format", The MathWorks. Files of version 7.3 are HDF5 files and are read
+//! elsewhere; their objects have the layout of `Subsystem`.
 
 mod level4;
 mod level5;
@@ -18,14 +18,14 @@ pub(crate) use crate::formats::mat::matrix::rows;
 pub(crate) use crate::formats::mat::subsystem::Subsystem;
 pub use crate::formats::mat::writer::{write, write_packed};
 
-/// What every HDF5 file, or what follows MATLAB's header in one, begins with.
+/// Signature of HDF5 files, at the beginning or after MATLAB's header.
 const HDF5_SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
-/// The first number of the version of files of levels 5 to 7.
+/// Major version of files of levels 5 to 7.
 const LEVEL_5: u8 = 1;
-/// What [`read`] reads.
+/// Expected format in error messages of [`read`].
 const EXPECTED: &str = "a .mat file of MATLAB up to version 7";
 
-/// Files of MATLAB up to version 7.
+/// MATLAB files up to version 7.
 pub(crate) const MAT: Importer = Importer {
     name: "a .mat file of MATLAB up to version 7",
     endings: &["mat"],
@@ -35,10 +35,10 @@ pub(crate) const MAT: Importer = Importer {
     read: |bytes, path, budget| Contents::variables(read(bytes, budget), path),
 };
 
-/// The variables of a file, in their order.
+/// Reads the variables of a file, in file order.
 ///
-/// What lies in a variable and cannot be decoded is [`crate::variables::Value::Opaque`]; bytes that contradict the format are a
-/// fault of the whole file.
+/// Parts of a variable that cannot be decoded are [`crate::variables::Value::Opaque`]; bytes that
+/// contradict the format are a fault of the whole file.
 pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     if is_hdf5(bytes) {
         return Err(VariableFault::format(
@@ -46,7 +46,7 @@ pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, V
             "an HDF5 file, as MATLAB writes with -v7.3",
         ));
     }
-    // The text that a file of level 5 begins with is what tells it from one of level 4: four bytes that are not zero.
+    // The leading text of a level-5 file has no zero in its first four bytes, unlike level 4.
     let text = bytes.get(..4).is_some_and(|start| !start.contains(&0));
     match level5::version(bytes) {
         Some((order, LEVEL_5)) if text || !level4::begins(bytes) => {
@@ -61,9 +61,10 @@ pub fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, V
     }
 }
 
-/// Whether this is an HDF5 file, as MATLAB writes with `-v7.3`.
+/// Whether this is an HDF5 file, written by MATLAB with `-v7.3`.
 pub fn is_hdf5(bytes: &[u8]) -> bool {
-    // The signature stands at the beginning, or at byte 512, 1024, 2048 and so on ("HDF5 File Format Specification", II.A).
+    // The signature is at the beginning, or at byte 512, 1024, 2048 and so on ("HDF5 File Format
+    // Specification", II.A).
     let doubled = std::iter::successors(Some(512_usize), |at| at.checked_mul(2))
         .take_while(|&at| at < bytes.len());
     let signed = |at: usize| {
@@ -92,17 +93,17 @@ fn beginning(bytes: &[u8]) -> String {
     format!("a file that begins with the bytes {}", bytes.join(" "))
 }
 
-// The part of a file in which its objects lie: bytes that are a small file of their own.
+// The object subsystem of a file: bytes that form a small embedded file.
 //
-// The format is not published by The MathWorks; it is known from the descriptions of the MatFileHandler, matio (Python) and
-// MAT.jl projects.
+// The format is not published by The MathWorks; it is known from the descriptions of the
+// MatFileHandler, matio (Python) and MAT.jl projects.
 
-/// What the system of classes is called.
+/// Name of the class system.
 const SYSTEM: &str = "MCOS";
-/// The class of the object that holds all others.
+/// Class of the object that holds all other objects.
 const WRAPPER: &str = "FileWrapper__";
 
-/// Reads the objects that begin at byte `at` of the file.
+/// Reads the objects at byte `at` of the file.
 fn objects(
     bytes: &[u8],
     at: Option<usize>,
@@ -122,7 +123,7 @@ fn objects(
     within(matrix(Element::read(&mut inner)?)?, budget)
 }
 
-/// The objects within an array of bytes.
+/// Reads the objects inside an array of bytes.
 fn within(array: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Subsystem, VariableFault> {
     let mut array = array;
     Header::read(&mut array, budget)?;
@@ -147,7 +148,7 @@ fn within(array: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Subsystem, Va
     Err(systems.damaged("there are none of MATLAB's own classes"))
 }
 
-/// The objects within a `FileWrapper__`.
+/// Reads the objects inside a `FileWrapper__`.
 fn wrapped(wrapper: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Subsystem, VariableFault> {
     let mut wrapper = wrapper;
     let opaque = Header::read(&mut wrapper, budget)?.class == ArrayClass::Opaque;
@@ -178,7 +179,7 @@ fn wrapped(wrapper: Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Subsystem,
     Ok(Subsystem::new(cells, budget)?.with_long_words(words))
 }
 
-/// The numbers of a cell to the last digit, if they are whole numbers of 64 bits.
+/// Returns the exact integers of a cell that holds 64-bit integers.
 fn exact(
     cell: Cursor<'_>,
     value: &Value,
@@ -197,12 +198,12 @@ fn exact(
     }
 }
 
-// The way to a value within a variable.
+// Path to a value within a variable.
 
-/// How many values may lie in one another.
+/// Deepest nesting of values.
 const DEEPEST: usize = 64;
 
-/// The way from a variable to a value in it, one step at a time.
+/// Path from a variable to a value inside it, one step at a time.
 #[derive(Clone, Copy, Debug)]
 struct FieldPath<'t> {
     before: Option<&'t FieldPath<'t>>,
@@ -210,12 +211,11 @@ struct FieldPath<'t> {
     depth: usize,
 }
 
-/// One step on the way.
+/// One step of a path.
 #[derive(Clone, Copy, Debug)]
 enum Step<'t> {
-    /// The variable, or a way that was gone already.
+    /// The variable, or an already traversed path.
     Start(&'t str),
-    /// A field of a record.
     Field(&'t str),
     /// One of several records, counted from 0.
     Record(usize),
@@ -224,7 +224,7 @@ enum Step<'t> {
 }
 
 impl<'t> FieldPath<'t> {
-    /// At the variable itself.
+    /// Starts at a variable.
     fn start(name: &'t str) -> Self {
         Self {
             before: None,
@@ -233,7 +233,7 @@ impl<'t> FieldPath<'t> {
         }
     }
 
-    /// One step on.
+    /// Appends a step.
     fn step(&'t self, step: Step<'t>) -> Result<FieldPath<'t>, VariableFault> {
         if self.depth >= DEEPEST {
             return Err(VariableFault::too_deep(&self.words()));
@@ -245,7 +245,7 @@ impl<'t> FieldPath<'t> {
         })
     }
 
-    /// The way as MATLAB writes it: "sys.A", "models{3}.B".
+    /// Formats the path as in MATLAB: "sys.A", "models{3}.B".
     fn words(&self) -> String {
         let before = self.before.map(FieldPath::words).unwrap_or_default();
         match self.step {
@@ -256,17 +256,17 @@ impl<'t> FieldPath<'t> {
         }
     }
 
-    /// Says in a fault which value it concerns, unless it says so already.
+    /// Adds the path to a fault that names no value yet.
     fn name(&self, fault: VariableFault) -> VariableFault {
         fault.of(|| self.words())
     }
 }
 
-// What stands before the contents of an array: its class, its flags, its shape and its name.
+// Array header: class, flags, shape and name.
 //
 // Source: "MAT-File Format", The MathWorks, "miMATRIX Format".
 
-/// The class of an array.
+/// Class of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ArrayClass {
     Cell,
@@ -280,27 +280,23 @@ enum ArrayClass {
     Opaque,
 }
 
-/// What stands before the contents of an array.
+/// Header of an array.
 #[derive(Clone, Debug)]
 struct Header {
-    /// Its class.
     class: ArrayClass,
-    /// Whether its numbers are whole numbers of 64 bits without sign.
+    /// Whether the numbers are unsigned 64-bit integers.
     long_words: bool,
-    /// Whether its numbers are true and false.
     logical: bool,
-    /// Whether its numbers have imaginary parts.
     complex: bool,
-    /// Number of elements along each dimension, at least two; of an opaque array 1 x 1.
+    /// Number of elements along each dimension, at least two dimensions; 1 x 1 for an opaque array.
     shape: Vec<usize>,
-    /// Number of elements.
     count: usize,
-    /// Its name; that of a value in another has no letters.
+    /// Empty for a value nested in another.
     name: String,
 }
 
 impl Header {
-    /// Reads what stands before the contents.
+    /// Reads the header before the contents.
     fn read(contents: &mut Cursor<'_>, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         let flags = Element::read(contents)?;
         if flags.kind != DataKind::U32 {
@@ -318,7 +314,7 @@ impl Header {
         } else {
             shape(contents, budget)?
         };
-        // Nobody who multiplies the sides shall come beyond what can be counted, not even on the way to none.
+        // Products of the sides must not overflow, even if another side is zero.
         if crate::strides::count(&shape).is_none() {
             budget.take(u64::MAX, 1, "")?;
         }
@@ -333,7 +329,7 @@ impl Header {
         })
     }
 
-    /// What its numbers are.
+    /// Returns the element kind of the numbers.
     fn element_kind(&self) -> ElementKind {
         match self.class {
             _ if self.logical => ElementKind::Logical,
@@ -360,7 +356,7 @@ impl ArrayClass {
     }
 }
 
-/// Number of elements of an array of this shape, or the most that can be counted.
+/// Number of elements of an array of this shape, saturating at the largest count.
 fn count(shape: &[usize]) -> usize {
     let product = shape
         .iter()
@@ -379,11 +375,13 @@ fn shape(
     Ok(shape)
 }
 
-// The line of MATLAB that saves the data of an object as plain arrays.
+// MATLAB command that saves the data of an object as plain arrays.
 
-/// A line of MATLAB that writes what `variable`, an object of `class`, holds to a file as plain arrays.
+/// Returns a MATLAB command that writes the contents of `variable`, an object of `class`, to a file
+/// as plain arrays.
 ///
-/// Source: the functions' pages in the manuals of MATLAB, the Control System Toolbox and the System Identification Toolbox.
+/// Source: the reference pages in the manuals of MATLAB, the Control System Toolbox and the System
+/// Identification Toolbox.
 pub fn export_line(class: &str, variable: &str) -> String {
     let sys = if variable.is_empty() { "x" } else { variable };
     let (assignment, names) = match class {
@@ -441,7 +439,8 @@ mod mat_tests {
     const PLAIN: &[u8] = include_bytes!("../../../../../tests/data/mat/scipy-5.mat");
     const PACKED: &[u8] = include_bytes!("../../../../../tests/data/mat/scipy-5-packed.mat");
     const OLD: &[u8] = include_bytes!("../../../../../tests/data/mat/scipy-4.mat");
-    /// `ss([1 2; 3 4], [1; 0], [1 0], 0)` of the control package, whose tags count too many bytes.
+    /// `ss([1 2; 3 4], [1; 0], [1 0], 0)` of the control package, with tags that count too many
+    /// bytes.
     const OCTAVE: &[u8] = include_bytes!("../../../../../tests/data/mat/octave-ss.mat");
     const MOST: u64 = 1 << 20;
 

@@ -1,6 +1,6 @@
-//! Bytes of files for tests, put together by hand.
+//! Hand-made file bytes for tests.
 
-/// An element of any kind.
+/// An element of any data type.
 pub(super) fn element(kind: u32, data: &[u8]) -> Vec<u8> {
     let mut bytes = [kind.to_le_bytes(), (data.len() as u32).to_le_bytes()].concat();
     bytes.extend(data);
@@ -31,7 +31,7 @@ pub(super) fn doubles(name: &str, shape: &[i32], numbers: &[f64]) -> Vec<u8> {
     matrix(6, shape, name, &[element(9, &data)])
 }
 
-/// A text.
+/// A character array.
 pub(super) fn chars(name: &str, text: &str) -> Vec<u8> {
     matrix(
         4,
@@ -41,7 +41,7 @@ pub(super) fn chars(name: &str, text: &str) -> Vec<u8> {
     )
 }
 
-/// A record.
+/// A struct with one record.
 pub(super) fn record(name: &str, fields: &[(&str, Vec<u8>)]) -> Vec<u8> {
     let names = fields.iter().flat_map(|(field, _)| {
         let mut bytes = field.as_bytes().to_vec();
@@ -57,7 +57,7 @@ pub(super) fn record(name: &str, fields: &[(&str, Vec<u8>)]) -> Vec<u8> {
     matrix(2, &[1, 1], name, &contents)
 }
 
-/// A column of cells.
+/// A column cell array.
 pub(super) fn column(values: &[Vec<u8>]) -> Vec<u8> {
     matrix(1, &[values.len() as i32, 1], "", values)
 }
@@ -69,7 +69,7 @@ pub(super) fn opaque(name: &str, class: &str, contents: Vec<u8>) -> Vec<u8> {
     element(14, &[flags, texts.concat(), contents].concat())
 }
 
-/// The numbers that refer to objects.
+/// A reference to objects.
 pub(super) fn reference(objects: &[u32], class: u32) -> Vec<u8> {
     let words = [
         &[0xdd00_0000, 2, 1, objects.len() as u32][..],
@@ -80,13 +80,13 @@ pub(super) fn reference(objects: &[u32], class: u32) -> Vec<u8> {
     words_of(&words)
 }
 
-/// A column of whole numbers of 32 bits.
+/// A column of 32-bit integers.
 pub(super) fn words_of(words: &[u32]) -> Vec<u8> {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     matrix(13, &[words.len() as i32, 1], "", &[element(6, &bytes)])
 }
 
-/// A row of whole numbers of 64 bits.
+/// A row of 64-bit integers.
 pub(super) fn long_words_of(words: &[u64]) -> Vec<u8> {
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     matrix(15, &[1, words.len() as i32], "", &[element(13, &bytes)])
@@ -97,7 +97,7 @@ pub(super) fn file(elements: &[u8]) -> Vec<u8> {
     file_with_objects(elements, None)
 }
 
-/// A file of these elements and the cells that its objects lie in.
+/// A file of these elements and the cells of its objects.
 pub(super) fn file_with_objects(elements: &[u8], cells: Option<&[Vec<u8>]>) -> Vec<u8> {
     let mut bytes = b"MATLAB 5.0 MAT-file, by hand".to_vec();
     bytes.resize(116, b' ');
@@ -122,7 +122,7 @@ pub(super) fn file_with_objects(elements: &[u8], cells: Option<&[Vec<u8>]>) -> V
     bytes
 }
 
-/// A file of one array of numbers, written by a machine that puts the highest byte first.
+/// A big-endian file with one array of numbers.
 pub(super) fn big_file(name: &str, shape: &[i32], numbers: &[f64]) -> Vec<u8> {
     let element = |kind: u32, data: &[u8]| {
         let mut bytes = [kind.to_be_bytes(), (data.len() as u32).to_be_bytes()].concat();
@@ -160,24 +160,24 @@ pub(super) fn big_file(name: &str, shape: &[i32], numbers: &[f64]) -> Vec<u8> {
     bytes
 }
 
-/// The bytes of a directory of objects.
+/// Bytes of an object directory.
 pub(super) struct Directory<'d> {
-    /// Version of its layout.
+    /// Layout version.
     pub(super) version: u32,
     /// Names of properties and classes, counted from 1.
     pub(super) names: &'d [&'d str],
-    /// Numbers of the names of each class: its package and its own.
+    /// For each class the numbers of its package name and its own name.
     pub(super) classes: &'d [[u32; 2]],
-    /// Properties that classes make of their objects: number of the name, kind, value.
+    /// Properties that classes create when saving their objects: number of the name, kind, value.
     pub(super) made: &'d [&'d [[u32; 3]]],
-    /// Each object: number of its class, of its made and of its plain properties.
+    /// For each object the numbers of its class, its created and its plain properties.
     pub(super) objects: &'d [[u32; 3]],
     /// Properties of other objects.
     pub(super) plain: &'d [&'d [[u32; 3]]],
 }
 
 impl Directory<'_> {
-    /// The first cell.
+    /// Returns the first cell.
     pub(super) fn cell(&self) -> Vec<u8> {
         let bytes = self.bytes();
         matrix(9, &[bytes.len() as i32, 1], "", &[element(2, &bytes)])

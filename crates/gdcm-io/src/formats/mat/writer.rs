@@ -1,4 +1,4 @@
-//! Files of level 5 to be read by MATLAB, GNU Octave and SciPy.
+//! Level-5 files for MATLAB, GNU Octave and SciPy.
 //!
 //! Source: "MAT-File Format", The MathWorks, "Level 5 MAT-File Format".
 
@@ -12,23 +12,24 @@ use crate::variables::{
     Array, CellArray, ElementKind, StructArray, TextArray, Value, Variable, VariableFault,
 };
 
-/// What the file begins with, filled up with blanks: MATLAB looks at the first words.
+/// Header text, padded with blanks: MATLAB checks the first words.
 const HEADER_TEXT: &str = "MATLAB 5.0 MAT-file, written by gdcm";
-/// Length of that text.
+/// Length of the header text.
 const HEADER_TEXT_BYTES: usize = 116;
-/// The most bytes of one variable.
+/// Largest variable \[bytes\].
 const MOST_BYTES: u64 = u32::MAX as u64;
 
-/// A file of these variables.
+/// Writes a file with these variables.
 ///
-/// Numbers stay what they are: floating-point ones are written as `double`, whole ones as `int32` or, if one of them does not fit, as
-/// `int64`, and true and false as `logical`. Texts become arrays of characters if they are rows of the same length, otherwise cells.
-/// Objects become structs, and what could not be read an empty array.
+/// Number types are kept: floating-point numbers are written as `double`, integers as `int32` or,
+/// if a value does not fit, as `int64`, and logical values as `logical`. Texts become a character
+/// array if all rows have the same length, otherwise cells. Objects become structs, and unreadable
+/// values an empty array.
 pub fn write(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
     file(variables, |element| element)
 }
 
-/// The same, packed: smaller, and read by MATLAB from version 7 on.
+/// Writes a packed file, which is smaller and requires MATLAB 7 or later.
 pub fn write_packed(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
     file(variables, packed)
 }
@@ -39,7 +40,7 @@ fn file(
 ) -> Result<Vec<u8>, VariableFault> {
     let mut bytes = HEADER_TEXT.as_bytes().to_vec();
     bytes.resize(HEADER_TEXT_BYTES, b' ');
-    // No objects, version 1.0, and the mark by which the order of bytes is known.
+    // No objects, version 1.0, and the byte-order mark.
     bytes.extend([0; 8]);
     bytes.extend([0, 1, b'I', b'M']);
     for variable in variables {
@@ -59,7 +60,7 @@ fn file(
 
 fn packed(plain: Vec<u8>) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
-    // Writing to memory does not fail; were it to, the plain bytes would say the same.
+    // Writing to memory does not fail; the plain bytes would be equivalent.
     if encoder.write_all(&plain).is_err() {
         return plain;
     }
@@ -71,11 +72,12 @@ fn packed(plain: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-// Elements of a file: what kind of data follows, how much, and the data.
+// Elements of a file: data type, length and data.
 
-/// Adds an element, filled up to eight bytes. Up to four bytes stand in the tag itself, as MATLAB insists on for some names.
+/// Appends an element, padded to eight bytes. Up to four bytes go into the tag itself, which MATLAB
+/// requires for some names.
 pub(super) fn element(bytes: &mut Vec<u8>, kind: Kind, data: &[u8]) {
-    // The writer refuses a variable whose length does not fit; the elements in it are shorter.
+    // The writer refuses a variable whose length does not fit; its elements are shorter.
     let length = data.len() as u32;
     if (1..=4).contains(&length) && kind != Kind::Packed {
         bytes.extend((length << 16 | kind as u32).to_le_bytes());
@@ -91,9 +93,9 @@ pub(super) fn element(bytes: &mut Vec<u8>, kind: Kind, data: &[u8]) {
     }
 }
 
-// The contents of the element of one array.
+// Contents of an array element.
 
-/// The classes of arrays that are written.
+/// Array classes that are written.
 #[derive(Clone, Copy)]
 enum Class {
     Cell = 1,
@@ -107,10 +109,10 @@ enum Class {
 
 const COMPLEX: u32 = 0x0800;
 const LOGICAL: u32 = 0x0200;
-/// The lengths of names of fields that MATLAB writes, with the zero behind them.
+/// Lengths of field names in MATLAB, including the zero at the end.
 const NAME_LENGTHS: [usize; 2] = [32, 64];
 
-/// The contents of an array's element; within another array the name is empty.
+/// Returns the contents of an array element; the name is empty within another array.
 pub(super) fn contents(value: &Value, name: &str) -> Vec<u8> {
     match value {
         Value::Array(numbers) => array(numbers, name),
@@ -126,7 +128,8 @@ fn begun(class: Class, flags: u32, shape: &[usize], name: &str) -> Vec<u8> {
     let mut bytes = Vec::new();
     let words = [(class as u32 | flags).to_le_bytes(), [0; 4]];
     element(&mut bytes, Kind::U32, words.as_flattened());
-    // A length that does not fit belongs to an array that is refused for its size, or to one without elements.
+    // A length that does not fit belongs to an array that is refused for its size, or to an empty
+    // array.
     let sides: Vec<u8> = shape
         .iter()
         .flat_map(|&side| i32::try_from(side).unwrap_or(i32::MAX).to_le_bytes())
@@ -205,7 +208,8 @@ fn text(text: &TextArray, name: &str) -> Vec<u8> {
     };
     let characters: Vec<u16> = units.chunks(height.max(1)).flat_map(columns).collect();
     let mut bytes = begun(Class::Char, 0, &shape, name);
-    // SciPy and Octave read UTF-8 best. Rows with letters of two units could not be taken apart again.
+    // SciPy and Octave read UTF-8 most reliably. Rows with surrogate pairs could not be separated
+    // again.
     match char::decode_utf16(characters.iter().copied()).collect::<Result<String, _>>() {
         Ok(letters) if letters.chars().count() == characters.len() => {
             element(&mut bytes, Kind::Utf8, letters.as_bytes());
@@ -218,7 +222,7 @@ fn text(text: &TextArray, name: &str) -> Vec<u8> {
     bytes
 }
 
-/// Texts of different lengths, each in a cell.
+/// Returns texts of different lengths, each in a cell.
 fn texts(texts: &TextArray, name: &str) -> Vec<u8> {
     cell(
         &CellArray {
@@ -264,7 +268,7 @@ fn records(records: &StructArray, name: &str) -> Vec<u8> {
         .unwrap_or(0);
     for at in 0..count {
         for (_, values) in &records.fields {
-            // An element of no bytes is an empty array.
+            // An element without bytes is an empty array.
             let value = values
                 .get(at)
                 .map(|value| contents(value, ""))
@@ -310,7 +314,7 @@ mod writer_tests {
     fn numbers() -> impl Strategy<Value = Value> {
         let whole =
             (-9_000_000_000_000_000_i64..9_000_000_000_000_000).prop_map(|number| number as f64);
-        // As many as the largest shape has room for.
+        // As many numbers as the largest shape holds.
         let both = |kind: ElementKind, number: BoxedStrategy<f64>| {
             let part = prop::collection::vec(number, 27);
             (Just(kind), part.clone(), part)

@@ -1,4 +1,4 @@
-//! The elements of a dataset, read within limits.
+//! Dataset elements, read within limits.
 
 use hdf5_pure::{
     Chunk, ChunkIndex, Dataset, Datatype, DatatypeByteOrder, EnumMember, FloatingPointLayout,
@@ -8,28 +8,28 @@ use crate::formats::mat73::{damaged, fault};
 use crate::strides::{NumberClass, Places, StoredNumber, count, matrix_shape};
 use crate::variables::{Array, ElementKind, ReadingBudget, VariableFault};
 
-/// Whether the elements run as MATLAB or as C keeps them.
+/// Storage order of the elements: MATLAB's or C's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
-    /// The first index runs fastest, and the dimensions stand the other way round.
+    /// The first index is fastest, and the dimensions are reversed.
     Columns,
-    /// The last index runs fastest.
+    /// The last index is fastest.
     Rows,
 }
 
-/// The elements of a dataset as they stand in the file.
+/// Elements of a dataset in file order.
 pub(super) struct Elements {
     pub(super) datatype: Datatype,
-    /// With at least two dimensions.
+    /// At least two dimensions.
     pub(super) shape: Vec<usize>,
-    /// Number of bytes of each element.
+    /// Bytes of each element.
     pub(super) size: usize,
     bytes: Vec<u8>,
     order: Order,
 }
 
 impl Elements {
-    /// Reads a dataset after its size was found to be within the limits.
+    /// Reads a dataset whose size is within the limits.
     pub(super) fn read(
         dataset: &Dataset,
         order: Order,
@@ -60,7 +60,7 @@ impl Elements {
             }
         };
         let none = bytes.is_empty() && elements == 1;
-        // h5py's Empty has no shape and no element, which the library tells by the bytes alone.
+        // h5py's Empty has no shape and no element; the library shows this only in the raw bytes.
         let (shape, elements) = if none {
             (vec![0, 0], 0)
         } else {
@@ -86,7 +86,7 @@ impl Elements {
         self.bytes.len().checked_div(self.size).unwrap_or(0)
     }
 
-    /// Where the elements stand, in the order of this program.
+    /// Positions of the elements in the file, in the order of this program.
     pub(super) fn places(&self) -> Box<dyn Iterator<Item = usize>> {
         match (self.order, Places::row_major(&self.shape)) {
             (Order::Rows, Some(places)) => Box::new(places),
@@ -94,14 +94,14 @@ impl Elements {
         }
     }
 
-    /// The bytes of the element at a place.
+    /// Returns the bytes of the element at an index.
     pub(super) fn at(&self, place: usize) -> &[u8] {
         self.bytes
             .get(place * self.size..(place + 1) * self.size)
             .unwrap_or_default()
     }
 
-    /// The numbers, if they are numbers.
+    /// Returns the numbers, if the elements are numbers.
     pub(super) fn numbers(
         &self,
         path: &str,
@@ -133,7 +133,7 @@ impl Elements {
         }))
     }
 
-    /// Whole numbers of 64 bits without a sign, to the last digit, if that is what they are.
+    /// Returns exact unsigned 64-bit integers, if the elements have that type.
     pub(super) fn words(
         &self,
         path: &str,
@@ -157,15 +157,16 @@ impl Elements {
     }
 }
 
-// Chunks, in which datasets are packed.
+// Chunks of packed datasets.
 
-/// What the library keeps for each chunk of a dataset while it reads \[bytes\].
+/// Memory of the library for each chunk of a dataset during reading \[bytes\].
 const CHUNK: u64 = 128;
-/// What no filter makes a chunk longer by, beyond twice its length \[bytes\].
+/// Largest growth of a chunk by filters, beyond twice its length \[bytes\].
 const OVERHEAD: u64 = 4096;
 
-/// Counts what reading a dataset chunk by chunk takes, one chunk unpacked and what is kept of each, and finds out whether its chunks
-/// can be as they claim: the library takes memory for what they claim, and adds up their places, without asking.
+/// Budgets the chunked reading of a dataset (one unpacked chunk, and the bookkeeping of each chunk)
+/// and checks that the claimed chunks are possible: the library allocates memory for the claimed
+/// sizes and adds up their offsets unchecked.
 pub(super) fn check(
     dataset: &Dataset,
     sides: &[usize],
@@ -206,7 +207,7 @@ pub(super) fn check(
     if chunks.iter().any(|chunk| chunk.storage_size > longest) {
         return Err(damaged(path, "a chunk is longer than it can be"));
     }
-    // The other indices do not store places, they count them.
+    // The other indices compute offsets instead of storing them.
     if index == Some(ChunkIndex::BTreeV1)
         && (chunks.len() as u64 > most || chunks.iter().any(|chunk| outside(chunk, sides)))
     {
@@ -223,9 +224,9 @@ fn outside(chunk: &Chunk, sides: &[usize]) -> bool {
         .any(|(&offset, &side)| offset >= side as u64)
 }
 
-// Types of datasets whose elements are numbers.
+// Numeric dataset types.
 
-/// Binary16 of IEEE 754, as h5py writes numpy's float16.
+/// IEEE 754 binary16, as h5py writes numpy's float16.
 const HALF: FloatingPointLayout = FloatingPointLayout {
     bit_offset: 0,
     bit_precision: 16,
@@ -236,18 +237,18 @@ const HALF: FloatingPointLayout = FloatingPointLayout {
     exponent_bias: 15,
 };
 
-/// A type of numbers, real or complex.
+/// A numeric type, real or complex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct NumberType {
     pub(super) number: StoredNumber,
-    /// Where the real part, or the number, begins in an element \[bytes\].
+    /// Offset of the real part, or of the number, in an element \[bytes\].
     pub(super) re: usize,
-    /// Where the imaginary part does.
+    /// Offset of the imaginary part \[bytes\].
     pub(super) im: Option<usize>,
 }
 
 impl NumberType {
-    /// The numbers that a dataset's type stands for, if it does.
+    /// Returns the numeric type of a dataset's type, if it has one.
     pub(super) fn of(datatype: &Datatype) -> Option<Self> {
         let Datatype::Compound { members, size } = datatype else {
             return Some(Self {
@@ -256,7 +257,7 @@ impl NumberType {
                 im: None,
             });
         };
-        // MATLAB writes complex numbers as real and imag, h5py as r and i.
+        // MATLAB names the parts of complex numbers real and imag, h5py r and i.
         let [re, im] = members.as_slice() else {
             return None;
         };
@@ -332,7 +333,7 @@ fn number(datatype: &Datatype) -> Option<StoredNumber> {
     StoredNumber::new(class, *size as usize, big_endian)
 }
 
-/// h5py writes truths as an enumeration of these two names.
+/// Whether an enumeration has the two names of h5py's logical values.
 fn truths(members: &[EnumMember]) -> bool {
     let names: Vec<_> = members.iter().map(|member| member.name.as_str()).collect();
     names == ["FALSE", "TRUE"]

@@ -1,14 +1,16 @@
-//! MATLAB 7.3 files, and plain HDF5 files such as those of h5py.
+//! MATLAB 7.3 files, and plain HDF5 files such as those written by h5py.
 //!
-//! The container is that of the HDF5 File Format Specification 3.0. What MATLAB makes of it is not published by The MathWorks; it is
-//! known from its files and from the descriptions of the matio, hdf5storage and MAT.jl projects: attributes tell the classes, arrays
-//! lie column by column, so that their shapes stand the other way round, and the elements of cells and struct arrays are references
-//! into a group `#refs#`.
+//! The container follows the HDF5 File Format Specification 3.0. MATLAB's use of it is not
+//! published by The MathWorks; it is known from its files and from the descriptions of the matio,
+//! hdf5storage and MAT.jl projects: attributes give the classes, arrays are stored by columns, with
+//! their shapes reversed, and the elements of cells and struct arrays are references into a group
+//! `#refs#`.
 //!
-//! Arrays without MATLAB's attributes lie row by row, as C and Python keep them: a dataset of r x c elements becomes an r x c array,
-//! a number alone 1 x 1, n elements without a second dimension the row 1 x n. (MATLAB's own `h5write` writes such datasets from its
-//! columns; they come out transposed.) Groups become structs. Members of groups come in the order of their names, unless MATLAB says
-//! otherwise; symbolic links, to other files too, are passed over.
+//! Arrays without MATLAB's attributes are stored by rows, as in C and Python: a dataset of r x c
+//! elements becomes an r x c array, a scalar 1 x 1, n elements without a second dimension the row 1
+//! x n. (MATLAB's own `h5write` writes such datasets from its columns; they are read transposed.)
+//! Groups become structs. Members of groups are sorted by name, unless MATLAB gives an order;
+//! symbolic links, including links to other files, are skipped.
 
 mod dataset;
 mod values;
@@ -44,7 +46,7 @@ pub(crate) const HDF5: Importer = Importer {
             }
             .variables(&file.root())
         });
-        // Where the library was stopped it says that the file cannot be read.
+        // The library reports a stop as an unreadable file.
         Contents::variables(
             budget
                 .work(0, "")
@@ -55,25 +57,26 @@ pub(crate) const HDF5: Importer = Importer {
     },
 };
 
-// Values as datasets and groups hold them, one within another.
+// Values in datasets and groups, including nested values.
 
-/// How many values may lie in one another.
+/// Deepest nesting of values.
 const DEEPEST: usize = 64;
-/// What a value takes besides its elements while it is read: the library's view of its header, and the value itself \[bytes\].
+/// Memory of a value during reading, without its elements: the library's view of its header, and
+/// the value itself \[bytes\].
 const HEADER: u64 = 1024;
 
-/// Reads values within the limits of a budget.
+/// Reads values within a budget.
 struct Reader<'r> {
     budget: &'r ReadingBudget<'r>,
     objects: &'r Objects,
 }
 
 impl Reader<'_> {
-    /// The variables that lie in the outermost group.
+    /// Reads the variables in the root group.
     fn variables(&self, root: &Group) -> Result<Vec<Variable>, VariableFault> {
         let mut variables = Vec::new();
         for (name, object) in members(root, "", self.budget)? {
-            // What other variables refer to.
+            // Contents referenced by other variables.
             if name != "#refs#" && name != "#subsystem#" {
                 let value = self.value(&object, &name, 0)?;
                 variables.push(Variable { name, value });
@@ -82,7 +85,7 @@ impl Reader<'_> {
         Ok(variables)
     }
 
-    /// The value of a dataset or group; `path` is what faults call it.
+    /// Reads the value of a dataset or group; `path` is its name in faults.
     fn value(&self, object: &Object, path: &str, depth: usize) -> Result<Value, VariableFault> {
         if depth >= DEEPEST {
             return Err(VariableFault::too_deep(path));
@@ -97,7 +100,7 @@ impl Reader<'_> {
             )),
         };
         match value {
-            // The other variables can be read all the same.
+            // The other variables remain readable.
             Err(VariableFault::Unsupported { what, remedy, .. }) => Ok(Value::opaque(what, remedy)),
             value => value,
         }
@@ -141,7 +144,7 @@ impl Reader<'_> {
         ))
     }
 
-    /// A cell for each reference.
+    /// Reads a cell for each reference.
     fn cell(
         &self,
         dataset: &Dataset,
@@ -162,7 +165,7 @@ impl Reader<'_> {
         }))
     }
 
-    /// What the references of a dataset lead to, in the order of the file.
+    /// Resolves the references of a dataset, in file order.
     fn referred(&self, dataset: &Dataset, path: &str) -> Result<Vec<Object>, VariableFault> {
         let failed = |error| fault(&error, path);
         let elements = dataset
@@ -176,7 +179,7 @@ impl Reader<'_> {
     }
 }
 
-/// Whether the elements of a dataset are other datasets and groups.
+/// Whether the elements of a dataset are references to datasets and groups.
 fn is_reference(datatype: &Datatype) -> bool {
     matches!(
         datatype,
@@ -187,7 +190,8 @@ fn is_reference(datatype: &Datatype) -> bool {
     )
 }
 
-/// Opens a file, which is copied, and finds it whole; a user block such as MATLAB's may stand before it.
+/// Opens a copy of the file and checks that it is complete; a user block such as MATLAB's may
+/// precede it.
 fn open(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<File, VariableFault> {
     if !is_hdf5_bytes(bytes) {
         return Err(VariableFault::other_bytes(
@@ -196,24 +200,24 @@ fn open(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<File, VariableFault>
         ));
     }
     budget.take(bytes.len() as u64, 1, "")?;
-    // What a cache gave out would not count.
+    // Reads from a cache would not be counted.
     let properties =
         FileAccessProperties::new().with_metadata_cache(MetadataCacheConfig::disabled());
     let source = Rationed::new(bytes.to_vec(), Arc::clone(budget.stop()));
     let file =
         File::from_source_with_options(source, properties).map_err(|error| fault(&error, ""))?;
-    // Chunks at the end may be missing without any structure reaching beyond it.
+    // Chunks may be missing at the end without any structure extending beyond it.
     if file.superblock().eof_address > bytes.len() as u64 {
         return Err(VariableFault::cut_off("", bytes.len()));
     }
     Ok(file)
 }
 
-// What the HDF5 library says, in the words of this program.
+// Errors of the HDF5 library in the words of this program.
 
-/// The fault that an error of the library is; `path` is the variable.
+/// Converts an error of the library to a fault; `path` is the variable.
 ///
-/// The library does not tell where in the file it stopped.
+/// The library does not report the position of the error in the file.
 fn fault(error: &Error, path: &str) -> VariableFault {
     match error {
         Error::Format(FormatError::NestingDepthExceeded) => VariableFault::too_deep(path),
@@ -230,7 +234,7 @@ fn fault(error: &Error, path: &str) -> VariableFault {
             | FormatError::InvalidLayoutVersion(_)
             | FormatError::UnsupportedZfp(_),
         ) => {
-            // HDF5 2.0 chunks by a layout of its own where it is asked for its latest format.
+            // HDF5 2.0 uses a new chunk layout if its latest format is requested.
             let remedy = "write it with compression gzip or none, in one file, in the format of HDF5 1.14 or earlier";
             VariableFault::unsupported(path, format!("a dataset of this kind ({error})"), remedy)
         }
@@ -238,24 +242,25 @@ fn fault(error: &Error, path: &str) -> VariableFault {
     }
 }
 
-/// The bytes contradict the format.
+/// Returns the fault for bytes that contradict the format.
 fn damaged(path: &str, what: &str) -> VariableFault {
     VariableFault::damaged(path, what, 0)
 }
 
-// A file's bytes, of which only so many are given out.
+// File bytes with a limited amount of reading.
 
-/// How often a file may be read through: headers and indices are read several times, once for each question.
+/// Number of times a file may be read: headers and indices are read several times, once for each
+/// query.
 const TIMES: u64 = 16;
-/// What may be read of a small file besides \[bytes\].
+/// Additional amount that may be read from a small file \[bytes\].
 const BESIDES: u64 = 16 << 20;
-/// What a read costs at least \[bytes\].
+/// Smallest charge for a read \[bytes\].
 const LEAST: u64 = 16;
 
-/// Bytes in memory that can be read only so often.
+/// Bytes in memory with a limited amount of reading.
 ///
-/// The nodes of an index may lead to one another in a way that a file of a few kilobytes has more of them than can ever be
-/// visited; the library follows them all. Here it runs dry.
+/// The nodes of an index may refer to one another so that a file of a few kilobytes has more paths
+/// than can ever be visited; the library follows them all. The limit ends such reading.
 struct Rationed {
     bytes: Vec<u8>,
     left: AtomicU64,
@@ -304,27 +309,27 @@ impl Source for Rationed {
     }
 }
 
-// The attributes with which MATLAB says what a group or dataset is.
+// MATLAB's attributes of groups and datasets.
 
-/// What `MATLAB_object_decode` says of a function handle.
+/// `MATLAB_object_decode` of a function handle.
 const FUNCTION_HANDLE: u64 = 1;
-/// An object of a class made with `@` folders, stored as a struct.
+/// `MATLAB_object_decode` of an object of an `@`-folder class, stored as a struct.
 const OLD_OBJECT: u64 = 2;
-/// An object of a class made with `classdef`, stored as a reference.
+/// `MATLAB_object_decode` of a `classdef` object, stored as a reference.
 const OBJECT: u64 = 3;
 
 /// MATLAB's attributes of a group or dataset.
 #[derive(Clone, Debug, PartialEq)]
 struct MatlabAttributes {
-    /// Name of the class (`MATLAB_class`); none for what MATLAB did not write.
+    /// Class name (`MATLAB_class`); `None` for objects not written by MATLAB.
     class: Option<String>,
-    /// The dataset holds the shape of an array without elements (`MATLAB_empty`, `OCTAVE_EMPTY_MATRIX`).
+    /// The dataset holds the shape of an empty array (`MATLAB_empty`, `OCTAVE_EMPTY_MATRIX`).
     empty: bool,
     /// Number of rows of a sparse matrix (`MATLAB_sparse`).
     sparse: Option<u64>,
-    /// Names of a struct's fields in their order (`MATLAB_fields`).
+    /// Field names of a struct in order (`MATLAB_fields`).
     fields: Vec<String>,
-    /// What stands for a value (`MATLAB_object_decode`); 0 where it is the value.
+    /// Encoding of the value (`MATLAB_object_decode`); 0 for a plain value.
     decode: u64,
 }
 
@@ -349,18 +354,18 @@ impl MatlabAttributes {
         })
     }
 
-    /// The class, or nothing.
+    /// Returns the class, or an empty text.
     fn class(&self) -> &str {
         self.class.as_deref().unwrap_or_default()
     }
 }
 
-// Groups: structs, struct arrays, sparse matrices, and what else MATLAB keeps in them.
+// Groups: structs, struct arrays, sparse matrices and other values.
 
-/// What the library keeps for each member of a group while it is read \[bytes\].
+/// Memory of the library for each member of a group during reading \[bytes\].
 const MEMBER: u64 = 256;
 
-/// The datasets and groups in a group, in the order of their names.
+/// Returns the datasets and groups in a group, sorted by name.
 fn members(
     group: &Group,
     path: &str,
@@ -383,7 +388,8 @@ fn members(
     }
 }
 
-/// Octave keeps the sides of an array without elements in its place, and says so at the group that it lies in.
+/// Octave stores the sides of an empty array in its place and marks this at the group that contains
+/// it.
 fn without_elements(value: &mut Value) {
     if let Value::Array(sides) = value
         && sides.re.contains(&0.0)
@@ -395,7 +401,7 @@ fn without_elements(value: &mut Value) {
     }
 }
 
-/// The value of a group.
+/// Reads the value of a group.
 fn group_value(
     reader: &Reader<'_>,
     group: &Group,
@@ -420,7 +426,7 @@ fn group_value(
         (OBJECT, class) => return Ok(Value::opaque(class, "enumerations are not read")),
         _ => {}
     }
-    // MATLAB says the order of fields only where it is not that of the names.
+    // MATLAB stores the field order only if it differs from the name order.
     reader.budget.work(
         (members.len() as u64).saturating_mul(marks.fields.len() as u64),
         path,
@@ -458,7 +464,7 @@ fn group_value(
     })
 }
 
-/// Whether a struct has several records: its fields are references that are not marked as cells.
+/// Whether a struct has several records: its fields are references not marked as cells.
 fn is_array(
     marks: &MatlabAttributes,
     members: &[(String, Object)],
@@ -508,7 +514,7 @@ fn array(
     Ok(records)
 }
 
-/// The values of one field, one for each record.
+/// Reads the values of one field, one for each record.
 fn values(
     reader: &Reader<'_>,
     dataset: &Dataset,
@@ -536,8 +542,8 @@ mod mat73_tests {
     use super::*;
     use crate::variables::{Array, CellArray, ElementKind, TextArray, Value};
 
-    /// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; objects of MATLAB's classes stay
-    /// [`Value::Opaque`](crate::variables::Value::Opaque).
+    /// Reads all variables of a MATLAB 7.3 file or a plain HDF5 file; unreadable objects of
+    /// MATLAB's classes are [`Value::Opaque`](crate::variables::Value::Opaque).
     fn read(bytes: &[u8], budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
         let objects = Objects::Unread("objects of classes are not read".to_owned());
         Reader {
@@ -761,7 +767,7 @@ mod mat73_tests {
 
     #[test]
     fn other_variables_are_read_where_the_objects_are_damaged() {
-        // The directory of this file is cut off behind its version.
+        // The directory of this file is cut off after its version.
         let read = (HDF5.read)(
             &file("objects.mat"),
             Path::new("objects.mat"),

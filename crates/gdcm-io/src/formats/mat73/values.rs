@@ -1,4 +1,4 @@
-//! Texts: MATLAB's characters, and strings of HDF5.
+//! Texts: MATLAB's characters, and HDF5 strings.
 
 use hdf5_pure::{
     CompoundMember, Dataset, Datatype, File, Object, StringPadding, VlenStringReadOptions,
@@ -12,7 +12,7 @@ use crate::variables::{
     Array, CellArray, ElementKind, ReadingBudget, StructArray, TextArray, Value, VariableFault,
 };
 
-/// The texts in the rows of an array of characters' numbers (UTF-16).
+/// Returns the texts in the rows of an array of UTF-16 codes.
 pub(super) fn rows(
     codes: &Array,
     path: &str,
@@ -27,7 +27,7 @@ pub(super) fn rows(
     mat::rows(&units, &codes.shape, path, budget)
 }
 
-/// A text of fixed length without what fills it up.
+/// Decodes a fixed-length text without its padding.
 pub(super) fn fixed(bytes: &[u8], padding: &StringPadding) -> String {
     let text = String::from_utf8_lossy(bytes);
     let end = text.find('\0').unwrap_or(text.len());
@@ -40,7 +40,7 @@ pub(super) fn fixed(bytes: &[u8], padding: &StringPadding) -> String {
     .to_owned()
 }
 
-/// The strings of a dataset, if they are of one of HDF5's two kinds.
+/// Reads the strings of a dataset, if it has one of HDF5's two string types.
 pub(super) fn strings(
     dataset: &Dataset,
     elements: &Elements,
@@ -83,7 +83,7 @@ fn variable(
         return Ok(Vec::new());
     }
     let failed = |error| fault(&error, path);
-    // Each string may be the same long one.
+    // Every string may refer to the same long string.
     let length = dataset.vlen_string_payload_size().map_err(failed)?;
     budget.take(length, 1, path)?;
     let most = usize::try_from(length).unwrap_or(usize::MAX);
@@ -98,9 +98,9 @@ fn variable(
     }
 }
 
-// Arrays without elements, of which MATLAB stores the shape.
+// Empty arrays, whose shape MATLAB stores.
 
-/// The value without elements that marks and a stored shape stand for.
+/// Returns the empty value for the attributes and a stored shape.
 pub(super) fn empty(
     marks: &MatlabAttributes,
     elements: &Elements,
@@ -137,7 +137,7 @@ pub(super) fn empty(
             Value::Struct(StructArray { shape, fields })
         }
         "char" => Value::Text(rows(&numbers(ElementKind::Integer), path, budget)?),
-        // GNU Octave names no class here.
+        // GNU Octave writes no class here.
         "double" | "single" | "" => Value::Array(numbers(ElementKind::Float)),
         "logical" => Value::Array(numbers(ElementKind::Logical)),
         "int8" | "int16" | "int32" | "int64" | "uint8" | "uint16" | "uint32" | "uint64" => {
@@ -147,9 +147,10 @@ pub(super) fn empty(
     })
 }
 
-// Records of HDF5.
+// HDF5 compound types.
 
-/// A record for each element, if the elements are records: numbers and texts of fixed length, and what else there is by name.
+/// Returns a record for each element, if the type is compound: numbers, fixed-length texts, and the
+/// names of other members.
 pub(super) fn records(
     elements: &Elements,
     path: &str,
@@ -160,7 +161,7 @@ pub(super) fn records(
     };
     let mut fields = Vec::with_capacity(members.len());
     for member in members {
-        // A value, its shape and its one number.
+        // A value, its shape and its single number.
         budget.take(
             elements.count() as u64,
             size_of::<Value>() as u64 + 24,
@@ -213,9 +214,9 @@ fn value(
     ))
 }
 
-// Matrices of which only the numbers other than zero are stored (`MATLAB_sparse`): by columns, compressed.
+// Sparse matrices (`MATLAB_sparse`), in compressed columns.
 
-/// The matrix of a group's members, filled up with zeros.
+/// Returns the full matrix of a group's members.
 pub(super) fn sparse(
     height: u64,
     marks: &MatlabAttributes,
@@ -247,7 +248,7 @@ pub(super) fn sparse(
     };
     let starts = places("jc")?.ok_or_else(wrong)?;
     let rows = places("ir")?.unwrap_or_default();
-    // There is no dataset where there are no numbers.
+    // The dataset is absent if there are no nonzero numbers.
     let data = match member("data")? {
         None => Array::matrix(0, 0, Vec::new()),
         Some(elements) => elements
@@ -269,21 +270,21 @@ pub(super) fn sparse(
     entries.filled(path, budget, wrong)
 }
 
-// Objects of MATLAB's classes, which lie in a part of the file of their own (`#subsystem#/MCOS`), as in the files of the versions
-// before.
+// Objects of MATLAB's classes, in a separate part of the file (`#subsystem#/MCOS`), as in files of
+// earlier versions.
 
-/// What becomes of references to objects.
+/// Treatment of references to objects.
 pub(super) enum Objects {
-    /// They stay the whole numbers that they are: within the part that holds the objects itself.
+    /// References remain integers, within the object part itself.
     References,
-    /// They cannot be read, and why.
+    /// Objects cannot be read, with the reason.
     Unread(String),
-    /// They are looked up.
+    /// References are resolved.
     Read(Subsystem),
 }
 
 impl Objects {
-    /// Reads the part of the objects, where there is one.
+    /// Reads the object part, if there is one.
     pub(super) fn read(file: &File, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         let Ok(dataset) = file
             .root()
@@ -300,12 +301,12 @@ impl Objects {
         match subsystem {
             Ok(subsystem) => Ok(Self::Read(subsystem)),
             Err(fault) if fault.is_of_the_budget() => Err(fault),
-            // The other variables can be read all the same.
+            // The other variables remain readable.
             Err(fault) => Ok(Self::Unread(fault.to_string())),
         }
     }
 
-    /// The value of a reference of a class.
+    /// Returns the value of a reference with a class.
     pub(super) fn value(
         &self,
         class: &str,
@@ -332,11 +333,11 @@ impl Objects {
     }
 }
 
-/// The cells in which objects lie, and the whole numbers of those cells that no floating-point number holds.
+/// The cells of the objects, and the exact 64-bit integers of cells.
 pub(super) type Wrapper = (Vec<Value>, Vec<(usize, Vec<u64>)>);
 
-/// The cells that hold the objects, the first of which are the bytes of their directory; and to the last digit those of whole numbers
-/// of 64 bits, each with the number of its cell, counted from 0.
+/// Reads the cells of the objects, the first of which holds the bytes of their directory, and the
+/// exact 64-bit integers of cells, each with the index of its cell, counted from 0.
 pub(super) fn wrapper(
     dataset: &Dataset,
     budget: &ReadingBudget<'_>,

@@ -1,31 +1,31 @@
-//! What the elements of an array are.
+//! Element types of arrays.
 
 use serde_json::Value as Json;
 
 use crate::strides::{NumberClass, StoredNumber, count};
 use crate::variables::{ReadingBudget, VariableFault};
 
-/// `NumPy` writes no such description.
+/// Returns the fault for a description that `NumPy` does not write.
 fn damaged(what: impl Into<String>) -> VariableFault {
     VariableFault::damaged("", what, 8)
 }
 
-/// One element of an array: a `dtype.descr` of `NumPy`.
+/// Type of an array element: a `dtype.descr` of `NumPy`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Element {
     Number(StoredNumber),
     /// Two floats: real and imaginary part.
     Complex(StoredNumber),
-    /// Characters of 32 bits, zeros behind the last.
+    /// 32-bit characters, padded with zeros.
     Unicode {
         characters: usize,
         big_endian: bool,
     },
-    /// Bytes, zeros behind the last.
+    /// Bytes, padded with zeros.
     Bytes {
         count: usize,
     },
-    /// Fields one after another.
+    /// Consecutive fields.
     Record {
         fields: Vec<Field>,
         size: usize,
@@ -35,17 +35,17 @@ pub(super) enum Element {
 /// One field of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Field {
-    /// The name; empty for bytes that only fill up.
+    /// Empty for padding bytes.
     pub(super) name: String,
     pub(super) element: Element,
-    /// A field may be an array by itself; rows one after another.
+    /// A field may be an array, stored by rows.
     pub(super) shape: Vec<usize>,
-    /// Where the field begins in its record \[bytes\].
+    /// Offset of the field in its record \[bytes\].
     pub(super) offset: usize,
 }
 
 impl Element {
-    /// Number of bytes.
+    /// Size \[bytes\].
     pub(super) fn size(&self) -> usize {
         match self {
             Self::Number(number) => number.size(),
@@ -56,7 +56,7 @@ impl Element {
         }
     }
 
-    /// Reads the value of `descr`: a short text such as "<f8", or a list of fields.
+    /// Parses the value of `descr`: a short text such as "<f8", or a list of fields.
     pub(super) fn parse(descr: &Json) -> Result<Self, VariableFault> {
         match descr {
             Json::String(code) => Self::parse_code(code),
@@ -125,7 +125,7 @@ impl Element {
                 .checked_mul(field.element.size())
                 .ok_or_else(too_large)?;
             offset = offset.checked_add(length).ok_or_else(too_large)?;
-            // Bytes that only fill up have no name.
+            // Padding bytes have no name.
             if !field.name.is_empty() {
                 fields.push(field);
             }
@@ -137,7 +137,7 @@ impl Element {
     }
 }
 
-/// The classes that are refused, with the way out.
+/// Returns the fault, with instructions, for a refused type.
 fn unread(class: &str, code: &str) -> Option<VariableFault> {
     let (what, remedy) = match class {
         "O" => (
@@ -185,7 +185,7 @@ impl Field {
     }
 }
 
-/// The lengths along each dimension.
+/// Parses the lengths along each dimension.
 fn sides(shape: &Json) -> Option<Vec<usize>> {
     let Json::Array(sides) = shape else {
         return None;
@@ -196,9 +196,9 @@ fn sides(shape: &Json) -> Option<Vec<usize>> {
         .collect()
 }
 
-// What stands before the elements of an array.
+// Header before the elements of an array.
 
-/// What every `.npy` file begins with.
+/// Signature of every `.npy` file.
 pub(super) const MAGIC: &[u8; 6] = b"\x93NUMPY";
 
 /// The header of a `.npy` file (`numpy.lib.format`, versions 1.0 to 3.0).
@@ -206,14 +206,14 @@ pub(super) const MAGIC: &[u8; 6] = b"\x93NUMPY";
 pub(super) struct Header {
     pub(super) element: Element,
     pub(super) column_major: bool,
-    /// As it stands in the file: of any number of dimensions, none included.
+    /// Shape as stored: any number of dimensions, including none.
     pub(super) shape: Vec<usize>,
-    /// Where the elements begin \[bytes\].
+    /// Offset of the elements \[bytes\].
     pub(super) length: usize,
 }
 
 impl Header {
-    /// Reads the header; `name` is what errors call the array.
+    /// Parses the header; `name` is the name of the array in errors.
     pub(super) fn parse(
         bytes: &[u8],
         name: &str,
@@ -221,7 +221,7 @@ impl Header {
     ) -> Result<Self, VariableFault> {
         let (text, length) = text(bytes, name)?;
         let damaged = |what: &str| VariableFault::damaged(name, what, 8);
-        // As JSON, and as a tree of its values.
+        // Memory of the JSON text and of the parsed tree.
         budget.take(text.len() as u64, 40, name)?;
         let header = json_of(&text).map_err(damaged)?;
         let entries = header.as_object().filter(|entries| entries.len() == 3);
@@ -248,7 +248,7 @@ impl Header {
     }
 }
 
-/// The header's text, and where it ends.
+/// Returns the text of the header, and its end.
 fn text(bytes: &[u8], name: &str) -> Result<(String, usize), VariableFault> {
     if !bytes.starts_with(MAGIC) {
         return Err(VariableFault::other_bytes(
@@ -277,7 +277,8 @@ fn text(bytes: &[u8], name: &str) -> Result<(String, usize), VariableFault> {
         .fold(0, |length, &digit| length << 8 | usize::from(digit));
     let end = from.saturating_add(length);
     let text = bytes.get(from..end).ok_or_else(cut_off)?;
-    // Versions 1 and 2 are in Latin-1, whose bytes are the first characters of Unicode; 3 is in UTF-8.
+    // Versions 1 and 2 use Latin-1, whose codes are the first characters of Unicode; version 3 uses
+    // UTF-8.
     let text = match version {
         3 => String::from_utf8(text.to_vec())
             .map_err(|_| VariableFault::damaged(name, "the header is not UTF-8", from as u64))?,
@@ -286,10 +287,10 @@ fn text(bytes: &[u8], name: &str) -> Result<(String, usize), VariableFault> {
     Ok((text, end))
 }
 
-// The Python literals in which a header is written.
+// Python literals of headers.
 
-/// A header, which is a literal of Python, as JSON: texts in other quotes, tuples as lists, no comma behind the last, and other words
-/// for true and false.
+/// Converts a header, which is a Python literal, to JSON: quotes, tuples as lists, trailing commas,
+/// and the words for true and false.
 fn json_of(text: &str) -> Result<Json, &'static str> {
     let mut json = String::with_capacity(text.len());
     let mut rest = text;
@@ -299,7 +300,7 @@ fn json_of(text: &str) -> Result<Json, &'static str> {
                 let end = rest[1..]
                     .find(sign)
                     .ok_or("a text of the header does not end")?;
-                // Escapes would stand only in names of fields that hold quotes, backslashes or control characters.
+                // Escapes occur only in field names with quotes, backslashes or control characters.
                 if rest[1..=end].contains('\\') {
                     return Err("the header holds an escape");
                 }
@@ -328,7 +329,7 @@ fn json_of(text: &str) -> Result<Json, &'static str> {
                 json.push(if sign == '}' { '}' } else { ']' });
                 1
             }
-            // Python 2 wrote an L behind long numbers.
+            // Python 2 appends an L to long integers.
             ' ' | '\t' | '\r' | '\n' | 'L' => 1,
             _ => {
                 json.push(sign);

@@ -1,8 +1,9 @@
-//! Arrays as `NumPy` saves them: `.npy` files of one array, `.npz` archives of several.
+//! `NumPy` files: `.npy` files of one array, `.npz` archives of several.
 //!
-//! The format is that of NEP 1 and of `numpy.lib.format`, versions 1.0 to 3.0. `NumPy` knows arrays without and with one dimension,
-//! this program does not: a number alone becomes 1 x 1, an array of n elements becomes the row 1 x n. Any other shape is kept; rows
-//! stay rows, whichever way they run through the file. Pickled Python objects are programs and are refused.
+//! The format follows NEP 1 and `numpy.lib.format`, versions 1.0 to 3.0. `NumPy` has arrays with
+//! zero and one dimension, this program does not: a scalar becomes 1 x 1, an array of n elements
+//! the row 1 x n. Any other shape is kept; rows stay rows in either storage order. Pickled Python
+//! objects are programs and are refused.
 
 mod element;
 
@@ -21,7 +22,7 @@ use crate::variables::{
     VariableFault,
 };
 
-/// One array of NumPy.
+/// A NumPy array.
 pub(crate) const NPY: Importer = Importer {
     name: "an array of NumPy",
     endings: &["npy"],
@@ -35,12 +36,12 @@ pub(crate) const NPY: Importer = Importer {
     },
 };
 
-// Files of one array.
+// Files with one array.
 
-/// Reads a `.npy` file (`numpy.lib.format`, versions 1.0 to 3.0) as one variable, which is given the name `name`.
+/// Reads a `.npy` file (`numpy.lib.format`, versions 1.0 to 3.0) as one variable called `name`.
 ///
-/// A number alone becomes 1 x 1, an array of n elements the row 1 x n. Booleans, whole numbers, floats and complex numbers become an
-/// [`Array`], texts a [`TextArray`], records a [`StructArray`].
+/// A scalar becomes 1 x 1, an array of n elements the row 1 x n. Booleans, integers, floats and
+/// complex numbers become an [`Array`], texts a [`TextArray`], records a [`StructArray`].
 pub fn read_npy(
     bytes: &[u8],
     name: &str,
@@ -77,7 +78,7 @@ fn too_many(name: &str) -> VariableFault {
     VariableFault::damaged(name, "the shape has more elements than can be counted", 8)
 }
 
-/// The elements of an array as they stand in a file.
+/// Array elements as stored in a file.
 struct StoredArray<'a> {
     element: &'a Element,
     shape: &'a [usize],
@@ -129,7 +130,8 @@ impl StoredArray<'_> {
                 }))
             }
             Element::Record { fields, .. } => {
-                // Of records without fields, or of fields without elements, there may be any number in no bytes.
+                // Records without fields, or fields without elements, can be announced in any
+                // number without bytes.
                 budget.take(elements, RECORD, name)?;
                 let fields = fields
                     .iter()
@@ -152,7 +154,7 @@ impl StoredArray<'_> {
         places.ok_or_else(|| too_many(name))
     }
 
-    /// The bytes of one element.
+    /// Returns the bytes of one element.
     fn at(&self, place: usize) -> &[u8] {
         let size = self.element.size();
         self.data
@@ -221,17 +223,18 @@ impl StoredArray<'_> {
     }
 }
 
-// Archives written for `NumPy`.
+// Writing of archives for `NumPy`.
 
-/// The elements begin at a multiple of this, as `numpy.lib.format` asks for.
+/// Alignment of the elements, required by `numpy.lib.format` \[bytes\].
 const ALIGNMENT: usize = 64;
-/// Whole numbers up to here are floats without rounding.
+/// Largest integer up to which all integers are exact floats.
 const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
 
-/// Writes arrays and texts as an `.npz` archive that `numpy.load` opens without pickles; values of other kinds are refused.
+/// Writes arrays and texts as an `.npz` archive that `numpy.load` opens without pickles; refuses
+/// values of other kinds.
 ///
-/// Arrays keep their shape and run column by column (`fortran_order`): floats as `<f8`, complex numbers as `<c16`, whole numbers as
-/// `<i8`, truths as `|b1`, texts as `<U`.
+/// Arrays keep their shape and are stored by columns (`fortran_order`): floats as `<f8`, complex
+/// numbers as `<c16`, integers as `<i8`, logical values as `|b1`, texts as `<U`.
 pub fn write_npz(variables: &[Variable]) -> Result<Vec<u8>, VariableFault> {
     let mut bytes = Vec::new();
     let mut archive = ZipArchiveWriter::new(&mut bytes);
@@ -321,7 +324,7 @@ fn numbers(array: &Array) -> Vec<u8> {
 }
 
 fn characters(texts: &TextArray) -> Vec<u8> {
-    // NumPy itself writes empty texts with room for one character.
+    // NumPy also writes empty texts with space for one character.
     let longest = texts
         .texts
         .iter()
@@ -344,7 +347,7 @@ fn characters(texts: &TextArray) -> Vec<u8> {
 fn file(descr: &str, shape: &[usize], data: &[u8]) -> Vec<u8> {
     let shape: String = shape.iter().map(|side| format!("{side}, ")).collect();
     let text = format!("{{'descr': '{descr}', 'fortran_order': True, 'shape': ({shape}), }}");
-    // Magic, version and length before the text, a line break behind it.
+    // Magic, version and length before the text, a line break after it.
     let length = (10 + text.len() + 1).next_multiple_of(ALIGNMENT) - 10;
     let header = format!("{text:<width$}\n", width = length - 1);
     [
@@ -523,7 +526,7 @@ mod array_file_tests {
 
     #[test]
     fn a_matrix_keeps_its_rows_and_columns() {
-        // [[1, 2, 3], [4, 5, 6]], row by row and column by column, in all three versions of the header.
+        // [[1, 2, 3], [4, 5, 6]], by rows and by columns, in all three header versions.
         for file in [
             "matrix_c",
             "matrix_fortran",

@@ -1,15 +1,16 @@
-//! GNU Octave's `save -binary`: behind "Octave-1-L" or "Octave-1-B" each value with the lengths of its name and of its parts.
+//! GNU Octave's `save -binary`: after "Octave-1-L" or "Octave-1-B", values with the lengths of
+//! their names and parts.
 
 use super::{Element, Form, Parts, Sides, rows, texts_in_pages, value};
 use crate::formats::{Contents, Importer};
 use crate::strides::{Entries, NumberClass, StoredNumber};
 use crate::variables::{ReadingBudget, TextArray, Value, Variable, VariableFault};
 
-/// What they begin with, before the letter of the byte order.
+/// Signature before the letter of the byte order.
 const MAGIC: &[u8] = b"Octave-1-";
-/// The byte order and the format of floats behind it.
+/// Length of the header: signature, byte order and float format \[bytes\].
 const HEADER: usize = MAGIC.len() + 2;
-/// How floats are stored, by the byte before them.
+/// Storage types of floats, by the preceding byte.
 const FLOATS: [(NumberClass, usize); 10] = [
     (NumberClass::Unsigned, 1),
     (NumberClass::Unsigned, 2),
@@ -22,10 +23,10 @@ const FLOATS: [(NumberClass, usize); 10] = [
     (NumberClass::Unsigned, 8),
     (NumberClass::Signed, 8),
 ];
-/// What stands before the name of a type.
+/// Marks a named type.
 const NAMED_TYPE: u8 = 0xff;
 
-/// Files of `save -binary`.
+/// Files written by `save -binary`.
 pub(crate) const OCTAVE_BINARY: Importer = Importer {
     name: "a file of GNU Octave, as it writes with -binary",
     endings: &["bin", "mat"],
@@ -48,7 +49,7 @@ fn variables(bytes: &mut Bytes<'_>) -> Result<Vec<Variable>, VariableFault> {
         bytes.budget.take(1, size_of::<Variable>() as u64, "")?;
         let (name, kind) = bytes.member("")?;
         match value(bytes, &kind, &name, 0) {
-            // It does not say how long it is: what stands behind it is not found.
+            // The value has no length, so the following values cannot be found.
             Err(VariableFault::Unsupported { what, remedy, .. }) => {
                 let why = format!("neither it nor what stands behind it can be read; {remedy}");
                 variables.push(Variable {
@@ -66,7 +67,7 @@ fn variables(bytes: &mut Bytes<'_>) -> Result<Vec<Variable>, VariableFault> {
     Ok(variables)
 }
 
-/// A file while it is read.
+/// A file during reading.
 struct Bytes<'b> {
     bytes: &'b [u8],
     at: usize,
@@ -104,7 +105,8 @@ impl<'b> Bytes<'b> {
         Ok(String::from_utf8_lossy(self.next(length, variable)?).into_owned())
     }
 
-    /// How numbers are stored: floats may be stored as whole numbers, or as shorter ones, where nothing is lost.
+    /// Returns the stored number type: floats may be stored as integers or shorter floats if
+    /// nothing is lost.
     fn stored(&mut self, element: Element, variable: &str) -> Result<StoredNumber, VariableFault> {
         let unknown = |bytes: &Self| bytes.wrong(variable, "numbers are of an unknown kind");
         let stored = match element.stored {
@@ -124,7 +126,7 @@ impl Parts for Bytes<'_> {
     fn member(&mut self, variable: &str) -> Result<(String, String), VariableFault> {
         let name = self.string(variable)?;
         let _doc = self.string(variable)?;
-        // Whether the value is global.
+        // Flag of a global variable.
         self.next(1, variable)?;
         if self.next(1, variable)? != [NAMED_TYPE] {
             return Err(self.wrong(&name, "the type of the value has no name"));
@@ -134,7 +136,7 @@ impl Parts for Bytes<'_> {
 
     fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault> {
         let count = self.int(variable)?;
-        // Two sides without their number stand before some matrices.
+        // Some matrices store two sides without the number of dimensions.
         let shape = match usize::try_from(count) {
             Ok(rows) => vec![rows, self.length(variable)?],
             Err(_) => {

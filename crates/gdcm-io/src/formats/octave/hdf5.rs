@@ -1,7 +1,7 @@
-//! GNU Octave's `save -hdf5`: each value is a group of its type and of what belongs to it.
+//! GNU Octave's `save -hdf5`: each value is a group with its type and parts.
 //!
-//! The container is read as any HDF5 file, which makes structs of groups; here they become the values that they stand for. Arrays lie
-//! column by column, so that their sides stand the other way round.
+//! The container is read as any HDF5 file, with groups as structs, which are converted here to the
+//! values they represent. Arrays are stored by columns, with their sides reversed.
 
 use super::{Form, rows};
 use crate::strides::{Entries, Places, count};
@@ -10,7 +10,7 @@ use crate::variables::{
     VariableFault,
 };
 
-/// The values of a file that Octave wrote; those of another as they are.
+/// Converts the values of a file written by Octave; returns the values of other files unchanged.
 pub(crate) fn unwrapped(
     variables: Vec<Variable>,
     budget: &ReadingBudget<'_>,
@@ -32,7 +32,7 @@ pub(crate) fn unwrapped(
     variables.into_iter().map(value).collect()
 }
 
-/// The type of a group, and what belongs to it.
+/// Returns the type of a group, and its parts.
 fn typed(value: &Value) -> Option<(&str, &Value)> {
     let Value::Struct(records) = value else {
         return None;
@@ -82,7 +82,7 @@ fn decoded(
                 return Err(damaged(variable, "an object has no class"));
             };
             let class = class.texts.first().cloned().unwrap_or_default();
-            // Its fields lie in a group of their own beside the name of the class.
+            // The fields are in a separate group beside the class name.
             let Some(Value::Struct(fields)) = parts.field("value").and_then(<[Value]>::first)
             else {
                 return Err(damaged(variable, "an object has no fields"));
@@ -103,7 +103,7 @@ fn damaged(variable: &str, what: &str) -> VariableFault {
     VariableFault::damaged(variable, what, 0)
 }
 
-/// The array with its sides the other way round.
+/// Returns the array with its sides reversed.
 fn turned(
     array: &Array,
     variable: &str,
@@ -116,7 +116,7 @@ fn turned(
             "there are more elements than can be counted",
         ));
     };
-    // Each element goes to where it stands in the file.
+    // Each element moves to its position in the file.
     let places: Vec<usize> = places.collect();
     let part = |values: &Vec<f64>| {
         let mut part = vec![0.0; values.len()];
@@ -135,7 +135,7 @@ fn turned(
     })
 }
 
-/// Texts in the rows of an array of bytes.
+/// Returns the texts in the rows of a byte array.
 fn texts(codes: &Array) -> TextArray {
     let letters: Vec<u8> = codes.re.iter().map(|code| *code as i64 as u8).collect();
     rows(&letters, codes.shape.first().copied().unwrap_or(0))
@@ -197,7 +197,7 @@ fn cell(
     Ok(CellArray { shape, values })
 }
 
-/// Records, whose fields are cells of one value for each where there are or can be several.
+/// Returns records; fields that can have several values are cells with one value for each record.
 fn records(
     parts: &StructArray,
     in_cells: bool,

@@ -1,9 +1,10 @@
-//! What GNU Octave's `save` writes: `-text` (which it writes where nothing else is asked for), `-binary` and `-hdf5`, packed by `-zip`
-//! or not.
+//! Files of GNU Octave's `save`: `-text` (the default), `-binary` and `-hdf5`, with or without
+//! `-zip`.
 //!
-//! None of them is described by its authors but in the source of Octave 7 (`ls-oct-text.cc`, `ls-oct-binary.cc`, `ls-hdf5.cc` and the
-//! `ov-*.cc` beside them). Each value stands behind a name and the name of its type; what follows is of the type's own form. The two
-//! encodings give the parts of a value in the same order, so that a value is put together here for both.
+//! The formats are documented only by the source of Octave 7 (`ls-oct-text.cc`, `ls-oct-binary.cc`,
+//! `ls-hdf5.cc` and the `ov-*.cc` files). Each value follows its name and the name of its type; its
+//! form depends on the type. Text and binary encodings give the parts of a value in the same order,
+//! so values are assembled here for both.
 
 mod binary;
 mod hdf5;
@@ -19,13 +20,14 @@ pub(crate) use binary::OCTAVE_BINARY;
 pub(crate) use hdf5::unwrapped;
 pub(crate) use text::OCTAVE_TEXT;
 
-/// How many values may lie in one another.
+/// Deepest nesting of values.
 const DEEPEST: usize = 64;
 
-/// Numbers of a value: of what kind they are, and whether each has an imaginary part behind it.
+/// Element type: kind of number, and whether each has an imaginary part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Element {
-    /// How a number is stored in the binary form, and in how many bytes; of floats a byte before them says it.
+    /// Storage type in the binary form, and its size in bytes; a preceding byte gives the type of
+    /// floats.
     stored: Option<(NumberClass, usize)>,
     complex: bool,
 }
@@ -44,7 +46,7 @@ impl Element {
         }
     }
 
-    /// Real and imaginary parts of numbers; those of complex ones stand in pairs.
+    /// Separates real and imaginary parts; complex numbers are stored in pairs.
     fn parts(self, numbers: Vec<f64>) -> (Vec<f64>, Option<Vec<f64>>) {
         if !self.complex {
             return (numbers, None);
@@ -53,7 +55,7 @@ impl Element {
         (part(0), Some(part(1)))
     }
 
-    /// An array of numbers in the order of this program.
+    /// Returns an array of numbers in the order of this program.
     fn array(self, shape: Vec<usize>, numbers: Vec<f64>) -> Array {
         let (re, im) = self.parts(numbers);
         Array {
@@ -65,28 +67,29 @@ impl Element {
     }
 }
 
-/// What the type of a value says about its form.
+/// Storage form of a value, from its type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
     Scalar(Element),
     Matrix(Element),
-    /// Only the numbers on the diagonal are stored.
+    /// Only the diagonal is stored.
     Diagonal(Element),
-    /// Only the numbers other than zero are stored.
+    /// Only nonzero numbers are stored.
     Sparse(Element),
     /// First number, limit and step.
     Range,
     Text,
     Cell,
-    /// One record, or several.
+    /// A scalar struct.
     Struct,
     Structs,
-    /// An object of a class made with `@` folders.
+    /// An object of an `@`-folder class.
     Class,
 }
 
 impl Form {
-    /// The form of a type by its name: "matrix", "float complex scalar", "uint8 matrix", "sparse bool matrix".
+    /// Returns the form of a named type: "matrix", "float complex scalar", "uint8 matrix", "sparse
+    /// bool matrix".
     fn of(name: &str) -> Option<Self> {
         match name {
             "string" | "sq_string" | "null_string" | "null_sq_string" => return Some(Self::Text),
@@ -131,36 +134,37 @@ impl Form {
     }
 }
 
-/// The sides of an array, and whether its numbers follow one another row by row.
+/// Sides of an array, and whether its numbers are stored by rows.
 struct Sides {
     shape: Vec<usize>,
     by_rows: bool,
 }
 
-/// The parts of values, one behind the other, in one of the encodings. `variable` is what faults call the value.
+/// Reads the consecutive parts of values in one of the encodings; `variable` is the name of the
+/// value in faults.
 trait Parts {
     fn budget(&self) -> &ReadingBudget<'_>;
-    /// Name and type of the next value.
+    /// Reads name and type of the next value.
     fn member(&mut self, variable: &str) -> Result<(String, String), VariableFault>;
     fn sides(&mut self, variable: &str) -> Result<Sides, VariableFault>;
-    /// So many numbers, or pairs of numbers of complex ones.
+    /// Reads `count` numbers, or pairs of complex parts.
     fn numbers(
         &mut self,
         element: Element,
         count: usize,
         variable: &str,
     ) -> Result<Vec<f64>, VariableFault>;
-    /// The numbers of a sparse matrix with their places.
+    /// Reads the nonzero entries of a sparse matrix.
     fn sparse(&mut self, element: Element, variable: &str) -> Result<Entries, VariableFault>;
     fn text(&mut self, variable: &str) -> Result<TextArray, VariableFault>;
-    /// Number of members of a record.
+    /// Reads the number of members of a record.
     fn members(&mut self, form: Form, variable: &str) -> Result<usize, VariableFault>;
     fn class(&mut self, variable: &str) -> Result<String, VariableFault>;
-    /// What is wrong here.
+    /// Returns a fault at this position.
     fn wrong(&self, variable: &str, what: &str) -> VariableFault;
 }
 
-/// The value of a type.
+/// Reads a value of a type.
 fn value(
     parts: &mut dyn Parts,
     kind: &str,
@@ -234,7 +238,7 @@ fn value(
     })
 }
 
-/// Number of elements, their memory taken.
+/// Returns the number of elements after taking their memory.
 fn counted(
     parts: &dyn Parts,
     shape: &[usize],
@@ -267,7 +271,7 @@ fn filled(parts: &dyn Parts, stored: &Entries, variable: &str) -> Result<Array, 
     })
 }
 
-/// The texts in the rows of an array of bytes, which stand column by column.
+/// Returns the texts in the rows of a byte array stored by columns.
 fn rows(letters: &[u8], height: usize) -> TextArray {
     if letters.is_empty() {
         return TextArray::one("");
@@ -289,7 +293,7 @@ fn rows(letters: &[u8], height: usize) -> TextArray {
     }
 }
 
-/// Why an array of characters cannot be read.
+/// Returns the fault for character arrays of more than two dimensions.
 fn texts_in_pages(variable: &str) -> VariableFault {
     let what = "an array of texts of more than two dimensions";
     VariableFault::unsupported(variable, what, "save it as a cell array")
@@ -303,13 +307,13 @@ fn range(parts: &mut dyn Parts, variable: &str) -> Result<Array, VariableFault> 
     }
 }
 
-/// The row of numbers from a first one to a limit, by steps.
+/// Returns the row of numbers from a first number to a limit in steps.
 fn steps(
     [first, limit, step]: [f64; 3],
     variable: &str,
     budget: &ReadingBudget<'_>,
 ) -> Result<Array, VariableFault> {
-    // As Octave counts: a limit that is missed by rounding alone is reached.
+    // As in Octave: a limit missed by rounding alone is reached.
     let steps = ((limit - first) / step * (1.0 + f64::EPSILON)).floor();
     let length = if steps >= 0.0 {
         (steps as usize).saturating_add(1)
@@ -326,7 +330,8 @@ fn steps(
     ))
 }
 
-/// Records of a struct or of an object, whose members are cells of one value for each.
+/// Returns the records of a struct or an object, whose members are cells of one value for each
+/// record.
 fn records(
     parts: &mut dyn Parts,
     form: Form,
@@ -379,7 +384,7 @@ mod tests {
         }
     }
 
-    /// What Octave 7.3 was asked to save, in three forms.
+    /// Values saved by Octave 7.3 in three forms.
     const FORMS: [&str; 3] = ["kinds.txt", "kinds.bin", "kinds.h5.gz"];
 
     fn each_form(check: impl Fn(&dyn Fn(&str) -> Value, &str)) {

@@ -7,10 +7,10 @@ use crate::formats::{Contents, Importer};
 use crate::strides::Entries;
 use crate::variables::{ReadingBudget, TextArray, Value, Variable, VariableFault};
 
-/// How far into a file its first variable begins \[bytes\].
+/// Largest offset of the first variable in a file \[bytes\].
 const HEAD: usize = 2000;
 
-/// Files of `save -text`.
+/// Files written by `save -text`.
 pub(crate) const OCTAVE_TEXT: Importer = Importer {
     name: "a file of GNU Octave, as it writes with -text",
     endings: &["txt", "mat", "dat"],
@@ -37,7 +37,7 @@ pub(crate) const OCTAVE_TEXT: Importer = Importer {
     },
 };
 
-/// The variables of a text.
+/// Reads the variables of a text.
 fn variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, VariableFault> {
     let mut lines = Lines {
         text,
@@ -49,7 +49,8 @@ fn variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, Va
         budget.take(1, size_of::<Variable>() as u64, "")?;
         let (name, kind) = lines.member("")?;
         let value = match value(&mut lines, &kind, &name, 0) {
-            // The others can be read all the same: a name stands at the beginning of a line only where a value begins.
+            // The other values remain readable: only a value begins with a name at the start of a
+            // line.
             Err(VariableFault::Unsupported { what, remedy, .. }) => Value::opaque(what, remedy),
             value => value?,
         };
@@ -58,7 +59,7 @@ fn variables(text: &str, budget: &ReadingBudget<'_>) -> Result<Vec<Variable>, Va
     Ok(variables)
 }
 
-/// A text while it is read.
+/// A text during reading.
 struct Lines<'t> {
     text: &'t str,
     at: usize,
@@ -70,7 +71,7 @@ impl<'t> Lines<'t> {
         &self.text[self.at..]
     }
 
-    /// The next line, which ends as on any system.
+    /// Returns the next line, with any line ending.
     fn line(&mut self) -> Option<&'t str> {
         let rest = self.rest();
         if rest.is_empty() {
@@ -81,7 +82,7 @@ impl<'t> Lines<'t> {
         Some(rest[..end].trim_end_matches('\r'))
     }
 
-    /// Goes to the next line that names a value.
+    /// Moves to the next line that names a value.
     fn find_name(&mut self) -> bool {
         loop {
             let begin = self.at;
@@ -96,7 +97,7 @@ impl<'t> Lines<'t> {
         }
     }
 
-    /// What stands behind `# key: ` on the next line that is not empty.
+    /// Returns the text after `# key: ` on the next nonempty line.
     fn key(&mut self, key: &str, variable: &str) -> Result<&'t str, VariableFault> {
         let line = loop {
             match self.line() {
@@ -125,7 +126,7 @@ impl<'t> Lines<'t> {
             .is_some_and(|rest| rest.starts_with(key))
     }
 
-    /// The next word, on this line or a later one.
+    /// Returns the next word, on this line or a later line.
     fn word(&mut self, variable: &str) -> Result<&'t str, VariableFault> {
         let rest = self.rest();
         let begin = rest
@@ -145,7 +146,7 @@ impl<'t> Lines<'t> {
 
     fn number(&self, word: &str, variable: &str) -> Result<f64, VariableFault> {
         match word {
-            // What Octave calls "not available".
+            // Octave's "not available".
             "NA" => Ok(f64::NAN),
             _ => word
                 .parse()
@@ -267,7 +268,8 @@ impl Parts for Lines<'_> {
         let mut texts = Vec::new();
         for _ in 0..count {
             let length = self.whole("length", variable)?;
-            // Bytes, of which a text may hold ends of lines; a file in another encoding had others.
+            // The length counts bytes, and a text may contain line breaks; a file in another
+            // encoding has other lengths.
             let bytes = self.rest().get(..length).filter(|_| {
                 self.rest()[length..].starts_with(['\n', '\r'])
                     || self.at + length == self.text.len()

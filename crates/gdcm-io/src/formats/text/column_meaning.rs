@@ -1,9 +1,9 @@
-//! What a column of a frequency response holds, from its name and unit.
+//! Meaning of the columns of a frequency response, from names and units.
 
 use gdcm_model::assembly::PhysicalUnit;
 use gdcm_model::assembly::response_name::{KnownChannels, ResponseName};
 
-/// What a column of a frequency response holds.
+/// Quantity in a column of a frequency response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quantity {
     Error,
@@ -24,27 +24,27 @@ pub(super) enum KnownUnit {
     Degree,
     Radian,
     Percent,
-    /// The coherence itself, γ, of which γ² is the square.
+    /// The coherence γ itself, not its square γ².
     Gamma,
-    /// The coherence squared, γ².
+    /// The squared coherence γ².
     GammaSquared,
-    /// Radians or revolutions per second: `rps` leaves it open.
+    /// `rps`: radians or revolutions per second, ambiguous.
     Rps,
-    /// Another one: of a magnitude, a real or an imaginary part.
+    /// Another unit, of a magnitude, a real or an imaginary part.
     Other,
 }
 
-/// What the name and the unit of a column say.
+/// Meaning of the name and the unit of a column.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ColumnMeaning {
     pub(super) quantity: Option<Quantity>,
     pub(super) unit: Option<KnownUnit>,
     pub(super) label: ResponseLabel,
-    /// Why, in words: "its name says phase".
+    /// The reason: "its name says phase".
     pub(super) reason: String,
 }
 
-/// Words in the names of columns. A column is the first kind of which its name has a word: "phase error" is an error.
+/// Words in column names. The first kind with a matching word applies: "phase error" is an error.
 const WORDS: [(Quantity, &[&str]); 7] = [
     (
         Quantity::Error,
@@ -111,7 +111,7 @@ const WORDS: [(Quantity, &[&str]); 7] = [
     ),
 ];
 
-/// Units at the end of a name that has none in brackets.
+/// Units at the end of a name without brackets.
 const UNIT_ENDINGS: [(&str, KnownUnit); 13] = [
     ("rad/s", KnownUnit::RadianPerSecond),
     ("rad/sec", KnownUnit::RadianPerSecond),
@@ -129,7 +129,7 @@ const UNIT_ENDINGS: [(&str, KnownUnit); 13] = [
 ];
 
 impl ColumnMeaning {
-    /// Reads the name and the unit of a column.
+    /// Interprets the name and the unit of a column.
     pub(super) fn of(name: &str, unit: Option<&str>) -> Self {
         let (name, unit) = match unit {
             Some(unit) => (name, Some(known_unit(unit))),
@@ -140,7 +140,8 @@ impl ColumnMeaning {
             "w" if !matches!(unit, Some(KnownUnit::Other)) => {
                 Some((Quantity::Frequency, Some(KnownUnit::RadianPerSecond)))
             }
-            // In tables of frequencies f is in Hz as often as in rad/s: its unit is asked for.
+            // In frequency tables f is in Hz as often as in rad/s, so the user is asked for its
+            // unit.
             "f" if !matches!(unit, Some(KnownUnit::Other)) => Some((Quantity::Frequency, None)),
             _ => None,
         };
@@ -199,10 +200,10 @@ impl ColumnMeaning {
     }
 }
 
-/// Words of magnitudes that are no levels in decibels.
+/// Words for magnitudes that are not in decibels.
 const ABSOLUTE: [&str; 6] = ["abs", "absolute", "lin", "linear", "ratio", "modulus"];
 
-/// The unit that the words of a name say by themselves; `word` is the one that says the quantity.
+/// Returns the unit implied by the words of a name; `word` is the word that gives the quantity.
 fn usual_unit(quantity: Quantity, word: &str, words: &[(usize, &str)]) -> Option<KnownUnit> {
     let word = word.to_lowercase();
     match quantity {
@@ -216,7 +217,7 @@ fn usual_unit(quantity: Quantity, word: &str, words: &[(usize, &str)]) -> Option
         {
             Some(KnownUnit::Other)
         }
-        // Programs name both γ and γ² gamma.
+        // Programs call both γ and γ² gamma.
         Quantity::Coherence if !matches!(word.as_str(), "gamma" | "gam" | "γ") => {
             Some(KnownUnit::GammaSquared)
         }
@@ -230,7 +231,7 @@ fn known_unit(unit: &str) -> KnownUnit {
         "gamma2" | "gamma^2" | "γ²" | "γ2" | "γ^2" => return KnownUnit::GammaSquared,
         "rps" => return KnownUnit::Rps,
         "rev/s" | "rev/sec" => return KnownUnit::Hertz,
-        // Of a column of frequencies, that is.
+        // Only for columns of frequencies.
         "1/s" | "rads" | "rads^-1" | "rads-1" => return KnownUnit::RadianPerSecond,
         "1/sec" => return KnownUnit::Hertz,
         _ => {}
@@ -246,7 +247,7 @@ fn known_unit(unit: &str) -> KnownUnit {
     }
 }
 
-/// Cuts a unit off the end of a name: "mag_dB", "freqHz", "w_rad_s".
+/// Splits a unit off the end of a name: "mag_dB", "freqHz", "w_rad_s".
 fn unit_at_end(name: &str) -> (&str, Option<KnownUnit>) {
     let name = name.trim();
     for (ending, unit) in UNIT_ENDINGS {
@@ -277,7 +278,7 @@ fn unit_at_end(name: &str) -> (&str, Option<KnownUnit>) {
     (name, None)
 }
 
-/// The words of a name and where they begin.
+/// Returns the words of a name and their offsets.
 fn words_of(name: &str) -> Vec<(usize, &str)> {
     let mut words = Vec::new();
     let mut from = None;
@@ -295,7 +296,7 @@ fn words_of(name: &str) -> Vec<(usize, &str)> {
     words
 }
 
-/// A name without the words of one kind; the digits behind such a word stay, as in "re1".
+/// Returns a name without the words of one kind; digits after such a word are kept, as in "re1".
 fn without(name: &str, words: &[(usize, &str)], known: &[&str]) -> String {
     let mut label = String::with_capacity(name.len());
     let mut from = 0;
@@ -316,26 +317,24 @@ fn without(name: &str, words: &[(usize, &str)], known: &[&str]) -> String {
     label
 }
 
-/// An output and an input, as far as a name says them.
+/// Output and input of a response, as far as its name gives them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct ResponseLabel {
-    /// The output.
     pub(super) output: Option<String>,
-    /// The input.
     pub(super) input: Option<String>,
 }
 
-/// Names of a response that say nothing of whose it is.
+/// Response names that identify no channel.
 const ANY_RESPONSE: [&str; 9] = [
     "h", "g", "frf", "tf", "fr", "resp", "response", "h(jw)", "g(jw)",
 ];
-/// What stands between an input and the output that follows it.
+/// Separators between an input and the following output.
 const FORWARD: [&str; 5] = ["->", "→", "=>", ">", " to "];
-/// What stands between an output and its input.
+/// Separators between an output and its input.
 const BACKWARD: [&str; 6] = ["<-", "←", "/", " due to ", " from ", " over "];
 
 impl ResponseLabel {
-    /// Reads "P/LAT", "LAT->P", "LAT to P", "P_LAT"; anything else names the output.
+    /// Parses "P/LAT", "LAT->P", "LAT to P", "P_LAT"; any other text names the output.
     pub(super) fn of(text: &str) -> Self {
         let text = clean(text);
         if ANY_RESPONSE.contains(&text.to_lowercase().as_str()) {
@@ -358,7 +357,7 @@ impl ResponseLabel {
                 };
             }
         }
-        // Words that the field has names for: "q_delta_lon", "roll_rate".
+        // Common names in the field: "q_delta_lon", "roll_rate".
         let known = ResponseName::find(text, KnownChannels::Field).unwrap_or_default();
         let is_whole = |name: &Option<String>| name.as_deref() == Some(text);
         if known.output.is_some() && known.input.is_some()
@@ -383,7 +382,7 @@ impl ResponseLabel {
     }
 }
 
-/// A text without the brackets, strokes and blanks around it.
+/// Returns a text without surrounding brackets, strokes and blanks.
 fn clean(text: &str) -> &str {
     text.trim_matches(|c: char| c.is_whitespace() || "_-.,:;(){}[]|∠=\"'".contains(c))
 }

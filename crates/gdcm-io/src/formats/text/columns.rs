@@ -1,4 +1,4 @@
-//! Tables of numbers in columns, as programs and people write them.
+//! Tables of numbers in columns, written by programs and people.
 
 use std::collections::BTreeMap;
 
@@ -11,31 +11,31 @@ const EXPECTED: &str = "a table of numbers in columns";
 /// A table of numbers in columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextTable {
-    /// Names of the columns, where the text gives them.
+    /// Column names, if the text has them.
     pub names: Option<Vec<String>>,
-    /// Unit of each column, where the text gives one.
+    /// Unit of each column, if the text has one.
     pub units: Vec<Option<String>>,
-    /// The numbers, column by column. What is missing is NaN: who uses the numbers refuses it with its place.
+    /// The numbers, column by column. Missing numbers are NaN, which users of the table refuse with
+    /// their position.
     pub columns: Vec<Vec<f64>>,
-    /// Number of the line of each row, from 1.
+    /// Line number of each row, from 1.
     pub lines: Vec<usize>,
-    /// What stands between the cells.
+    /// Separator of the cells.
     pub separator: Separator,
-    /// Whether the comma is the decimal mark.
     pub decimal_comma: bool,
-    /// Comments and headings: number of the line, and the line.
+    /// Comments and headings: line number and line.
     pub skipped: Vec<(usize, String)>,
-    /// What was decided and could be otherwise, in words.
+    /// Decisions that could be different, in words.
     pub notes: Vec<String>,
 }
 
 impl TextTable {
-    /// The name of a column, where the text gives one.
+    /// Returns the name of a column, if the text has it.
     pub(super) fn name(&self, column: usize) -> Option<&str> {
         self.names.as_ref()?.get(column).map(String::as_str)
     }
 
-    /// The headings of the columns, one for each: "omega \[rad/s\]"; empty where there is none.
+    /// Returns the column headings: "omega \[rad/s\]"; empty without a name.
     pub fn headings(&self) -> Vec<String> {
         let heading = |(column, unit): (usize, &Option<String>)| match unit {
             Some(unit) => format!("{} [{unit}]", self.name(column).unwrap_or_default())
@@ -46,10 +46,10 @@ impl TextTable {
         self.units.iter().enumerate().map(heading).collect()
     }
 
-    /// The table with other headings, as [`TextTable::headings`] gives them.
+    /// Returns the table with other headings, in the form of [`TextTable::headings`].
     ///
     /// # Errors
-    /// There is another number of them than of columns.
+    /// The number of headings differs from the number of columns.
     pub fn with_headings(mut self, headings: &[String]) -> Result<Self, VariableFault> {
         if headings.len() != self.columns.len() {
             let found = format!(
@@ -70,7 +70,7 @@ impl TextTable {
     }
 }
 
-/// Reads a table of numbers in columns: its separator, decimal mark, names and units are recognised.
+/// Reads a table of numbers in columns: recognises its separator, decimal mark, names and units.
 pub fn read_table(text: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
     refuse_binary(text, EXPECTED)?;
     let Some(layout) = Layout::recognise(text, budget)? else {
@@ -91,7 +91,7 @@ fn no_numbers(text: &str) -> VariableFault {
     VariableFault::format(EXPECTED, found)
 }
 
-/// A table as far as it is read.
+/// A table during reading.
 struct Reading<'m> {
     layout: Layout,
     budget: &'m ReadingBudget<'m>,
@@ -103,7 +103,7 @@ struct Reading<'m> {
 
 impl<'m> Reading<'m> {
     fn new(layout: Layout, budget: &'m ReadingBudget<'m>) -> Result<Self, VariableFault> {
-        // A column takes its header here, and its unit and name later.
+        // Memory of a column's header here, and of its unit and name later.
         budget.take(layout.columns as u64, 128, "")?;
         let columns = vec![Vec::new(); layout.columns];
         let lines = Vec::new();
@@ -123,7 +123,7 @@ impl<'m> Reading<'m> {
         }
         let width = |layout: Layout| layout.width(line);
         if comment(line).is_some() {
-            // "#N/A;1" and ";1;2" begin with a mark, but are rows.
+            // "#N/A;1" and ";1;2" begin with a comment mark, but are rows.
             return match width(self.layout) {
                 Some((width, empty)) if self.layout.fits(width, empty) => self.row(number, line),
                 _ => self.skip(number, line),
@@ -143,7 +143,7 @@ impl<'m> Reading<'m> {
         }
         match width(self.layout) {
             Some((width, empty)) if self.layout.fits(width, empty) => self.row(number, line),
-            // A count of rows, a date: one number is no row of a table.
+            // A row count or a date: a single number is not a row of a table.
             Some((1, _)) => {
                 let columns = self.layout.columns;
                 self.notes.push(format!(
@@ -156,7 +156,7 @@ impl<'m> Reading<'m> {
         }
     }
 
-    /// Programs that go on with a record write its headings again.
+    /// Whether a line repeats the heading, as written by programs that continue a record.
     fn repeats_heading(&self, line: &str) -> bool {
         let first_line = self.lines.first().copied().unwrap_or(0);
         let mut above = self
@@ -198,7 +198,7 @@ impl<'m> Reading<'m> {
             self.layout.trailing = false;
             self.columns.push(Vec::new());
         }
-        // Vectors grow by doubling: half of what they take may be free.
+        // Vectors grow by doubling: up to half of their memory may be unused.
         self.budget.take(self.layout.columns as u64 + 1, 16, "")?;
         let mut cells = self.layout.cells(line);
         let mut ends_empty = false;
@@ -333,34 +333,33 @@ impl<'m> Reading<'m> {
     }
 }
 
-// How the lines of a table are made.
+// Layout of the lines of a table.
 
-/// As many lines of numbers are looked at before the way they are made is taken as known.
+/// Number of lines examined to recognise the layout.
 const SAMPLE: usize = 200;
-/// What a line of comment begins with.
+/// Marks at the beginning of a comment line.
 const COMMENT_MARKS: [&str; 5] = ["#", "%", "//", "!", ";"];
 
-/// How the lines of a table are made.
+/// Layout of the lines of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Layout {
-    /// What stands between the cells.
+    /// Separator of the cells.
     pub(super) separator: Separator,
-    /// Whether the comma is the decimal mark.
     pub(super) decimal_comma: bool,
-    /// Number of columns, without the empty one behind a separator at the end of every line.
+    /// Number of columns, without the empty column after a trailing separator on every line.
     pub(super) columns: usize,
-    /// Whether the separator at the end of the lines looked at leaves an empty cell.
+    /// Whether a trailing separator on the examined lines leaves an empty cell.
     pub(super) trailing: bool,
 }
 
-/// How often lines of one width were found.
+/// Frequency of lines of one width.
 #[derive(Clone, Copy, Default)]
 struct Count {
     lines: usize,
     ending_empty: usize,
 }
 
-/// The lines of numbers that are found if the lines are made in one way.
+/// Number lines found with one candidate layout.
 struct Tally {
     /// Its columns are not counted yet.
     layout: Layout,
@@ -369,8 +368,8 @@ struct Tally {
 }
 
 impl Layout {
-    /// Finds the separator and the decimal mark with which most lines are lines of numbers of one width; the wider table where
-    /// several do; nothing where no line is a line of numbers.
+    /// Finds the separator and the decimal mark for which most lines are number lines of one width;
+    /// prefers the wider table in a tie; returns nothing if no line is a number line.
     pub(super) fn recognise(
         text: &str,
         budget: &ReadingBudget,
@@ -409,13 +408,13 @@ impl Layout {
         Ok(best.map(|(_, layout)| layout))
     }
 
-    /// The cells of a line of numbers, without a comment behind them.
+    /// Returns the cells of a number line, without a trailing comment.
     pub(super) fn cells(self, line: &str) -> crate::formats::text::separator::Cells<'_> {
         self.separator.cells(without_comment(line))
     }
 
-    /// Number of cells of a line if all are numbers or say that there is none, and at least one is a number; and whether the last
-    /// is empty.
+    /// Returns the number of cells of a line if all are numbers or missing and at least one is a
+    /// number, and whether the last cell is empty.
     pub(super) fn width(self, line: &str) -> Option<(usize, bool)> {
         let mut width = 0;
         let mut numbers = 0;
@@ -429,8 +428,8 @@ impl Layout {
         (numbers > 0).then_some((width, empty))
     }
 
-    /// Whether a line of so many cells fits: one more, which is empty, stands behind a separator at the end. Where all lines end
-    /// in a separator, the empty cell behind it is none.
+    /// Whether a line with `width` cells fits: an additional empty cell may follow a trailing
+    /// separator. If all lines end in a separator, the empty cell after it is not counted.
     pub(super) fn fits(self, width: usize, ends_empty: bool) -> bool {
         let expected = if self.trailing && ends_empty {
             self.columns + 1
@@ -451,7 +450,7 @@ impl Tally {
         }
     }
 
-    /// The most frequent width, the larger of two.
+    /// Returns the most frequent width, the larger in a tie.
     fn layout(&self) -> Option<(usize, Layout)> {
         let (&width, count) = self
             .widths
@@ -470,21 +469,22 @@ impl Tally {
     }
 }
 
-/// The text of a line of comment behind its mark.
+/// Returns the text of a comment line after its mark.
 pub(super) fn comment(line: &str) -> Option<&str> {
     let line = line.trim_start();
     let mark = COMMENT_MARKS.iter().find(|&&mark| line.starts_with(mark))?;
     Some(line.trim_start_matches(mark))
 }
 
-/// Whether a line only draws a rule: "-----", "|---|---|", "=====".
+/// Whether a line is only a rule: "-----", "|---|---|", "=====".
 pub(super) fn is_rule(line: &str) -> bool {
     line.trim().len() >= 3
         && line.bytes().all(|byte| b"-=+|:_ \t".contains(&byte))
         && !line.trim().contains("- -")
 }
 
-/// A line without the comment behind its numbers; its mark stands between blanks, as "#N/A" and "50%" have such characters too.
+/// Returns a line without a trailing comment, whose mark is between blanks: "#N/A" and "50%"
+/// contain such characters too.
 fn without_comment(line: &str) -> &str {
     if !line.contains(['#', '%', '!', '/']) {
         return line;

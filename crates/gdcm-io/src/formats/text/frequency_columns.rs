@@ -1,4 +1,4 @@
-//! Frequency responses among the columns of a table, by what the names and units of the columns say.
+//! Frequency responses among the columns of a table, recognised by column names and units.
 
 use std::f64::consts::TAU;
 
@@ -6,32 +6,32 @@ use crate::formats::text::column_meaning::{ColumnMeaning, KnownUnit, Quantity, R
 use crate::formats::text::columns::TextTable;
 use crate::variables::VariableFault;
 
-/// What the columns of a table mean.
+/// Meaning of the columns of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FrequencyColumns {
-    /// The column of frequencies, and what makes them rad/s.
+    /// The column of frequencies, and its factor to rad/s.
     frequency: (usize, f64),
-    /// The responses, in the order of their columns.
+    /// The responses, in column order.
     pub(crate) responses: Vec<RecognisedResponse>,
     /// Each decision and its reason, in words.
     pub(crate) notes: Vec<String>,
-    /// Names of the columns that are not used, by number where they have none.
+    /// Names of the unused columns, or their numbers if they have no name.
     pub(crate) unused: Vec<String>,
 }
 
 /// A frequency response among the columns of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RecognisedResponse {
-    /// The output, where the names say it.
+    /// The output, if the names give it.
     pub(crate) output: Option<String>,
-    /// The input, where the names say it.
+    /// The input, if the names give it.
     pub(crate) input: Option<String>,
     parts: ResponseParts,
-    /// The column of its coherence.
     pub(crate) coherence: Option<CoherenceColumn>,
 }
 
-/// A column of coherence, and how its numbers become γ² as a part of 1: multiplied by the factor, then squared where they are γ.
+/// A column of coherence; multiplication by the factor, then squaring for γ, gives γ² as a fraction
+/// of 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CoherenceColumn {
     /// The column, from 0.
@@ -47,7 +47,7 @@ impl CoherenceColumn {
     }
 }
 
-/// The two columns, from 0, that are a complex number.
+/// The two columns, counted from 0, of a complex number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ResponseParts {
     Polar {
@@ -71,20 +71,20 @@ pub(crate) struct ResponsePoints {
     pub(crate) re: Vec<f64>,
     /// Imaginary parts.
     pub(crate) im: Vec<f64>,
-    /// Coherence as a part of 1, NaN where it is missing.
+    /// Coherence as a fraction of 1, NaN where it is missing.
     pub(crate) coherence: Option<Vec<f64>>,
 }
 
-/// A column whose unit is not said, and whose numbers allow two.
+/// A column without a unit whose numbers allow two units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnsaidUnit {
     /// The column, from 0.
     pub column: usize,
-    /// The units that it may be in, as a heading says them.
+    /// The possible units, as written in a heading.
     pub units: [&'static str; 2],
 }
 
-/// Why a table is no frequency response, and the units that would make it one.
+/// Reason why a table is not a frequency response, and the missing units that would make it one.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unrecognised {
     pub(crate) fault: VariableFault,
@@ -92,7 +92,7 @@ pub(crate) struct Unrecognised {
 }
 
 impl FrequencyColumns {
-    /// Recognises the columns by their names and units; what these do not say is asked for.
+    /// Recognises the columns by their names and units; ambiguities become questions.
     pub(crate) fn recognise(table: &TextTable) -> Result<Self, Unrecognised> {
         let unit = |index: usize| table.units.get(index).and_then(|unit| unit.as_deref());
         let meaning =
@@ -139,10 +139,10 @@ impl FrequencyColumns {
         Ok(found)
     }
 
-    /// The points of every response, in rad/s and as complex numbers.
+    /// Returns the points of every response, in rad/s and as complex numbers.
     ///
-    /// Frequencies that fall are taken from the last line to the first. One that is missing, negative, or not above the one before is
-    /// refused with its line, and so is half a number.
+    /// Decreasing frequencies are reversed. A frequency that is missing, negative, or not above the
+    /// frequency before it is refused with its line, and so is half a complex number.
     pub(crate) fn values(&self, table: &TextTable) -> Result<Vec<ResponsePoints>, VariableFault> {
         let falls = self.falls(table).then(|| {
             let mut table = table.clone();
@@ -158,7 +158,7 @@ impl FrequencyColumns {
             .collect()
     }
 
-    /// Whether each frequency is below the one before.
+    /// Whether the frequencies decrease strictly.
     fn falls(&self, table: &TextTable) -> bool {
         let column = &table.columns[self.frequency.0];
         column.len() > 1 && column.is_sorted_by(|one, next| one > next)
@@ -194,7 +194,7 @@ impl FrequencyColumns {
     }
 }
 
-/// No frequency response: what is missing, in words, and how to say it.
+/// Returns the reason why there is no frequency response, with a remedy.
 fn unrecognised(found: &str) -> Unrecognised {
     let found = format!(
         "a table with {found} among its columns; say what each column holds in its first line, by --headings, or under \
@@ -207,18 +207,18 @@ fn unrecognised(found: &str) -> Unrecognised {
     }
 }
 
-/// A table while its columns are put together to responses.
+/// A table during the assembly of its responses.
 struct Recognition<'t> {
     table: &'t TextTable,
     meanings: &'t [ColumnMeaning],
     notes: Vec<String>,
-    /// Columns whose unit is not said, where their numbers allow several.
+    /// Columns without a unit whose numbers allow several.
     unsaid: Vec<UnsaidUnit>,
-    /// Names of the columns that are not used.
+    /// Names of the unused columns.
     unused: Vec<String>,
 }
 
-/// Columns that belong to one response, by quantity.
+/// Columns of one response, by quantity.
 #[derive(Default)]
 struct Group {
     label: ResponseLabel,
@@ -265,7 +265,7 @@ impl Recognition<'_> {
         Ok((column, factor))
     }
 
-    /// Notes what a column is read as, and why.
+    /// Notes the interpretation of a column and its reason.
     fn note(&mut self, column: usize, what: &str, more: &str) {
         let reason = &self.meanings[column].reason;
         self.notes.push(format!(
@@ -274,7 +274,7 @@ impl Recognition<'_> {
         ));
     }
 
-    /// The responses, in the order of their first columns.
+    /// Returns the responses, in the order of their first columns.
     fn responses(&mut self) -> Vec<RecognisedResponse> {
         let mut responses = Vec::new();
         for group in self.groups() {
@@ -293,7 +293,7 @@ impl Recognition<'_> {
                     let parts = ResponseParts::Rectangular { re, im };
                     self.note(re, "real part", "");
                     self.note(im, "imaginary part", "");
-                    // Units that are not said are needed for nothing here.
+                    // Missing units are not needed here.
                     match polar.map(|columns| self.polar(columns)) {
                         Some((polar, unsaid)) if unsaid.is_empty() => self.compare(parts, polar),
                         _ => {}
@@ -333,10 +333,10 @@ impl Recognition<'_> {
         responses
     }
 
-    /// A column of coherence: in percent where its unit says so, or where no number of it can be a part of 1. Whether a column called
-    /// gamma is γ or γ² is asked for.
+    /// Interprets a column of coherence: percent if its unit or its numbers above 1 require it. For
+    /// a column called gamma, γ or γ² is a question to the user.
     fn coherence(&mut self, column: usize) -> CoherenceColumn {
-        /// Rounding and noise leave coherence not much above 1.
+        /// Limit above 1 for coherence, for rounding and noise.
         const MOST: f64 = 1.5;
         let unit = self.meanings[column].unit;
         if unit.is_none() {
@@ -385,7 +385,7 @@ impl Recognition<'_> {
             }
             let unnamed = meaning.label == ResponseLabel::default();
             let free = |group: &Group| group.column(quantity).is_none();
-            // Most of an error's name says of what it is an error.
+            // The other words of an error's name give the quantity in error.
             let beside = unnamed || quantity == Quantity::Error;
             let known = match groups.last() {
                 Some(last) if beside && free(last) => Some(groups.len() - 1),
@@ -405,14 +405,15 @@ impl Recognition<'_> {
         groups
     }
 
-    /// A magnitude and a phase, and the columns whose units are neither said nor plain.
+    /// Interprets a magnitude and a phase; also returns the columns whose units are neither given
+    /// nor evident.
     fn polar(&mut self, (magnitude, phase): (usize, usize)) -> (ResponseParts, Vec<UnsaidUnit>) {
         let mut unsaid = Vec::new();
         let mut ask = |column: usize, units: [&'static str; 2]| {
             unsaid.push(UnsaidUnit { column, units });
             false
         };
-        // A gain may be a level in dB, or a ratio with a sign.
+        // A gain may be a level in dB, or a signed ratio.
         let is_gain = self
             .table
             .name(magnitude)
@@ -457,7 +458,8 @@ impl Recognition<'_> {
         )
     }
 
-    /// Compares a response that is given twice, to a hundredth of its magnitude: tables are printed with few digits.
+    /// Compares a response given in both forms, to a hundredth of its magnitude: tables have few
+    /// digits.
     fn compare(&mut self, rectangular: ResponseParts, polar: ResponseParts) {
         let table = self.table;
         let differs = |row: &usize| {
@@ -479,14 +481,14 @@ impl Recognition<'_> {
     }
 }
 
-/// The name of a column, or "column 5" where it has none.
+/// Returns the name of a column, or "column 5" if it has none.
 fn name_of(table: &TextTable, column: usize) -> String {
     table
         .name(column)
         .map_or_else(|| format!("column {}", column + 1), str::to_owned)
 }
 
-/// A column in words: its number from 1, and its name.
+/// Describes a column by its number, from 1, and its name.
 fn place(table: &TextTable, column: usize) -> String {
     match table.name(column) {
         Some(name) => format!("column {} (\"{name}\")", column + 1),
@@ -494,7 +496,7 @@ fn place(table: &TextTable, column: usize) -> String {
     }
 }
 
-/// The points of a response; rows in which it has no numbers at all, as others in the table do, are left out.
+/// Returns the points of a response, without the rows in which it has no numbers.
 fn points(
     table: &TextTable,
     response: &RecognisedResponse,
@@ -547,7 +549,7 @@ impl ResponseParts {
         }
     }
 
-    /// Real and imaginary part in a row of the table.
+    /// Returns real and imaginary part in a row of the table.
     fn complex(self, table: &TextTable, row: usize) -> (f64, f64) {
         let at = |column: usize| table.columns[column][row];
         match self {
@@ -593,7 +595,7 @@ mod frequency_columns_tests {
             .to_string()
     }
 
-    /// γ² in this column, as a part of 1.
+    /// γ² in this column, as a fraction of 1.
     fn squared(column: usize) -> Option<CoherenceColumn> {
         Some(CoherenceColumn {
             column,

@@ -1,4 +1,4 @@
-//! Names and units of columns from the lines above them.
+//! Names and units of columns from the preceding lines.
 
 use gdcm_model::assembly::channel_match::direction_of;
 
@@ -8,17 +8,17 @@ use crate::formats::text::separator::{Separator, cell_number};
 /// The names and units of columns.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Heading {
-    /// One name for each column.
+    /// A name for each column.
     pub(super) names: Option<Vec<String>>,
-    /// The unit of each column, where one is said.
+    /// The unit of each column, if given.
     pub(super) units: Vec<Option<String>>,
-    /// What was decided, in words.
+    /// Decisions, in words.
     pub(super) notes: Vec<String>,
 }
 
 impl Heading {
-    /// Finds names and units in the lines before the numbers: a line with as many cells as there are columns, rather one without
-    /// a comment mark, the nearest first; a line of units may stand below it.
+    /// Finds names and units in the lines before the numbers: the nearest line with a cell for each
+    /// column, preferably without a comment mark; a line of units may follow it.
     pub(super) fn find(above: &[(usize, String)], layout: Layout) -> Self {
         let candidates: Vec<_> = above
             .iter()
@@ -70,7 +70,7 @@ impl Heading {
         self.names = Some(names);
     }
 
-    /// Says so where a line looks like names but has another number of them.
+    /// Notes a line that looks like names but has a different number of cells.
     fn note_misfit(&mut self, above: &[(usize, String)], layout: Layout) {
         let Some((number, line)) = above
             .iter()
@@ -90,7 +90,7 @@ impl Heading {
     }
 }
 
-/// The cells of a heading if there are as many as columns; the heading may be separated otherwise than the numbers.
+/// Splits a heading into a cell for each column; its separator may differ from that of the numbers.
 fn split(line: &str, layout: Layout) -> Option<Vec<String>> {
     let columns = layout.columns;
     let fitting = |mut cells: Vec<String>| {
@@ -102,7 +102,7 @@ fn split(line: &str, layout: Layout) -> Option<Vec<String>> {
             .any(|cell| cell.chars().any(char::is_alphabetic));
         (cells.len() == columns && words && !numbers_mostly(&cells, layout)).then_some(cells)
     };
-    // One more than fits is enough to know that it does not fit.
+    // One cell too many is enough to reject the separator.
     let by = |separator: Separator| -> Vec<String> {
         separator
             .cells(line)
@@ -135,7 +135,7 @@ fn split(line: &str, layout: Layout) -> Option<Vec<String>> {
     ways.into_iter().find_map(fitting)
 }
 
-/// Whether a line is rather one of numbers with a slip in it.
+/// Whether a line is probably a number line with an error.
 pub(super) fn numbers_mostly(cells: &[String], layout: Layout) -> bool {
     let is_number = |cell: &&String| {
         cell_number(cell, layout.decimal_comma).is_some_and(|number| !number.is_nan())
@@ -144,7 +144,7 @@ pub(super) fn numbers_mostly(cells: &[String], layout: Layout) -> bool {
         && 2 * cells.iter().filter(is_number).count() > cells.len()
 }
 
-/// Cells with at least two blanks between them, so that names can have single ones.
+/// Splits at two or more blanks, so that names can contain single blanks.
 fn by_wide_blanks(line: &str, columns: usize) -> Vec<String> {
     let cells = line
         .trim()
@@ -156,7 +156,7 @@ fn by_wide_blanks(line: &str, columns: usize) -> Vec<String> {
         .collect()
 }
 
-/// Cells with blanks between them; what stands in brackets belongs to the cell before.
+/// Splits at blanks; text in brackets belongs to the cell before.
 fn with_brackets_joined(line: &str, columns: usize) -> Vec<String> {
     let mut cells: Vec<String> = Vec::new();
     let mut open = false;
@@ -180,7 +180,8 @@ fn with_brackets_joined(line: &str, columns: usize) -> Vec<String> {
     cells
 }
 
-/// Whether a heading names one column more than `layout` has: the empty cells behind a last separator are then a column.
+/// Whether a heading names one column more than `layout` has: the empty cells after a trailing
+/// separator are then a column.
 pub(super) fn names_one_more(above: &[(usize, String)], layout: Layout) -> bool {
     above.iter().any(|(_, line)| {
         let cells = layout
@@ -207,9 +208,9 @@ fn only_units(cells: &[String]) -> bool {
     2 * said.len() >= cells.len() && said.iter().all(|unit| is_unit(unit))
 }
 
-// Units in the headings of columns.
+// Units in column headings.
 
-/// Words that units are made of, in lower case.
+/// Words of units, in lower case.
 const WORDS: [&str; 68] = [
     "rad", "radian", "radians", "mrad", "deg", "degree", "degrees", "°", "s", "sec", "secs",
     "second", "seconds", "ms", "us", "µs", "min", "h", "hr", "hz", "khz", "cps", "rps", "rpm",
@@ -219,7 +220,7 @@ const WORDS: [&str; 68] = [
     "norm", "abs", "unitless",
 ];
 
-/// Whether a text is made of words of units, numbers and signs only: "deg/s", "rad/s^2", "%", "1/s".
+/// Whether a text consists only of unit words, numbers and signs: "deg/s", "rad/s^2", "%", "1/s".
 pub(super) fn is_unit(text: &str) -> bool {
     let text = text.trim().to_lowercase();
     if matches!(text.as_str(), "-" | "1" | "--" | "none") {
@@ -241,10 +242,10 @@ pub(super) fn is_unit(text: &str) -> bool {
     words > 0
 }
 
-/// Cuts a heading into a name and a unit: "omega \[rad/s\]", "P (deg/s)", "_Vind,_kias".
+/// Splits a heading into name and unit: "omega \[rad/s\]", "P (deg/s)", "_Vind,_kias".
 ///
-/// Square brackets hold a unit whatever they say but a whole number; round ones and what follows a comma only if it is made of known words, as
-/// "re(LAT->P)" names a response.
+/// Square brackets hold a unit unless they contain an integer; round brackets and text after a
+/// comma only if they consist of known words, as "re(LAT->P)" names a response.
 pub(super) fn name_and_unit(heading: &str) -> (String, Option<String>) {
     let heading = heading.trim().trim_matches(['"', '\'']).trim();
     let clean = |text: &str| {
@@ -260,7 +261,7 @@ pub(super) fn name_and_unit(heading: &str) -> (String, Option<String>) {
             |text: &str| text.bytes().all(|byte| byte.is_ascii_digit()) && !text.is_empty();
         if let Some((name, unit)) = inner
             && ((always && !is_index(unit)) || is_unit(unit))
-            // "az [+down]" says a sign.
+            // "az [+down]" gives a sign convention.
             && direction_of(unit).is_none()
         {
             return (

@@ -1,7 +1,8 @@
 //! Variables written as MATLAB or Octave statements: `A = [1 2; 3 4e-3]; % comment`.
 //!
-//! Read are numbers, texts, matrices and cells of them, variables and fields that they are given to, and the models that `ss`, `tf`
-//! and `zpk` make of them. Nothing is computed or run: what would have to be is named, with the way out, and never guessed.
+//! Supported are numbers, texts, matrices and cells of them, variables and fields assigned to them,
+//! and models created by `ss`, `tf` and `zpk`. Nothing is computed or run: other statements are
+//! reported with a remedy, and never guessed.
 
 use std::collections::HashMap;
 
@@ -15,9 +16,9 @@ use crate::variables::{
     VariableFault,
 };
 
-/// How to come by what is not read here.
+/// Remedy for unsupported statements.
 const REMEDY: &str = "write its numbers, or save the workspace in MATLAB: save -v7 workspace.mat";
-/// Words that begin what may be run never, once or often.
+/// Words that begin a block that may run never, once or repeatedly.
 const BLOCKS: [&str; 8] = [
     "if",
     "for",
@@ -28,7 +29,7 @@ const BLOCKS: [&str; 8] = [
     "do",
     "unwind_protect",
 ];
-/// Words that end it.
+/// Words that end a block.
 const BLOCK_ENDS: [&str; 9] = [
     "end",
     "endif",
@@ -40,8 +41,8 @@ const BLOCK_ENDS: [&str; 9] = [
     "until",
     "end_unwind_protect",
 ];
-/// Functions that make a record of their arguments, and the fields that these become. Names and values follow, except for `struct`
-/// behind a sample time.
+/// Functions that create a record from their arguments, and the corresponding fields. Name-value
+/// pairs follow, after an optional sample time except for `struct`.
 const RECORDS: [(&str, &[&str]); 4] = [
     ("ss", &["A", "B", "C", "D"]),
     ("tf", &["num", "den"]),
@@ -49,13 +50,13 @@ const RECORDS: [(&str, &[&str]); 4] = [
     ("struct", &[]),
 ];
 
-/// What statements set.
+/// Results of the statements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statements {
-    /// The variables in the order in which they were first set, with their last values. One whose value is not understood is
-    /// [`Value::Opaque`] with the reason, its line and its column.
+    /// The variables in the order of their first assignment, with their last values. A value that
+    /// is not understood is [`Value::Opaque`] with the reason, its line and its column.
     pub variables: Vec<Variable>,
-    /// Statements that were not run, in words.
+    /// Descriptions of the statements that were not run.
     pub notes: Vec<String>,
 }
 
@@ -83,9 +84,9 @@ struct Reading<'t, 'm> {
     scanner: Scanner<'t>,
     budget: &'m ReadingBudget<'m>,
     read: Statements,
-    /// Where the variables stand among those read.
+    /// Indices of the variables.
     places: HashMap<&'t str, usize>,
-    /// How many conditions and loops are open.
+    /// Number of open conditions and loops.
     blocks: usize,
 }
 
@@ -152,7 +153,7 @@ impl<'t> Reading<'t, '_> {
         self.scanner.pass_statement(self.budget)
     }
 
-    /// "[a, b] = …": results of a function, which is not run.
+    /// Skips "[a, b] = …", results of a function, which is not run.
     fn results(&mut self, begin: Position, start: usize) -> Result<(), VariableFault> {
         let line = self.scanner.rest_of_line();
         let names = line.split_once(']').filter(|(_, behind)| {
@@ -193,7 +194,7 @@ impl<'t> Reading<'t, '_> {
             .map_err(|fault| fault.of(name))
     }
 
-    /// Sets a variable to what cannot be read.
+    /// Sets a variable to an unreadable value.
     fn set_unread(
         &mut self,
         path: &[&'t str],
@@ -228,7 +229,7 @@ impl<'t> Reading<'t, '_> {
         Ok(())
     }
 
-    /// A value and nothing behind it.
+    /// Reads a value with nothing after it.
     fn whole_value(&mut self) -> Result<Value, ValueError> {
         let value = self.value(0)?;
         self.scanner.pass_blanks()?;
@@ -289,7 +290,8 @@ impl<'t> Reading<'t, '_> {
         }
     }
 
-    /// A number with its signs, or a complex one such as `1 - 2i`, where one stands here.
+    /// Reads a signed number, or a complex number such as `1 - 2i`, if there is one at this
+    /// position.
     fn complex(&mut self, in_matrix: bool) -> Result<Option<(f64, f64)>, ValueError> {
         let before = self.scanner.clone();
         let Some((value, imaginary)) = self.signed()? else {
@@ -339,7 +341,8 @@ impl<'t> Reading<'t, '_> {
         })
     }
 
-    /// Elements in rows, row by row, behind a bracket up to the one that closes it; blanks separate them.
+    /// Reads rows of elements after an opening bracket up to the closing bracket; blanks separate
+    /// elements.
     fn rows<T>(
         &mut self,
         close: char,
@@ -398,7 +401,7 @@ impl<'t> Reading<'t, '_> {
         }
     }
 
-    /// A matrix of numbers, transposed where a quote stands behind it, or of texts in double quotes.
+    /// Reads a matrix of numbers, transposed if a quote follows it, or of texts in double quotes.
     fn matrix(&mut self) -> Result<Value, ValueError> {
         enum Element {
             Number(f64, f64),
@@ -467,7 +470,7 @@ impl<'t> Reading<'t, '_> {
         }
     }
 
-    /// A record that a function makes of its arguments, or a matrix of equal numbers.
+    /// Reads a record that a function creates from its arguments, or a matrix of equal numbers.
     fn call(&mut self, function: &str, place: Position, depth: usize) -> Result<Value, ValueError> {
         let mut arguments = Vec::new();
         let known = RECORDS.iter().find(|(name, _)| *name == function);
@@ -506,7 +509,7 @@ impl<'t> Reading<'t, '_> {
         }
     }
 
-    /// A copy of a variable or of one of its fields.
+    /// Copies a variable or one of its fields.
     fn copy(&self, path: &[&str], place: Position) -> Result<Value, ValueError> {
         let Some((name, fields)) = path.split_first() else {
             return refused("a name is missing", place);
@@ -532,7 +535,8 @@ impl<'t> Reading<'t, '_> {
     }
 }
 
-/// The arguments under the names of fields, behind them the sample time Ts \[s\], where it is said, and names and values in turn.
+/// Builds a record from arguments and field names, followed by the optional sample time Ts \[s\]
+/// and name-value pairs.
 fn record_of(function: &str, names: &[&str], arguments: Vec<Value>) -> Result<Value, String> {
     let mut rest = arguments.into_iter().peekable();
     let mut fields: Vec<(String, Vec<Value>)> = Vec::new();
@@ -566,7 +570,7 @@ fn record_of(function: &str, names: &[&str], arguments: Vec<Value>) -> Result<Va
     Ok(Value::Struct(StructArray::one(fields)))
 }
 
-/// `zeros`, `ones` or `eye` of a number of rows and columns.
+/// Builds `zeros`, `ones` or `eye` of a number of rows and columns.
 fn filled(
     function: &str,
     sides: &[Value],
@@ -635,7 +639,7 @@ fn set_field(target: &mut Value, path: &[&str], value: Value) {
     }
 }
 
-/// Memory that a copy of a value takes \[bytes\].
+/// Memory of a copy of a value \[bytes\].
 fn memory_of(value: &Value, depth: usize) -> Result<u64, VariableFault> {
     if depth > MOST_NESTED {
         return Err(VariableFault::too_deep(""));

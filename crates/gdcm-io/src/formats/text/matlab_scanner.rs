@@ -1,30 +1,26 @@
-//! The text of MATLAB or Octave statements, read from one place to the next: blanks and comments, names, texts and numbers.
+//! Scanner for MATLAB or Octave statements: blanks and comments, names, texts and numbers.
 
 use crate::formats::text::separator::excerpt;
 use crate::variables::{ReadingBudget, VariableFault};
 
-/// Values within values that are followed; nobody writes more, and each takes room on the stack of the program.
+/// Deepest nesting of values; each level takes stack space.
 pub(super) const MOST_NESTED: usize = 64;
 
-/// Whether a name can go on with this character.
+/// Whether a name can contain this character.
 pub(super) fn is_of_word(character: char) -> bool {
     character.is_alphanumeric() || character == '_'
 }
 
-/// Whether a text begins as a name does.
+/// Whether a text begins with the first character of a name.
 pub(super) fn begins_word(text: &str) -> bool {
     text.starts_with(|first: char| first.is_alphabetic() || first == '_')
 }
 
-/// Why a value was not read.
+/// Reason why a value was not read.
 pub(super) enum ValueError {
-    /// It is not understood; others can be.
-    NotUnderstood {
-        what: String,
-        /// Where it stands.
-        at: Position,
-    },
-    /// Reading ends.
+    /// The value is not understood; other values may be.
+    NotUnderstood { what: String, at: Position },
+    /// Ends the reading.
     Fault(VariableFault),
 }
 
@@ -48,7 +44,7 @@ pub(super) struct Position {
     pub(super) column: usize,
 }
 
-/// A text and how far it is read.
+/// A text with the current position.
 #[derive(Clone)]
 pub(super) struct Scanner<'t> {
     pub(super) text: &'t str,
@@ -58,7 +54,7 @@ pub(super) struct Scanner<'t> {
 }
 
 impl<'t> Scanner<'t> {
-    /// At the beginning of a text.
+    /// Starts at the beginning of a text.
     pub(super) fn new(text: &'t str) -> Self {
         Self {
             text,
@@ -86,7 +82,7 @@ impl<'t> Scanner<'t> {
         is_next
     }
 
-    /// The place at hand; in a line longer than anybody counts in, its column is counted in bytes.
+    /// Returns the current position; in a very long line the column is counted in bytes.
     pub(super) fn position(&self) -> Position {
         let before = &self.text[self.line_start..self.at];
         Position {
@@ -113,7 +109,7 @@ impl<'t> Scanner<'t> {
         self.at += self.rest().find(['\n', '\r']).unwrap_or(self.rest().len());
     }
 
-    /// Passes over blanks, comments and line ends that are continued; says whether there were any.
+    /// Skips blanks, comments and continued line ends; returns whether there were any.
     pub(super) fn pass_blanks(&mut self) -> Result<bool, VariableFault> {
         let from = self.at;
         while let Some(character) = self.peek() {
@@ -142,7 +138,8 @@ impl<'t> Scanner<'t> {
         self.text[self.line_start..self.at].trim().is_empty()
     }
 
-    /// Whether the rest of the line is a mark of comment and this bracket, which open or close a comment of several lines.
+    /// Whether the rest of the line is a comment mark and this bracket, which begin or end a block
+    /// comment.
     fn is_block_mark(&self, bracket: char) -> bool {
         let line = self.rest_of_line().trim();
         line.strip_prefix(['%', '#'])
@@ -167,7 +164,7 @@ impl<'t> Scanner<'t> {
         }
     }
 
-    /// A name, where one stands here.
+    /// Reads a name, if there is one at this position.
     pub(super) fn name(&mut self) -> Option<&'t str> {
         let rest = self.rest();
         let end = rest.find(|c: char| !is_of_word(c)).unwrap_or(rest.len());
@@ -176,7 +173,7 @@ impl<'t> Scanner<'t> {
         is_name.then_some(&rest[..end])
     }
 
-    /// Names with points between them, where they stand here: "sys.A".
+    /// Reads names separated by points, if there are any at this position: "sys.A".
     pub(super) fn path(&mut self, budget: &ReadingBudget) -> Result<Vec<&'t str>, VariableFault> {
         let mut path: Vec<&'t str> = self.name().into_iter().collect();
         while let Some(first) = path.first() {
@@ -195,7 +192,7 @@ impl<'t> Scanner<'t> {
         Ok(path)
     }
 
-    /// A text up to its closing quote on the same line; a doubled quote is a character.
+    /// Reads a text up to its closing quote on the same line; a doubled quote is a character.
     pub(super) fn quoted(&mut self, budget: &ReadingBudget) -> Result<String, ValueError> {
         let opening = self.position();
         let quote = self.peek().unwrap_or('\'');
@@ -223,7 +220,7 @@ impl<'t> Scanner<'t> {
         }
     }
 
-    /// A number without a sign, and whether it is imaginary, where one stands here.
+    /// Reads an unsigned number, and whether it is imaginary, if there is one at this position.
     pub(super) fn number(&mut self) -> Result<Option<(f64, bool)>, ValueError> {
         let rest = self.rest();
         let place = self.position();
@@ -239,7 +236,7 @@ impl<'t> Scanner<'t> {
             return Ok(None);
         }
         let mut end = digits(0);
-        // A point before an operator belongs to it: "1./x", "2.^n", "1...".
+        // A point before an operator belongs to the operator: "1./x", "2.^n", "1...".
         let operator = |at: usize| bytes.get(at).is_some_and(|byte| b"*/\\^'.".contains(byte));
         if bytes.get(end) == Some(&b'.') && !operator(end + 1) {
             end = digits(end + 1);
@@ -265,7 +262,8 @@ impl<'t> Scanner<'t> {
         }
     }
 
-    /// Goes on to the end of the statement; a bracket that is never closed is a fault, as it takes all that follows with it.
+    /// Moves to the end of the statement; an unclosed bracket is a fault, as it would include all
+    /// that follows.
     pub(super) fn pass_statement(&mut self, budget: &ReadingBudget) -> Result<(), VariableFault> {
         let mut open: Vec<(char, Position)> = Vec::new();
         loop {
@@ -277,7 +275,7 @@ impl<'t> Scanner<'t> {
             let in_matrix = matches!(open.last(), Some(('[' | '{', _)));
             match character {
                 '\n' | '\r' => {
-                    // No round bracket reaches beyond its line.
+                    // A round bracket ends at the latest with its line.
                     open.truncate(
                         open.iter()
                             .rposition(|(bracket, _)| *bracket != '(')
@@ -328,7 +326,7 @@ impl<'t> Scanner<'t> {
         }
     }
 
-    /// Whether what follows a name sets a part of it: "+= 1", "++", "(2,1) = 3".
+    /// Whether the text after a name changes part of its value: "+= 1", "++", "(2,1) = 3".
     pub(super) fn changes_part(&self) -> bool {
         let line = self.rest_of_line();
         let Some(sign) = line.chars().next() else {

@@ -1,4 +1,4 @@
-//! Matrices as text: one in a file, or several under their names, as programs print them.
+//! Matrices as text: one in a file, or several with names, as programs print them.
 
 use crate::formats::text::columns::{TextTable, comment, is_rule, read_table};
 use crate::formats::text::separator::{cell_number, excerpt, is_number, lines, refuse_binary};
@@ -9,11 +9,11 @@ use crate::variables::{Array, ReadingBudget, Value, Variable, VariableFault};
 pub struct NamedMatrices {
     /// The matrices in their order.
     pub variables: Vec<Variable>,
-    /// What was passed over or decided, in words.
+    /// Descriptions of skipped parts and of decisions.
     pub notes: Vec<String>,
 }
 
-/// Reads one matrix, a row on each line; a line of names above it is passed over.
+/// Reads one matrix, a row on each line; skips a line of names above it.
 pub fn read_matrix(
     text: &str,
     name: &str,
@@ -38,10 +38,10 @@ pub fn read_matrix(
     })
 }
 
-/// Reads matrices under their names: "A =", "A:" or "A" on a line, its rows on those below.
+/// Reads named matrices: "A =", "A:" or "A" on a line, the rows on the following lines.
 ///
-/// A common factor ("1.0e+03 *") is applied, columns that are printed in several parts ("Columns 1 through 6") are put together,
-/// and names of rows and columns are passed over.
+/// A common factor ("1.0e+03 *") is applied, columns printed in several parts ("Columns 1 through
+/// 6") are joined, and names of rows and columns are skipped.
 pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices, VariableFault> {
     refuse_binary(text, "matrices under their names")?;
     let mut reading = Reading {
@@ -58,7 +58,7 @@ pub fn read_matrices(text: &str, budget: &ReadingBudget) -> Result<NamedMatrices
     reading.finish()
 }
 
-/// Numbers of lines and rows that are printed together.
+/// Line numbers and text of rows that are printed together.
 #[derive(Default)]
 struct Part {
     numbers: Vec<usize>,
@@ -68,7 +68,7 @@ struct Part {
 struct Begun {
     name: String,
     line: usize,
-    /// Whether an equals sign stands behind the name, so that a single word below it names a column.
+    /// Whether an equals sign follows the name, so that a single word below it names a column.
     assigned: bool,
     scale: f64,
     /// Whether the rows have names.
@@ -161,7 +161,7 @@ impl Reading<'_> {
         }
     }
 
-    /// A line of names of columns: rows below it have names too.
+    /// Takes a line of column names: the rows below it have names too.
     fn columns(&mut self, number: usize, line: &str) -> Result<(), VariableFault> {
         if let Some(matrix) = self.found.last_mut() {
             matrix.labelled = true;
@@ -257,7 +257,7 @@ fn is_number_word(word: &str) -> bool {
     !word.is_empty() && is_number(word)
 }
 
-/// Whether a line consists of numbers, whatever stands between them.
+/// Whether a line consists of numbers, with any separator.
 fn row_of_numbers(line: &str) -> bool {
     let mut words = line
         .split(|c: char| c.is_whitespace() || c == ',' || c == ';' || c == '|')
@@ -265,7 +265,7 @@ fn row_of_numbers(line: &str) -> bool {
     words.clone().next().is_some() && words.all(is_number_word)
 }
 
-/// The rows of a part; faults name the line of the whole text.
+/// Reads the rows of a part; faults give the line in the whole text.
 fn table(part: &Part, name: &str, budget: &ReadingBudget) -> Result<TextTable, VariableFault> {
     let place = |line: usize| {
         part.numbers
@@ -289,7 +289,7 @@ fn table(part: &Part, name: &str, budget: &ReadingBudget) -> Result<TextTable, V
     }
 }
 
-/// Tables side by side as one matrix.
+/// Joins tables side by side to one matrix.
 fn matrix(
     tables: &[TextTable],
     scale: f64,
@@ -322,15 +322,14 @@ fn matrix(
 /// A line that names a matrix.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct NameLine<'t> {
-    /// The name.
     pub(super) name: &'t str,
-    /// Whether an equals sign stands behind it.
+    /// Whether an equals sign follows the name.
     pub(super) assigned: bool,
     /// Numbers on the same line.
     pub(super) rest: &'t str,
 }
 
-/// Reads "A", "A =", "A:", "A (3x2)", "A = 5" and "A,,,".
+/// Parses "A", "A =", "A:", "A (3x2)", "A = 5" and "A,,,".
 pub(super) fn name_line(line: &str) -> Option<NameLine<'_>> {
     let line = line.trim().trim_end_matches([',', ';', '\t', ' ']);
     let end = line
@@ -356,7 +355,7 @@ pub(super) fn name_line(line: &str) -> Option<NameLine<'_>> {
     })
 }
 
-/// A text without a size in front of it: "(3x2)", "\[3 x 2\]", "3x2".
+/// Returns a text without a leading size: "(3x2)", "\[3 x 2\]", "3x2".
 fn without_size(text: &str) -> &str {
     let inner = text.trim_start_matches(['(', '[']);
     let (size, rest) = inner.split_at(inner.find([')', ']']).unwrap_or(inner.len()));
@@ -373,7 +372,7 @@ fn without_size(text: &str) -> &str {
     }
 }
 
-/// The factor of a line such as "1.0e+03 *".
+/// Returns the factor of a line such as "1.0e+03 *".
 pub(super) fn scale_line(line: &str) -> Option<f64> {
     let factor = line.trim().strip_suffix('*')?.trim();
     factor
@@ -382,7 +381,7 @@ pub(super) fn scale_line(line: &str) -> Option<f64> {
         .filter(|factor: &f64| factor.is_finite())
 }
 
-/// Whether a line says which columns follow: "Columns 1 through 6", "Column 7:".
+/// Whether a line announces columns: "Columns 1 through 6", "Column 7:".
 pub(super) fn is_columns_line(line: &str) -> bool {
     let mut words = line.trim().trim_end_matches(':').split_whitespace();
     matches!(words.next(), Some("Columns" | "Column"))

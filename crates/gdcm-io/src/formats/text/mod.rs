@@ -1,4 +1,4 @@
-//! Texts that hold numbers: tables in columns, frequency responses, matrices and MATLAB literals.
+//! Texts with numbers: tables in columns, frequency responses, matrices and MATLAB literals.
 
 mod column_meaning;
 pub(crate) mod columns;
@@ -23,7 +23,7 @@ pub(crate) use matrix_text::{read_matrices, read_matrix};
 
 pub(crate) use word_columns::{NumberedText, numbered_words, split_complex};
 
-/// MATLAB's language.
+/// MATLAB and Octave statements.
 pub(crate) const LITERALS: Importer = Importer {
     name: "MATLAB statements",
     endings: &["m"],
@@ -43,9 +43,9 @@ pub(crate) const LITERALS: Importer = Importer {
     },
 };
 
-/// The lines with which a text begins, without comments of MATLAB and empty ones.
+/// Returns the first lines of a text, without MATLAB comments and empty lines.
 fn first_lines(bytes: &[u8]) -> impl Iterator<Item = String> {
-    /// What is looked at \[bytes\].
+    /// Length of the examined beginning \[bytes\].
     const HEAD: usize = 4000;
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(HEAD)]).into_owned();
     let lines: Vec<String> = head.lines().map(|line| line.trim().to_owned()).collect();
@@ -54,8 +54,8 @@ fn first_lines(bytes: &[u8]) -> impl Iterator<Item = String> {
         .filter(|line| !line.is_empty() && !line.starts_with(['%', '#']))
 }
 
-/// Whether a text begins with a statement that gives numbers or texts to a name, as `A = [1 2` or `Ts = 0.02;`. A table may begin
-/// with `Fs = 50`.
+/// Whether a text begins with an assignment of numbers or texts to a name, such as `A = [1 2` or
+/// `Ts = 0.02;`. A table may begin with `Fs = 50`.
 fn begins_with_statement(bytes: &[u8]) -> bool {
     first_lines(bytes).next().is_some_and(|line| {
         let Some((name, value)) = line.split_once('=') else {
@@ -71,7 +71,8 @@ fn begins_with_statement(bytes: &[u8]) -> bool {
     })
 }
 
-/// Whether a text begins with a row of numbers, or with names of columns and one, as no program does.
+/// Whether a text begins with a row of numbers, or with column names and such a row; statements
+/// never do.
 fn begins_with_numbers(bytes: &[u8]) -> bool {
     first_lines(bytes)
         .take(2)

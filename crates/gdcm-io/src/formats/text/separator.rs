@@ -1,27 +1,24 @@
-//! What stands between the cells of a line.
+//! Separators between the cells of a line.
 
 use std::borrow::Cow;
 
 use crate::formats::text::columns::{comment, is_rule};
 use crate::variables::{ReadingBudget, VariableFault};
 
-/// What stands between the cells of a line.
+/// Separator between the cells of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Separator {
-    /// A tabulator.
     Tab,
-    /// A semicolon.
     Semicolon,
-    /// An upright stroke; one in front of the first cell is passed over.
+    /// A vertical bar; a leading bar is skipped.
     Pipe,
-    /// A comma.
     Comma,
     /// Any run of blanks and tabulators.
     Blanks,
 }
 
 impl Separator {
-    /// All of them, the more telling first.
+    /// All separators, the more specific first.
     pub(super) const ALL: [Separator; 5] = [
         Separator::Tab,
         Separator::Semicolon,
@@ -30,7 +27,7 @@ impl Separator {
         Separator::Blanks,
     ];
 
-    /// Its name in a message.
+    /// Returns the name for messages.
     pub fn words(self) -> &'static str {
         match self {
             Separator::Tab => "tabulators",
@@ -41,7 +38,7 @@ impl Separator {
         }
     }
 
-    /// The cells of a line, without the quotes around them.
+    /// Returns the cells of a line, without surrounding quotes.
     pub(super) fn cells(self, line: &str) -> Cells<'_> {
         let line = match self {
             Separator::Pipe => line.trim_start().strip_prefix('|').unwrap_or(line),
@@ -54,7 +51,7 @@ impl Separator {
         }
     }
 
-    /// The sign that is written between cells.
+    /// Returns the character to write between cells.
     pub(super) fn sign(self) -> char {
         match self {
             Separator::Tab => '\t',
@@ -65,7 +62,7 @@ impl Separator {
         }
     }
 
-    /// Cells as a line; one that holds the sign stands in quotes.
+    /// Formats cells as a line; a cell that contains the separator is quoted.
     pub(super) fn line(self, cells: impl Iterator<Item = String>) -> String {
         let sign = self.sign();
         let cell = |cell: String| {
@@ -90,7 +87,7 @@ impl Separator {
     }
 }
 
-/// The cells of a line one after another: a line of a million cells takes no memory.
+/// Iterator over the cells of a line, so that a line of a million cells takes no memory.
 pub(super) struct Cells<'t> {
     rest: Option<&'t str>,
     separator: Separator,
@@ -112,7 +109,7 @@ impl<'t> Iterator for Cells<'t> {
         let end = behind.find(|character| self.separator.is(character));
         let between = &behind[..end.unwrap_or(behind.len())];
         self.rest = end.and_then(|end| behind.get(end..)).map(after_first);
-        // Where something follows the quotes, they are characters like others.
+        // Quotes followed by other text are ordinary characters.
         let whole = &rest[..rest.len() - behind.len() + between.len()];
         Some(if between.trim().is_empty() && !cell.is_empty() {
             cell
@@ -128,12 +125,12 @@ fn after_first(text: &str) -> &str {
     characters.as_str()
 }
 
-/// An empty pair of quotes is an empty cell.
+/// Returns a cell without quotes; an empty pair of quotes is an empty cell.
 fn unquoted(cell: &str) -> &str {
     if cell.trim() == "\"\"" { "" } else { cell }
 }
 
-/// The cell between the quotes at the start of a text, and what follows them.
+/// Returns the quoted cell at the beginning of a text, and the text after it.
 fn quoted(text: &str) -> Option<(Cow<'_, str>, &str)> {
     let inner = text.trim_start().strip_prefix('"')?;
     let mut from = 0;
@@ -152,9 +149,9 @@ fn quoted(text: &str) -> Option<(Cow<'_, str>, &str)> {
     }
 }
 
-// One number of a table, in the ways programs write numbers.
+// Numbers in a table cell, in the notations of various programs.
 
-/// What programs write where there is no number.
+/// Words that programs write for a missing number.
 const MISSING: [&str; 14] = [
     "nan",
     "-nan",
@@ -172,9 +169,10 @@ const MISSING: [&str; 14] = [
     ".",
 ];
 
-/// The number in a cell: NaN where it says that there is none, nothing where it says something else.
+/// Parses the number in a cell: NaN for a missing number, `None` for anything else.
 ///
-/// `decimal_comma` says which of comma and point is the decimal mark; the other is not accepted, as it may group thousands.
+/// `decimal_comma` selects comma or point as the decimal mark; the other mark is not accepted, as
+/// it may group thousands.
 pub(super) fn cell_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     let cell = cell.trim();
     if cell.is_empty() {
@@ -192,7 +190,7 @@ pub(super) fn cell_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     }
 }
 
-/// Whether a cell is a number, or says that there is none, with either decimal mark.
+/// Whether a cell is a number or a missing number, with either decimal mark.
 pub(super) fn is_number(cell: &str) -> bool {
     [false, true]
         .iter()
@@ -204,7 +202,7 @@ fn is_missing(cell: &str) -> bool {
     MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word))
         // An older C library of Windows.
         || ["1.#IND", "1.#QNAN", "1.#SNAN"].iter().any(|start| unsigned.starts_with(start))
-        // Fortran: the number did not fit in its field.
+        // Fortran: the number does not fit its field.
         || cell.bytes().all(|byte| byte == b'*')
 }
 
@@ -215,7 +213,7 @@ fn spelled_otherwise(cell: &str, decimal_comma: bool) -> Option<f64> {
     if cell.starts_with("-1.#INF") {
         return Some(f64::NEG_INFINITY);
     }
-    // Nobody writes a number of more digits with a decimal comma or a Fortran exponent.
+    // Numbers with a decimal comma or a Fortran exponent are never longer.
     if cell.len() > 400 || !cell.contains(|c: char| c.is_ascii_digit()) {
         return None;
     }
@@ -230,7 +228,7 @@ fn spelled_otherwise(cell: &str, decimal_comma: bool) -> Option<f64> {
             _ => return None,
         });
     }
-    // Fortran leaves out the letter before an exponent of three digits: 1.0-103.
+    // Fortran omits the letter before a three-digit exponent: 1.0-103.
     let sign = plain
         .rfind(['+', '-'])
         .filter(|&at| at > 0 && plain.len() - at == 4 && !plain.contains(['e', 'E']));
@@ -240,10 +238,10 @@ fn spelled_otherwise(cell: &str, decimal_comma: bool) -> Option<f64> {
     plain.parse().ok()
 }
 
-// Times of the clock, with a date or without.
+// Clock times, with or without a date.
 
-/// Seconds of a time such as "12:30:01.25", "12:30:01,25", "2026-03-01 12:30:01.25" or "2026-03-01T12:30:01.250Z": since midnight, or
-/// since the beginning of 1970 where there is a date.
+/// Seconds of a time such as "12:30:01.25", "12:30:01,25", "2026-03-01 12:30:01.25" or
+/// "2026-03-01T12:30:01.250Z": since midnight, or since the beginning of 1970 if there is a date.
 pub(super) fn clock_s(text: &str) -> Option<f64> {
     let text = text.trim().trim_end_matches('Z').trim();
     let (date, time) = match text.split_once(['T', ' ']) {
@@ -283,7 +281,7 @@ pub(super) fn clock_s(text: &str) -> Option<f64> {
         .then_some(day_s + 3600.0 * hours + 60.0 * minutes + seconds)
 }
 
-/// Days from 1970-01-01 to a date written year first.
+/// Days from 1970-01-01 to a date in the order year, month, day.
 fn days(date: &str) -> Option<f64> {
     let mut parts = date.split(['-', '/']).map(|part| part.parse::<i16>().ok());
     let year = parts.next()??;
@@ -294,16 +292,16 @@ fn days(date: &str) -> Option<f64> {
     Some(f64::from(since.get_days()))
 }
 
-// Bytes of a text file as text.
+// Decoding of text files.
 
-/// Characters of code page 1252 from 0x80 to 0x9f; the five that it leaves open stay control characters.
+/// Characters 0x80 to 0x9f of code page 1252; its five undefined codes remain control characters.
 const WINDOWS_1252: [char; 32] = [
     '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}',
     '\u{90}', '‘', '’', '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
 ];
 
-/// The characters of a text: UTF-8 with a byte order mark or without, UTF-16 with one, or Latin-1 as Windows has it where the bytes are
-/// no UTF-8.
+/// Decodes a text: UTF-8 with or without a byte order mark, UTF-16 with one, or code page 1252 if
+/// the bytes are not UTF-8.
 pub fn decode(bytes: &[u8], budget: &ReadingBudget) -> Result<String, VariableFault> {
     if let Some(body) = bytes.strip_prefix(&[0xff, 0xfe]) {
         return utf16(body, u16::from_le_bytes, budget);
@@ -315,7 +313,7 @@ pub fn decode(bytes: &[u8], budget: &ReadingBudget) -> Result<String, VariableFa
     if let Some(at) = body.iter().position(|&byte| byte == 0) {
         return Err(no_text("a text", at));
     }
-    // A character of Latin-1 takes at most three bytes of UTF-8.
+    // A Latin-1 character takes at most three bytes in UTF-8.
     budget.take(body.len() as u64, 3, "")?;
     Ok(match std::str::from_utf8(body) {
         Ok(text) => text.to_owned(),
@@ -346,15 +344,15 @@ fn utf16(
         .collect())
 }
 
-// The lines of a text, whatever they end in.
+// Lines of a text with any line ending.
 
-/// The lines of a text with their numbers, from 1; they end in a line feed, a carriage return, or both.
+/// Iterator over numbered lines, from 1; a line ends in a line feed, a carriage return, or both.
 pub(super) struct Lines<'t> {
     rest: Option<&'t str>,
     number: usize,
 }
 
-/// The lines of `text`.
+/// Returns the lines of `text`.
 pub(super) fn lines(text: &str) -> Lines<'_> {
     Lines {
         rest: Some(text.strip_prefix('\u{feff}').unwrap_or(text)),
@@ -378,7 +376,7 @@ impl<'t> Iterator for Lines<'t> {
     }
 }
 
-/// Refuses what is no text: no text of numbers holds a zero byte.
+/// Refuses binary data: a text of numbers contains no zero byte.
 pub(super) fn refuse_binary(text: &str, expected: &'static str) -> Result<(), VariableFault> {
     text.find('\0')
         .map_or(Ok(()), |at| Err(no_text(expected, at)))
@@ -391,9 +389,9 @@ fn no_text(expected: &'static str, at: usize) -> VariableFault {
     )
 }
 
-/// The beginning of a text for a message: its first line, at most 40 characters, visible ones only.
+/// Shortens a text for a message: its first line, at most 40 characters, visible characters only.
 pub(super) fn excerpt(text: &str) -> String {
-    // No more of a line is looked at than is shown: it may be as long as the text.
+    // Only the displayed part is examined: a line may be as long as the text.
     let mut line = text
         .trim_start()
         .chars()
@@ -410,10 +408,10 @@ pub(super) fn excerpt(text: &str) -> String {
     short
 }
 
-// Tables behind one another in one text, each under a heading of its own.
+// Consecutive tables in one text, each with a heading.
 
-/// Cuts a text before every heading that stands behind rows: number of the first line of each part, and the part. A log that is begun
-/// anew with other columns is so cut where they change.
+/// Splits a text before every heading that follows rows; returns the number of the first line and
+/// the text of each part. A log that is restarted with other columns is split where they change.
 pub fn sections(text: &str) -> Vec<(usize, &str)> {
     let mut starts: Vec<(usize, usize)> = vec![(1, 0)];
     let mut has_rows = false;
@@ -423,7 +421,7 @@ pub fn sections(text: &str) -> Vec<(usize, &str)> {
         }
         let is_heading = is_heading(line);
         if is_heading && has_rows {
-            // Lines are parts of the text.
+            // Each line is a slice of the text.
             starts.push((number, line.as_ptr() as usize - text.as_ptr() as usize));
         }
         has_rows = !is_heading;
@@ -436,7 +434,7 @@ pub fn sections(text: &str) -> Vec<(usize, &str)> {
         .collect()
 }
 
-/// Whether no cell of a line is a number, and one holds letters.
+/// Whether no cell of a line is a number, and at least one contains letters.
 fn is_heading(line: &str) -> bool {
     let strong = ['|', ';', '\t', ','];
     let is_strong = line.contains(strong);

@@ -6,23 +6,22 @@ use crate::formats::text::columns::comment;
 use crate::formats::text::separator::{Separator, cell_number, clock_s, is_number, lines};
 use crate::variables::{ReadingBudget, VariableFault};
 
-/// Lines that are looked at before the columns are taken as known.
+/// Number of lines examined to recognise the columns.
 const SAMPLE: usize = 200;
-/// Words of one column that are told apart; a column with more is no label of anything.
+/// Largest number of distinct words in a column; a column with more is not a label.
 const MOST_WORDS: usize = 500;
-/// Words that a note names.
+/// Number of words listed in a note.
 const SHOWN: usize = 12;
 
-/// A text whose columns of words hold numbers in their place.
+/// A text with numbers instead of words in its columns.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NumberedText {
-    /// The text, a table of numbers.
     pub text: String,
-    /// Which number stands for which word, and which columns were times of the clock.
+    /// The number of each word, and the columns of clock times.
     pub notes: Vec<String>,
 }
 
-/// What a column holds.
+/// Kind of data in a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Numbers,
@@ -30,8 +29,9 @@ enum Kind {
     Words,
 }
 
-/// Numbers the words of a text in columns, each as it first comes, and turns times of the clock into seconds; nothing where the text
-/// has no columns of words beside columns of numbers. Columns have to be told apart by more than blanks.
+/// Replaces the words in columns by numbers, in the order of their first occurrence, and clock
+/// times by seconds; returns nothing if the text has no word columns beside number columns. The
+/// columns need a separator other than blanks.
 pub fn numbered_words(
     text: &str,
     budget: &ReadingBudget,
@@ -64,11 +64,11 @@ pub fn numbered_words(
     }))
 }
 
-/// A column while it is numbered.
+/// A column during numbering.
 struct Column {
     kind: Kind,
     words: BTreeMap<String, usize>,
-    /// The first time of the clock, and the last with the days passed \[s\].
+    /// The first clock time, and the last with the elapsed days \[s\].
     clock: Option<(f64, f64)>,
 }
 
@@ -78,7 +78,7 @@ struct Numbering {
 }
 
 impl Numbering {
-    /// A row with numbers in place of words; the heading as it is.
+    /// Formats a row with numbers instead of words; leaves the heading unchanged.
     fn line(&mut self, cells: Vec<String>, separator: Separator) -> String {
         let mut numbers = cells
             .iter()
@@ -149,7 +149,7 @@ impl Column {
         self.words.entry(word).or_insert(next).to_string()
     }
 
-    /// Seconds from the first time of the column; midnight adds a day.
+    /// Returns seconds since the first time of the column; midnight adds a day.
     fn seconds(&mut self, cell: &str) -> String {
         const DAY_S: f64 = 86_400.0;
         let Some(mut now) = clock_s(cell) else {
@@ -160,12 +160,13 @@ impl Column {
             now += DAY_S * ((last - now) / DAY_S).round();
         }
         self.clock = Some((first, now));
-        // Whole nanoseconds, finer than any clock: they need no decimal mark, which may be either one in this text.
+        // Integer nanoseconds, finer than any clock: they need no decimal mark, which may be either
+        // in this text.
         format!("{:.0}e-9", (now - first) * 1e9)
     }
 }
 
-/// The separator with which most lines have one width, and what each column then holds.
+/// Finds the separator for which most lines have one width, and the kind of each column.
 fn columns(text: &str) -> Option<(Separator, Vec<Column>)> {
     let sample: Vec<&str> = lines(text)
         .map(|(_, line)| line)
@@ -225,10 +226,10 @@ fn columns(text: &str) -> Option<(Separator, Vec<Column>)> {
     (numbers >= 2 && numbers < width).then(|| (separator, kinds.into_iter().map(column).collect()))
 }
 
-// Columns of complex numbers, `(1.5-2j)`, as columns of their real and imaginary parts.
+// Complex columns, `(1.5-2j)`, as columns of real and imaginary parts.
 
-/// The text with two columns in place of each that holds complex numbers, their headings with "re" and "im" before them; nothing where
-/// there is none. Lines keep their numbers.
+/// Replaces each complex column by two columns, with "re" and "im" before their headings; returns
+/// nothing if there is none. Line numbers are kept.
 pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String>, VariableFault> {
     let Some((separator, is_complex)) = complex_columns(text) else {
         return Ok(None);
@@ -256,14 +257,15 @@ pub fn split_complex(text: &str, budget: &ReadingBudget) -> Result<Option<String
         }
         split.push('\n');
     }
-    // Behind the last end of a line an empty one was read.
+    // An empty line follows the last line end.
     split.pop();
     Ok(Some(split))
 }
 
-/// What stands between the cells of the first line that holds complex numbers beside real ones, and which cells they are.
+/// Finds the separator and the complex cells of the first line of numbers, at least one of them
+/// complex.
 fn complex_columns(text: &str) -> Option<(Separator, Vec<bool>)> {
-    /// Lines that are looked at.
+    /// Number of lines examined.
     const SAMPLE: usize = 200;
     let of_line = |line: &str| {
         Separator::ALL.into_iter().find_map(|separator| {
@@ -284,7 +286,7 @@ fn complex_columns(text: &str) -> Option<(Separator, Vec<bool>)> {
         .find_map(|(_, line)| of_line(line))
 }
 
-/// Real and imaginary part of a number; two headings of one.
+/// Returns the real and imaginary part of a number, or two headings for one.
 fn two_cells(cell: &str, separator: Separator) -> [String; 2] {
     if let Some(parts) = parts(cell) {
         return parts;
@@ -304,7 +306,7 @@ fn two_cells(cell: &str, separator: Separator) -> [String; 2] {
     }
 }
 
-/// Real and imaginary part of "(1.5-2j)", "1.5 + 2i", "2e-3j", "(1+-2j)".
+/// Returns the real and imaginary part of "(1.5-2j)", "1.5 + 2i", "2e-3j", "(1+-2j)".
 fn parts(cell: &str) -> Option<[String; 2]> {
     let cell: String = cell
         .chars()
@@ -362,7 +364,7 @@ mod tests {
         let text = "time;P;Q\n23:59:59,90;1,5;2\n23:59:59,95;1,5;2\n00:00:00,00;1,5;2\n00:00:00,05;1,5;2\n";
         let found = numbered(text).unwrap();
         let table = read_table(&found.text, &ReadingBudget::new(1 << 20)).unwrap();
-        // Nanoseconds were written.
+        // The times are written in nanoseconds.
         assert!(
             table.columns[0]
                 .iter()

@@ -1,14 +1,17 @@
-//! The least objective over the scales that the held products leave free, with a proof.
+//! Global minimum of the objective over the scales that the constrained products leave free, with a
+//! proof.
 //!
-//! Holding `k_o k_i` ties the logarithms of a connected piece of channels together up to one *scale* `s` (M8, structure). With the
-//! ground, scale 0, the objective is a sum of functions of one difference each,
+//! Constraining `k_o k_i` ties the logarithms of a connected piece of channels together up to one
+//! *scale* `s` (M8, structure). With the ground, scale 0, the objective is a sum of functions, each
+//! of one difference:
 //!
 //! ```text
 //! F(s) = c + sum over terms f_t(s_j - s_i),     f_t(u) = R1 (e^u - c1)^2 + R2 (e^-u - c2)^2   or   w (u - c)^2:
 //! ```
 //!
-//! each exponential is convex where `e^u >= c / 2`, a term concave on one interval at most. A *node* is a part of the box given by
-//! *difference bounds* `s_j - s_i <= b_ij`. Spatial (interval) branch and bound:
+//! Each exponential is convex where `e^u >= c / 2`, and a term is concave on at most one interval.
+//! A *node* is a part of the box given by *difference bounds* `s_j - s_i <= b_ij`. Spatial
+//! (interval) branch and bound:
 //!
 //! ```text
 //!  1  best <- local minimum of F from where it is told to start (projected Newton)
@@ -23,10 +26,11 @@
 //! 10  lower bound <- least bound of closed and open nodes
 //! ```
 //!
-//! Hansen and Walster, *Global Optimization Using Interval Analysis* (2004): branching, monotonicity and convexity tests. Horst
-//! and Tuy, *Global Optimization* (1996): best-first branch and bound, convergence. McCormick (1976), *Mathematical Programming*
-//! 10: convex envelopes term by term. The tangent plane bounds the convex underestimator wherever Newton's method has come to, so
-//! the bound needs no convergence; its rounding is counted term by term (`Rounded`).
+//! Hansen and Walster, *Global Optimization Using Interval Analysis* (2004): branching,
+//! monotonicity and convexity tests. Horst and Tuy, *Global Optimization* (1996): best-first branch
+//! and bound, convergence. McCormick (1976), *Mathematical Programming* 10: convex envelopes term
+//! by term. The tangent plane bounds the convex underestimator from any point that Newton's method
+//! reaches, so the bound needs no convergence; its rounding is counted term by term (`Rounded`).
 
 mod node_exclusion;
 pub(crate) mod objective;

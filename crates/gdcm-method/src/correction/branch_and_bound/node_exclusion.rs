@@ -1,4 +1,5 @@
-//! What excludes a node: the monotonicity test (no minimum is there) and the convexity test (no other than a known one).
+//! Tests that exclude a node: monotonicity (the node has no minimum) and convexity (no minimum
+//! other than a known one).
 
 use nalgebra::DMatrix;
 
@@ -6,12 +7,13 @@ use super::objective::{Expansion, Objective};
 use super::term::{Range, Term};
 use super::underestimator::{DifferenceBounds, quadratic_bound};
 
-/// The objective with what decides about its local minima.
+/// The objective with the structure needed by the exclusion tests.
 pub(super) struct NodeExclusion<'a> {
     objective: &'a Objective,
-    /// The scale against which each one is measured: the ground, or the first of a piece that is not tied to it.
+    /// Reference scale of each scale: the ground, or the first of a piece that is not tied to it.
     base: Vec<usize>,
-    /// The scales whose bounds can stop each one: the ground, or any other of a piece that is not tied to it.
+    /// Scales whose bounds can stop each scale: the ground, or any other of a piece that is not
+    /// tied to it.
     stops: Vec<Vec<usize>>,
     floating: Vec<Vec<usize>>,
 }
@@ -46,8 +48,8 @@ impl<'a> NodeExclusion<'a> {
         4 * self.objective.terms.len() as u64 + scales * scales * scales / 96
     }
 
-    /// Monotonicity test: whether some scale's slope keeps its sign over the whole region although nothing stops the scale, so
-    /// that no local minimum is there.
+    /// Monotonicity test: whether the slope in some scale keeps its sign over the whole region
+    /// although nothing stops the scale, so that the region holds no local minimum.
     pub(super) fn has_no_minimum(&self, region: &DifferenceBounds) -> bool {
         let slopes = self.slope_ranges(region);
         let can_move = |scale: &usize| self.objective.lower[*scale] < self.objective.upper[*scale];
@@ -57,8 +59,9 @@ impl<'a> NodeExclusion<'a> {
         (0..self.objective.ground()).filter(can_move).any(unstopped)
     }
 
-    /// Whether no local minimum in the region differs from the one at `minimum`: over the hull of both, the scales whose slope
-    /// keeps its sign are on their bound at any local minimum, and the objective is convex in the others.
+    /// Whether the region holds no local minimum other than `minimum`: over the hull of both, the
+    /// scales whose slope keeps its sign are on their bound at any local minimum, and the objective
+    /// is convex in the others.
     pub(super) fn has_only(&self, region: &DifferenceBounds, minimum: &[f64]) -> bool {
         let hull = region.hull(minimum);
         let slopes = self.slope_ranges(&hull);
@@ -84,7 +87,8 @@ impl<'a> NodeExclusion<'a> {
         })
     }
 
-    /// The slope in each scale over the region; `size` is that of what it is summed from.
+    /// Range of the slope in each scale over the region; `size` sums the sizes of the terms'
+    /// slopes.
     fn slope_ranges(&self, region: &DifferenceBounds) -> Vec<Range> {
         let mut ranges = vec![Range::default(); self.objective.scales()];
         for term in &self.objective.terms {
@@ -95,7 +99,7 @@ impl<'a> NodeExclusion<'a> {
                 range.least += least;
                 range.most += most;
                 range.size += size;
-                // The rounding of both sums, each below the sum of the sizes.
+                // Rounding of both sums, each below the sum of the sizes.
                 let rounding = f64::EPSILON * range.size;
                 range.least -= rounding;
                 range.most += rounding;
@@ -104,9 +108,10 @@ impl<'a> NodeExclusion<'a> {
         ranges
     }
 
-    /// A lower bound over a region on which the objective is convex, from its gradient and Hessian next to `minimum`.
+    /// Returns a lower bound over a region on which the objective is convex, from its gradient and
+    /// Hessian next to `minimum`.
     pub(super) fn bound_at(&self, minimum: &[f64], at: &Expansion) -> Option<f64> {
-        // Far more than the scales are wrong by, far less than what changes the curvature.
+        // Far above the error of the scales, far below a change that matters to the curvature.
         const WITHIN: f64 = 0.01;
         let least = self.least_hessian(|term| {
             let u = minimum[term.to] - minimum[term.from];
@@ -129,7 +134,8 @@ impl<'a> NodeExclusion<'a> {
         quadratic_bound(at, &reach, WITHIN, |scale| push[scale] > 0.0)
     }
 
-    /// How hard the slope surely pushes the scale against the bound it is on; 0 where it does not.
+    /// Guaranteed magnitude of the slope that pushes the scale against its active bound; otherwise
+    /// 0.
     fn push(&self, minimum: &[f64], at: &Expansion, scale: usize) -> f64 {
         let slope = at.gradient[scale];
         let stopped = if slope > 0.0 {
@@ -144,8 +150,9 @@ impl<'a> NodeExclusion<'a> {
         }
     }
 
-    /// The scale against which each floating piece is measured: one that cannot move or, where bounds push, the one pushed
-    /// hardest. The others' slopes lean on that one, so it has to outweigh them.
+    /// Reference scale of each floating piece: a fixed scale or, where bounds push, the scale
+    /// pushed hardest. The slopes of the others lean on that scale, so its push has to outweigh
+    /// them.
     fn anchors(&self, at: &Expansion, push: &[f64]) -> Option<Vec<usize>> {
         let mut anchors = Vec::new();
         for piece in &self.floating {
@@ -171,8 +178,8 @@ impl<'a> NodeExclusion<'a> {
         Some(anchors)
     }
 
-    /// The Hessian with every term's least curvature over its range, and (as the gradient's error) what its diagonal is summed
-    /// from.
+    /// Returns the Hessian built from every term's least curvature over its range and, as the
+    /// gradient's error, the sum of sizes behind its diagonal.
     fn least_hessian(&self, range: impl Fn(&Term) -> (f64, f64)) -> Expansion {
         let mut least = Expansion::zero(self.objective.scales());
         for term in &self.objective.terms {
@@ -185,8 +192,9 @@ impl<'a> NodeExclusion<'a> {
         least
     }
 
-    /// Whether the objective is convex in the `free` scales over the region: the Hessian with every term's least curvature is
-    /// positive definite, and the true one differs from it by a positive semidefinite matrix.
+    /// Whether the objective is convex in the `free` scales over the region: the Hessian built from
+    /// every term's least curvature is positive definite, and the true Hessian differs from it by a
+    /// positive semidefinite matrix.
     fn is_convex_in(&self, region: &DifferenceBounds, free: impl Fn(usize) -> bool) -> bool {
         let least = self.least_hessian(|term| region.range(term.from, term.to));
         let measured = |scale: &usize| self.base[*scale] != *scale && free(*scale);
@@ -195,13 +203,13 @@ impl<'a> NodeExclusion<'a> {
     }
 }
 
-/// The sign that a slope keeps: -1, 0 (none) or 1.
+/// Sign that a slope keeps over its range: -1, 1, or 0 where the sign is undecided.
 fn sign(slope: &Range) -> i8 {
     i8::from(slope.least > 0.0) - i8::from(slope.most < 0.0)
 }
 
-/// The Hessian of the `free` scales, less what its sums (of up to n terms) and its factorisation (n (n + 1) roundings of the
-/// diagonal: Higham, theorem 10.3) can be wrong by.
+/// Returns the Hessian of the `free` scales, less a margin for the rounding of its sums (up to n
+/// terms) and of its factorisation (n (n + 1) roundings of the diagonal: Higham, theorem 10.3).
 fn reduced(hessian: &Expansion, free: &[usize]) -> DMatrix<f64> {
     let scales = hessian.gradient.len();
     let roundings = ((scales + 1) * (scales + 2)) as f64;

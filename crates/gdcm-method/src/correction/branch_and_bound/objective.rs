@@ -1,10 +1,11 @@
-//! The objective after the constraints are eliminated, as a function of the scales, and Newton's method down to a local minimum over
-//! their box.
+//! The objective as a function of the scales, after elimination of the constraints, and Newton's
+//! method for a local minimum over their box.
 
 use super::search::Effort;
 use super::term::{Rounded, Term};
 
-/// Value, gradient and Hessian (row-major) of a function of the scales, with bounds on the rounding of the first two.
+/// Value, gradient and Hessian (row-major) of a function of the scales, with bounds on the rounding
+/// of value and gradient.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Expansion {
     pub(crate) value: Rounded,
@@ -14,7 +15,7 @@ pub(crate) struct Expansion {
 }
 
 impl Expansion {
-    /// Zero, for so many scales.
+    /// Zero expansion in `scales` scales.
     pub(crate) fn zero(scales: usize) -> Self {
         Self {
             value: Rounded::default(),
@@ -24,7 +25,7 @@ impl Expansion {
         }
     }
 
-    /// Forgets everything but a constant value, keeping the memory.
+    /// Resets the expansion to a constant value and keeps the allocated memory.
     pub(crate) fn clear(&mut self, constant: Rounded) {
         self.value = constant;
         self.gradient.fill(0.0);
@@ -52,16 +53,15 @@ impl Expansion {
     }
 }
 
-/// How the curvature of a concave term is entered.
+/// Treatment of the curvature of a concave term.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Curvature {
-    /// As it is.
     True,
-    /// As its magnitude, which keeps the Hessian positive semidefinite far from a minimum.
+    /// The magnitude, which keeps the Hessian positive semidefinite far from a minimum.
     Magnitude,
 }
 
-/// A function of the scales that Newton's method can follow.
+/// A function of the scales that Newton's method can minimise.
 pub(crate) trait Differentiable {
     /// Value, gradient and Hessian at `scales`.
     fn expand(&self, scales: &[f64], curvature: Curvature, into: &mut Expansion);
@@ -72,16 +72,16 @@ pub(crate) trait Differentiable {
 
 /// `constant + sum of terms`, over the box of the scales.
 ///
-/// Scale `n - 1` is the *ground*: it is 0, so a term with it is a function of one scale.
+/// Scale `n - 1` is the *ground*: it is 0, so a term with it is a function of one scale only.
 #[derive(Clone, Debug)]
 pub(crate) struct Objective {
     /// Least value of each scale, the ground last.
     pub(crate) lower: Vec<f64>,
     /// Greatest value of each scale, the ground last.
     pub(crate) upper: Vec<f64>,
-    /// Every term, at most one for each two scales.
+    /// At most one term for each pair of scales.
     pub(crate) terms: Vec<Term>,
-    /// What no scale changes.
+    /// Part of the objective that does not depend on the scales.
     pub(crate) constant: Rounded,
 }
 
@@ -116,7 +116,8 @@ impl Objective {
         self.constant.value + self.terms.iter().map(at).sum::<f64>()
     }
 
-    /// The pieces that terms tie together but not to the ground: their scales are determined up to a common shift.
+    /// Pieces that terms tie together but not to the ground: their scales are determined up to a
+    /// common shift.
     pub(crate) fn floating_pieces(&self) -> Vec<Vec<usize>> {
         let ties = self.terms.iter().map(|term| (term.from, term.to));
         let pieces = pieces(self.scales(), ties).into_iter();
@@ -125,10 +126,11 @@ impl Objective {
             .collect()
     }
 
-    /// The limit `alpha -> 0+`: moves each floating piece of `scales` by one common amount, as far as the box allows.
+    /// The limit `alpha -> 0+`: moves each floating piece of `scales` by one common amount, as far
+    /// as the box allows.
     ///
-    /// `shift(piece)` is the amount that the piece would take without the box. The fit does not depend on it, so the departure of
-    /// the outputs' gains or delays decides (M8, M9).
+    /// `shift(piece)` returns the shift without the box. The fit does not depend on it, so it is
+    /// set by the departure of the outputs' gains or delays (M8, M9).
     pub(crate) fn shift_floating_pieces(
         &self,
         scales: &mut [f64],
@@ -151,7 +153,8 @@ impl Objective {
     }
 }
 
-/// What `ties` connect of `count` nodes: the members of each connected piece, in rising order.
+/// Connected pieces of the graph of `count` nodes with edges `ties`: the members of each, in rising
+/// order.
 pub(crate) fn pieces(count: usize, ties: impl Iterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
     let mut piece_of: Vec<usize> = (0..count).collect();
     for (one, other) in ties {
@@ -196,8 +199,9 @@ impl Differentiable for Objective {
     }
 }
 
-/// A projected Newton method: each step minimises the quadratic model over the box exactly, so that the set of active bounds is
-/// right as soon as the model is. Clipping an unconstrained step instead stalls at corners.
+/// A projected Newton method: each step minimises the quadratic model over the box exactly, so that
+/// the set of active bounds is right as soon as the model is. Clipping an unconstrained step
+/// instead stalls at corners.
 pub(crate) struct Newton<'a> {
     effort: &'a Effort<'a>,
     /// The function at the last point.
@@ -208,7 +212,7 @@ pub(crate) struct Newton<'a> {
 }
 
 impl<'a> Newton<'a> {
-    /// Room for so many scales; what it does is spent of this effort.
+    /// Allocates for `scales` scales; the work is counted in `effort`.
     pub(crate) fn new(scales: usize, effort: &'a Effort<'a>) -> Self {
         Self {
             effort,
@@ -219,8 +223,8 @@ impl<'a> Newton<'a> {
         }
     }
 
-    /// Moves `scales` (inside the box) down until `enough(scales, expansion)`, until rounding ends it or until the effort is
-    /// stopped; `reached` is then the function there.
+    /// Moves `scales` (inside the box) downhill until `enough(scales, expansion)` holds, rounding
+    /// ends the descent or the effort is stopped; `reached` is then the function there.
     pub(crate) fn minimise(
         &mut self,
         function: &impl Differentiable,
@@ -228,7 +232,8 @@ impl<'a> Newton<'a> {
         scales: &mut [f64],
         mut enough: impl FnMut(&[f64], &Expansion) -> bool,
     ) {
-        // Newton's method needs about ten steps; a flat start or a run along an inflection a few tens.
+        // Newton's method needs about ten steps; a flat start or a run along an inflection a few
+        // tens.
         const STEPS: usize = 100;
         self.effort.spend(function.work());
         function.expand(scales, Curvature::True, &mut self.reached);
@@ -244,8 +249,8 @@ impl<'a> Newton<'a> {
             let Some((decrease, true_curvature)) = self.minimise_model(function, scales) else {
                 return;
             };
-            // Where Newton's method is this near, three steps end at the rounding of the slopes, also across the end of an
-            // envelope.
+            // This near to the minimum, three steps end at the rounding of the slopes, also across
+            // the end of an envelope.
             near +=
                 usize::from(true_curvature && decrease <= 1e-13 * self.reached.value.value.abs());
             if !self.search_line(function, (lower, upper), scales, decrease) || near == 3 {
@@ -254,8 +259,8 @@ impl<'a> Newton<'a> {
         }
     }
 
-    /// The decrease of the model's step: with the true curvature (`true`) where that is positive definite, else with its
-    /// magnitude.
+    /// Decrease of the model's step: with the true curvature (`true`) where the Hessian is positive
+    /// definite, else with its magnitude.
     fn minimise_model(
         &mut self,
         function: &impl Differentiable,
@@ -269,7 +274,8 @@ impl<'a> Newton<'a> {
         Some((self.model.minimise(&self.reached, self.effort)?, false))
     }
 
-    /// Takes the longest of the step's halvings that goes down; `false` where none does, or where the step is nothing.
+    /// Takes the longest halving of the step that decreases the function; `false` where none does,
+    /// or where the step is zero.
     fn search_line(
         &mut self,
         function: &impl Differentiable,
@@ -303,7 +309,8 @@ impl<'a> Newton<'a> {
         false
     }
 
-    /// Writes the point a fraction of the step away, exactly on the bounds that the full step reaches.
+    /// Writes the point at a fraction of the step, exactly on the bounds that the full step
+    /// reaches.
     fn place(&mut self, fraction: f64, (lower, upper): (&[f64], &[f64]), scales: &[f64]) {
         for scale in 0..scales.len() {
             let step = self.model.step[scale];
@@ -326,7 +333,6 @@ struct QuadraticModel {
     low: Vec<f64>,
     /// Greatest step of each scale, at least 0.
     high: Vec<f64>,
-    /// The step found.
     step: Vec<f64>,
     slope: Vec<f64>,
     free: Vec<usize>,
@@ -336,7 +342,7 @@ struct QuadraticModel {
 }
 
 impl QuadraticModel {
-    /// Room for `scales` scales.
+    /// Allocates for `scales` scales.
     fn new(scales: usize) -> Self {
         Self {
             scales,
@@ -351,11 +357,11 @@ impl QuadraticModel {
         }
     }
 
-    /// Minimises `g d + d H d / 2`, of gradient and Hessian at a point, over `low <= d <= high` by a primal active-set method: exact,
-    /// finite.
+    /// Minimises `g d + d H d / 2`, with gradient and Hessian at a point, over `low <= d <= high`
+    /// by a primal active-set method: exact, finite.
     ///
-    /// Returns the decrease, or `None` where the effort is stopped or `H` is not positive definite on a face that the method visits. Nodes with
-    /// `low == high` stay.
+    /// Returns the decrease, or `None` where the effort is stopped or `H` is not positive definite
+    /// on a face that the method visits. Nodes with `low == high` stay.
     fn minimise(&mut self, at: &Expansion, effort: &Effort<'_>) -> Option<f64> {
         let gradient = &at.gradient;
         let hessian = &at.hessian;
@@ -370,7 +376,8 @@ impl QuadraticModel {
             * (0..self.scales)
                 .map(|scale| hessian[scale * self.scales + scale])
                 .fold(0.0, f64::max);
-        // Each pass adds a stop or releases one after a decrease; 8 n passes are far above what is ever needed.
+        // Each pass adds a stop or releases one after a decrease; 8 n passes are far more than
+        // needed.
         for _ in 0..8 * self.scales + 8 {
             effort.spend(self.work());
             if effort.is_stopped() {
@@ -397,7 +404,8 @@ impl QuadraticModel {
         Some(-change)
     }
 
-    /// Work of one pass: a Cholesky factorisation of what is free, and the products with the whole.
+    /// Work of one pass: a Cholesky factorisation of the free part, and the products with the
+    /// whole.
     fn work(&self) -> u64 {
         let free = self.is_free.iter().filter(|is_free| **is_free).count() as u64;
         1 + free * free * free / 96 + (self.scales * self.scales) as u64 / 16
@@ -426,7 +434,7 @@ impl QuadraticModel {
                 } else if hessian[self.free[row] * self.scales + self.free[row]] == 0.0
                     && ridge == 0.0
                 {
-                    // Nothing bends anywhere: the objective does not depend on the scales.
+                    // No curvature anywhere: the objective does not depend on the scales.
                     1.0
                 } else {
                     return None;
@@ -450,7 +458,7 @@ impl QuadraticModel {
         Some(())
     }
 
-    /// The fraction of the move that the box allows, with the scale that stops it and where.
+    /// Fraction of the move that the box allows, with the scale that stops it and its bound.
     fn longest_step(&self) -> (f64, Option<(usize, f64)>) {
         let mut fraction = 1.0;
         let mut blocking = None;

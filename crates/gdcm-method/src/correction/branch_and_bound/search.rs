@@ -1,4 +1,5 @@
-//! The branch and bound itself: its open nodes, and what it may spend, counted and never timed, so that results repeat.
+//! The branch and bound search, with its open nodes and its budget, which counts work instead of
+//! time so that results repeat.
 
 use std::cell::Cell;
 use std::cmp::Ordering;
@@ -11,32 +12,33 @@ use super::underestimator::{DifferenceBounds, Underestimator, tangent_bound};
 /// Minima within this factor of the best are listed.
 const NEAR: f64 = 1.01;
 
-/// The search stops branching at this gap, to end safely below [`PROOF`].
+/// Relative gap at which branching stops, to end safely below [`PROOF`].
 const AIM: f64 = 2e-10;
 
-/// What a search found.
+/// Result of a search.
 #[derive(Clone, Debug)]
 pub(crate) struct Minima {
     /// Distinct local minima within 1 % of the best, best first, each with its value.
     pub(crate) minima: Vec<(Vec<f64>, f64)>,
-    /// No point of the box is below this.
+    /// Lower bound of the objective over the whole box.
     pub(crate) lower_bound: f64,
     /// `(best - lower_bound) / max(best, floor)`.
     pub(crate) gap: f64,
-    /// What ended the search, where the gap is not a proof.
+    /// Limit that ended the search, where the gap is not a proof.
     pub(crate) limit: Option<Limit>,
-    /// Nodes visited.
     pub(crate) nodes: usize,
-    /// Whether there can be no other local minimum within 1 %.
+    /// Whether any other local minimum within 1 % is excluded.
     pub(crate) all_minima: bool,
 }
 
-/// Finds the global minimum of `objective` over its box, with a rigorous lower bound ([`super`] has the algorithm).
+/// Finds the global minimum of `objective` over its box, with a rigorous lower bound ([`super`] has
+/// the algorithm).
 ///
-/// Newton's method begins at `start`; `floor` is the objective below which the gap is no longer relative: what rounding allows.
+/// Newton's method begins at `start`; `floor` is the objective, set by rounding, below which the
+/// gap is no longer relative.
 ///
 /// # Errors
-/// [`SearchStopped`] where the effort was told to stop.
+/// [`SearchStopped`] where the search was stopped from outside.
 pub(crate) fn search(
     objective: &Objective,
     start: &[f64],
@@ -59,17 +61,17 @@ struct Search<'a> {
     minima: Vec<(Vec<f64>, f64)>,
     best: f64,
     open: OpenNodes,
-    /// Least bound of the nodes that are closed.
+    /// Least bound of the closed nodes.
     closed: f64,
     nodes: usize,
-    /// Work when the best was proven.
+    /// Work spent when the best was proven.
     proven_at: Option<u64>,
-    /// Whether no node was closed that may hold an unknown local minimum.
+    /// Whether no closed node may hold an unknown local minimum.
     all_minima: bool,
     lower: Vec<f64>,
     upper: Vec<f64>,
-    /// Curvature of an underestimator beyond its node: well above the objective's own, so that the part of the box next to a
-    /// minimum is bounded by its own edge.
+    /// Curvature of an underestimator beyond its node: well above the objective's own, so that the
+    /// part of the box next to a minimum is bounded by its own edge.
     beyond: f64,
 }
 
@@ -101,7 +103,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Lines 1 to 3: best-first, until the best is proven and then until the other minima are listed.
+    /// Lines 1 to 3: best-first, until the best is proven and then until the other minima are
+    /// listed.
     fn run(&mut self, start: &[f64]) -> Result<(), SearchStopped> {
         self.descend(start);
         let region = DifferenceBounds::of_box(&self.objective.lower, &self.objective.upper);
@@ -138,12 +141,12 @@ impl<'a> Search<'a> {
         self.best.max(self.floor)
     }
 
-    /// A bound this high proves the best.
+    /// Bound that proves the best.
     fn aim(&self) -> f64 {
         self.best - AIM * self.denominator()
     }
 
-    /// A bound this high leaves no minimum worth listing.
+    /// Bound above which no minimum is worth listing.
     fn cutoff(&self) -> f64 {
         NEAR * self.best + AIM * self.denominator()
     }
@@ -170,7 +173,7 @@ impl<'a> Search<'a> {
         }
         let known = self.minima.len();
         let value = self.objective.value(&start);
-        // A minimum that is worth listing is below the cutoff, and so is a start near it.
+        // A minimum worth listing is below the cutoff, and so is a start near it.
         if value < self.best || (value < NEAR * self.cutoff() && self.minimum_in(&region).is_none())
         {
             self.descend(&start);
@@ -201,7 +204,8 @@ impl<'a> Search<'a> {
         self.closed = self.closed.min(bound);
     }
 
-    /// The best lower bound that Newton's method on the underestimator gives; `start` ends at its minimum.
+    /// Returns the best lower bound from Newton's method on the underestimator; `start` ends at its
+    /// minimum.
     fn lower_bound(
         &mut self,
         underestimator: &Underestimator<'_>,
@@ -224,7 +228,8 @@ impl<'a> Search<'a> {
             .minimise(underestimator, bounds, start, |scales, at| {
                 best = best.max(tangent_bound(scales, at, bounds));
                 let loss = at.value.value - best;
-                // A node that will be branched anyway needs no sharper bound than its distance from the goal.
+                // A node that will be branched anyway needs no bound sharper than its distance from
+                // the goal.
                 let branched_anyway = !exact && loss <= 0.05 * (goal - at.value.value);
                 let sharp = loss <= tolerance.max(2.0 * at.value.error);
                 best >= cutoff || branched_anyway || sharp || effort.spent() >= most
@@ -232,7 +237,7 @@ impl<'a> Search<'a> {
         best
     }
 
-    /// Follows the objective down from `start` over the whole box, and keeps the minimum if it is new.
+    /// Minimises the objective from `start` over the whole box, and keeps the minimum if it is new.
     fn descend(&mut self, start: &[f64]) {
         let mut scales = start.to_vec();
         let bounds = (
@@ -264,7 +269,8 @@ impl<'a> Search<'a> {
         self.best = self.best.min(value);
     }
 
-    /// Whether two minima are one, found twice: nothing lies between them, as the curvature of the terms measures it.
+    /// Whether two minima are duplicates: no difference between them as measured by the curvature
+    /// of the terms.
     fn is_same(&self, known: &[f64], found: &[f64]) -> bool {
         let changes = self.objective.terms.iter().map(|term| {
             let here = known[term.to] - known[term.from];
@@ -289,8 +295,8 @@ impl<'a> Search<'a> {
             .position(|(scales, _)| region.holds(scales))
     }
 
-    /// The bound of a node that, with the best minimum, lies where the objective is convex (`exact`: every term of it is, over
-    /// the node): from the gradient and the Hessian at that minimum.
+    /// Bound of a node over whose hull with the best minimum the objective is convex (`exact`:
+    /// every term is convex over the node), from the gradient and the Hessian at that minimum.
     fn convex_bound(&mut self, region: &DifferenceBounds, exact: bool) -> Option<f64> {
         let (scales, _) = self.minima.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
         let hull = region.hull(scales);
@@ -309,7 +315,7 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// Whether the node holds no local minimum, or none but a known one.
+    /// Whether the node holds no local minimum other than a known one.
     fn is_searched(&self, region: &DifferenceBounds) -> bool {
         self.effort.spend(self.exclusion.work());
         let holds_only = |(scales, _): &(Vec<f64>, f64)| {
@@ -319,8 +325,9 @@ impl<'a> Search<'a> {
         self.exclusion.has_no_minimum(region) || self.minima.iter().any(holds_only)
     }
 
-    /// Branches where the node's bound loses most or, where nothing is lost or the best is already proven, so that what is
-    /// convex comes apart from what is not, and then so that the slopes vary less.
+    /// Branches where the node's bound loses most. Where nothing is lost or the best is already
+    /// proven, separates convex from concave parts first, and then reduces the variation of the
+    /// slopes.
     fn branch(
         &mut self,
         underestimator: &Underestimator<'_>,
@@ -359,7 +366,8 @@ impl<'a> Search<'a> {
         self.push(region.above(term.from, term.to, at), bound, start);
     }
 
-    /// Takes off what lies beyond each end of a concave interval, seen from `start`, and keeps the rest as one node.
+    /// Splits off the parts beyond each end of a concave interval, as seen from `start`, and keeps
+    /// the rest as one node.
     fn split_concave(
         &mut self,
         ends: &[(usize, usize, f64)],
@@ -398,7 +406,7 @@ impl<'a> Search<'a> {
     fn found(mut self) -> Minima {
         let left = self.open.least_bound();
         let cutoff = self.cutoff();
-        // A sum of squares is never negative, and no bound can be above a value that was reached.
+        // A sum of squares is never negative, and no bound exceeds a value that was reached.
         let lower_bound = self.closed.min(left).max(0.0).min(self.best);
         let gap = (self.best - lower_bound) / self.denominator();
         let limit = if gap <= PROOF {
@@ -411,7 +419,7 @@ impl<'a> Search<'a> {
             Some(Limit::Rounding)
         };
         self.minima.sort_by(|a, b| a.1.total_cmp(&b.1));
-        // The best itself always stays.
+        // The best itself always stays in the list.
         let kept = self
             .minima
             .iter()
@@ -430,23 +438,24 @@ impl<'a> Search<'a> {
     }
 }
 
-/// A relative gap that counts as proof.
+/// Relative gap that counts as a proof.
 pub(crate) const PROOF: f64 = 1e-9;
 
-/// How far the search for a proof goes. Both are counted, never timed: results repeat.
+/// Budget of the search for a proof, counted instead of timed so that results repeat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProofBudget {
-    /// Work in all, in units of one term of the objective evaluated (20 to 30 ns of one core). What is begun is ended.
+    /// Total work, in evaluations of one term of the objective (20 to 30 ns on one core). A step in
+    /// progress is completed.
     pub work: u64,
     /// Work after the proof, to find every other local minimum within 1 %.
     pub listing: u64,
-    /// Bytes of the nodes that are still open.
+    /// Memory of the open nodes, in bytes.
     pub bytes: usize,
 }
 
 impl Default for ProofBudget {
-    /// About two seconds of one core and 64 MB: far more than a condition with its on-axis responses held needs. Of that at most
-    /// some milliseconds for the other minima.
+    /// About two seconds on one core and 64 MB, far more than a condition with constrained on-axis
+    /// responses needs; at most some milliseconds for the other minima.
     fn default() -> Self {
         Self {
             work: 80_000_000,
@@ -456,22 +465,22 @@ impl Default for ProofBudget {
     }
 }
 
-/// What ended a search before the proof.
+/// Limit that ended a search before the proof.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Limit {
     /// [`ProofBudget::work`].
     Work,
     /// [`ProofBudget::bytes`].
     Memory,
-    /// Double precision: no bound can be sharper.
+    /// Double precision: no sharper bound is possible.
     Rounding,
 }
 
-/// The search was told to stop.
+/// The search was stopped from outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SearchStopped;
 
-/// Counts the work of one search, and asks now and then whether it is still wanted.
+/// Counts the work of one search, and polls at intervals whether to stop.
 pub(crate) struct Effort<'a> {
     stop: &'a dyn Fn() -> bool,
     work: Cell<u64>,
@@ -480,10 +489,10 @@ pub(crate) struct Effort<'a> {
 }
 
 impl<'a> Effort<'a> {
-    /// Work between two questions: half a millisecond.
+    /// Work between two polls: half a millisecond.
     const ASKING: u64 = 20_000;
 
-    /// Nothing spent yet.
+    /// Starts with no work spent.
     pub(crate) fn new(stop: &'a dyn Fn() -> bool) -> Self {
         Self {
             stop,
@@ -503,17 +512,17 @@ impl<'a> Effort<'a> {
         }
     }
 
-    /// Work so far.
+    /// Total work so far.
     pub(crate) fn spent(&self) -> u64 {
         self.work.get()
     }
 
-    /// Whether the search was told to stop.
+    /// Whether a stop was requested.
     pub(crate) fn is_stopped(&self) -> bool {
         self.stopped.get()
     }
 
-    /// An error where the search was told to stop.
+    /// Returns an error where a stop was requested.
     pub(crate) fn check(&self) -> Result<(), SearchStopped> {
         if self.is_stopped() {
             Err(SearchStopped)
@@ -525,10 +534,10 @@ impl<'a> Effort<'a> {
 
 /// A part of the box that is still to be searched.
 pub(super) struct Node {
-    /// No point of the part is below this.
+    /// Lower bound of the objective over the part.
     pub(super) bound: f64,
     pub(super) region: DifferenceBounds,
-    /// Where the search of its underestimator's minimum begins.
+    /// Start of the search for the underestimator's minimum.
     pub(super) start: Vec<f64>,
 }
 
@@ -547,24 +556,26 @@ impl PartialOrd for Node {
 }
 
 impl Ord for Node {
-    /// The least bound is the greatest, so that a heap gives it first.
+    /// Reversed order, so that the heap returns the least bound first.
     fn cmp(&self, other: &Self) -> Ordering {
         other.bound.total_cmp(&self.bound)
     }
 }
 
-/// The open nodes, least bound first, in no more memory than allowed.
+/// The open nodes, least bound first, in limited memory.
 pub(super) struct OpenNodes {
     heap: BinaryHeap<Node>,
     most: usize,
-    /// Least bound of the nodes for which there was no room.
+    /// Least bound of the nodes refused for lack of memory.
     refused: f64,
 }
 
 impl OpenNodes {
-    /// None yet, of so many scales each, in at most so many bytes; one there is always room for.
+    /// Empty heap of nodes with `scales` scales each, in at most `bytes` bytes; there is always
+    /// room for one node.
     pub(super) fn new(scales: usize, bytes: usize) -> Self {
-        // What an allocation takes besides its content, twice, and the growth of the heap, which doubles its memory.
+        // Twice the overhead of an allocation, and the growth of the heap, which doubles its
+        // memory.
         let of_node = DifferenceBounds::bytes(scales)
             + scales * size_of::<f64>()
             + 32
@@ -576,7 +587,7 @@ impl OpenNodes {
         }
     }
 
-    /// Adds a node, or only its bound where there is no room.
+    /// Adds a node, or only its bound where memory is exhausted.
     pub(super) fn push(&mut self, node: Node) {
         if self.heap.len() < self.most {
             self.heap.push(node);
@@ -585,17 +596,17 @@ impl OpenNodes {
         }
     }
 
-    /// Whether a node found no room.
+    /// Whether a node was refused for lack of memory.
     pub(super) fn is_full(&self) -> bool {
         self.refused < f64::INFINITY
     }
 
-    /// Takes the node of least bound.
+    /// Removes the node of least bound.
     pub(super) fn pop(&mut self) -> Option<Node> {
         self.heap.pop()
     }
 
-    /// The least bound of all, refused ones too; infinite where there are none.
+    /// Least bound of all nodes, refused ones included; infinite where there are none.
     pub(super) fn least_bound(&self) -> f64 {
         self.heap
             .peek()

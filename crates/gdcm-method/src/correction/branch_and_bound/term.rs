@@ -1,22 +1,23 @@
-//! The terms of the objective, functions of the difference of two scales, with rounding errors that are known.
+//! Terms of the objective, functions of the difference of two scales, with bounds on their
+//! rounding.
 
 use std::ops::Neg;
 
-/// What the objective makes of `u = s_to - s_from`.
+/// One term of the objective, a function of `u = s_to - s_from`.
 #[derive(Clone, Debug)]
 pub(crate) struct Term {
-    /// Index of the scale that is subtracted.
+    /// Index of the subtracted scale.
     pub(crate) from: usize,
-    /// Index of the scale that is added.
+    /// Index of the added scale.
     pub(crate) to: usize,
-    /// The function of `u`.
     pub(crate) function: Function,
 }
 
 /// A function of one difference of scales.
 #[derive(Clone, Debug)]
 pub(crate) enum Function {
-    /// `weight (u - centre)^2`: gains compared in dB, and delays. The weight is known to `relative`.
+    /// `weight (u - centre)^2`: gains compared in dB, and delays. The weight is known to
+    /// `relative`.
     Quadratic {
         weight: f64,
         centre: Rounded,
@@ -84,7 +85,8 @@ impl Function {
         }
     }
 
-    /// The end of the concave interval that parts `u` from it, if `u` is outside and the end is inside `(low, high)`.
+    /// The end of the concave interval between `u` and that interval, if `u` is outside and the end
+    /// is inside `(low, high)`.
     pub(crate) fn concave_end(&self, u: f64, (low, high): (f64, f64)) -> Option<f64> {
         let Function::Exponential {
             concave: Some((from, to)),
@@ -103,7 +105,7 @@ impl Function {
         (low < end && end < high).then_some(end)
     }
 
-    /// The slope over `[low, high]`.
+    /// Range of the slope over `[low, high]`.
     pub(crate) fn slopes(&self, (low, high): (f64, f64)) -> Range {
         match self {
             Function::Quadratic { .. } => {
@@ -131,7 +133,7 @@ impl Function {
         }
     }
 
-    /// The curvature over `[low, high]`, of which only the least is sharp.
+    /// Range of the curvature over `[low, high]`, of which only the least is sharp.
     pub(crate) fn curvatures(&self, (low, high): (f64, f64)) -> Range {
         match self {
             Function::Quadratic {
@@ -165,7 +167,7 @@ impl Function {
     }
 }
 
-/// A function of `u` plus one of `-u`.
+/// Sum of a function of `u` and a function of `-u`.
 pub(super) fn both(ahead: Derivatives, behind: Derivatives) -> Derivatives {
     let mut value = ahead.value;
     value.add(behind.value);
@@ -181,20 +183,19 @@ pub(super) fn both(ahead: Derivatives, behind: Derivatives) -> Derivatives {
 /// One entry of a least squares objective: `weight (delta - offset - (s_input - s_output))^2`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SquareEntry {
-    /// Index of the output's scale.
     pub(crate) output: usize,
-    /// Index of the input's (the ground, for an output's own departure).
+    /// Index of the input's scale (the ground, for an output's own departure).
     pub(crate) input: usize,
-    /// Weight of the square.
     pub(crate) weight: f64,
-    /// What the entry is to be.
+    /// Target of the entry.
     pub(crate) delta: f64,
-    /// What it is where both scales are 0, with a bound on its rounding.
+    /// Value of the entry where both scales are 0, with a bound on its rounding.
     pub(crate) offset: Rounded,
 }
 
 impl SquareEntry {
-    /// The entry seen from the lesser index: from, to, and the difference of their scales that meets it.
+    /// The entry ordered by index: from, to, and the difference of their scales that meets the
+    /// target.
     fn ordered(&self) -> (usize, usize, Rounded) {
         let difference = self.delta - self.offset.value;
         let error = self.offset.error + f64::EPSILON * (self.delta.abs() + difference.abs());
@@ -231,7 +232,8 @@ struct SquareGroup {
 }
 
 impl SquareGroup {
-    /// The difference of scales where the group is least: a quotient of sums, and no better known than the worst of its entries.
+    /// Difference of scales at the group's minimum: a quotient of sums, and no more accurate than
+    /// the worst of its entries.
     fn centre(&self) -> Rounded {
         Rounded {
             value: self.moment / self.weight,
@@ -240,7 +242,8 @@ impl SquareGroup {
     }
 }
 
-/// One quadratic term for each two scales that share an entry, and what remains of the objective where all are least.
+/// One quadratic term for each two scales that share an entry, and the remainder of the objective
+/// at the minimum of all terms.
 pub(crate) fn quadratic_terms(entries: &[SquareEntry], scales: usize) -> (Vec<Term>, Rounded) {
     let mut groups = vec![SquareGroup::default(); scales * scales];
     for entry in entries {
@@ -278,10 +281,12 @@ pub(crate) fn quadratic_terms(entries: &[SquareEntry], scales: usize) -> (Vec<Te
     (terms.collect(), constant)
 }
 
-/// The one interval of `u` on which two exponentials together are concave, never too narrow, or `None`.
+/// The one interval of `u` on which the sum of two exponentials is concave, never too narrow, or
+/// `None`.
 ///
-/// With `z = e^u` the curvature times `z^2 / 2` is the quartic `2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2 R2`: two changes of sign, so
-/// no or two positive roots (Descartes), and its slope has one positive root.
+/// With `z = e^u` the curvature times `z^2 / 2` is the quartic `2 R1 z^4 - R1 c1 z^3 - R2 c2 z + 2
+/// R2`: two changes of sign, so no or two positive roots (Descartes), and its slope has one
+/// positive root.
 fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<(f64, f64)> {
     // Far above the rounding of a logarithm of up to 83 (twice 180 dB, both ways).
     const SLACK: f64 = 1e-11;
@@ -291,7 +296,7 @@ fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<(f6
         (true, false) => return Some((-backward.inflection() - SLACK, f64::INFINITY)),
         (false, false) => {}
     }
-    // The quartic over z^2, less more than it can be wrong by: positive where the sum is surely convex.
+    // The quartic over z^2, less more than its rounding: positive where the sum is surely convex.
     let surely_convex = |u: f64| {
         let z = u.exp();
         let parts = [
@@ -307,7 +312,8 @@ fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<(f6
             .sum::<f64>()
             > 0.0
     };
-    // Outside [-ln(c2 / 2), ln(c1 / 2)] (in either order) both curve the same way; between them one is concave.
+    // Outside [-ln(c2 / 2), ln(c1 / 2)] (in either order) both have curvature of the same sign;
+    // between them one is concave.
     let ends = (forward.inflection(), -backward.inflection());
     let deepest = quartic_least(forward, backward).ln();
     if surely_convex(deepest) {
@@ -319,8 +325,8 @@ fn concave_interval(forward: &Exponential, backward: &Exponential) -> Option<(f6
     Some((left - SLACK, right + SLACK))
 }
 
-/// The positive `z` where the quartic of [`concave_interval`] is least: the root of `8 R1 z^3 - 3 R1 c1 z^2 - R2 c2`, by
-/// Newton's method from the right, where the cubic is convex and increasing.
+/// The positive `z` where the quartic of [`concave_interval`] is least: the root of `8 R1 z^3 - 3
+/// R1 c1 z^2 - R2 c2`, by Newton's method from the right, where the cubic is convex and increasing.
 fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
     let square = 3.0 * forward.centre / 8.0;
     let constant = backward.weight * backward.centre / (8.0 * forward.weight);
@@ -335,8 +341,8 @@ fn quartic_least(forward: &Exponential, backward: &Exponential) -> f64 {
     z
 }
 
-/// Where `is_convex` turns from true (far side) to false at `inside`: the true end of the bracket. `outside` is moved further
-/// away until it is true there.
+/// End of the concave interval, where `is_convex` turns from true (outside) to false at `inside`:
+/// the convex side of the bracket. `outside` is moved further away until it is true there.
 fn convex_end(is_convex: &impl Fn(f64) -> bool, outside: f64, inside: f64) -> f64 {
     let mut convex = outside;
     let mut other = inside;
@@ -365,7 +371,8 @@ pub(crate) struct Derivatives {
     pub(crate) curvature: f64,
 }
 
-/// Least and greatest value of a derivative over an interval, rounded outward, with the size of what they are differences of.
+/// Least and greatest value of a derivative over an interval, rounded outward, with the size of the
+/// summands.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Range {
     pub(crate) least: f64,
@@ -373,18 +380,20 @@ pub(crate) struct Range {
     pub(crate) size: f64,
 }
 
-/// `weight (e^v - centre)^2`: the sum of `w (G - A e^v)^2` over the entries that share the logarithm `v`, less its minimum.
+/// `weight (e^v - centre)^2`: the sum of `w (G - A e^v)^2` over the entries that share the
+/// logarithm `v`, less its minimum.
 ///
-/// Concave where `e^v < centre / 2`, convex elsewhere (`(G - K)^2` is convex in the logarithm where `K >= G / 2`).
+/// Concave where `e^v < centre / 2`, convex elsewhere (`(G - K)^2` is convex in the logarithm where
+/// `K >= G / 2`).
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Exponential {
     weight: f64,
     centre: f64,
-    /// Bound on the relative rounding of both.
+    /// Bound on the relative rounding of `weight` and `centre`.
     rounding: f64,
 }
 
-/// One entry `weight (gain - product e^v)^2`, the product known to a relative `error`.
+/// One entry `weight (gain - product e^v)^2`, with the product known to a relative `error`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ProductEntry {
     weight: f64,
@@ -396,7 +405,8 @@ pub(crate) struct ProductEntry {
 impl ProductEntry {
     /// `weight (gain - e^logarithm e^v)^2`.
     pub(crate) fn new(weight: f64, gain: f64, logarithm: Rounded) -> Self {
-        // The error of the logarithm is the product's own, and the exponential is good to an epsilon.
+        // The error of the logarithm is the relative error of the product, and the exponential is
+        // accurate to an epsilon.
         Self {
             weight,
             gain,
@@ -414,9 +424,10 @@ impl ProductEntry {
 }
 
 impl Exponential {
-    /// The entries that share a logarithm as one function, and their sum where it is least.
+    /// Combines the entries that share a logarithm into one function, and returns it with the
+    /// minimum of their sum.
     ///
-    /// The latter is summed from the residuals, not from `P - Q^2 / R`, which would cancel.
+    /// The minimum is summed from the residuals, not from `P - Q^2 / R`, which would cancel.
     pub(crate) fn of(entries: &[ProductEntry]) -> (Self, Rounded) {
         let total = |term: fn(&ProductEntry) -> f64| entries.iter().map(term).sum::<f64>();
         let weight = total(|entry| entry.weight * entry.product * entry.product);
@@ -435,8 +446,8 @@ impl Exponential {
             least.add(met.square());
             worst = worst.max(entry.error);
         }
-        // A sum of n positive terms is exact to n roundings of half an epsilon; the centre is the quotient of two of them, and
-        // holds the product once more than twice.
+        // A sum of n positive terms is exact to n roundings of half an epsilon; the centre is the
+        // quotient of two of them, and contains the product once more than twice.
         let rounding = 3.0 * worst + (entries.len() as f64 + 4.0) * f64::EPSILON;
         (
             Self {
@@ -448,7 +459,7 @@ impl Exponential {
         )
     }
 
-    /// Whether there is nothing in it.
+    /// Whether the function is zero.
     pub(crate) fn is_zero(&self) -> bool {
         self.weight == 0.0
     }
@@ -458,8 +469,8 @@ impl Exponential {
         (0.5 * self.centre).ln()
     }
 
-    /// Relative rounding of `weight`, `centre` and `z = e^v`: of the first two, of `v` as a difference, of the exponential and of
-    /// its reciprocal.
+    /// Relative rounding of `weight`, `centre` and `z = e^v`: of the first two, of `v` as a
+    /// difference, of the exponential and of its reciprocal.
     pub(super) fn relative(&self, v: f64) -> f64 {
         self.rounding + (v.abs() + 4.0) * f64::EPSILON
     }
@@ -480,7 +491,8 @@ impl Exponential {
         }
     }
 
-    /// The curvature over `v` in `[low, high]`: a parabola in `e^v`, lowest at `centre / 4`. Only the least is sharp.
+    /// The curvature over `v` in `[low, high]`: a parabola in `e^v`, lowest at `centre / 4`. Only
+    /// the least is sharp.
     pub(crate) fn curvatures(&self, (low, high): (f64, f64)) -> Range {
         let least = low.exp();
         let most = high.exp();
@@ -511,10 +523,11 @@ impl Exponential {
     }
 }
 
-/// A figure with a bound on its rounding: the exact one is no further away than `error`.
+/// A number with a bound on its rounding: the exact value is no further away than `error`.
 ///
-/// Sums carry a running error bound (Higham, Accuracy and Stability of Numerical Algorithms, section 3.3): each addition rounds
-/// its result by at most half an epsilon of it. A whole epsilon is counted, which covers the rounding of the bound itself.
+/// Sums carry a running error bound (Higham, Accuracy and Stability of Numerical Algorithms,
+/// section 3.3): each addition rounds its result by at most half an epsilon. A whole epsilon is
+/// counted, which covers the rounding of the bound itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Rounded {
     pub(crate) value: f64,
@@ -533,13 +546,14 @@ impl Neg for Rounded {
 }
 
 impl Rounded {
-    /// Adds another figure.
+    /// Adds another number.
     pub(crate) fn add(&mut self, other: Self) {
         self.value += other.value;
         self.error += other.error + f64::EPSILON * self.value.abs();
     }
 
-    /// `weight difference^2`, where the difference is known to `error` and the weight to `relative`.
+    /// `weight difference^2`, where the difference is known to `error` and the weight to
+    /// `relative`.
     pub(crate) fn square(weight: f64, difference: f64, error: f64, relative: f64) -> Self {
         let value = weight * difference * difference;
         let of_difference = weight * error * (2.0 * difference.abs() + error);

@@ -28,7 +28,8 @@ fn excess(figure: &Exact, computed: f64) -> f64 {
     (figure - exact(computed)).to_f64().value()
 }
 
-/// The problem of up to three outputs and three inputs, with at most one held entry for each output.
+/// Problem of up to three outputs and three inputs, with at most one constrained entry for each
+/// output.
 #[derive(Clone, Debug)]
 struct Sample {
     problem: Problem,
@@ -47,7 +48,8 @@ impl Sample {
         }
     }
 
-    /// The exact logarithms of the gains: an input's is its component's scale, a held output's what its entry leaves.
+    /// Exact logarithms of the gains: an input's is its component's scale, a constrained output's
+    /// follows from its entry.
     fn logarithms(&self, scales: &[f64]) -> (Vec<Exact>, Vec<Exact>) {
         let node = |placed: &super::super::components::Placement| {
             exact(placed.offset.value) + exact(scales[placed.component])
@@ -101,7 +103,8 @@ impl Sample {
             .collect()
     }
 
-    /// Part of the box that holds `inside`: every difference is cut at a share of what is left on either side of it.
+    /// Part of the box that contains `inside`: every difference is cut at a share of the width on
+    /// either side of it.
     fn region(&self, inside: &[f64], width: f64) -> DifferenceBounds {
         let mut region = DifferenceBounds::of_box(&self.objective.lower, &self.objective.upper);
         for from in 0..inside.len() {
@@ -157,7 +160,8 @@ proptest! {
         sample.objective.expand(&scales, Curvature::True, &mut expansion);
         let off = excess(&sample.exact_objective(&scales), expansion.value.value).abs();
         prop_assert!(off <= expansion.value.error, "off by {:e}, not {:e}", off, expansion.value.error);
-        // And the bound says something: some hundred roundings of the squares' size, which is not the sum's where they cancel.
+        // The bound is sharp, too: some hundred roundings of the squares' size, which differs from
+        // the sum's where they cancel.
         let delta = |(_, delta): (Pair, f64)| delta.powi(2) + 1.0;
         let size = 1e4 * (expansion.value.value + sample.problem.fit_entries().map(delta).sum::<f64>());
         prop_assert!(expansion.value.error <= 1e3 * f64::EPSILON * size * (1.0 + sample.problem.alpha));

@@ -1,13 +1,16 @@
-//! A convex function below the objective over one node (part of the box of the scales), and the lower bounds that it gives.
+//! A convex underestimator of the objective over one node (part of the box of the scales), and its
+//! lower bounds.
 
 use super::objective::{Curvature, Differentiable, Expansion, Objective};
 use super::term::{Derivatives, Exponential, Function, Rounded, Term, both};
 
-/// A term's underestimator with the range of its difference. Newton's method keeps to the box of the node only, so beyond the range
-/// the underestimator goes on along its tangent and bends up: anything convex is right there, and this keeps the minimum near.
+/// A term's underestimator with the range of its difference. Newton's method keeps to the box of
+/// the node only, so beyond the range the underestimator continues along its tangent and bends up:
+/// any convex continuation is valid, and this one keeps the minimum near.
 #[derive(Clone, Copy, Debug)]
 struct TermUnder {
-    /// The lines in the convex envelopes of its two exponentials; none where the term is convex over the node and stands for itself.
+    /// The lines in the convex envelopes of its two exponentials; `None` where the term is convex
+    /// over the node and is its own underestimator.
     envelopes: Option<[Option<Line>; 2]>,
     range: (f64, f64),
 }
@@ -54,7 +57,7 @@ impl TermUnder {
     }
 }
 
-/// Convex function of the scales that is nowhere in the node above the objective.
+/// Convex function of the scales that nowhere in the node exceeds the objective.
 pub(crate) struct Underestimator<'a> {
     objective: &'a Objective,
     unders: Vec<TermUnder>,
@@ -62,10 +65,11 @@ pub(crate) struct Underestimator<'a> {
 }
 
 impl<'a> Underestimator<'a> {
-    /// Work of making one, of each term: up to fourteen steps to a tangent.
+    /// Work of construction for each term: up to fourteen steps to a tangent.
     pub(crate) const WORK_PER_TERM: u64 = 12;
 
-    /// The underestimator of `objective` over `region`, with curvature `beyond` outside of the ranges of the differences.
+    /// The underestimator of `objective` over `region`, with curvature `beyond` outside the ranges
+    /// of the differences.
     pub(crate) fn new(objective: &'a Objective, region: &DifferenceBounds, beyond: f64) -> Self {
         let unders = objective
             .terms
@@ -79,7 +83,7 @@ impl<'a> Underestimator<'a> {
         }
     }
 
-    /// Whether it is the objective itself: every term is convex over the node.
+    /// Whether it equals the objective: every term is convex over the node.
     pub(crate) fn is_exact(&self) -> bool {
         self.unders.iter().all(TermUnder::is_exact)
     }
@@ -93,8 +97,8 @@ impl<'a> Underestimator<'a> {
             .filter(|(_, under)| !under.is_exact())
     }
 
-    /// The term that lies furthest above its envelope at `scales` (kept inside the node's ranges), with that distance less the
-    /// rounding of it.
+    /// The term furthest above its envelope at `scales` (kept inside the node's ranges), with that
+    /// distance less its rounding.
     pub(crate) fn widest_gap(&self, scales: &[f64]) -> Option<(&'a Term, f64)> {
         let gap = |(term, under): (&'a Term, &TermUnder)| {
             let u = under.difference(term, scales);
@@ -105,8 +109,9 @@ impl<'a> Underestimator<'a> {
         self.nonconvex().map(gap).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Each term (from, to) that is not convex over the node but is at `scales`, with the end of the interval where it is concave:
-    /// what lies beyond the ends is easily bounded, and what is left is convex in these terms. The furthest end comes first.
+    /// Each term (from, to) that is not convex over the node but is convex at `scales`, with the
+    /// end of its concave interval, furthest end first. The parts beyond the ends are easily
+    /// bounded, and the rest is convex in these terms.
     pub(crate) fn concave_ends(&self, scales: &[f64]) -> Vec<(usize, usize, f64)> {
         let end = |(term, under): (&'a Term, &TermUnder)| {
             let u = under.difference(term, scales);
@@ -120,8 +125,8 @@ impl<'a> Underestimator<'a> {
             .collect()
     }
 
-    /// The term whose slope varies most over the node, weighed with its range: what hides the sign of a scale's slope, or that
-    /// there is but one minimum.
+    /// The term whose slope varies most over the node, weighted with its range: it hides the sign
+    /// of a scale's slope, or the uniqueness of the minimum.
     pub(crate) fn widest_slope(&self) -> Option<&'a Term> {
         let variation = |(term, under): (&'a Term, &TermUnder)| {
             let slopes = term.function.slopes(under.range);
@@ -176,8 +181,8 @@ impl Differentiable for Underestimator<'_> {
     }
 }
 
-/// A lower bound over a box of a function that is convex there, from its tangent plane at `scales` (inside the box), less the
-/// rounding of the value, of every slope and of their sum.
+/// Lower bound over a box, for a function that is convex there, from its tangent plane at `scales`
+/// (inside the box), less the rounding of the value, of every slope and of their sum.
 pub(super) fn tangent_bound(
     scales: &[f64],
     at: &Expansion,
@@ -191,17 +196,20 @@ pub(super) fn tangent_bound(
         let up = (error - slope).max(0.0) * (upper[scale] - scales[scale]).max(0.0);
         bound -= down.max(up);
     }
-    // Each of the n + 1 differences rounds a figure between the value and the bound; each product four times, of their sum.
+    // Each of the n + 1 differences rounds a figure between the value and the bound; each product
+    // four times, of their sum.
     bound - (scales.len() as f64 + 5.0) * f64::EPSILON * at.value.value.abs().max(bound.abs())
 }
 
-/// The same from the tangent plane and the Hessian next to `scales`, where the slopes are next to nothing.
+/// Lower bound from the tangent plane and the Hessian next to `scales`, where the slopes are almost
+/// zero.
 ///
-/// `reach` is `sqrt(diagonal of H^-1)` for a Hessian `H` that the function's own does not fall below while no scale is further
-/// than `within` from `scales`; 0 for a scale that cannot move. With the gradient `g` known to `e`, and
-/// `r = sum (|g| + e) reach`, the parabola `g d + d' H d / 2` is nowhere below `-r^2 / 2` and turns before any scale has moved by
-/// `r reach`; beyond, a convex function goes on rising. A scale that its slope has `pushed` against its bound can only raise
-/// the function.
+/// `reach` is `sqrt(diagonal of H^-1)` for a Hessian `H` that the function's own does not fall
+/// below while no scale is further than `within` from `scales`; 0 for a fixed scale. With the
+/// gradient `g` known to `e`, and `r = sum (|g| + e) reach`, the parabola `g d + d' H d / 2` is
+/// nowhere below `-r^2 / 2` and turns before any scale has moved by `r reach`; beyond, a convex
+/// function keeps rising. A scale that its slope has `pushed` against its bound can only raise the
+/// function.
 pub(super) fn quadratic_bound(
     at: &Expansion,
     reach: &[f64],
@@ -215,14 +223,16 @@ pub(super) fn quadratic_bound(
         }
     }
     let farthest = sum * reach.iter().fold(0.0_f64, |most, reach| most.max(*reach));
-    // A millionth more than the parabola's depth covers the rounding of the sum and of the inverse.
+    // A millionth above the parabola's depth covers the rounding of the sum and of the inverse.
     let bound = at.value.value - at.value.error - 0.5 * sum * sum * (1.0 + 1e-6);
     (farthest <= within).then_some(bound - 4.0 * f64::EPSILON * bound.abs())
 }
 
-/// The scales whose differences stay within bounds: `s_j - s_i <= bound(i, j)` for any two, the ground (0) included.
+/// Scales whose differences stay within bounds: `s_j - s_i <= bound(i, j)` for any two, the ground
+/// included.
 ///
-/// The bounds are closed under addition (shortest paths; "difference bound matrices"), so that each is the least that follows.
+/// The bounds are closed under addition (shortest paths; "difference bound matrices"), so that each
+/// is the tightest implied bound.
 #[derive(Clone, Debug)]
 pub(crate) struct DifferenceBounds {
     count: usize,
@@ -242,7 +252,7 @@ impl DifferenceBounds {
         Self { count, bounds }
     }
 
-    /// The least and the greatest `s_to - s_from`.
+    /// Least and greatest `s_to - s_from`.
     pub(crate) fn range(&self, from: usize, to: usize) -> (f64, f64) {
         (
             -self.bounds[to * self.count + from],
@@ -250,7 +260,8 @@ impl DifferenceBounds {
         )
     }
 
-    /// The part with `s_to - s_from <= most`, with what follows for every other difference, or `None` where it is empty.
+    /// The part with `s_to - s_from <= most`, with the implied bounds of every other difference, or
+    /// `None` where it is empty.
     pub(crate) fn below(&self, from: usize, to: usize, most: f64) -> Option<Self> {
         let count = self.count;
         if most + self.bounds[to * count + from] < 0.0 {
@@ -279,7 +290,7 @@ impl DifferenceBounds {
         self.below(to, from, -least)
     }
 
-    /// The least bounds that hold these and `scales`.
+    /// Tightest bounds that contain these and `scales`.
     pub(crate) fn hull(&self, scales: &[f64]) -> Self {
         let count = self.count;
         let bound =
@@ -290,7 +301,7 @@ impl DifferenceBounds {
         }
     }
 
-    /// Bytes that the bounds of so many scales take.
+    /// Bytes of the bounds of `count` scales.
     pub(crate) fn bytes(count: usize) -> usize {
         count * count * size_of::<f64>()
     }
@@ -305,7 +316,7 @@ impl DifferenceBounds {
         }
     }
 
-    /// Whether the bounds hold `scales`.
+    /// Whether `scales` satisfies the bounds.
     pub(crate) fn holds(&self, scales: &[f64]) -> bool {
         let slack = 1e-13;
         (0..self.count).all(|i| {
@@ -324,7 +335,8 @@ pub(super) struct Line {
     slope: f64,
 }
 
-/// The exponential at `v` with the line of its envelope, if there is one, in place of what lies left of it.
+/// The exponential at `v`, with the line of its envelope, if any, instead of the part left of
+/// `until`.
 pub(super) fn enveloped(function: &Exponential, line: Option<&Line>, v: f64) -> Derivatives {
     match line {
         Some(line) if v < line.until => {
@@ -349,15 +361,16 @@ pub(super) fn enveloped(function: &Exponential, line: Option<&Line>, v: f64) -> 
     }
 }
 
-/// The line of the convex envelope of an exponential over `[low, high]`: none where it is convex there, the chord where the line
-/// from the left end is nowhere tangent, else the tangent, with the exponential itself to the right of it.
+/// Line of the convex envelope of an exponential over `[low, high]`: `None` where it is convex
+/// there, the chord where the line from the left end is nowhere tangent, else the tangent, with the
+/// exponential itself to the right of it.
 pub(super) fn envelope(function: &Exponential, (low, high): (f64, f64)) -> Option<Line> {
     if function.is_zero() || low >= function.inflection() {
         return None;
     }
     let start = function.at(low, low.exp());
     let end = function.at(high, high.exp());
-    // Height over the left end of the tangent at b: falls as b moves right of the inflection.
+    // Height of the tangent at b over the left end: falls as b moves right of the inflection.
     let overshoot =
         |b: f64, at: &Derivatives| at.value.value + at.slope.value * (low - b) - start.value.value;
     if high <= function.inflection() || overshoot(high, &end) >= 0.0 {
@@ -366,7 +379,8 @@ pub(super) fn envelope(function: &Exponential, (low, high): (f64, f64)) -> Optio
     let mut over = function.inflection().max(low);
     let mut under = high;
     let mut tangent = end;
-    // Newton's method from the bracket's right side, any point of which is valid: near the tangent is near enough.
+    // Newton's method from the bracket's right side; any point there is valid, so a near-tangent is
+    // enough.
     for _ in 0..14 {
         let excess = overshoot(under, &tangent);
         let newton = under - excess / (tangent.curvature * (low - under));
@@ -399,7 +413,7 @@ pub(super) fn envelope(function: &Exponential, (low, high): (f64, f64)) -> Optio
     })
 }
 
-/// The line through both ends, or below them by their rounding.
+/// The line through both ends, lowered by their rounding.
 fn chord((low, start): (f64, Rounded), (high, end): (f64, Rounded)) -> Line {
     let slope = if high > low {
         (end.value - start.value) / (high - low)
@@ -464,7 +478,8 @@ mod tests {
                 underestimator.expand(&scales, Curvature::True, &mut at);
                 let value = objective.value(&scales);
                 prop_assert!(at.value.value - at.value.error <= value, "{} is above {}", at.value.value, value);
-                // The difference is measured from node 0 to node 1: the slope of node 1 falls as the scale of node 0 rises.
+                // The difference is measured from node 0 to node 1: the slope of node 1 falls as
+                // the scale of node 0 rises.
                 let rounding = 1e-9 * (1.0 + steepness.abs().min(1e9));
                 prop_assert!(at.gradient[1] <= steepness + rounding, "{} after {}", at.gradient[1], steepness);
                 steepness = at.gradient[1];
@@ -480,7 +495,8 @@ mod tests {
             let function = Function::exponential(exponential(forward.0, forward.1), exponential(backward.0, backward.1));
             let convex = function.is_convex_over((at, at));
             let curvature = function.at(at).curvature;
-            // The interval is widened by 1e-11; the curvature there is as small as that times its own slope.
+            // The interval is widened by 1e-11; the curvature there is as small as that times its
+            // own slope.
             prop_assert!(convex == (curvature > 0.0) || curvature.abs() <= 1e-6, "{} {}", convex, curvature);
         }
 
@@ -498,7 +514,7 @@ mod tests {
             let slopes = function.slopes(range);
             let curvatures = function.curvatures(range);
             prop_assert!(slopes.least <= at.slope.value + at.slope.error && at.slope.value - at.slope.error <= slopes.most);
-            // The rounding of figures of up to 1e4.
+            // Rounding of numbers up to 1e4.
             prop_assert!(curvatures.least <= at.curvature + 1e-9 && at.curvature - 1e-9 <= curvatures.most);
         }
     }

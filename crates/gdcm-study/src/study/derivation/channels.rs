@@ -1,4 +1,4 @@
-//! How channel gains and delays, net gains and delays, and objectives were computed (M8, M9, M11).
+//! Derivations of channel gains and delays, net gains and delays, and objectives (M8, M9, M11).
 
 use gdcm_method::correction::{Channel, Problem, Quantity, Solution};
 use gdcm_model::dataset::Pair;
@@ -53,7 +53,7 @@ pub(super) fn net_delay(context: &Context<'_>, pair: Pair) -> Derivation {
     }
 }
 
-/// Whether a response is held, and at what.
+/// Describes whether a response is constrained, and its value.
 fn held_at(context: &Context<'_>, pair: Pair, solution: &Solution, delta: Option<f64>) -> String {
     let delta = delta.map_or("nothing defined".to_owned(), digits);
     let name = context.pair(pair);
@@ -122,7 +122,7 @@ pub(super) fn delay(context: &Context<'_>, channel: Channel) -> Option<Derivatio
     })
 }
 
-/// The objective of delays or signed delays, and where it stands.
+/// Returns the objective of delays or signed delays, and its section.
 fn delay_equation(quantity: Quantity) -> (&'static str, &'static str) {
     match quantity {
         Quantity::SignedDelay => ("Σ w (D − τ_o − τ_i)² + α (Σ τ_o² + Σ τ_i²)", "M15.4"),
@@ -130,7 +130,7 @@ fn delay_equation(quantity: Quantity) -> (&'static str, &'static str) {
     }
 }
 
-/// The held responses that tie the channel to others, the bounds, and the value.
+/// Lists the constrained responses that tie the channel to others, the bounds, and the value.
 fn steps(
     context: &Context<'_>,
     channel: Channel,

@@ -1,4 +1,4 @@
-//! How scores and discontinuity ratios were computed (M5).
+//! Derivations of scores and discontinuity ratios (M5).
 
 use gdcm_method::correction::{Channel, ChannelCorrection};
 use gdcm_method::fidelity::{Cost, CostAverage, SUGGESTION_RATIO};
@@ -9,10 +9,10 @@ use gdcm_model::units::{s_to_ms, signed};
 use super::{Context, Derivation, average_word, counted_words, digits, median_words};
 use crate::study::assessment_table::{AssessedModel, AssessmentChoice, assessed};
 
-/// Terms of a sum that are written out.
+/// Greatest number of terms of a sum that are written out.
 const MOST_TERMS: usize = 8;
 
-/// "a + b + c + … (20 terms)".
+/// Writes a sum: "a + b + c + … (20 terms)".
 fn sum_words(terms: &[f64]) -> String {
     let shown: Vec<String> = terms
         .iter()
@@ -31,7 +31,7 @@ fn distance_rests_on(context: &Context<'_>, models: String) -> Vec<String> {
     vec![models, context.band(), context.measuring()]
 }
 
-/// How a model came about, of how many states it is, how it is sampled, and where it is from.
+/// Describes a model: origin, number of states, sampling, and source.
 fn model_words(model: &Model) -> impl Iterator<Item = String> {
     let method = match &model.origin {
         Origin::Identified { method, .. } => method
@@ -155,7 +155,7 @@ fn equation(average: CostAverage) -> String {
     format!("J = {of_db} · {word}_ω(ΔdB²) + {of_deg} · {word}_ω(Δφ²), dB and degrees")
 }
 
-/// J of a mismatch under a correction, in two steps and their sum.
+/// Writes J of a mismatch under a correction as two steps and their sum.
 fn steps(symbol: &str, cost: Cost, average: CostAverage) -> Vec<String> {
     let word = average_word(average);
     let [of_db, of_deg] = Cost::factors();
@@ -183,7 +183,7 @@ fn correction_words(context: &Context<'_>, pair: Pair, correction: &ChannelCorre
     )
 }
 
-/// J of a response before the correction, or after it.
+/// Derives J of a response before or after the correction.
 pub(super) fn cost(context: &Context<'_>, pair: Pair, is_corrected: bool) -> Option<Derivation> {
     let change = context.result.cost[pair]?;
     let average = context.settings().cost_average;

@@ -1,4 +1,4 @@
-//! How G, D and the bounds were computed (M6, M7).
+//! Derivations of G, D and the bounds (M6, M7).
 
 use gdcm_method::correction::Channel;
 use gdcm_method::correction::delta::GainSource;
@@ -14,7 +14,7 @@ use crate::study::substitutions::{
     ConditionSubstitutions, Swap, reports_error, takes_reported_error,
 };
 
-/// `|H_ref| / |H_sim|` at each frequency.
+/// Returns `|H_ref| / |H_sim|` at each frequency.
 fn ratios(mismatch: &Mismatch) -> Vec<f64> {
     mismatch
         .magnitude_db
@@ -23,7 +23,7 @@ fn ratios(mismatch: &Mismatch) -> Vec<f64> {
         .collect()
 }
 
-/// `Δφ/ω` \[ms\] at each frequency, on the branch of M6b.
+/// Returns `Δφ/ω` \[ms\] at each frequency, on the branch of M6b.
 fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
     let phases = mismatch.phase_difference(omega);
     phases
@@ -33,7 +33,7 @@ fn delays_ms(mismatch: &Mismatch, omega: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// How the median over the frequencies that count comes about.
+/// Describes the median over the frequencies with weight.
 fn middle_words(mismatch: &Mismatch, values: &[f64]) -> String {
     match mismatch.coherence_weights {
         None => median_words(values),
@@ -86,7 +86,7 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     let mismatch = context.mismatch(pair)?;
     let mut rests_on = context.models_and_frequencies(mismatch);
     let (equation, step, section) = if context.result.asks_band_delays() {
-        // The straight line of least squares through the missing phase.
+        // The least-squares line through the missing phase.
         let omega = mismatch.omega(context.omega());
         let phase = mismatch.phase_difference(context.omega());
         let weight = |place: usize| mismatch.weights().map_or(1.0, |weights| weights[place]);
@@ -121,7 +121,8 @@ pub(super) fn delay(context: &Context<'_>, pair: Pair) -> Option<Derivation> {
     })
 }
 
-/// The mismatches that are pooled: of the measuring responses, or of all where none of those is defined.
+/// Returns the pooled mismatches: of the measuring responses, or of all responses where no
+/// measuring response is defined.
 fn pooled<'a>(
     context: &Context<'a>,
     mismatch: impl Fn(Pair) -> Option<&'a Mismatch>,
@@ -211,7 +212,8 @@ pub(super) fn delay_bound(context: &Context<'_>) -> Derivation {
     }
 }
 
-/// The bar of a figure with its parts, and the figure of every substitution; nothing where it has no bar, or that was not computed.
+/// Describes the error bar of a figure with its parts, and the figure after every substitution;
+/// empty where it has no error bar, or where that was not computed.
 pub(super) fn sure(analysis: &Analysis, target: &ExplainTarget) -> Vec<String> {
     let Some((condition, scalar)) = scalar_of(analysis, target) else {
         return Vec::new();
@@ -241,11 +243,12 @@ pub(super) fn sure(analysis: &Analysis, target: &ExplainTarget) -> Vec<String> {
     lines
 }
 
-/// Of a net gain that is not held and of a channel, where the identified models tell an error of their own.
+/// For a net gain that is not constrained and for a channel, where the identified models report an
+/// error of their own.
 const SPREAD_ALONE: &str = "its identification part is the spread of the models alone, too small where they share their records: the error \
      that a model tells of itself counts for G, D and the net gains that are held (M13.2)";
 
-/// The condition and the figure with a bar that is asked about.
+/// Returns the condition and the scalar with the requested error bar.
 fn scalar_of(analysis: &Analysis, target: &ExplainTarget) -> Option<(ConditionId, Scalar)> {
     Some(match target {
         ExplainTarget::DeltaGain(id, pair) => (*id, Scalar::Gain(*pair)),
@@ -301,7 +304,7 @@ fn bar_lines(bar: &Bar, scalar: Scalar, level: f64) -> Vec<String> {
     lines
 }
 
-/// The figure with each other model in place of the representative.
+/// Lists the figure with each other model instead of the representative.
 fn substitution_lines(
     analysis: &Analysis,
     condition: ConditionId,

@@ -1,4 +1,5 @@
-//! How a figure was computed: the equation with what its symbols stand for, the same with its numbers in place, and what it rests on.
+//! Derivations of figures: the equation with its symbols explained, the equation with numbers, and
+//! the underlying models and choices.
 
 mod channels;
 mod costs;
@@ -13,61 +14,52 @@ use super::analysis::{Analysis, ConditionAnalysis};
 use super::assessment_table::AssessmentChoice;
 use super::settings::Settings;
 
-/// A figure of an analysis that is asked about.
+/// A figure of an analysis to be explained.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExplainTarget {
     /// Delta gain `G` of a response.
     DeltaGain(ConditionId, Pair),
     /// Delta delay `D` of a response.
     DeltaDelay(ConditionId, Pair),
-    /// Net gain of a response.
     NetGain(ConditionId, Pair),
-    /// Net delay of a response.
     NetDelay(ConditionId, Pair),
-    /// Gain of a channel.
     Gain(ConditionId, Channel),
-    /// Delay of a channel.
     Delay(ConditionId, Channel),
-    /// Lower and upper bound of the gains.
     GainBounds(ConditionId),
-    /// Upper bound of the delays.
     DelayBound(ConditionId),
-    /// J of a response of the physics representative, as it is.
+    /// J of a response of the uncorrected physics representative.
     CostBefore(ConditionId, Pair),
-    /// J of the same under the condition's own correction.
+    /// J of a response of the physics representative, under the condition's own correction.
     CostAfter(ConditionId, Pair),
     /// Change of J of a response in an assessment.
     CostChange(ConditionId, Pair, AssessmentChoice),
-    /// Discontinuity ratio of a physics model.
     DiscontinuityRatio(ModelId),
-    /// Score of a model in its bundle.
     Score(ModelId),
-    /// Objective of the gains.
     GainObjective(ConditionId),
-    /// Objective of the delays.
     DelayObjective(ConditionId),
     /// Scheduled gain of a channel at an airspeed \[kt\].
     ScheduledGain(Channel, f64),
 }
 
-/// How one figure was computed.
+/// Derivation of one figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derivation {
-    /// What it is: "G of LON → Q, condition 3".
+    /// Name of the figure: "G of LON → Q, condition 3".
     pub title: String,
     /// The equation, as in the method's description.
     pub equation: String,
-    /// The equation with its numbers in place, step by step; the last step ends in the figure.
+    /// The equation with numbers, step by step; the last step ends in the figure.
     pub with_numbers: Vec<String>,
-    /// The models, the band, the points and the choices that it rests on.
+    /// The underlying models, band, points and choices.
     pub rests_on: Vec<String>,
-    /// Where the method describes it: "M6, eq. (5)".
+    /// Section in the method's description: "M6, eq. (5)".
     pub section: &'static str,
-    /// The figure itself, in the unit that the steps name; of bounds the upper one.
+    /// The figure, in the unit that the steps name; for bounds the upper bound.
     pub value: f64,
 }
 
-/// How a figure of `analysis` was computed; `None` where it has no such figure. A few medians over frequency at most.
+/// Derives a figure of `analysis`; `None` where it has no such figure. Computes at most a few
+/// medians over frequency.
 pub fn derivation(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivation> {
     let of = |condition: &ConditionId| Context::of(analysis, *condition);
     let of_pair = |condition: &ConditionId, pair: &Pair| {
@@ -102,7 +94,7 @@ pub fn derivation(analysis: &Analysis, target: &ExplainTarget) -> Option<Derivat
     })
 }
 
-/// The average over frequency, as an equation writes it.
+/// Returns the notation of the average over frequency.
 fn average_word(average: CostAverage) -> &'static str {
     match average {
         CostAverage::Median => "median",
@@ -110,7 +102,7 @@ fn average_word(average: CostAverage) -> &'static str {
     }
 }
 
-/// What the gains minimise, as an equation writes it: the equation, and the unit of its value.
+/// Returns the objective of the gains as an equation, with the unit of its value.
 fn gain_objective_equation(objective: GainObjective) -> (&'static str, &'static str) {
     match objective {
         GainObjective::Ratio => ("Σ w (G − k_o k_i)² + α Σ (k_o − 1)²", ""),
@@ -128,7 +120,7 @@ struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    /// The condition, where it has a result.
+    /// Returns the context of a condition, where it has a result.
     fn of(analysis: &'a Analysis, condition: ConditionId) -> Option<Self> {
         Some(Self {
             analysis,
@@ -144,22 +136,22 @@ impl<'a> Context<'a> {
         &self.analysis.omega
     }
 
-    /// "LON → Q".
+    /// Names a response: "LON → Q".
     fn pair(&self, pair: Pair) -> String {
         self.analysis.study.dataset.pair_name(pair)
     }
 
-    /// "LON".
+    /// Names a channel: "LON".
     fn channel(&self, channel: Channel) -> String {
         channel.name_in(&self.analysis.study.dataset)
     }
 
-    /// "what of whom, condition 3".
+    /// Writes a title: `what`, then the condition, "…, condition 3".
     fn title(&self, what: &str) -> String {
         format!("{what}, condition {}", self.result.condition.id())
     }
 
-    /// The mismatch of the two representatives.
+    /// Returns the mismatch of the two representatives.
     fn mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
         self.result
             .comparison
@@ -169,7 +161,7 @@ impl<'a> Context<'a> {
             .as_ref()
     }
 
-    /// The same after the leads of the channels, where there are any (M15.5).
+    /// Returns the mismatch after the leads of the channels, where there are any (M15.5).
     fn compensated_mismatch(&self, pair: Pair) -> Option<&'a Mismatch> {
         match &self.result.compensated {
             Some(compensated) => compensated.mismatch.get(pair)?.as_ref(),
@@ -177,7 +169,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// The two representatives.
+    /// Describes the two representatives.
     fn models(&self) -> Vec<String> {
         let of = |kind| self.result.representative_name(kind);
         let couplings = self.result.coupled.as_ref().map_or_else(String::new, |_| {
@@ -195,12 +187,12 @@ impl<'a> Context<'a> {
         ]
     }
 
-    /// The band and its frequencies.
+    /// Describes the band and its frequencies.
     fn band(&self) -> String {
         band_words(self.settings())
     }
 
-    /// The two representatives, the band, and which of its frequencies count for a response.
+    /// Describes the two representatives, the band, and the frequencies with weight in a response.
     fn models_and_frequencies(&self, mismatch: &Mismatch) -> Vec<String> {
         let mut words = self.models();
         words.push(self.band());
@@ -208,7 +200,7 @@ impl<'a> Context<'a> {
         words
     }
 
-    /// The marked responses in words.
+    /// Lists the marked responses.
     fn pairs(&self, pairs: impl Iterator<Item = Pair>) -> String {
         let names: Vec<String> = pairs.map(|pair| self.pair(pair)).collect();
         if names.is_empty() {
@@ -218,19 +210,19 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// The responses that bounds and distances are taken over.
+    /// Lists the responses used for bounds and distances.
     fn measuring(&self) -> String {
         let measuring = self.analysis.study.dataset.measuring_pairs();
         format!("responses {}", self.pairs(measuring.marked()))
     }
 
-    /// The responses held in this condition.
+    /// Lists the responses constrained in this condition.
     fn held(&self) -> String {
         format!("held {}", self.pairs(self.result.held().marked()))
     }
 }
 
-/// How many frequencies count and how much, where coherence says that.
+/// Describes the number of frequencies with weight and their weights, where coherence is used.
 fn counted_words(mismatch: &Mismatch) -> Option<String> {
     let count = mismatch.weights()?.len();
     Some(format!(
@@ -238,7 +230,7 @@ fn counted_words(mismatch: &Mismatch) -> Option<String> {
     ))
 }
 
-/// The band and its frequencies.
+/// Describes the band and its frequencies.
 fn band_words(settings: &Settings) -> String {
     let min = six_digits(settings.band.min());
     let max = six_digits(settings.band.max());
@@ -248,7 +240,7 @@ fn band_words(settings: &Settings) -> String {
     )
 }
 
-/// Five significant digits, with a true minus sign.
+/// Formats with five significant digits and a true minus sign.
 fn digits(value: f64) -> String {
     const SIGNIFICANT: i32 = 5;
     if value == 0.0 || !value.is_finite() {
@@ -266,7 +258,7 @@ fn digits(value: f64) -> String {
     text.replace('-', "−")
 }
 
-/// The least, the middle and the greatest of some values in words.
+/// Describes the least, the median and the greatest of some values.
 fn spread(values: &[f64]) -> String {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -282,7 +274,7 @@ fn spread(values: &[f64]) -> String {
     }
 }
 
-/// How the median of some values comes about.
+/// Describes how the median of some values is found.
 fn median_words(values: &[f64]) -> String {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -305,7 +297,8 @@ fn median_words(values: &[f64]) -> String {
     }
 }
 
-/// Every symbol that equations here are written with, its meaning, and its unit where it has one (docs/method.md).
+/// Every symbol used in these equations, its meaning, and its unit where it has one
+/// (docs/method.md).
 const TERMS: [(&str, &str); 30] = [
     ("G", "gain that the response wants, a ratio"),
     ("D", "delay that the response wants [s]"),
@@ -358,7 +351,7 @@ const TERMS: [(&str, &str); 30] = [
 ];
 
 impl Derivation {
-    /// The symbols of the equation with what they stand for, in the order in which they come in it.
+    /// Returns the symbols of the equation with their meanings, in order of appearance.
     pub fn terms(&self) -> Vec<(&'static str, &'static str)> {
         let mut found: Vec<(usize, (&str, &str))> = TERMS
             .into_iter()
@@ -371,7 +364,7 @@ impl Derivation {
     }
 }
 
-/// Where a symbol stands in an equation by itself, not as a part of another.
+/// Returns the position of a symbol in an equation, where it is not a part of another symbol.
 fn place_of(symbol: &str, equation: &str) -> Option<usize> {
     let is_part =
         |neighbour: Option<char>| neighbour.is_some_and(|c| c.is_alphabetic() || c == '_');

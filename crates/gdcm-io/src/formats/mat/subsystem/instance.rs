@@ -1,4 +1,4 @@
-//! Objects put together from the cells in which their properties lie.
+//! Objects assembled from the cells of their properties.
 
 use std::collections::{HashMap, HashSet};
 
@@ -10,19 +10,19 @@ use crate::variables::{
     VariableFault,
 };
 
-/// The property that holds what a class makes of its objects to be saved.
+/// Property with the value that a class creates when saving its objects.
 const MADE: &str = "any";
 
-/// Puts objects together, one in another.
+/// Assembles objects, including nested objects.
 pub(super) struct Assembly<'s> {
     pub(super) subsystem: &'s Subsystem,
     pub(super) budget: &'s ReadingBudget<'s>,
-    /// The objects that are being put together: one that lies in itself would have no end.
+    /// Objects under assembly, to detect an object that contains itself.
     open: Vec<u32>,
 }
 
 impl Subsystem {
-    /// What a reference leads to.
+    /// Resolves a reference.
     pub(in super::super) fn referred(
         &self,
         reference: &Reference,
@@ -42,7 +42,7 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// What a reference leads to; what is nested too deeply or cannot be decoded is opaque.
+    /// Resolves a reference; objects that are nested too deeply or cannot be decoded are opaque.
     pub(super) fn referred(
         &mut self,
         reference: &Reference,
@@ -79,7 +79,7 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// The texts of a `string` object.
+    /// Returns the texts of a `string` object.
     fn text(&self, object: u32) -> Result<Option<TextArray>, VariableFault> {
         let properties = self
             .subsystem
@@ -140,7 +140,7 @@ impl<'s> Assembly<'s> {
         })
     }
 
-    /// Objects without a property that others of the array have get an empty one.
+    /// Fills missing properties of objects in an array with empty values.
     fn fill(&self, values: &mut Vec<Value>, length: usize) -> Result<(), VariableFault> {
         let missing = length.saturating_sub(values.len());
         self.budget
@@ -149,7 +149,8 @@ impl<'s> Assembly<'s> {
         Ok(())
     }
 
-    /// The properties of one object: those that were saved, and what its class says of the others.
+    /// Collects the properties of one object: its saved values, and the defaults of its class for
+    /// the others.
     fn properties(
         &mut self,
         object: u32,
@@ -224,7 +225,7 @@ impl<'s> Assembly<'s> {
         }
     }
 
-    /// A value of a cell, with the objects that it refers to in their places.
+    /// Copies the value of a cell, with references replaced by their objects.
     pub(super) fn copy(
         &mut self,
         value: &Value,
@@ -284,7 +285,8 @@ impl<'s> Assembly<'s> {
         })
     }
 
-    /// The reference that a value is, if it leads to objects that there are: numbers may look like one by chance.
+    /// Returns the reference in a value if its objects exist: numbers may look like a reference by
+    /// chance.
     fn reference(&self, value: &Value) -> Option<Reference> {
         let directory = &self.subsystem.directory;
         Reference::of(value).filter(|reference| {
@@ -297,7 +299,7 @@ impl<'s> Assembly<'s> {
     }
 }
 
-/// The numbers of an array if none of them can have lost digits.
+/// Returns the integers of an array if none can have lost digits.
 fn exact_words(array: &Array) -> Option<Vec<u64>> {
     const MOST: f64 = (1_u64 << 53) as f64;
     array

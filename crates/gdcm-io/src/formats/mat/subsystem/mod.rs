@@ -1,8 +1,9 @@
-//! Objects of MATLAB's classes, which lie in a part of the file of their own: the cells of a `FileWrapper__`.
+//! MATLAB class objects, stored in a separate part of the file: the cells of a `FileWrapper__`.
 //!
-//! The first cell says which objects there are and in which cell each property of each of them lies; the last ones are shared by
-//! all objects of a class. The format is not published by The MathWorks; it is known from the descriptions of the MatFileHandler,
-//! matio (Python) and MAT.jl projects. It is the same in files up to version 7 and in those of version 7.3 (HDF5).
+//! The first cell lists the objects and the cell of each of their properties; the last cells are
+//! shared by all objects of a class. The format is not published by The MathWorks; it is known from
+//! the descriptions of the MatFileHandler, matio (Python) and MAT.jl projects. It is the same in
+//! files up to version 7 and in files of version 7.3 (HDF5).
 
 mod instance;
 
@@ -20,22 +21,22 @@ use crate::variables::{
 #[derive(Clone, Debug)]
 pub struct Subsystem {
     directory: Directory,
-    /// The values of all properties, in the order in which the directory counts them.
+    /// The values of all properties, in the order of the directory.
     values: Vec<Value>,
-    /// The values that properties have unless an object says otherwise, one record for each class.
+    /// Default property values, one record for each class.
     defaults: Vec<Value>,
-    /// Cells of whole numbers of 64 bits, to the last digit.
+    /// Exact values of cells with 64-bit integers.
     long_words: HashMap<usize, Vec<u64>>,
 }
 
-/// The cells that stand before the values of properties.
+/// Number of cells before the property values.
 const BEFORE_VALUES: usize = 2;
 
 impl Subsystem {
-    /// Takes the cells of a `FileWrapper__`, the first of which are the bytes of its directory.
+    /// Reads the cells of a `FileWrapper__`; the first holds the bytes of its directory.
     pub fn new(cells: Vec<Value>, budget: &ReadingBudget<'_>) -> Result<Self, VariableFault> {
         let bytes = directory_bytes(cells.first())?;
-        // A name without letters takes one byte of the file, and a text of ours.
+        // An empty name takes one byte of the file and a whole `String` in memory.
         budget.take(bytes.len() as u64, 2 * size_of::<String>() as u64, "")?;
         let directory = Directory::read(&bytes)?;
         let mut values = cells;
@@ -53,8 +54,8 @@ impl Subsystem {
         })
     }
 
-    /// Adds what some cells hold to the last digit: `string` objects are packed into whole numbers of 64 bits, of which a
-    /// [`Value`] keeps 53. Each comes with the number of its cell, counted from 0.
+    /// Adds the exact values of some cells: `string` objects are packed into 64-bit integers, of
+    /// which a [`Value`] keeps 53 bits. Each item has the index of its cell, counted from 0.
     pub fn with_long_words(mut self, cells: impl IntoIterator<Item = (usize, Vec<u64>)>) -> Self {
         let values = cells
             .into_iter()
@@ -63,10 +64,10 @@ impl Subsystem {
         self
     }
 
-    /// The object, or the array of objects, that a reference leads to: `[0xDD000000, number of dimensions, dimensions, numbers of
-    /// the objects, number of the class]`.
+    /// Returns the object, or the array of objects, for a reference: `[0xDD000000, number of
+    /// dimensions, dimensions, numbers of the objects, number of the class]`.
     ///
-    /// What cannot be decoded is [`Value::Opaque`]; only the budget makes a fault.
+    /// Parts that cannot be decoded are [`Value::Opaque`]; only the budget causes a fault.
     pub fn object(
         &self,
         reference: &[u32],
@@ -103,26 +104,26 @@ fn damaged(what: impl Into<String>) -> VariableFault {
     VariableFault::damaged("", what, 0)
 }
 
-// Which objects a file has, and where their properties lie.
+// Directory of the objects and the positions of their properties.
 
-/// The bytes before the names: version, number of names, and where eight regions begin.
+/// Bytes before the names: version, number of names, and the offsets of eight regions.
 const HEADER_BYTES: usize = 40;
-/// The newest version of the layout that is known.
+/// Newest known layout version.
 const NEWEST: u32 = 4;
 
-/// Which objects a file has, and where their properties lie.
+/// Directory of the objects and the positions of their properties.
 #[derive(Clone, Debug)]
 pub(super) struct Directory {
-    /// Names of properties and classes. They are counted from 1: 0 means none.
+    /// Names of properties and classes, counted from 1; 0 means none.
     names: Vec<String>,
-    /// Names of the classes, counted from 1 as well.
+    /// Names of the classes, also counted from 1.
     classes: Vec<String>,
     objects: Vec<Entry>,
-    /// Properties of objects that are saved as another value, which their class makes of them.
+    /// Properties of objects saved as another value that their class creates.
     made: Vec<Vec<Property>>,
     /// Properties of all other objects.
     plain: Vec<Vec<Property>>,
-    /// Number of cells that follow those of the properties' values.
+    /// Number of cells after the property values.
     pub(super) cells_behind_values: usize,
 }
 
@@ -137,20 +138,18 @@ struct Entry {
 /// One property of an object.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Property {
-    /// Number of its name.
     pub(super) name: u32,
-    /// What the value's number means.
     pub(super) content: Content,
 }
 
-/// Where the value of a property is.
+/// Location of a property value.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Content {
-    /// It is a name.
+    /// The value is a name.
     Name(u32),
-    /// It lies in a cell, counted from the first that holds a value.
+    /// The value is in a cell, counted from the first cell with a value.
     Cell(usize),
-    /// It is this number.
+    /// The value is this number.
     Number(u32),
 }
 
@@ -169,7 +168,7 @@ impl Directory {
         };
         let little = words(ByteOrder::Little);
         let big = words(ByteOrder::Big);
-        // A version is a small number: read in the wrong order it is a large one.
+        // A version is a small number and becomes large in the wrong byte order.
         let is_little = little.first() <= big.first();
         let (order, head) = if is_little {
             (ByteOrder::Little, little)
@@ -229,7 +228,7 @@ impl Directory {
         })
     }
 
-    /// The name of a class: the package it lies in, and its own.
+    /// Returns the class name: its package and its own name.
     fn class_of(&self, words: &[u32]) -> String {
         let name = |at: usize| {
             words
@@ -243,14 +242,14 @@ impl Directory {
         }
     }
 
-    /// A name of a property or a class.
+    /// Returns the name of a property or a class.
     pub(super) fn name(&self, number: u32) -> Option<&str> {
         self.names
             .get((number as usize).checked_sub(1)?)
             .map(String::as_str)
     }
 
-    /// The name of a class.
+    /// Returns the name of a class.
     pub(super) fn class(&self, number: u32) -> Option<&str> {
         if number == 0 {
             None
@@ -259,7 +258,7 @@ impl Directory {
         }
     }
 
-    /// The class of an object and its properties.
+    /// Returns the class of an object and its properties.
     pub(super) fn object(&self, number: u32) -> Option<(u32, &[Property])> {
         let entry = self.objects.get(number as usize)?;
         let (list, at) = if entry.made == 0 {
@@ -270,7 +269,7 @@ impl Directory {
         Some((entry.class, list.get(at as usize)?.as_slice()))
     }
 
-    /// Whether there is an object of this number; 0 stands for one that was deleted.
+    /// Whether an object with this number exists; 0 marks a deleted object.
     pub(super) fn has_object(&self, number: u32) -> bool {
         number == 0 || (number as usize) < self.objects.len()
     }
@@ -294,7 +293,7 @@ fn region(
         .collect())
 }
 
-/// One list of properties after the other, each with its length before it and filled up to eight bytes.
+/// Reads consecutive property lists, each preceded by its length and padded to eight bytes.
 fn properties(region: &[u32]) -> Result<Vec<Vec<Property>>, VariableFault> {
     let mut lists = Vec::new();
     let mut rest = region;
@@ -321,15 +320,15 @@ fn property(words: &[u32]) -> Option<Property> {
     Some(Property { name, content })
 }
 
-// The texts of a `string` object, packed into whole numbers of 64 bits.
+// Texts of a `string` object, packed into 64-bit integers.
 
-/// The only version of the packing that is known.
+/// The only known version of the packing.
 const VERSION: u64 = 1;
-/// What stands for the length of a missing text.
+/// Length that marks a missing text.
 const MISSING: u64 = u64::MAX;
 
-/// The texts packed as version, number of dimensions, dimensions, lengths and units of UTF-16, four to a number; `None` if the
-/// numbers are something else. A missing text is an empty one.
+/// Unpacks the texts from version, number of dimensions, dimensions, lengths and UTF-16 units, four
+/// to a number; `None` for other numbers. A missing text is read as an empty text.
 pub(super) fn packed_text(
     words: &[u64],
     budget: &ReadingBudget<'_>,
@@ -370,24 +369,25 @@ fn unpacked(words: &[u64]) -> Option<TextArray> {
     Some(TextArray { shape, texts })
 }
 
-// Where a value leads to objects.
+// References to objects.
 
-/// What every reference begins with.
+/// First number of every reference.
 const REFERENCE: u32 = 0xdd00_0000;
 
-/// Which objects a value stands for.
+/// A reference to objects.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::formats::mat) struct Reference {
     /// Number of objects along each dimension.
     pub(super) shape: Vec<usize>,
-    /// Number of each object, the first index running fastest.
+    /// Number of each object, first index fastest.
     pub(super) objects: Vec<u32>,
-    /// Number of their class.
+    /// Number of the class.
     pub(super) class: u32,
 }
 
 impl Reference {
-    /// Reads `[0xDD000000, number of dimensions, dimensions, numbers of the objects, number of the class]`.
+    /// Parses `[0xDD000000, number of dimensions, dimensions, numbers of the objects, number of the
+    /// class]`.
     pub(super) fn parse(words: &[u32]) -> Option<Self> {
         let [REFERENCE, dimensions, rest @ ..] = words else {
             return None;
@@ -403,7 +403,7 @@ impl Reference {
         })
     }
 
-    /// The reference that a value is: a column of whole numbers.
+    /// Returns the reference in a value: a column of integers.
     pub(in crate::formats::mat) fn of(value: &Value) -> Option<Self> {
         let Value::Array(array) = value else {
             return None;
@@ -428,20 +428,20 @@ impl Reference {
     }
 }
 
-// Members of enumerations.
+// Enumeration members.
 
-/// The field by which the record is known that stands for members of an enumeration.
+/// Field that marks a record as enumeration members.
 const TAG: &str = "EnumerationInstanceTag";
-/// The property that says which member an object is.
+/// Property with the name of the member.
 const MEMBER: &str = "Name";
 
-/// Whether records stand for members of an enumeration.
+/// Whether the records are enumeration members.
 pub(super) fn is_enumeration(records: &StructArray) -> bool {
     records.field(TAG).is_some()
 }
 
 impl Subsystem {
-    /// Members of an enumeration as objects whose only property is the member's name.
+    /// Converts enumeration members to objects whose only property is the member's name.
     pub(in crate::formats::mat) fn enumeration(
         &self,
         records: &StructArray,
@@ -511,7 +511,7 @@ mod subsystem_tests {
         "Flag_",
     ];
 
-    /// A model with its data and its name, a text, and an object that lies in itself.
+    /// A model with data and a name, a text, and an object that contains itself.
     fn directory(version: u32) -> Directory<'static> {
         Directory {
             version,

@@ -20,66 +20,46 @@ use crate::variables::VariableFault;
 pub enum FileError {
     /// There is no file with this name.
     #[error("{}: there is no such file", sanitized_path(path))]
-    Missing {
-        path: PathBuf,
-    },
+    Missing { path: PathBuf },
     /// The path is a directory.
     #[error(
         "{}: this is a directory; give the name of a file",
         sanitized_path(path)
     )]
-    Directory {
-        path: PathBuf,
-    },
+    Directory { path: PathBuf },
     /// The path is neither a file nor a directory: reading it might never end.
     #[error(
         "{}: this is {kind}, not a file; save what it gives as a file, and give its name",
         sanitized_path(path)
     )]
-    NotAFile {
-        path: PathBuf,
-        kind: &'static str,
-    },
+    NotAFile { path: PathBuf, kind: &'static str },
     /// The output path is a named pipe, a socket or a device.
     #[error(
         "{}: this is {kind}, not a file, and is not written to; give the name of a file",
         sanitized_path(path)
     )]
-    OutputNotAFile {
-        path: PathBuf,
-        kind: &'static str,
-    },
+    OutputNotAFile { path: PathBuf, kind: &'static str },
     /// The system does not permit reading the file.
     #[error("{}: cannot be read: {reason}", sanitized_path(path))]
-    Unreadable {
-        path: PathBuf,
-        reason: String,
-    },
+    Unreadable { path: PathBuf, reason: String },
     /// The file, or its uncompressed content, exceeds the size limit.
     #[error(
         "{}: holds more than {most_mib} MiB, which is the most that is read; split the file",
         sanitized_path(path)
     )]
-    TooLarge {
-        path: PathBuf,
-        most_mib: u64,
-    },
+    TooLarge { path: PathBuf, most_mib: u64 },
     /// The compressed data are damaged.
     #[error(
         "{}: the gzip data are damaged; pack or copy the file again",
         sanitized_path(path)
     )]
-    Gzip {
-        path: PathBuf,
-    },
+    Gzip { path: PathBuf },
     /// The compressed data end too early.
     #[error(
         "{}: the gzip data end too early, the file is cut off; copy it again",
         sanitized_path(path)
     )]
-    GzipCutOff {
-        path: PathBuf,
-    },
+    GzipCutOff { path: PathBuf },
     /// The text ends before the JSON does.
     #[error("{}: {}the JSON ends too early (line {line}, column {column}), the file is cut off; copy it again", sanitized_path(path), place.before())]
     CutOff {
@@ -142,18 +122,13 @@ pub enum FileError {
     },
     /// A file of variables cannot be read or written.
     #[error("{}: {}", sanitized_path(path), sanitized(&.fault.to_string()))]
-    Variables {
-        path: PathBuf,
-        fault: VariableFault,
-    },
+    Variables { path: PathBuf, fault: VariableFault },
     /// Folders are nested more deeply than the search for models goes.
     #[error(
         "{}: folders lie too deep inside one another; give a folder farther down",
         sanitized_path(path)
     )]
-    FolderTooDeep {
-        path: PathBuf,
-    },
+    FolderTooDeep { path: PathBuf },
     /// A file of records does not contain the requested record.
     #[error("{}: {}", sanitized_path(path), no_record_words(record.as_deref(), *held))]
     NoRecord {
@@ -167,10 +142,7 @@ pub enum FileError {
         "{}: holds more than {most} files; give a folder with fewer",
         sanitized_path(path)
     )]
-    TooManyFiles {
-        path: PathBuf,
-        most: usize,
-    },
+    TooManyFiles { path: PathBuf, most: usize },
     /// The dataset of a study cannot be read.
     #[error(
         "{}: the study's dataset cannot be opened: {dataset}; say where it is now, with --dataset and its path",
@@ -186,30 +158,22 @@ pub enum FileError {
         "{}: cannot be written: a file stands where this directory would have to be made",
         sanitized_path(path)
     )]
-    NotADirectory {
-        path: PathBuf,
-    },
+    NotADirectory { path: PathBuf },
     /// Files exist, and replacing them was not requested.
     #[error("{} {} already", listed(paths), if paths.len() == 1 { "exists" } else { "exist" })]
-    Exists {
-        paths: Vec<PathBuf>,
-    },
+    Exists { paths: Vec<PathBuf> },
     /// The output file is an input of the program.
     #[error(
         "{}: the data are read from this file, so it is not overwritten; choose another name or directory",
         sanitized_path(path)
     )]
-    Input {
-        path: PathBuf,
-    },
+    Input { path: PathBuf },
     /// The extension of an output file is no figure format.
     #[error(
         "{}: a figure is written to a name that ends in .svg, .png, .pdf or .csv",
         sanitized_path(path)
     )]
-    FigureFormat {
-        path: PathBuf,
-    },
+    FigureFormat { path: PathBuf },
     /// A figure without numbers was requested as numbers.
     #[error(
         "{}: \"{}\" shows no numbers that could be written: none of the responses or channels asked for has a result; ask for others, or \
@@ -217,22 +181,13 @@ pub enum FileError {
         sanitized_path(path),
         sanitized(title)
     )]
-    FigureWithoutNumbers {
-        path: PathBuf,
-        title: String,
-    },
+    FigureWithoutNumbers { path: PathBuf, title: String },
     /// The requested export is impossible.
     #[error("{}: {}", sanitized_path(path), sanitized(&.fault.to_string()))]
-    Export {
-        path: PathBuf,
-        fault: ExportFault,
-    },
+    Export { path: PathBuf, fault: ExportFault },
     /// The file could not be written; an existing file is unchanged.
     #[error("{}: cannot be written: {reason}", sanitized_path(path))]
-    Unwritable {
-        path: PathBuf,
-        reason: String,
-    },
+    Unwritable { path: PathBuf, reason: String },
 }
 
 impl FileError {
@@ -364,7 +319,6 @@ pub fn system_words(error: &std::io::Error) -> String {
     words.to_owned()
 }
 
-
 /// Fault at a place in a file: expected, found, remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ContentFault {
@@ -397,14 +351,10 @@ pub enum ContentFault {
     },
     /// A required key is missing.
     #[error("the key \"{key}\" is missing; add it")]
-    MissingKey {
-        key: String,
-    },
+    MissingKey { key: String },
     /// Duplicate key.
     #[error("the key {} stands twice; remove one", quoted(key))]
-    DuplicateKey {
-        key: String,
-    },
+    DuplicateKey { key: String },
     /// Any other fault of the text.
     #[error("{reason} (line {line}, column {column})")]
     Text {
@@ -439,9 +389,7 @@ pub enum ContentFault {
     Dataset(#[from] DraftFault),
     /// A study contains a condition twice.
     #[error("condition {id} stands twice; remove one")]
-    DuplicateCondition {
-        id: i64,
-    },
+    DuplicateCondition { id: i64 },
     /// A study contains an invalid decision.
     #[error("{}", sanitized(&.0.to_string()))]
     Refused(#[from] EditRefusal),

@@ -89,7 +89,6 @@ fn entry_words(steps: &[Step]) -> String {
     words.join(", ")
 }
 
-
 /// Maximum number of labelled conditions and models, so that an outline takes no more memory than a
 /// dataset.
 const MOST_LABELS: usize = 50_000;
@@ -224,7 +223,6 @@ fn words(value: &JsonEvent<'_>) -> String {
         _ => "null".to_owned(),
     }
 }
-
 
 /// Maximum number of keys reported individually; a file with more is not one of ours, or made to
 /// fill the memory.

@@ -366,7 +366,6 @@ fn found(
     }
 }
 
-
 /// A matrix in a separate file.
 struct LooseMatrix {
     /// The folder and the part of the name before the letter: matrices with the same group are one

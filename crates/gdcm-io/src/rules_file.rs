@@ -205,7 +205,6 @@ fn text_of(rules: &Rules) -> RulesText {
     }
 }
 
-
 /// Format and version of a rules file.
 pub(super) const FORMAT: Format = Format {
     name: "gdcm-rules",

@@ -230,7 +230,6 @@ pub(super) fn sha256(
         .collect())
 }
 
-
 /// Metadata that change when a file is written: cheap to query, also on a network drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FileStamp {

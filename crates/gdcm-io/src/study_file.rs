@@ -528,7 +528,6 @@ fn settled(path: &Path) -> Result<PathBuf, FileError> {
     }
 }
 
-
 /// Content of an opened file.
 #[derive(Clone, Debug)]
 #[expect(

@@ -10,7 +10,6 @@ use gdcm_model::message_text::shortened_name;
 
 use crate::formats::MOST_MEMORY;
 
-
 /// Type of the numbers in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ElementKind {
@@ -57,7 +56,6 @@ impl Array {
         self.re.is_empty()
     }
 }
-
 
 /// A value with its name.
 #[derive(Clone, Debug, PartialEq)]
@@ -250,7 +248,6 @@ impl StructArray {
     }
 }
 
-
 /// Reason why variables could not be read, and the variable (a path such as "sys.A" or
 /// "models{3}.B"; empty if none was begun).
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -320,14 +317,10 @@ pub enum VariableFault {
     },
     /// Values are nested more deeply than the limit, or in a cycle.
     #[error("{}values are nested too deeply, or contain themselves", at(variable))]
-    TooDeep {
-        variable: String,
-    },
+    TooDeep { variable: String },
     /// Duplicate name.
     #[error("the name \"{name}\" stands twice; rename one")]
-    Duplicate {
-        name: String,
-    },
+    Duplicate { name: String },
     /// The reader was stopped.
     #[error("stopped")]
     Stopped,

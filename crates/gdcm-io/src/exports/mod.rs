@@ -226,7 +226,6 @@ pub fn write_export(
     Ok(remarks)
 }
 
-
 /// Reason why an export is impossible.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ExportFault {
@@ -248,9 +247,7 @@ pub enum ExportFault {
          keyword nor a name that the file uses itself; found {}",
         quoted(found)
     )]
-    FunctionName {
-        found: String,
-    },
+    FunctionName { found: String },
     /// The file extension is none of the model formats.
     #[error("models are written to a name that ends in .mat, .json or .npz")]
     ModelsFormat,
@@ -264,20 +261,13 @@ pub enum ExportFault {
     #[error(
         "the study asks for couplings, and there are none: {why}; mend that, or set couplings to none"
     )]
-    NoCouplings {
-        why: String,
-    },
+    NoCouplings { why: String },
     /// A condition has no result of its own.
     #[error("condition {condition}: {why}")]
-    NoResult {
-        condition: ConditionId,
-        why: String,
-    },
+    NoResult { condition: ConditionId, why: String },
     /// The dataset has no such condition.
     #[error("the dataset has no condition {condition}")]
-    NoCondition {
-        condition: ConditionId,
-    },
+    NoCondition { condition: ConditionId },
     /// A condition has no physics model with this name.
     #[error(
         "condition {condition} has no physics model \"{model}\"; name the condition that has it"

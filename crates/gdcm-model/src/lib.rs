@@ -16,14 +16,14 @@
 //!
 //! ```
 //! use gdcm_model::dataset::{Pair, StateSpace};
-//! use response::eigenvalues::poles;
+//! use gdcm_model::response::eigenvalues::poles;
 //! use nalgebra::dmatrix;
 //!
 //! // q = 1 / (s + 2) times the stick
 //! let lag = StateSpace::new(dmatrix![-2.0], dmatrix![1.0], dmatrix![1.0], dmatrix![0.0])?;
 //! assert_eq!(poles(&lag).map(|poles| poles[0].re), Some(-2.0));
 //! # let _ = Pair::new(0, 0);
-//! # Ok::<(), dataset::state_space::StateSpaceError>(())
+//! # Ok::<(), gdcm_model::dataset::state_space::StateSpaceError>(())
 //! ```
 
 pub mod assembly;

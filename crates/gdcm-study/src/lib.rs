@@ -13,7 +13,12 @@
 //! fifth larger than that of its physics model:
 //!
 //! ```
-//! use gdcm_model::dataset::*;
+//! use gdcm_model::dataset::condition::FlightState;
+//! use gdcm_model::dataset::dataset::DatasetHeader;
+//! use gdcm_model::dataset::model::Origin;
+//! use gdcm_model::dataset::{
+//!     Band, Channel, Condition, ConditionId, Dataset, Dynamics, Model, Pair, PairTable, StateSpace,
+//! };
 //! use gdcm_study::study::{Engine, Study, Unobserved};
 //! use nalgebra::dmatrix;
 //!

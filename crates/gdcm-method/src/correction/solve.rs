@@ -220,7 +220,8 @@ fn matched_within(coordinate: Coordinate) -> f64 {
 /// feasible products or sums (least squares in logarithms, or in seconds), and reported.
 ///
 /// ```
-/// use gdcm_method::correction::{Bounds, Outcome, Problem, ProofBudget, solve};
+/// use gdcm_method::correction::solve::solve;
+/// use gdcm_method::correction::{Bounds, Outcome, Problem, ProofBudget};
 /// use gdcm_model::dataset::{Pair, PairTable};
 ///
 /// let delta_gains = [[1.2, 0.8], [0.9, 1.1]];
@@ -230,7 +231,7 @@ fn matched_within(coordinate: Coordinate) -> f64 {
 /// let solution = solve(&problem, ProofBudget::default(), &|| false)?;
 /// assert!((solution.outputs[0] * solution.inputs[0] - 1.2).abs() < 1e-12);
 /// assert!(matches!(solution.proof.outcome, Outcome::Proven { .. }));
-/// # Ok::<(), super::problem::ProblemError>(())
+/// # Ok::<(), gdcm_method::correction::problem::ProblemError>(())
 /// ```
 ///
 /// # Errors

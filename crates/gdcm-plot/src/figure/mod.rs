@@ -8,7 +8,9 @@
 //! function.
 //!
 //! ```
-//! use gdcm_plot::figure::{Axis, ColumnWidth, Curve, Figure, Panel, Plot, Role};
+//! use gdcm_plot::figure::axis::Axis;
+//! use gdcm_plot::figure::figure::{Curve, Plot};
+//! use gdcm_plot::figure::{ColumnWidth, Figure, Panel, Role};
 //!
 //! let omega = [0.5, 1.0, 2.0];
 //! let nominal = Curve::new("nominal", Role::Nominal.stroke(false), omega, [3.0, 1.0, -4.0]).key("nominal");

@@ -1,13 +1,13 @@
 //! The window: the only module that uses eframe, file dialogs and threads.
 
-mod assembling;
 mod background_jobs;
 mod files;
 mod job_queue;
 mod keyboard;
 mod launch;
+pub mod model_import;
 mod outputs;
-mod records;
+pub mod record_import;
 mod recovery;
 mod reload;
 pub mod threads;

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use gdcm_io::corrections_file::write_results;
-use gdcm_io::exports::{ExportFormat, ExportRequest, ExportSource, export_contents, write_export};
+use gdcm_io::export::{ExportFormat, ExportRequest, ExportSource, export_contents, write_export};
 use gdcm_io::figure_file::{csv_text, figure_format, save_tables, write_figure};
 use gdcm_io::output_set::OutputSet;
-use gdcm_io::report_file::{ReportSource, ReportSubject, report, save_report};
+use gdcm_io::report::{ReportSource, ReportSubject, report, save_report};
 use gdcm_io::requirements_file::{add_tolerances, load_tolerances, read_levels};
 use gdcm_io::{Existing, FileError};
 use gdcm_model::message_text::sanitized_path;

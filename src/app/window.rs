@@ -24,7 +24,7 @@ use super::background_jobs::{AnalysisJob, BackgroundJobs, Proof};
 use super::files::{PendingAction, SavedStudy};
 use super::keyboard::{self, KeyOrder};
 use super::outputs::ReportJob;
-use super::records::DatasetOfRecords;
+use super::record_import::DatasetOfRecords;
 use super::recovery::{Autosave, LAST_WAIT};
 use super::reload::DiskWatch;
 use super::threads::{Fault, Reader, Reply, ReplySender};

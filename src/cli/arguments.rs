@@ -13,8 +13,8 @@ use gdcm_study::study::changed_models::SignRole;
 use gdcm_study::study::setting::SETTINGS;
 use gdcm_study::study::setting_row::{Kind, Setting};
 
+use super::flight_records::HistoryArguments;
 use super::identify_arguments::IdentifyArguments;
-use super::records::HistoryArguments;
 use super::results::ExportArguments;
 
 /// Gain-Delay Correction Method: matches physics-based helicopter models to flight.

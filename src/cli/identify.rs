@@ -29,9 +29,9 @@ use gdcm_sysid::records::record_table::median_step;
 use gdcm_sysid::records::{LaidOutRecord, RecordChannels};
 
 use super::existing;
+use super::flight_records::{ReadRecords, hold_out, is_called, laid_out, record_table};
 use super::identify_arguments::{IdentifyArguments, has_channel, of_one_record, unknown};
 use super::models::counted;
-use super::records::{ReadRecords, hold_out, is_called, laid_out, record_table};
 use super::study_options::{condition_of, ids};
 use super::terminal::{
     Failure, TerminalProgress, by_words, caution, caution_of, listed_conditions, listed_paths,

@@ -5,11 +5,11 @@
 
 mod arguments;
 mod check;
+pub mod flight_records;
 mod identify;
 mod identify_arguments;
 mod misspelling;
 mod models;
-mod records;
 mod requirements;
 mod results;
 mod study_options;

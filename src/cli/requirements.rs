@@ -19,8 +19,8 @@ use gdcm_study::study::time_histories::TimeHistories;
 use gdcm_study::study::{Analysis, Table};
 
 use super::arguments::RequirementsArguments;
+use super::flight_records::time_histories;
 use super::models::counted;
-use super::records::time_histories;
 use super::study_options::{analysis_of, study_of};
 use super::terminal::{
     Failure, TerminalProgress, by_words, caution_of, indented, line, note, of_conditions, say,

@@ -8,13 +8,13 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use gdcm_io::corrections_file::{result_paths, write_results};
-use gdcm_io::exports::{
+use gdcm_io::export::{
     EXPORTERS, ExportFormat, ExportRequest, ExportSource, ExportedRole, check_export,
     export_contents, write_export,
 };
 use gdcm_io::figure_file::{figure_format, write_figure};
 use gdcm_io::output_set::make_directory;
-use gdcm_io::report_file::{ReportSource, ReportSubject, report as report_of, save_report};
+use gdcm_io::report::{ReportSource, ReportSubject, report as report_of, save_report};
 use gdcm_method::correction::corrected_model::HIGHEST_PADE_ORDER;
 use gdcm_method::correction::{Channel, Pade};
 use gdcm_model::dataset::{ConditionId, Dataset, Pair};
@@ -33,7 +33,7 @@ use super::arguments::{
     AnalyzeArguments, FigureArguments, PairChoice, ReportArguments, StudyArguments, real_number,
     whole_number,
 };
-use super::records::time_histories;
+use super::flight_records::time_histories;
 use super::study_options::{analysis_of, condition_of, ids, names, pairs_of, study_of};
 use super::summary::{leave_one_out_section, summary};
 use super::terminal::{Failure, TerminalProgress, say};

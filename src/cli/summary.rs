@@ -4,7 +4,7 @@ use std::path::Path;
 
 use gdcm_io::LoadedDataset;
 use gdcm_io::corrections_file::RESULT_FILES;
-use gdcm_io::report_file::assessment_sentence;
+use gdcm_io::report::assessment_sentence;
 use gdcm_method::correction::delta::GainSource;
 use gdcm_method::correction::leads::ChannelLeads;
 use gdcm_method::correction::{ChannelCorrection, LeadPrice, Outcome};

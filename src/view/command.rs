@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::ThemePreference;
 
-use gdcm_io::exports::ExportFormat;
+use gdcm_io::export::ExportFormat;
 use gdcm_model::dataset::{ConditionId, ModelId, Pair};
 use gdcm_plot::figure::axis::FrequencyUnit;
 use gdcm_plot::figure::gains::{Across, Measure};

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use gdcm_io::exports::ExportFormat;
+use gdcm_io::export::ExportFormat;
 use gdcm_method::correction::Problem;
 use gdcm_method::uncertainty::{Bar as ErrorBar, Scalar};
 use gdcm_model::dataset::{BundleKind, Condition, ConditionId, Dataset, ModelId};

@@ -6,7 +6,7 @@ use std::process::Command;
 
 use serde_json::{Value, json};
 
-use gdcm_io::exports::{EXPORTERS, ExportFormat};
+use gdcm_io::export::{EXPORTERS, ExportFormat};
 use gdcm_io::{FolderProgress, load_dataset, read_models};
 use gdcm_model::assembly::{FoundModel, Headings};
 use gdcm_model::dataset::{Pair, StateSpace};

@@ -9,7 +9,7 @@ use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::{Value, json};
 
 use gdcm_io::record_files::example_records;
-use gdcm_io::report_file::{ReportSource, ReportSubject, report};
+use gdcm_io::report::{ReportSource, ReportSubject, report};
 use gdcm_io::{load_dataset, save_study};
 use gdcm_method::requirements::ToleranceTable;
 use gdcm_model::dataset::{BundleKind, ConditionId, ModelId};

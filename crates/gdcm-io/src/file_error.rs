@@ -10,7 +10,7 @@ use gdcm_model::dataset::unchecked_dataset::{DraftError, DraftFault};
 use gdcm_model::message_text::{quoted, sanitized, sanitized_path};
 use gdcm_study::study::edit::EditRefusal;
 
-use crate::exports::ExportFault;
+use crate::export::ExportFault;
 use crate::json_text::line_of;
 use crate::variables::VariableFault;
 

@@ -3,8 +3,8 @@
 pub mod beginning;
 pub mod corrections_file;
 pub mod dataset_file;
+pub mod export;
 pub mod export_contents;
-pub mod exports;
 pub mod figure_file;
 pub mod file_error;
 pub mod formats;
@@ -15,7 +15,7 @@ pub mod models_file;
 pub mod output_set;
 mod recognise;
 pub mod record_files;
-pub mod report_file;
+pub mod report;
 pub mod requirements_file;
 pub mod rules_file;
 pub mod source;

@@ -537,9 +537,9 @@ mod tests {
     use gdcm_model::progress::Unobserved;
     use gdcm_study::study::{Analysis, Engine, Study};
 
-    use super::super::ExportSource;
     use super::*;
     use crate::dataset_file::embedded_example;
+    use crate::export::ExportSource;
     use crate::formats::text::read_table;
     use crate::variables::{ReadingBudget, Value};
 

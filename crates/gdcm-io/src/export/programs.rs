@@ -399,9 +399,9 @@ mod tests {
         Analysis, CouplingCorrection, Edit, Engine, PhaseCorrection, Study, setting,
     };
 
-    use super::super::{EXPORTERS, ExportRequest, ExportSource};
     use super::*;
     use crate::dataset_file::embedded_example;
+    use crate::export::{EXPORTERS, ExportRequest, ExportSource};
 
     /// The example under every form of the schedule: kind, quantity, delays.
     fn analyses() -> Vec<(String, Analysis)> {

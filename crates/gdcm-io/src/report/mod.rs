@@ -16,9 +16,9 @@ use gdcm_study::study::required_modes::KnownPoles;
 use gdcm_study::study::time_histories::TimeHistories;
 use gdcm_study::study::{Analysis, Engine};
 
-use super::dataset_file::LoadedDataset;
-use super::file_error::FileError;
-use super::output_set::OutputSet;
+use crate::dataset_file::LoadedDataset;
+use crate::file_error::FileError;
+use crate::output_set::OutputSet;
 use page::Page;
 
 pub use study::assessment_sentence;
